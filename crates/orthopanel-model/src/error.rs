@@ -1,0 +1,90 @@
+//! What the physics layer refuses, with the numbers in it and the way out.
+
+use thiserror::Error;
+
+/// Errors of this crate.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
+pub enum ModelError {
+    /// A size that is zero, negative or not a number.
+    #[error("{name} = {value} {unit}: must be finite and greater than zero")]
+    Size {
+        /// Name of the size.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+        /// Its unit.
+        unit: &'static str,
+    },
+    /// An elastic constant outside its bounds.
+    #[error("{name} = {value:e} {unit}: must lie between {low:e} and {high:e}")]
+    Constant {
+        /// Name of the constant.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+        /// Its unit.
+        unit: &'static str,
+        /// Least value allowed.
+        low: f64,
+        /// Greatest value allowed.
+        high: f64,
+    },
+    /// A place outside the piece.
+    #[error("place ({x}, {y}) m lies off the piece: |x| <= {x_limit} m and |y| <= {y_limit} m, from its centre")]
+    OffPiece {
+        /// x of the place.
+        x: f64,
+        /// y of the place.
+        y: f64,
+        /// Half the length.
+        x_limit: f64,
+        /// Half the width.
+        y_limit: f64,
+    },
+    /// A modal damping ratio outside $0 \le \zeta < 1/\sqrt 2$ (eq. 25).
+    #[error("mode {mode}: damping ratio {value} must satisfy 0 <= zeta < 0.7071 (eq. 25)")]
+    Damping {
+        /// Flexible mode, from 1; 0 stands for the ratio of all modes beyond.
+        mode: usize,
+        /// The ratio.
+        value: f64,
+    },
+    /// A modal model whose lists do not fit each other.
+    #[error("mode {mode}: {found} shape values at the {ports}, expected {expected}")]
+    PortCount {
+        /// Position of the mode in the list, from 1.
+        mode: usize,
+        /// `forces` or `responses`.
+        ports: &'static str,
+        /// Number found.
+        found: usize,
+        /// Number expected.
+        expected: usize,
+    },
+    /// A number that is not finite where one is needed.
+    #[error("{what} = {value}: must be a finite number")]
+    NotFinite {
+        /// What it is.
+        what: &'static str,
+        /// Its value.
+        value: f64,
+    },
+    /// A model file whose text cannot be read.
+    #[error("not a model file: {0}")]
+    ModelText(String),
+    /// A model file of another schema.
+    #[error("schema = {found:?}: this version reads {expected:?}")]
+    Schema {
+        /// The schema found; empty where the key is missing.
+        found: String,
+        /// The schema read.
+        expected: &'static str,
+    },
+    /// A constant that the structure needs and the file lacks.
+    #[error("constants.{name} is missing: the structure needs it")]
+    MissingConstant {
+        /// Name of the constant.
+        name: &'static str,
+    },
+}

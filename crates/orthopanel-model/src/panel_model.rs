@@ -1,0 +1,191 @@
+//! The model file `orthopanel.model/1`: the text that a person or `identify` writes.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+use crate::{Boundary, ModelError, Piece, Place};
+
+/// The schema that this version reads and writes.
+pub const MODEL_SCHEMA: &str = "orthopanel.model/1";
+
+/// A panel with its constants, damping and ports, as written in a model file (JSON).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PanelModel {
+    /// [`MODEL_SCHEMA`].
+    pub schema: String,
+    /// The piece.
+    pub piece: Piece,
+    /// What holds its ends; free unless said.
+    #[serde(default)]
+    pub boundary: Boundary,
+    /// What vibrates.
+    pub structure: StructureKind,
+    /// Elastic constants by name \[Pa, Poisson's ratio 1\].
+    pub constants: BTreeMap<String, Estimate>,
+    /// Modal damping.
+    #[serde(default)]
+    pub damping: Damping,
+    /// Physical effects beyond the base model.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub effects: Vec<EffectEntry>,
+    /// Places of force and response.
+    #[serde(default)]
+    pub ports: Ports,
+    /// Where the model comes from; free text by key.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub provenance: BTreeMap<String, serde_json::Value>,
+}
+
+/// What vibrates.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum StructureKind {
+    /// The orthotropic Timoshenko beam of the paper: constants `e_x`, `g_zx`.
+    TimoshenkoBeam,
+    /// The orthotropic Mindlin plate: constants `e_x`, `e_y`, `nu_xy`, `g_xy`, `g_yz`, `g_zx`.
+    MindlinPlate,
+}
+
+/// A number, with its standard deviation where it was identified; in files `1.07e10` or `{"value", "std"}`.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(from = "EstimateText", into = "EstimateText")]
+pub struct Estimate {
+    /// The value.
+    pub value: f64,
+    /// Its standard deviation, where known.
+    pub std: Option<f64>,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(untagged)]
+enum EstimateText {
+    Bare(f64),
+    #[serde(rename_all = "lowercase")]
+    Full {
+        value: f64,
+        std: f64,
+    },
+}
+
+impl From<EstimateText> for Estimate {
+    fn from(text: EstimateText) -> Self {
+        match text {
+            EstimateText::Bare(value) => Self { value, std: None },
+            EstimateText::Full { value, std } => Self { value, std: Some(std) },
+        }
+    }
+}
+
+impl From<Estimate> for EstimateText {
+    fn from(estimate: Estimate) -> Self {
+        match estimate.std {
+            None => Self::Bare(estimate.value),
+            Some(std) => Self::Full { value: estimate.value, std },
+        }
+    }
+}
+
+/// Modal damping ratios $\zeta_m$ of the flexible modes in order, and one for all modes beyond the list.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Damping {
+    /// $\zeta_1, \zeta_2, \dots$ \[1\].
+    #[serde(default)]
+    pub ratios: Vec<f64>,
+    /// Ratio of every mode after the last of `ratios` \[1\].
+    #[serde(default)]
+    pub beyond: f64,
+}
+
+impl Damping {
+    /// Damping ratio of flexible mode `mode`, counted from 1.
+    pub fn ratio(&self, mode: usize) -> f64 {
+        mode.checked_sub(1).and_then(|index| self.ratios.get(index)).copied().unwrap_or(self.beyond)
+    }
+
+    fn check(&self) -> Result<(), ModelError> {
+        let listed = self.ratios.iter().enumerate().map(|(index, &value)| (index + 1, value));
+        for (mode, value) in listed.chain([(0, self.beyond)]) {
+            if !(0.0..std::f64::consts::FRAC_1_SQRT_2).contains(&value) {
+                return Err(ModelError::Damping { mode, value });
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Where force goes in and motion comes out.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Ports {
+    /// Places of the forces, along +z.
+    #[serde(default)]
+    pub forces: Vec<Place>,
+    /// Places of the responses, along +z.
+    #[serde(default)]
+    pub responses: Vec<Place>,
+}
+
+/// One effect of the catalogue with its parameters.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct EffectEntry {
+    /// Its id in the catalogue.
+    pub id: String,
+    /// `panel`, `rig` or `channel`.
+    pub owner: String,
+    /// Parameters by name, in SI units.
+    #[serde(flatten)]
+    pub parameters: BTreeMap<String, Estimate>,
+}
+
+impl PanelModel {
+    /// Reads a model file's text.
+    ///
+    /// # Errors
+    /// [`ModelError::ModelText`] where the text is not such a file (with line and column),
+    /// [`ModelError::Schema`] for another schema, and what [`PanelModel::check`] finds.
+    pub fn from_json(text: &str) -> Result<Self, ModelError> {
+        #[derive(Deserialize)]
+        struct SchemaOnly {
+            schema: Option<String>,
+        }
+        let malformed = |error: serde_json::Error| ModelError::ModelText(error.to_string());
+        // The schema is judged first: a file of another schema has other keys, and naming those would mislead.
+        let found = serde_json::from_str::<SchemaOnly>(text).map_err(malformed)?.schema.unwrap_or_default();
+        if found != MODEL_SCHEMA {
+            return Err(ModelError::Schema { found, expected: MODEL_SCHEMA });
+        }
+        let model: Self = serde_json::from_str(text).map_err(malformed)?;
+        model.check()?;
+        Ok(model)
+    }
+
+    /// The text of the model file, indented, with a final newline.
+    pub fn to_json(&self) -> String {
+        // Every field is a plain number, text or list: serialisation has nothing to fail on.
+        serde_json::to_string_pretty(self).unwrap_or_default() + "\n"
+    }
+
+    /// Checks sizes, damping and the places of the ports; constants are checked by the structure they belong to.
+    ///
+    /// # Errors
+    /// The first of [`ModelError::Size`], [`ModelError::Damping`], [`ModelError::OffPiece`] that holds.
+    pub fn check(&self) -> Result<(), ModelError> {
+        self.piece.checked()?;
+        self.damping.check()?;
+        for &place in self.ports.forces.iter().chain(&self.ports.responses) {
+            self.piece.contains(place)?;
+        }
+        Ok(())
+    }
+
+    /// The value of a constant by name.
+    ///
+    /// # Errors
+    /// [`ModelError::MissingConstant`] where the file does not give it.
+    pub fn constant(&self, name: &'static str) -> Result<f64, ModelError> {
+        self.constants.get(name).map(|estimate| estimate.value).ok_or(ModelError::MissingConstant { name })
+    }
+}

@@ -1,0 +1,84 @@
+//! The test piece and places on it.
+
+use serde::{Deserialize, Serialize};
+
+use crate::ModelError;
+
+/// A rectangular test piece: length $a$ along x, width $b$ along y, thickness $t$, mass per area $\rho t$.
+///
+/// The origin is the centre of the piece, as in the paper (figure 2), so $|x| \le a/2$ and $|y| \le b/2$.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Piece {
+    /// Length $a$ \[m\], along x.
+    pub length: f64,
+    /// Width $b$ \[m\], along y.
+    pub width: f64,
+    /// Thickness $t$ \[m\].
+    pub thickness: f64,
+    /// Mass per area $\rho t$ \[kg/m²\].
+    pub mass_per_area: f64,
+}
+
+/// A place on the piece \[m\], measured from its centre; in files `[x, y]`.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(from = "[f64; 2]", into = "[f64; 2]")]
+pub struct Place {
+    /// Along the length.
+    pub x: f64,
+    /// Across the width.
+    pub y: f64,
+}
+
+impl From<[f64; 2]> for Place {
+    fn from([x, y]: [f64; 2]) -> Self {
+        Self { x, y }
+    }
+}
+
+impl From<Place> for [f64; 2] {
+    fn from(place: Place) -> Self {
+        [place.x, place.y]
+    }
+}
+
+impl Piece {
+    /// Checks that every size is finite and greater than zero.
+    ///
+    /// # Errors
+    /// [`ModelError::Size`] names the first size that is not.
+    pub fn checked(self) -> Result<Self, ModelError> {
+        let sizes = [
+            ("length", self.length, "m"),
+            ("width", self.width, "m"),
+            ("thickness", self.thickness, "m"),
+            ("mass_per_area", self.mass_per_area, "kg/m2"),
+        ];
+        for (name, value, unit) in sizes {
+            if !(value.is_finite() && value > 0.0) {
+                return Err(ModelError::Size { name, value, unit });
+            }
+        }
+        Ok(self)
+    }
+
+    /// Checks that `place` lies on the piece, its edges included.
+    ///
+    /// # Errors
+    /// [`ModelError::OffPiece`] with the place and the limits.
+    pub fn contains(&self, place: Place) -> Result<(), ModelError> {
+        // A place typed as a decimal may miss the edge by rounding alone.
+        let slack = 1e-12 * self.length;
+        let (x_limit, y_limit) = (self.length / 2.0, self.width / 2.0);
+        if place.x.abs() <= x_limit + slack && place.y.abs() <= y_limit + slack {
+            Ok(())
+        } else {
+            Err(ModelError::OffPiece { x: place.x, y: place.y, x_limit, y_limit })
+        }
+    }
+
+    /// Mass of the piece $\rho t\,a\,b$ \[kg\].
+    pub fn mass(&self) -> f64 {
+        self.mass_per_area * self.length * self.width
+    }
+}
