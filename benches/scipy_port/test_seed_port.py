@@ -39,9 +39,9 @@ def test_val_both_searches_reach_the_same_minimum(piece):
 
 
 def test_too_many_modes_below_the_cut_off_are_refused():
-    """A beam with almost no shear stiffness has few modes below its cut-off: that is said, not searched for ever."""
-    with pytest.raises(ValueError, match="of 6 modes lie below the cut-off"):
-        seed_port.natural_frequencies(1.0e10, 1.0e4, 0.03, 6)
+    """Equation 11 holds below the cut-off of condition 9 only, and fewer than 60 modes lie there: that is said."""
+    with pytest.raises(ValueError, match="of 60 modes lie below the cut-off"):
+        seed_port.natural_frequencies(1.070e10, 5.363e8, 0.03, 60)
 
 
 def test_the_command_prints_one_json_line():
