@@ -1,0 +1,143 @@
+//! What the data layer refuses: where it stands in which file, the numbers in it, and the way out.
+
+use std::{fmt, io, path::PathBuf};
+
+use orthopanel_model::ModelError;
+use thiserror::Error;
+
+/// Where in a file something is wrong.
+///
+/// Lists in `key` are counted from 1, as modes are: `measurement[2].values[4]` is mode 4 of the second measurement.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Location {
+    /// The file, as it was named to the reader.
+    pub file: PathBuf,
+    /// Line or byte, where one is known.
+    pub position: Position,
+    /// Path of the key in a test file; name of the record or column elsewhere; may be empty.
+    pub key: String,
+}
+
+/// A place in a file's text or bytes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Position {
+    /// The file as a whole.
+    Whole,
+    /// A line, from 1.
+    Line(usize),
+    /// A byte, from 0.
+    Byte(usize),
+}
+
+impl fmt::Display for Location {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", self.file.display())?;
+        match self.position {
+            Position::Whole => {}
+            Position::Line(line) => write!(f, ":{line}")?,
+            Position::Byte(byte) => write!(f, ", byte {byte}")?,
+        }
+        if self.key.is_empty() { Ok(()) } else { write!(f, ": {}", self.key) }
+    }
+}
+
+/// Errors of this crate.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum DataError {
+    /// A file that cannot be opened or read.
+    #[error("{at}: cannot be read: {source}")]
+    Unreadable {
+        /// The file, and the key that names it where a test file does.
+        at: Box<Location>,
+        /// What the system says.
+        source: io::Error,
+    },
+    /// A test file that is no TOML, or a key of it that is unknown or has another type.
+    #[error("{at}: {message}")]
+    Syntax {
+        /// Line of the fault.
+        at: Box<Location>,
+        /// What is wrong and what was expected.
+        message: String,
+    },
+    /// A key that must be there.
+    #[error("{at} is missing: {remedy}")]
+    Missing {
+        /// The key.
+        at: Box<Location>,
+        /// What to write.
+        remedy: &'static str,
+    },
+    /// A key or value that contradicts another.
+    #[error("{at}: {problem}")]
+    Contradiction {
+        /// The key.
+        at: Box<Location>,
+        /// What it contradicts, and the way out.
+        problem: String,
+    },
+    /// A number outside its range.
+    #[error("{at} = {value}: {range}")]
+    OutOfRange {
+        /// The key.
+        at: Box<Location>,
+        /// The number.
+        value: f64,
+        /// The range, with its unit.
+        range: String,
+    },
+    /// A name that is not in the list it must come from.
+    #[error("{at} = {name:?}: {remedy}")]
+    UnknownName {
+        /// The key.
+        at: Box<Location>,
+        /// The name found.
+        name: String,
+        /// The names that would be right.
+        remedy: String,
+    },
+    /// A name given twice.
+    #[error("{at} = {name:?}: the name stands before, give each its own")]
+    Duplicate {
+        /// The second place of the name.
+        at: Box<Location>,
+        /// The name.
+        name: String,
+    },
+    /// Natural frequencies that do not rise.
+    #[error(
+        "{at}: {piece}: mode {mode} ({value} Hz) {relation} mode {before} ({previous} Hz): list natural frequencies in \
+         rising order", relation = if value < previous { "lies below" } else { "repeats" }, before = mode - 1
+    )]
+    Order {
+        /// The key.
+        at: Box<Location>,
+        /// The piece's name.
+        piece: String,
+        /// The mode, from 1, that lies too low.
+        mode: usize,
+        /// Its frequency \[Hz\].
+        value: f64,
+        /// The frequency of the mode before it \[Hz\].
+        previous: f64,
+    },
+    /// A list whose length does not fit another's.
+    #[error("{at} has {found} entries: {remedy}")]
+    Count {
+        /// The key.
+        at: Box<Location>,
+        /// Entries found.
+        found: usize,
+        /// What would be right.
+        remedy: String,
+    },
+    /// A size or place that the model refuses.
+    #[error("{at}: {source}")]
+    Model {
+        /// The key.
+        at: Box<Location>,
+        /// What the model says.
+        source: ModelError,
+    },
+}

@@ -1,0 +1,117 @@
+//! `[suspension]`, `[constants]` and `[[effect]]`: what is known before the test is evaluated.
+
+use std::collections::BTreeMap;
+
+use orthopanel_model::Place;
+use toml::Spanned;
+
+use super::{pieces::NamedPiece, source::Source, syntax};
+use crate::DataError;
+
+/// Names of the elastic constants; `nu_xy` is a Poisson's ratio, the others are moduli \[Pa\].
+const CONSTANTS: [&str; 6] = ["e_x", "e_y", "nu_xy", "g_xy", "g_yz", "g_zx"];
+
+/// A modulus outside these \[Pa\] is a slip of unit: the softest foam core has 1e4, diamond 1e12.
+const MODULUS: (f64, f64) = (1e2, 1e13);
+
+/// Orthotropic Poisson's ratios pass 1/2 freely, since only $\nu_{xy}^2 < E_x/E_y$ binds them; past this it is a slip.
+const POISSON_LIMIT: f64 = 10.0;
+
+/// An effect known beforehand: part of the base model.
+///
+/// Whether the id and the parameters stand in the catalogue is judged where the catalogue is; a parameter left out
+/// is one to identify.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DeclaredEffect {
+    /// Its id, such as `sensor-mass`.
+    pub id: String,
+    /// Its parameters by name \[SI units\], all finite.
+    pub parameters: BTreeMap<String, f64>,
+}
+
+pub(super) fn suspension(
+    source: &Source,
+    suspension: Option<syntax::Suspension>,
+    pieces: &[NamedPiece],
+) -> Result<Vec<Place>, DataError> {
+    let mut places = Vec::new();
+    for (index, x) in suspension.into_iter().flat_map(|suspension| suspension.at).enumerate() {
+        let key = format!("suspension.at[{}]", index + 1);
+        let place = Place { x: source.finite(&x, &key)?, y: 0.0 };
+        for NamedPiece { piece, .. } in pieces {
+            let at = |_| source.at(x.span(), &key);
+            piece.contains(place).map_err(|error| DataError::Model { at: at(()), source: error })?;
+        }
+        places.push(place);
+    }
+    Ok(places)
+}
+
+pub(super) fn constants(
+    source: &Source,
+    given: BTreeMap<String, Spanned<f64>>,
+) -> Result<BTreeMap<String, f64>, DataError> {
+    let mut constants = BTreeMap::new();
+    for (name, number) in given {
+        let at = source.at(number.span(), format!("constants.{name}"));
+        if !CONSTANTS.contains(&name.as_str()) {
+            let remedy = format!("the constants are {}", CONSTANTS.join(", "));
+            return Err(DataError::UnknownName { at, name, remedy });
+        }
+        let value = *number.get_ref();
+        let (low, high, unit) = match name.as_str() {
+            "nu_xy" => (-POISSON_LIMIT, POISSON_LIMIT, ""),
+            _ => (MODULUS.0, MODULUS.1, " Pa"),
+        };
+        if !(low..=high).contains(&value) {
+            let range = format!("must lie between {low:e} and {high:e}{unit}");
+            return Err(DataError::OutOfRange { at, value, range });
+        }
+        constants.insert(name, value);
+    }
+    if let (Some(e_x), Some(e_y), Some(&nu_xy)) = (constants.get("e_x"), constants.get("e_y"), constants.get("nu_xy")) {
+        let limit = (e_x / e_y).sqrt();
+        if nu_xy.abs() >= limit {
+            let range = format!("must lie within +-{limit:.4}, the root of e_x/e_y, or the stiffness is indefinite");
+            return Err(DataError::OutOfRange { at: source.whole("constants.nu_xy"), value: nu_xy, range });
+        }
+    }
+    Ok(constants)
+}
+
+pub(super) fn effects(
+    source: &Source,
+    given: Vec<Spanned<BTreeMap<String, Spanned<toml::Value>>>>,
+) -> Result<Vec<DeclaredEffect>, DataError> {
+    let mut effects = Vec::with_capacity(given.len());
+    for (index, entry) in given.into_iter().enumerate() {
+        let key = format!("effect[{}]", index + 1);
+        let table = source.at(entry.span(), format!("{key}.id"));
+        let (mut id, mut parameters) = (None, BTreeMap::new());
+        for (name, value) in entry.into_inner() {
+            let span = value.span();
+            let key = format!("{key}.{name}");
+            let number = match (name.as_str(), value.into_inner()) {
+                ("id", toml::Value::String(text)) => {
+                    id = Some(text);
+                    continue;
+                }
+                ("id", _) => {
+                    let message = "must be text, such as \"sensor-mass\"".into();
+                    return Err(DataError::Syntax { at: source.at(span, key), message });
+                }
+                (_, toml::Value::Float(number)) => number,
+                (_, toml::Value::Integer(number)) => number as f64,
+                (_, other) => {
+                    let message = format!("{} given, a number in SI units expected", other.type_str());
+                    return Err(DataError::Syntax { at: source.at(span, key), message });
+                }
+            };
+            parameters.insert(name, source.finite(&Spanned::new(span, number), &key)?);
+        }
+        let remedy = "give the effect's id, such as \"sensor-mass\"";
+        let id = id.ok_or(DataError::Missing { at: table, remedy })?;
+        effects.push(DeclaredEffect { id, parameters });
+    }
+    Ok(effects)
+}

@@ -1,0 +1,95 @@
+//! `kind = "natural-frequencies"`: read off an analyser, so each is known to a bin.
+
+use orthopanel_model::Place;
+use toml::Spanned;
+
+use super::{
+    super::{pieces::NamedPiece, syntax},
+    Entry,
+};
+use crate::DataError;
+
+/// Natural frequencies of the flexible modes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NaturalFrequencies {
+    /// Frequencies \[Hz\], rising; the beam's flexible modes 1, 2, ... where `shape` is empty.
+    pub values: Vec<f64>,
+    /// Bin width of the analyser \[Hz\], one a mode; empty where the file says nothing.
+    pub resolution: Vec<f64>,
+    /// Nodal lines crossed along x and along y, one pair a mode; empty for a beam.
+    pub shape: Vec<[u32; 2]>,
+    /// Place of the sensor, where known: its mass lowers the frequencies.
+    pub response_at: Option<Place>,
+}
+
+impl Entry<'_> {
+    pub(super) fn natural_frequencies(
+        &self,
+        entry: &syntax::Measurement,
+        named: &NamedPiece,
+    ) -> Result<NaturalFrequencies, DataError> {
+        let remedy = "list the natural frequencies in Hz, flexible modes from 1";
+        let list = self.needed(entry.values.as_ref(), "values", remedy)?;
+        if list.get_ref().is_empty() {
+            return Err(DataError::Count { at: self.at(list.span(), "values"), found: 0, remedy: remedy.into() });
+        }
+        let shape = self.shape(entry, list.get_ref().len())?;
+        let mut values: Vec<f64> = Vec::with_capacity(list.get_ref().len());
+        for (index, number) in list.get_ref().iter().enumerate() {
+            let key = format!("values[{}]", index + 1);
+            let value = self.source.positive(number, &self.name(&key), "Hz")?;
+            if let Some(&previous) = values.last() {
+                // Two plate modes of different shape may share an analyser's bin; two beam modes never do.
+                if value < previous || (value == previous && shape.is_empty()) {
+                    let (at, piece) = (self.at(number.span(), &key), format!("piece {}", named.name));
+                    return Err(DataError::Order { at, piece, mode: index + 1, value, previous });
+                }
+            }
+            values.push(value);
+        }
+        let resolution = self.resolution(entry, values.len())?;
+        let response_at = {
+            let place = entry.response_at.as_ref();
+            place.map(|place| self.place(place, "response_at", &named.piece)).transpose()?
+        };
+        Ok(NaturalFrequencies { values, resolution, shape, response_at })
+    }
+
+    fn shape(&self, entry: &syntax::Measurement, modes: usize) -> Result<Vec<[u32; 2]>, DataError> {
+        let Some(list) = &entry.shape else { return Ok(Vec::new()) };
+        let found = list.get_ref().len();
+        if found != modes {
+            let remedy = format!("give one [nodes_x, nodes_y] a mode, {modes} in all");
+            return Err(DataError::Count { at: self.at(list.span(), "shape"), found, remedy });
+        }
+        let mut shape = Vec::with_capacity(found);
+        for (index, pair) in list.get_ref().iter().enumerate() {
+            let nodes = *pair.get_ref();
+            if shape.contains(&nodes) {
+                let at = self.at(pair.span(), &format!("shape[{}]", index + 1));
+                return Err(DataError::Duplicate { at, name: format!("{nodes:?}") });
+            }
+            shape.push(nodes);
+        }
+        Ok(shape)
+    }
+
+    fn resolution(&self, entry: &syntax::Measurement, modes: usize) -> Result<Vec<f64>, DataError> {
+        let Some(given) = &entry.resolution else { return Ok(Vec::new()) };
+        match given.get_ref() {
+            syntax::OneOrEach::One(value) => {
+                let number = Spanned::new(given.span(), *value);
+                Ok(vec![self.source.positive(&number, &self.name("resolution"), "Hz")?; modes])
+            }
+            syntax::OneOrEach::Each(list) if list.len() != modes => {
+                let remedy = format!("give one number in Hz, or one a mode, {modes} in all");
+                Err(DataError::Count { at: self.at(given.span(), "resolution"), found: list.len(), remedy })
+            }
+            syntax::OneOrEach::Each(list) => {
+                let each = list.iter().enumerate();
+                let key = |index: usize| self.name(&format!("resolution[{}]", index + 1));
+                each.map(|(index, number)| self.source.positive(number, &key(index), "Hz")).collect()
+            }
+        }
+    }
+}

@@ -1,0 +1,145 @@
+//! `[[measurement]]`: natural frequencies as read off an analyser, or files of records.
+
+mod frequencies;
+mod recorded;
+
+use std::ops::Range;
+
+use orthopanel_model::{Piece, Place};
+use toml::Spanned;
+
+use super::{pieces::NamedPiece, source::Source, syntax};
+use crate::{DataError, Location};
+pub use frequencies::NaturalFrequencies;
+pub use recorded::{AccelerationUnit, RecordedResponse};
+
+/// One measurement on one piece.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Measurement {
+    /// Index into [`super::ImpactTest::pieces`], from 0.
+    pub piece: usize,
+    /// What was measured.
+    pub data: MeasurementData,
+}
+
+/// What was measured.
+#[derive(Debug, Clone, PartialEq)]
+pub enum MeasurementData {
+    /// `kind = "natural-frequencies"`.
+    NaturalFrequencies(NaturalFrequencies),
+    /// `kind = "time-history"`: force and acceleration against time.
+    TimeHistory(RecordedResponse),
+    /// `kind = "accelerance"`: acceleration / force against frequency.
+    Accelerance(RecordedResponse),
+}
+
+const KINDS: &str = "\"natural-frequencies\", \"time-history\" or \"accelerance\"";
+
+pub(super) fn measurements(
+    source: &Source,
+    given: Vec<Spanned<syntax::Measurement>>,
+    pieces: &[NamedPiece],
+) -> Result<Vec<Measurement>, DataError> {
+    if given.is_empty() {
+        let remedy = "write at least one [[measurement]] with kind, and values or file";
+        return Err(DataError::Missing { at: source.whole("measurement"), remedy });
+    }
+    given
+        .into_iter()
+        .enumerate()
+        .map(|(index, entry)| {
+            Entry { source, key: format!("measurement[{}]", index + 1), span: entry.span() }
+                .read(entry.into_inner(), pieces)
+        })
+        .collect()
+}
+
+/// One `[[measurement]]` being read.
+struct Entry<'a> {
+    source: &'a Source<'a>,
+    key: String,
+    span: Range<usize>,
+}
+
+impl Entry<'_> {
+    fn read(&self, entry: syntax::Measurement, pieces: &[NamedPiece]) -> Result<Measurement, DataError> {
+        let kind = self.needed(entry.kind.as_ref(), "kind", "one of natural-frequencies, time-history, accelerance")?;
+        let (piece, named) = self.piece(entry.piece.as_ref(), pieces)?;
+        let data = match kind.get_ref().as_str() {
+            "natural-frequencies" => {
+                self.unwanted(kind, entry.file.as_ref(), "file")?;
+                self.unwanted(kind, entry.force_at.as_ref(), "force_at")?;
+                self.unwanted(kind, entry.unit.as_ref(), "unit")?;
+                self.unwanted(kind, entry.direction.as_ref(), "direction")?;
+                MeasurementData::NaturalFrequencies(self.natural_frequencies(&entry, named)?)
+            }
+            "time-history" | "accelerance" => {
+                self.unwanted(kind, entry.values.as_ref(), "values")?;
+                self.unwanted(kind, entry.resolution.as_ref(), "resolution")?;
+                self.unwanted(kind, entry.shape.as_ref(), "shape")?;
+                let recorded = self.recorded(&entry, &named.piece)?;
+                if kind.get_ref() == "accelerance" {
+                    MeasurementData::Accelerance(recorded)
+                } else {
+                    MeasurementData::TimeHistory(recorded)
+                }
+            }
+            other => {
+                let (name, remedy) = (other.to_owned(), format!("must be {KINDS}"));
+                return Err(DataError::UnknownName { at: self.at(kind.span(), "kind"), name, remedy });
+            }
+        };
+        Ok(Measurement { piece, data })
+    }
+
+    fn piece<'p>(
+        &self,
+        name: Option<&Spanned<String>>,
+        pieces: &'p [NamedPiece],
+    ) -> Result<(usize, &'p NamedPiece), DataError> {
+        match (name, pieces) {
+            (None, [only]) => Ok((0, only)),
+            (None, _) => Err(DataError::Missing {
+                at: self.at(self.span.clone(), "piece"),
+                remedy: "there are several pieces: name the one that was measured",
+            }),
+            (Some(name), _) => {
+                let mut numbered = pieces.iter().enumerate();
+                numbered.find(|(_, piece)| piece.name == *name.get_ref()).ok_or_else(|| {
+                    let names: Vec<_> = pieces.iter().map(|piece| format!("{:?}", piece.name)).collect();
+                    let remedy = format!("the pieces are named {}", names.join(", "));
+                    DataError::UnknownName { at: self.at(name.span(), "piece"), name: name.get_ref().clone(), remedy }
+                })
+            }
+        }
+    }
+
+    fn place(&self, place: &Spanned<[f64; 2]>, key: &str, piece: &Piece) -> Result<Place, DataError> {
+        let at = Place::from(*place.get_ref());
+        piece.contains(at).map_err(|source| DataError::Model { at: self.at(place.span(), key), source })?;
+        Ok(at)
+    }
+
+    fn needed<'v, T>(
+        &self,
+        value: Option<&'v Spanned<T>>,
+        key: &str,
+        remedy: &'static str,
+    ) -> Result<&'v Spanned<T>, DataError> {
+        value.ok_or_else(|| DataError::Missing { at: self.at(self.span.clone(), key), remedy })
+    }
+
+    fn unwanted<T>(&self, kind: &Spanned<String>, value: Option<&Spanned<T>>, key: &str) -> Result<(), DataError> {
+        let Some(value) = value else { return Ok(()) };
+        let problem = format!("does not belong to kind = {:?}: take it out, or change the kind", kind.get_ref());
+        Err(DataError::Contradiction { at: self.at(value.span(), key), problem })
+    }
+
+    fn name(&self, key: &str) -> String {
+        format!("{}.{key}", self.key)
+    }
+
+    fn at(&self, span: Range<usize>, key: &str) -> Box<Location> {
+        self.source.at(span, self.name(key))
+    }
+}

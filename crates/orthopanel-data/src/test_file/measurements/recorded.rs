@@ -1,0 +1,82 @@
+//! `kind = "time-history"` and `"accelerance"`: a file of records, the places, and the sensor's unit and direction.
+
+use std::{io, path::PathBuf};
+
+use orthopanel_model::{Piece, Place};
+
+use super::{super::syntax, Entry};
+use crate::DataError;
+
+/// A file of records and where they were taken.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RecordedResponse {
+    /// The file, beside the test file unless absolute.
+    pub file: PathBuf,
+    /// Where the hammer hit.
+    pub force_at: Place,
+    /// Where the accelerometer sat.
+    pub response_at: Place,
+    /// Unit of the acceleration in the file, where declared.
+    pub unit: Option<AccelerationUnit>,
+    /// True for `direction = -1`: the sensor counts positive against the force, and the record is turned round.
+    pub reversed: bool,
+}
+
+/// Unit of a recorded acceleration, or of the acceleration in an accelerance.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum AccelerationUnit {
+    /// `"m/s2"`.
+    MetrePerSecondSquared,
+    /// `"g"`.
+    StandardGravity,
+}
+
+impl AccelerationUnit {
+    /// Factor to m/s²: $1$, or $g_n = 9.80665$ (3rd CGPM, 1901, exact).
+    pub fn to_si(self) -> f64 {
+        match self {
+            Self::MetrePerSecondSquared => 1.0,
+            Self::StandardGravity => 9.806_65,
+        }
+    }
+}
+
+impl Entry<'_> {
+    pub(super) fn recorded(&self, entry: &syntax::Measurement, piece: &Piece) -> Result<RecordedResponse, DataError> {
+        let name = self.needed(entry.file.as_ref(), "file", "name a .uff or .csv file beside the test file")?;
+        let places = [(&entry.force_at, "force_at"), (&entry.response_at, "response_at")].map(|(place, key)| {
+            let place = self.needed(place.as_ref(), key, "give the place [x, y] in m from the piece's centre")?;
+            self.place(place, key, piece)
+        });
+        let [force_at, response_at] = places;
+        let (force_at, response_at) = (force_at?, response_at?);
+        let unit = match entry.unit.as_ref().map(|unit| (unit.get_ref().as_str(), unit)) {
+            None => None,
+            Some(("m/s2", _)) => Some(AccelerationUnit::MetrePerSecondSquared),
+            Some(("g", _)) => Some(AccelerationUnit::StandardGravity),
+            Some((other, unit)) => {
+                let (name, remedy) = (other.to_owned(), "must be \"m/s2\" or \"g\"".into());
+                return Err(DataError::UnknownName { at: self.at(unit.span(), "unit"), name, remedy });
+            }
+        };
+        let reversed = match entry.direction.as_ref().map(|direction| (*direction.get_ref(), direction)) {
+            None | Some((1.0, _)) => false,
+            Some((-1.0, _)) => true,
+            Some((value, direction)) => {
+                let range = "must be 1 (sensor along the force) or -1 (turned round)".into();
+                return Err(DataError::OutOfRange { at: self.at(direction.span(), "direction"), value, range });
+            }
+        };
+        let file = self.source.beside(name.get_ref());
+        // `metadata` tells a missing file from one that may not be read, and a folder is no file of records.
+        let missing = match std::fs::metadata(&file) {
+            Ok(found) if found.is_file() => None,
+            Ok(_) => Some(io::Error::other(format!("{} is not a file", file.display()))),
+            Err(error) => Some(io::Error::new(error.kind(), format!("{}: {error}", file.display()))),
+        };
+        if let Some(source) = missing {
+            return Err(DataError::Unreadable { at: self.at(name.span(), "file"), source });
+        }
+        Ok(RecordedResponse { file, force_at, response_at, unit, reversed })
+    }
+}

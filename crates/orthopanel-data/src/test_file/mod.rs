@@ -1,0 +1,73 @@
+//! The test file `test.toml`: what was tested, how it was held, and where the measurements are.
+
+mod declared;
+mod measurements;
+mod pieces;
+mod source;
+mod syntax;
+
+use std::{collections::BTreeMap, fs, path::Path};
+
+use orthopanel_model::{Boundary, Place};
+
+use crate::{DataError, Location, Position};
+pub use declared::DeclaredEffect;
+pub use measurements::{AccelerationUnit, Measurement, MeasurementData, NaturalFrequencies, RecordedResponse};
+pub use pieces::NamedPiece;
+use source::Source;
+
+/// One impact test, read and checked: every number in it is finite and in range, every place lies on its piece, and
+/// every file it names was there.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ImpactTest {
+    /// The pieces, all of one material; at least one.
+    pub pieces: Vec<NamedPiece>,
+    /// What holds the ends; free unless said.
+    pub boundary: Boundary,
+    /// Places of the suspension \[m\], on the centre line; empty where the file says nothing.
+    pub suspension: Vec<Place>,
+    /// Constants held at these values, by name \[Pa; Poisson's ratio 1\].
+    pub constants: BTreeMap<String, f64>,
+    /// Effects known beforehand, in the order of the file.
+    pub effects: Vec<DeclaredEffect>,
+    /// The measurements, in the order of the file; at least one.
+    pub measurements: Vec<Measurement>,
+}
+
+impl ImpactTest {
+    /// Reads the test file at `path`. Files that it names are looked for beside it.
+    ///
+    /// # Errors
+    /// [`DataError::Unreadable`] where the file cannot be read, else as [`ImpactTest::from_toml`].
+    pub fn read(path: impl AsRef<Path>) -> Result<Self, DataError> {
+        let path = path.as_ref();
+        let whole = Location { file: path.to_path_buf(), position: Position::Whole, key: String::new() };
+        let bytes = fs::read(path).map_err(|source| DataError::Unreadable { at: Box::new(whole.clone()), source })?;
+        let text = String::from_utf8(bytes).map_err(|error| DataError::Syntax {
+            at: Box::new(Location { position: Position::Byte(error.utf8_error().valid_up_to()), ..whole.clone() }),
+            message: "not UTF-8 text: save the test file as UTF-8".into(),
+        })?;
+        Self::from_toml(&text, path)
+    }
+
+    /// Reads the text of a test file; `path` names it in messages, and files that it names are looked for beside it.
+    ///
+    /// # Errors
+    /// The first fault found, with line and key: [`DataError::Syntax`] for text that is no TOML, unknown keys and
+    /// wrong types; [`DataError::Missing`], [`DataError::Contradiction`], [`DataError::OutOfRange`],
+    /// [`DataError::UnknownName`], [`DataError::Duplicate`], [`DataError::Order`], [`DataError::Count`] and
+    /// [`DataError::Model`] for what the keys hold; [`DataError::Unreadable`] for a named file that is not there.
+    pub fn from_toml(text: &str, path: impl AsRef<Path>) -> Result<Self, DataError> {
+        let source = Source::new(path.as_ref(), text);
+        let file: syntax::TestFile = toml::from_str(text).map_err(|error| source.syntax(&error))?;
+        let pieces = pieces::pieces(&source, file.piece)?;
+        Ok(Self {
+            suspension: declared::suspension(&source, file.suspension, &pieces)?,
+            constants: declared::constants(&source, file.constants)?,
+            effects: declared::effects(&source, file.effect)?,
+            measurements: measurements::measurements(&source, file.measurement, &pieces)?,
+            boundary: file.boundary,
+            pieces,
+        })
+    }
+}

@@ -1,0 +1,96 @@
+//! `[piece]` or `[[piece]]`: sizes and mass of the test pieces.
+
+use orthopanel_model::Piece;
+use toml::Spanned;
+
+use super::{source::Source, syntax};
+use crate::DataError;
+
+/// A test piece and the name that measurements call it by.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NamedPiece {
+    /// Its name; `"1"` for a single piece without one.
+    pub name: String,
+    /// Its sizes and mass per area.
+    pub piece: Piece,
+}
+
+pub(super) fn pieces(source: &Source, pieces: Option<syntax::Pieces>) -> Result<Vec<NamedPiece>, DataError> {
+    let missing = || DataError::Missing {
+        at: source.whole("piece"),
+        remedy: "write [piece] with length, width, thickness (m) and mass_per_area (kg/m2)",
+    };
+    let several = match pieces.ok_or_else(missing)? {
+        syntax::Pieces::One(piece) => return Ok(vec![one(source, *piece, "piece", Some("1"))?]),
+        syntax::Pieces::Several(several) if several.is_empty() => return Err(missing()),
+        syntax::Pieces::Several(several) => several,
+    };
+    let single_name = (several.len() == 1).then_some("1");
+    let mut read: Vec<NamedPiece> = Vec::with_capacity(several.len());
+    for (index, piece) in several.into_iter().enumerate() {
+        let key = format!("piece[{}]", index + 1);
+        let span = piece.get_ref().name.as_ref().map_or(piece.span(), Spanned::span);
+        let piece = one(source, piece.into_inner(), &key, single_name)?;
+        if read.iter().any(|earlier| earlier.name == piece.name) {
+            return Err(DataError::Duplicate { at: source.at(span, format!("{key}.name")), name: piece.name });
+        }
+        read.push(piece);
+    }
+    Ok(read)
+}
+
+fn one(source: &Source, piece: syntax::Piece, key: &str, default_name: Option<&str>) -> Result<NamedPiece, DataError> {
+    let size = |number: &Option<Spanned<f64>>, name: &str| {
+        let key = format!("{key}.{name}");
+        let missing = DataError::Missing { at: source.whole(&key), remedy: "give it in m" };
+        source.positive(number.as_ref().ok_or(missing)?, &key, "m")
+    };
+    let (length, width) = (size(&piece.length, "length")?, size(&piece.width, "width")?);
+    let thickness = size(&piece.thickness, "thickness")?;
+    let mass_per_area = mass_per_area(source, &piece, key)?;
+    let name = match &piece.name {
+        Some(name) if !name.get_ref().trim().is_empty() => name.get_ref().clone(),
+        given => default_name.filter(|_| given.is_none()).map(str::to_owned).ok_or_else(|| DataError::Missing {
+            at: source.whole(format!("{key}.name")),
+            remedy: "with several pieces each needs a name, which measurements then give as piece = \"...\"",
+        })?,
+    };
+    Ok(NamedPiece { name, piece: Piece { length, width, thickness, mass_per_area } })
+}
+
+/// $\rho t$ as given, or the mean of mass / (length x width) over the weighed coupons (the paper's table 2).
+fn mass_per_area(source: &Source, piece: &syntax::Piece, key: &str) -> Result<f64, DataError> {
+    let weighings = match (&piece.mass_per_area, &piece.weighings) {
+        (Some(number), None) => return source.positive(number, &format!("{key}.mass_per_area"), "kg/m2"),
+        (None, Some(weighings)) => weighings,
+        (Some(_), Some(weighings)) => {
+            return Err(DataError::Contradiction {
+                at: source.at(weighings.span(), format!("{key}.weighings")),
+                problem: "mass_per_area is given too: keep one of them".into(),
+            });
+        }
+        (None, None) => {
+            return Err(DataError::Missing {
+                at: source.whole(format!("{key}.mass_per_area")),
+                remedy: "give it in kg/m2, or weighings = [[length, width, mass], ...] in m, m, kg",
+            });
+        }
+    };
+    let key = format!("{key}.weighings");
+    let coupons = weighings.get_ref();
+    if coupons.is_empty() {
+        let remedy = "give at least one [length, width, mass] in m, m, kg".into();
+        return Err(DataError::Count { at: source.at(weighings.span(), key), found: 0, remedy });
+    }
+    let mut sum = 0.0;
+    for (index, [length, width, mass]) in coupons.iter().enumerate() {
+        let entry = |position: usize| format!("{key}[{}][{position}]", index + 1);
+        let length = source.positive(length, &entry(1), "m")?;
+        let width = source.positive(width, &entry(2), "m")?;
+        sum += source.positive(mass, &entry(3), "kg")? / (length * width);
+    }
+    let mean = sum / coupons.len() as f64;
+    // Sizes of 1e-200 m are positive numbers, and their quotient still is none.
+    let number = Spanned::new(weighings.span(), mean);
+    source.positive(&number, &key, "kg/m2")
+}

@@ -1,0 +1,64 @@
+//! The text of a test file, for messages: lines from spans.
+
+use std::{
+    ops::Range,
+    path::{Path, PathBuf},
+};
+
+use toml::Spanned;
+
+use crate::{DataError, Location, Position};
+
+/// A test file's name and text.
+pub(super) struct Source<'a> {
+    path: &'a Path,
+    text: &'a str,
+}
+
+impl<'a> Source<'a> {
+    pub(super) fn new(path: &'a Path, text: &'a str) -> Self {
+        Self { path, text }
+    }
+
+    /// `key`, at the line where `span` begins.
+    pub(super) fn at(&self, span: Range<usize>, key: impl Into<String>) -> Box<Location> {
+        let before = self.text.as_bytes().iter().take(span.start);
+        let line = 1 + before.filter(|&&byte| byte == b'\n').count();
+        Box::new(Location { file: self.path.to_path_buf(), position: Position::Line(line), key: key.into() })
+    }
+
+    /// `key`, where no line can be named.
+    pub(super) fn whole(&self, key: impl Into<String>) -> Box<Location> {
+        Box::new(Location { file: self.path.to_path_buf(), position: Position::Whole, key: key.into() })
+    }
+
+    /// What the TOML reader says, with its line.
+    pub(super) fn syntax(&self, error: &toml::de::Error) -> DataError {
+        let at = error.span().map_or_else(|| self.whole(""), |span| self.at(span, ""));
+        DataError::Syntax { at, message: error.message().trim().replace('\n', ": ") }
+    }
+
+    /// A number that must be finite and greater than zero.
+    pub(super) fn positive(&self, number: &Spanned<f64>, key: &str, unit: &str) -> Result<f64, DataError> {
+        let value = *number.get_ref();
+        if value.is_finite() && value > 0.0 {
+            return Ok(value);
+        }
+        let range = format!("must be a finite number of {unit}, greater than zero");
+        Err(DataError::OutOfRange { at: self.at(number.span(), key), value, range })
+    }
+
+    /// A number that must be finite.
+    pub(super) fn finite(&self, number: &Spanned<f64>, key: &str) -> Result<f64, DataError> {
+        let value = *number.get_ref();
+        if value.is_finite() {
+            return Ok(value);
+        }
+        Err(DataError::OutOfRange { at: self.at(number.span(), key), value, range: "must be a finite number".into() })
+    }
+
+    /// A file named in the text: beside the test file unless its path is absolute.
+    pub(super) fn beside(&self, name: &str) -> PathBuf {
+        self.path.parent().unwrap_or(Path::new("")).join(name)
+    }
+}

@@ -1,0 +1,127 @@
+//! The keys of a test file as they are written, before their meaning is checked.
+//!
+//! Keys that must be there are optional here too, so that the message for a missing one can say what to write. A
+//! measurement is one flat table, not an enum tagged by `kind`: serde buffers tagged enums, and loses the spans.
+
+use std::{collections::BTreeMap, fmt};
+
+use orthopanel_model::Boundary;
+use serde::{
+    Deserialize, Deserializer,
+    de::{MapAccess, SeqAccess, Visitor, value::MapAccessDeserializer, value::SeqAccessDeserializer},
+};
+use toml::Spanned;
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct TestFile {
+    pub(super) piece: Option<Pieces>,
+    #[serde(default)]
+    pub(super) boundary: Boundary,
+    pub(super) suspension: Option<Suspension>,
+    #[serde(default)]
+    pub(super) constants: BTreeMap<String, Spanned<f64>>,
+    #[serde(default)]
+    pub(super) effect: Vec<Spanned<BTreeMap<String, Spanned<toml::Value>>>>,
+    #[serde(default)]
+    pub(super) measurement: Vec<Spanned<Measurement>>,
+}
+
+/// `[piece]` or `[[piece]]`.
+pub(super) enum Pieces {
+    One(Box<Piece>),
+    Several(Vec<Spanned<Piece>>),
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Piece {
+    pub(super) name: Option<Spanned<String>>,
+    pub(super) length: Option<Spanned<f64>>,
+    pub(super) width: Option<Spanned<f64>>,
+    pub(super) thickness: Option<Spanned<f64>>,
+    pub(super) mass_per_area: Option<Spanned<f64>>,
+    pub(super) weighings: Option<Spanned<Vec<[Spanned<f64>; 3]>>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Suspension {
+    pub(super) at: Vec<Spanned<f64>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Measurement {
+    pub(super) kind: Option<Spanned<String>>,
+    pub(super) piece: Option<Spanned<String>>,
+    pub(super) values: Option<Spanned<Vec<Spanned<f64>>>>,
+    pub(super) resolution: Option<Spanned<OneOrEach>>,
+    pub(super) shape: Option<Spanned<Vec<Spanned<[u32; 2]>>>>,
+    pub(super) file: Option<Spanned<String>>,
+    pub(super) force_at: Option<Spanned<[f64; 2]>>,
+    pub(super) response_at: Option<Spanned<[f64; 2]>>,
+    pub(super) unit: Option<Spanned<String>>,
+    pub(super) direction: Option<Spanned<f64>>,
+}
+
+/// One number for all modes, or one a mode.
+pub(super) enum OneOrEach {
+    One(f64),
+    Each(Vec<Spanned<f64>>),
+}
+
+// The two enums below are told apart by the shape of the value, through visitors: serde's `untagged` would buffer the
+// value, lose its spans, and answer a wrong key with "data did not match any variant".
+
+impl<'de> Deserialize<'de> for Pieces {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct PiecesVisitor;
+        impl<'de> Visitor<'de> for PiecesVisitor {
+            type Value = Pieces;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a table [piece], or tables [[piece]]")
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<Pieces, A::Error> {
+                Piece::deserialize(MapAccessDeserializer::new(map)).map(|piece| Pieces::One(Box::new(piece)))
+            }
+
+            fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<Pieces, A::Error> {
+                Vec::deserialize(SeqAccessDeserializer::new(seq)).map(Pieces::Several)
+            }
+        }
+        deserializer.deserialize_any(PiecesVisitor)
+    }
+}
+
+impl<'de> Deserialize<'de> for OneOrEach {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct OneOrEachVisitor;
+        impl<'de> Visitor<'de> for OneOrEachVisitor {
+            type Value = OneOrEach;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("one number [Hz], or a list with one number a mode")
+            }
+
+            fn visit_f64<E>(self, value: f64) -> Result<OneOrEach, E> {
+                Ok(OneOrEach::One(value))
+            }
+
+            fn visit_i64<E>(self, value: i64) -> Result<OneOrEach, E> {
+                Ok(OneOrEach::One(value as f64))
+            }
+
+            fn visit_u64<E>(self, value: u64) -> Result<OneOrEach, E> {
+                Ok(OneOrEach::One(value as f64))
+            }
+
+            fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<OneOrEach, A::Error> {
+                Vec::deserialize(SeqAccessDeserializer::new(seq)).map(OneOrEach::Each)
+            }
+        }
+        deserializer.deserialize_any(OneOrEachVisitor)
+    }
+}
