@@ -87,4 +87,20 @@ pub enum ModelError {
         /// Name of the constant.
         name: &'static str,
     },
+    /// Another number of forces than the model has force ports.
+    #[error("{found} forces given: the model has {expected} force ports")]
+    ForceCount {
+        /// Number found.
+        found: usize,
+        /// Number expected.
+        expected: usize,
+    },
+    /// Another number of modal states than the model has modes.
+    #[error("states of {found} modes given: the model has {expected} modes")]
+    StateCount {
+        /// Number found.
+        found: usize,
+        /// Number expected.
+        expected: usize,
+    },
 }
