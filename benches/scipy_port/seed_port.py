@@ -4,12 +4,12 @@ Source: Saito, Parbery, Okuno and Kawano, "Parameter identification for aluminum
 orthotropic Timoshenko beam theory", J. Sound Vib. 208(2), 1997: equations 8, 11, 22, 24 and tables 3, 4, 5, 7.
 
     python seed_port.py modes          --repeat 50    natural frequencies at table 4's constants
-    python seed_port.py simplex        --repeat 5     E_x and G_zx by the downhill simplex with a penalty (the seed's way)
+    python seed_port.py simplex        --repeat 5     E_x and G_zx by the downhill simplex and a penalty (as the seed)
     python seed_port.py least-squares  --repeat 20    the same minimum by scipy.optimize.least_squares
 
 One JSON line goes to standard output: {"task", "piece", "seconds", "e_x", "g_zx", "error", "frequencies"}. `seconds`
-is the median over the repeats of the numerics alone, after one run to warm up; `error` is equation 22; frequencies are in Hz.
-Units are SI. The width cancels, so every section property below is per metre of width.
+is the median over the repeats of the numerics alone, after one run to warm up; `error` is equation 22; frequencies are
+in Hz. Units are SI. The width cancels, so every section property below is per metre of width.
 """
 
 import argparse
@@ -54,7 +54,8 @@ def cut_off(section):
 def factors(frequency, section, lib):
     """The two factors of equation 11 (even, odd modes) at `frequency` in Hz, each divided by cosh(beta a/2).
 
-    `lib` is numpy for a whole scan at once or math for one frequency: that takes a quarter off the time of an identification.
+    `lib` is numpy for a whole scan at once, or math for one frequency: that takes a quarter off an
+    identification.
     """
     bending, shear, mass, rotary = section
     square = (2.0 * math.pi * frequency) ** 2
@@ -73,7 +74,8 @@ def factors(frequency, section, lib):
 def natural_frequencies(e_x, g_zx, thickness, count):
     """The first `count` flexible natural frequencies in Hz: a scan for sign changes of equation 11, then Brent's root.
 
-    The scan goes upward in blocks and stops at the cut-off of condition 9; a ValueError says when fewer modes lie below.
+    The scan goes upward in blocks and stops at the cut-off of condition 9; a ValueError says when fewer modes lie
+    below.
     """
     section = beam(e_x, g_zx, thickness)
     limit = 0.999 * cut_off(section)
@@ -120,7 +122,7 @@ def simplex(thickness, measured):
 
 
 def by_least_squares(thickness, measured):
-    """E_x and G_zx in Pa by the trust region on the misfits, bounded below, with SciPy's own differences as the slope."""
+    """E_x and G_zx in Pa by a trust region on the misfits, bounded below; the slopes are SciPy's differences."""
     found = least_squares(
         lambda scaled: misfit(scaled[0] * START[0], scaled[1] * START[1], thickness, measured),
         [1.0, 1.0],
@@ -166,7 +168,9 @@ def main():
     """Read the command line, run, print one JSON line; exit 2 on bad usage."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("task", choices=["modes", "simplex", "least-squares"])
-    parser.add_argument("--piece", type=int, choices=sorted(PIECES), default=1, help="test piece: table 5 (1) or table 7 (3)")
+    parser.add_argument(
+        "--piece", type=int, choices=sorted(PIECES), default=1, help="test piece: table 5 (1) or table 7 (3)"
+    )
     parser.add_argument("--repeat", type=int, default=5, help="timed runs; their median is printed (default 5)")
     arguments = parser.parse_args()
     if arguments.repeat < 1:

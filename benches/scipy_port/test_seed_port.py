@@ -15,7 +15,8 @@ PRINTED = {1: [321.4, 837.6, 1522.5, 2306.1, 3141.7, 4000.4], 3: [582.9, 1381.8,
 
 @pytest.mark.parametrize("piece", [1, 3])
 def test_val_modes_agree_with_the_printed_columns(piece):
-    """Table 4's rounded constants give the printed columns within 0.06 Hz: half a printed digit and the constants' own rounding."""
+    """Table 4's rounded constants give the printed columns within 0.06 Hz: half a printed digit and the constants' own
+    rounding."""
     found = seed_port.run("modes", piece, repeat=1)["frequencies"]
     assert np.abs(np.array(found) - PRINTED[piece]).max() < 0.06
 
@@ -47,7 +48,9 @@ def test_too_many_modes_below_the_cut_off_are_refused():
 def test_the_command_prints_one_json_line():
     """What a benchmark reads: one line, one object."""
     script = Path(seed_port.__file__)
-    done = subprocess.run([sys.executable, script, "modes", "--repeat", "2"], capture_output=True, text=True, check=True)
+    done = subprocess.run(
+        [sys.executable, script, "modes", "--repeat", "2"], capture_output=True, text=True, check=True
+    )
     assert done.stdout.count("\n") == 1
     record = json.loads(done.stdout)
     assert record["task"] == "modes" and record["seconds"] > 0.0 and len(record["frequencies"]) == 6
