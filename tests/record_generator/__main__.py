@@ -1,0 +1,5 @@
+"""`python -m record_generator`: see cli.py."""
+
+from .cli import main
+
+main()
