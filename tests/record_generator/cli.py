@@ -39,7 +39,7 @@ def _parser():
     shown = argparse.RawDescriptionHelpFormatter
     parser = argparse.ArgumentParser(prog="python -m record_generator", description=__doc__, formatter_class=shown)
     default = records.Setup()
-    parser.add_argument("folder", help="where to write; a folder that holds a test.toml already is refused")
+    parser.add_argument("folder", help="where to write; a folder that is not empty is refused")
     parser.add_argument(
         "--format", choices=files.FORMATS, default="csv", help="csv: a file a hit; uff: a file a place (default csv)"
     )

@@ -19,7 +19,7 @@ Z_TRANSLATION = 3
 
 
 def write(setup, modes, places, folder, kind="csv"):
-    """Write the test into `folder` (made if absent, refused if it holds a test already) and return its `test.toml`."""
+    """Write the test into `folder` (made if absent, refused unless empty) and return its `test.toml`."""
     if kind not in FORMATS:
         raise ValueError(f'format "{kind}": one of {", ".join(FORMATS)}')
     if kind == "csv" and setup.unit != "m/s2":
@@ -27,10 +27,10 @@ def write(setup, modes, places, folder, kind="csv"):
     if kind != "csv" and importlib.util.find_spec("pyuff") is None:
         raise ValueError(f'format "{kind}" is written by pyuff: pip install pyuff, or write csv')
     folder = Path(folder)
-    plan = folder / "test.toml"
-    if plan.exists():
-        raise ValueError(f"{plan} is there already: name a new folder")
     folder.mkdir(parents=True, exist_ok=True)
+    if any(folder.iterdir()):
+        raise ValueError(f"{folder} is not empty: name a new folder")
+    plan = folder / "test.toml"
     blocks = [_piece(setup)]
     for place, (pair, hits) in enumerate(zip(setup.pairs, places)):
         if kind == "csv":
@@ -101,8 +101,8 @@ def _write_csv(path, setup, hit):
 
 
 def _write_uff(path, setup, pair, hits, binary):
-    """All hits of a place. Nodes are numbered along the places of the test; the sensor's sign shows in its
-    direction."""
+    """All hits of a place. Nodes are numbered along the places of the test. The header calls every direction +z, as an
+    analyser does whose user turned the sensor round and did not tell it: test.toml alone declares the sign, once."""
     import pyuff  # only this option needs it
 
     nodes = sorted({x for p in setup.pairs for x in p})
@@ -111,17 +111,10 @@ def _write_uff(path, setup, pair, hits, binary):
     sets = []
     for number, hit in enumerate(hits, start=1):
         channels = [
-            ("Force", hit.force, force_node, Z_TRANSLATION, FORCE, "N"),
-            (
-                "Acceleration",
-                hit.acceleration,
-                response_node,
-                setup.sensor_sign * Z_TRANSLATION,
-                ACCELERATION,
-                setup.unit,
-            ),
+            ("Force", hit.force, force_node, FORCE, "N"),
+            ("Acceleration", hit.acceleration, response_node, ACCELERATION, setup.unit),
         ]
-        for name, data, node, direction, code, unit in channels:
+        for name, data, node, code, unit in channels:
             sets.append(
                 pyuff.prepare_58(
                     binary=int(binary),
@@ -129,7 +122,7 @@ def _write_uff(path, setup, pair, hits, binary):
                     func_type=TIME_RESPONSE,
                     ver_num=number,
                     rsp_node=node,
-                    rsp_dir=direction,
+                    rsp_dir=Z_TRANSLATION,
                     ref_node=force_node,
                     ref_dir=Z_TRANSLATION,
                     abscissa_spacing=1,

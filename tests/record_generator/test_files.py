@@ -50,13 +50,14 @@ def test_uff_holds_the_records(made, tmp_path, kind):
 
 
 def test_unit_and_direction_are_declared(tmp_path):
-    """A sensor turned round that reads in g is never silent: test.toml says both, and so does the file's header."""
+    """A sensor turned round that reads in g is never silent: test.toml says both. The file's header says the unit
+    too, and takes the sensor for a plain one: a sign told twice could be applied twice."""
     pyuff = pytest.importorskip("pyuff")
     setup = dataclasses.replace(SHORT, unit="g", sensor_sign=-1)
     plan = tomllib.loads(files.write(setup, *record(setup), tmp_path, "uff").read_text())
     assert all(m["unit"] == "g" and m["direction"] == -1 for m in plan["measurement"])
     motion = pyuff.UFF(str(tmp_path / "point-0.uff")).read_sets()[1]
-    assert motion["ordinate_axis_units_lab"].strip() == "g" and motion["rsp_dir"] == -3
+    assert motion["ordinate_axis_units_lab"].strip() == "g" and motion["rsp_dir"] == 3
 
 
 def test_truth_tells_what_went_in(made, tmp_path):
@@ -68,10 +69,10 @@ def test_truth_tells_what_went_in(made, tmp_path):
     assert [len(p["hits"]) for p in truth["points"]] == [2, 2]
 
 
-def test_a_folder_with_a_test_is_not_written_over(made, tmp_path):
-    """The second writer is refused and the first test stays."""
+def test_a_folder_in_use_is_not_written_over(made, tmp_path):
+    """The second writer is refused and the first one's files stay: to a UFF file it would have added."""
     files.write(SHORT, *made, tmp_path)
-    with pytest.raises(ValueError, match="there already"):
+    with pytest.raises(ValueError, match="not empty"):
         files.write(SHORT, *made, tmp_path)
 
 
