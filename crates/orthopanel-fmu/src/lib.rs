@@ -1,1 +1,17 @@
 #![doc = include_str!("../README.md")]
+
+mod boundary;
+mod capabilities;
+mod component;
+mod error;
+mod fmi2;
+mod fmi3;
+mod logging;
+mod resource;
+mod resource_location;
+mod variables;
+
+pub use capabilities::{FMI2_CO_SIMULATION, FMI3_CO_SIMULATION, LOG_CATEGORIES, MODEL_IDENTIFIER};
+pub use error::FmuError;
+pub use resource::{GENERATOR, RESOURCE_FILE, Resource, content_token};
+pub use variables::{Quantity, UNITS, Unit, Variable, VariableTable};

@@ -1,0 +1,179 @@
+//! The C boundary, common to both versions: pointers become slices and texts, panics and errors become a status.
+//!
+//! Safety rests on the FMI contract: an instance pointer is one that an instantiate function returned and that has
+//! not been freed, an array has as many entries as its length says. What can be checked (null) is checked.
+#![allow(unsafe_code)]
+
+use std::ffi::{CStr, CString, c_char, c_int, c_void};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::PathBuf;
+
+use crate::component::Component;
+use crate::logging::{Category, Logger, Sink};
+use crate::{FmuError, Resource};
+
+/// FMI status; OK and Error have the same numbers in both versions.
+pub(crate) type Status = c_int;
+pub(crate) const OK: Status = 0;
+pub(crate) const DISCARD: Status = 2;
+pub(crate) const ERROR: Status = 3;
+
+/// What an instance pointer points to.
+pub(crate) struct Instance {
+    pub component: Component,
+    pub logger: Logger,
+}
+
+/// What both instantiate functions are given.
+pub(crate) struct Instantiation {
+    pub call: &'static str,
+    pub token: *const c_char,
+    pub location: *const c_char,
+    pub to_folder: fn(&str) -> Result<PathBuf, FmuError>,
+    pub logging_on: bool,
+}
+
+/// Makes an instance, or logs why not and returns null.
+///
+/// # Safety
+/// `token` and `location` are null or C strings.
+pub(crate) unsafe fn instantiate(
+    given: &Instantiation,
+    sink: Sink,
+    check: impl FnOnce() -> Result<(), FmuError>,
+) -> *mut c_void {
+    let logger = Logger::new(sink, given.logging_on);
+    let made = catch_unwind(AssertUnwindSafe(|| {
+        check()?;
+        // SAFETY: the caller passes null or C strings.
+        let (token, location) = unsafe { (text(given.token, "token")?, text(given.location, "resource location")?) };
+        Ok::<_, FmuError>(Component::new(&Resource::read(&(given.to_folder)(location)?, token)?))
+    }));
+    match made {
+        Ok(Ok(component)) => {
+            logger.log(Category::Events, "instantiated");
+            Box::into_raw(Box::new(Instance { component, logger })).cast()
+        }
+        Ok(Err(error)) => refuse(&logger, given.call, &error),
+        Err(_) => refuse(&logger, given.call, &"internal error (a panic); please report it"),
+    }
+}
+
+fn refuse(logger: &Logger, call: &str, reason: &dyn std::fmt::Display) -> *mut c_void {
+    logger.log(Category::Error, &format!("{call}: {reason}"));
+    std::ptr::null_mut()
+}
+
+/// Frees an instance; null is ignored, as the standard says.
+///
+/// # Safety
+/// `instance` is null or a live instance, not used again.
+pub(crate) unsafe fn free(instance: *mut c_void) {
+    if !instance.is_null() {
+        // SAFETY: a live instance came from `Box::into_raw` in `instantiate`. Dropping it runs no code that panics.
+        drop(unsafe { Box::from_raw(instance.cast::<Instance>()) });
+    }
+}
+
+/// Runs one call on an instance: errors and panics are logged and become [`ERROR`].
+///
+/// # Safety
+/// `instance` is null or a live instance that no other call is using.
+pub(crate) unsafe fn call(
+    instance: *mut c_void,
+    name: &str,
+    body: impl FnOnce(&mut Instance) -> Result<(), FmuError>,
+) -> Status {
+    // SAFETY: null, or a live instance that this call alone uses.
+    let Some(instance) = (unsafe { instance.cast::<Instance>().as_mut() }) else {
+        return ERROR;
+    };
+    match catch_unwind(AssertUnwindSafe(|| body(instance))) {
+        Ok(Ok(())) => OK,
+        Ok(Err(error)) => {
+            instance.logger.log(Category::Error, &format!("{name}: {error}"));
+            ERROR
+        }
+        Err(_) => {
+            instance.logger.log(Category::Error, &format!("{name}: internal error (a panic); please report it"));
+            ERROR
+        }
+    }
+}
+
+/// An array that the importer passes in.
+///
+/// # Safety
+/// `pointer` is null or has `count` entries that live as long as the call.
+pub(crate) unsafe fn array<'a, T>(pointer: *const T, count: usize, what: &'static str) -> Result<&'a [T], FmuError> {
+    match (count, pointer.is_null()) {
+        (0, _) => Ok(&[]),
+        (_, true) => Err(FmuError::Null(what)),
+        // SAFETY: not null, and the caller vouches for `count` entries.
+        _ => Ok(unsafe { std::slice::from_raw_parts(pointer, count) }),
+    }
+}
+
+/// An array that the importer wants filled.
+///
+/// # Safety
+/// As [`array`], and nothing else refers to the entries.
+pub(crate) unsafe fn array_mut<'a, T>(
+    pointer: *mut T,
+    count: usize,
+    what: &'static str,
+) -> Result<&'a mut [T], FmuError> {
+    match (count, pointer.is_null()) {
+        (0, _) => Ok(&mut []),
+        (_, true) => Err(FmuError::Null(what)),
+        // SAFETY: not null, and the caller vouches for `count` entries that it alone refers to.
+        _ => Ok(unsafe { std::slice::from_raw_parts_mut(pointer, count) }),
+    }
+}
+
+/// A text that the importer passes in.
+///
+/// # Safety
+/// `pointer` is null or a C string that lives as long as the call.
+pub(crate) unsafe fn text<'a>(pointer: *const c_char, what: &'static str) -> Result<&'a str, FmuError> {
+    if pointer.is_null() {
+        return Err(FmuError::Null(what));
+    }
+    // SAFETY: not null, and the caller vouches for a C string.
+    unsafe { CStr::from_ptr(pointer) }.to_str().map_err(|_| FmuError::Text(what))
+}
+
+/// The log categories that the importer names.
+///
+/// # Safety
+/// `pointer` is null or has `count` C strings.
+pub(crate) unsafe fn set_logging(
+    instance: &mut Instance,
+    on: bool,
+    count: usize,
+    categories: *const *const c_char,
+) -> Result<(), FmuError> {
+    // SAFETY: the caller vouches for `count` C strings.
+    let names = unsafe { array(categories, count, "categories")?.iter().map(|&name| text(name, "category")) };
+    let names = names.collect::<Result<Vec<_>, _>>()?;
+    instance.logger.set(on, &names)
+}
+
+/// A C string of `message`, NUL characters left out.
+pub(crate) fn c_text(message: &str) -> CString {
+    CString::new(message.replace('\0', "")).unwrap_or_default()
+}
+
+/// Defines the entry points of a capability that is not offered: each says which flag of the XML says so.
+macro_rules! not_offered {
+    ($($flag:literal: $($name:ident($($argument:ty),*);)*)*) => {$($(
+        #[unsafe(no_mangle)]
+        unsafe extern "C" fn $name(instance: *mut std::ffi::c_void, $(_: $argument),*) -> $crate::boundary::Status {
+            // SAFETY: `instance` comes from the importer under the FMI contract; no other argument is touched.
+            unsafe {
+                $crate::boundary::call(instance, stringify!($name), |_| Err($crate::FmuError::NotOffered($flag)))
+            }
+        }
+    )*)*};
+}
+pub(crate) use not_offered;

@@ -1,0 +1,67 @@
+//! The communication step.
+
+use super::{Component, Phase, finite};
+use crate::FmuError;
+
+/// Share of a step by which the importer's time may differ from ours: importers add up their steps with rounding.
+const TIME_SLACK: f64 = 1e-3;
+
+/// The same as a share of the time itself, for long runs of tiny steps.
+const TIME_ROUNDING: f64 = 1e-12;
+
+impl Component {
+    /// Advances from `start` by `step` \[s\].
+    ///
+    /// The force over the step: with `force_linear` from its value at the end of the last step to the value set;
+    /// with input derivatives from the value set at that rate; else held at the value set. Where the step is
+    /// refused, everything stays as it was.
+    pub(crate) fn do_step(&mut self, start: f64, step: f64) -> Result<(), FmuError> {
+        self.require(&[Phase::Step])?;
+        finite("communication point", start)?;
+        if !(step.is_finite() && step > 0.0) {
+            return Err(orthopanel_model::ModelError::Size { name: "step", value: step, unit: "s" }.into());
+        }
+        let slack = TIME_SLACK * step + TIME_ROUNDING * start.abs();
+        if (start - self.time).abs() > slack {
+            return Err(FmuError::CommunicationPoint { given: start, time: self.time });
+        }
+        let end = start + step;
+        finite("end of the step", end)?;
+        if let Some(stop) = self.stop_time.filter(|&stop| end > stop + slack) {
+            return Err(FmuError::PastStop { end, stop });
+        }
+        if self.force_linear {
+            self.step_between_values(step)?;
+        } else if let Some(rates) = self.force_rates.take() {
+            let result = self.step_at_rates(step, &rates);
+            if result.is_err() {
+                self.force_rates = Some(rates);
+                self.forces_changed = true;
+            }
+            result?;
+        } else {
+            self.apply_forces()?;
+            self.stepper.advance_held(step)?;
+        }
+        self.forces_before.copy_from_slice(&self.forces);
+        self.time = end;
+        Ok(())
+    }
+
+    fn step_between_values(&mut self, step: f64) -> Result<(), FmuError> {
+        // Until the step succeeds the stepper holds the old force: then the values set are still to be told.
+        self.forces_changed = true;
+        self.stepper.set_forces(&self.forces_before)?;
+        self.stepper.advance_linear(step, &self.forces)?;
+        self.forces_changed = false;
+        Ok(())
+    }
+
+    fn step_at_rates(&mut self, step: f64, rates: &[f64]) -> Result<(), FmuError> {
+        self.apply_forces()?;
+        let end: Vec<f64> = self.forces.iter().zip(rates).map(|(force, rate)| force + rate * step).collect();
+        self.stepper.advance_linear(step, &end)?;
+        self.forces = end;
+        Ok(())
+    }
+}

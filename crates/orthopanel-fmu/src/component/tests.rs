@@ -1,0 +1,159 @@
+//! The life cycle without any C.
+
+use orthopanel_model::{ModalModel, ModalStepper, Mode, Place, Ports};
+
+use super::*;
+
+const FORCE: u32 = 2;
+const ACCELERATION: u32 = 3;
+const VELOCITY: u32 = 4;
+const DISPLACEMENT: u32 = 5;
+const FORCE_LINEAR: u32 = 1;
+
+fn resource() -> Resource {
+    let mode = |angular_frequency, damping_ratio| Mode {
+        angular_frequency,
+        damping_ratio,
+        at_forces: vec![0.7],
+        at_responses: vec![-1.1],
+    };
+    let model = ModalModel::new(1, 1, vec![mode(0.0, 0.0), mode(2000.0, 0.01)]).expect("a sound model");
+    let ports = Ports { forces: vec![Place { x: -0.3, y: 0.0 }], responses: vec![Place { x: 0.3, y: 0.0 }] };
+    Resource::new(model, ports).expect("as many places as ports")
+}
+
+fn initialized(force_linear: bool) -> Component {
+    let mut component = Component::new(&resource());
+    component.set_booleans(&[FORCE_LINEAR], &[force_linear]).expect("a parameter");
+    component.enter_initialization().expect("enter");
+    component.exit_initialization().expect("exit");
+    component
+}
+
+fn outputs(component: &mut Component) -> [f64; 3] {
+    let mut values = [0.0; 3];
+    component.get_reals(&[DISPLACEMENT, VELOCITY, ACCELERATION], &mut values).expect("outputs");
+    values
+}
+
+fn stepper_outputs(stepper: &ModalStepper) -> [f64; 3] {
+    [stepper.displacement(0), stepper.velocity(0), stepper.acceleration(0)].map(|value| value.expect("port"))
+}
+
+#[test]
+fn val_each_hold_is_the_steppers() {
+    let forces = [0.0, 1.0, 4.0, -2.0];
+    let step = 3e-4;
+    let mut held = initialized(false);
+    let mut linear = initialized(true);
+    let mut rates = initialized(false);
+    let mut stepper_held = ModalStepper::new(resource().model());
+    let mut stepper_linear = stepper_held.clone();
+    for (n, pair) in forces.windows(2).enumerate() {
+        let (time, from, to) = (n as f64 * step, pair[0], pair[1]);
+        held.set_reals(&[FORCE], &[from]).expect("set");
+        held.do_step(time, step).expect("step");
+        linear.set_reals(&[FORCE], &[to]).expect("set");
+        linear.do_step(time, step).expect("step");
+        rates.set_reals(&[FORCE], &[from]).expect("set");
+        rates.set_force_rates(&[FORCE], &[1], &[(to - from) / step]).expect("rates");
+        rates.do_step(time, step).expect("step");
+        stepper_held.set_forces(&[from]).expect("set");
+        stepper_held.advance_held(step).expect("step");
+        stepper_linear.advance_linear(step, &[to]).expect("step");
+        assert_eq!(outputs(&mut held), stepper_outputs(&stepper_held));
+        assert_eq!(outputs(&mut linear), stepper_outputs(&stepper_linear));
+        // The rate times the step gives the end value back but for rounding.
+        for (value, expected) in outputs(&mut rates).into_iter().zip(stepper_outputs(&stepper_linear)) {
+            assert!((value - expected).abs() <= 1e-13 * expected.abs(), "{value} {expected}");
+        }
+    }
+}
+
+#[test]
+fn val_an_acceleration_answers_at_once_to_a_force() {
+    let mut component = initialized(false);
+    component.set_reals(&[FORCE], &[3.0]).expect("set");
+    // At rest: sum of W_r W_f over two modes times the force.
+    let expected = 2.0 * -1.1 * 0.7 * 3.0;
+    let [displacement, velocity, acceleration] = outputs(&mut component);
+    assert_eq!((displacement, velocity), (0.0, 0.0));
+    assert!((acceleration - expected).abs() < 1e-14, "{acceleration}");
+}
+
+#[test]
+fn refused_calls_change_nothing() {
+    let mut component = initialized(false);
+    component.set_reals(&[FORCE], &[3.0]).expect("set");
+    component.do_step(0.0, 1e-3).expect("step");
+    let before = outputs(&mut component);
+    assert!(matches!(component.set_reals(&[FORCE, 99], &[8.0, 8.0]), Err(FmuError::UnknownReference { last: 5, .. })));
+    assert!(matches!(component.set_reals(&[FORCE], &[f64::NAN]), Err(FmuError::NotFinite { .. })));
+    assert!(matches!(component.set_reals(&[ACCELERATION], &[1.0]), Err(FmuError::NotSettable { .. })));
+    assert!(matches!(component.set_reals(&[FORCE_LINEAR], &[1.0]), Err(FmuError::VariableType { .. })));
+    assert!(matches!(component.set_reals(&[FORCE], &[]), Err(FmuError::Count { .. })));
+    assert!(matches!(component.set_booleans(&[FORCE_LINEAR], &[true]), Err(FmuError::NotSettable { .. })));
+    assert!(matches!(component.set_force_rates(&[FORCE], &[2], &[1.0]), Err(FmuError::DerivativeOrder { order: 2 })));
+    assert!(matches!(component.enter_initialization(), Err(FmuError::Order { .. })));
+    for (start, step) in [(1e-3, 0.0), (1e-3, -1e-3), (1e-3, f64::NAN), (f64::NAN, 1e-3), (0.5, 1e-3), (0.0, 1e-3)] {
+        assert!(component.do_step(start, step).is_err(), "{start} {step}");
+    }
+    assert_eq!(outputs(&mut component), before);
+    assert_eq!(component.time(), 1e-3);
+}
+
+#[test]
+fn a_linear_step_that_fails_keeps_the_force_set() {
+    let mut component = initialized(true);
+    component.set_reals(&[FORCE], &[3.0]).expect("set");
+    let before = outputs(&mut component);
+    assert!(component.do_step(0.0, f64::INFINITY).is_err());
+    assert!(component.do_step(0.0, 1e200).is_err());
+    assert_eq!(outputs(&mut component), before);
+}
+
+#[test]
+fn reset_gives_the_same_run_again() {
+    let mut component = initialized(false);
+    let run = |component: &mut Component| {
+        (0..20)
+            .map(|n| {
+                component.set_reals(&[FORCE], &[f64::from(n % 7)]).expect("set");
+                component.do_step(f64::from(n) * 1e-4, 1e-4).expect("step");
+                outputs(component)
+            })
+            .collect::<Vec<_>>()
+    };
+    let first = run(&mut component);
+    component.terminate().expect("terminate");
+    assert!(component.do_step(2e-3, 1e-4).is_err());
+    component.reset().expect("reset");
+    component.enter_initialization().expect("enter");
+    component.exit_initialization().expect("exit");
+    assert_eq!(run(&mut component), first);
+}
+
+#[test]
+fn communication_points_added_up_with_rounding_are_accepted() {
+    let mut component = initialized(false);
+    let mut time = 0.0;
+    for n in 0..100_000 {
+        // Every third importer multiplies, the others add: they differ in the last places.
+        let start = if n % 3 == 0 { f64::from(n) * 1e-5 } else { time };
+        component.do_step(start, 1e-5).expect("within rounding");
+        time += 1e-5;
+    }
+}
+
+#[test]
+fn the_stop_time_bounds_the_steps() {
+    let mut component = Component::new(&resource());
+    assert!(matches!(component.set_experiment(1.0, Some(0.5)), Err(FmuError::StopBeforeStart { .. })));
+    component.set_experiment(0.0, Some(0.3)).expect("experiment");
+    component.enter_initialization().expect("enter");
+    component.exit_initialization().expect("exit");
+    for n in 0..3 {
+        component.do_step(f64::from(n) * 0.1, 0.1).expect("0.1 + 0.2 is past 0.3 by rounding alone");
+    }
+    assert!(matches!(component.do_step(0.3, 0.1), Err(FmuError::PastStop { .. })));
+}

@@ -1,0 +1,146 @@
+//! What an FMU refuses: the message goes to the importer's logger.
+
+use std::path::PathBuf;
+
+use orthopanel_model::ModelError;
+use thiserror::Error;
+
+/// Errors of this crate.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum FmuError {
+    /// A resource that is not there or cannot be read.
+    #[error("{}: {source}: unpack the FMU with its resources/ folder and pass that folder's place", .path.display())]
+    ResourceMissing {
+        /// The file looked for.
+        path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// A resource that does not belong to the token given by the importer.
+    #[error(
+        "the importer's token is {given}, {} belongs to {found}: pass the guid or instantiationToken of this FMU's own \
+         modelDescription.xml; if it is, the file is damaged: export the FMU again", .path.display()
+    )]
+    Token {
+        /// The file.
+        path: PathBuf,
+        /// Token that the importer gave.
+        given: String,
+        /// Token of the file's content.
+        found: String,
+    },
+    /// A resource whose text is not a panel.
+    #[error("resource: {0}: export the FMU again")]
+    ResourceText(String),
+    /// A place of the resources that is no path.
+    #[error("resource location {location:?}: {reason}")]
+    Location {
+        /// The text given.
+        location: String,
+        /// What is wrong with it.
+        reason: &'static str,
+    },
+    /// A value reference that no variable has.
+    #[error("value reference {reference}: no such variable; references run from 0 to {last}")]
+    UnknownReference {
+        /// The reference.
+        reference: u32,
+        /// The last one in use.
+        last: u32,
+    },
+    /// A variable asked for in another type than its own.
+    #[error("{name} (value reference {reference}) is a {expected}, not a {asked}: call the function of its type")]
+    VariableType {
+        /// Name of the variable.
+        name: String,
+        /// Its reference.
+        reference: u32,
+        /// Its type.
+        expected: &'static str,
+        /// The type of the call.
+        asked: &'static str,
+    },
+    /// A variable that cannot be set, or not now.
+    #[error("{name} (value reference {reference}) cannot be set: {reason}")]
+    NotSettable {
+        /// Name of the variable.
+        name: String,
+        /// Its reference.
+        reference: u32,
+        /// Why.
+        reason: &'static str,
+    },
+    /// A number that must be finite.
+    #[error("{what} = {value}: must be a finite number")]
+    NotFinite {
+        /// What it is.
+        what: String,
+        /// Its value.
+        value: f64,
+    },
+    /// A call in the wrong order.
+    #[error("not allowed in the state {state}: allowed in {allowed}")]
+    Order {
+        /// The state of the instance.
+        state: &'static str,
+        /// The states that allow the call.
+        allowed: String,
+    },
+    /// A step that does not start where the last one ended.
+    #[error("the communication point is {given} s, the instance stands at {time} s: go on from there")]
+    CommunicationPoint {
+        /// The point given.
+        given: f64,
+        /// Time of the instance.
+        time: f64,
+    },
+    /// A step that ends behind the stop time that was set.
+    #[error("the step ends at {end} s, behind the stop time {stop} s: set a later stop time, or none")]
+    PastStop {
+        /// End of the step.
+        end: f64,
+        /// Stop time of the experiment.
+        stop: f64,
+    },
+    /// A stop time before the start time.
+    #[error("the stop time {stop} s lies before the start time {start} s")]
+    StopBeforeStart {
+        /// Start time.
+        start: f64,
+        /// Stop time.
+        stop: f64,
+    },
+    /// A derivative of an input of another order than the first.
+    #[error("input derivative of order {order}: give order 1 only (the force runs linearly over the step)")]
+    DerivativeOrder {
+        /// The order.
+        order: i32,
+    },
+    /// Input derivatives beside `force_linear`.
+    #[error("force_linear is true: the force already runs linearly between the values set; give no input derivatives")]
+    DerivativeBesideLinear,
+    /// A function of a capability that the FMU does not offer.
+    #[error("not offered: modelDescription.xml says {0}")]
+    NotOffered(&'static str),
+    /// A pointer that must not be null.
+    #[error("{0} is a null pointer")]
+    Null(&'static str),
+    /// A text that is not UTF-8.
+    #[error("{0} is not UTF-8 text")]
+    Text(&'static str),
+    /// Lists whose lengths do not fit.
+    #[error("{values} values for {references} value references: all variables are scalars, give one value each")]
+    Count {
+        /// Number of values.
+        values: usize,
+        /// Number of references.
+        references: usize,
+    },
+    /// A log category that the FMU does not have.
+    #[error("log category {0:?}: there are logEvents, logStatusError and logAll")]
+    LogCategory(String),
+    /// What the physics layer refused.
+    #[error(transparent)]
+    Model(#[from] ModelError),
+}
