@@ -1,1 +1,11 @@
 #![doc = include_str!("../README.md")]
+
+mod archive;
+mod documentation;
+mod error;
+mod fmu;
+mod library;
+mod model_description;
+
+pub use error::ExportError;
+pub use fmu::{FmiVersion, Fmu, FmuOptions};

@@ -1,0 +1,65 @@
+//! Builds the library that lies inside every FMU, so that this crate can embed it.
+//!
+//! A cdylib that is a plain dependency ends in `target/PROFILE/deps` and is lost by `cargo install`. So the library
+//! is built here, in its own profile and target folder, and `src/library.rs` embeds its bytes.
+
+use std::env;
+use std::error::Error;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// Settings of the outer build that must not reach the inner one: clippy's wrapper, flags of one profile, coverage.
+const LEAKING: [&str; 6] =
+    ["RUSTFLAGS", "RUSTDOCFLAGS", "RUSTC_WORKSPACE_WRAPPER", "CLIPPY_ARGS", "RUSTC_BOOTSTRAP", "LLVM_PROFILE_FILE"];
+
+/// `CARGO_...` settings of the user that the inner build needs too: where packages lie and how to fetch them.
+const KEPT: [&str; 6] =
+    ["CARGO_HOME", "CARGO_NET_", "CARGO_HTTP_", "CARGO_REGISTR", "CARGO_SOURCE_", "CARGO_MAKEFLAGS"];
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let crates = PathBuf::from(env::var("CARGO_MANIFEST_DIR")?).join("..");
+    let runtime = crates.join("orthopanel-fmu");
+    for source in [runtime.as_path(), &crates.join("orthopanel-model")] {
+        println!("cargo:rerun-if-changed={}", source.join("src").display());
+        println!("cargo:rerun-if-changed={}", source.join("Cargo.toml").display());
+    }
+    println!("cargo:rerun-if-changed=build.rs");
+    for workspace_file in ["Cargo.toml", "Cargo.lock"] {
+        println!("cargo:rerun-if-changed={}", crates.join("..").join(workspace_file).display());
+    }
+
+    let library = build(&runtime.join("Cargo.toml"))?;
+    println!("cargo:rustc-env=ORTHOPANEL_FMU_LIBRARY={}", library.display());
+    Ok(())
+}
+
+/// Builds the library in the profile `fmu`; returns where it lies.
+fn build(manifest: &Path) -> Result<PathBuf, Box<dyn Error>> {
+    let target_folder = PathBuf::from(env::var("OUT_DIR")?).join("fmu");
+    let (target, host) = (env::var("TARGET")?, env::var("HOST")?);
+    let mut cargo = Command::new(env::var("CARGO")?);
+    for (name, _) in env::vars_os() {
+        let text = name.to_string_lossy();
+        let cargos = text.starts_with("CARGO") && !KEPT.iter().any(|kept| text.starts_with(kept));
+        if cargos || LEAKING.contains(&text.as_ref()) {
+            cargo.env_remove(&name);
+        }
+    }
+    cargo.args(["build", "--quiet", "--lib", "--profile", "fmu"]);
+    cargo.arg("--manifest-path").arg(manifest).arg("--target-dir").arg(&target_folder);
+    let mut folder = target_folder;
+    if target != host {
+        cargo.args(["--target", &target]);
+        folder.push(&target);
+    }
+    let status = cargo.status()?;
+    if !status.success() {
+        return Err(format!("building the FMU's library failed ({status}): its messages stand above").into());
+    }
+    let name = match env::var("CARGO_CFG_TARGET_OS")?.as_str() {
+        "windows" => "orthopanel_fmu.dll",
+        "macos" => "liborthopanel_fmu.dylib",
+        _ => "liborthopanel_fmu.so",
+    };
+    Ok(folder.join("fmu").join(name))
+}

@@ -1,0 +1,133 @@
+//! [`Fmu`]: all parts of one FMU, ready to be written.
+
+use std::io::Write;
+use std::path::Path;
+
+use orthopanel_fmu::{RESOURCE_FILE, Resource, content_token};
+use orthopanel_model::{ModalModel, Ports};
+
+use crate::archive::{Entry, pack};
+use crate::{ExportError, documentation, library, model_description};
+
+/// Version of the FMI standard.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum FmiVersion {
+    /// FMI 2.0, the one that most importers read.
+    #[default]
+    Fmi2,
+    /// FMI 3.0.
+    Fmi3,
+}
+
+/// How an FMU is made.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct FmuOptions {
+    /// Name shown by importers.
+    pub name: String,
+    /// One line on what it is.
+    pub description: String,
+    /// Version of the standard.
+    pub version: FmiVersion,
+}
+
+impl Default for FmuOptions {
+    fn default() -> Self {
+        Self {
+            name: "panel".into(),
+            description: "Panel: force in, acceleration, velocity and displacement out".into(),
+            version: FmiVersion::Fmi2,
+        }
+    }
+}
+
+/// A co-simulation FMU of a modal model.
+///
+/// The same model, ports and options give the same bytes, token included.
+///
+/// ```
+/// use orthopanel_export::{Fmu, FmuOptions};
+/// use orthopanel_model::{ModalModel, Mode, Place, Ports};
+///
+/// let mode = Mode { angular_frequency: 2000.0, damping_ratio: 0.01, at_forces: vec![1.3], at_responses: vec![-0.9] };
+/// let model = ModalModel::new(1, 1, vec![mode])?;
+/// let ports = Ports { forces: vec![Place { x: -0.3, y: 0.0 }], responses: vec![Place { x: 0.3, y: 0.0 }] };
+/// let fmu = Fmu::new(model, ports, &FmuOptions::default())?;
+/// assert!(fmu.model_description().contains("acceleration_1"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct Fmu {
+    version: FmiVersion,
+    model_description: String,
+    resource: String,
+    documentation: String,
+}
+
+impl Fmu {
+    /// Puts the parts together; nothing is written yet.
+    ///
+    /// # Errors
+    /// [`ExportError::NoPort`], [`ExportError::Name`], and [`ExportError::Resource`] where `ports` has other numbers
+    /// of places than `model` has ports.
+    pub fn new(model: ModalModel, ports: Ports, options: &FmuOptions) -> Result<Self, ExportError> {
+        for (kind, places) in [("force", &ports.forces), ("response", &ports.responses)] {
+            if places.is_empty() {
+                return Err(ExportError::NoPort { ports: kind });
+            }
+        }
+        if options.name.trim().is_empty() || options.name.chars().any(char::is_control) {
+            return Err(ExportError::Name { name: options.name.clone() });
+        }
+        let resource = Resource::new(model, ports)?;
+        let text = resource.to_json();
+        let token = content_token(text.as_bytes());
+        Ok(Self {
+            version: options.version,
+            model_description: model_description::write(&resource, options, &token)?,
+            documentation: documentation::write(&resource, options),
+            resource: text,
+        })
+    }
+
+    /// Text of `modelDescription.xml`.
+    pub fn model_description(&self) -> &str {
+        &self.model_description
+    }
+
+    /// Bytes of the archive.
+    ///
+    /// # Errors
+    /// [`ExportError::Assemble`], should the archive not take an entry.
+    pub fn to_bytes(&self) -> Result<Vec<u8>, ExportError> {
+        let text = |path: &str, content| Entry { path: path.into(), content, executable: false };
+        pack(&[
+            text("modelDescription.xml", self.model_description.as_bytes()),
+            text(&format!("resources/{RESOURCE_FILE}"), self.resource.as_bytes()),
+            text("documentation/index.html", self.documentation.as_bytes()),
+            Entry { path: library::path(self.version), content: library::LIBRARY, executable: true },
+        ])
+    }
+
+    /// Writes the archive to `path`: first beside it, then renamed, so that a failure leaves nothing behind and an
+    /// older file as it was.
+    ///
+    /// # Errors
+    /// [`ExportError::Write`] names the path; [`ExportError::Assemble`] as [`Fmu::to_bytes`].
+    pub fn write(&self, path: &Path) -> Result<(), ExportError> {
+        let bytes = self.to_bytes()?;
+        let fail = |source| ExportError::Write { path: path.into(), source };
+        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        let mut builder = tempfile::Builder::new();
+        builder.prefix(".orthopanel-").suffix(".fmu");
+        #[cfg(unix)]
+        {
+            // A temporary file is private by default; an FMU is an ordinary file, subject to the user's umask.
+            use std::os::unix::fs::PermissionsExt as _;
+            builder.permissions(std::fs::Permissions::from_mode(0o666));
+        }
+        let mut file = builder.tempfile_in(folder).map_err(fail)?;
+        file.write_all(&bytes).map_err(fail)?;
+        file.persist(path).map_err(|error| fail(error.error))?;
+        Ok(())
+    }
+}
