@@ -103,4 +103,26 @@ pub enum ModelError {
         /// Number expected.
         expected: usize,
     },
+    /// More modes asked than the basis resolves.
+    #[error("{asked} modes asked, but this basis resolves {available}: ask for fewer or take more terms")]
+    BasisTooSmall {
+        /// Flexible modes asked for.
+        asked: usize,
+        /// Modes that the basis resolves.
+        available: usize,
+    },
+    /// Another number of constants than the structure has.
+    #[error("{found} constants given, the structure has {expected}")]
+    ConstantCount {
+        /// Number given.
+        found: usize,
+        /// Number of the structure.
+        expected: usize,
+    },
+    /// A stiffness or mass matrix that is not positive: the constants have no physical meaning together.
+    #[error("the eigenproblem has no real solution: stiffness or mass is not positive at these constants")]
+    Eigenproblem,
+    /// What this version cannot solve.
+    #[error("{0} is not supported by this version of orthopanel")]
+    Unsupported(String),
 }

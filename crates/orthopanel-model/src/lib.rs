@@ -1,15 +1,27 @@
 #![doc = include_str!("../README.md")]
 
+mod accelerance;
 mod boundary;
+mod constant;
 mod error;
+mod legendre;
 mod modal_model;
 mod panel_model;
+mod panel_modes;
 mod piece;
 mod response;
+mod ritz_modes;
+mod structure;
+mod timoshenko_beam;
 
 pub use boundary::{Boundary, End};
+pub use constant::Constant;
 pub use error::ModelError;
 pub use modal_model::{ModalModel, Mode};
 pub use panel_model::{Damping, EffectEntry, Estimate, MODEL_SCHEMA, PanelModel, Ports, StructureKind};
+pub use panel_modes::ModeRange;
 pub use piece::{Piece, Place};
 pub use response::ModalStepper;
+pub use ritz_modes::ritz_modes;
+pub use structure::{Block, RitzMode, Structure};
+pub use timoshenko_beam::{BeamConstants, BeamElements, BeamMode, ExactBeam, SHEAR_COEFFICIENT, TimoshenkoBeam};

@@ -1,0 +1,76 @@
+//! The orthotropic Timoshenko beam of the paper (section 2.3), three ways: exact, Ritz and finite element.
+//!
+//! $$\begin{aligned}
+//! (E_x I\psi')' - k'G_{zx}A(w'+\psi) - \rho I\ddot\psi &= 0,\\\\
+//! (k'G_{zx}A(w'+\psi))' - \rho A\ddot w + f\,\delta(x-l_1) &= 0 \qquad\text{(eq. 5)}
+//! \end{aligned}$$
+//! with $A = bt$, $I = bt^3/12$ and the shear coefficient $k' = 2/3$. The rotation $\psi$ is counted so that the
+//! shear strain is $w' + \psi$: without shear, $\psi = -w'$.
+
+mod exact;
+mod finite_element;
+mod ritz;
+mod strain_basis;
+
+pub use exact::{BeamMode, ExactBeam};
+pub use finite_element::BeamElements;
+pub use ritz::TimoshenkoBeam;
+
+use crate::constant::Constant;
+use crate::{ModelError, Piece};
+
+/// Shear coefficient $k'$ of the rectangular section, as in the paper. Only $k'G_{zx}$ can be identified, so this
+/// value scales $G_{zx}$.
+pub const SHEAR_COEFFICIENT: f64 = 2.0 / 3.0;
+
+/// The constants of the beam, in the order in which every list of them stands.
+pub(crate) const CONSTANTS: [Constant; 2] = [
+    Constant { name: "e_x", unit: "Pa", low: 1e3, high: 1e15 },
+    Constant { name: "g_zx", unit: "Pa", low: 1e3, high: 1e15 },
+];
+
+/// Elastic constants of the beam (eq. 3).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BeamConstants {
+    /// Longitudinal elastic constant $E_x$ \[Pa\].
+    pub e_x: f64,
+    /// Shear elastic constant $G_{zx}$ \[Pa\].
+    pub g_zx: f64,
+}
+
+impl BeamConstants {
+    /// Checks both against their bounds.
+    ///
+    /// # Errors
+    /// [`ModelError::Constant`] names the one outside.
+    pub fn checked(self) -> Result<Self, ModelError> {
+        CONSTANTS[0].check(self.e_x)?;
+        CONSTANTS[1].check(self.g_zx)?;
+        Ok(self)
+    }
+}
+
+/// Stiffness and inertia of the section, per unit length where a length enters.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Section {
+    /// $I$ \[m⁴\]: bending stiffness per unit of $E_x$.
+    pub second_moment: f64,
+    /// $k'A$ \[m²\]: shear stiffness per unit of $G_{zx}$.
+    pub shear_area: f64,
+    /// $\rho A$ \[kg/m\].
+    pub mass: f64,
+    /// $\rho I$ \[kg m\].
+    pub rotary_inertia: f64,
+}
+
+impl Section {
+    pub(crate) fn of(piece: &Piece) -> Self {
+        let Piece { width, thickness, mass_per_area, .. } = *piece;
+        Self {
+            second_moment: width * thickness.powi(3) / 12.0,
+            shear_area: SHEAR_COEFFICIENT * width * thickness,
+            mass: mass_per_area * width,
+            rotary_inertia: mass_per_area * width * thickness * thickness / 12.0,
+        }
+    }
+}
