@@ -140,4 +140,68 @@ pub enum DataError {
         /// What the model says.
         source: ModelError,
     },
+    /// A file whose content no reader knows.
+    #[error("{at}: not a file of records; read are: {names}")]
+    UnknownFormat {
+        /// The file.
+        at: Box<Location>,
+        /// The formats that are read.
+        names: String,
+    },
+    /// A header of a record that cannot be understood.
+    #[error("{at}: {problem}")]
+    Header {
+        /// Where.
+        at: Box<Location>,
+        /// What stands there and what was expected.
+        problem: String,
+    },
+    /// Text where a number must stand.
+    #[error("{at}: {text:?} is no number")]
+    BadNumber {
+        /// Where.
+        at: Box<Location>,
+        /// The text, its first 40 characters.
+        text: String,
+    },
+    /// A record with a value that is not a number or infinite.
+    #[error("{at}: point {point} is not a finite number: take the record out, or export it again")]
+    NotFinite {
+        /// Start of the data, or the line.
+        at: Box<Location>,
+        /// The point, from 1.
+        point: usize,
+    },
+    /// Data that end before the announced count.
+    #[error("{at}: {needed} {unit} announced, the data end after {found}: the file is cut off")]
+    Truncated {
+        /// Where the data end.
+        at: Box<Location>,
+        /// `values` or `bytes`.
+        unit: &'static str,
+        /// Number announced.
+        needed: usize,
+        /// Number found.
+        found: usize,
+    },
+    /// Data that go on after the announced count, with something other than zeros.
+    #[error("{at}: {needed} {unit} announced, {found} are there: the count or the data are corrupt")]
+    Surplus {
+        /// Where the data should have ended.
+        at: Box<Location>,
+        /// `values` or `bytes`.
+        unit: &'static str,
+        /// Number announced.
+        needed: usize,
+        /// Number found.
+        found: usize,
+    },
+    /// A file without what it is read for.
+    #[error("{at}: no {what} in it")]
+    NoRecords {
+        /// The file.
+        at: Box<Location>,
+        /// What was looked for.
+        what: &'static str,
+    },
 }

@@ -1,6 +1,6 @@
 //! The test file: what it means, and one clear message for each way to get it wrong.
 
-use std::path::Path;
+mod support;
 
 use orthopanel_data::{AccelerationUnit, DataError, ImpactTest, MeasurementData, Position};
 use orthopanel_model::{Boundary, End, Place};
@@ -206,16 +206,9 @@ fn val_files_that_cannot_be_read_are_named() {
     }
 }
 
-/// The real tests beside the repository, where they are; the folder is named by `ORTHOPANEL_DATA` or `../shared/data`.
 #[test]
 fn val_real_test_files_are_read() {
-    let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
-    let folder = std::env::var_os("ORTHOPANEL_DATA").map_or(beside, Into::into);
-    let path = folder.join("free_beam/test.toml");
-    if !path.exists() {
-        println!("skipped: {} is absent", path.display());
-        return;
-    }
+    let Some(path) = support::measured("free_beam/test.toml") else { return };
     assert_eq!(ImpactTest::read(path).unwrap().measurements.len(), 9);
 }
 

@@ -1,0 +1,43 @@
+//! CSV of an accelerance: columns `frequency_hz,real,imag` and, where known, `coherence`.
+
+use std::path::Path;
+
+use num_complex::Complex64;
+
+use super::{Axis, Format, Port, Record, RecordFile, RecordKind, Samples, csv_columns, record, whole};
+use crate::DataError;
+
+pub(super) const FORMAT: Format = Format {
+    name: "CSV with the columns frequency_hz,real,imag[,coherence]",
+    recognises: |bytes| csv_columns::starts_with_column(bytes, "frequency_hz"),
+    read,
+};
+
+fn read(bytes: &[u8], path: &Path) -> Result<RecordFile, DataError> {
+    let mut columns = csv_columns::read(bytes, path, &["frequency_hz", "real", "imag"], &["coherence"])?.into_iter();
+    let mut next = || columns.next().flatten();
+    let (frequency, re, im) = (next().unwrap_or_default(), next().unwrap_or_default(), next().unwrap_or_default());
+    let value = re.iter().zip(&im).map(|(&re, &im)| Complex64::new(re, im)).collect();
+    let record = |kind, title: &str, abscissa, ordinate, numerator, denominator| Record {
+        kind,
+        title: title.into(),
+        at: whole(path),
+        response: Port::default(),
+        reference: Port::default(),
+        abscissa,
+        ordinate,
+        numerator,
+        denominator,
+    };
+    let axis = |data_type, unit: &str| Axis { data_type, unit: unit.into() };
+    let mut records = Vec::new();
+    let (motion, force) = (axis(record::ACCELERATION, "m/s2"), axis(record::FORCE, "N"));
+    let frf = RecordKind::FrequencyResponse;
+    records.push(record(frf, "accelerance", frequency.clone(), Samples::Complex(value), motion, force));
+    if let Some(coherence) = next() {
+        let coherence = Samples::Real(coherence);
+        let none = (Axis::default(), Axis::default());
+        records.push(record(RecordKind::Coherence, "coherence", frequency, coherence, none.0, none.1));
+    }
+    Ok(RecordFile { records, notes: Vec::new() })
+}

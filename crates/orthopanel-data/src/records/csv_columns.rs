@@ -1,0 +1,77 @@
+//! Columns of numbers under a line of names: what both CSV formats share.
+
+use std::path::Path;
+
+use crate::{DataError, Location, Position};
+
+/// True where the first line that is no comment begins with the column `name`.
+pub(super) fn starts_with_column(bytes: &[u8], name: &str) -> bool {
+    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    let mut lines = bytes.split(|&byte| byte == b'\n').map(<[u8]>::trim_ascii);
+    let header = lines.find(|line| !line.is_empty() && !line.starts_with(b"#"));
+    let first = header.and_then(|line| line.split(|byte| b",;\t ".contains(byte)).next());
+    first.is_some_and(|first| first.trim_ascii() == name.as_bytes())
+}
+
+/// Reads the columns `needed`, and `optional` where they are there, in this order; each is as long as the first.
+///
+/// The first column must rise, since it is time or frequency.
+pub(super) fn read(
+    bytes: &[u8],
+    path: &Path,
+    needed: &[&str],
+    optional: &[&str],
+) -> Result<Vec<Option<Vec<f64>>>, DataError> {
+    let at = |line: u64, key: &str| {
+        let position = usize::try_from(line).map_or(Position::Whole, Position::Line);
+        Box::new(Location { file: path.to_path_buf(), position, key: key.into() })
+    };
+    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    let mut reader = csv::ReaderBuilder::new().comment(Some(b'#')).trim(csv::Trim::All).from_reader(bytes);
+    let broken = |error: csv::Error| {
+        let line = error.position().map_or(1, csv::Position::line);
+        DataError::Header { at: at(line, ""), problem: error.to_string() }
+    };
+    let names = reader.headers().map_err(broken)?.clone();
+    let expected = || [needed, optional].concat().join(",");
+    let header = |problem: String| Err(DataError::Header { at: at(1, ""), problem });
+    if let Some(missing) = needed.iter().find(|&&name| !names.iter().any(|found| found == name)) {
+        return header(format!("column {missing} is missing: the columns are {}, divided by commas", expected()));
+    }
+    let position = |name: &str| [needed, optional].concat().iter().position(|&known| known == name);
+    let mut places = Vec::new();
+    for name in &names {
+        match position(name) {
+            Some(place) if !places.contains(&place) => places.push(place),
+            Some(_) => return header(format!("column {name} stands twice")),
+            None => return header(format!("column {name:?} is unknown: the columns are {}", expected())),
+        }
+    }
+    let mut columns: Vec<Option<Vec<f64>>> = vec![None; needed.len() + optional.len()];
+    let mut row = csv::StringRecord::new();
+    let mut point = 0;
+    while reader.read_record(&mut row).map_err(broken)? {
+        point += 1;
+        let line = row.position().map_or(1, csv::Position::line);
+        for ((text, name), &place) in row.iter().zip(&names).zip(&places) {
+            let value: f64 = text.parse().map_err(|_| {
+                let text = text.chars().take(40).collect();
+                DataError::BadNumber { at: at(line, name), text }
+            })?;
+            if !value.is_finite() {
+                return Err(DataError::NotFinite { at: at(line, name), point });
+            }
+            let Some(column) = columns.get_mut(place) else { continue };
+            let column = column.get_or_insert_with(Vec::new);
+            if place == 0 && column.last().is_some_and(|&before| before >= value) {
+                let problem = format!("{value} does not rise above the row before: sort the rows, once each");
+                return Err(DataError::Header { at: at(line, name), problem });
+            }
+            column.push(value);
+        }
+    }
+    if point == 0 {
+        return Err(DataError::NoRecords { at: at(1, ""), what: "row under the column names" });
+    }
+    Ok(columns)
+}

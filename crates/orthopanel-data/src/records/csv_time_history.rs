@@ -1,0 +1,35 @@
+//! CSV of one hit: columns `time_s,force_n,acceleration_m_s2`.
+
+use std::path::Path;
+
+use super::{Axis, Format, Port, Record, RecordFile, RecordKind, Samples, csv_columns, record, whole};
+use crate::DataError;
+
+pub(super) const FORMAT: Format = Format {
+    name: "CSV with the columns time_s,force_n,acceleration_m_s2",
+    recognises: |bytes| csv_columns::starts_with_column(bytes, "time_s"),
+    read,
+};
+
+fn read(bytes: &[u8], path: &Path) -> Result<RecordFile, DataError> {
+    let columns = csv_columns::read(bytes, path, &["time_s", "force_n", "acceleration_m_s2"], &[])?;
+    let mut columns = columns.into_iter().map(Option::unwrap_or_default);
+    let (time, force) = (columns.next().unwrap_or_default(), columns.next().unwrap_or_default());
+    let acceleration = columns.next().unwrap_or_default();
+    let record = |title: &str, abscissa: Vec<f64>, ordinate: Vec<f64>, data_type: i64, unit: &str| Record {
+        kind: RecordKind::Time,
+        title: title.into(),
+        at: whole(path),
+        response: Port::default(),
+        reference: Port::default(),
+        abscissa,
+        ordinate: Samples::Real(ordinate),
+        numerator: Axis { data_type, unit: unit.into() },
+        denominator: Axis::default(),
+    };
+    let records = vec![
+        record("force_n", time.clone(), force, record::FORCE, "N"),
+        record("acceleration_m_s2", time, acceleration, record::ACCELERATION, "m/s2"),
+    ];
+    Ok(RecordFile { records, notes: Vec::new() })
+}

@@ -1,0 +1,117 @@
+//! What every reader returns.
+
+use num_complex::Complex64;
+
+use crate::Location;
+
+/// The records of one file, and what the reader had to say about them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RecordFile {
+    /// The records, in the order of the file; at least one.
+    pub records: Vec<Record>,
+    /// What was skipped, mended or assumed, a sentence each.
+    pub notes: Vec<String>,
+}
+
+/// One record: a function of time or frequency.
+///
+/// Every number in it is finite, `abscissa` and `ordinate` are equally long and not empty, and `abscissa` rises.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Record {
+    /// What the function is.
+    pub kind: RecordKind,
+    /// The file's words on it, without blank lines.
+    pub title: String,
+    /// Where the record begins.
+    pub at: Box<Location>,
+    /// Where and in which direction the ordinate was measured.
+    pub response: Port,
+    /// Where and in which direction the reference acts, for functions of two channels.
+    pub reference: Port,
+    /// Time \[s\] or frequency \[Hz\].
+    pub abscissa: Vec<f64>,
+    /// Values, in the units of `numerator` over `denominator`.
+    pub ordinate: Samples,
+    /// What is measured along the ordinate.
+    pub numerator: Axis,
+    /// What the ordinate is divided by, for functions of two channels.
+    pub denominator: Axis,
+}
+
+/// What a record's function is; numbers as in universal file dataset 58, record 6, field 1.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum RecordKind {
+    /// Time response (1).
+    Time,
+    /// Auto spectrum (2).
+    AutoSpectrum,
+    /// Cross spectrum (3).
+    CrossSpectrum,
+    /// Frequency response function (4), $e^{+j\omega t}$.
+    FrequencyResponse,
+    /// Coherence (6).
+    Coherence,
+    /// Any other number, and 0 for a kind that the file does not tell.
+    Other(i64),
+}
+
+impl From<i64> for RecordKind {
+    fn from(number: i64) -> Self {
+        match number {
+            1 => Self::Time,
+            2 => Self::AutoSpectrum,
+            3 => Self::CrossSpectrum,
+            4 => Self::FrequencyResponse,
+            6 => Self::Coherence,
+            other => Self::Other(other),
+        }
+    }
+}
+
+/// Values of a record.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Samples {
+    /// Real values.
+    Real(Vec<f64>),
+    /// Complex values.
+    Complex(Vec<Complex64>),
+}
+
+impl Samples {
+    /// Number of values.
+    pub fn len(&self) -> usize {
+        match self {
+            Self::Real(values) => values.len(),
+            Self::Complex(values) => values.len(),
+        }
+    }
+
+    /// True where there is none; never so in a [`Record`].
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+}
+
+/// A measuring point and the direction of its sensor.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Port {
+    /// Number of the point; 0 where the file does not tell.
+    pub node: i64,
+    /// Direction: 1, 2, 3 along x, y, z, negative against them; 0 where the file does not tell.
+    pub direction: i64,
+}
+
+/// What an axis shows.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Axis {
+    /// Universal file's specific data type: 12 acceleration, 13 excitation force, 17 time, 18 frequency; 0 unknown.
+    pub data_type: i64,
+    /// Unit as the file writes it; empty where it does not tell.
+    pub unit: String,
+}
+
+/// Specific data type of an acceleration.
+pub(crate) const ACCELERATION: i64 = 12;
+
+/// Specific data type of an excitation force.
+pub(crate) const FORCE: i64 = 13;

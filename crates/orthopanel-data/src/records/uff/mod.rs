@@ -1,0 +1,148 @@
+//! Universal file, datasets 58 and 58b: functions at nodal degrees of freedom.
+//!
+//! Source: the dataset's definition by SDRC, as kept by the University of Cincinnati (Structural Dynamics Research
+//! Laboratory, "Universal file formats"), and files as real writers leave them: see the comments where those differ.
+
+mod ascii;
+mod binary;
+mod cursor;
+mod header;
+mod step;
+
+use std::path::Path;
+
+use num_complex::Complex64;
+
+use super::{Format, Record, RecordFile, RecordKind, Samples};
+use crate::DataError;
+use cursor::Cursor;
+use header::{Encoding, Header};
+
+pub(super) const FORMAT: Format = Format {
+    name: "universal file (-1, then 58 or 58b)",
+    recognises: |bytes| {
+        let first = bytes.split(|&byte| byte == b'\n').find(|line| !line.trim_ascii().is_empty());
+        first.is_some_and(cursor::is_mark)
+    },
+    read,
+};
+
+fn read(bytes: &[u8], path: &Path) -> Result<RecordFile, DataError> {
+    let mut cursor = Cursor::new(bytes, path);
+    let (mut records, mut notes) = (Vec::new(), Vec::new());
+    // Between datasets any number of marks may stand: one closes, one opens, and some writers write both twice or
+    // leave one out. So a mark carries no state here; the first line that is neither mark nor blank is a dataset.
+    while let Some(line) = cursor.line() {
+        if line.is_blank() || line.is_mark() {
+            continue;
+        }
+        let text = line.text();
+        let digits = text.trim_start().len() - text.trim_start().trim_start_matches(|c: char| c.is_ascii_digit()).len();
+        match text.trim_start().get(..digits).and_then(|number| number.parse::<u32>().ok()) {
+            Some(58) => {
+                let number = records.len() + 1;
+                let read = record(&mut cursor, &text, line.start, number, &mut notes)?;
+                records.push(read);
+            }
+            Some(other) => {
+                cursor.skip_dataset();
+                notes.push(format!("dataset {other} at byte {} skipped: only 58 and 58b hold records", line.start));
+            }
+            None => {
+                let problem = format!("a dataset number expected after the mark -1, found {:?}", shortened(&text));
+                return Err(DataError::Header { at: cursor.at(line.start, ""), problem });
+            }
+        }
+    }
+    if records.is_empty() {
+        return Err(DataError::NoRecords { at: super::whole(path), what: "dataset 58 or 58b" });
+    }
+    Ok(RecordFile { records, notes })
+}
+
+fn record(
+    cursor: &mut Cursor,
+    first_line: &str,
+    start: usize,
+    number: usize,
+    notes: &mut Vec<String>,
+) -> Result<Record, DataError> {
+    let key = format!("record {number}");
+    let mut header = Header::read(cursor, first_line, &key)?;
+    let data_start = cursor.position();
+    let values = match header.encoding {
+        Encoding::Text => ascii::values(cursor, &header, &key, notes)?,
+        Encoding::Binary { big_endian, .. } => binary::values(cursor, &header, big_endian, &key, notes)?,
+    };
+    let layout = header.layout;
+    let mut abscissa = Vec::with_capacity(header.points);
+    let mut real = Vec::new();
+    let mut complex = Vec::new();
+    if layout.even {
+        if let Some(restored) = step::restored(header.step, header.step_digits, header.points) {
+            notes.push(format!(
+                "{key}: the step printed as {} is a rounded {restored}, which makes rate or length round: used that",
+                header.step
+            ));
+            header.step = restored;
+        }
+        abscissa.extend((0..header.points).map(|index| header.step.mul_add(index as f64, header.start)));
+    }
+    for point in values.chunks_exact(layout.values_per_point()) {
+        let ordinate = match point {
+            [x, ordinate @ ..] if !layout.even => {
+                abscissa.push(*x);
+                ordinate
+            }
+            ordinate => ordinate,
+        };
+        match *ordinate {
+            [re, im] => complex.push(Complex64::new(re, im)),
+            [value] => real.push(value),
+            _ => {}
+        }
+    }
+    let kind = RecordKind::from(header.function);
+    if kind == RecordKind::Coherence {
+        // Analysers divide 0 by 0 where no force was: a line without coherence, not a broken file.
+        let mended = real.iter_mut().filter(|value| !value.is_finite()).map(|value| *value = 0.0).count();
+        if mended > 0 {
+            notes.push(format!("{key}: coherence is not a number in {mended} lines: taken as 0"));
+        }
+    }
+    let ordinate = if layout.complex { Samples::Complex(complex) } else { Samples::Real(real) };
+    check_numbers(cursor, data_start, &key, &abscissa, &ordinate)?;
+    let Header { title, response, reference, numerator, denominator, .. } = header;
+    let at = cursor.at(start, &key);
+    Ok(Record { kind, title, at, response, reference, abscissa, ordinate, numerator, denominator })
+}
+
+fn check_numbers(
+    cursor: &Cursor,
+    data_start: usize,
+    key: &str,
+    abscissa: &[f64],
+    ordinate: &Samples,
+) -> Result<(), DataError> {
+    let finite = |value: &Complex64| value.re.is_finite() && value.im.is_finite();
+    let bad = match ordinate {
+        Samples::Real(values) => values.iter().position(|value| !value.is_finite()),
+        Samples::Complex(values) => values.iter().position(|value| !finite(value)),
+    };
+    if let Some(point) = bad.or_else(|| abscissa.iter().position(|x| !x.is_finite())) {
+        return Err(DataError::NotFinite { at: cursor.at(data_start, key), point: point + 1 });
+    }
+    let falls = abscissa.windows(2).position(|pair| !matches!(pair, [before, after] if before < after));
+    match falls {
+        None => Ok(()),
+        Some(point) => {
+            let problem = format!("time or frequency does not rise from point {} to {}", point + 1, point + 2);
+            Err(DataError::Header { at: cursor.at(data_start, key), problem })
+        }
+    }
+}
+
+/// Enough of a line to know it by: a corrupt file's line may be a megabyte long.
+fn shortened(text: &str) -> String {
+    text.chars().take(40).collect()
+}
