@@ -1,0 +1,49 @@
+//! `modelDescription/`: the XML of each flavour for one small model, as it was last agreed on.
+//!
+//! After a change on purpose, write them anew with `UPDATE_GOLDEN=1 cargo test -p orthopanel-export --test golden_xml`
+//! and read the difference.
+
+use std::path::Path;
+
+use orthopanel_export::{FmiVersion, Fmu, FmuOptions};
+use orthopanel_model::{ModalModel, Mode, Place, Ports};
+
+/// A rigid and two flexible modes; force 2 sits on a node of all modes that response 2 sees.
+fn fmu(version: FmiVersion) -> Fmu {
+    let mode = |angular_frequency, damping_ratio, at_forces: [f64; 2], at_responses: [f64; 2]| Mode {
+        angular_frequency,
+        damping_ratio,
+        at_forces: at_forces.into(),
+        at_responses: at_responses.into(),
+    };
+    let modes = vec![
+        mode(0.0, 0.0, [1.25, 0.0], [1.25, 1.25]),
+        mode(2000.0, 0.0025, [1.5, 0.75], [1.5, 0.0]),
+        mode(5250.0, 0.00125, [-1.0, 0.0], [1.0, 0.5]),
+    ];
+    let model = ModalModel::new(2, 2, modes).expect("a sound model");
+    let place = |x| Place { x, y: 0.0 };
+    let ports = Ports { forces: vec![place(-0.3), place(0.1)], responses: vec![place(0.3), place(0.2)] };
+    let options = FmuOptions { name: "small panel".into(), version, ..FmuOptions::default() };
+    Fmu::new(model, ports, &options).expect("a sound FMU")
+}
+
+fn compare(file: &str, version: FmiVersion) {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../modelDescription").join(file);
+    let written = fmu(version);
+    if std::env::var_os("UPDATE_GOLDEN").is_some() {
+        std::fs::write(&path, written.model_description()).expect("golden file written");
+    }
+    let golden = std::fs::read_to_string(&path).expect("golden file");
+    assert_eq!(written.model_description(), golden, "{file}: see the head of this test");
+}
+
+#[test]
+fn regress_fmi2_co_simulation() {
+    compare("fmi2-cosimulation.xml", FmiVersion::Fmi2);
+}
+
+#[test]
+fn regress_fmi3_co_simulation() {
+    compare("fmi3-cosimulation.xml", FmiVersion::Fmi3);
+}
