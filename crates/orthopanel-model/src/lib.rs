@@ -12,6 +12,7 @@ mod piece;
 mod response;
 mod ritz_modes;
 mod structure;
+mod symmetric_eigen;
 mod timoshenko_beam;
 
 pub use boundary::{Boundary, End};

@@ -1,9 +1,10 @@
 //! Modes of any [`Structure`]: one symmetric eigenproblem a block.
 
-use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
+use faer::linalg::triangular_solve::{solve_lower_triangular_in_place, solve_upper_triangular_in_place};
 use faer::{Mat, Par, Side};
 
 use crate::structure::{Block, RitzMode, Structure};
+use crate::symmetric_eigen::symmetric_eigen;
 use crate::{Constant, ModelError};
 
 /// The rigid modes, then the first `count` flexible ones in rising order, at these values of the constants.
@@ -67,9 +68,8 @@ fn flexible_modes(block: &Block, index: usize, coefficients: &[f64]) -> Result<V
     solve_lower_triangular_in_place(lower, flexibility.as_mut(), Par::Seq);
     let symmetric = Mat::from_fn(size, size, |i, j| 0.5 * (flexibility[(i, j)] + flexibility[(j, i)]));
 
-    let spectrum = symmetric.self_adjoint_eigen(Side::Lower).map_err(|_| ModelError::Eigenproblem)?;
-    let (mut vectors, thetas) = (spectrum.U().to_owned(), spectrum.S().column_vector());
-    faer::linalg::triangular_solve::solve_upper_triangular_in_place(lower.transpose(), vectors.as_mut(), Par::Seq);
+    let (thetas, mut vectors) = symmetric_eigen(&symmetric).ok_or(ModelError::Eigenproblem)?;
+    solve_upper_triangular_in_place(lower.transpose(), vectors.as_mut(), Par::Seq);
     // Largest θ first; the rigid modes are the very largest and are replaced by their exact shapes.
     let modes = (0..size).rev().skip(block.rigid.len()).map(|column| {
         let theta = thetas[column];
