@@ -204,4 +204,20 @@ pub enum DataError {
         /// What was looked for.
         what: &'static str,
     },
+    /// Records that do not make up the channels of a measurement.
+    #[error("{at}: {problem}")]
+    Channels {
+        /// The record.
+        at: Box<Location>,
+        /// What does not fit, and the way out.
+        problem: String,
+    },
+    /// No hit of a measurement can be used.
+    #[error("{}: no hit can be used: {reasons}", file.display())]
+    NoUsableHit {
+        /// The file of the hits.
+        file: PathBuf,
+        /// Each hit with its faults.
+        reasons: String,
+    },
 }

@@ -2,11 +2,13 @@
 
 mod error;
 mod records;
+mod spectra;
 mod test_file;
 
 pub use error::{DataError, Location, Position};
 pub use records::{Axis, Port, Record, RecordFile, RecordKind, Samples};
+pub use spectra::{Accelerance, Channel, Estimation, Estimator, Hit, HitFault, TimeHistory, Window};
 pub use test_file::{
-    AccelerationUnit, DeclaredEffect, ImpactTest, Measurement, MeasurementData, NamedPiece, NaturalFrequencies,
-    RecordedResponse,
+    AccelerationUnit, DeclaredEffect, Direction, ImpactTest, Measurement, MeasurementData, NamedPiece,
+    NaturalFrequencies, RecordedResponse,
 };

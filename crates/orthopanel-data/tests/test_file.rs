@@ -2,7 +2,7 @@
 
 mod support;
 
-use orthopanel_data::{AccelerationUnit, DataError, ImpactTest, MeasurementData, Position};
+use orthopanel_data::{AccelerationUnit, DataError, Direction, ImpactTest, MeasurementData, Position};
 use orthopanel_model::{Boundary, End, Place};
 use proptest::prelude::*;
 
@@ -54,7 +54,10 @@ fn val_the_whole_file_of_the_design_is_read() {
     let MeasurementData::Accelerance(recorded) = &test.measurements[1].data else { panic!("not an accelerance") };
     assert_eq!(recorded.file, folder.path().join("point-0.uff"));
     assert_eq!(recorded.force_at, Place { x: -0.3, y: 0.0 });
-    assert_eq!((recorded.unit, recorded.reversed), (Some(AccelerationUnit::StandardGravity), true));
+    assert_eq!(
+        (recorded.unit, recorded.direction),
+        (Some(AccelerationUnit::StandardGravity), Some(Direction::AgainstForce))
+    );
 }
 
 #[test]

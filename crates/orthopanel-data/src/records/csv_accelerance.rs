@@ -5,7 +5,7 @@ use std::path::Path;
 use num_complex::Complex64;
 
 use super::{Axis, Format, Port, Record, RecordFile, RecordKind, Samples, csv_columns, record, whole};
-use crate::DataError;
+use crate::{DataError, Location};
 
 pub(super) const FORMAT: Format = Format {
     name: "CSV with the columns frequency_hz,real,imag[,coherence]",
@@ -21,7 +21,7 @@ fn read(bytes: &[u8], path: &Path) -> Result<RecordFile, DataError> {
     let record = |kind, title: &str, abscissa, ordinate, numerator, denominator| Record {
         kind,
         title: title.into(),
-        at: whole(path),
+        at: Box::new(Location { key: title.into(), ..*whole(path) }),
         response: Port::default(),
         reference: Port::default(),
         abscissa,

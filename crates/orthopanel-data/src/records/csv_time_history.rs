@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::{Axis, Format, Port, Record, RecordFile, RecordKind, Samples, csv_columns, record, whole};
-use crate::DataError;
+use crate::{DataError, Location};
 
 pub(super) const FORMAT: Format = Format {
     name: "CSV with the columns time_s,force_n,acceleration_m_s2",
@@ -19,7 +19,7 @@ fn read(bytes: &[u8], path: &Path) -> Result<RecordFile, DataError> {
     let record = |title: &str, abscissa: Vec<f64>, ordinate: Vec<f64>, data_type: i64, unit: &str| Record {
         kind: RecordKind::Time,
         title: title.into(),
-        at: whole(path),
+        at: Box::new(Location { key: title.into(), ..*whole(path) }),
         response: Port::default(),
         reference: Port::default(),
         abscissa,

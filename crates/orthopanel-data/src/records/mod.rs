@@ -9,6 +9,7 @@ mod uff;
 use std::{fs, path::Path};
 
 use crate::{DataError, Location, Position};
+pub(crate) use record::{ACCELERATION, FORCE};
 pub use record::{Axis, Port, Record, RecordFile, RecordKind, Samples};
 
 /// One file format: how its bytes are known, and how they are read.

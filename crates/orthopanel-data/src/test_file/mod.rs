@@ -12,7 +12,9 @@ use orthopanel_model::{Boundary, Place};
 
 use crate::{DataError, Location, Position};
 pub use declared::DeclaredEffect;
-pub use measurements::{AccelerationUnit, Measurement, MeasurementData, NaturalFrequencies, RecordedResponse};
+pub use measurements::{
+    AccelerationUnit, Direction, Measurement, MeasurementData, NaturalFrequencies, RecordedResponse,
+};
 pub use pieces::NamedPiece;
 use source::Source;
 

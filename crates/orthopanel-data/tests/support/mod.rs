@@ -1,6 +1,8 @@
 //! Universal files made by hand, and the places of things that may be absent.
 #![allow(dead_code)] // Each test binary uses a part.
 
+pub mod hammer;
+
 use std::{fmt::Write, path::PathBuf, process::Command};
 
 /// A dataset 58 or 58b to be written, and the ways to write it wrong.

@@ -11,7 +11,7 @@ use toml::Spanned;
 use super::{pieces::NamedPiece, source::Source, syntax};
 use crate::{DataError, Location};
 pub use frequencies::NaturalFrequencies;
-pub use recorded::{AccelerationUnit, RecordedResponse};
+pub use recorded::{AccelerationUnit, Direction, RecordedResponse};
 
 /// One measurement on one piece.
 #[derive(Debug, Clone, PartialEq)]

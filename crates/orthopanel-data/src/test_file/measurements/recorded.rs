@@ -18,8 +18,8 @@ pub struct RecordedResponse {
     pub response_at: Place,
     /// Unit of the acceleration in the file, where declared.
     pub unit: Option<AccelerationUnit>,
-    /// True for `direction = -1`: the sensor counts positive against the force, and the record is turned round.
-    pub reversed: bool,
+    /// Direction of the sensor, where declared.
+    pub direction: Option<Direction>,
 }
 
 /// Unit of a recorded acceleration, or of the acceleration in an accelerance.
@@ -29,6 +29,15 @@ pub enum AccelerationUnit {
     MetrePerSecondSquared,
     /// `"g"`.
     StandardGravity,
+}
+
+/// Which way a recorded acceleration counts positive.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Direction {
+    /// `direction = 1`: as the force.
+    AlongForce,
+    /// `direction = -1`: against the force, so the record is turned round.
+    AgainstForce,
 }
 
 impl AccelerationUnit {
@@ -59,9 +68,10 @@ impl Entry<'_> {
                 return Err(DataError::UnknownName { at: self.at(unit.span(), "unit"), name, remedy });
             }
         };
-        let reversed = match entry.direction.as_ref().map(|direction| (*direction.get_ref(), direction)) {
-            None | Some((1.0, _)) => false,
-            Some((-1.0, _)) => true,
+        let direction = match entry.direction.as_ref().map(|direction| (*direction.get_ref(), direction)) {
+            None => None,
+            Some((1.0, _)) => Some(Direction::AlongForce),
+            Some((-1.0, _)) => Some(Direction::AgainstForce),
             Some((value, direction)) => {
                 let range = "must be 1 (sensor along the force) or -1 (turned round)".into();
                 return Err(DataError::OutOfRange { at: self.at(direction.span(), "direction"), value, range });
@@ -77,6 +87,6 @@ impl Entry<'_> {
         if let Some(source) = missing {
             return Err(DataError::Unreadable { at: self.at(name.span(), "file"), source });
         }
-        Ok(RecordedResponse { file, force_at, response_at, unit, reversed })
+        Ok(RecordedResponse { file, force_at, response_at, unit, direction })
     }
 }

@@ -1,0 +1,143 @@
+//! The result of this crate: an accelerance with its variance.
+
+use num_complex::Complex64;
+use orthopanel_model::Place;
+
+use super::channels::{self, Quantity};
+use crate::{
+    DataError, RecordedResponse,
+    records::{Record, RecordFile, RecordKind, Samples},
+};
+
+/// Acceleration over force in the frequency domain, $e^{+j\omega t}$, of one pair of places.
+///
+/// `frequency`, `value`, and where they are known `variance` and `coherence` are equally long.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Accelerance {
+    /// Where the force acts.
+    pub force_at: Place,
+    /// Where the acceleration is measured.
+    pub response_at: Place,
+    /// Frequencies \[Hz\], rising, greater than zero.
+    pub frequency: Vec<f64>,
+    /// Accelerance \[(m/s²)/N\].
+    pub value: Vec<Complex64>,
+    /// Variance $E|\hat H - H|^2$ of each line, real and imaginary part together \[((m/s²)/N)²\]; `None` where the
+    /// records do not tell it.
+    pub variance: Option<Vec<f64>>,
+    /// Coherence $\gamma^2$ of each line, 0 to 1; `None` where unknown, as for a single hit.
+    pub coherence: Option<Vec<f64>>,
+    /// Hits averaged; 0 where the file does not tell. The variance is estimated with `2 (hits - 1)` degrees of freedom.
+    pub hits: usize,
+    /// The accelerance stands at $s = \sigma + j\omega$ with this $\sigma$ \[1/s\]: see
+    /// [`Window::ForceExponential`](crate::Window::ForceExponential); else zero.
+    pub decay_rate: f64,
+    /// What was left out, cut, mended or assumed, a sentence each.
+    pub notes: Vec<String>,
+}
+
+impl Accelerance {
+    pub(super) fn empty(force_at: Place, response_at: Place) -> Self {
+        Self {
+            force_at,
+            response_at,
+            frequency: Vec::new(),
+            value: Vec::new(),
+            variance: None,
+            coherence: None,
+            hits: 0,
+            decay_rate: 0.0,
+            notes: Vec::new(),
+        }
+    }
+
+    /// Reads the file of an accelerance measurement.
+    ///
+    /// # Errors
+    /// As [`RecordFile::read`], and as [`Accelerance::from_records`].
+    pub fn read(measurement: &RecordedResponse) -> Result<Self, DataError> {
+        Self::from_records(RecordFile::read(&measurement.file)?, measurement)
+    }
+
+    /// Takes the one frequency response of a file, with its coherence where that is there too, and puts unit and
+    /// direction right.
+    ///
+    /// With coherence the variance is $|H|^2 (1 - \gamma^2)/\gamma^2$, that of one hit: files do not tell how many
+    /// were averaged, so it is the greatest it may be; the weights of the lines among each other are right.
+    ///
+    /// # Errors
+    /// [`DataError::NoRecords`] where no frequency response is in the file; [`DataError::Channels`] where there are
+    /// several, where it is not complex or no accelerance, or where unit or coherence do not fit.
+    pub fn from_records(file: RecordFile, measurement: &RecordedResponse) -> Result<Self, DataError> {
+        let RecordFile { records, mut notes } = file;
+        let of_kind = |kind| records.iter().filter(move |record| record.kind == kind);
+        let mut responses = of_kind(RecordKind::FrequencyResponse);
+        let Some(record) = responses.next() else {
+            let at = crate::Location {
+                file: measurement.file.clone(),
+                position: crate::Position::Whole,
+                key: String::new(),
+            };
+            return Err(DataError::NoRecords { at: Box::new(at), what: "frequency response (function type 4)" });
+        };
+        let refused = |record: &Record, problem: String| Err(DataError::Channels { at: record.at.clone(), problem });
+        if let Some(second) = responses.next() {
+            let problem = "a second frequency response: give each pair of places a file of its own".into();
+            return refused(second, problem);
+        }
+        match (channels::quantity(&record.numerator), channels::quantity(&record.denominator)) {
+            (Quantity::Acceleration | Quantity::Untold, Quantity::Force | Quantity::Untold) => {}
+            (numerator, denominator) => {
+                return refused(
+                    record,
+                    format!("{numerator:?} over {denominator:?}: acceleration over force is needed"),
+                );
+            }
+        }
+        channels::check_force_unit(record, &record.denominator)?;
+        let directions = [record.response.direction, record.reference.direction];
+        let factor = channels::acceleration_factor(record, &record.numerator, directions, measurement, &mut notes)?;
+        let Samples::Complex(values) = &record.ordinate else {
+            return refused(record, "a frequency response must be complex: magnitude alone is not enough".into());
+        };
+        let coherence = match of_kind(RecordKind::Coherence).next() {
+            None => None,
+            Some(coherence) => Some(matching_coherence(record, coherence)?),
+        };
+        let mut result = Self::empty(measurement.force_at, measurement.response_at);
+        let positive = record.abscissa.partition_point(|&frequency| frequency <= 0.0);
+        if positive > 0 {
+            notes.push(format!("{}: {positive} lines at or below 0 Hz left out", record.at.key));
+        }
+        result.frequency = record.abscissa.iter().skip(positive).copied().collect();
+        if result.frequency.is_empty() {
+            return refused(record, "no line above 0 Hz".into());
+        }
+        result.value = values.iter().skip(positive).map(|value| value * factor).collect();
+        if let Some(coherence) = coherence {
+            let coherence: Vec<f64> = coherence.into_iter().skip(positive).collect();
+            let variance = result.value.iter().zip(&coherence).map(|(value, &gamma)| {
+                // A line without coherence says nothing: an infinite variance gives it no weight.
+                value.norm_sqr() * (1.0 - gamma) / gamma
+            });
+            result.variance = Some(variance.map(|value| if value.is_nan() { f64::INFINITY } else { value }).collect());
+            result.coherence = Some(coherence);
+            notes.push(format!("{}: number of averages not told, variance is that of one hit", record.at.key));
+        }
+        result.notes = notes;
+        Ok(result)
+    }
+}
+
+fn matching_coherence(response: &Record, coherence: &Record) -> Result<Vec<f64>, DataError> {
+    let refused = |problem: String| Err(DataError::Channels { at: coherence.at.clone(), problem });
+    if coherence.abscissa != response.abscissa {
+        return refused("the coherence stands at other frequencies than the frequency response".into());
+    }
+    let Samples::Real(values) = &coherence.ordinate else { return refused("a coherence must be real".into()) };
+    // A last digit above 1 is rounding; more is another quantity.
+    match values.iter().enumerate().find(|(_, value)| !(-1e-6..=1.0 + 1e-6).contains(*value)) {
+        None => Ok(values.iter().map(|value| value.clamp(0.0, 1.0)).collect()),
+        Some((line, value)) => refused(format!("coherence {value} in line {}: must lie between 0 and 1", line + 1)),
+    }
+}

@@ -1,0 +1,186 @@
+//! Accelerance from hits: estimators, coherence, variance, and the band in which the hammer had force.
+
+use num_complex::Complex64;
+
+use super::{
+    accelerance::Accelerance,
+    hit_faults::median,
+    spectrum::{Sums, sums},
+    time_history::{Hit, TimeHistory},
+    window::Window,
+};
+use crate::{DataError, Location, Position};
+
+/// How spectra are averaged into an accelerance. With $S_{ff} = \overline{|F|^2}$, $S_{aa} = \overline{|A|^2}$ and
+/// $S_{fa} = \overline{\bar F A}$ over the hits:
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Estimator {
+    /// $H_1 = S_{fa}/S_{ff}$: noise on the response averages out. Right at antiresonances, and where the hammer's
+    /// channel is the cleaner one, as it mostly is.
+    #[default]
+    H1,
+    /// $H_2 = S_{aa}/\overline{S_{fa}}$: noise on the force averages out. Right at resonances.
+    H2,
+    /// $H_v = \sqrt{S_{aa}/S_{ff}}\; S_{fa}/|S_{fa}|$: noise on both, in proportion; between the other two.
+    Hv,
+}
+
+/// How hits become an accelerance.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Estimation {
+    /// The window over each hit.
+    pub window: Window,
+    /// The estimator.
+    pub estimator: Estimator,
+    /// The band ends where the force spectrum has fallen by this much below its greatest line \[dB\]; infinite keeps
+    /// all lines. 30 dB is where a 12-bit channel's noise reaches a few per cent of the force.
+    pub force_drop: f64,
+}
+
+impl Default for Estimation {
+    fn default() -> Self {
+        Self { window: Window::None, estimator: Estimator::H1, force_drop: 30.0 }
+    }
+}
+
+/// Lines over which the force spectrum is smoothed before its fall is judged: single lines scatter.
+const SMOOTHED_LINES: usize = 9;
+
+/// Lines above the band from which the noise of a single hit can be told, to a sixth.
+const LEAST_NOISE_LINES: usize = 32;
+
+impl TimeHistory {
+    /// Estimates the accelerance; the line at 0 Hz, which holds nothing but offsets, is left out.
+    ///
+    /// The variance of a line is, for $n \ge 2$ hits, $|H_1|^2 (1 - \gamma^2) / ((n - 1)\gamma^2)$ from the scatter
+    /// between hits (Bendat and Piersol, Random Data, chapter 9, with the degrees of freedom of $n$ hits). For a single
+    /// hit it is $(N_a + |H|^2 N_f)/|F|^2$ with the noise $N$ of either channel read above the band, and unknown where
+    /// no line stands there.
+    ///
+    /// # Errors
+    /// [`DataError::NoUsableHit`] where every hit is left out, with the reasons; [`DataError::OutOfRange`] for settings
+    /// that make no sense.
+    pub fn accelerance(&self, estimation: Estimation) -> Result<Accelerance, DataError> {
+        self.check(estimation)?;
+        let mut notes = self.notes.clone();
+        let mut kept: Vec<&Hit> = Vec::new();
+        let mut reasons = Vec::new();
+        for (index, hit) in self.hits.iter().enumerate() {
+            let faults = hit.faults(self.rate);
+            let fatal = faults.iter().any(|fault| fault.is_fatal());
+            for fault in &faults {
+                let verdict = if fault.is_fatal() { "left out" } else { "kept" };
+                reasons.push(format!("hit {} {verdict}: {fault}", index + 1));
+            }
+            if !fatal {
+                kept.push(hit);
+            }
+        }
+        if kept.is_empty() {
+            return Err(DataError::NoUsableHit { file: self.file.clone(), reasons: reasons.join("; ") });
+        }
+        notes.append(&mut reasons);
+
+        let samples = kept.first().map_or(0, |hit| hit.force.len());
+        let sums = sums(kept.iter().copied(), samples, estimation.window, self.rate);
+        let step = self.rate / samples as f64;
+        let end = self.band_end(&sums, estimation.force_drop, step, &mut notes);
+        let noise = (kept.len() == 1).then(|| noise_above(&sums, end)).flatten();
+        let mut result = Accelerance::empty(self.force_at, self.response_at);
+        let (mut variance, mut coherence) = (Vec::new(), Vec::new());
+        let lines = sums.force.iter().zip(&sums.motion).zip(&sums.cross).enumerate().take(end).skip(1);
+        for (line, ((&force, &motion), &cross)) in lines {
+            // A line without force has no quotient; it is left out like the band above.
+            if !(force > 0.0 && force.is_finite() && motion.is_finite()) {
+                continue;
+            }
+            let gamma = if motion > 0.0 { (cross.norm_sqr() / (force * motion)).min(1.0) } else { 0.0 };
+            let value = estimate(estimation.estimator, force, motion, cross);
+            // The sums stand for the means: their number cancels in every quotient.
+            let first = cross.norm_sqr() / (force * force);
+            result.frequency.push(line as f64 * step);
+            result.value.push(value);
+            coherence.push(gamma);
+            variance.push(match noise {
+                Some((force_noise, motion_noise)) => (motion_noise + first * force_noise) / force,
+                None => (motion / force - first).max(0.0) / (kept.len().max(2) - 1) as f64,
+            });
+        }
+        result.hits = kept.len();
+        result.decay_rate = estimation.window.decay_rate();
+        if kept.len() > 1 {
+            result.coherence = Some(coherence);
+            result.variance = Some(variance);
+        } else if noise.is_some() {
+            notes.push("one hit: the variance comes from the noise above the band, not from scatter".into());
+            result.variance = Some(variance);
+        } else {
+            notes.push("one hit, and no line above the band to read noise from: variance unknown".into());
+        }
+        result.notes = notes;
+        Ok(result)
+    }
+
+    fn check(&self, estimation: Estimation) -> Result<(), DataError> {
+        let refused = |key: &str, value: f64, range: &str| {
+            let location = Location { file: "settings".into(), position: Position::Whole, key: key.into() };
+            Err(DataError::OutOfRange { at: Box::new(location), value, range: range.into() })
+        };
+        if let Window::ForceExponential { tau, .. } = estimation.window
+            && !estimation.window.is_valid()
+        {
+            return refused("window", tau, "half width and time constant must be finite seconds, greater than zero");
+        }
+        let drop = estimation.force_drop;
+        if drop.is_nan() || drop <= 0.0 {
+            return refused("force_drop", drop, "must be greater than zero dB");
+        }
+        Ok(())
+    }
+
+    /// The first line that is left out above the band.
+    fn band_end(&self, sums: &Sums, force_drop: f64, step: f64, notes: &mut Vec<String>) -> usize {
+        let half = SMOOTHED_LINES / 2;
+        let smooth = |line: usize| {
+            let lines = sums.force.get(line.saturating_sub(half).max(1)..(line + half + 1).min(sums.force.len()));
+            let lines = lines.unwrap_or_default();
+            lines.iter().sum::<f64>() / lines.len().max(1) as f64
+        };
+        let smoothed: Vec<f64> = (0..sums.force.len()).map(smooth).collect();
+        let greatest = smoothed.iter().copied().fold(0.0, f64::max);
+        let least = greatest * 10f64.powf(-force_drop / 10.0);
+        let top = smoothed.iter().position(|&value| value == greatest).unwrap_or(0);
+        let end = smoothed.iter().skip(top).position(|&value| value < least).map(|after| top + after);
+        if let Some(end) = end {
+            notes.push(format!(
+                "band cut at {:.1} Hz: above, the force is more than {force_drop} dB below its greatest line",
+                end as f64 * step
+            ));
+        }
+        end.unwrap_or(sums.force.len())
+    }
+}
+
+fn estimate(estimator: Estimator, force: f64, motion: f64, cross: Complex64) -> Complex64 {
+    match estimator {
+        Estimator::H1 => cross / force,
+        // Without any coherence the phase is unknown: the line is zero, and its variance tells.
+        _ if cross.norm_sqr() == 0.0 => Complex64::default(),
+        Estimator::H2 => motion / cross.conj(),
+        Estimator::Hv => cross / cross.norm() * (motion / force).sqrt(),
+    }
+}
+
+/// Mean $|F|^2$ and $|A|^2$ of the noise, from the upper half of the lines between the band and where anti-alias
+/// filters begin (0.78 of half the rate in analysers, whose rate is 2.56 times the span).
+///
+/// The upper half, since a hammer's force does not end with the band: it goes on falling above.
+fn noise_above(sums: &Sums, end: usize) -> Option<(f64, f64)> {
+    let top = (0.78 * sums.force.len() as f64) as usize;
+    let above = |spectrum: &[f64]| {
+        let lines = spectrum.get(end.midpoint(top)..top).filter(|lines| lines.len() >= LEAST_NOISE_LINES)?;
+        // |noise|^2 is exponentially distributed: its median is ln 2 of its mean, and what leaks hardly moves it.
+        Some(median(lines) / std::f64::consts::LN_2)
+    };
+    above(&sums.force).zip(above(&sums.motion))
+}

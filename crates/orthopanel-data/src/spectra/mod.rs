@@ -1,0 +1,15 @@
+//! Records to accelerance: channels put right, hits judged, spectra averaged, each line with its variance.
+
+mod accelerance;
+mod channels;
+mod estimate;
+mod hit_faults;
+mod spectrum;
+mod time_history;
+mod window;
+
+pub use accelerance::Accelerance;
+pub use estimate::{Estimation, Estimator};
+pub use hit_faults::{Channel, HitFault};
+pub use time_history::{Hit, TimeHistory};
+pub use window::Window;

@@ -1,0 +1,204 @@
+//! Force and acceleration against time, hit by hit.
+
+use std::path::PathBuf;
+
+use orthopanel_model::Place;
+
+use super::channels::{self, Quantity};
+use crate::{
+    DataError, RecordedResponse,
+    records::{Record, RecordFile, RecordKind, Samples},
+};
+
+/// The hits of one pair of places, sampled alike.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TimeHistory {
+    /// The file, for messages.
+    pub file: PathBuf,
+    /// Where the hammer hit.
+    pub force_at: Place,
+    /// Where the accelerometer sat.
+    pub response_at: Place,
+    /// Sampling rate \[Hz\].
+    pub rate: f64,
+    /// The hits; at least one, all of one length.
+    pub hits: Vec<Hit>,
+    /// What was mended or assumed, a sentence each.
+    pub notes: Vec<String>,
+}
+
+/// One hit: sample $n$ stands at $t = n / \mathrm{rate}$ from the record's start.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Hit {
+    /// Force of the hammer \[N\].
+    pub force: Vec<f64>,
+    /// Acceleration along the force \[m/s²\], as long as `force`.
+    pub acceleration: Vec<f64>,
+}
+
+/// An acceleration record has to follow each force record with its abscissa, within this part of a step.
+const STEP_TOLERANCE: f64 = 0.1;
+
+/// Samples below which no spectrum is worth the name.
+const LEAST_SAMPLES: usize = 16;
+
+impl TimeHistory {
+    /// Reads the file of a time-history measurement.
+    ///
+    /// # Errors
+    /// As [`RecordFile::read`], and as [`TimeHistory::from_records`].
+    pub fn read(measurement: &RecordedResponse) -> Result<Self, DataError> {
+        Self::from_records(RecordFile::read(&measurement.file)?, measurement)
+    }
+
+    /// Pairs the force and acceleration records of a file, in the order of the file, and puts unit and direction right.
+    ///
+    /// # Errors
+    /// [`DataError::Channels`] where a channel is missing or swapped, where lengths or rates differ, where samples are
+    /// uneven in time, or where a unit is unknown or contradicts the declared one.
+    pub fn from_records(file: RecordFile, measurement: &RecordedResponse) -> Result<Self, DataError> {
+        let RecordFile { records, mut notes } = file;
+        let (mut forces, mut accelerations) = (Vec::new(), Vec::new());
+        let mut untold = Vec::new();
+        for record in records.iter().filter(|record| record.kind == RecordKind::Time) {
+            match channels::quantity(&record.numerator) {
+                Quantity::Force => forces.push(record),
+                Quantity::Acceleration => accelerations.push(record),
+                Quantity::Untold => untold.push(record),
+                Quantity::Other(kind) => {
+                    notes.push(format!(
+                        "{}: data type {kind} is neither force nor acceleration: left out",
+                        record.at.key
+                    ));
+                }
+            }
+        }
+        if forces.is_empty() && accelerations.is_empty() && !untold.is_empty() {
+            notes.push("the records do not tell what they measure: taken as force, acceleration, force, ...".into());
+            forces = untold.iter().step_by(2).copied().collect();
+            accelerations = untold.iter().skip(1).step_by(2).copied().collect();
+        }
+        let Some(first) = records.first() else {
+            return Err(DataError::Contradiction { at: whole(measurement), problem: "no record is given".into() });
+        };
+        if forces.len() != accelerations.len() || forces.is_empty() {
+            let (f, a) = (forces.len(), accelerations.len());
+            let problem = format!("{f} force and {a} acceleration records against time: one of each a hit is needed");
+            return Err(DataError::Channels { at: first.at.clone(), problem });
+        }
+        let mut hits = Vec::with_capacity(forces.len());
+        let mut grid: Option<(usize, f64)> = None;
+        for (force, acceleration) in forces.into_iter().zip(accelerations) {
+            let (length, rate) = common_grid(force, acceleration)?;
+            match grid {
+                Some((first_length, first_rate))
+                    if first_length != length || (first_rate - rate).abs() > 1e-6 * first_rate =>
+                {
+                    let problem = format!(
+                        "hit {}: {length} samples at {rate} Hz, the hit before had {first_length} at {first_rate} Hz",
+                        hits.len() + 1
+                    );
+                    return Err(DataError::Channels { at: force.at.clone(), problem });
+                }
+                _ => grid = Some((length, rate)),
+            }
+            hits.push(hit(force, acceleration, measurement, &mut notes)?);
+        }
+        let rate = grid.map_or(0.0, |(_, rate)| rate);
+        let RecordedResponse { force_at, response_at, .. } = *measurement;
+        Ok(Self { file: measurement.file.clone(), force_at, response_at, rate, hits, notes })
+    }
+
+    /// Length of a record $N / \mathrm{rate}$ \[s\].
+    pub fn duration(&self) -> f64 {
+        self.hits.first().map_or(0, |hit| hit.force.len()) as f64 / self.rate
+    }
+}
+
+fn hit(
+    force: &Record,
+    acceleration: &Record,
+    measurement: &RecordedResponse,
+    notes: &mut Vec<String>,
+) -> Result<Hit, DataError> {
+    channels::check_force_unit(force, &force.numerator)?;
+    let directions = [acceleration.response.direction, force.response.direction];
+    let factor = channels::acceleration_factor(acceleration, &acceleration.numerator, directions, measurement, notes)?;
+    let scaled = |record: &Record, factor: f64| match &record.ordinate {
+        Samples::Real(values) => Ok(values.iter().map(|value| factor * value).collect::<Vec<_>>()),
+        Samples::Complex(_) => {
+            let problem = "a record against time must be real".into();
+            Err(DataError::Channels { at: record.at.clone(), problem })
+        }
+    };
+    let hit = Hit { force: scaled(force, 1.0)?, acceleration: scaled(acceleration, factor)? };
+    let (pulse, ringing) = (effective_samples(&hit.force), effective_samples(&hit.acceleration));
+    // A blow is over before the piece has rung: whatever the damping, a longer "force" is no force.
+    if pulse > ringing && ringing > 0.0 {
+        let problem = format!(
+            "the force lasts longer ({pulse:.0} samples) than the response ({ringing:.0}): the channels are swapped, or \
+             this was no hammer"
+        );
+        return Err(DataError::Channels { at: force.at.clone(), problem });
+    }
+    Ok(hit)
+}
+
+/// Number of samples over which a signal's energy is spread, $(\sum x^2)^2 / \sum x^4$.
+fn effective_samples(values: &[f64]) -> f64 {
+    let peak = values.iter().fold(0.0, |peak: f64, value| peak.max(value.abs()));
+    if peak == 0.0 {
+        return 0.0;
+    }
+    let (squares, fourths) = values
+        .iter()
+        .map(|value| (value / peak).powi(2))
+        .fold((0.0, 0.0), |(two, four), square| (two + square, four + square * square));
+    squares * squares / fourths
+}
+
+/// Samples and rate that two records share.
+fn common_grid(force: &Record, acceleration: &Record) -> Result<(usize, f64), DataError> {
+    let refused = |record: &Record, problem: String| Err(DataError::Channels { at: record.at.clone(), problem });
+    let (length, other) = (force.abscissa.len(), acceleration.abscissa.len());
+    if length != other {
+        return refused(acceleration, format!("{other} samples of acceleration, {length} of force: must be as many"));
+    }
+    if length < LEAST_SAMPLES {
+        return refused(force, format!("{length} samples: at least {LEAST_SAMPLES} are needed"));
+    }
+    let step = mean_step(force)?;
+    for (record, name) in [(force, "force"), (acceleration, "acceleration")] {
+        let start = force.abscissa.first().copied().unwrap_or_default();
+        let uneven = record.abscissa.iter().enumerate().find(|(index, time)| {
+            let due = step.mul_add(*index as f64, start);
+            (*time - due).abs() > STEP_TOLERANCE * step
+        });
+        if let Some((index, time)) = uneven {
+            let problem = format!(
+                "{name}, sample {}: t = {time} s, {} s expected: force and acceleration need the same even times",
+                index + 1,
+                step.mul_add(index as f64, start)
+            );
+            return refused(record, problem);
+        }
+    }
+    Ok((length, 1.0 / step))
+}
+
+fn mean_step(record: &Record) -> Result<f64, DataError> {
+    let span = record.abscissa.last().zip(record.abscissa.first()).map(|(last, first)| last - first);
+    let step = span.unwrap_or_default() / (record.abscissa.len().saturating_sub(1)) as f64;
+    if step.is_finite() && step > 0.0 && (1.0 / step).is_finite() {
+        return Ok(step);
+    }
+    Err(DataError::Channels {
+        at: record.at.clone(),
+        problem: format!("a time step of {step} s makes no sampling rate"),
+    })
+}
+
+fn whole(measurement: &RecordedResponse) -> Box<crate::Location> {
+    let file = measurement.file.clone();
+    Box::new(crate::Location { file, position: crate::Position::Whole, key: String::new() })
+}
