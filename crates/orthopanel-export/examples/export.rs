@@ -8,7 +8,10 @@ use orthopanel_export::{FmiVersion, Fmu, FmuOptions};
 use orthopanel_model::{ModeRange, PanelModel, Place};
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let mut words = std::env::args().skip(1).filter(|word| word != "export");
+    let words = std::env::args().skip(1).filter(|word| word != "export");
+    // `--force=X` is `--force X`: a value that begins with a minus sign reads better so.
+    let words: Vec<String> = words.flat_map(|word| word.splitn(2, '=').map(String::from).collect::<Vec<_>>()).collect();
+    let mut words = words.into_iter();
     let model_file = words.next().ok_or("usage: export MODEL -o X.fmu ...")?;
     let panel = PanelModel::from_json(&std::fs::read_to_string(&model_file)?)?;
     let (mut output, mut range, mut options) = (None, ModeRange::Count(6), FmuOptions::default());
