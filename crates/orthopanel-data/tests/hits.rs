@@ -3,7 +3,7 @@
 mod support;
 
 use orthopanel_data::{
-    Accelerance, AccelerationUnit, Channel, Direction, HitFault, Record, RecordFile, RecordedResponse, TimeHistory,
+    Accelerance, AccelerationUnit, Channel, Direction, HitFault, RecordFile, RecordedResponse, TimeHistory,
 };
 use orthopanel_model::Place;
 use support::{
@@ -32,12 +32,12 @@ fn val_overload_is_found_in_either_channel() {
         panic!("{:?}", hit.faults(RATE))
     };
     let mut hit = good();
-    let least = hit.acceleration.iter().copied().fold(0.0, f64::min);
-    hit.acceleration.iter_mut().for_each(|a| *a = a.max(0.5 * least));
+    let greatest = hit.acceleration.iter().copied().fold(0.0, f64::max);
+    hit.acceleration.iter_mut().for_each(|a| *a = a.clamp(-0.5 * greatest, 0.5 * greatest));
     let [HitFault::Overload { channel: Channel::Acceleration, value, .. }] = hit.faults(RATE)[..] else {
         panic!("{:?}", hit.faults(RATE))
     };
-    assert_eq!(value, 0.5 * least);
+    assert_eq!(value, 0.5 * greatest);
 }
 
 #[test]
@@ -210,7 +210,6 @@ fn val_what_is_no_single_accelerance_is_refused() {
         let error = Accelerance::from_records(records(&datasets), &measurement()).unwrap_err().to_string();
         assert!(error.contains(said), "\n  said   {error}\n  wanted {said}");
     }
-    assert!(records(&[response(3)]).records.iter().all(|record: &Record| record.ordinate.len() == 3));
 }
 
 #[test]
@@ -225,4 +224,32 @@ fn val_the_measured_beam_is_read() {
         let modes = [111.994, 306.854, 596.367, 974.14];
         assert!(modes.iter().any(|mode| (found.frequency[peak] - mode).abs() < 0.1), "{}", found.frequency[peak]);
     }
+}
+
+/// Writes a hit as CSV, and returns the `[[measurement]]` that names it.
+fn csv_measurement(folder: &std::path::Path, name: &str, samples: usize) -> String {
+    let hit = good();
+    let rows = hit.force.iter().zip(&hit.acceleration).take(samples).enumerate();
+    let rows: String = rows.map(|(n, (force, motion))| format!("{},{force},{motion}\n", n as f64 / RATE)).collect();
+    std::fs::write(folder.join(name), format!("time_s,force_n,acceleration_m_s2\n{rows}")).unwrap();
+    format!("[[measurement]]\nkind = \"time-history\"\nfile = \"{name}\"\nforce_at = [0, 0]\nresponse_at = [0.1, 0]\n")
+}
+
+#[test]
+fn val_hits_of_the_same_places_are_put_together() {
+    let folder = tempfile::tempdir().unwrap();
+    let piece = "[piece]\nlength = 1\nwidth = 1\nthickness = 0.01\nmass_per_area = 1\n";
+    let [one, two, short] = [("a.csv", 1000), ("b.csv", 1000), ("c.csv", 900)]
+        .map(|(name, samples)| csv_measurement(folder.path(), name, samples));
+    let elsewhere = two.replace("[0.1, 0]", "[0.2, 0]");
+    let read = |measurements: &[&str]| {
+        let text = format!("{piece}{}", measurements.concat());
+        let test = orthopanel_data::ImpactTest::from_toml(&text, folder.path().join("test.toml")).unwrap();
+        test.accelerances(orthopanel_data::Estimation::default())
+    };
+    let found = read(&[&one, &elsewhere, &two]).unwrap();
+    assert_eq!(found.iter().map(|(_, accelerance)| accelerance.hits).collect::<Vec<_>>(), [2, 1]);
+    assert_eq!((found[0].0, found[1].1.response_at.x), (0, 0.2));
+    let message = read(&[&one, &short]).unwrap_err().to_string();
+    assert!(message.contains("c.csv: 900 samples at 1000"), "{message}");
 }

@@ -106,6 +106,10 @@ impl TimeHistory {
                 None => (motion / force - first).max(0.0) / (kept.len().max(2) - 1) as f64,
             });
         }
+        if result.frequency.is_empty() {
+            let reasons = "no line of the spectrum has a force that can be divided by".into();
+            return Err(DataError::NoUsableHit { file: self.file.clone(), reasons });
+        }
         result.hits = kept.len();
         result.decay_rate = estimation.window.decay_rate();
         if kept.len() > 1 {

@@ -3,6 +3,7 @@
 mod accelerance;
 mod channels;
 mod estimate;
+mod gather;
 mod hit_faults;
 mod spectrum;
 mod time_history;

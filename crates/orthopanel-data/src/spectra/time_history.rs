@@ -108,11 +108,6 @@ impl TimeHistory {
         let RecordedResponse { force_at, response_at, .. } = *measurement;
         Ok(Self { file: measurement.file.clone(), force_at, response_at, rate, hits, notes })
     }
-
-    /// Length of a record $N / \mathrm{rate}$ \[s\].
-    pub fn duration(&self) -> f64 {
-        self.hits.first().map_or(0, |hit| hit.force.len()) as f64 / self.rate
-    }
 }
 
 fn hit(

@@ -1,0 +1,78 @@
+//! All accelerances of a test, hits of the same places put together.
+
+use super::{Accelerance, Estimation, TimeHistory};
+use crate::{DataError, ImpactTest, Measurement, MeasurementData};
+
+impl TimeHistory {
+    /// Adds the hits of `other`, as where each hit has a file of its own.
+    ///
+    /// # Errors
+    /// [`DataError::Channels`], naming `other`'s file, where places, rate or length differ.
+    pub fn join(&mut self, other: Self) -> Result<(), DataError> {
+        let length = |history: &Self| history.hits.first().map_or(0, |hit| hit.force.len());
+        let places = |history: &Self| (history.force_at, history.response_at);
+        let (mine, theirs) = ((length(self), self.rate), (length(&other), other.rate));
+        let problem = if places(self) != places(&other) {
+            "the places differ from those of the hits before".to_owned()
+        } else if mine.0 != theirs.0 || (mine.1 - theirs.1).abs() > 1e-6 * mine.1 {
+            let file = self.file.display();
+            format!(
+                "{} samples at {} Hz, {file} has {} at {} Hz: hits of one place must agree",
+                theirs.0, theirs.1, mine.0, mine.1
+            )
+        } else {
+            self.hits.extend(other.hits);
+            self.notes.extend(other.notes);
+            return Ok(());
+        };
+        let at = crate::Location { file: other.file, position: crate::Position::Whole, key: String::new() };
+        Err(DataError::Channels { at: Box::new(at), problem })
+    }
+}
+
+impl ImpactTest {
+    /// Reads every time history and accelerance of the test, in the order of the file, each with its piece's index.
+    ///
+    /// Time histories of one piece with the same places are hits of one accelerance, which stands where the first of
+    /// them does.
+    ///
+    /// # Errors
+    /// As [`TimeHistory::read`], [`TimeHistory::join`], [`TimeHistory::accelerance`] and [`Accelerance::read`].
+    pub fn accelerances(&self, estimation: Estimation) -> Result<Vec<(usize, Accelerance)>, DataError> {
+        enum Gathered {
+            Hits(TimeHistory),
+            Line(Accelerance),
+        }
+        let mut gathered: Vec<(usize, Gathered)> = Vec::new();
+        for Measurement { piece, data } in &self.measurements {
+            match data {
+                MeasurementData::NaturalFrequencies(_) => {}
+                MeasurementData::Accelerance(recorded) => {
+                    gathered.push((*piece, Gathered::Line(Accelerance::read(recorded)?)));
+                }
+                MeasurementData::TimeHistory(recorded) => {
+                    let history = TimeHistory::read(recorded)?;
+                    let same = gathered.iter_mut().find_map(|(of, earlier)| match earlier {
+                        Gathered::Hits(earlier)
+                            if of == piece
+                                && earlier.force_at == history.force_at
+                                && earlier.response_at == history.response_at =>
+                        {
+                            Some(earlier)
+                        }
+                        _ => None,
+                    });
+                    match same {
+                        Some(earlier) => earlier.join(history)?,
+                        None => gathered.push((*piece, Gathered::Hits(history))),
+                    }
+                }
+            }
+        }
+        let estimated = gathered.into_iter().map(|(piece, gathered)| match gathered {
+            Gathered::Hits(history) => Ok((piece, history.accelerance(estimation)?)),
+            Gathered::Line(accelerance) => Ok((piece, accelerance)),
+        });
+        estimated.collect()
+    }
+}
