@@ -94,7 +94,11 @@ impl ModalStepper {
     /// [`ModelError::ForceCount`], [`ModelError::NotFinite`]; the force stays as it was.
     pub fn set_forces(&mut self, forces: &[f64]) -> Result<(), ModelError> {
         self.check_forces(forces)?;
-        project(&self.at_forces, forces, &mut self.force);
+        project(&self.at_forces, forces, &mut self.force_after);
+        if let Some(&value) = self.force_after.iter().flatten().find(|value| !value.is_finite()) {
+            return Err(ModelError::NotFinite { what: "modal force", value });
+        }
+        std::mem::swap(&mut self.force, &mut self.force_after);
         Ok(())
     }
 

@@ -150,6 +150,15 @@ fn refusals_name_the_number_and_leave_all_as_it_was() {
 }
 
 #[test]
+fn a_force_that_would_overflow_is_refused() {
+    let mode = Mode { angular_frequency: 1.0, damping_ratio: 0.0, at_forces: vec![4.0], at_responses: vec![1.0] };
+    let mut stepper = ModalStepper::new(&ModalModel::new(1, 1, vec![mode]).expect("sound"));
+    assert!(matches!(stepper.set_forces(&[1e308]), Err(ModelError::NotFinite { what: "modal force", .. })));
+    assert!(stepper.advance_linear(1.0, &[1e308]).is_err());
+    assert_eq!(outputs(&stepper), [0.0; 3]);
+}
+
+#[test]
 fn a_state_that_would_overflow_is_refused() {
     let mut stepper = oscillator(0.0, 0.0);
     stepper.set_state(&[[1.0, 1e300]]).expect("one mode");
