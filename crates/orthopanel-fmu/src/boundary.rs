@@ -177,3 +177,53 @@ macro_rules! not_offered {
     )*)*};
 }
 pub(crate) use not_offered;
+
+#[cfg(test)]
+mod tests {
+    use std::cell::RefCell;
+    use std::rc::Rc;
+
+    use orthopanel_model::{ModalModel, Ports};
+
+    use super::*;
+
+    fn instance(messages: &Rc<RefCell<Vec<String>>>) -> Instance {
+        let resource = Resource::new(ModalModel::new(0, 0, vec![]).expect("no mode"), Ports::default()).expect("sound");
+        let messages = Rc::clone(messages);
+        let sink: Sink = Box::new(move |_, message| messages.borrow_mut().push(message.into()));
+        Instance { component: Component::new(&resource), logger: Logger::new(sink, false) }
+    }
+
+    #[test]
+    fn a_panic_ends_at_the_boundary() {
+        let messages = Rc::new(RefCell::new(Vec::new()));
+        let mut instance = instance(&messages);
+        let pointer = (&raw mut instance).cast();
+        // SAFETY: a live instance that only this call uses.
+        let status = unsafe { call(pointer, "fmi2Test", |_| panic!("on purpose")) };
+        assert_eq!(status, ERROR);
+        assert!(messages.borrow()[0].starts_with("fmi2Test: internal error"));
+        // SAFETY: as above.
+        assert_eq!(unsafe { call(pointer, "fmi2Test", |_| Ok(())) }, OK);
+    }
+
+    #[test]
+    fn null_pointers_are_refused_unless_nothing_is_read() {
+        // SAFETY: null pointers are what is tested; none is read.
+        unsafe {
+            assert_eq!(call(std::ptr::null_mut(), "fmi2Test", |_| Ok(())), ERROR);
+            assert!(matches!(array::<f64>(std::ptr::null(), 1, "value"), Err(FmuError::Null("value"))));
+            assert!(array::<f64>(std::ptr::null(), 0, "value").is_ok_and(<[f64]>::is_empty));
+            assert!(matches!(array_mut::<f64>(std::ptr::null_mut(), 1, "value"), Err(FmuError::Null("value"))));
+            assert!(matches!(text(std::ptr::null(), "name"), Err(FmuError::Null("name"))));
+            free(std::ptr::null_mut());
+        }
+    }
+
+    #[test]
+    fn texts_that_are_not_utf_8_are_refused() {
+        // SAFETY: a C string.
+        assert!(matches!(unsafe { text(c"\xff".as_ptr(), "name") }, Err(FmuError::Text("name"))));
+        assert_eq!(c_text("a\0b").as_c_str(), c"ab");
+    }
+}

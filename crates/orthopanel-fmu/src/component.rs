@@ -41,8 +41,11 @@ pub(crate) struct Component {
     forces_changed: bool,
     /// Force at the end of the last step: where a linear force starts.
     forces_before: Vec<f64>,
-    /// Input derivatives for the next step, where the importer gave some.
-    force_rates: Option<Vec<f64>>,
+    /// Input derivatives for the next step, and whether the importer gave some.
+    force_rates: Vec<f64>,
+    rates_given: bool,
+    /// Force at the end of a step at these rates, while it is computed.
+    forces_after: Vec<f64>,
 }
 
 impl Component {
@@ -55,10 +58,12 @@ impl Component {
             time: 0.0,
             stop_time: None,
             force_linear: false,
-            forces_before: forces.clone(),
-            forces,
             forces_changed: false,
-            force_rates: None,
+            forces_before: forces.clone(),
+            force_rates: forces.clone(),
+            rates_given: false,
+            forces_after: forces.clone(),
+            forces,
         }
     }
 
@@ -101,7 +106,8 @@ impl Component {
         self.stepper.set_state(&at_rest)?;
         self.forces.fill(0.0);
         self.forces_before.fill(0.0);
-        (self.forces_changed, self.force_rates, self.force_linear) = (true, None, false);
+        self.forget_rates();
+        (self.forces_changed, self.force_linear) = (true, false);
         (self.phase, self.time, self.stop_time) = (Phase::Instantiated, 0.0, None);
         Ok(())
     }
@@ -117,6 +123,11 @@ impl Component {
         }
         let allowed = allowed.iter().map(|phase| phase.name()).collect::<Vec<_>>().join(", ");
         Err(FmuError::Order { state: self.phase.name(), allowed })
+    }
+
+    fn forget_rates(&mut self) {
+        self.force_rates.fill(0.0);
+        self.rates_given = false;
     }
 
     /// Tells the stepper the force now, if it changed since.

@@ -32,13 +32,8 @@ impl Component {
         }
         if self.force_linear {
             self.step_between_values(step)?;
-        } else if let Some(rates) = self.force_rates.take() {
-            let result = self.step_at_rates(step, &rates);
-            if result.is_err() {
-                self.force_rates = Some(rates);
-                self.forces_changed = true;
-            }
-            result?;
+        } else if self.rates_given {
+            self.step_at_rates(step)?;
         } else {
             self.apply_forces()?;
             self.stepper.advance_held(step)?;
@@ -57,11 +52,14 @@ impl Component {
         Ok(())
     }
 
-    fn step_at_rates(&mut self, step: f64, rates: &[f64]) -> Result<(), FmuError> {
+    fn step_at_rates(&mut self, step: f64) -> Result<(), FmuError> {
         self.apply_forces()?;
-        let end: Vec<f64> = self.forces.iter().zip(rates).map(|(force, rate)| force + rate * step).collect();
-        self.stepper.advance_linear(step, &end)?;
-        self.forces = end;
+        for ((end, force), rate) in self.forces_after.iter_mut().zip(&self.forces).zip(&self.force_rates) {
+            *end = force + rate * step;
+        }
+        self.stepper.advance_linear(step, &self.forces_after)?;
+        std::mem::swap(&mut self.forces, &mut self.forces_after);
+        self.forget_rates();
         Ok(())
     }
 }

@@ -1,6 +1,7 @@
 //! The life cycle without any C.
 
 use orthopanel_model::{ModalModel, ModalStepper, Mode, Place, Ports};
+use proptest::prelude::*;
 
 use super::*;
 
@@ -156,4 +157,73 @@ fn the_stop_time_bounds_the_steps() {
         component.do_step(f64::from(n) * 0.1, 0.1).expect("0.1 + 0.2 is past 0.3 by rounding alone");
     }
     assert!(matches!(component.do_step(0.3, 0.1), Err(FmuError::PastStop { .. })));
+}
+
+/// One call of an importer that knows nothing of the order.
+#[derive(Debug, Clone)]
+enum Call {
+    Experiment(f64, Option<f64>),
+    Enter,
+    Exit,
+    Terminate,
+    Reset,
+    Set(u32, f64),
+    Rate(u32, i32, f64),
+    Linear(u32, bool),
+    Step(f64, f64),
+}
+
+fn any_number() -> impl Strategy<Value = f64> {
+    prop_oneof![4 => -2.0..2.0_f64, 1 => Just(0.0), 1 => proptest::num::f64::ANY]
+}
+
+fn any_call() -> impl Strategy<Value = Call> {
+    prop_oneof![
+        1 => (any_number(), proptest::option::of(any_number())).prop_map(|(start, stop)| Call::Experiment(start, stop)),
+        2 => Just(Call::Enter),
+        2 => Just(Call::Exit),
+        1 => Just(Call::Terminate),
+        1 => Just(Call::Reset),
+        4 => (0..8_u32, any_number()).prop_map(|(reference, value)| Call::Set(reference, value)),
+        2 => (0..8_u32, 0..3_i32, any_number()).prop_map(|(reference, order, rate)| Call::Rate(reference, order, rate)),
+        1 => (0..8_u32, any::<bool>()).prop_map(|(reference, on)| Call::Linear(reference, on)),
+        6 => (any_number(), any_number()).prop_map(|(offset, step)| Call::Step(offset, step)),
+    ]
+}
+
+proptest! {
+    /// Whatever is called in whatever order: no panic, outputs stay numbers, a refused call changes nothing.
+    #[test]
+    fn random_calls_leave_a_sound_instance(calls in prop::collection::vec(any_call(), 1..40)) {
+        let mut component = Component::new(&resource());
+        for call in calls {
+            let readable = |component: &mut Component| {
+                let mut values = [0.0; 5];
+                component.get_reals(&[0, FORCE, ACCELERATION, VELOCITY, DISPLACEMENT], &mut values).map(|()| values)
+            };
+            let before = readable(&mut component);
+            let done = match call {
+                Call::Experiment(start, stop) => component.set_experiment(start, stop),
+                Call::Enter => component.enter_initialization(),
+                Call::Exit => component.exit_initialization(),
+                Call::Terminate => component.terminate(),
+                Call::Reset => component.reset(),
+                Call::Set(reference, value) => component.set_reals(&[reference], &[value]),
+                Call::Rate(reference, order, rate) => component.set_force_rates(&[reference], &[order], &[rate]),
+                Call::Linear(reference, on) => component.set_booleans(&[reference], &[on]),
+                // Mostly from where the instance stands, now and then from elsewhere.
+                Call::Step(offset, step) => {
+                    let start = component.time() + if offset.abs() < 1.0 { 0.0 } else { offset };
+                    component.do_step(start, step)
+                }
+            };
+            let after = readable(&mut component);
+            if let (Err(_), Ok(before), Ok(after)) = (&done, &before, &after) {
+                prop_assert_eq!(before, after);
+            }
+            if let Ok(after) = after {
+                prop_assert!(after.iter().all(|value| value.is_finite()), "{:?}", after);
+            }
+        }
+    }
 }

@@ -61,18 +61,20 @@ impl Component {
         if self.force_linear {
             return Err(FmuError::DerivativeBesideLinear);
         }
-        let mut new = self.force_rates.clone().unwrap_or_else(|| vec![0.0; self.forces.len()]);
         for ((&reference, &order), &rate) in references.iter().zip(orders).zip(rates) {
-            let port = self.force_port(reference)?;
+            self.force_port(reference)?;
             if order != 1 {
                 return Err(FmuError::DerivativeOrder { order });
             }
             finite(&self.variable(reference)?.name, rate)?;
-            if let Some(slot) = new.get_mut(port) {
+        }
+        for (&reference, &rate) in references.iter().zip(rates) {
+            let port = self.force_port(reference)?;
+            if let Some(slot) = self.force_rates.get_mut(port) {
                 *slot = rate;
+                self.rates_given = true;
             }
         }
-        self.force_rates = Some(new);
         Ok(())
     }
 
@@ -101,7 +103,7 @@ impl Component {
         if let Some(&last) = values.last() {
             self.force_linear = last;
             if last {
-                self.force_rates = None;
+                self.forget_rates();
             }
         }
         Ok(())
