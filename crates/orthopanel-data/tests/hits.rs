@@ -41,6 +41,18 @@ fn val_overload_is_found_in_either_channel() {
 }
 
 #[test]
+fn val_a_peak_flat_by_few_bits_is_no_overload() {
+    let mut hit = Resonator { radius: 0.99, angle: 0.05 }.soft_hit(1000, 100.0);
+    let greatest = hit.acceleration.iter().copied().fold(0.0, f64::max);
+    // Eight bits over the whole range: the slow wave's top holds four samples of one code.
+    let bit = greatest / 128.0;
+    hit.acceleration.iter_mut().for_each(|a| *a = (*a / bit).round() * bit);
+    let top = hit.acceleration.iter().copied().fold(0.0, f64::max);
+    assert!(hit.acceleration.windows(3).any(|three| three.iter().all(|value| *value == top)), "no flat peak");
+    assert!(!hit.faults(RATE).iter().any(|fault| fault.is_fatal()), "{:?}", hit.faults(RATE));
+}
+
+#[test]
 fn val_a_double_hit_is_found_with_its_time_and_size() {
     let mut force = good().force;
     for n in 0..700 {

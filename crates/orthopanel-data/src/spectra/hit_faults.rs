@@ -79,8 +79,14 @@ impl fmt::Display for HitFault {
     }
 }
 
-/// Samples in a row at the very same extreme: a smooth peak has two at most.
+/// Samples in a row at the very same extreme, next to a drop: a smooth peak has two at most.
 const CLIPPED_RUN: usize = 3;
+
+/// The drop beside it, over the signal's reach: a peak flat by few bits falls by a bit, a clipped one at once.
+const CLIPPED_DROP: f64 = 0.01;
+
+/// Samples in a row at the extreme that are clipped, drop or not.
+const FLAT_RUN: usize = 8;
 
 /// Force that counts as a touch, over the peak: less does not change the spectrum by more than this.
 const TOUCH: f64 = 0.05;
@@ -118,13 +124,25 @@ impl Hit {
 }
 
 fn overload(channel: Channel, values: &[f64]) -> Option<HitFault> {
+    let middle = median(values);
     let extremes = [values.iter().copied().fold(f64::MIN, f64::max), values.iter().copied().fold(f64::MAX, f64::min)];
-    extremes.into_iter().find_map(|value| {
-        let longest = values.split(|other| *other != value).map(<[f64]>::len).max().unwrap_or(0);
-        // A quiet channel rests on its last bit at one of the extremes; a clipped one stands far from its median.
-        let far = (value - median(values)).abs()
-            > 0.5 * extremes.iter().fold(0.0, |far: f64, e| far.max((e - median(values)).abs()));
-        (longest >= CLIPPED_RUN && far).then_some(HitFault::Overload { channel, samples: longest, value })
+    let reach = extremes.iter().fold(0.0, |reach: f64, extreme| reach.max((extreme - middle).abs()));
+    // A quiet side rests on its last bit; a clipped one stands far from the middle.
+    extremes.into_iter().filter(|extreme| (extreme - middle).abs() > 0.5 * reach).find_map(|value| {
+        let mut samples = 0;
+        let mut start = 0;
+        for run in values.chunk_by(|a, b| a == b) {
+            let end = start + run.len();
+            if run.first() == Some(&value) && run.len() > samples {
+                let beside = [start.checked_sub(1), Some(end)].map(|n| n.and_then(|n| values.get(n)));
+                let drop = beside.into_iter().flatten().fold(0.0, |drop: f64, next| drop.max((value - next).abs()));
+                if run.len() >= FLAT_RUN || (run.len() >= CLIPPED_RUN && drop > CLIPPED_DROP * reach) {
+                    samples = run.len();
+                }
+            }
+            start = end;
+        }
+        (samples > 0).then_some(HitFault::Overload { channel, samples, value })
     })
 }
 
