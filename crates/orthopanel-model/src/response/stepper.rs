@@ -109,8 +109,7 @@ impl ModalStepper {
     /// overflow; the state stays as it was.
     pub fn advance_held(&mut self, step: f64) -> Result<(), ModelError> {
         self.prepare(step)?;
-        self.force_after.copy_from_slice(&self.force);
-        self.advance_prepared()
+        self.advance_prepared::<false>()
     }
 
     /// Advances by `step` \[s\] under a force that runs linearly from the force now to `forces` \[N\], which is then
@@ -122,7 +121,9 @@ impl ModalStepper {
         self.check_forces(forces)?;
         self.prepare(step)?;
         project(&self.at_forces, forces, &mut self.force_after);
-        self.advance_prepared()
+        self.advance_prepared::<true>()?;
+        std::mem::swap(&mut self.force, &mut self.force_after);
+        Ok(())
     }
 
     /// Displacement $w = \sum W a$ \[m\] at a response port, counted from 0; `None` where there is no such port.
@@ -205,8 +206,9 @@ impl ModalStepper {
         Ok(())
     }
 
-    /// The step itself, from `state` and `force` to `state_after` and `force_after`, then one becomes the other.
-    fn advance_prepared(&mut self) -> Result<(), ModelError> {
+    /// The step itself, from `state` to `state_after`, which then change places. Where the force is not `LINEAR` it
+    /// stays, `force_after` is not read, and the compiler leaves its loads out.
+    fn advance_prepared<const LINEAR: bool>(&mut self) -> Result<(), ModelError> {
         let forces = self.force.iter().zip(&self.force_after);
         let modes = self.groups.iter().zip(&self.propagators).zip(forces);
         // A sum of zeros that only an infinity or a NaN can spoil: cheaper than asking each number.
@@ -216,12 +218,15 @@ impl ModalStepper {
         {
             for i in 0..LANES {
                 let (a, v, p) = (before.position[i], before.velocity[i], force[i]);
-                let change = force_after[i] - p;
+                let change = if LINEAR { force_after[i] - p } else { 0.0 };
                 let elastic = p - group.stiffness[i] * a;
                 let acceleration = elastic - group.damping[i] * v;
-                after.position[i] = a + by.impulse[i] * v + by.held[i] * elastic + by.ramp[i] * change;
-                after.velocity[i] =
-                    v + by.impulse[i] * acceleration - group.stiffness[i] * by.held[i] * v + by.ramp_rate[i] * change;
+                after.position[i] = a + by.impulse[i] * v + by.held[i] * elastic;
+                after.velocity[i] = v + by.impulse[i] * acceleration - group.stiffness[i] * by.held[i] * v;
+                if LINEAR {
+                    after.position[i] += by.ramp[i] * change;
+                    after.velocity[i] += by.ramp_rate[i] * change;
+                }
                 zero[i] += 0.0 * after.position[i] + 0.0 * after.velocity[i];
             }
         }
@@ -230,7 +235,6 @@ impl ModalStepper {
             return Err(ModelError::NotFinite { what: "modal state after the step", value: zero });
         }
         std::mem::swap(&mut self.state, &mut self.state_after);
-        std::mem::swap(&mut self.force, &mut self.force_after);
         Ok(())
     }
 }
