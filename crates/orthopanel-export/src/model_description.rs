@@ -40,7 +40,8 @@ pub(crate) fn write(resource: &Resource, options: &FmuOptions, token: &str) -> R
 fn experiment(resource: &Resource) -> (f64, f64) {
     let highest = resource.model().modes().iter().map(|mode| mode.angular_frequency).fold(0.0, f64::max);
     let period = if highest > 0.0 { std::f64::consts::TAU / highest } else { 1.0 };
-    let most = period / 20.0;
+    // Kept to sizes that print as numbers, should a frequency be next to zero or beyond all sense.
+    let most = period.clamp(1e-9, 1e9) / 20.0;
     let exponent = most.log10().floor() as i32;
     let mantissa = [5, 2, 1].into_iter().find(|&digit| decimal(digit, exponent) <= most).unwrap_or(1);
     (decimal(mantissa, exponent), decimal(mantissa, exponent.saturating_add(3)))
