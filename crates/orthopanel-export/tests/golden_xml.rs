@@ -47,3 +47,17 @@ fn regress_fmi2_co_simulation() {
 fn regress_fmi3_co_simulation() {
     compare("fmi3-cosimulation.xml", FmiVersion::Fmi3);
 }
+
+/// The importer `fmi-rs` has a validator of its own.
+#[test]
+fn val_fmi_rs_finds_no_problem() {
+    let two = fmu(FmiVersion::Fmi2);
+    let two = fmi_rs::model_description::fmi2::ModelDescription::from_string(two.model_description()).expect("FMI 2.0");
+    let problems = two.validate();
+    assert!(problems.is_empty(), "{problems:?}");
+    let three = fmu(FmiVersion::Fmi3);
+    let three =
+        fmi_rs::model_description::fmi3::ModelDescription::from_string(three.model_description()).expect("FMI 3.0");
+    let problems = three.validate();
+    assert!(problems.is_empty(), "{problems:?}");
+}
