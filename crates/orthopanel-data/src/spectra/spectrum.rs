@@ -4,7 +4,7 @@ use num_complex::Complex64;
 use realfft::RealFftPlanner;
 
 use super::{
-    hit_faults::{median, peak},
+    hit_faults::{peak, sampled_median},
     time_history::Hit,
     window::Window,
 };
@@ -27,7 +27,7 @@ pub(super) fn sums<'a>(hits: impl Iterator<Item = &'a Hit>, samples: usize, wind
     for hit in hits {
         // The hammer is off the piece nearly all the time, so the median is its channel's offset; the mean is not,
         // for it holds the impulse.
-        let offset = median(&hit.force);
+        let offset = sampled_median(&hit.force);
         let (peak, height) = peak(&hit.force, offset);
         let rest = rest_before(hit, offset, height);
         let mut force: Vec<f64> = hit.force.iter().map(|value| value - offset).collect();
@@ -38,14 +38,11 @@ pub(super) fn sums<'a>(hits: impl Iterator<Item = &'a Hit>, samples: usize, wind
             .and_then(|()| transform.process_with_scratch(&mut motion, &mut motion_spectrum, &mut scratch));
         // It fails for other lengths than planned only; the caller has checked that all hits are of one length.
         debug_assert!(transformed.is_ok());
-        for (line, (f, a)) in force_spectrum.iter().zip(&motion_spectrum).enumerate() {
-            if let (Some(force), Some(motion), Some(cross)) =
-                (sums.force.get_mut(line), sums.motion.get_mut(line), sums.cross.get_mut(line))
-            {
-                *force += f.norm_sqr();
-                *motion += a.norm_sqr();
-                *cross += f.conj() * a;
-            }
+        let sums = sums.force.iter_mut().zip(&mut sums.motion).zip(&mut sums.cross);
+        for (((force, motion), cross), (f, a)) in sums.zip(force_spectrum.iter().zip(&motion_spectrum)) {
+            *force += f.norm_sqr();
+            *motion += a.norm_sqr();
+            *cross += f.conj() * a;
         }
     }
     sums

@@ -166,14 +166,14 @@ fn common_grid(force: &Record, acceleration: &Record) -> Result<(usize, f64), Da
     for (record, name) in [(force, "force"), (acceleration, "acceleration")] {
         let start = force.abscissa.first().copied().unwrap_or_default();
         let uneven = record.abscissa.iter().enumerate().find(|(index, time)| {
-            let due = step.mul_add(*index as f64, start);
+            let due = start + step * *index as f64;
             (*time - due).abs() > STEP_TOLERANCE * step
         });
         if let Some((index, time)) = uneven {
             let problem = format!(
                 "{name}, sample {}: t = {time} s, {} s expected: force and acceleration need the same even times",
                 index + 1,
-                step.mul_add(index as f64, start)
+                start + step * index as f64
             );
             return refused(record, problem);
         }

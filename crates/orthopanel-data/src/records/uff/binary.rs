@@ -77,18 +77,22 @@ pub(super) fn values(
     cursor.advance(count);
 
     let data = rest.get(..needed).unwrap_or_default();
-    let mut values = Vec::with_capacity(header.points * header.layout.values_per_point());
-    for point in data.chunks_exact(widths.point(header)) {
-        let ordinates = if header.layout.even {
-            point
-        } else {
-            let (abscissa, ordinates) = point.split_at_checked(widths.abscissa).unwrap_or((point, &[]));
-            values.extend(float(abscissa, big_endian));
-            ordinates
-        };
-        values.extend(ordinates.chunks_exact(widths.ordinate).filter_map(|bytes| float(bytes, big_endian)));
-    }
-    Ok(values)
+    Ok(match (widths.ordinate, header.layout.even || widths.abscissa == widths.ordinate) {
+        (4, true) => decode(data, if big_endian { f32::from_be_bytes } else { f32::from_le_bytes }),
+        (_, true) => decode(data, if big_endian { f64::from_be_bytes } else { f64::from_le_bytes }),
+        (_, false) => {
+            let points = data.chunks_exact(widths.point(header));
+            let parts = points.filter_map(|point| point.split_at_checked(widths.abscissa));
+            let single = if big_endian { f32::from_be_bytes } else { f32::from_le_bytes };
+            let double = if big_endian { f64::from_be_bytes } else { f64::from_le_bytes };
+            parts.flat_map(|(abscissa, rest)| [decode(abscissa, single), decode(rest, double)].concat()).collect()
+        }
+    })
+}
+
+/// All numbers in `bytes`, one every `N` bytes.
+fn decode<T: Into<f64>, const N: usize>(bytes: &[u8], number: fn([u8; N]) -> T) -> Vec<f64> {
+    bytes.chunks_exact(N).filter_map(|bytes| bytes.try_into().ok()).map(|bytes| number(bytes).into()).collect()
 }
 
 fn declared(header: &Header) -> Widths {
@@ -122,12 +126,4 @@ fn find_end(bytes: &[u8]) -> Option<usize> {
         ends_dataset(bytes.get(at..).unwrap_or_default())
             && next_line(at).is_none_or(|next| ends_dataset(bytes.get(next..).unwrap_or_default()))
     })
-}
-
-fn float(bytes: &[u8], big_endian: bool) -> Option<f64> {
-    match bytes.len() {
-        4 => bytes.try_into().ok().map(if big_endian { f32::from_be_bytes } else { f32::from_le_bytes }).map(f64::from),
-        8 => bytes.try_into().ok().map(if big_endian { f64::from_be_bytes } else { f64::from_le_bytes }),
-        _ => None,
-    }
 }

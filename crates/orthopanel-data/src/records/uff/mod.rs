@@ -86,20 +86,25 @@ fn record(
             ));
             header.step = restored;
         }
-        abscissa.extend((0..header.points).map(|index| header.step.mul_add(index as f64, header.start)));
+        abscissa.extend((0..header.points).map(|index| header.start + header.step * index as f64));
     }
-    for point in values.chunks_exact(layout.values_per_point()) {
-        let ordinate = match point {
-            [x, ordinate @ ..] if !layout.even => {
-                abscissa.push(*x);
-                ordinate
+    match (layout.even, layout.complex) {
+        (true, false) => real = values,
+        (true, true) => complex.extend(values.chunks_exact(2).filter_map(complex_number)),
+        (false, _) => {
+            for point in values.chunks_exact(layout.values_per_point()) {
+                match point {
+                    [x, value] => {
+                        abscissa.push(*x);
+                        real.push(*value);
+                    }
+                    [x, value @ ..] => {
+                        abscissa.push(*x);
+                        complex.extend(complex_number(value));
+                    }
+                    [] => {}
+                }
             }
-            ordinate => ordinate,
-        };
-        match *ordinate {
-            [re, im] => complex.push(Complex64::new(re, im)),
-            [value] => real.push(value),
-            _ => {}
         }
     }
     let kind = RecordKind::from(header.function);
@@ -115,6 +120,13 @@ fn record(
     let Header { title, response, reference, numerator, denominator, .. } = header;
     let at = cursor.at(start, &key);
     Ok(Record { kind, title, at, response, reference, abscissa, ordinate, numerator, denominator })
+}
+
+fn complex_number(parts: &[f64]) -> Option<Complex64> {
+    match *parts {
+        [re, im] => Some(Complex64::new(re, im)),
+        _ => None,
+    }
 }
 
 fn check_numbers(
