@@ -33,7 +33,7 @@ pub struct Estimation {
     /// The estimator.
     pub estimator: Estimator,
     /// The band ends where the force spectrum has fallen by this much below its greatest line \[dB\]; infinite keeps
-    /// all lines. 30 dB is where a 12-bit channel's noise reaches a few per cent of the force.
+    /// all lines. 30 dB by default: a choice on the generous side, since the variance weighs the weak lines anyway.
     pub force_drop: f64,
 }
 
