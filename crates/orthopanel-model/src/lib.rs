@@ -25,4 +25,6 @@ pub use piece::{Piece, Place};
 pub use response::ModalStepper;
 pub use ritz_modes::ritz_modes;
 pub use structure::{Block, RitzMode, Structure};
-pub use timoshenko_beam::{BeamConstants, BeamElements, BeamMode, ExactBeam, SHEAR_COEFFICIENT, TimoshenkoBeam};
+pub use timoshenko_beam::{
+    BEAM_CONSTANTS, BeamConstants, BeamElements, BeamMode, ExactBeam, SHEAR_COEFFICIENT, TimoshenkoBeam,
+};

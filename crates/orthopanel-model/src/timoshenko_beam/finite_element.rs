@@ -2,7 +2,7 @@
 
 use faer::Mat;
 
-use super::{CONSTANTS, Section};
+use super::{BEAM_CONSTANTS, Section};
 use crate::structure::{Block, Structure, quadratic_form};
 use crate::{Boundary, Constant, End, ModelError, Piece, Place};
 
@@ -157,7 +157,7 @@ fn rigid_motions(
 
 impl Structure for BeamElements {
     fn constants(&self) -> &'static [Constant] {
-        &CONSTANTS
+        &BEAM_CONSTANTS
     }
 
     fn coefficients(&self, values: &[f64]) -> Result<Vec<f64>, ModelError> {

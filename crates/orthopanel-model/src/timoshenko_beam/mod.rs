@@ -24,7 +24,7 @@ use crate::{ModelError, Piece};
 pub const SHEAR_COEFFICIENT: f64 = 2.0 / 3.0;
 
 /// The constants of the beam, in the order in which every list of them stands.
-pub(crate) const CONSTANTS: [Constant; 2] = [
+pub const BEAM_CONSTANTS: [Constant; 2] = [
     Constant { name: "e_x", unit: "Pa", low: 1e3, high: 1e15 },
     Constant { name: "g_zx", unit: "Pa", low: 1e3, high: 1e15 },
 ];
@@ -44,8 +44,8 @@ impl BeamConstants {
     /// # Errors
     /// [`ModelError::Constant`] names the one outside.
     pub fn checked(self) -> Result<Self, ModelError> {
-        CONSTANTS[0].check(self.e_x)?;
-        CONSTANTS[1].check(self.g_zx)?;
+        BEAM_CONSTANTS[0].check(self.e_x)?;
+        BEAM_CONSTANTS[1].check(self.g_zx)?;
         Ok(self)
     }
 }

@@ -3,7 +3,7 @@
 use faer::Mat;
 
 use super::strain_basis::{Parity, StrainFunction, strain_functions};
-use super::{CONSTANTS, Section};
+use super::{BEAM_CONSTANTS, Section};
 use crate::legendre::{legendre, norm};
 use crate::structure::{Block, Structure};
 use crate::{Boundary, Constant, ModelError, Piece, Place};
@@ -72,7 +72,7 @@ fn product(f: &[f64], g: &[f64]) -> f64 {
 
 impl Structure for TimoshenkoBeam {
     fn constants(&self) -> &'static [Constant] {
-        &CONSTANTS
+        &BEAM_CONSTANTS
     }
 
     fn coefficients(&self, values: &[f64]) -> Result<Vec<f64>, ModelError> {

@@ -17,6 +17,20 @@ pub(super) struct ModeSearch {
     next: usize,
 }
 
+/// The family seen at one $\mu$.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Sight {
+    mu: f64,
+    probe: Probe,
+}
+
+impl Sight {
+    /// Whether the residual changes sign from here to there.
+    fn parts(self, other: Self) -> bool {
+        self.probe.residual * other.probe.residual < 0.0
+    }
+}
+
 /// By how many modes freeing or clamping both ends can shift the count, at the most.
 const SHIFT: usize = 2;
 
@@ -30,8 +44,8 @@ impl ModeSearch {
         Self { ratios, boundary, family, pinned, window: Vec::new(), next: rigid + 1 }
     }
 
-    fn look(&self, mu: f64) -> Probe {
-        probe(self.ratios, self.boundary, self.family, mu)
+    fn look(&self, mu: f64) -> Sight {
+        Sight { mu, probe: probe(self.ratios, self.boundary, self.family, mu) }
     }
 
     /// Pinned value number `k`, from 1; a small fraction of the first for `k = 0`.
@@ -43,30 +57,29 @@ impl ModeSearch {
         if k == 0 { 1e-4 * self.window[0] } else { self.window[k - 1] }
     }
 
-    /// Lower and upper limit with mode `k` alone between them, or as close to each other as numbers can be.
-    fn bracket(&mut self, k: usize) -> (f64, f64) {
+    /// Two sights with mode `k` alone between them, or as close to each other as numbers can be.
+    fn bracket(&mut self, k: usize) -> (Sight, Sight) {
         let (below, above) = match (self.family, self.boundary.left, self.boundary.right) {
             (Family::Mixed, _, _) => (SHIFT + 1, SHIFT),
             (_, End::Free, _) => (1, 0),
             _ => (0, 1),
         };
         // A hair outwards: at a pinned frequency itself the count is not defined.
-        let mut low = self.pinned_value(k.saturating_sub(below)) * (1.0 - 1e-9);
-        let mut high = self.pinned_value(k + above) * (1.0 + 1e-9);
-        while self.look(low).below >= k {
-            low *= 0.5;
+        let (lowest, highest) = (self.pinned_value(k.saturating_sub(below)), self.pinned_value(k + above));
+        let mut low = self.look(lowest * (1.0 - 1e-9));
+        let mut high = self.look(highest * (1.0 + 1e-9));
+        while low.probe.below >= k {
+            low = self.look(0.5 * low.mu);
         }
-        while self.look(high).below < k {
-            high *= 1.1;
+        while high.probe.below < k {
+            high = self.look(1.1 * high.mu);
         }
-        while high - low > 4.0 * f64::EPSILON * high {
-            let (at_low, at_high) = (self.look(low), self.look(high));
-            let alone = at_low.below + 1 == k && at_high.below == k;
-            if alone && at_low.residual * at_high.residual < 0.0 {
+        while high.mu - low.mu > 4.0 * f64::EPSILON * high.mu {
+            if low.probe.below + 1 == k && high.probe.below == k && low.parts(high) {
                 break;
             }
-            let middle = (low * high).sqrt();
-            if self.look(middle).below >= k {
+            let middle = self.look((low.mu * high.mu).sqrt());
+            if middle.probe.below >= k {
                 high = middle;
             } else {
                 low = middle;
@@ -77,15 +90,14 @@ impl ModeSearch {
 
     /// Chandrupatla's root search (1997) on the residual: inverse quadratic where safe, else bisection. Written here
     /// because a search may cost no more than some tens of evaluations of 50 ns, set-up included.
-    fn polish(&self, low: f64, high: f64) -> f64 {
-        let value = |mu: f64| self.look(mu).residual;
-        let (mut a, mut b) = (low, high);
-        let (mut fa, mut fb) = (value(a), value(b));
+    fn polish(&self, low: Sight, high: Sight) -> f64 {
+        let (mut a, mut fa) = (low.mu, low.probe.residual);
+        let (mut b, mut fb) = (high.mu, high.probe.residual);
         let (mut c, mut fc);
         let mut fraction = 0.5;
         for _ in 0..120 {
             let trial = a + fraction * (b - a);
-            let ft = value(trial);
+            let ft = self.look(trial).probe.residual;
             if (ft < 0.0) == (fa < 0.0) {
                 (c, fc) = (a, fa);
             } else {
@@ -115,9 +127,7 @@ impl Iterator for ModeSearch {
     fn next(&mut self) -> Option<f64> {
         let (low, high) = self.bracket(self.next);
         self.next += 1;
-        let (at_low, at_high) = (self.look(low), self.look(high));
         // Without a change of sign the bracket has closed on modes that numbers cannot part.
-        let mu = if at_low.residual * at_high.residual < 0.0 { self.polish(low, high) } else { 0.5 * (low + high) };
-        Some(mu)
+        Some(if low.parts(high) { self.polish(low, high) } else { 0.5 * (low.mu + high.mu) })
     }
 }

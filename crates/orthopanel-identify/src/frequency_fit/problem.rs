@@ -1,0 +1,156 @@
+//! Eq. 22 over the measurements of a test.
+
+use faer::Mat;
+use orthopanel_data::{ImpactTest, MeasurementData};
+use orthopanel_model::{BEAM_CONSTANTS, Boundary, Constant, Piece};
+
+use super::prediction::{Prediction, beam_predictions};
+use crate::IdentifyError;
+use crate::least_squares::Linearised;
+
+/// Measured frequencies of one piece.
+#[derive(Debug, Clone)]
+pub(super) struct FrequencySet {
+    /// Index of the piece in the test.
+    pub piece: usize,
+    pub sizes: Piece,
+    pub boundary: Boundary,
+    /// Frequencies \[Hz\] of flexible modes 1, 2, ...
+    pub measured: Vec<f64>,
+    /// Standard deviation of each by rounding to a bin \[Hz\], where the bin is stated.
+    pub rounding: Vec<f64>,
+    /// Modes that take part in the fit.
+    pub fitted: Vec<bool>,
+}
+
+impl FrequencySet {
+    pub(super) fn predict(&self, constants: &[f64; 2]) -> Result<Vec<Prediction>, IdentifyError> {
+        Ok(beam_predictions(&self.sizes, self.boundary, *constants, self.measured.len())?)
+    }
+}
+
+/// The measurements, and which constants are free.
+#[derive(Debug, Clone)]
+pub(super) struct FrequencyProblem {
+    pub constants: [Constant; 2],
+    /// Values of the constants that are held; free ones are `None`.
+    pub held: [Option<f64>; 2],
+    /// Positions of the free constants.
+    pub free: Vec<usize>,
+    pub sets: Vec<FrequencySet>,
+}
+
+impl FrequencyProblem {
+    pub(super) fn of(test: &ImpactTest) -> Result<Self, IdentifyError> {
+        let constants = BEAM_CONSTANTS;
+        for name in test.constants.keys() {
+            if constants.iter().all(|constant| constant.name != name) {
+                let known = constants.map(|constant| constant.name).join(", ");
+                return Err(IdentifyError::UnknownConstant { name: name.clone(), known });
+            }
+        }
+        let held = constants.map(|constant| test.constants.get(constant.name).copied());
+        for (constant, value) in constants.iter().zip(held) {
+            value.map_or(Ok(()), |value| constant.check(value))?;
+        }
+        let free: Vec<usize> = (0..constants.len()).filter(|&index| held[index].is_none()).collect();
+        let sets = frequency_sets(test)?;
+        let problem = Self { constants, held, free, sets };
+        if problem.count() < problem.free.len() {
+            return Err(IdentifyError::TooFewFrequencies {
+                found: problem.count(),
+                needed: problem.free.len(),
+                names: problem.free.iter().map(|&index| constants[index].name).collect::<Vec<_>>().join(", "),
+            });
+        }
+        Ok(problem)
+    }
+
+    /// Number of frequencies fitted.
+    pub(super) fn count(&self) -> usize {
+        self.sets.iter().flat_map(|set| &set.fitted).filter(|&&fitted| fitted).count()
+    }
+
+    /// All constants at these logarithms of the free ones.
+    pub(super) fn values(&self, logs: &[f64]) -> [f64; 2] {
+        let mut values = self.held.map(|held| held.unwrap_or(f64::NAN));
+        for (&index, log) in self.free.iter().zip(logs) {
+            values[index] = log.exp();
+        }
+        values
+    }
+
+    /// Bounds of the free constants' logarithms.
+    pub(super) fn log_bounds(&self) -> Vec<(f64, f64)> {
+        self.free.iter().map(|&index| (self.constants[index].low.ln(), self.constants[index].high.ln())).collect()
+    }
+
+    /// Relative residuals $(f_{cal}-f_{exp})/f_{exp}$ and their derivatives by the logarithms.
+    pub(super) fn linearise(&self, logs: &[f64]) -> Result<Linearised, IdentifyError> {
+        let bounds = self.log_bounds();
+        let inside: Vec<f64> = logs.iter().zip(&bounds).map(|(log, &(low, high))| log.clamp(low, high)).collect();
+        let mut values = self.values(&inside);
+        // exp(ln x) may pass a bound by rounding.
+        for (value, constant) in values.iter_mut().zip(self.constants) {
+            *value = value.clamp(constant.low, constant.high);
+        }
+        let mut residuals = Vec::with_capacity(self.count());
+        let mut rows = Vec::with_capacity(self.count());
+        for set in &self.sets {
+            let predicted = set.predict(&values)?;
+            for ((prediction, measured), fitted) in predicted.iter().zip(&set.measured).zip(&set.fitted) {
+                if *fitted {
+                    let ratio = prediction.frequency / measured;
+                    residuals.push(ratio - 1.0);
+                    rows.push(prediction.log_sensitivity.map(|sensitivity| ratio * sensitivity));
+                }
+            }
+        }
+        let jacobian = Mat::from_fn(rows.len(), self.free.len(), |i, j| rows[i][self.free[j]]);
+        Ok(Linearised { residuals, jacobian })
+    }
+
+    /// Eq. 22.
+    pub(super) fn error(&self, logs: &[f64]) -> Result<f64, IdentifyError> {
+        Ok(self.linearise(logs)?.cost() / self.count() as f64)
+    }
+
+    /// Refuses a minimum that lies on a bound: such a value is the bound's, not the data's.
+    pub(super) fn refuse_bounds(&self, logs: &[f64]) -> Result<(), IdentifyError> {
+        for ((log, (low, high)), &index) in logs.iter().zip(self.log_bounds()).zip(&self.free) {
+            if log - low < 1e-6 || high - log < 1e-6 {
+                let Constant { name, unit, .. } = self.constants[index];
+                return Err(IdentifyError::OnBound { name, value: log.exp(), unit });
+            }
+        }
+        Ok(())
+    }
+}
+
+fn frequency_sets(test: &ImpactTest) -> Result<Vec<FrequencySet>, IdentifyError> {
+    if let Some(effect) = test.effects.first() {
+        let message = format!("effect {:?}: declared effects are not supported by this version", effect.id);
+        return Err(IdentifyError::Unsupported(message));
+    }
+    let mut sets = Vec::new();
+    for measurement in &test.measurements {
+        let MeasurementData::NaturalFrequencies(data) = &measurement.data else {
+            let message = "identification from records is not supported by this version: give natural-frequencies";
+            return Err(IdentifyError::Unsupported(message.to_owned()));
+        };
+        if data.shape.iter().any(|nodes| nodes[1] > 0) {
+            let message = "shapes with nodal lines along y need the plate, which this version does not have";
+            return Err(IdentifyError::Unsupported(message.to_owned()));
+        }
+        sets.push(FrequencySet {
+            piece: measurement.piece,
+            sizes: test.pieces[measurement.piece].piece,
+            boundary: test.boundary,
+            fitted: vec![true; data.values.len()],
+            measured: data.values.clone(),
+            // A value rounded to a bin is uniform over it.
+            rounding: data.resolution.iter().map(|bin| bin / 12.0_f64.sqrt()).collect(),
+        });
+    }
+    Ok(sets)
+}

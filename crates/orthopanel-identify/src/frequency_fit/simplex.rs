@@ -1,0 +1,68 @@
+//! The paper's search: downhill simplex with a penalty (section 2.4), by argmin.
+
+use argmin::core::{CostFunction, Error, Executor, State};
+use argmin::solver::neldermead::NelderMead;
+
+use super::problem::FrequencyProblem;
+use crate::IdentifyError;
+
+/// Eq. 22 with a penalty that grows with the square of the way past a bound, from the value on the bound.
+///
+/// The penalty is finite and has a slope: an infinite one lets the simplex stall, and clipping to the bounds without a
+/// penalty lets it collapse on one.
+struct Penalised<'a>(&'a FrequencyProblem);
+
+impl CostFunction for Penalised<'_> {
+    type Param = Vec<f64>;
+    type Output = f64;
+
+    fn cost(&self, logs: &Vec<f64>) -> Result<f64, Error> {
+        let mut penalty = 0.0;
+        let mut inside = logs.clone();
+        for (log, (low, high)) in inside.iter_mut().zip(self.0.log_bounds()) {
+            let clamped = log.clamp(low, high);
+            penalty += (*log - clamped).powi(2);
+            *log = clamped;
+        }
+        Ok(self.0.error(&inside)? + penalty)
+    }
+}
+
+/// Edge of the first simplex, as a share of each constant.
+const FIRST_EDGE: f64 = 0.2;
+const MOST_ITERATIONS: u64 = 2000;
+const MOST_RESTARTS: usize = 20;
+
+/// Logarithms of the free constants at the minimum, from `start`.
+///
+/// The simplex is set up anew around its result, ten times smaller, until that moves it no further: one run alone may
+/// end on a flat triangle.
+pub(super) fn downhill_simplex(problem: &FrequencyProblem, start: &[f64]) -> Result<Vec<f64>, IdentifyError> {
+    let refused = |_: Error| not_converged(problem, start);
+    let mut best = start.to_vec();
+    let mut edge = FIRST_EDGE;
+    for _ in 0..MOST_RESTARTS {
+        let corners = (0..=best.len()).map(|corner| {
+            let moved = |(i, log): (usize, &f64)| if i + 1 == corner { log + edge } else { *log };
+            best.iter().enumerate().map(moved).collect::<Vec<f64>>()
+        });
+        let solver = NelderMead::new(corners.collect()).with_sd_tolerance(1e-20).map_err(refused)?;
+        let result = Executor::new(Penalised(problem), solver)
+            .configure(|state| state.max_iters(MOST_ITERATIONS))
+            .run()
+            .map_err(refused)?;
+        let found = result.state().get_best_param().cloned().unwrap_or_else(|| best.clone());
+        let moved = found.iter().zip(&best).fold(0.0_f64, |most, (a, b)| most.max((a - b).abs()));
+        best = found;
+        if moved < 1e-9 {
+            return Ok(best);
+        }
+        edge = (0.1 * edge).max(1e-3);
+    }
+    Err(not_converged(problem, &best))
+}
+
+fn not_converged(problem: &FrequencyProblem, at: &[f64]) -> IdentifyError {
+    let error_percent = problem.error(at).map_or(f64::NAN, |error| 100.0 * error.sqrt());
+    IdentifyError::NotConverged { iterations: MOST_RESTARTS * MOST_ITERATIONS as usize, error_percent }
+}

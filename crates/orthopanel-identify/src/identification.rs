@@ -1,0 +1,102 @@
+//! What an identification found.
+
+use std::collections::BTreeMap;
+
+use orthopanel_model::{Boundary, Damping, Estimate, MODEL_SCHEMA, PanelModel, Piece, Ports, StructureKind};
+
+/// Constants, their uncertainty, and how the model meets each measured mode.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Identification {
+    /// What vibrates.
+    pub structure: StructureKind,
+    /// Every constant of the structure, in its order.
+    pub constants: Vec<IdentifiedConstant>,
+    /// Correlation of each pair of identified constants.
+    pub correlations: Vec<Correlation>,
+    /// How the model meets each piece.
+    pub pieces: Vec<PieceFit>,
+    /// Root of eq. 22 \[%\]: rms of $(f_{exp}-f_{cal})/f_{exp}$ over all modes.
+    pub frequency_rms_percent: f64,
+    /// Rms error \[%\] of each frequency predicted from all the others; `None` where leaving one out leaves fewer
+    /// frequencies than constants.
+    pub left_one_out_percent: Option<f64>,
+}
+
+/// One constant.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct IdentifiedConstant {
+    /// Name, such as `e_x`.
+    pub name: &'static str,
+    /// Unit.
+    pub unit: &'static str,
+    /// Value.
+    pub value: f64,
+    /// Standard deviation; `None` where the constant was held, or where the data cannot tell (as many frequencies as
+    /// constants, and no resolution stated).
+    pub std: Option<f64>,
+    /// Whether the test file held it at this value.
+    pub held: bool,
+}
+
+/// Correlation coefficient of two identified constants.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Correlation {
+    /// Name of the one.
+    pub first: &'static str,
+    /// Name of the other.
+    pub second: &'static str,
+    /// The coefficient, from -1 to 1.
+    pub value: f64,
+}
+
+/// How the model meets one piece.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PieceFit {
+    /// Name in the test file.
+    pub name: String,
+    /// The piece.
+    pub piece: Piece,
+    /// Its modes.
+    pub modes: Vec<ModeFit>,
+}
+
+/// One measured mode and the model's.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ModeFit {
+    /// Flexible mode, from 1.
+    pub mode: usize,
+    /// Measured natural frequency \[Hz\].
+    pub measured: f64,
+    /// The model's \[Hz\].
+    pub model: f64,
+    /// Modal damping ratio, where the test measures it.
+    pub damping: Option<Estimate>,
+}
+
+impl ModeFit {
+    /// $(f_{cal}-f_{exp})/f_{exp}$ \[%\].
+    pub fn error_percent(&self) -> f64 {
+        100.0 * (self.model - self.measured) / self.measured
+    }
+}
+
+impl Identification {
+    /// The model of one piece with the identified constants, ready for a model file.
+    ///
+    /// Damping holds the ratios that were measured; `beyond` is left at zero for the caller to state.
+    pub fn panel_model(&self, fit: &PieceFit, boundary: Boundary, ports: Ports) -> PanelModel {
+        let estimate = |constant: &IdentifiedConstant| Estimate { value: constant.value, std: constant.std };
+        let ratios = fit.modes.iter().map_while(|mode| mode.damping).map(|ratio| ratio.value).collect();
+        PanelModel {
+            schema: MODEL_SCHEMA.to_owned(),
+            piece: fit.piece,
+            boundary,
+            structure: self.structure,
+            constants: self.constants.iter().map(|constant| (constant.name.to_owned(), estimate(constant))).collect(),
+            damping: Damping { ratios, beyond: 0.0 },
+            effects: Vec::new(),
+            ports,
+            provenance: BTreeMap::new(),
+        }
+    }
+}

@@ -1,0 +1,134 @@
+//! Levenberg-Marquardt on exact derivatives.
+
+use faer::linalg::solvers::DenseSolveCore;
+use faer::prelude::Solve;
+use faer::{Mat, Side};
+
+/// Residuals $r$ and their derivatives $\partial r_i/\partial p_j$, a row a residual.
+pub(crate) struct Linearised {
+    pub residuals: Vec<f64>,
+    pub jacobian: Mat<f64>,
+}
+
+impl Linearised {
+    /// $\sum r_i^2$.
+    pub fn cost(&self) -> f64 {
+        self.residuals.iter().map(|r| r * r).sum()
+    }
+
+    /// $J^TJ$.
+    pub fn normal_matrix(&self) -> Mat<f64> {
+        self.jacobian.transpose() * &self.jacobian
+    }
+
+    /// $J^Tr$.
+    fn gradient(&self) -> Mat<f64> {
+        let residuals = Mat::from_fn(self.residuals.len(), 1, |i, _| self.residuals[i]);
+        self.jacobian.transpose() * residuals
+    }
+
+    /// $(J^TJ)^{-1}$: the covariance of the parameters for residuals of variance one; `None` where it is singular.
+    pub fn covariance(&self) -> Option<Mat<f64>> {
+        Some(self.normal_matrix().llt(Side::Lower).ok()?.inverse())
+    }
+}
+
+/// Why a search ended nowhere.
+pub(crate) enum Stuck<E> {
+    /// The model refused the start.
+    Refused(E),
+    /// Too many iterations; the last cost.
+    Iterations { count: usize, cost: f64 },
+}
+
+const MOST_ITERATIONS: usize = 100;
+/// A step this small, relative to parameters of size one (logarithms), no longer changes a printed digit.
+const SMALL_STEP: f64 = 1e-10;
+
+/// Minimises $\sum r_i^2$ from `start`; each parameter stays within its `(low, high)`.
+///
+/// The damping follows Nielsen: it falls with the gain ratio and grows ever faster on failure. A parameter is projected
+/// on its bounds, so a search may end on one: the caller looks.
+pub(crate) fn levenberg_marquardt<E>(
+    linearise: impl Fn(&[f64]) -> Result<Linearised, E>,
+    start: &[f64],
+    bounds: &[(f64, f64)],
+) -> Result<Vec<f64>, Stuck<E>> {
+    let mut parameters = start.to_vec();
+    let mut at = linearise(&parameters).map_err(Stuck::Refused)?;
+    let (mut damping, mut growth) = (1e-6, 2.0);
+    for _ in 0..MOST_ITERATIONS {
+        let (mut normal, mut gradient) = (at.normal_matrix(), at.gradient());
+        for (i, (&parameter, &(low, high))) in parameters.iter().zip(bounds).enumerate() {
+            normal[(i, i)] *= 1.0 + damping;
+            // On a bound and pressed against it: this one rests, so that the others do not answer to its step.
+            let pressed = (parameter <= low && gradient[(i, 0)] > 0.0) || (parameter >= high && gradient[(i, 0)] < 0.0);
+            if pressed {
+                for j in 0..parameters.len() {
+                    normal[(i, j)] = 0.0;
+                    normal[(j, i)] = 0.0;
+                }
+                normal[(i, i)] = 1.0;
+                gradient[(i, 0)] = 0.0;
+            }
+        }
+        let step = normal.llt(Side::Lower).ok().map(|factor| factor.solve(&gradient));
+        let Some(step) = step else {
+            damping = (damping * growth).max(1e-12);
+            growth *= 2.0;
+            continue;
+        };
+        let trial: Vec<f64> = parameters
+            .iter()
+            .zip(bounds)
+            .enumerate()
+            .map(|(i, (p, &(low, high)))| (p - step[(i, 0)]).clamp(low, high))
+            .collect();
+        let moved = trial.iter().zip(&parameters).fold(0.0_f64, |most, (a, b)| most.max((a - b).abs()));
+        if let Ok(next) = linearise(&trial) {
+            let (before, after) = (at.cost(), next.cost());
+            // At the bottom both are equal but for rounding, and either is the minimum.
+            if after <= before {
+                let settled = moved < SMALL_STEP;
+                (parameters, at) = (trial, next);
+                (damping, growth) = (damping * 0.1, 2.0);
+                if settled {
+                    return Ok(parameters);
+                }
+                continue;
+            }
+        }
+        if moved < SMALL_STEP {
+            return Ok(parameters);
+        }
+        damping *= growth;
+        growth *= 2.0;
+    }
+    Err(Stuck::Iterations { count: MOST_ITERATIONS, cost: at.cost() })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Rosenbrock's valley as residuals (10 (y − x²), 1 − x): minimum zero at (1, 1).
+    fn rosenbrock(p: &[f64]) -> Result<Linearised, ()> {
+        let (x, y) = (p[0], p[1]);
+        let rows = [[-20.0 * x, 10.0], [-1.0, 0.0]];
+        Ok(Linearised { residuals: vec![10.0 * (y - x * x), 1.0 - x], jacobian: Mat::from_fn(2, 2, |i, j| rows[i][j]) })
+    }
+
+    #[test]
+    fn val_rosenbrock_valley() {
+        let open = [(-10.0, 10.0); 2];
+        let Ok(minimum) = levenberg_marquardt(rosenbrock, &[-1.2, 1.0], &open) else { panic!("no minimum") };
+        assert!(minimum.iter().all(|p| (p - 1.0).abs() < 1e-8), "{:?}", minimum);
+    }
+
+    #[test]
+    fn a_bound_holds_the_search() {
+        let bounds = [(-10.0, 0.5), (-10.0, 10.0)];
+        let Ok(minimum) = levenberg_marquardt(rosenbrock, &[-1.2, 1.0], &bounds) else { panic!("no minimum") };
+        assert!((minimum[0] - 0.5).abs() < 1e-8);
+    }
+}
