@@ -1,3 +1,27 @@
 #![doc = include_str!("../README.md")]
 
-fn main() {}
+mod arguments;
+mod commands;
+mod error;
+mod force_file;
+mod importer;
+mod model_file;
+mod output;
+mod tables;
+mod time_response;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+
+fn main() -> ExitCode {
+    // clap itself answers --help and --version, and leaves with 2 on bad usage.
+    let arguments = arguments::Arguments::parse();
+    match commands::execute(arguments.command) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("orthopanel: {error}");
+            ExitCode::from(error.exit_code())
+        }
+    }
+}

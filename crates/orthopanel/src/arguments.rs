@@ -1,0 +1,132 @@
+//! The words of the command line, and the arguments that several commands share.
+
+use std::path::Path;
+
+use clap::{Args, Parser, Subcommand};
+use orthopanel_model::{ModeRange, PanelModel, Place, Ports};
+
+use crate::commands::{accelerance, export, modes, simulate};
+use crate::error::CommandError;
+
+/// From a hammer test of a honeycomb sandwich panel to its elastic constants and an FMU.
+///
+/// Units are SI; x and y are counted from the piece's centre, force and motion positive along +z.
+/// Exit status: 0 done, 1 the data or the model says no, 2 bad usage or input.
+#[derive(Parser)]
+#[command(version, propagate_version = true, max_term_width = 110)]
+pub struct Arguments {
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+#[derive(Subcommand)]
+pub enum Command {
+    Modes(modes::Arguments),
+    Accelerance(accelerance::Arguments),
+    Export(export::Arguments),
+    Simulate(simulate::Arguments),
+}
+
+/// How many modes go into an FMU or a simulation, beside the rigid ones, unless said.
+///
+/// Twenty reach past 16 kHz on the paper's thin pieces, four times the band of their hammer.
+pub const USUAL_MODES: ModeRange = ModeRange::Count(20);
+
+#[derive(Args)]
+pub struct ModeArguments {
+    /// Number of flexible modes beside the rigid ones [default: 20]
+    #[arg(long, value_name = "N", conflicts_with = "up_to")]
+    modes: Option<usize>,
+    /// Every flexible mode up to this frequency
+    #[arg(long, value_name = "HZ")]
+    up_to: Option<f64>,
+}
+
+impl ModeArguments {
+    pub fn range(&self) -> ModeRange {
+        match (self.modes, self.up_to) {
+            (_, Some(frequency)) => ModeRange::UpTo(frequency),
+            (Some(count), None) => ModeRange::Count(count),
+            (None, None) => USUAL_MODES,
+        }
+    }
+
+    pub fn is_given(&self) -> bool {
+        self.modes.is_some() || self.up_to.is_some()
+    }
+}
+
+#[derive(Args)]
+pub struct PortArguments {
+    /// Where force goes in, in m from the centre; may be repeated [default: the model's own force ports]
+    #[arg(long = "force", value_name = "X[,Y]", value_parser = place, allow_hyphen_values = true)]
+    forces: Vec<Place>,
+    /// Where motion comes out, in m from the centre; may be repeated [default: the model's own response ports]
+    #[arg(long = "response", value_name = "X[,Y]", value_parser = place, allow_hyphen_values = true)]
+    responses: Vec<Place>,
+}
+
+impl PortArguments {
+    /// The places given, and the model's own for a kind that is not given.
+    fn ports(&self, model: &PanelModel) -> Ports {
+        let or_own = |given: &Vec<Place>, own: &Vec<Place>| if given.is_empty() { own.clone() } else { given.clone() };
+        Ports {
+            forces: or_own(&self.forces, &model.ports.forces),
+            responses: or_own(&self.responses, &model.ports.responses),
+        }
+    }
+
+    /// The places given, or the model's own; neither kind may be empty.
+    pub fn needed(&self, model: &PanelModel, path: &Path) -> Result<Ports, CommandError> {
+        let ports = self.ports(model);
+        for (places, kind, key) in [(&ports.forces, "force", "forces"), (&ports.responses, "response", "responses")] {
+            if places.is_empty() {
+                return Err(CommandError::NoPort { path: path.into(), kind, key });
+            }
+        }
+        Ok(ports)
+    }
+
+    pub fn is_given(&self) -> bool {
+        !(self.forces.is_empty() && self.responses.is_empty())
+    }
+}
+
+/// Reads `X` or `X,Y` in m.
+pub fn place(text: &str) -> Result<Place, String> {
+    let (x, y) = text.split_once(',').unwrap_or((text, "0"));
+    let coordinate = |text: &str| match text.trim().parse::<f64>() {
+        Ok(value) if value.is_finite() => Ok(value),
+        _ => Err(format!("{text:?} is no finite number: give a place as X or X,Y in m, such as -0.3 or -0.3,0.02")),
+    };
+    Ok(Place { x: coordinate(x)?, y: coordinate(y)? })
+}
+
+/// Reads a frequency in Hz: finite, not negative.
+pub fn frequency(text: &str) -> Result<f64, String> {
+    match text.trim().parse::<f64>() {
+        Ok(value) if value.is_finite() && value >= 0.0 => Ok(value),
+        _ => Err("a frequency in Hz must be a finite number, not below zero".into()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory as _;
+
+    use super::*;
+
+    #[test]
+    fn arguments_are_consistent() {
+        Arguments::command().debug_assert();
+    }
+
+    #[test]
+    fn a_place_is_one_or_two_finite_numbers() {
+        assert_eq!(place("-0.3"), Ok(Place { x: -0.3, y: 0.0 }));
+        assert_eq!(place("-0.3, 0.02"), Ok(Place { x: -0.3, y: 0.02 }));
+        for text in ["", "a", "0.1,", "0.1,0.2,0.3", "nan", "0,inf"] {
+            assert!(place(text).is_err(), "{text:?} was read as a place");
+        }
+    }
+}

@@ -1,0 +1,92 @@
+//! `export`: an FMU of a model.
+
+use std::path::PathBuf;
+
+use orthopanel_export::{FmiVersion, Fmu, FmuOptions};
+use orthopanel_model::Ports;
+use serde::Serialize;
+
+use crate::arguments::{ModeArguments, PortArguments};
+use crate::error::{CommandError, InFile as _};
+use crate::{model_file, output};
+
+/// Write a model as an FMU for co-simulation: force in; acceleration, velocity and displacement out
+///
+/// No compiler is needed. Inputs are force_1, force_2, ... in N, outputs acceleration_1, velocity_1,
+/// displacement_1, ... in SI units, numbered in the order of the places given.
+///
+/// Example: orthopanel export out/model.json -o panel.fmu --fmi 3 --modes 6 --force -0.3 --response 0.3 --response 0,0.02
+#[derive(clap::Args)]
+#[command(verbatim_doc_comment)]
+pub struct Arguments {
+    /// Model file (orthopanel.model/1, JSON)
+    model: PathBuf,
+    /// FMU to write
+    #[arg(short, long, value_name = "X.fmu")]
+    output: PathBuf,
+    /// Version of the FMI standard
+    #[arg(long, value_name = "2|3", default_value = "2", value_parser = version)]
+    fmi: FmiVersion,
+    #[command(flatten)]
+    modes: ModeArguments,
+    #[command(flatten)]
+    ports: PortArguments,
+    /// Print one JSON object (orthopanel.export/1) on standard output
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Serialize)]
+struct Answer<'a> {
+    schema: &'static str,
+    file: &'a PathBuf,
+    fmi: &'static str,
+    rigid_modes: usize,
+    flexible_modes: usize,
+    highest_hz: f64,
+    ports: &'a Ports,
+}
+
+pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
+    let path = &arguments.model;
+    let model = model_file::read(path)?;
+    let ports = arguments.ports.needed(&model, path)?;
+    let seen = model.modal_model(arguments.modes.range(), &ports.forces, &ports.responses).in_file(path)?;
+    let frequencies: Vec<f64> =
+        seen.modes().iter().map(|mode| mode.angular_frequency / std::f64::consts::TAU).collect();
+    let rigid_modes = model.boundary.rigid_modes();
+    let fmu = Fmu::new(seen, ports.clone(), &options(arguments.fmi))?;
+    output::write(&arguments.output, &fmu.to_bytes()?)?;
+    let answer = Answer {
+        schema: "orthopanel.export/1",
+        file: &arguments.output,
+        fmi: if arguments.fmi == FmiVersion::Fmi2 { "2.0" } else { "3.0" },
+        rigid_modes,
+        flexible_modes: frequencies.len() - rigid_modes,
+        highest_hz: frequencies.last().copied().unwrap_or(0.0),
+        ports: &ports,
+    };
+    eprintln!(
+        "wrote {} (FMI {}, {rigid_modes} rigid and {} flexible modes up to {:.1} Hz)",
+        arguments.output.display(),
+        answer.fmi,
+        answer.flexible_modes,
+        answer.highest_hz
+    );
+    if arguments.json {
+        output::print_json(&answer);
+    }
+    Ok(())
+}
+
+fn options(version: FmiVersion) -> FmuOptions {
+    FmuOptions { version, ..FmuOptions::default() }
+}
+
+fn version(text: &str) -> Result<FmiVersion, String> {
+    match text {
+        "2" | "2.0" => Ok(FmiVersion::Fmi2),
+        "3" | "3.0" => Ok(FmiVersion::Fmi3),
+        _ => Err("must be 2 or 3".into()),
+    }
+}

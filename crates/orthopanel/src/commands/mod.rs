@@ -1,0 +1,18 @@
+//! One file a command.
+
+pub mod accelerance;
+pub mod export;
+pub mod modes;
+pub mod simulate;
+
+use crate::arguments::Command;
+use crate::error::CommandError;
+
+pub fn execute(command: Command) -> Result<(), CommandError> {
+    match command {
+        Command::Modes(arguments) => modes::execute(&arguments),
+        Command::Accelerance(arguments) => accelerance::execute(&arguments),
+        Command::Export(arguments) => export::execute(&arguments),
+        Command::Simulate(arguments) => simulate::execute(&arguments),
+    }
+}

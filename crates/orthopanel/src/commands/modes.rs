@@ -1,0 +1,77 @@
+//! `modes`: natural frequencies of a model.
+
+use std::path::PathBuf;
+
+use orthopanel_model::{BeamMode, ModeRange};
+use serde::Serialize;
+
+use crate::error::{CommandError, InFile as _};
+use crate::{model_file, output, tables};
+
+/// List the natural frequencies of a model, flexible modes from 1
+///
+/// Example: orthopanel modes out/model.json --count 6
+#[derive(clap::Args)]
+#[command(verbatim_doc_comment)]
+pub struct Arguments {
+    /// Model file (orthopanel.model/1, JSON)
+    model: PathBuf,
+    /// Number of flexible modes
+    #[arg(long, value_name = "N", default_value_t = 10)]
+    count: usize,
+    /// Print one JSON object (orthopanel.modes/1) on standard output
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Serialize)]
+struct Answer {
+    schema: &'static str,
+    modes: Vec<ModeEntry>,
+}
+
+#[derive(Serialize)]
+struct ModeEntry {
+    mode: usize,
+    frequency_hz: f64,
+    /// Nodal lines crossed along x and along y; a beam has none along y.
+    nodes: [usize; 2],
+    zeta: f64,
+}
+
+pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
+    let model = model_file::read(&arguments.model)?;
+    let modes = model.beam_modes(ModeRange::Count(arguments.count)).in_file(&arguments.model)?;
+    let entry = |(index, mode): (usize, &BeamMode)| ModeEntry {
+        mode: index + 1,
+        frequency_hz: mode.frequency(),
+        nodes: [nodes_along_x(mode, model.piece.length, index + 1), 0],
+        zeta: model.damping.ratio(index + 1),
+    };
+    let flexible = modes.iter().skip(model.boundary.rigid_modes());
+    let answer = Answer { schema: "orthopanel.modes/1", modes: flexible.enumerate().map(entry).collect() };
+    if arguments.json {
+        output::print_json(&answer);
+    } else {
+        let row = |entry: &ModeEntry| {
+            vec![
+                entry.mode.to_string(),
+                format!("{:.2}", entry.frequency_hz),
+                entry.nodes[0].to_string(),
+                format!("{:.3e}", entry.zeta),
+            ]
+        };
+        let rows: Vec<_> = answer.modes.iter().map(row).collect();
+        output::print(&tables::aligned(&["mode", "frequency [Hz]", "nodes along x", "zeta"], &rows));
+    }
+    Ok(())
+}
+
+/// Sign changes of the deflection between the ends.
+fn nodes_along_x(mode: &BeamMode, length: f64, number: usize) -> usize {
+    // Flexible mode m has at most m + 1 nodes; eight points between two of them part every pair.
+    let points = 8 * (number + 2);
+    let place = |index: usize| length * ((index as f64 + 0.5) / points as f64 - 0.5);
+    let deflections: Vec<f64> = (0..points).map(|index| mode.deflection(place(index))).collect();
+    deflections.windows(2).filter(|pair| matches!(pair, [left, right] if (*left < 0.0) != (*right < 0.0))).count()
+}

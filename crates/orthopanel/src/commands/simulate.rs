@@ -1,0 +1,108 @@
+//! `simulate`: response in time of a model, or of an FMU, to a measured or made-up force.
+
+use std::path::PathBuf;
+
+use serde::Serialize;
+
+use crate::arguments::{ModeArguments, PortArguments};
+use crate::error::{CommandError, InFile as _};
+use crate::force_file::ForceHistory;
+use crate::time_response::{Hold, Motion};
+use crate::{importer, model_file, output, time_response};
+
+/// Calculate the motion of a model, or of an FMU, under a force given against time
+///
+/// The force file is CSV with the columns time_s,force_n (several force places: time_s,force_1_n,force_2_n,...).
+/// The panel is at rest before the first sample. Between samples the force runs linearly, unless --hold held is
+/// given; each mode is then stepped exactly, so the samples may be as far apart as the force allows. An FMU is
+/// unpacked and run as a simulator would run it. Without -o the CSV (time_s,force_n,acceleration_m_s2,velocity_m_s,
+/// displacement_m) goes to standard output.
+///
+/// Example: orthopanel simulate out/panel.fmu --force-file examples/half-sine.csv -o response.csv
+#[derive(clap::Args)]
+#[command(verbatim_doc_comment)]
+pub struct Arguments {
+    /// Model file (orthopanel.model/1, JSON) or FMU written by `orthopanel export`
+    #[arg(value_name = "MODEL|X.fmu")]
+    model: PathBuf,
+    /// Force against time (CSV)
+    #[arg(long, value_name = "X.csv")]
+    force_file: PathBuf,
+    /// How the force runs between samples
+    #[arg(long, value_enum, default_value_t = Hold::Linear)]
+    hold: Hold,
+    /// CSV file to write
+    #[arg(short, long, value_name = "Y.csv")]
+    output: Option<PathBuf>,
+    #[command(flatten)]
+    modes: ModeArguments,
+    #[command(flatten)]
+    ports: PortArguments,
+    /// Print one JSON object (orthopanel.simulation/1) on standard output
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Serialize)]
+struct Answer<'a> {
+    schema: &'static str,
+    time_s: &'a [f64],
+    forces: &'a [Vec<f64>],
+    responses: Vec<ResponseEntry<'a>>,
+}
+
+#[derive(Serialize)]
+struct ResponseEntry<'a> {
+    acceleration_m_s2: &'a [f64],
+    velocity_m_s: &'a [f64],
+    displacement_m: &'a [f64],
+}
+
+pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
+    let (force, motions) =
+        if importer::is_archive(&arguments.model)? { run_fmu(arguments)? } else { run_model(arguments)? };
+    for (port, motion) in motions.iter().enumerate() {
+        eprintln!("response {}: peak acceleration {:.4e} m/s2", port + 1, motion.peak_acceleration());
+    }
+    if let Some(path) = &arguments.output {
+        output::write(path, time_response::csv(&force, &motions).as_bytes())?;
+        eprintln!("wrote {} ({} samples)", path.display(), force.time.len());
+    }
+    if arguments.json {
+        output::print_json(&answer(&force, &motions));
+    } else if arguments.output.is_none() {
+        output::print(&time_response::csv(&force, &motions));
+    }
+    Ok(())
+}
+
+fn run_model(arguments: &Arguments) -> Result<(ForceHistory, Vec<Motion>), CommandError> {
+    let path = &arguments.model;
+    let model = model_file::read(path)?;
+    let ports = arguments.ports.needed(&model, path)?;
+    let force = ForceHistory::read(&arguments.force_file, ports.forces.len())?;
+    let seen = model.modal_model(arguments.modes.range(), &ports.forces, &ports.responses).in_file(path)?;
+    let motions = time_response::simulate(&seen, &force, arguments.hold).in_file(path)?;
+    Ok((force, motions))
+}
+
+fn run_fmu(arguments: &Arguments) -> Result<(ForceHistory, Vec<Motion>), CommandError> {
+    if arguments.ports.is_given() || arguments.modes.is_given() {
+        return Err(CommandError::FixedInFmu { path: arguments.model.clone() });
+    }
+    importer::simulate(&arguments.model, |places| ForceHistory::read(&arguments.force_file, places), arguments.hold)
+}
+
+fn answer<'a>(force: &'a ForceHistory, motions: &'a [Motion]) -> Answer<'a> {
+    let responses = motions.iter().map(|motion| ResponseEntry {
+        acceleration_m_s2: &motion.acceleration,
+        velocity_m_s: &motion.velocity,
+        displacement_m: &motion.displacement,
+    });
+    Answer {
+        schema: "orthopanel.simulation/1",
+        time_s: &force.time,
+        forces: &force.forces,
+        responses: responses.collect(),
+    }
+}

@@ -1,0 +1,69 @@
+//! Everything that can go wrong in a command, and the exit status it leads to.
+
+use std::path::PathBuf;
+
+use fmi_rs::sim::SimulationError;
+use orthopanel_export::ExportError;
+use orthopanel_model::ModelError;
+use thiserror::Error;
+
+/// The data or the model says no.
+const SAYS_NO: u8 = 1;
+/// Bad usage or input.
+const BAD_INPUT: u8 = 2;
+
+/// What the command line refuses; the messages of the layers below stand in it as they are.
+#[derive(Debug, Error)]
+pub enum CommandError {
+    #[error("{}: cannot be read: {source}", .path.display())]
+    Unreadable { path: PathBuf, source: std::io::Error },
+    #[error("{}: cannot be written: {source}: name a file in a folder that exists and may be written to", .path.display())]
+    Unwritable { path: PathBuf, source: std::io::Error },
+    #[error("{}: {source}", .path.display())]
+    Model { path: PathBuf, source: ModelError },
+    #[error("{}: no {kind} place: give --{kind} X[,Y], or write ports.{key} into the model file", .path.display())]
+    NoPort { path: PathBuf, kind: &'static str, key: &'static str },
+    #[error("{option} {value}: {remedy}")]
+    Option { option: &'static str, value: String, remedy: String },
+    #[error("{}{}: {problem}", .path.display(), line.map_or(String::new(), |line| format!(":{line}")))]
+    ForceFile { path: PathBuf, line: Option<u64>, problem: String },
+    #[error("{}: not an FMU that orthopanel wrote: {problem}", .path.display())]
+    ForeignFmu { path: PathBuf, problem: String },
+    #[error(
+        "{}: modes and places are fixed inside an FMU: leave out --modes, --up-to, --force and --response, or give them \
+         to `orthopanel export`", .path.display()
+    )]
+    FixedInFmu { path: PathBuf },
+    #[error("{}: the FMU fails at {call}", .path.display())]
+    FmuCall { path: PathBuf, call: String },
+    #[error("{}: {source}", .path.display())]
+    Import { path: PathBuf, source: SimulationError },
+    #[error(transparent)]
+    Export(#[from] ExportError),
+    #[error("the picture {name} cannot be drawn: {problem}")]
+    Picture { name: &'static str, problem: String },
+}
+
+impl CommandError {
+    /// 1 where the data or the model says no, 2 for bad usage or input.
+    pub fn exit_code(&self) -> u8 {
+        match self {
+            Self::Model { source: ModelError::Unsupported(_) | ModelError::Eigenproblem, .. }
+            | Self::FmuCall { .. }
+            | Self::Picture { .. }
+            | Self::Export(ExportError::Assemble(_)) => SAYS_NO,
+            _ => BAD_INPUT,
+        }
+    }
+}
+
+/// Says which file a refusal of the model is about.
+pub trait InFile<T> {
+    fn in_file(self, path: &std::path::Path) -> Result<T, CommandError>;
+}
+
+impl<T> InFile<T> for Result<T, ModelError> {
+    fn in_file(self, path: &std::path::Path) -> Result<T, CommandError> {
+        self.map_err(|source| CommandError::Model { path: path.into(), source })
+    }
+}

@@ -1,0 +1,111 @@
+//! The force file of `simulate`: `time_s,force_n`, or `time_s,force_1_n,force_2_n,...` for several force places.
+
+use std::path::Path;
+
+use crate::error::CommandError;
+
+/// Forces against time, as read: at least two samples, time rising, every number finite.
+pub struct ForceHistory {
+    /// Time \[s\].
+    pub time: Vec<f64>,
+    /// Force \[N\], one column a force place.
+    pub forces: Vec<Vec<f64>>,
+}
+
+impl ForceHistory {
+    /// Forces of all places at sample `index`.
+    pub fn at(&self, index: usize) -> Vec<f64> {
+        self.forces.iter().map(|column| column.get(index).copied().unwrap_or(0.0)).collect()
+    }
+
+    /// Reads the columns for `places` force places; other columns are left alone.
+    pub fn read(path: &Path, places: usize) -> Result<Self, CommandError> {
+        let text =
+            std::fs::read_to_string(path).map_err(|source| CommandError::Unreadable { path: path.into(), source })?;
+        Self::from_csv(&text, path, places)
+    }
+
+    fn from_csv(text: &str, path: &Path, places: usize) -> Result<Self, CommandError> {
+        let fault = |line: Option<u64>, problem: String| CommandError::ForceFile { path: path.into(), line, problem };
+        let broken = |error: csv::Error| fault(error.position().map(csv::Position::line), error.to_string());
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        let mut reader =
+            csv::ReaderBuilder::new().comment(Some(b'#')).trim(csv::Trim::All).from_reader(text.as_bytes());
+        let names = reader.headers().map_err(broken)?.clone();
+        let wanted: Vec<Vec<String>> = std::iter::once(vec!["time_s".to_owned()])
+            .chain((1..=places).map(|port| force_names(port, places)))
+            .collect();
+        let mut positions = Vec::with_capacity(wanted.len());
+        for alternatives in &wanted {
+            let position = names.iter().position(|name| alternatives.iter().any(|wanted| wanted == name));
+            positions.push(position.ok_or_else(|| {
+                let name = alternatives.first().map_or("", String::as_str);
+                fault(Some(1), format!("column {name} is missing: the columns are {}", columns(&wanted)))
+            })?);
+        }
+        let mut history = Self { time: Vec::new(), forces: vec![Vec::new(); places] };
+        for row in reader.records() {
+            let row = row.map_err(broken)?;
+            let line = row.position().map(csv::Position::line);
+            for (column, &position) in positions.iter().enumerate() {
+                let text = row.get(position).unwrap_or("");
+                let value = text.parse().ok().filter(|value: &f64| value.is_finite());
+                let name = names.get(position).unwrap_or("");
+                let value = value.ok_or_else(|| fault(line, format!("{name} = {text:?}: must be a finite number")))?;
+                match column.checked_sub(1) {
+                    Some(port) => history.forces[port].push(value),
+                    None => history.push_time(value).map_err(|problem| fault(line, problem))?,
+                }
+            }
+        }
+        if history.time.len() < 2 {
+            return Err(fault(None, format!("{} samples: give at least two", history.time.len())));
+        }
+        Ok(history)
+    }
+
+    fn push_time(&mut self, time: f64) -> Result<(), String> {
+        match self.time.last() {
+            Some(&before) if time <= before => Err(format!("time_s = {time} after {before}: time must rise")),
+            _ => {
+                self.time.push(time);
+                Ok(())
+            }
+        }
+    }
+}
+
+/// Names under which a force column may stand.
+fn force_names(port: usize, places: usize) -> Vec<String> {
+    let numbered = format!("force_{port}_n");
+    if places == 1 { vec!["force_n".into(), numbered] } else { vec![numbered] }
+}
+
+fn columns(wanted: &[Vec<String>]) -> String {
+    wanted.iter().filter_map(|names| names.first()).cloned().collect::<Vec<_>>().join(",")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read(text: &str, places: usize) -> Result<ForceHistory, String> {
+        ForceHistory::from_csv(text, Path::new("f.csv"), places).map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn columns_are_found_by_name_in_any_order() {
+        let history = read("force_2_n, time_s, note, force_1_n\n2,0,a,1\n4,0.5,b,3\n", 2).expect("a force file");
+        assert_eq!(history.time, [0.0, 0.5]);
+        assert_eq!([history.at(0), history.at(1)], [[1.0, 2.0], [3.0, 4.0]]);
+    }
+
+    #[test]
+    fn faults_name_file_line_and_remedy() {
+        let fault = |text, places| read(text, places).err().expect("a fault");
+        assert_eq!(fault("time_s\n0\n1\n", 1), "f.csv:1: column force_n is missing: the columns are time_s,force_n");
+        assert_eq!(fault("time_s,force_n\n0,1\n0,1\n", 1), "f.csv:3: time_s = 0 after 0: time must rise");
+        assert_eq!(fault("time_s,force_n\n0,1\n1,nan\n", 1), "f.csv:3: force_n = \"nan\": must be a finite number");
+        assert_eq!(fault("time_s,force_n\n0,1\n", 1), "f.csv: 1 samples: give at least two");
+    }
+}

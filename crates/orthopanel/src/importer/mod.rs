@@ -1,0 +1,146 @@
+//! Running an FMU through the crate `fmi-rs`: the FMU is unpacked, loaded and stepped as any simulator would do it.
+
+mod fmi2;
+mod fmi3;
+
+use std::path::Path;
+
+use fmi_rs::model_description::{FMIMajorVersion, peek_fmi_major_version};
+use fmi_rs::sim::SimulationError;
+
+use crate::error::CommandError;
+use crate::force_file::ForceHistory;
+use crate::time_response::{Hold, Motion, steps};
+
+/// One FMU instance, whatever its version. `Err` carries the name of the call that failed.
+trait Instance {
+    /// Sets whether forces run linearly over a step; before [`Instance::initialise`].
+    fn set_force_linear(&self, linear: bool) -> Result<(), &'static str>;
+    fn set_forces(&self, forces: &[f64]) -> Result<(), &'static str>;
+    /// Starts the clock at `start` \[s\].
+    fn initialise(&self, start: f64) -> Result<(), &'static str>;
+    fn step(&self, from: f64, step: f64) -> Result<(), &'static str>;
+    /// Accelerations of all responses, then velocities, then displacements.
+    fn outputs(&self) -> Result<Vec<f64>, &'static str>;
+    fn terminate(&self) -> Result<(), &'static str>;
+}
+
+/// Value references of the variables that orthopanel's FMUs have.
+struct References {
+    force_linear: u32,
+    forces: Vec<u32>,
+    outputs: Vec<u32>,
+}
+
+impl References {
+    /// Finds the variables by name; `Err` tells which is missing.
+    fn find(reference: impl Fn(&str) -> Option<u32>) -> Result<Self, String> {
+        let numbered =
+            |kind: &str| -> Vec<u32> { (1..).map_while(|port| reference(&format!("{kind}_{port}"))).collect() };
+        let needed = |kind: &str| match numbered(kind) {
+            found if found.is_empty() => Err(format!("it has no variable {kind}_1")),
+            found => Ok(found),
+        };
+        let mut outputs = Vec::new();
+        for kind in ["acceleration", "velocity", "displacement"] {
+            outputs.append(&mut needed(kind)?);
+        }
+        let force_linear = reference("force_linear").ok_or("it has no variable force_linear")?;
+        Ok(Self { force_linear, forces: needed("force")?, outputs })
+    }
+}
+
+/// True where the file is a zip archive, as every FMU is.
+pub fn is_archive(path: &Path) -> Result<bool, CommandError> {
+    use std::io::Read as _;
+    let unreadable = |source| CommandError::Unreadable { path: path.into(), source };
+    let mut start = Vec::new();
+    std::fs::File::open(path).map_err(unreadable)?.take(4).read_to_end(&mut start).map_err(unreadable)?;
+    Ok(start == b"PK\x03\x04")
+}
+
+/// Runs the FMU at `path`; `force` is read once the FMU has told how many force places it has.
+pub fn simulate(
+    path: &Path,
+    force: impl FnOnce(usize) -> Result<ForceHistory, CommandError>,
+    hold: Hold,
+) -> Result<(ForceHistory, Vec<Motion>), CommandError> {
+    let import = |source| CommandError::Import { path: path.into(), source };
+    match version(path).map_err(import)? {
+        FMIMajorVersion::V2 => {
+            let fmu = fmi_rs::fmi2::builder::FMU2Builder::new(&path).map_err(import)?;
+            let references = fmi2::references(&fmu.model_description);
+            let references = references.map_err(|problem| foreign(path, problem))?;
+            let force = force(references.forces.len())?;
+            let instance =
+                fmi2::Fmi2 { instance: fmu.instantiate_cs("panel").map_err(import)?, references: &references };
+            let motions = run(&instance, &references, &force, hold).map_err(|call| failed(path, call))?;
+            Ok((force, motions))
+        }
+        FMIMajorVersion::V3 => {
+            let mut fmu = fmi_rs::fmi3::builder::FMU3Builder::new(&path).map_err(import)?;
+            (fmu.eventModeUsed, fmu.earlyReturnAllowed) = (false, false);
+            let references = fmi3::references(&fmu.model_description);
+            let references = references.map_err(|problem| foreign(path, problem))?;
+            let force = force(references.forces.len())?;
+            let instance =
+                fmi3::Fmi3 { instance: fmu.instantiate_cs("panel").map_err(import)?, references: &references };
+            let motions = run(&instance, &references, &force, hold).map_err(|call| failed(path, call))?;
+            Ok((force, motions))
+        }
+    }
+}
+
+fn version(path: &Path) -> Result<FMIMajorVersion, SimulationError> {
+    let folder = tempfile::tempdir().map_err(SimulationError::io(path))?;
+    fmi_rs::zip::extract_zip_archive(path, &folder)?;
+    Ok(peek_fmi_major_version(&folder.path().join("modelDescription.xml"))?)
+}
+
+fn foreign(path: &Path, problem: String) -> CommandError {
+    CommandError::ForeignFmu { path: path.into(), problem }
+}
+
+fn failed(path: &Path, call: &str) -> CommandError {
+    CommandError::FmuCall { path: path.into(), call: call.into() }
+}
+
+/// The co-simulation itself, at the samples of the force.
+fn run(
+    instance: &dyn Instance,
+    references: &References,
+    force: &ForceHistory,
+    hold: Hold,
+) -> Result<Vec<Motion>, &'static str> {
+    let responses = references.outputs.len() / 3;
+    let mut motions = vec![Motion::default(); responses];
+    instance.set_force_linear(hold == Hold::Linear)?;
+    instance.initialise(force.time.first().copied().unwrap_or(0.0))?;
+    instance.set_forces(&force.at(0))?;
+    record(instance, &mut motions)?;
+    for (index, (step, from)) in steps(&force.time).into_iter().zip(&force.time).enumerate() {
+        let forces = force.at(index + 1);
+        // A linear force is set to its value at the step's end before the step, a held one after it.
+        if hold == Hold::Linear {
+            instance.set_forces(&forces)?;
+        }
+        instance.step(*from, step)?;
+        if hold == Hold::Held {
+            instance.set_forces(&forces)?;
+        }
+        record(instance, &mut motions)?;
+    }
+    instance.terminate()?;
+    Ok(motions)
+}
+
+fn record(instance: &dyn Instance, motions: &mut [Motion]) -> Result<(), &'static str> {
+    let values = instance.outputs()?;
+    let count = motions.len();
+    for (port, motion) in motions.iter_mut().enumerate() {
+        motion.acceleration.extend(values.get(port));
+        motion.velocity.extend(values.get(count + port));
+        motion.displacement.extend(values.get(2 * count + port));
+    }
+    Ok(())
+}

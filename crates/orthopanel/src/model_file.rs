@@ -1,0 +1,13 @@
+//! Reading a model file (`orthopanel.model/1`).
+
+use std::path::Path;
+
+use orthopanel_model::PanelModel;
+
+use crate::error::{CommandError, InFile as _};
+
+pub fn read(path: &Path) -> Result<PanelModel, CommandError> {
+    let text =
+        std::fs::read_to_string(path).map_err(|source| CommandError::Unreadable { path: path.into(), source })?;
+    PanelModel::from_json(&text).in_file(path)
+}

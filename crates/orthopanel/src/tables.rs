@@ -1,0 +1,29 @@
+//! Aligned tables for people.
+
+/// Text rows under a heading; columns are set right-aligned, two blanks apart, the first left-aligned.
+pub fn aligned(heading: &[&str], rows: &[Vec<String>]) -> String {
+    let width = |column: usize| {
+        let cells = rows.iter().filter_map(|row| row.get(column).map(|cell| cell.chars().count()));
+        cells.chain(heading.get(column).map(|cell| cell.chars().count())).max().unwrap_or(0)
+    };
+    let widths: Vec<usize> = (0..heading.len()).map(width).collect();
+    let line = |cells: Vec<&str>| {
+        let padded = cells.iter().zip(&widths).enumerate().map(|(column, (cell, &width))| {
+            if column == 0 { format!("{cell:<width$}") } else { format!("{cell:>width$}") }
+        });
+        padded.collect::<Vec<_>>().join("  ").trim_end().to_owned() + "\n"
+    };
+    let body = rows.iter().map(|row| line(row.iter().map(String::as_str).collect()));
+    line(heading.to_vec()) + &body.collect::<String>()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn columns_line_up() {
+        let table = aligned(&["mode", "Hz"], &[vec!["1".into(), "321.4".into()], vec!["10".into(), "9.0".into()]]);
+        assert_eq!(table, "mode     Hz\n1     321.4\n10      9.0\n");
+    }
+}

@@ -1,0 +1,114 @@
+//! Response of a model to a force history, and the table it is written as.
+
+use orthopanel_model::{ModalModel, ModalStepper, ModelError};
+
+use crate::force_file::ForceHistory;
+use crate::output;
+
+/// How a force runs between two samples.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub enum Hold {
+    /// In a straight line from sample to sample
+    Linear,
+    /// At the value of the earlier sample
+    Held,
+}
+
+/// What one response place does, sample by sample.
+#[derive(Debug, Clone, Default)]
+pub struct Motion {
+    /// \[m/s²\]
+    pub acceleration: Vec<f64>,
+    /// \[m/s\]
+    pub velocity: Vec<f64>,
+    /// \[m\]
+    pub displacement: Vec<f64>,
+}
+
+impl Motion {
+    pub fn peak_acceleration(&self) -> f64 {
+        self.acceleration.iter().fold(0.0, |peak, value| peak.max(value.abs()))
+    }
+}
+
+/// Sizes of the steps between samples; samples that are even but for the rounding of their times get one size, since a
+/// stepper is quick only while its step stays the same.
+pub fn steps(time: &[f64]) -> Vec<f64> {
+    let differences = || time.windows(2).map(|pair| pair[1] - pair[0]);
+    let (Some(&first), Some(&last)) = (time.first(), time.last()) else { return Vec::new() };
+    let even = (last - first) / (time.len() - 1).max(1) as f64;
+    let rounding = 8.0 * f64::EPSILON * first.abs().max(last.abs());
+    if differences().all(|step| (step - even).abs() <= rounding) {
+        vec![even; time.len() - 1]
+    } else {
+        differences().collect()
+    }
+}
+
+/// Steps the model, at rest before the first sample, through the force history; one [`Motion`] a response port.
+pub fn simulate(model: &ModalModel, force: &ForceHistory, hold: Hold) -> Result<Vec<Motion>, ModelError> {
+    let mut stepper = ModalStepper::new(model);
+    let mut motions = vec![Motion::default(); model.response_count()];
+    stepper.set_forces(&force.at(0))?;
+    record(&stepper, &mut motions);
+    for (index, step) in steps(&force.time).into_iter().enumerate() {
+        let forces = force.at(index + 1);
+        match hold {
+            Hold::Linear => stepper.advance_linear(step, &forces)?,
+            Hold::Held => {
+                stepper.advance_held(step)?;
+                stepper.set_forces(&forces)?;
+            }
+        }
+        record(&stepper, &mut motions);
+    }
+    Ok(motions)
+}
+
+fn record(stepper: &ModalStepper, motions: &mut [Motion]) {
+    for (port, motion) in motions.iter_mut().enumerate() {
+        motion.acceleration.extend(stepper.acceleration(port));
+        motion.velocity.extend(stepper.velocity(port));
+        motion.displacement.extend(stepper.displacement(port));
+    }
+}
+
+/// Time, forces and motions as CSV: `time_s,force_n,acceleration_m_s2,velocity_m_s,displacement_m`; where there are
+/// several places of a kind their columns are numbered, as in `acceleration_2_m_s2`.
+pub fn csv(force: &ForceHistory, motions: &[Motion]) -> String {
+    let mut names = vec!["time_s".to_owned()];
+    let mut columns: Vec<&[f64]> = vec![&force.time];
+    for (port, column) in force.forces.iter().enumerate() {
+        names.push(name("force", "n", port, force.forces.len()));
+        columns.push(column);
+    }
+    let quantities: [(&str, &str, fn(&Motion) -> &Vec<f64>); 3] = [
+        ("acceleration", "m_s2", |motion| &motion.acceleration),
+        ("velocity", "m_s", |motion| &motion.velocity),
+        ("displacement", "m", |motion| &motion.displacement),
+    ];
+    for (quantity, unit, of) in quantities {
+        for (port, motion) in motions.iter().enumerate() {
+            names.push(name(quantity, unit, port, motions.len()));
+            columns.push(of(motion));
+        }
+    }
+    output::csv(&names, &columns)
+}
+
+fn name(quantity: &str, unit: &str, port: usize, ports: usize) -> String {
+    if ports == 1 { format!("{quantity}_{unit}") } else { format!("{quantity}_{}_{unit}", port + 1) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn even_times_give_one_step_and_uneven_ones_their_own() {
+        let even: Vec<f64> = (0..1000).map(|index| f64::from(index) * 1e-5).collect();
+        let sizes = steps(&even);
+        assert!(sizes.iter().all(|&size| size == sizes[0]));
+        assert_eq!(steps(&[0.0, 0.5, 0.75]), [0.5, 0.25]);
+    }
+}
