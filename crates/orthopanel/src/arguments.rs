@@ -5,7 +5,7 @@ use std::path::Path;
 use clap::{Args, Parser, Subcommand};
 use orthopanel_model::{ModeRange, PanelModel, Place, Ports};
 
-use crate::commands::{accelerance, export, modes, simulate};
+use crate::commands::{accelerance, export, identify, modes, run, simulate};
 use crate::error::CommandError;
 
 /// From a hammer test of a honeycomb sandwich panel to its elastic constants and an FMU.
@@ -21,6 +21,8 @@ pub struct Arguments {
 
 #[derive(Subcommand)]
 pub enum Command {
+    Run(run::Arguments),
+    Identify(identify::Arguments),
     Modes(modes::Arguments),
     Accelerance(accelerance::Arguments),
     Export(export::Arguments),
@@ -31,6 +33,9 @@ pub enum Command {
 ///
 /// Twenty reach past 16 kHz on the paper's thin pieces, four times the band of their hammer.
 pub const USUAL_MODES: ModeRange = ModeRange::Count(20);
+
+/// Flexible modes in an accelerance unless said: the valleys near a driving point gather the tails of very high modes.
+pub const DENSE_MODES: ModeRange = ModeRange::Count(1000);
 
 #[derive(Args)]
 pub struct ModeArguments {
@@ -83,6 +88,7 @@ impl PortArguments {
             if places.is_empty() {
                 return Err(CommandError::NoPort { path: path.into(), kind, key });
             }
+            on_piece(model, kind, places)?;
         }
         Ok(ports)
     }
@@ -90,6 +96,12 @@ impl PortArguments {
     pub fn is_given(&self) -> bool {
         !(self.forces.is_empty() && self.responses.is_empty())
     }
+}
+
+/// Checks that the places given with `--{option}` lie on the piece.
+pub fn on_piece(model: &PanelModel, option: &'static str, places: &[Place]) -> Result<(), CommandError> {
+    let refuse = |place: Place| move |source| CommandError::Place { option, place, source };
+    places.iter().try_for_each(|&place| model.piece.contains(place).map_err(refuse(place)))
 }
 
 /// Reads `X` or `X,Y` in m.

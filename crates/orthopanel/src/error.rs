@@ -3,8 +3,10 @@
 use std::path::PathBuf;
 
 use fmi_rs::sim::SimulationError;
+use orthopanel_data::DataError;
 use orthopanel_export::ExportError;
-use orthopanel_model::ModelError;
+use orthopanel_identify::IdentifyError;
+use orthopanel_model::{ModelError, Place};
 use thiserror::Error;
 
 /// The data or the model says no.
@@ -17,13 +19,19 @@ const BAD_INPUT: u8 = 2;
 pub enum CommandError {
     #[error("{}: cannot be read: {source}", .path.display())]
     Unreadable { path: PathBuf, source: std::io::Error },
-    #[error("{}: cannot be written: {source}: name a file in a folder that exists and may be written to", .path.display())]
-    Unwritable { path: PathBuf, source: std::io::Error },
+    #[error("{}: cannot be written: {reason}: name a place in a folder that exists and may be written to", .path.display())]
+    Unwritable { path: PathBuf, reason: String },
+    #[error(transparent)]
+    Data(#[from] DataError),
+    #[error("{}: {source}", .path.display())]
+    Identify { path: PathBuf, source: IdentifyError },
     #[error("{}: {source}", .path.display())]
     Model { path: PathBuf, source: ModelError },
     #[error("{}: no {kind} place: give --{kind} X[,Y], or write ports.{key} into the model file", .path.display())]
     NoPort { path: PathBuf, kind: &'static str, key: &'static str },
-    #[error("{option} {value}: {remedy}")]
+    #[error("--{option} {},{}: {source}", .place.x, .place.y)]
+    Place { option: &'static str, place: Place, source: ModelError },
+    #[error("--{option} {value}: {remedy}")]
     Option { option: &'static str, value: String, remedy: String },
     #[error("{}{}: {problem}", .path.display(), line.map_or(String::new(), |line| format!(":{line}")))]
     ForceFile { path: PathBuf, line: Option<u64>, problem: String },
@@ -49,9 +57,11 @@ impl CommandError {
     pub fn exit_code(&self) -> u8 {
         match self {
             Self::Model { source: ModelError::Unsupported(_) | ModelError::Eigenproblem, .. }
+            | Self::Data(DataError::NoUsableHit { .. })
             | Self::FmuCall { .. }
             | Self::Picture { .. }
             | Self::Export(ExportError::Assemble(_)) => SAYS_NO,
+            Self::Identify { source, .. } if !source.is_bad_input() => SAYS_NO,
             _ => BAD_INPUT,
         }
     }

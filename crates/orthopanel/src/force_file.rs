@@ -18,6 +18,20 @@ impl ForceHistory {
         self.forces.iter().map(|column| column.get(index).copied().unwrap_or(0.0)).collect()
     }
 
+    /// A half-sine hit at the first of `places` force places: 100 N, 0.5 ms, then silence up to 50 ms.
+    pub fn half_sine(places: usize) -> Self {
+        const PEAK: f64 = 100.0;
+        const DURATION: f64 = 5e-4;
+        const RATE: f64 = 1e5;
+        let time: Vec<f64> = (0..=5000).map(|sample| f64::from(sample) / RATE).collect();
+        let pulse =
+            |&time: &f64| if time < DURATION { PEAK * (std::f64::consts::PI * time / DURATION).sin() } else { 0.0 };
+        let hit: Vec<f64> = time.iter().map(pulse).collect();
+        let silence = vec![0.0; time.len()];
+        let forces = std::iter::once(hit).chain(std::iter::repeat(silence)).take(places).collect();
+        Self { time, forces }
+    }
+
     /// Reads the columns for `places` force places; other columns are left alone.
     pub fn read(path: &Path, places: usize) -> Result<Self, CommandError> {
         let text =

@@ -4,9 +4,11 @@ mod arguments;
 mod commands;
 mod error;
 mod force_file;
+mod identified;
 mod importer;
 mod model_file;
 mod output;
+mod pictures;
 mod tables;
 mod time_response;
 

@@ -4,13 +4,60 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
+use tempfile::NamedTempFile;
 
 use crate::error::CommandError;
 
-/// Writes `content` beside `path`, then renames: on failure nothing is left, and an older file stays as it was.
-pub fn write(path: &Path, content: &[u8]) -> Result<(), CommandError> {
-    let fail = |source| CommandError::Unwritable { path: path.into(), source };
+/// Files of one command, gathered first and written together: all of them, or none.
+#[derive(Default)]
+pub struct Files(Vec<(PathBuf, Vec<u8>)>);
+
+impl Files {
+    pub fn add(&mut self, path: impl Into<PathBuf>, content: impl Into<Vec<u8>>) {
+        self.0.push((path.into(), content.into()));
+    }
+
+    /// Writes each file beside its place, then renames them all: on failure nothing new is left, and an older file is
+    /// as it was unless its own rename was done.
+    pub fn write(self) -> Result<Vec<PathBuf>, CommandError> {
+        let stage_one = |(path, content): (PathBuf, Vec<u8>)| stage(&path, &content).map(|file| (file, path));
+        let staged: Vec<_> = self.0.into_iter().map(stage_one).collect::<Result<_, _>>()?;
+        let mut written: Vec<PathBuf> = Vec::with_capacity(staged.len());
+        for (file, path) in staged {
+            if let Err(error) = file.persist(&path) {
+                // The first error is the one to report; clearing up after it is best effort.
+                written.iter().for_each(|path| drop(std::fs::remove_file(path)));
+                return Err(unwritable(&path, &error.error));
+            }
+            written.push(path);
+        }
+        Ok(written)
+    }
+
+    /// As [`Files::write`], into `folder`, which is made where it is not there.
+    pub fn write_into(self, folder: &Path) -> Result<Vec<PathBuf>, CommandError> {
+        let made = !folder.exists();
+        std::fs::create_dir_all(folder).map_err(|error| unwritable(folder, &error))?;
+        let inside = self.0.into_iter().map(|(path, content)| (folder.join(path), content));
+        Self(inside.collect()).write().inspect_err(|_| {
+            if made {
+                let _ = std::fs::remove_dir(folder);
+            }
+        })
+    }
+}
+
+/// Writes one file, or leaves nothing behind.
+pub fn write(path: &Path, content: impl Into<Vec<u8>>) -> Result<(), CommandError> {
+    let mut files = Files::default();
+    files.add(path, content);
+    files.write().map(drop)
+}
+
+fn stage(path: &Path, content: &[u8]) -> Result<NamedTempFile, CommandError> {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    // Asked first, since the error of the temporary file would name a file that nobody knows.
+    std::fs::metadata(folder).map_err(|error| unwritable(path, &error))?;
     let mut builder = tempfile::Builder::new();
     builder.prefix(".orthopanel-");
     #[cfg(unix)]
@@ -19,49 +66,24 @@ pub fn write(path: &Path, content: &[u8]) -> Result<(), CommandError> {
         use std::os::unix::fs::PermissionsExt as _;
         builder.permissions(std::fs::Permissions::from_mode(0o666));
     }
-    let mut file = builder.tempfile_in(folder).map_err(fail)?;
-    file.write_all(content).map_err(fail)?;
-    file.persist(path).map_err(|error| fail(error.error))?;
-    Ok(())
+    let mut file = builder.tempfile_in(folder).map_err(|error| unwritable(path, &error.kind()))?;
+    file.write_all(content).map_err(|error| unwritable(path, &error.kind()))?;
+    Ok(file)
 }
 
-/// The files of one command, gathered first and written together: all of them, or none.
-#[derive(Default)]
-pub struct Folder {
-    files: Vec<(String, Vec<u8>)>,
+fn unwritable(path: &Path, reason: &impl std::fmt::Display) -> CommandError {
+    CommandError::Unwritable { path: path.into(), reason: reason.to_string() }
 }
 
-impl Folder {
-    pub fn add(&mut self, name: impl Into<String>, content: impl Into<Vec<u8>>) {
-        self.files.push((name.into(), content.into()));
-    }
-
-    /// Writes all files into `folder`, which is made where it is not there; gives their paths.
-    pub fn write(self, folder: &Path) -> Result<Vec<PathBuf>, CommandError> {
-        let made = !folder.exists();
-        std::fs::create_dir_all(folder).map_err(|source| CommandError::Unwritable { path: folder.into(), source })?;
-        let mut written = Vec::new();
-        for (name, content) in self.files {
-            let path = folder.join(name);
-            if let Err(error) = write(&path, &content) {
-                // The first error is the one to report; clearing up after it is best effort.
-                if made {
-                    let _ = std::fs::remove_dir_all(folder);
-                } else {
-                    written.iter().for_each(|path: &PathBuf| drop(std::fs::remove_file(path)));
-                }
-                return Err(error);
-            }
-            written.push(path);
-        }
-        Ok(written)
-    }
+/// One JSON object on one line.
+pub fn json(value: &impl Serialize) -> String {
+    // Every answer is made of plain numbers, texts and lists: serialisation has nothing to fail on.
+    serde_json::to_string(value).unwrap_or_default() + "\n"
 }
 
 /// Prints one JSON object on standard output.
 pub fn print_json(value: &impl Serialize) {
-    // Every answer is made of plain numbers, texts and lists: serialisation has nothing to fail on.
-    print(&(serde_json::to_string(value).unwrap_or_default() + "\n"));
+    print(&json(value));
 }
 
 /// Prints on standard output; a reader that has gone away (`| head`) is no error.
@@ -100,13 +122,13 @@ mod tests {
     }
 
     #[test]
-    fn a_folder_that_cannot_be_filled_is_not_left_half_full() {
+    fn files_are_written_all_or_none() {
         let home = tempfile::tempdir().expect("a temporary folder");
         let folder = home.path().join("out");
-        let mut files = Folder::default();
+        let mut files = Files::default();
         files.add("first", "1");
         files.add("no-such-folder/second", "2");
-        assert!(matches!(files.write(&folder), Err(CommandError::Unwritable { .. })));
+        assert!(matches!(files.write_into(&folder), Err(CommandError::Unwritable { .. })));
         assert!(!folder.exists());
     }
 }

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use orthopanel_model::{ModeRange, Place};
 use serde::Serialize;
 
-use crate::arguments::{frequency, place};
+use crate::arguments::{DENSE_MODES, frequency, on_piece, place};
 use crate::error::{CommandError, InFile as _};
 use crate::{model_file, output};
 
@@ -36,9 +36,9 @@ pub struct Arguments {
     /// Number of lines
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
     lines: u32,
-    /// Number of flexible modes in the sum
-    #[arg(long, value_name = "N", default_value_t = 1000)]
-    modes: usize,
+    /// Number of flexible modes in the sum [default: 1000]
+    #[arg(long, value_name = "N")]
+    modes: Option<usize>,
     /// CSV file to write
     #[arg(short, long, value_name = "X.csv")]
     output: Option<PathBuf>,
@@ -61,10 +61,13 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
     let &Arguments { force, response, from, to, lines, .. } = arguments;
     if to < from || (to == from) != (lines == 1) {
         let remedy = format!("must lie above --from {from}, or be the same for a single line");
-        return Err(CommandError::Option { option: "--to", value: to.to_string(), remedy });
+        return Err(CommandError::Option { option: "to", value: to.to_string(), remedy });
     }
     let model = model_file::read(&arguments.model)?;
-    let seen = model.modal_model(ModeRange::Count(arguments.modes), &[force], &[response]).in_file(&arguments.model)?;
+    on_piece(&model, "force", &[force])?;
+    on_piece(&model, "response", &[response])?;
+    let range = arguments.modes.map_or(DENSE_MODES, ModeRange::Count);
+    let seen = model.modal_model(range, &[force], &[response]).in_file(&arguments.model)?;
     let step = if lines > 1 { (to - from) / f64::from(lines - 1) } else { 0.0 };
     let frequency_hz: Vec<f64> = (0..lines).map(|line| from + f64::from(line) * step).collect();
     let (real, imag) = frequency_hz
@@ -76,7 +79,7 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
     let names = ["frequency_hz", "real", "imag"].map(String::from);
     let table = || output::csv(&names, &[&answer.frequency_hz, &answer.real, &answer.imag]);
     if let Some(path) = &arguments.output {
-        output::write(path, table().as_bytes())?;
+        output::write(path, table())?;
         eprintln!("wrote {} ({lines} lines)", path.display());
     }
     if arguments.json {

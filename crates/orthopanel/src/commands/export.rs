@@ -56,7 +56,7 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
         seen.modes().iter().map(|mode| mode.angular_frequency / std::f64::consts::TAU).collect();
     let rigid_modes = model.boundary.rigid_modes();
     let fmu = Fmu::new(seen, ports.clone(), &options(arguments.fmi))?;
-    output::write(&arguments.output, &fmu.to_bytes()?)?;
+    output::write(&arguments.output, fmu.to_bytes()?)?;
     let answer = Answer {
         schema: "orthopanel.export/1",
         file: &arguments.output,

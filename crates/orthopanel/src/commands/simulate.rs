@@ -65,7 +65,7 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
         eprintln!("response {}: peak acceleration {:.4e} m/s2", port + 1, motion.peak_acceleration());
     }
     if let Some(path) = &arguments.output {
-        output::write(path, time_response::csv(&force, &motions).as_bytes())?;
+        output::write(path, time_response::csv(&force, &motions))?;
         eprintln!("wrote {} ({} samples)", path.display(), force.time.len());
     }
     if arguments.json {

@@ -1,0 +1,54 @@
+//! Pictures as SVG: what was measured in orange, what the model says in blue.
+
+mod accelerance;
+mod frequencies;
+mod response;
+
+pub use accelerance::accelerance;
+pub use frequencies::frequencies;
+pub use response::response;
+
+use plotters::coord::Shift;
+use plotters::prelude::*;
+
+use crate::error::CommandError;
+
+const MEASURED: RGBColor = RGBColor(213, 94, 0);
+const MODEL: RGBColor = RGBColor(0, 90, 170);
+const GRID: RGBColor = RGBColor(225, 225, 225);
+const FONT: &str = "sans-serif";
+
+const SIZE: (u32, u32) = (900, 640);
+
+type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+type Drawn = Result<(), Box<dyn std::error::Error>>;
+
+/// A picture of two charts, one above the other, under a title; `split` is the height of the upper one.
+fn two_charts(
+    name: &'static str,
+    title: &str,
+    split: u32,
+    draw: impl for<'a> FnOnce(&Area<'a>, &Area<'a>) -> Drawn,
+) -> Result<String, CommandError> {
+    let mut text = String::new();
+    let drawn = (|| {
+        let area = SVGBackend::with_string(&mut text, SIZE).into_drawing_area();
+        area.fill(&WHITE)?;
+        let area = area.titled(title, (FONT, 22))?;
+        let (upper, lower) = area.split_vertically(split);
+        draw(&upper, &lower)?;
+        area.present()?;
+        Ok(())
+    })();
+    let failed = |error: Box<dyn std::error::Error>| CommandError::Picture { name, problem: error.to_string() };
+    drawn.map_err(failed).map(|()| text)
+}
+
+/// A range with a twentieth of its width to spare at both ends, never empty.
+fn spaced(values: impl Iterator<Item = f64>) -> std::ops::Range<f64> {
+    let (low, high) =
+        values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)));
+    let (low, high) = if low <= high { (low, high) } else { (0.0, 0.0) };
+    let spare = if high > low { 0.05 * (high - low) } else { 1.0 };
+    low - spare..high + spare
+}

@@ -1,0 +1,44 @@
+//! The hit and the acceleration that answers it.
+
+use plotters::prelude::*;
+
+use super::{FONT, GRID, MEASURED, MODEL, spaced, two_charts};
+use crate::error::CommandError;
+use crate::force_file::ForceHistory;
+use crate::time_response::Motion;
+
+/// How much of the response is drawn \[ms\]: later the ringing is a solid band.
+const SHOWN: f64 = 20.0;
+
+pub fn response(force: &ForceHistory, motions: &[Motion]) -> Result<String, CommandError> {
+    let last = force.time.last().map_or(0.0, |&time| 1000.0 * time).min(SHOWN);
+    two_charts("response", "Simulated hit and response of the model", 230, |upper, lower| {
+        let rows = [
+            (upper, force.forces.first(), "force [N]", "", MEASURED),
+            (lower, motions.first().map(|motion| &motion.acceleration), "acceleration [m/s²]", "time [ms]", MODEL),
+        ];
+        for (area, values, what, below, colour) in rows {
+            let curve = || {
+                let samples = force.time.iter().zip(values.into_iter().flatten());
+                samples.map(|(&time, &value)| (1000.0 * time, value)).take_while(|&(time, _)| time <= last)
+            };
+            let mut chart = ChartBuilder::on(area)
+                .margin(12)
+                .x_label_area_size(if below.is_empty() { 30 } else { 45 })
+                .y_label_area_size(70)
+                .build_cartesian_2d(0.0..last, spaced(curve().map(|(_, value)| value)))?;
+            chart
+                .configure_mesh()
+                .light_line_style(TRANSPARENT)
+                .bold_line_style(GRID)
+                .x_label_formatter(&|time| format!("{time:.0}"))
+                .y_label_formatter(&|value| format!("{value:.0}"))
+                .x_desc(below)
+                .y_desc(what)
+                .label_style((FONT, 15))
+                .draw()?;
+            chart.draw_series(LineSeries::new(curve(), colour.stroke_width(2)))?;
+        }
+        Ok(())
+    })
+}
