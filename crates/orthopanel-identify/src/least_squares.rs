@@ -33,6 +33,12 @@ impl Linearised {
     }
 }
 
+/// Where a search ended.
+pub(crate) struct Minimum {
+    pub parameters: Vec<f64>,
+    pub at: Linearised,
+}
+
 /// Why a search ended nowhere.
 pub(crate) enum Stuck<E> {
     /// The model refused the start.
@@ -42,8 +48,8 @@ pub(crate) enum Stuck<E> {
 }
 
 const MOST_ITERATIONS: usize = 100;
-/// A step this small, relative to parameters of size one (logarithms), no longer changes a printed digit.
-const SMALL_STEP: f64 = 1e-10;
+/// A step this small in logarithms ends a search: the next would be a thousand times smaller still.
+const SMALL_STEP: f64 = 1e-8;
 
 /// Minimises $\sum r_i^2$ from `start`; each parameter stays within its `(low, high)`.
 ///
@@ -53,7 +59,7 @@ pub(crate) fn levenberg_marquardt<E>(
     linearise: impl Fn(&[f64]) -> Result<Linearised, E>,
     start: &[f64],
     bounds: &[(f64, f64)],
-) -> Result<Vec<f64>, Stuck<E>> {
+) -> Result<Minimum, Stuck<E>> {
     let mut parameters = start.to_vec();
     let mut at = linearise(&parameters).map_err(Stuck::Refused)?;
     let (mut damping, mut growth) = (1e-6, 2.0);
@@ -93,13 +99,13 @@ pub(crate) fn levenberg_marquardt<E>(
                 (parameters, at) = (trial, next);
                 (damping, growth) = (damping * 0.1, 2.0);
                 if settled {
-                    return Ok(parameters);
+                    return Ok(Minimum { parameters, at });
                 }
                 continue;
             }
         }
         if moved < SMALL_STEP {
-            return Ok(parameters);
+            return Ok(Minimum { parameters, at });
         }
         damping *= growth;
         growth *= 2.0;
@@ -122,13 +128,13 @@ mod tests {
     fn val_rosenbrock_valley() {
         let open = [(-10.0, 10.0); 2];
         let Ok(minimum) = levenberg_marquardt(rosenbrock, &[-1.2, 1.0], &open) else { panic!("no minimum") };
-        assert!(minimum.iter().all(|p| (p - 1.0).abs() < 1e-8), "{:?}", minimum);
+        assert!(minimum.parameters.iter().all(|p| (p - 1.0).abs() < 1e-8), "{:?}", minimum.parameters);
     }
 
     #[test]
     fn a_bound_holds_the_search() {
         let bounds = [(-10.0, 0.5), (-10.0, 10.0)];
         let Ok(minimum) = levenberg_marquardt(rosenbrock, &[-1.2, 1.0], &bounds) else { panic!("no minimum") };
-        assert!((minimum[0] - 0.5).abs() < 1e-8);
+        assert!((minimum.parameters[0] - 0.5).abs() < 1e-8);
     }
 }

@@ -12,7 +12,7 @@ mod tests;
 use orthopanel_data::ImpactTest;
 use orthopanel_model::StructureKind;
 
-use crate::least_squares::{Stuck, levenberg_marquardt};
+use crate::least_squares::{Minimum, Stuck, levenberg_marquardt};
 use crate::{Identification, IdentifiedConstant, IdentifyError, ModeFit, PieceFit};
 use problem::FrequencyProblem;
 
@@ -40,9 +40,9 @@ pub enum Search {
 pub fn identify(test: &ImpactTest, search: Search) -> Result<Identification, IdentifyError> {
     let problem = FrequencyProblem::of(test)?;
     let start = starting_values::starting_values(&problem)?;
-    let found = minimise(&problem, &start, search)?;
+    let Minimum { parameters: found, at } = minimise(&problem, &start, search)?;
     problem.refuse_bounds(&found)?;
-    let uncertainty = uncertainty::uncertainty(&problem, &found)?;
+    let uncertainty = uncertainty::uncertainty(&problem, &at);
     let values = problem.values(&found);
     let constants = problem.constants.iter().zip(&values).enumerate().map(|(index, (constant, &value))| {
         let free = problem.free.iter().position(|&at| at == index);
@@ -58,46 +58,40 @@ pub fn identify(test: &ImpactTest, search: Search) -> Result<Identification, Ide
         structure: StructureKind::TimoshenkoBeam,
         constants: constants.collect(),
         correlations: uncertainty.correlations,
-        pieces: piece_fits(test, &problem, &found)?,
-        frequency_rms_percent: 100.0 * problem.error(&found)?.sqrt(),
-        left_one_out_percent: uncertainty::left_one_out_percent(&problem, &found)?,
+        pieces: piece_fits(test, &problem, &at.residuals),
+        frequency_rms_percent: 100.0 * (at.cost() / problem.count() as f64).sqrt(),
+        left_one_out_percent: uncertainty.left_one_out_percent,
     })
 }
 
-/// Logarithms of the free constants at the minimum, from `start`.
-fn minimise(problem: &FrequencyProblem, start: &[f64], search: Search) -> Result<Vec<f64>, IdentifyError> {
-    if start.is_empty() {
-        return Ok(Vec::new());
-    }
-    match search {
-        Search::Simplex => simplex::downhill_simplex(problem, start),
-        Search::LeastSquares => {
-            levenberg_marquardt(|p| problem.linearise(p), start, &problem.log_bounds()).map_err(|stuck| match stuck {
+/// The minimum over the logarithms of the free constants, from `start`.
+fn minimise(problem: &FrequencyProblem, start: &[f64], search: Search) -> Result<Minimum, IdentifyError> {
+    if search == Search::LeastSquares && !start.is_empty() {
+        return levenberg_marquardt(|p| problem.linearise(p), start, &problem.log_bounds()).map_err(
+            |stuck| match stuck {
                 Stuck::Refused(error) => error,
                 Stuck::Iterations { count, cost } => IdentifyError::NotConverged {
                     iterations: count,
                     error_percent: 100.0 * (cost / problem.count() as f64).sqrt(),
                 },
-            })
-        }
+            },
+        );
     }
+    let parameters = if start.is_empty() { Vec::new() } else { simplex::downhill_simplex(problem, start)? };
+    Ok(Minimum { at: problem.linearise(&parameters)?, parameters })
 }
 
-fn piece_fits(test: &ImpactTest, problem: &FrequencyProblem, found: &[f64]) -> Result<Vec<PieceFit>, IdentifyError> {
-    let mut fits: Vec<PieceFit> = Vec::new();
-    for (index, named) in test.pieces.iter().enumerate() {
-        let mut modes = Vec::new();
-        for set in problem.sets.iter().filter(|set| set.piece == index) {
-            let predicted = set.predict(&problem.values(found))?;
-            let pairs = set.measured.iter().zip(&predicted).enumerate();
-            modes.extend(pairs.map(|(index, (&measured, prediction))| ModeFit {
-                mode: index + 1,
-                measured,
-                model: prediction.frequency,
-                damping: None,
-            }));
+/// The modes of each piece; the residuals stand in the order of the measurements.
+fn piece_fits(test: &ImpactTest, problem: &FrequencyProblem, residuals: &[f64]) -> Vec<PieceFit> {
+    let named = test.pieces.iter();
+    let mut fits: Vec<PieceFit> =
+        named.map(|named| PieceFit { name: named.name.clone(), piece: named.piece, modes: Vec::new() }).collect();
+    let mut residuals = residuals.iter();
+    for set in &problem.sets {
+        for (index, (&measured, residual)) in set.measured.iter().zip(residuals.by_ref()).enumerate() {
+            let model = measured * (1.0 + residual);
+            fits[set.piece].modes.push(ModeFit { mode: index + 1, measured, model, damping: None });
         }
-        fits.push(PieceFit { name: named.name.clone(), piece: named.piece, modes });
     }
-    Ok(fits)
+    fits
 }

@@ -11,14 +11,23 @@ pub(super) struct Prediction {
     pub log_sensitivity: [f64; 2],
 }
 
+/// The first `count` natural frequencies \[Hz\] alone.
+pub(super) fn beam_frequencies(
+    piece: &Piece,
+    boundary: Boundary,
+    [e_x, g_zx]: [f64; 2],
+    count: usize,
+) -> Result<Vec<f64>, ModelError> {
+    Ok(ExactBeam::new(piece, boundary, BeamConstants { e_x, g_zx })?.natural_frequencies(count))
+}
+
 /// The first `count` flexible modes of the beam at constants ($E_x$, $G_{zx}$).
 pub(super) fn beam_predictions(
     piece: &Piece,
     boundary: Boundary,
-    constants: [f64; 2],
+    [e_x, g_zx]: [f64; 2],
     count: usize,
 ) -> Result<Vec<Prediction>, ModelError> {
-    let [e_x, g_zx] = constants;
     let beam = ExactBeam::new(piece, boundary, BeamConstants { e_x, g_zx })?;
     let predictions = beam.flexible_modes().take(count).map(|mode| {
         let [by_e, by_g] = mode.sensitivity();

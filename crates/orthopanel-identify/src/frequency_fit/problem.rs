@@ -4,7 +4,7 @@ use faer::Mat;
 use orthopanel_data::{ImpactTest, MeasurementData};
 use orthopanel_model::{BEAM_CONSTANTS, Boundary, Constant, Piece};
 
-use super::prediction::{Prediction, beam_predictions};
+use super::prediction::{Prediction, beam_frequencies, beam_predictions};
 use crate::IdentifyError;
 use crate::least_squares::Linearised;
 
@@ -19,11 +19,13 @@ pub(super) struct FrequencySet {
     pub measured: Vec<f64>,
     /// Standard deviation of each by rounding to a bin \[Hz\], where the bin is stated.
     pub rounding: Vec<f64>,
-    /// Modes that take part in the fit.
-    pub fitted: Vec<bool>,
 }
 
 impl FrequencySet {
+    pub(super) fn frequencies(&self, constants: &[f64; 2]) -> Result<Vec<f64>, IdentifyError> {
+        Ok(beam_frequencies(&self.sizes, self.boundary, *constants, self.measured.len())?)
+    }
+
     pub(super) fn predict(&self, constants: &[f64; 2]) -> Result<Vec<Prediction>, IdentifyError> {
         Ok(beam_predictions(&self.sizes, self.boundary, *constants, self.measured.len())?)
     }
@@ -66,16 +68,17 @@ impl FrequencyProblem {
         Ok(problem)
     }
 
-    /// Number of frequencies fitted.
+    /// Number of measured frequencies.
     pub(super) fn count(&self) -> usize {
-        self.sets.iter().flat_map(|set| &set.fitted).filter(|&&fitted| fitted).count()
+        self.sets.iter().map(|set| set.measured.len()).sum()
     }
 
     /// All constants at these logarithms of the free ones.
     pub(super) fn values(&self, logs: &[f64]) -> [f64; 2] {
         let mut values = self.held.map(|held| held.unwrap_or(f64::NAN));
         for (&index, log) in self.free.iter().zip(logs) {
-            values[index] = log.exp();
+            // exp(ln x) may pass a bound by rounding.
+            values[index] = log.exp().clamp(self.constants[index].low, self.constants[index].high);
         }
         values
     }
@@ -87,23 +90,15 @@ impl FrequencyProblem {
 
     /// Relative residuals $(f_{cal}-f_{exp})/f_{exp}$ and their derivatives by the logarithms.
     pub(super) fn linearise(&self, logs: &[f64]) -> Result<Linearised, IdentifyError> {
-        let bounds = self.log_bounds();
-        let inside: Vec<f64> = logs.iter().zip(&bounds).map(|(log, &(low, high))| log.clamp(low, high)).collect();
-        let mut values = self.values(&inside);
-        // exp(ln x) may pass a bound by rounding.
-        for (value, constant) in values.iter_mut().zip(self.constants) {
-            *value = value.clamp(constant.low, constant.high);
-        }
+        let values = self.values(logs);
         let mut residuals = Vec::with_capacity(self.count());
         let mut rows = Vec::with_capacity(self.count());
         for set in &self.sets {
             let predicted = set.predict(&values)?;
-            for ((prediction, measured), fitted) in predicted.iter().zip(&set.measured).zip(&set.fitted) {
-                if *fitted {
-                    let ratio = prediction.frequency / measured;
-                    residuals.push(ratio - 1.0);
-                    rows.push(prediction.log_sensitivity.map(|sensitivity| ratio * sensitivity));
-                }
+            for (prediction, measured) in predicted.iter().zip(&set.measured) {
+                let ratio = prediction.frequency / measured;
+                residuals.push(ratio - 1.0);
+                rows.push(prediction.log_sensitivity.map(|sensitivity| ratio * sensitivity));
             }
         }
         let jacobian = Mat::from_fn(rows.len(), self.free.len(), |i, j| rows[i][self.free[j]]);
@@ -112,7 +107,13 @@ impl FrequencyProblem {
 
     /// Eq. 22.
     pub(super) fn error(&self, logs: &[f64]) -> Result<f64, IdentifyError> {
-        Ok(self.linearise(logs)?.cost() / self.count() as f64)
+        let values = self.values(logs);
+        let mut sum = 0.0;
+        for set in &self.sets {
+            let pairs = set.frequencies(&values)?.into_iter().zip(&set.measured);
+            sum += pairs.map(|(calculated, measured)| (calculated / measured - 1.0).powi(2)).sum::<f64>();
+        }
+        Ok(sum / self.count() as f64)
     }
 
     /// Refuses a minimum that lies on a bound: such a value is the bound's, not the data's.
@@ -146,7 +147,6 @@ fn frequency_sets(test: &ImpactTest) -> Result<Vec<FrequencySet>, IdentifyError>
             piece: measurement.piece,
             sizes: test.pieces[measurement.piece].piece,
             boundary: test.boundary,
-            fitted: vec![true; data.values.len()],
             measured: data.values.clone(),
             // A value rounded to a bin is uniform over it.
             rounding: data.resolution.iter().map(|bin| bin / 12.0_f64.sqrt()).collect(),

@@ -30,7 +30,11 @@ impl CostFunction for Penalised<'_> {
 
 /// Edge of the first simplex, as a share of each constant.
 const FIRST_EDGE: f64 = 0.2;
+/// Spread of eq. 22 over the corners at which a run ends: the rounding of the frequencies leaves some 1e-18.
+const SMALL_SPREAD: f64 = 1e-16;
 const MOST_ITERATIONS: u64 = 2000;
+/// A run that moves the logarithms by less has found what the one before it found.
+const SETTLED: f64 = 1e-7;
 const MOST_RESTARTS: usize = 20;
 
 /// Logarithms of the free constants at the minimum, from `start`.
@@ -46,7 +50,7 @@ pub(super) fn downhill_simplex(problem: &FrequencyProblem, start: &[f64]) -> Res
             let moved = |(i, log): (usize, &f64)| if i + 1 == corner { log + edge } else { *log };
             best.iter().enumerate().map(moved).collect::<Vec<f64>>()
         });
-        let solver = NelderMead::new(corners.collect()).with_sd_tolerance(1e-20).map_err(refused)?;
+        let solver = NelderMead::new(corners.collect()).with_sd_tolerance(SMALL_SPREAD).map_err(refused)?;
         let result = Executor::new(Penalised(problem), solver)
             .configure(|state| state.max_iters(MOST_ITERATIONS))
             .run()
@@ -54,7 +58,7 @@ pub(super) fn downhill_simplex(problem: &FrequencyProblem, start: &[f64]) -> Res
         let found = result.state().get_best_param().cloned().unwrap_or_else(|| best.clone());
         let moved = found.iter().zip(&best).fold(0.0_f64, |most, (a, b)| most.max((a - b).abs()));
         best = found;
-        if moved < 1e-9 {
+        if moved < SETTLED {
             return Ok(best);
         }
         edge = (0.1 * edge).max(1e-3);

@@ -20,7 +20,7 @@ fn piece_1() -> FrequencyProblem {
 }
 
 fn minimum(problem: &FrequencyProblem, start: [f64; 2], search: Search) -> [f64; 2] {
-    problem.values(&minimise(problem, &start.map(f64::ln), search).unwrap())
+    problem.values(&minimise(problem, &start.map(f64::ln), search).unwrap_or_else(|error| panic!("{error}")).parameters)
 }
 
 fn assert_close(found: [f64; 2], expected: [f64; 2]) {
@@ -66,8 +66,8 @@ fn a_minimum_on_a_bound_is_refused() {
     let mut problem = piece_1();
     problem.constants[0].high = 8e9;
     for search in [Search::Simplex, Search::LeastSquares] {
-        let found = minimise(&problem, &[7e9_f64.ln(), 5e8_f64.ln()], search).unwrap();
-        let refused = problem.refuse_bounds(&found);
+        let Ok(found) = minimise(&problem, &[7e9_f64.ln(), 5e8_f64.ln()], search) else { panic!("no minimum") };
+        let refused = problem.refuse_bounds(&found.parameters);
         assert!(matches!(refused, Err(IdentifyError::OnBound { name: "e_x", .. })), "{search:?}: {refused:?}");
     }
 }

@@ -5,7 +5,7 @@
 //! whose count is [`Waves::pinned_counts`], and clamp or free from there. Equal ends split into deflections even and
 //! odd in $x$; there each step is one sign.
 
-use super::waves::{DEFLECTION, Field, Fields, MOMENT, ROTATION, Ratios, SHEAR, Waves};
+use super::waves::{DEFLECTION, Field, Fields, MOMENT, ROTATION, Ratios, SHEAR, Waves, even_fields, odd_fields};
 use crate::{Boundary, End};
 
 /// Which deflections a search looks at.
@@ -55,13 +55,14 @@ fn stiffness(pair: &[Field; 2], force: usize, held: usize, coordinate: usize) ->
 /// Looks at a family at $\mu$.
 pub(super) fn probe(ratios: Ratios, boundary: Boundary, family: Family, mu: f64) -> Probe {
     let waves = Waves::at(ratios, mu);
-    let ends = Fields::at(&waves, 0.5);
     let [even, odd] = waves.pinned_counts();
     match family {
-        Family::Even => probe_parity(&ends.even, boundary.left, even),
-        Family::Odd => probe_parity(&ends.odd, boundary.left, odd),
+        Family::Even => probe_parity(&even_fields(&waves, 0.5), boundary.left, even),
+        Family::Odd => probe_parity(&odd_fields(&waves, 0.5), boundary.left, odd),
         Family::Mixed => {
-            Probe { below: mixed_count(ratios, &ends, boundary, even + odd), residual: mixed_residual(&ends, boundary) }
+            let ends = Fields::at(&waves, 0.5);
+            let below = mixed_count(ratios, &ends, boundary, even + odd);
+            Probe { below, residual: mixed_residual(&ends, boundary) }
         }
     }
 }

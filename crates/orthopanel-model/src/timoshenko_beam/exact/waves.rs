@@ -65,8 +65,12 @@ impl Waves {
     pub(super) fn second_wave(&self, xi: f64) -> (f64, f64) {
         let beta = self.beta;
         if self.beta2 > 0.0 {
-            let (far, near) = ((-beta * (0.5 - xi)).exp(), (-beta * (0.5 + xi)).exp());
-            let scale = 1.0 + (-beta).exp();
+            let whole = (-beta).exp();
+            // Most calls are for the end, where these two are known.
+            let at_end = xi == 0.5;
+            let (far, near) =
+                if at_end { (1.0, whole) } else { ((-beta * (0.5 - xi)).exp(), (-beta * (0.5 + xi)).exp()) };
+            let scale = 1.0 + whole;
             // While β is small the two exponentials nearly cancel; sinh does not, nor can it overflow there.
             let difference = if beta < 1.0 { 2.0 * (-0.5 * beta).exp() * (beta * xi).sinh() } else { far - near };
             ((far + near) / scale, difference / (beta * scale))
@@ -100,18 +104,25 @@ pub(super) struct Fields {
 
 impl Fields {
     pub(super) fn at(waves: &Waves, xi: f64) -> Self {
-        let Waves { alpha, beta2, m1, m2, shear, .. } = *waves;
-        let (sine, cosine) = (alpha * xi).sin_cos();
-        let (cosh, sinh) = waves.second_wave(xi);
-        Self {
-            even: [
-                [cosine, m1 / alpha * sine, m1 * cosine, -shear / alpha * sine],
-                [cosh, -m2 * sinh, -m2 * cosh, -shear * sinh],
-            ],
-            odd: [
-                [sine, -m1 / alpha * cosine, m1 * sine, shear / alpha * cosine],
-                [beta2 * sinh, -m2 * cosh, -m2 * beta2 * sinh, -shear * cosh],
-            ],
-        }
+        Self { even: even_fields(waves, xi), odd: odd_fields(waves, xi) }
     }
+}
+
+/// The two waves of even deflection at $\xi$.
+pub(super) fn even_fields(waves: &Waves, xi: f64) -> [Field; 2] {
+    let Waves { alpha, m1, m2, shear, .. } = *waves;
+    let (sine, cosine) = (alpha * xi).sin_cos();
+    let (cosh, sinh) = waves.second_wave(xi);
+    [[cosine, m1 / alpha * sine, m1 * cosine, -shear / alpha * sine], [cosh, -m2 * sinh, -m2 * cosh, -shear * sinh]]
+}
+
+/// The two waves of odd deflection at $\xi$.
+pub(super) fn odd_fields(waves: &Waves, xi: f64) -> [Field; 2] {
+    let Waves { alpha, beta2, m1, m2, shear, .. } = *waves;
+    let (sine, cosine) = (alpha * xi).sin_cos();
+    let (cosh, sinh) = waves.second_wave(xi);
+    [
+        [sine, -m1 / alpha * cosine, m1 * sine, shear / alpha * cosine],
+        [beta2 * sinh, -m2 * cosh, -m2 * beta2 * sinh, -shear * cosh],
+    ]
 }
