@@ -6,12 +6,14 @@ mod constant;
 mod error;
 mod legendre;
 mod modal_model;
+mod modal_sensitivity;
 mod panel_model;
 mod panel_modes;
 mod piece;
 mod response;
 mod ritz_modes;
 mod structure;
+mod structure_modes;
 mod symmetric_eigen;
 mod timoshenko_beam;
 
@@ -19,12 +21,14 @@ pub use boundary::{Boundary, End};
 pub use constant::Constant;
 pub use error::ModelError;
 pub use modal_model::{ModalModel, Mode};
+pub use modal_sensitivity::{ModeSensitivity, SensitiveModes, sensitive_modes};
 pub use panel_model::{Damping, EffectEntry, Estimate, MODEL_SCHEMA, PanelModel, Ports, StructureKind};
 pub use panel_modes::ModeRange;
 pub use piece::{Piece, Place};
-pub use response::ModalStepper;
+pub use response::{ForceRecord, ModalStepper};
 pub use ritz_modes::ritz_modes;
 pub use structure::{Block, RitzMode, Structure};
 pub use timoshenko_beam::{
-    BEAM_CONSTANTS, BeamConstants, BeamElements, BeamMode, ExactBeam, SHEAR_COEFFICIENT, TimoshenkoBeam,
+    BEAM_CONSTANTS, BeamConstants, BeamElements, BeamMode, ExactBeam, SHEAR_COEFFICIENT, StaticFlexibility,
+    TimoshenkoBeam,
 };

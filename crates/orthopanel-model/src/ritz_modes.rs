@@ -17,13 +17,21 @@ use crate::{Constant, ModelError};
 /// [`ModelError::BasisTooSmall`] where `count` is more than half of what the basis has,
 /// [`ModelError::Eigenproblem`] where the stiffness is not positive.
 pub fn ritz_modes(structure: &dyn Structure, values: &[f64], count: usize) -> Result<Vec<RitzMode>, ModelError> {
-    check_constants(structure.constants(), values)?;
-    let coefficients = structure.coefficients(values)?;
     // The upper half of a Ritz spectrum belongs to the basis, not to the structure.
     let coordinates: usize = structure.blocks().iter().map(Block::size).sum();
     if 2 * count > coordinates {
         return Err(ModelError::BasisTooSmall { asked: count, available: coordinates / 2 });
     }
+    let mut modes = all_ritz_modes(structure, values)?;
+    let rigid: usize = structure.blocks().iter().map(|block| block.rigid.len()).sum();
+    modes.truncate(rigid + count);
+    Ok(modes)
+}
+
+/// The rigid modes, then as many flexible ones as the basis has coordinates left, rising.
+pub(crate) fn all_ritz_modes(structure: &dyn Structure, values: &[f64]) -> Result<Vec<RitzMode>, ModelError> {
+    check_constants(structure.constants(), values)?;
+    let coefficients = structure.coefficients(values)?;
     let mut rigid = Vec::new();
     let mut flexible = Vec::new();
     for (index, block) in structure.blocks().iter().enumerate() {
@@ -33,7 +41,6 @@ pub fn ritz_modes(structure: &dyn Structure, values: &[f64], count: usize) -> Re
         flexible.extend(flexible_modes(block, index, &coefficients)?);
     }
     flexible.sort_by(|a, b| a.angular_frequency.total_cmp(&b.angular_frequency));
-    flexible.truncate(count);
     rigid.append(&mut flexible);
     Ok(rigid)
 }

@@ -2,7 +2,7 @@
 
 use faer::Mat;
 
-use super::{BEAM_CONSTANTS, Section};
+use super::{BEAM_CONSTANTS, Section, gauss_points};
 use crate::structure::{Block, Structure, quadratic_form};
 use crate::{Boundary, Constant, End, ModelError, Piece, Place};
 
@@ -95,14 +95,6 @@ fn element_fields(t: f64, length: f64) -> [ElementField; TOUCHED] {
         deflects(right.0, right.1),
         rotates(right.0, right.1),
     ]
-}
-
-/// Gauss points and weights on $[-1, 1]$: four of them integrate the products of two cubics exactly.
-fn gauss_points() -> [(f64, f64); 4] {
-    let root = (6.0_f64 / 5.0).sqrt() * 2.0 / 7.0;
-    let (near, far) = ((3.0 / 7.0 - root).sqrt(), (3.0 / 7.0 + root).sqrt());
-    let (heavy, light) = ((18.0 + 30.0_f64.sqrt()) / 36.0, (18.0 - 30.0_f64.sqrt()) / 36.0);
-    [(-far, light), (-near, heavy), (near, heavy), (far, light)]
 }
 
 fn free_coordinates(boundary: Boundary, elements: usize) -> Vec<Option<usize>> {

@@ -10,11 +10,13 @@
 mod exact;
 mod finite_element;
 mod ritz;
+mod static_flexibility;
 mod strain_basis;
 
 pub use exact::{BeamMode, ExactBeam};
 pub use finite_element::BeamElements;
 pub use ritz::TimoshenkoBeam;
+pub use static_flexibility::StaticFlexibility;
 
 use crate::constant::Constant;
 use crate::{ModelError, Piece};
@@ -73,4 +75,12 @@ impl Section {
             rotary_inertia: mass_per_area * width * thickness * thickness / 12.0,
         }
     }
+}
+
+/// Gauss points and weights on $[-1, 1]$: four of them integrate the products of two cubics exactly.
+fn gauss_points() -> [(f64, f64); 4] {
+    let root = (6.0_f64 / 5.0).sqrt() * 2.0 / 7.0;
+    let (near, far) = ((3.0 / 7.0 - root).sqrt(), (3.0 / 7.0 + root).sqrt());
+    let (heavy, light) = ((18.0 + 30.0_f64.sqrt()) / 36.0, (18.0 - 30.0_f64.sqrt()) / 36.0);
+    [(-far, light), (-near, heavy), (near, heavy), (far, light)]
 }

@@ -1,0 +1,80 @@
+//! What sums over modes need: derivatives of the modes, and what the modes beyond the sum leave.
+
+use orthopanel_model::{
+    BeamConstants, Boundary, End, ExactBeam, Piece, Place, StaticFlexibility, TimoshenkoBeam, sensitive_modes,
+};
+
+const PIECE: Piece = Piece { length: 0.8, width: 0.1, thickness: 0.03, mass_per_area: 6.88 };
+const CONSTANTS: BeamConstants = BeamConstants { e_x: 1.07e10, g_zx: 5.36e8 };
+const ENDS: [End; 3] = [End::Free, End::Pinned, End::Clamped];
+
+/// The sum over many exact modes tends to the closed form; what is missing falls with one over their number.
+#[test]
+fn val_static_flexibility_is_the_sum_over_all_modes() {
+    for left in ENDS {
+        for right in ENDS {
+            let boundary = Boundary { left, right };
+            let beam = ExactBeam::new(&PIECE, boundary, CONSTANTS).unwrap();
+            let modes: Vec<_> = beam.flexible_modes().take(4000).collect();
+            let flexibility = StaticFlexibility::new(&PIECE, boundary).unwrap();
+            for (first, second) in [(-0.3, 0.3), (0.1, 0.1), (0.25, -0.05), (0.4, 0.4), (-0.4, 0.2)] {
+                let closed = flexibility.between(first, second, CONSTANTS.e_x, CONSTANTS.g_zx).0;
+                let sum = |count: usize| -> f64 {
+                    let part = |mode: &orthopanel_model::BeamMode| {
+                        mode.deflection(first) * mode.deflection(second) / mode.angular_frequency().powi(2)
+                    };
+                    modes[..count].iter().map(part).sum()
+                };
+                let scale = flexibility.between(0.1, 0.1, CONSTANTS.e_x, CONSTANTS.g_zx).0;
+                let (coarse, fine) = (sum(1000) - closed, sum(4000) - closed);
+                // One over the number of modes: about 1e-3 of a flexibility at 1000, a quarter of it at 4000.
+                assert!(fine.abs() < 1e-3 * scale, "{boundary:?} {first} {second}: {fine:e} of {closed:e}");
+                assert!(
+                    fine.abs() < 0.5 * coarse.abs() + 1e-5 * scale,
+                    "{boundary:?} {first} {second}: {coarse:e} {fine:e}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn val_derivatives_of_the_flexibility() {
+    for (left, right) in [(End::Free, End::Free), (End::Clamped, End::Clamped), (End::Clamped, End::Pinned)] {
+        let flexibility = StaticFlexibility::new(&PIECE, Boundary { left, right }).unwrap();
+        let at = |e: f64, g: f64| flexibility.between(0.1, -0.2, 1.07e10 * e, 5.36e8 * g);
+        let (_, [by_e, by_g]) = at(1.0, 1.0);
+        let step = 1e-4;
+        let e = (at(1.0 + step, 1.0).0 - at(1.0 - step, 1.0).0) / (2.0 * step * 1.07e10);
+        let g = (at(1.0, 1.0 + step).0 - at(1.0, 1.0 - step).0) / (2.0 * step * 5.36e8);
+        assert!((e / by_e - 1.0).abs() < 1e-6 && (g / by_g - 1.0).abs() < 1e-6, "{e:e} {by_e:e} {g:e} {by_g:e}");
+    }
+}
+
+#[test]
+fn val_derivatives_of_modes_are_those_of_differences() {
+    let places = [Place { x: -0.3, y: 0.0 }, Place { x: 0.17, y: 0.0 }, Place { x: 0.4, y: 0.0 }];
+    for boundary in [Boundary::FREE, Boundary { left: End::Clamped, right: End::Free }] {
+        let beam = TimoshenkoBeam::new(&PIECE, boundary, 50).unwrap();
+        let at = |e: f64, g: f64| sensitive_modes(&beam, &[1.07e10 * e, 5.36e8 * g], 8, &places).unwrap();
+        let here = at(1.0, 1.0);
+        let step = 1e-4;
+        let sides = [(at(1.0 - step, 1.0), at(1.0 + step, 1.0)), (at(1.0, 1.0 - step), at(1.0, 1.0 + step))];
+        for (i, ((low, high), constant)) in sides.iter().zip([1.07e10, 5.36e8]).enumerate() {
+            for (m, mode) in here.flexible.iter().enumerate() {
+                let quotient = (high.flexible[m].omega2 - low.flexible[m].omega2) / (2.0 * step * constant);
+                assert!((quotient - mode.omega2_by[i]).abs() * constant < 1e-6 * mode.omega2);
+                for place in 0..places.len() {
+                    // The sign of a shape is free: compare products with the last place.
+                    let product = |modes: &orthopanel_model::SensitiveModes| {
+                        modes.flexible[m].shape[place] * modes.flexible[m].shape[2]
+                    };
+                    let quotient = (product(high) - product(low)) / (2.0 * step);
+                    let exact =
+                        constant * (mode.shape_by[i][place] * mode.shape[2] + mode.shape[place] * mode.shape_by[i][2]);
+                    assert!((quotient - exact).abs() < 1e-5, "mode {m} place {place}: {quotient} {exact}");
+                }
+            }
+        }
+    }
+}
