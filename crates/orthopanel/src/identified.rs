@@ -188,7 +188,8 @@ fn ports(test: &ImpactTest, index: usize, piece: &Piece) -> Ports {
         }
     }
     if ports.forces.is_empty() {
-        let place = 3.0 / 8.0 * piece.length;
+        // To the micrometre, so that it reads as a round number in the files.
+        let place = (375e3 * piece.length).round() / 1e6;
         ports.forces.push(Place { x: -place, y: 0.0 });
         ports.responses.push(Place { x: place, y: 0.0 });
     }

@@ -27,9 +27,10 @@ impl Instance for Fmi2<'_> {
         done(self.instance.setReal(&self.references.forces, forces), "fmi2SetReal")
     }
 
-    fn initialise(&self, start: f64) -> Result<(), &'static str> {
+    fn initialise(&self, start: f64, forces: &[f64]) -> Result<(), &'static str> {
         done(self.instance.setupExperiment(None, start, None), "fmi2SetupExperiment")?;
         done(self.instance.enterInitializationMode(), "fmi2EnterInitializationMode")?;
+        self.set_forces(forces)?;
         done(self.instance.exitInitializationMode(), "fmi2ExitInitializationMode")
     }
 

@@ -26,8 +26,9 @@ impl Instance for Fmi3<'_> {
         done(self.instance.setFloat64(&self.references.forces, forces), "fmi3SetFloat64")
     }
 
-    fn initialise(&self, start: f64) -> Result<(), &'static str> {
+    fn initialise(&self, start: f64, forces: &[f64]) -> Result<(), &'static str> {
         done(self.instance.enterInitializationMode(None, start, None), "fmi3EnterInitializationMode")?;
+        self.set_forces(forces)?;
         done(self.instance.exitInitializationMode(), "fmi3ExitInitializationMode")
     }
 

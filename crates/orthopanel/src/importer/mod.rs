@@ -17,8 +17,8 @@ trait Instance {
     /// Sets whether forces run linearly over a step; before [`Instance::initialise`].
     fn set_force_linear(&self, linear: bool) -> Result<(), &'static str>;
     fn set_forces(&self, forces: &[f64]) -> Result<(), &'static str>;
-    /// Starts the clock at `start` \[s\].
-    fn initialise(&self, start: f64) -> Result<(), &'static str>;
+    /// Starts the clock at `start` \[s\] with these forces \[N\], from which a linear force runs on.
+    fn initialise(&self, start: f64, forces: &[f64]) -> Result<(), &'static str>;
     fn step(&self, from: f64, step: f64) -> Result<(), &'static str>;
     /// Accelerations of all responses, then velocities, then displacements.
     fn outputs(&self) -> Result<Vec<f64>, &'static str>;
@@ -115,8 +115,7 @@ fn run(
     let responses = references.outputs.len() / 3;
     let mut motions = vec![Motion::default(); responses];
     instance.set_force_linear(hold == Hold::Linear)?;
-    instance.initialise(force.time.first().copied().unwrap_or(0.0))?;
-    instance.set_forces(&force.at(0))?;
+    instance.initialise(force.time.first().copied().unwrap_or(0.0), &force.at(0))?;
     record(instance, &mut motions)?;
     for (index, (step, from)) in steps(&force.time).into_iter().zip(&force.time).enumerate() {
         let forces = force.at(index + 1);

@@ -55,7 +55,7 @@ pub fn frequencies(fit: &PieceFit) -> Result<String, CommandError> {
             .bold_line_style(GRID)
             .x_labels(last + 1)
             .x_label_formatter(&|mode| format!("{mode:.0}"))
-            .y_label_formatter(&|error| format!("{error:+.2}"))
+            .y_label_formatter(&|error| if error.abs() < 5e-3 { "0".into() } else { format!("{error:+.2}") })
             .x_desc("flexible mode")
             .y_desc("(model - measured) / measured [%]")
             .label_style((FONT, 15))

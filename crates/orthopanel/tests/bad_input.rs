@@ -1,0 +1,200 @@
+//! Bad input: one message that names file, key and what would be right; exit status 2; nothing left behind.
+
+mod support;
+
+use support::{Bench, FORCE, MODEL, TEST};
+
+/// Runs `line` and wants it refused with `code` and one line on standard error that holds all of `said`.
+fn refused(bench: &Bench, line: &str, code: i32, said: &[&str]) {
+    let before = bench.listing();
+    let output = bench.run(line);
+    let message = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(code), "{line}: {message}");
+    assert_eq!(message.lines().count(), 1, "{line}: {message}");
+    for part in said {
+        assert!(message.contains(part), "{line}: {message:?} does not say {part:?}");
+    }
+    assert!(output.stdout.is_empty(), "{line}: standard output is not empty");
+    assert_eq!(bench.listing(), before, "{line} left something behind");
+}
+
+/// `text` with `from` replaced, which must be there.
+fn changed(text: &str, from: &str, to: &str) -> String {
+    assert!(text.contains(from), "{from:?} is not in {text:?}");
+    text.replacen(from, to, 1)
+}
+
+/// Every command that reads a test refuses this one.
+fn test_refused(from: &str, to: &str, said: &[&str]) {
+    let bench = Bench::new();
+    std::fs::write(bench.path("test.toml"), changed(TEST, from, to)).expect("a file is written");
+    let said = [&["test.toml"], said].concat();
+    refused(&bench, "identify test.toml -o out.json", 2, &said);
+    refused(&bench, "run test.toml -o out", 2, &said);
+}
+
+/// Every command that reads a model refuses this one.
+fn model_refused(from: &str, to: &str, said: &[&str]) {
+    let bench = Bench::new();
+    std::fs::write(bench.path("model.json"), changed(MODEL, from, to)).expect("a file is written");
+    let said = [&["model.json"], said].concat();
+    for line in [
+        "modes model.json",
+        "accelerance model.json --force 0 --response 0 --from 1 --to 2 --lines 3 -o out.csv",
+        "export model.json -o out.fmu",
+        "simulate model.json --force-file force.csv -o out.csv",
+    ] {
+        refused(&bench, line, 2, &said);
+    }
+}
+
+#[test]
+fn a_test_with_a_key_missing() {
+    test_refused("length = 0.8\n", "", &["piece.length", "missing", "m"]);
+    test_refused("mass_per_area = 6.88\n", "", &["piece.mass_per_area", "kg/m2", "weighings"]);
+    test_refused("kind = \"natural-frequencies\"\n", "", &["measurement[1].kind", "natural-frequencies"]);
+}
+
+#[test]
+fn a_test_with_an_unknown_key() {
+    test_refused("length", "lenght", &["lenght"]);
+    test_refused("values", "frequencies", &["frequencies"]);
+}
+
+#[test]
+fn a_test_with_impossible_sizes() {
+    for size in ["0.0", "-0.03", "nan", "inf"] {
+        test_refused("thickness = 0.03", &format!("thickness = {size}"), &["piece.thickness"]);
+    }
+    test_refused("6.88", "-6.88", &["piece.mass_per_area", "-6.88"]);
+}
+
+#[test]
+fn a_test_with_fewer_frequencies_than_constants() {
+    test_refused(
+        "[321.3, 837.5, 1520.0, 2312.5, 3150.0, 3987.5]",
+        "[321.3]",
+        &["1 natural frequenc", "2", "e_x", "g_zx"],
+    );
+}
+
+#[test]
+fn a_test_with_frequencies_out_of_order() {
+    test_refused("2312.5, 3150.0", "3150.0, 2312.5", &["mode 5", "2312.5", "mode 4", "3150", "rising order"]);
+}
+
+#[test]
+fn a_test_with_a_place_off_the_piece() {
+    let sensor = "kind = \"natural-frequencies\"\nresponse_at = [0.5, 0.0]";
+    test_refused("kind = \"natural-frequencies\"", sensor, &["response_at", "0.5", "0.4"]);
+}
+
+#[test]
+fn a_test_that_is_not_there() {
+    let bench = Bench::new();
+    refused(&bench, "run nowhere.toml -o out", 2, &["nowhere.toml", "cannot be read"]);
+}
+
+#[test]
+fn a_model_of_another_schema() {
+    model_refused("orthopanel.model/1", "orthopanel.model/9", &["schema", "orthopanel.model/9", "orthopanel.model/1"]);
+    model_refused("\"schema\": \"orthopanel.model/1\",", "", &["schema", "orthopanel.model/1"]);
+}
+
+#[test]
+fn a_model_with_keys_missing_or_unknown() {
+    model_refused("\"length\": 0.8, ", "", &["length"]);
+    model_refused("\"length\"", "\"lenght\"", &["lenght", "length"]);
+    model_refused(", \"g_zx\": 5.363e8", "", &["g_zx", "missing"]);
+}
+
+#[test]
+fn a_model_with_impossible_numbers() {
+    for size in ["0", "-0.8", "1e999", "\"long\""] {
+        model_refused("\"length\": 0.8", &format!("\"length\": {size}"), &[]);
+    }
+    model_refused("\"length\": 0.8", "\"length\": -0.8", &["length = -0.8 m", "greater than zero"]);
+    model_refused("1.07e10", "-1.07e10", &["e_x", "must lie between"]);
+    model_refused("0.003", "1.5", &["damping", "1.5"]);
+    model_refused("[-0.3, 0]", "[-0.5, 0]", &["-0.5", "off the piece", "0.4"]);
+}
+
+#[test]
+fn a_place_on_the_command_line_off_the_piece() {
+    let bench = Bench::new();
+    refused(&bench, "export model.json -o out.fmu --force -0.3 --response 0,0.06", 2, &["--response 0,0.06", "0.05"]);
+    refused(&bench, "simulate model.json --force-file force.csv --force=-0.41", 2, &["--force -0.41", "0.4"]);
+    let line = "accelerance model.json --force 0 --response 9 --from 1 --to 2 --lines 3";
+    refused(&bench, line, 2, &["--response 9", "0.4"]);
+}
+
+#[test]
+fn a_target_that_cannot_be_written() {
+    let bench = Bench::new();
+    for line in [
+        "identify test.toml -o nowhere/out.json",
+        "accelerance model.json --force 0 --response 0 --from 1 --to 2 --lines 3 -o nowhere/out.csv",
+        "export model.json -o nowhere/out.fmu",
+        "simulate model.json --force-file force.csv -o nowhere/out.csv",
+    ] {
+        let before = bench.listing();
+        let output = bench.run(line);
+        let message = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{line}: {message}");
+        assert!(message.contains("nowhere") && message.contains("cannot be written"), "{line}: {message}");
+        assert_eq!(bench.listing(), before, "{line} left something behind");
+    }
+    // A file stands where the folder should be.
+    let output = bench.run("run test.toml -o model.json");
+    assert_eq!(output.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("model.json: cannot be written"));
+}
+
+#[test]
+fn a_force_file_that_does_not_fit() {
+    let bench = Bench::new();
+    std::fs::write(bench.path("force.csv"), changed(FORCE, "1e-4", "-1")).expect("a file is written");
+    refused(&bench, "simulate model.json --force-file force.csv -o out.csv", 2, &["force.csv:3", "time_s", "rise"]);
+    let line = "simulate model.json --force-file force.csv --force -0.3 --force 0.1";
+    refused(&bench, line, 2, &["force.csv:1", "force_1_n", "time_s,force_1_n,force_2_n"]);
+}
+
+#[test]
+fn an_fmu_that_is_none_of_ours() {
+    let bench = Bench::new();
+    std::fs::write(bench.path("broken.fmu"), b"PK\x03\x04 and then nothing of a zip archive")
+        .expect("a file is written");
+    refused(&bench, "simulate broken.fmu --force-file force.csv -o out.csv", 2, &["broken.fmu"]);
+    bench.done("export model.json -o panel.fmu");
+    refused(&bench, "simulate panel.fmu --force-file force.csv --modes 3", 2, &["panel.fmu", "orthopanel export"]);
+}
+
+#[test]
+fn what_this_version_cannot_solve_is_no_bad_input() {
+    let bench = Bench::new();
+    let plate = changed(MODEL, "timoshenko-beam", "mindlin-plate");
+    std::fs::write(bench.path("model.json"), plate).expect("a file is written");
+    refused(&bench, "modes model.json", 1, &["model.json", "mindlin-plate", "not supported"]);
+}
+
+#[test]
+fn bad_usage_leaves_with_two() {
+    let bench = Bench::new();
+    for line in [
+        "",
+        "modes",
+        "modes model.json --count -1",
+        "export model.json",
+        "export model.json -o x.fmu --fmi 1",
+        "export model.json -o x.fmu --modes 3 --up-to 100",
+        "export model.json -o x.fmu --force a",
+        "accelerance model.json --force 0 --response 0 --from 5 --to 2 --lines 3",
+        "accelerance model.json --force 0 --response 0 --from nan --to 2 --lines 3",
+        "accelerance model.json --force 0 --response 0 --from 1 --to 2 --lines 0",
+    ] {
+        let output = bench.run(line);
+        assert_eq!(output.status.code(), Some(2), "{line}");
+        assert!(output.stdout.is_empty() && !output.stderr.is_empty(), "{line}");
+    }
+    assert!(!bench.path("x.fmu").exists());
+}
