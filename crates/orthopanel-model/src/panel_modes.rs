@@ -1,8 +1,6 @@
 //! From a [`PanelModel`] to its modes and to the hinge, [`ModalModel`].
 
-use crate::{
-    BeamConstants, BeamMode, Damping, ExactBeam, ModalModel, Mode, ModelError, PanelModel, Place, StructureKind,
-};
+use crate::{BeamConstants, BeamMode, ExactBeam, ModalModel, ModelError, PanelModel, Place, StructureKind};
 
 /// Which modes to keep beside the rigid ones.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -68,29 +66,6 @@ impl PanelModel {
         for &place in forces.iter().chain(responses) {
             self.piece.contains(place)?;
         }
-        let modes = self.beam_modes(range)?;
-        let rigid = self.boundary.rigid_modes();
-        let seen = modes
-            .iter()
-            .enumerate()
-            .map(|(index, mode)| seen_from(mode, index, rigid, &self.damping, forces, responses));
-        ModalModel::new(forces.len(), responses.len(), seen.collect())
-    }
-}
-
-fn seen_from(
-    mode: &BeamMode,
-    index: usize,
-    rigid: usize,
-    damping: &Damping,
-    forces: &[Place],
-    responses: &[Place],
-) -> Mode {
-    let at = |places: &[Place]| places.iter().map(|place| mode.deflection(place.x)).collect();
-    Mode {
-        angular_frequency: mode.angular_frequency(),
-        damping_ratio: if index < rigid { 0.0 } else { damping.ratio(index + 1 - rigid) },
-        at_forces: at(forces),
-        at_responses: at(responses),
+        ModalModel::of_modes(&self.beam_modes(range)?, &self.damping, forces, responses)
     }
 }
