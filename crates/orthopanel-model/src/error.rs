@@ -95,6 +95,28 @@ pub enum ModelError {
         /// Number expected.
         expected: usize,
     },
+    /// Force records of unequal length.
+    #[error("force {port}: {found} samples, the first force has {expected}: all forces need the same instants")]
+    RecordLength {
+        /// Force port, from 1.
+        port: usize,
+        /// Samples found.
+        found: usize,
+        /// Samples of the first force.
+        expected: usize,
+    },
+    /// A step of the Runge-Kutta method that is too long for a mode.
+    #[error("mode {mode} ({frequency:.0} Hz): {steps} steps between samples grow without bound, take {needed} or more")]
+    UnstableStep {
+        /// Position of the mode in the model, rigid modes included, from 1.
+        mode: usize,
+        /// Its frequency \[Hz\].
+        frequency: f64,
+        /// Steps asked for.
+        steps: usize,
+        /// Steps at which it is stable.
+        needed: usize,
+    },
     /// Another number of modal states than the model has modes.
     #[error("states of {found} modes given: the model has {expected} modes")]
     StateCount {

@@ -1,8 +1,12 @@
-//! Time response: modes advanced exactly under forces that are held or run linearly over a step.
+//! Time response: modes advanced exactly under forces that are held or run linearly over a step, and the paper's
+//! Runge-Kutta beside it.
 
+mod force_record;
 mod propagator;
+mod runge_kutta;
 mod stepper;
 
+pub use force_record::ForceRecord;
 pub use stepper::ModalStepper;
 
 #[cfg(test)]
