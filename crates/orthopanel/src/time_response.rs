@@ -73,6 +73,9 @@ fn record(stepper: &ModalStepper, motions: &mut [Motion]) {
     }
 }
 
+/// Picks one quantity of a motion.
+type Column = fn(&Motion) -> &[f64];
+
 /// Time, forces and motions as CSV: `time_s,force_n,acceleration_m_s2,velocity_m_s,displacement_m`; where there are
 /// several places of a kind their columns are numbered, as in `acceleration_2_m_s2`.
 pub fn csv(force: &ForceHistory, motions: &[Motion]) -> String {
@@ -82,7 +85,7 @@ pub fn csv(force: &ForceHistory, motions: &[Motion]) -> String {
         names.push(name("force", "n", port, force.forces.len()));
         columns.push(column);
     }
-    let quantities: [(&str, &str, fn(&Motion) -> &Vec<f64>); 3] = [
+    let quantities: [(&str, &str, Column); 3] = [
         ("acceleration", "m_s2", |motion| &motion.acceleration),
         ("velocity", "m_s", |motion| &motion.velocity),
         ("displacement", "m", |motion| &motion.displacement),
