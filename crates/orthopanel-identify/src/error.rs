@@ -1,10 +1,11 @@
 //! What the identification refuses, with the numbers in it and the way out.
 
+use orthopanel_data::DataError;
 use orthopanel_model::ModelError;
 use thiserror::Error;
 
 /// Errors of this crate.
-#[derive(Debug, Clone, PartialEq, Error)]
+#[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum IdentifyError {
     /// Fewer measured frequencies than constants to find.
@@ -50,9 +51,52 @@ pub enum IdentifyError {
         /// Its unit.
         unit: &'static str,
     },
+    /// A band that a record cannot show.
+    #[error("band from {from} to {to} Hz: give 0 <= from < to <= {half_rate} Hz, half the sampling rate")]
+    HistoryBand {
+        /// Lower end \[Hz\].
+        from: f64,
+        /// Upper end \[Hz\].
+        to: f64,
+        /// Half the sampling rate \[Hz\].
+        half_rate: f64,
+    },
+    /// A model without the one force and the response that a time history has.
+    #[error(
+        "a time history has one force and one response, the model has {forces} and {responses}: make it for the places of the record"
+    )]
+    HistoryPorts {
+        /// Force ports of the model.
+        forces: usize,
+        /// Response ports of the model.
+        responses: usize,
+    },
+    /// A hit whose channels cannot be compared.
+    #[error(
+        "hit {hit}: {force} samples of force and {acceleration} of acceleration: as many of each are needed, 2 at least"
+    )]
+    HitSamples {
+        /// The hit, from 1.
+        hit: usize,
+        /// Samples of force.
+        force: usize,
+        /// Samples of acceleration.
+        acceleration: usize,
+    },
+    /// A hit with no acceleration to explain.
+    #[error(
+        "hit {hit}: the measured acceleration is constant, or has nothing in the band: leave the hit out, or widen the band"
+    )]
+    SilentHit {
+        /// The hit, from 1.
+        hit: usize,
+    },
     /// A test that this version cannot evaluate.
     #[error("{0}")]
     Unsupported(String),
+    /// What the records refuse.
+    #[error(transparent)]
+    Data(#[from] DataError),
     /// What the physics refuses.
     #[error(transparent)]
     Model(#[from] ModelError),

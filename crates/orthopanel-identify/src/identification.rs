@@ -2,7 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use orthopanel_model::{Boundary, Damping, Estimate, MODEL_SCHEMA, PanelModel, Piece, Ports, StructureKind};
+use num_complex::Complex64;
+use orthopanel_model::{Boundary, Damping, Estimate, MODEL_SCHEMA, PanelModel, Piece, Place, Ports, StructureKind};
 
 /// Constants, their uncertainty, and how the model meets each measured mode.
 #[derive(Debug, Clone, PartialEq)]
@@ -20,6 +21,15 @@ pub struct Identification {
     /// Rms error \[%\] of each frequency predicted from all the others; `None` where leaving one out leaves fewer
     /// frequencies than constants.
     pub left_one_out_percent: Option<f64>,
+    /// Rms of the misfit of the accelerances over the rms measured \[%\], where there are records.
+    pub accelerance_rms_percent: Option<f64>,
+    /// Misfit of the accelerances per datum, in units of the records' own noise: near 1 where the model lacks nothing;
+    /// `None` without records, or where these do not tell their noise.
+    pub chi_square: Option<f64>,
+    /// Measured and calculated accelerances, one a pair of places.
+    pub accelerances: Vec<AcceleranceFit>,
+    /// What was left out, cut, assumed or found wanting, a sentence each.
+    pub notes: Vec<String>,
 }
 
 /// One constant.
@@ -56,8 +66,27 @@ pub struct PieceFit {
     pub name: String,
     /// The piece.
     pub piece: Piece,
-    /// Its modes.
+    /// The modes that the test shows.
     pub modes: Vec<ModeFit>,
+    /// Damping ratio of every flexible mode inside the band, in order; empty where the test measures none.
+    pub damping: Vec<Estimate>,
+}
+
+/// Accelerance of one pair of places, measured and of the model.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AcceleranceFit {
+    /// Index of the piece in the test, from 0.
+    pub piece: usize,
+    /// Where the force acts.
+    pub force_at: Place,
+    /// Where the acceleration is measured.
+    pub response_at: Place,
+    /// Lines \[Hz\].
+    pub frequency: Vec<f64>,
+    /// Measured \[(m/s²)/N\].
+    pub measured: Vec<Complex64>,
+    /// Calculated \[(m/s²)/N\].
+    pub model: Vec<Complex64>,
 }
 
 /// One measured mode and the model's.
@@ -86,7 +115,7 @@ impl Identification {
     /// Damping holds the ratios that were measured; `beyond` is left at zero for the caller to state.
     pub fn panel_model(&self, fit: &PieceFit, boundary: Boundary, ports: Ports) -> PanelModel {
         let estimate = |constant: &IdentifiedConstant| Estimate { value: constant.value, std: constant.std };
-        let ratios = fit.modes.iter().map_while(|mode| mode.damping).map(|ratio| ratio.value).collect();
+        let ratios = fit.damping.iter().map(|ratio| ratio.value).collect();
         PanelModel {
             schema: MODEL_SCHEMA.to_owned(),
             piece: fit.piece,

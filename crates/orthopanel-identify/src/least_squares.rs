@@ -4,6 +4,54 @@ use faer::linalg::solvers::DenseSolveCore;
 use faer::prelude::Solve;
 use faer::{Mat, Side};
 
+/// $\sum r_i^2$ near some parameters: its value, $J^Tr$ and $J^TJ$.
+pub(crate) struct Quadratic {
+    /// $\sum r_i^2$.
+    pub cost: f64,
+    /// $J^Tr$.
+    pub gradient: Vec<f64>,
+    /// $J^TJ$.
+    pub normal: Mat<f64>,
+}
+
+impl Quadratic {
+    pub fn zero(size: usize) -> Self {
+        Self { cost: 0.0, gradient: vec![0.0; size], normal: Mat::zeros(size, size) }
+    }
+
+    /// Adds one residual with its derivatives by some parameters, in rising order of these; fills the lower triangle.
+    pub fn add_row(&mut self, residual: f64, derivatives: &[(usize, f64)]) {
+        self.cost += residual * residual;
+        for (i, &(row, by_row)) in derivatives.iter().enumerate() {
+            self.gradient[row] += residual * by_row;
+            for &(column, by_column) in &derivatives[..=i] {
+                self.normal[(row, column)] += by_row * by_column;
+            }
+        }
+    }
+
+    /// Adds another sum over the same parameters.
+    pub fn add(&mut self, other: &Self) {
+        self.cost += other.cost;
+        self.gradient.iter_mut().zip(&other.gradient).for_each(|(sum, part)| *sum += part);
+        self.normal += &other.normal;
+    }
+
+    /// Copies the lower triangle onto the upper one.
+    pub fn mirror(&mut self) {
+        for row in 0..self.normal.nrows() {
+            for column in 0..row {
+                self.normal[(column, row)] = self.normal[(row, column)];
+            }
+        }
+    }
+
+    /// $(J^TJ)^{-1}$: the covariance of the parameters for residuals of variance one; `None` where it is singular.
+    pub fn covariance(&self) -> Option<Mat<f64>> {
+        Some(self.normal.llt(Side::Lower).ok()?.inverse())
+    }
+}
+
 /// Residuals $r$ and their derivatives $\partial r_i/\partial p_j$, a row a residual.
 pub(crate) struct Linearised {
     pub residuals: Vec<f64>,
@@ -11,32 +59,21 @@ pub(crate) struct Linearised {
 }
 
 impl Linearised {
-    /// $\sum r_i^2$.
-    pub fn cost(&self) -> f64 {
-        self.residuals.iter().map(|r| r * r).sum()
-    }
-
-    /// $J^TJ$.
-    pub fn normal_matrix(&self) -> Mat<f64> {
-        self.jacobian.transpose() * &self.jacobian
-    }
-
-    /// $J^Tr$.
-    fn gradient(&self) -> Mat<f64> {
+    pub fn quadratic(&self) -> Quadratic {
         let residuals = Mat::from_fn(self.residuals.len(), 1, |i, _| self.residuals[i]);
-        self.jacobian.transpose() * residuals
-    }
-
-    /// $(J^TJ)^{-1}$: the covariance of the parameters for residuals of variance one; `None` where it is singular.
-    pub fn covariance(&self) -> Option<Mat<f64>> {
-        Some(self.normal_matrix().llt(Side::Lower).ok()?.inverse())
+        let gradient = self.jacobian.transpose() * residuals;
+        Quadratic {
+            cost: self.residuals.iter().map(|r| r * r).sum(),
+            gradient: (0..gradient.nrows()).map(|i| gradient[(i, 0)]).collect(),
+            normal: self.jacobian.transpose() * &self.jacobian,
+        }
     }
 }
 
 /// Where a search ended.
 pub(crate) struct Minimum {
     pub parameters: Vec<f64>,
-    pub at: Linearised,
+    pub at: Quadratic,
 }
 
 /// Why a search ended nowhere.
@@ -56,7 +93,7 @@ const SMALL_STEP: f64 = 1e-8;
 /// The damping follows Nielsen: it falls with the gain ratio and grows ever faster on failure. A parameter is projected
 /// on its bounds, so a search may end on one: the caller looks.
 pub(crate) fn levenberg_marquardt<E>(
-    linearise: impl Fn(&[f64]) -> Result<Linearised, E>,
+    linearise: impl Fn(&[f64]) -> Result<Quadratic, E>,
     start: &[f64],
     bounds: &[(f64, f64)],
 ) -> Result<Minimum, Stuck<E>> {
@@ -64,7 +101,8 @@ pub(crate) fn levenberg_marquardt<E>(
     let mut at = linearise(&parameters).map_err(Stuck::Refused)?;
     let (mut damping, mut growth) = (1e-6, 2.0);
     for _ in 0..MOST_ITERATIONS {
-        let (mut normal, mut gradient) = (at.normal_matrix(), at.gradient());
+        let mut normal = at.normal.clone();
+        let mut gradient = Mat::from_fn(parameters.len(), 1, |i, _| at.gradient[i]);
         for (i, (&parameter, &(low, high))) in parameters.iter().zip(bounds).enumerate() {
             normal[(i, i)] *= 1.0 + damping;
             // On a bound and pressed against it: this one rests, so that the others do not answer to its step.
@@ -92,7 +130,7 @@ pub(crate) fn levenberg_marquardt<E>(
             .collect();
         let moved = trial.iter().zip(&parameters).fold(0.0_f64, |most, (a, b)| most.max((a - b).abs()));
         if let Ok(next) = linearise(&trial) {
-            let (before, after) = (at.cost(), next.cost());
+            let (before, after) = (at.cost, next.cost);
             // At the bottom both are equal but for rounding, and either is the minimum.
             if after <= before {
                 let settled = moved < SMALL_STEP;
@@ -110,7 +148,7 @@ pub(crate) fn levenberg_marquardt<E>(
         damping *= growth;
         growth *= 2.0;
     }
-    Err(Stuck::Iterations { count: MOST_ITERATIONS, cost: at.cost() })
+    Err(Stuck::Iterations { count: MOST_ITERATIONS, cost: at.cost })
 }
 
 #[cfg(test)]
@@ -118,7 +156,7 @@ mod tests {
     use super::*;
 
     /// Rosenbrock's valley as residuals (10 (y − x²), 1 − x): minimum zero at (1, 1).
-    fn rosenbrock(p: &[f64]) -> Result<Linearised, ()> {
+    fn rosenbrock(p: &[f64]) -> Result<Quadratic, ()> {
         let (x, y) = (p[0], p[1]);
         let rows = [[-20.0 * x, 10.0], [-1.0, 0.0]];
         Ok(Linearised { residuals: vec![10.0 * (y - x * x), 1.0 - x], jacobian: Mat::from_fn(2, 2, |i, j| rows[i][j]) })

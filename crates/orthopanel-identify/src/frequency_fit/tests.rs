@@ -1,8 +1,9 @@
 //! The traps of a simplex with bounds, each met on purpose.
 
+use super::minimise;
 use super::problem::FrequencyProblem;
-use super::{Search, minimise};
 use crate::IdentifyError;
+use crate::Search;
 use orthopanel_data::ImpactTest;
 
 fn piece_1() -> FrequencyProblem {
@@ -20,7 +21,7 @@ fn piece_1() -> FrequencyProblem {
 }
 
 fn minimum(problem: &FrequencyProblem, start: [f64; 2], search: Search) -> [f64; 2] {
-    problem.values(&minimise(problem, &start.map(f64::ln), search).unwrap_or_else(|error| panic!("{error}")).parameters)
+    problem.values(&minimise(problem, &start.map(f64::ln), search).unwrap_or_else(|error| panic!("{error}")))
 }
 
 fn assert_close(found: [f64; 2], expected: [f64; 2]) {
@@ -67,7 +68,7 @@ fn a_minimum_on_a_bound_is_refused() {
     problem.constants[0].high = 8e9;
     for search in [Search::Simplex, Search::LeastSquares] {
         let Ok(found) = minimise(&problem, &[7e9_f64.ln(), 5e8_f64.ln()], search) else { panic!("no minimum") };
-        let refused = problem.refuse_bounds(&found.parameters);
+        let refused = problem.refuse_bounds(&found);
         assert!(matches!(refused, Err(IdentifyError::OnBound { name: "e_x", .. })), "{search:?}: {refused:?}");
     }
 }

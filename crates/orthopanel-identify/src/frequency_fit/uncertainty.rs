@@ -17,10 +17,11 @@ pub(super) struct Uncertainty {
 }
 
 pub(super) fn uncertainty(problem: &FrequencyProblem, at: &Linearised) -> Uncertainty {
-    let Some(covariance) = at.covariance() else { return Uncertainty::default() };
+    let quadratic = at.quadratic();
+    let Some(covariance) = quadratic.covariance() else { return Uncertainty::default() };
     let free = problem.free.len();
     let beyond = problem.count() - free;
-    let scatter = if beyond > 0 { at.cost() / beyond as f64 } else { 0.0 };
+    let scatter = if beyond > 0 { quadratic.cost / beyond as f64 } else { 0.0 };
     let variance = scatter.max(rounding_variance(problem));
     let std = |i: usize| covariance[(i, i)].sqrt();
     let name = |i: usize| problem.constants[problem.free[i]].name;

@@ -3,45 +3,52 @@
 use argmin::core::{CostFunction, Error, Executor, State};
 use argmin::solver::neldermead::NelderMead;
 
-use super::problem::FrequencyProblem;
 use crate::IdentifyError;
 
-/// Eq. 22 with a penalty that grows with the square of the way past a bound, from the value on the bound.
+/// An error with a penalty that grows with the square of the way past a bound, from the value on the bound.
 ///
 /// The penalty is finite and has a slope: an infinite one lets the simplex stall, and clipping to the bounds without a
 /// penalty lets it collapse on one.
-struct Penalised<'a>(&'a FrequencyProblem);
+pub(crate) struct Penalised<F> {
+    /// The error to minimise, asked only inside the bounds.
+    pub error: F,
+    /// `(low, high)` of each parameter.
+    pub bounds: Vec<(f64, f64)>,
+}
 
-impl CostFunction for Penalised<'_> {
+impl<F: Fn(&[f64]) -> Result<f64, IdentifyError>> CostFunction for &Penalised<F> {
     type Param = Vec<f64>;
     type Output = f64;
 
-    fn cost(&self, logs: &Vec<f64>) -> Result<f64, Error> {
+    fn cost(&self, parameters: &Vec<f64>) -> Result<f64, Error> {
         let mut penalty = 0.0;
-        let mut inside = logs.clone();
-        for (log, (low, high)) in inside.iter_mut().zip(self.0.log_bounds()) {
-            let clamped = log.clamp(low, high);
-            penalty += (*log - clamped).powi(2);
-            *log = clamped;
+        let mut inside = parameters.clone();
+        for (parameter, &(low, high)) in inside.iter_mut().zip(&self.bounds) {
+            let clamped = parameter.clamp(low, high);
+            penalty += (*parameter - clamped).powi(2);
+            *parameter = clamped;
         }
-        Ok(self.0.error(&inside)? + penalty)
+        Ok((self.error)(&inside)? + penalty)
     }
 }
 
-/// Edge of the first simplex, as a share of each constant.
+/// Edge of the first simplex, in logarithms.
 const FIRST_EDGE: f64 = 0.2;
-/// Spread of eq. 22 over the corners at which a run ends: the rounding of the frequencies leaves some 1e-18.
+/// Spread of the error over the corners at which a run ends: the rounding of the frequencies leaves some 1e-18.
 const SMALL_SPREAD: f64 = 1e-16;
 const MOST_ITERATIONS: u64 = 2000;
 /// A run that moves the logarithms by less has found what the one before it found.
 const SETTLED: f64 = 1e-7;
 const MOST_RESTARTS: usize = 20;
 
-/// Logarithms of the free constants at the minimum, from `start`.
+/// Parameters (logarithms) at the minimum, from `start`.
 ///
 /// The simplex is set up anew around its result, ten times smaller, until that moves it no further: one run alone may
 /// end on a flat triangle.
-pub(super) fn downhill_simplex(problem: &FrequencyProblem, start: &[f64]) -> Result<Vec<f64>, IdentifyError> {
+pub(crate) fn downhill_simplex<F: Fn(&[f64]) -> Result<f64, IdentifyError>>(
+    problem: &Penalised<F>,
+    start: &[f64],
+) -> Result<Vec<f64>, IdentifyError> {
     let refused = |_: Error| not_converged(problem, start);
     let mut best = start.to_vec();
     let mut edge = FIRST_EDGE;
@@ -51,7 +58,7 @@ pub(super) fn downhill_simplex(problem: &FrequencyProblem, start: &[f64]) -> Res
             best.iter().enumerate().map(moved).collect::<Vec<f64>>()
         });
         let solver = NelderMead::new(corners.collect()).with_sd_tolerance(SMALL_SPREAD).map_err(refused)?;
-        let result = Executor::new(Penalised(problem), solver)
+        let result = Executor::new(problem, solver)
             .configure(|state| state.max_iters(MOST_ITERATIONS))
             .run()
             .map_err(refused)?;
@@ -66,7 +73,7 @@ pub(super) fn downhill_simplex(problem: &FrequencyProblem, start: &[f64]) -> Res
     Err(not_converged(problem, &best))
 }
 
-fn not_converged(problem: &FrequencyProblem, at: &[f64]) -> IdentifyError {
-    let error_percent = problem.error(at).map_or(f64::NAN, |error| 100.0 * error.sqrt());
+fn not_converged<F: Fn(&[f64]) -> Result<f64, IdentifyError>>(problem: &Penalised<F>, at: &[f64]) -> IdentifyError {
+    let error_percent = (problem.error)(at).map_or(f64::NAN, |error| 100.0 * error.sqrt());
     IdentifyError::NotConverged { iterations: MOST_RESTARTS * MOST_ITERATIONS as usize, error_percent }
 }

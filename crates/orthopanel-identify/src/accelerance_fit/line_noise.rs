@@ -1,0 +1,62 @@
+//! Variance of every line, told from a few hits and smoothed.
+
+use orthopanel_data::Accelerance;
+
+/// Lines on either side over which the noise is taken to be even.
+const HALF_WINDOW: usize = 40;
+/// Ratios of force noise to motion noise tried, as $|H|^2$ at which both weigh alike, relative to the median $|H|^2$.
+const RATIOS: [f64; 10] = [0.0, 1e-5, 1e-4, 1e-3, 1e-2, 1e-1, 1.0, 1e1, 1e2, 1e3];
+
+/// The variance $E|\hat H-H|^2$ of each line.
+///
+/// The scatter of $n$ hits tells a line's variance to $1/\sqrt{n-1}$ only: as weights such numbers would favour lines
+/// that happen to scatter little. Noise on both channels gives $(N_a + |H|^2N_f)/|F|^2$, where everything but $|H|^2$
+/// runs smoothly with frequency. So the shape $1 + r|H|^2$ is divided out, the rest averaged over neighbours, and $r$
+/// chosen for the greatest likelihood of the scatter seen.
+///
+/// Where the records tell no variance, an even one is returned; the fit's own scatter then gives its size.
+pub(super) fn line_variance(accelerance: &Accelerance) -> Vec<f64> {
+    let count = accelerance.value.len();
+    let power: Vec<f64> = accelerance.value.iter().map(|value| value.norm_sqr()).collect();
+    let Some(raw) = &accelerance.variance else {
+        // Nothing is known but that strong lines carry the errors of gain: a thousandth of each and of the median.
+        let floor = median(&power);
+        return power.iter().map(|p| 1e-6 * (p + floor)).collect();
+    };
+    let typical = median(&power).max(f64::MIN_POSITIVE);
+    let mut best: Option<(f64, Vec<f64>)> = None;
+    for ratio in RATIOS {
+        let shape: Vec<f64> = power.iter().map(|p| 1.0 + ratio * p / typical).collect();
+        let level = running_mean(&raw.iter().zip(&shape).map(|(v, s)| v / s).collect::<Vec<_>>());
+        let variance: Vec<f64> = level.iter().zip(&shape).map(|(l, s)| (l * s).max(f64::MIN_POSITIVE)).collect();
+        // Gamma likelihood of the raw variances given the smooth ones.
+        let misfit: f64 =
+            raw.iter().zip(&variance).filter(|(v, _)| v.is_finite()).map(|(v, smooth)| v / smooth + smooth.ln()).sum();
+        if best.as_ref().is_none_or(|(least, _)| misfit < *least) {
+            best = Some((misfit, variance));
+        }
+    }
+    best.map_or_else(|| vec![1.0; count], |(_, variance)| variance)
+}
+
+/// Mean over the neighbours within [`HALF_WINDOW`], lines without a finite value left out.
+fn running_mean(values: &[f64]) -> Vec<f64> {
+    let mut sums = vec![(0.0, 0.0)];
+    for value in values {
+        let (sum, count) = sums.last().copied().unwrap_or_default();
+        sums.push(if value.is_finite() { (sum + value, count + 1.0) } else { (sum, count) });
+    }
+    (0..values.len())
+        .map(|line| {
+            let (from, to) = (line.saturating_sub(HALF_WINDOW), (line + HALF_WINDOW + 1).min(values.len()));
+            let (sum, count) = (sums[to].0 - sums[from].0, sums[to].1 - sums[from].1);
+            if count > 0.0 { sum / count } else { f64::INFINITY }
+        })
+        .collect()
+}
+
+fn median(values: &[f64]) -> f64 {
+    let mut sorted: Vec<f64> = values.iter().copied().filter(|value| value.is_finite()).collect();
+    sorted.sort_by(f64::total_cmp);
+    sorted.get(sorted.len() / 2).copied().unwrap_or(1.0)
+}

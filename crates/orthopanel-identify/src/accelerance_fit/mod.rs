@@ -1,0 +1,175 @@
+//! Identification by accelerance: maximum likelihood over the whole complex band, or the paper's eq. 23.
+
+mod line_noise;
+mod matching;
+mod outcome;
+mod paper_error;
+mod pole_constants;
+mod poles;
+mod problem;
+mod records;
+mod smooth_part;
+mod synthesis;
+
+use orthopanel_data::ImpactTest;
+use orthopanel_model::{BEAM_CONSTANTS, BeamConstants, ExactBeam, Piece};
+
+use crate::least_squares::{Minimum, Stuck, levenberg_marquardt};
+use crate::{Identification, IdentifyError, Search, Settings};
+use matching::{Matching, PiecePoles, match_at, match_poles};
+use poles::{Pole, poles};
+use problem::{AcceleranceProblem, PieceProblem};
+use records::PlaceRecord;
+
+pub use synthesis::DampingLaw;
+
+/// What stands before the fit: records, their poles, and which modes these are.
+struct Start {
+    pieces: Vec<StartPiece>,
+    poles: Vec<PiecePoles>,
+    matching: Matching,
+    held: [Option<f64>; 2],
+    notes: Vec<String>,
+}
+
+struct StartPiece {
+    index: usize,
+    sizes: Piece,
+    records: Vec<PlaceRecord>,
+    poles: Vec<Pole>,
+}
+
+/// Finds constants and damping from the records of a test.
+///
+/// 1. Poles are read off the resonances without a model, all places together.
+/// 2. The constants whose modes meet the poles best are the start, with the poles' damping.
+/// 3. Levenberg-Marquardt on the complex misfit of every line, over its noise:
+///    $\min \sum |H_{cal}-H_{exp}|^2/\mathrm{var}$ over $\ln E_x$, $\ln G_{zx}$ and every $\ln\zeta_m$. Modes beyond
+///    the band enter through their static part.
+///
+/// Standard deviations are $(J^TJ)^{-1}$, widened by the misfit per datum where that is above one. Where the model
+/// misses the records by far more than their noise, a line by line fit would bend damping to make up for a wrong
+/// frequency; then the constants come from the poles' frequencies, the damping from the poles, and a note says so.
+pub(crate) fn identify_records(test: &ImpactTest, settings: Settings) -> Result<Identification, IdentifyError> {
+    let start = start(test, settings)?;
+    let problem = assemble(test, &start, settings)?;
+    let parameters = starting_parameters(&problem, &start);
+    let bounds = problem.bounds();
+    let minimum = match settings.search {
+        Search::LeastSquares => {
+            levenberg_marquardt(|p| problem.linearise(p), &parameters, &bounds).map_err(|stuck| match stuck {
+                Stuck::Refused(error) => error.into(),
+                Stuck::Iterations { count, cost } => IdentifyError::NotConverged {
+                    iterations: count,
+                    error_percent: 100.0 * (cost / problem.data() as f64).sqrt(),
+                },
+            })?
+        }
+        Search::Simplex => {
+            let parameters = paper_error::minimise(&problem, &start, &parameters)?;
+            Minimum { at: problem.linearise(&parameters)?, parameters }
+        }
+    };
+    outcome::outcome(test, settings, start, &problem, minimum)
+}
+
+fn start(test: &ImpactTest, settings: Settings) -> Result<Start, IdentifyError> {
+    let held = held_constants(test)?;
+    let mut pieces: Vec<StartPiece> = Vec::new();
+    let mut notes = Vec::new();
+    for (index, accelerance) in test.accelerances(settings.estimation)? {
+        notes.extend(accelerance.notes.iter().cloned());
+        let record = PlaceRecord::of(&accelerance);
+        match pieces.iter_mut().find(|piece| piece.index == index) {
+            Some(piece) => piece.records.push(record),
+            None => {
+                let sizes = test.pieces[index].piece;
+                pieces.push(StartPiece { index, sizes, records: vec![record], poles: Vec::new() });
+            }
+        }
+    }
+    for piece in &mut pieces {
+        piece.poles = poles(&piece.records);
+    }
+    let poles: Vec<PiecePoles> = pieces
+        .iter()
+        .map(|piece| PiecePoles {
+            sizes: piece.sizes,
+            boundary: test.boundary,
+            frequencies: piece.poles.iter().map(|pole| pole.frequency).collect(),
+            band: piece.records.iter().map(PlaceRecord::band_end).fold(0.0, f64::max),
+        })
+        .collect();
+    let free = held.iter().filter(|held| held.is_none()).count();
+    let found: usize = poles.iter().map(|piece| piece.frequencies.len()).sum();
+    let too_few = || IdentifyError::TooFewFrequencies {
+        found,
+        needed: free.max(1),
+        names: BEAM_CONSTANTS.map(|constant| constant.name).join(", "),
+    };
+    if found < free {
+        return Err(too_few());
+    }
+    let mut matching = match_poles(&poles, held)?.ok_or_else(too_few)?;
+    // Twice: better constants may find modes for more poles.
+    for _ in 0..2 {
+        let matched: usize = matching.modes.iter().flatten().flatten().count();
+        if matched < free.max(1) {
+            return Err(too_few());
+        }
+        let minimum = pole_constants::fit_constants(&poles, &matching, held).map_err(|stuck| match stuck {
+            Stuck::Refused(error) => IdentifyError::from(error),
+            Stuck::Iterations { count, cost } => {
+                IdentifyError::NotConverged { iterations: count, error_percent: 100.0 * (cost / matched as f64).sqrt() }
+            }
+        })?;
+        let mut logs = minimum.parameters.iter();
+        let constants = held.map(|held| held.unwrap_or_else(|| logs.next().map_or(f64::NAN, |log| log.exp())));
+        matching = match_at(&poles, constants)?;
+    }
+    Ok(Start { pieces, poles, matching, held, notes })
+}
+
+fn held_constants(test: &ImpactTest) -> Result<[Option<f64>; 2], IdentifyError> {
+    for name in test.constants.keys() {
+        if BEAM_CONSTANTS.iter().all(|constant| constant.name != name) {
+            let known = BEAM_CONSTANTS.map(|constant| constant.name).join(", ");
+            return Err(IdentifyError::UnknownConstant { name: name.clone(), known });
+        }
+    }
+    let held = BEAM_CONSTANTS.map(|constant| test.constants.get(constant.name).copied());
+    for (constant, value) in BEAM_CONSTANTS.iter().zip(held) {
+        value.map_or(Ok(()), |value| constant.check(value))?;
+    }
+    Ok(held)
+}
+
+fn assemble(test: &ImpactTest, start: &Start, settings: Settings) -> Result<AcceleranceProblem, IdentifyError> {
+    let [e_x, g_zx] = start.matching.constants;
+    let pieces = start.pieces.iter().zip(&start.poles).map(|(piece, poles)| {
+        let beam = ExactBeam::new(&piece.sizes, test.boundary, BeamConstants { e_x, g_zx })?;
+        let reach = 2.5 * poles.band;
+        let frequencies: Vec<f64> =
+            beam.flexible_modes().take(400).map(|mode| mode.frequency()).take_while(|&f| f < reach).collect();
+        Ok(PieceProblem::new(piece.index, piece.sizes, test.boundary, piece.records.clone(), &frequencies)?)
+    });
+    let pieces = pieces.collect::<Result<Vec<_>, IdentifyError>>()?;
+    let logs: Vec<f64> = start.pieces.iter().flat_map(|piece| &piece.poles).map(|pole| pole.zeta.ln()).collect();
+    let usual = logs.iter().sum::<f64>() / logs.len().max(1) as f64;
+    Ok(AcceleranceProblem::new(start.held, settings.damping_law, pieces, usual))
+}
+
+/// Logarithms of the free constants and of each damping ratio, from the poles.
+fn starting_parameters(problem: &AcceleranceProblem, start: &Start) -> Vec<f64> {
+    let mut parameters: Vec<f64> = problem.free.iter().map(|&index| start.matching.constants[index].ln()).collect();
+    for ((piece, own), matched) in problem.pieces.iter().zip(&start.pieces).zip(&start.matching.modes) {
+        let mut zetas = vec![problem.usual_log_zeta; piece.free_zetas];
+        for (pole, mode) in own.poles.iter().zip(matched) {
+            if let Some(zeta) = mode.and_then(|mode| zetas.get_mut(mode)) {
+                *zeta = pole.zeta.ln();
+            }
+        }
+        parameters.append(&mut zetas);
+    }
+    parameters
+}

@@ -1,0 +1,182 @@
+//! From the minimum to what is reported.
+
+use orthopanel_data::ImpactTest;
+use orthopanel_model::{Estimate, StructureKind};
+
+use super::problem::AcceleranceProblem;
+use super::{Start, StartPiece, pole_constants};
+use crate::least_squares::Minimum;
+use crate::{
+    AcceleranceFit, Correlation, Identification, IdentifiedConstant, IdentifyError, ModeFit, PieceFit, Search, Settings,
+};
+
+/// A misfit per datum above this is the model's, not the noise's, and line by line damping is not to be trusted.
+const FAR_FROM_NOISE: f64 = 25.0;
+/// A damping ratio known no better than to this factor's logarithm is the prior's, and is not reported.
+const DAMPING_UNSEEN: f64 = 0.5;
+
+pub(super) fn outcome(
+    test: &ImpactTest,
+    settings: Settings,
+    start: Start,
+    problem: &AcceleranceProblem,
+    minimum: Minimum,
+) -> Result<Identification, IdentifyError> {
+    let Minimum { mut parameters, at } = minimum;
+    refuse_bounds(problem, &parameters)?;
+    let freedom = problem.data().saturating_sub(problem.size()).max(1) as f64;
+    let chi_square = at.cost / freedom;
+    let noise_known = problem.pieces.iter().flat_map(|piece| &piece.records).all(|record| record.variance_known);
+    let covariance = at.covariance();
+    let std_factor = if noise_known { chi_square.max(1.0).sqrt() } else { chi_square.sqrt() };
+    let std = |i: usize| covariance.as_ref().map(|matrix| std_factor * matrix[(i, i)].sqrt());
+    let mut log_std: Vec<Option<f64>> = (0..problem.size()).map(std).collect();
+    let mut correlation = covariance.as_ref().and_then(|matrix| {
+        (problem.free.len() == 2).then(|| matrix[(0, 1)] / (matrix[(0, 0)] * matrix[(1, 1)]).sqrt())
+    });
+    let mut notes = start.notes.clone();
+
+    if settings.search == Search::LeastSquares && noise_known && chi_square > FAR_FROM_NOISE {
+        notes.push(format!(
+            "the model misses the records by {:.0} times their noise: constants are from the frequencies of the \
+             resonances, damping from each resonance by itself",
+            chi_square.sqrt()
+        ));
+        correlation = take_from_poles(&start, problem, &mut parameters, &mut log_std);
+    }
+
+    let values = problem.values(&parameters);
+    let constants = problem.constants.iter().enumerate().map(|(index, constant)| {
+        let free = problem.free.iter().position(|&at| at == index);
+        let relative = free.and_then(|at| log_std[at]);
+        IdentifiedConstant {
+            name: constant.name,
+            unit: constant.unit,
+            value: values[index],
+            std: relative.map(|std| std * values[index]),
+            held: free.is_none(),
+        }
+    });
+    let (fits, accelerance_rms_percent) = accelerance_fits(problem, &parameters)?;
+    let pieces = piece_fits(test, &start, problem, &parameters, &log_std)?;
+    let errors = pieces.iter().flat_map(|piece| &piece.modes).map(|mode| mode.error_percent().powi(2));
+    let count = pieces.iter().map(|piece| piece.modes.len()).sum::<usize>().max(1);
+    Ok(Identification {
+        structure: StructureKind::TimoshenkoBeam,
+        constants: constants.collect(),
+        correlations: correlation
+            .map(|value| Correlation { first: problem.constants[0].name, second: problem.constants[1].name, value })
+            .into_iter()
+            .collect(),
+        frequency_rms_percent: (errors.sum::<f64>() / count as f64).sqrt(),
+        left_one_out_percent: None,
+        accelerance_rms_percent: Some(accelerance_rms_percent),
+        chi_square: noise_known.then_some(chi_square),
+        accelerances: fits,
+        notes,
+        pieces,
+    })
+}
+
+fn refuse_bounds(problem: &AcceleranceProblem, parameters: &[f64]) -> Result<(), IdentifyError> {
+    for ((log, (low, high)), &index) in parameters.iter().zip(problem.bounds()).zip(&problem.free) {
+        if log - low < 1e-6 || high - log < 1e-6 {
+            let constant = problem.constants[index];
+            return Err(IdentifyError::OnBound { name: constant.name, value: log.exp(), unit: constant.unit });
+        }
+    }
+    Ok(())
+}
+
+/// Puts the constants of the poles' frequencies, and the poles' damping, in place of the fit's; the correlation of the
+/// two constants.
+fn take_from_poles(
+    start: &Start,
+    problem: &AcceleranceProblem,
+    parameters: &mut [f64],
+    log_std: &mut [Option<f64>],
+) -> Option<f64> {
+    let minimum = pole_constants::fit_constants(&start.poles, &start.matching, start.held).ok()?;
+    let free = minimum.parameters.len();
+    parameters[..free].copy_from_slice(&minimum.parameters);
+    let covariance = minimum.at.covariance();
+    let matched = start.matching.modes.iter().flatten().flatten().count();
+    let beyond = matched.saturating_sub(free);
+    let scatter = (beyond > 0).then(|| minimum.at.cost / beyond as f64);
+    for (index, std) in log_std.iter_mut().enumerate().take(free) {
+        *std = covariance.as_ref().zip(scatter).map(|(matrix, scatter)| (scatter * matrix[(index, index)]).sqrt());
+    }
+    for (index, (piece, matched)) in start.pieces.iter().zip(&start.matching.modes).enumerate() {
+        let offset = problem.zeta_offset(index);
+        for (pole, mode) in piece.poles.iter().zip(matched) {
+            if let Some(mode) = mode.filter(|&mode| mode < problem.pieces[index].free_zetas) {
+                parameters[offset + mode] = pole.zeta.ln();
+                log_std[offset + mode] = Some(pole.log_zeta_std);
+            }
+        }
+    }
+    let matrix = covariance.filter(|_| free == 2)?;
+    Some(matrix[(0, 1)] / (matrix[(0, 0)] * matrix[(1, 1)]).sqrt())
+}
+
+/// Measured and calculated accelerance of every record, and the rms of their difference \[% of the rms measured\].
+fn accelerance_fits(
+    problem: &AcceleranceProblem,
+    parameters: &[f64],
+) -> Result<(Vec<AcceleranceFit>, f64), IdentifyError> {
+    let mut lines = problem.lines(parameters)?.into_iter();
+    let mut fits: Vec<AcceleranceFit> = Vec::new();
+    for piece in &problem.pieces {
+        for (record, model) in piece.records.iter().zip(lines.by_ref()) {
+            fits.push(AcceleranceFit {
+                piece: piece.piece,
+                force_at: record.force_at,
+                response_at: record.response_at,
+                frequency: record.frequency.clone(),
+                measured: record.value.clone(),
+                model,
+            });
+        }
+    }
+    let pairs = || fits.iter().flat_map(|fit| fit.model.iter().zip(&fit.measured));
+    let missed: f64 = pairs().map(|(model, measured)| (model - measured).norm_sqr()).sum();
+    let total: f64 = pairs().map(|(_, measured)| measured.norm_sqr()).sum();
+    Ok((fits, 100.0 * (missed / total).sqrt()))
+}
+
+/// The modes that the records show, and the damping of all modes inside the band.
+fn piece_fits(
+    test: &ImpactTest,
+    start: &Start,
+    problem: &AcceleranceProblem,
+    parameters: &[f64],
+    log_std: &[Option<f64>],
+) -> Result<Vec<PieceFit>, IdentifyError> {
+    let mut fits = Vec::new();
+    for (index, named) in test.pieces.iter().enumerate() {
+        let mut fit = PieceFit { name: named.name.clone(), piece: named.piece, modes: vec![], damping: vec![] };
+        let own = start.pieces.iter().position(|piece| piece.index == index);
+        if let Some(own) = own {
+            let piece = &problem.pieces[own];
+            let offset = problem.zeta_offset(own);
+            let estimate = |mode: usize| {
+                let value = parameters[offset + mode].exp();
+                Estimate { value, std: log_std[offset + mode].map(|std| std * value) }
+            };
+            fit.damping = (0..piece.in_band).map(estimate).collect();
+            let [e_x, g_zx] = problem.values(parameters);
+            let constants = orthopanel_model::BeamConstants { e_x, g_zx };
+            let beam = orthopanel_model::ExactBeam::new(&piece.sizes, test.boundary, constants)?;
+            let frequencies = beam.natural_frequencies(piece.in_band);
+            let StartPiece { poles, .. } = &start.pieces[own];
+            for (pole, mode) in poles.iter().zip(&start.matching.modes[own]) {
+                let Some((mode, &model)) = mode.and_then(|mode| Some((mode, frequencies.get(mode)?))) else { continue };
+                let seen = log_std[offset + mode].is_some_and(|std| std < DAMPING_UNSEEN);
+                let damping = seen.then(|| estimate(mode));
+                fit.modes.push(ModeFit { mode: mode + 1, measured: pole.frequency, model, damping });
+            }
+        }
+        fits.push(fit);
+    }
+    Ok(fits)
+}

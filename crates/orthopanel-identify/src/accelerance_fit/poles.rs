@@ -1,0 +1,175 @@
+//! Poles of the records without a model: natural frequencies and damping read off each resonance.
+
+use faer::Mat;
+use num_complex::Complex64;
+
+use super::records::PlaceRecord;
+use crate::least_squares::{Linearised, Quadratic, levenberg_marquardt};
+
+/// One resonance, fitted over all places together.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Pole {
+    /// Natural frequency \[Hz\].
+    pub frequency: f64,
+    /// Damping ratio and the standard deviation of its logarithm.
+    pub zeta: f64,
+    pub log_zeta_std: f64,
+}
+
+/// A peak must rise this much over the valleys beside it, in power.
+const PROMINENCE: f64 = 10.0;
+/// and this much over the noise.
+const SIGNAL_TO_NOISE: f64 = 30.0;
+/// A resonance has less damping than this.
+const MOST_DAMPING: f64 = 0.2;
+
+/// The poles of one piece's records, rising.
+pub(super) fn poles(records: &[PlaceRecord]) -> Vec<Pole> {
+    let Some(first) = records.first() else { return Vec::new() };
+    // Places with other lines (another rate or length) take part through their own peaks only where lines agree.
+    let alike: Vec<&PlaceRecord> = records.iter().filter(|record| record.frequency == first.frequency).collect();
+    let power: Vec<f64> =
+        (0..first.frequency.len()).map(|line| alike.iter().map(|record| record.value[line].norm_sqr()).sum()).collect();
+    let noise = |line: usize| alike.iter().map(|record| record.variance[line]).sum::<f64>();
+    let heard = peaks(&power).into_iter().filter(|&line| power[line] > SIGNAL_TO_NOISE * noise(line));
+    let mut found: Vec<Pole> = heard.filter_map(|line| fit_pole(&alike, &power, line)).collect();
+    found.sort_by(|a, b| a.frequency.total_cmp(&b.frequency));
+    // Two peaks of one resonance, split by noise, lead to one pole.
+    found.dedup_by(|later, earlier| later.frequency - earlier.frequency < earlier.zeta * earlier.frequency);
+    found
+}
+
+/// Lines of local maxima that stand out from both sides.
+fn peaks(power: &[f64]) -> Vec<usize> {
+    let mut found = Vec::new();
+    for line in 2..power.len().saturating_sub(2) {
+        let height = power[line];
+        if height < power[line - 1] || height <= power[line + 1] || !height.is_finite() {
+            continue;
+        }
+        // Down to a tenth on both sides before anything higher comes.
+        let falls = |side: &mut dyn Iterator<Item = &f64>| {
+            for &value in side {
+                if value > height {
+                    return false;
+                }
+                if value < height / PROMINENCE {
+                    return true;
+                }
+            }
+            false
+        };
+        if falls(&mut power[..line].iter().rev()) && falls(&mut power[line + 1..].iter()) {
+            found.push(line);
+        }
+    }
+    found
+}
+
+/// Least and most lines on either side of a peak that take part.
+const SIDE_LINES: (usize, usize) = (6, 400);
+
+fn fit_pole(records: &[&PlaceRecord], power: &[f64], peak: usize) -> Option<Pole> {
+    let frequency = &records.first()?.frequency;
+    let step = frequency.get(peak + 1)? - frequency[peak];
+    // Half-power width from the first lines below half on each side.
+    let half = power[peak] / 2.0;
+    let right = power[peak..].iter().position(|&value| value < half).unwrap_or(1);
+    let left = power[..=peak].iter().rev().position(|&value| value < half).unwrap_or(1);
+    let width = (right + left) as f64 * step / 2.0;
+    let side = ((6.0 * width / step) as usize).clamp(SIDE_LINES.0, SIDE_LINES.1);
+    let lines = peak.saturating_sub(side)..(peak + side + 1).min(frequency.len());
+    let start = [frequency[peak].ln(), (0.5 * width / frequency[peak]).max(1e-6).ln()];
+    let bounds = [
+        (start[0] - 3.0 * side as f64 * step / frequency[peak], start[0] + 3.0 * side as f64 * step / frequency[peak]),
+        (1e-7_f64.ln(), 0.5_f64.ln()),
+    ];
+    let local = LocalFit { records, lines };
+    let minimum = levenberg_marquardt(|p| local.linearise(p), &start, &bounds).ok()?;
+    let covariance = minimum.at.covariance()?;
+    // Each place takes three complex amplitudes out of the residuals.
+    let data = (2 * local.lines.len() * records.len()) as f64 - 6.0 * records.len() as f64 - 2.0;
+    let scale = if data > 0.0 { (minimum.at.cost / data).max(1.0) } else { 1.0 };
+    let (found, zeta) = (minimum.parameters[0].exp(), minimum.parameters[1].exp());
+    let log_zeta_std = (scale * covariance[(1, 1)]).sqrt();
+    // A pole away from its peak, or of any damping, is no resonance but a bump of the background.
+    let at_peak = (found - frequency[peak]).abs() < 2.0 * width.max(step);
+    let sure = log_zeta_std < 0.5 && zeta < MOST_DAMPING;
+    (at_peak && sure).then_some(Pole { frequency: found, zeta, log_zeta_std })
+}
+
+/// Residuals of one resonance over a straight background, amplitudes eliminated at each place (variable projection):
+/// $H \approx As^2/d(s) + B + C(f-f_0)$, with $A$, $B$, $C$ complex and of that place alone.
+struct LocalFit<'a> {
+    records: &'a [&'a PlaceRecord],
+    lines: std::ops::Range<usize>,
+}
+
+impl LocalFit<'_> {
+    fn linearise(&self, parameters: &[f64]) -> Result<Quadratic, std::convert::Infallible> {
+        let residuals = self.residuals(parameters);
+        // Steps well inside a half-power width: the frequency's counts in units of the damping ratio.
+        let steps = [1e-3 * parameters[1].exp(), 1e-3];
+        let columns: Vec<Vec<f64>> = (0..2)
+            .map(|i| {
+                let shifted = |sign: f64| {
+                    let mut at = [parameters[0], parameters[1]];
+                    at[i] += sign * steps[i];
+                    self.residuals(&at)
+                };
+                let (low, high) = (shifted(-1.0), shifted(1.0));
+                high.iter().zip(&low).map(|(h, l)| (h - l) / (2.0 * steps[i])).collect()
+            })
+            .collect();
+        let jacobian = Mat::from_fn(residuals.len(), 2, |i, j| columns[j][i]);
+        Ok(Linearised { jacobian, residuals }.quadratic())
+    }
+
+    fn residuals(&self, parameters: &[f64]) -> Vec<f64> {
+        let (omega, zeta) = (parameters[0].exp() * std::f64::consts::TAU, parameters[1].exp());
+        let mut residuals = Vec::new();
+        for record in self.records {
+            let lines = self.lines.clone();
+            let middle = 0.5 * (record.frequency[lines.start] + record.frequency[lines.end - 1]);
+            let span = record.frequency[lines.end - 1] - record.frequency[lines.start];
+            let mut columns: [Vec<Complex64>; 3] = Default::default();
+            let mut right = Vec::new();
+            for line in lines {
+                // Variance counts real and imaginary part together.
+                let weight = (2.0 / record.variance[line]).sqrt();
+                let s = record.s(line);
+                columns[0].push(weight * s * s / (s * s + 2.0 * zeta * omega * s + omega * omega) * 2.0 * zeta);
+                columns[1].push(Complex64::new(weight, 0.0));
+                columns[2].push(Complex64::new(weight * (record.frequency[line] - middle) / span, 0.0));
+                right.push(weight * record.value[line]);
+            }
+            residuals.extend(project_out(columns, right).into_iter().flat_map(|value| [value.re, value.im]));
+        }
+        residuals
+    }
+}
+
+/// What of `right` no combination of the columns can make: Gram-Schmidt, twice for its rounding.
+fn project_out(mut columns: [Vec<Complex64>; 3], mut right: Vec<Complex64>) -> Vec<Complex64> {
+    let remove = |direction: &[Complex64], from: &mut [Complex64]| {
+        let share: Complex64 = direction.iter().zip(from.iter()).map(|(d, f)| d.conj() * f).sum();
+        for (value, d) in from.iter_mut().zip(direction) {
+            *value -= share * d;
+        }
+    };
+    for index in 0..columns.len() {
+        let (done, rest) = columns.split_at_mut(index);
+        let Some(column) = rest.first_mut() else { continue };
+        for _ in 0..2 {
+            done.iter().for_each(|direction| remove(direction, column));
+        }
+        let norm = column.iter().map(|value| value.norm_sqr()).sum::<f64>().sqrt();
+        if norm > 0.0 {
+            column.iter_mut().for_each(|value| *value /= norm);
+        }
+        for _ in 0..2 {
+            remove(column, &mut right);
+        }
+    }
+    right
+}

@@ -1,0 +1,152 @@
+//! The model's accelerance between two places, with exact derivatives.
+
+use num_complex::Complex64;
+use orthopanel_model::SensitiveModes;
+
+use super::smooth_part::SmoothPart;
+
+/// How a mode loses energy.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum DampingLaw {
+    /// Viscous, as in eq. 20: $d_m = s^2 + 2\zeta_m\omega_ms + \omega_m^2$.
+    #[default]
+    Viscous,
+    /// Hysteretic, loss factor $\eta_m = 2\zeta_m$: $d_m = s^2 + \omega_m^2(1 + 2j\zeta_m)$.
+    Hysteretic,
+}
+
+impl DampingLaw {
+    /// The damping term of $d_m$, and its derivative by $\omega_m^2$.
+    fn loss(self, omega2: f64, omega: f64, zeta: f64, s: Complex64) -> (Complex64, Complex64) {
+        match self {
+            Self::Viscous => {
+                let loss = 2.0 * zeta * omega * s;
+                (loss, loss / (2.0 * omega2))
+            }
+            Self::Hysteretic => (Complex64::new(0.0, 2.0 * zeta * omega2), Complex64::new(0.0, 2.0 * zeta)),
+        }
+    }
+}
+
+/// Terms of the series in $s^2$ that stands for the modes above the sum: with these at least 2.5 times above the band,
+/// six leave 2e-5 of a part that is small itself.
+const SERIES_TERMS: usize = 6;
+
+/// The accelerance of one pair of places as a sum over modes,
+/// $$H(s) = \sum_{rigid}P + \sum_m\frac{P_ms^2}{d_m(s)} + s^2C_0 - s^4C_1 + s^6C_2 - \dots$$
+/// with $P_m = W_m(l_1)W_m(l_x)$. $C_0$ is the static flexibility less that of the modes in the sum, so cutting the sum
+/// leaves no bias; $C_k = \sum P/\omega^{2(k+1)}$ over the higher modes.
+///
+/// Only modes with a damping ratio of their own are summed at every line. The rest has no resonance inside the band and
+/// is tabulated as a [`SmoothPart`], value and derivatives.
+pub(super) struct PairModel {
+    law: DampingLaw,
+    near: Vec<NearMode>,
+    coefficients: usize,
+    smooth: SmoothPart,
+}
+
+struct NearMode {
+    omega2: f64,
+    omega: f64,
+    zeta: f64,
+    product: f64,
+    omega2_by: Vec<f64>,
+    product_by: Vec<f64>,
+}
+
+impl PairModel {
+    /// Between places number `force` and `response` of `modes`.
+    ///
+    /// `flexibility` is the static one with its derivatives; `zetas` has the ratio of every mode in the sum, the first
+    /// `near` of which are free; the lines lie at $s = \sigma + j\omega$ with $\sigma$ = `decay_rate`, up to `band` in Hz.
+    pub(super) fn new(
+        modes: &SensitiveModes,
+        (force, response): (usize, usize),
+        flexibility: (f64, [f64; 2]),
+        law: DampingLaw,
+        (zetas, near): (&[f64], usize),
+        (decay_rate, band): (f64, f64),
+    ) -> Self {
+        let mut summed: Vec<NearMode> = modes
+            .flexible
+            .iter()
+            .zip(zetas)
+            .map(|(mode, &zeta)| NearMode {
+                omega2: mode.omega2,
+                omega: mode.omega2.sqrt(),
+                zeta,
+                product: mode.shape[force] * mode.shape[response],
+                omega2_by: mode.omega2_by.clone(),
+                product_by: mode
+                    .shape_by
+                    .iter()
+                    .map(|by| by[force] * mode.shape[response] + mode.shape[force] * by[response])
+                    .collect(),
+            })
+            .collect();
+        let mut series = [0.0; SERIES_TERMS];
+        series[0] = flexibility.0 - summed.iter().map(|mode| mode.product / mode.omega2).sum::<f64>();
+        for (omega2, shape) in &modes.higher {
+            let mut term = shape[force] * shape[response] / omega2;
+            for coefficient in series.iter_mut().skip(1) {
+                term /= omega2;
+                *coefficient += term;
+            }
+        }
+        // Derivatives of C1 and beyond are left out: too small to steer a search, and the value itself is whole.
+        let static_by: Vec<f64> = (0..2)
+            .map(|i| {
+                let of_mode = |mode: &NearMode| {
+                    (mode.product_by[i] - mode.product * mode.omega2_by[i] / mode.omega2) / mode.omega2
+                };
+                flexibility.1[i] - summed.iter().map(of_mode).sum::<f64>()
+            })
+            .collect();
+        let rigid: f64 = modes.rigid.iter().map(|shape| shape[force] * shape[response]).sum();
+        let far = summed.split_off(near.min(summed.len()));
+        let coefficients = static_by.len();
+        let smooth = SmoothPart::tabulate(decay_rate, band, 1 + coefficients, |s, out| {
+            let s2 = s * s;
+            let power = series.iter().rev().fold(Complex64::ZERO, |sum, coefficient| *coefficient - s2 * sum);
+            out[0] = s2 * power + rigid;
+            for (total, by) in out[1..].iter_mut().zip(&static_by) {
+                *total = s2 * by;
+            }
+            for mode in &far {
+                mode.add(law, s, out);
+            }
+        });
+        Self { law, near: summed, coefficients, smooth }
+    }
+
+    /// Writes into `out`: $H(s)$, its derivatives by the structure's coefficients, then by each near mode's $\ln\zeta$.
+    pub(super) fn line(&self, s: Complex64, out: &mut [Complex64]) {
+        let (structural, by_zeta) = out.split_at_mut(1 + self.coefficients);
+        self.smooth.at(s, structural);
+        for (mode, by) in self.near.iter().zip(by_zeta) {
+            *by = mode.add(self.law, s, structural);
+        }
+    }
+}
+
+impl NearMode {
+    /// Adds the mode's part to value and derivatives by coefficients; returns that by $\ln\zeta$.
+    fn add(&self, law: DampingLaw, s: Complex64, out: &mut [Complex64]) -> Complex64 {
+        let s2 = s * s;
+        let (loss, loss_by_omega2) = law.loss(self.omega2, self.omega, self.zeta, s);
+        let inverse = (s2 + loss + self.omega2).inv();
+        let gain = s2 * inverse;
+        let by_dynamic = -self.product * gain * inverse;
+        let by_omega2 = by_dynamic * (1.0 + loss_by_omega2);
+        if let Some((value, by_coefficients)) = out.split_first_mut() {
+            *value += self.product * gain;
+            for ((total, omega2_by), product_by) in
+                by_coefficients.iter_mut().zip(&self.omega2_by).zip(&self.product_by)
+            {
+                *total += by_omega2 * *omega2_by + gain * *product_by;
+            }
+        }
+        by_dynamic * loss
+    }
+}

@@ -1,0 +1,32 @@
+//! The entry: what the test holds decides which of the paper's two problems is solved.
+
+use orthopanel_data::{ImpactTest, MeasurementData};
+
+use crate::{Identification, IdentifyError, Settings, accelerance_fit, frequency_fit};
+
+/// Finds the constants of a test, and its damping where there are records: eq. 22 for natural frequencies, the whole
+/// complex accelerance for records. Starting values are found here.
+///
+/// `settings` may be a [`crate::Search`] alone.
+///
+/// # Errors
+/// [`IdentifyError`]: too few data, an unknown constant, no convergence, a constant on its bound, records that cannot be
+/// read, or a test that this version cannot evaluate.
+pub fn identify(test: &ImpactTest, settings: impl Into<Settings>) -> Result<Identification, IdentifyError> {
+    let settings = settings.into();
+    if let Some(effect) = test.effects.first() {
+        let message = format!("effect {:?}: declared effects are not supported by this version", effect.id);
+        return Err(IdentifyError::Unsupported(message));
+    }
+    let is_frequencies = |data: &MeasurementData| matches!(data, MeasurementData::NaturalFrequencies(_));
+    let lists = test.measurements.iter().filter(|measurement| is_frequencies(&measurement.data)).count();
+    if lists == test.measurements.len() {
+        frequency_fit::identify_frequencies(test, settings.search)
+    } else if lists == 0 {
+        accelerance_fit::identify_records(test, settings)
+    } else {
+        let message = "natural frequencies and records in one test: put them in two test files, since the frequencies \
+                       are most likely read off the same records and would count twice";
+        Err(IdentifyError::Unsupported(message.to_owned()))
+    }
+}
