@@ -162,12 +162,12 @@ fn left_out(model: &ModalModel, all: f64) -> Result<f64, ModelError> {
 }
 
 impl ComparedSignals {
-    /// `None` where the measured signal is nowhere greater than `rounding`.
+    /// `None` where the measured signal varies by no more than `rounding`.
     fn new(measured: Vec<f64>, calculated: Vec<f64>, rounding: f64) -> Option<Self> {
         let errors: Vec<f64> =
             measured.iter().zip(&calculated).map(|(measured, calculated)| measured - calculated).collect();
         let (peak, all) = (greatest(&measured), variance(&measured));
-        if !(peak > rounding && all > 0.0) {
+        if all.sqrt() <= rounding {
             return None;
         }
         let rms = mean(errors.iter().map(|error| error * error)).sqrt();
