@@ -133,19 +133,22 @@ fn what_cannot_be_compared_is_refused_by_name() {
         assert!(matches!(refusal(&one, &good, &settings), IdentifyError::HistoryBand { half_rate: 4096.0, .. }));
     }
     for (forces, responses) in [(2, 1), (1, 0)] {
-        let other = ModalModel::new(forces, responses, Vec::new()).unwrap();
-        assert_eq!(refusal(&other, &good, &plain), IdentifyError::HistoryPorts { forces, responses });
+        let refused = refusal(&ModalModel::new(forces, responses, Vec::new()).unwrap(), &good, &plain);
+        let IdentifyError::HistoryPorts { forces: f, responses: r } = refused else { panic!("{refused}") };
+        assert_eq!((f, r), (forces, responses));
     }
-    let short = Hit { force: vec![1.0; 3], acceleration: vec![1.0; 4] };
-    assert_eq!(refusal(&one, &short, &plain), IdentifyError::HitSamples { hit: 1, force: 3, acceleration: 4 });
-    let none = Hit { force: Vec::new(), acceleration: Vec::new() };
-    assert_eq!(refusal(&one, &none, &plain), IdentifyError::HitSamples { hit: 1, force: 0, acceleration: 0 });
+    for (force, acceleration) in [(3, 4), (0, 0), (1, 1)] {
+        let short = Hit { force: vec![1.0; force], acceleration: vec![1.0; acceleration] };
+        let refused = refusal(&one, &short, &plain);
+        let IdentifyError::HitSamples { hit: 1, force: f, acceleration: a } = refused else { panic!("{refused}") };
+        assert_eq!((f, a), (force, acceleration));
+    }
     let silent = Hit { force: good.force.clone(), acceleration: vec![0.1; 64] };
-    assert_eq!(refusal(&one, &silent, &plain), IdentifyError::SilentHit { hit: 1 });
+    assert!(matches!(refusal(&one, &silent, &plain), IdentifyError::SilentHit { hit: 1 }));
     let above = (0..64).map(|n| if n % 2 == 0 { 3.1 } else { -2.9 }).collect();
     let below = HistorySettings { band: Some(100.0..=2000.0), ..plain.clone() };
     let out_of_band = Hit { force: vec![0.0; 64], acceleration: above };
-    assert_eq!(refusal(&one, &out_of_band, &below), IdentifyError::SilentHit { hit: 1 });
+    assert!(matches!(refusal(&one, &out_of_band, &below), IdentifyError::SilentHit { hit: 1 }));
     for channel in 0..2 {
         let mut broken = good.clone();
         [&mut broken.force, &mut broken.acceleration][channel][7] = f64::NAN;
