@@ -4,18 +4,19 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use orthopanel_data::{ImpactTest, MeasurementData};
-use orthopanel_identify::{Identification, IdentifiedConstant, ModeFit, PieceFit, Search, identify};
+use orthopanel_identify::{DampingLaw, Identification, IdentifiedConstant, ModeFit, PieceFit, Settings, identify};
 use orthopanel_model::{PanelModel, Piece, Place, Ports, StructureKind};
 use serde::Serialize;
 
 use crate::error::CommandError;
-use crate::tables;
+use crate::{progress, tables};
 
 /// Modal damping ratio assumed where a test measures none: typical of the paper's table 9.
 const ASSUMED_DAMPING: f64 = 0.003;
 
 /// A test, what was identified from it, and a model of each of its pieces.
 pub struct Identified {
+    pub test: ImpactTest,
     pub found: Identification,
     /// In the order of `found.pieces`.
     pub models: Vec<PanelModel>,
@@ -24,11 +25,17 @@ pub struct Identified {
 }
 
 impl Identified {
-    /// Reads the test at `path` and identifies its panel; says on standard error what had to be assumed.
-    pub fn from_test(path: &Path, search: Search) -> Result<Self, CommandError> {
+    /// Reads the test at `path` and identifies its panel; says on standard error what was noted and had to be assumed.
+    pub fn from_test(path: &Path, settings: Settings) -> Result<Self, CommandError> {
         let test = ImpactTest::read(path)?;
-        let found = identify(&test, search).map_err(|source| CommandError::Identify { path: path.into(), source })?;
-        let models = found.pieces.iter().enumerate().map(|(index, fit)| model(&test, &found, index, fit)).collect();
+        let found = {
+            let _shown = progress::spinner("reading the records and identifying");
+            identify(&test, settings).map_err(|source| CommandError::Identify { path: path.into(), source })?
+        };
+        found.notes.iter().for_each(|note| eprintln!("note: {note}"));
+        let law = settings.damping_law;
+        let models =
+            found.pieces.iter().enumerate().map(|(index, fit)| model(&test, &found, index, fit, law)).collect();
         if found.pieces.iter().flat_map(|fit| &fit.modes).all(|mode| mode.damping.is_none()) {
             eprintln!(
                 "damping: natural frequencies alone measure none; the model takes zeta = {ASSUMED_DAMPING} for every \
@@ -36,7 +43,7 @@ impl Identified {
             );
         }
         let answer = Answer::of(&found);
-        Ok(Self { found, models, answer })
+        Ok(Self { test, found, models, answer })
     }
 
     /// `-NAME` where there are several pieces, safe in file names; nothing for a single one.
@@ -50,16 +57,7 @@ impl Identified {
         for fit in self.found.pieces.iter().filter(|fit| !fit.modes.is_empty()) {
             let Piece { length, width, thickness, mass_per_area } = fit.piece;
             text += &format!("piece {}: {length} x {width} x {thickness} m, {mass_per_area:.4} kg/m2\n", fit.name);
-            let row = |mode: &ModeFit| {
-                vec![
-                    mode.mode.to_string(),
-                    format!("{:.1}", mode.measured),
-                    format!("{:.1}", mode.model),
-                    format!("{:+.2}", mode.error_percent()),
-                ]
-            };
-            let rows: Vec<_> = fit.modes.iter().map(row).collect();
-            text += &(tables::aligned(&["mode", "measured [Hz]", "model [Hz]", "error [%]"], &rows) + "\n");
+            text += &(mode_table(fit) + "\n");
         }
         let row = |constant: &IdentifiedConstant| {
             let std = match constant.std {
@@ -78,8 +76,38 @@ impl Identified {
         if let Some(error) = self.found.left_one_out_percent {
             text += &format!("; of each predicted from the others: {error:.3} % rms");
         }
-        text + "\n"
+        text += "\n";
+        if let Some(error) = self.found.accelerance_rms_percent {
+            text += &format!("error of the accelerances: {error:.2} % rms");
+            if let Some(chi_square) = self.found.chi_square {
+                text += &format!("; chi-square per datum {chi_square:.2} (1: all that is left is noise)");
+            }
+            text += "\n";
+        }
+        text
     }
+}
+
+/// A row a mode; with the damping where the test measures it.
+fn mode_table(fit: &PieceFit) -> String {
+    let with_damping = fit.modes.iter().any(|mode| mode.damping.is_some());
+    let row = |mode: &ModeFit| {
+        let mut row = vec![
+            mode.mode.to_string(),
+            format!("{:.1}", mode.measured),
+            format!("{:.1}", mode.model),
+            format!("{:+.2}", mode.error_percent()),
+        ];
+        if with_damping {
+            let std = mode.damping.and_then(|zeta| zeta.std);
+            row.push(mode.damping.map_or("not seen".into(), |zeta| format!("{:.3e}", zeta.value)));
+            row.push(std.map_or("unknown".into(), |std| format!("{std:.1e}")));
+        }
+        row
+    };
+    let heading = ["mode", "measured [Hz]", "model [Hz]", "error [%]", "zeta", "std"];
+    let columns = if with_damping { heading.len() } else { heading.len() - 2 };
+    tables::aligned(&heading[..columns], &fit.modes.iter().map(row).collect::<Vec<_>>())
 }
 
 /// `identify --json`.
@@ -91,6 +119,8 @@ pub struct Answer {
     correlations: Vec<CorrelationEntry>,
     modes: Vec<ModeEntry>,
     error: ErrorEntry,
+    /// What was left out, cut or found wanting.
+    notes: Vec<String>,
 }
 
 #[derive(Serialize)]
@@ -126,6 +156,8 @@ struct ErrorEntry {
     left_one_out_percent: Option<f64>,
     /// `null` where no accelerance was measured.
     accelerance_rms_percent: Option<f64>,
+    /// Misfit per datum over the records' noise; `null` where these do not tell it.
+    chi_square: Option<f64>,
 }
 
 impl Answer {
@@ -155,24 +187,45 @@ impl Answer {
             error: ErrorEntry {
                 frequency_rms_percent: found.frequency_rms_percent,
                 left_one_out_percent: found.left_one_out_percent,
-                accelerance_rms_percent: None,
+                accelerance_rms_percent: found.accelerance_rms_percent,
+                chi_square: found.chi_square,
             },
+            notes: found.notes.clone(),
         }
     }
 }
 
-fn model(test: &ImpactTest, found: &Identification, index: usize, fit: &PieceFit) -> PanelModel {
+fn model(
+    test: &ImpactTest,
+    found: &Identification,
+    index: usize,
+    fit: &PieceFit,
+    damping_law: DampingLaw,
+) -> PanelModel {
     let mut model = found.panel_model(fit, test.boundary, ports(test, index, &fit.piece));
-    let origin = if model.damping.ratios.is_empty() {
-        "assumed, not measured"
-    } else {
-        "measured; assumed beyond the measured modes"
+    let (beyond, origin) = match usual_damping(fit) {
+        None => (ASSUMED_DAMPING, "assumed, not measured".to_owned()),
+        Some(usual) => (usual, "measured inside the band; beyond it assumed, the median of the measured".to_owned()),
     };
-    model.damping.beyond = ASSUMED_DAMPING;
+    model.damping.beyond = beyond;
     model.provenance.insert("damping".into(), origin.into());
+    if damping_law == DampingLaw::Hysteretic && !model.damping.ratios.is_empty() {
+        let text = "identified as hysteretic, loss factor 2 zeta; the model is viscous, which is the same at resonance";
+        model.provenance.insert("damping_law".into(), text.into());
+    }
     model.provenance.insert("piece".into(), fit.name.clone().into());
     model.provenance.insert("program".into(), concat!("orthopanel ", env!("CARGO_PKG_VERSION")).into());
     model
+}
+
+/// Median of the damping ratios that the piece's records show.
+///
+/// Ratios scatter by factors of five from mode to mode (the paper's table 9), and the median is not carried away by one
+/// of them as the last one or the mean would be.
+fn usual_damping(fit: &PieceFit) -> Option<f64> {
+    let mut ratios: Vec<f64> = fit.modes.iter().filter_map(|mode| Some(mode.damping?.value)).collect();
+    ratios.sort_by(f64::total_cmp);
+    ratios.get(ratios.len() / 2).copied()
 }
 
 /// The places of the piece's records; without records the paper's, -3/8 and 3/8 of the length.

@@ -9,6 +9,8 @@ mod importer;
 mod model_file;
 mod output;
 mod pictures;
+mod progress;
+mod record_options;
 mod tables;
 mod time_response;
 

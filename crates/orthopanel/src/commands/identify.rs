@@ -2,19 +2,27 @@
 
 use std::path::{Path, PathBuf};
 
-use orthopanel_identify::{PieceFit, Search};
+use orthopanel_identify::PieceFit;
 
 use crate::error::CommandError;
 use crate::identified::Identified;
 use crate::output;
+use crate::record_options::IdentifyOptions;
 
-/// Identify the elastic constants from a test
+/// Identify the elastic constants, and the damping where there are records, from a test
 ///
-/// Finds e_x and g_zx so that the model's natural frequencies meet the measured ones in the least squares of their
-/// relative errors. Given are the standard deviations, the correlation, and the error of each frequency predicted
-/// from all the others. With several pieces in the test, -o writes one model a piece: MODEL-NAME.json.
+/// From natural frequencies: e_x and g_zx such that the model's meet the measured ones in the least squares of their
+/// relative errors, with standard deviations, correlation, and the error of each frequency predicted from all others.
 ///
-/// Example: orthopanel identify examples/piece-1/test.toml -o model.json
+/// From hammer records or accelerances: e_x, g_zx and the damping ratio of every mode in the band, such that the model
+/// meets every line of every place, weighted by the records' own scatter. No peak is picked by hand. What was found
+/// wanting in the records (a double hit, an overload, a response that has not decayed) is said on standard error.
+/// Modes beyond the band get the median of the measured ratios.
+///
+/// With several pieces in the test, -o writes one model a piece: MODEL-NAME.json.
+///
+/// Examples: orthopanel identify examples/piece-1/test.toml -o model.json
+///           orthopanel identify examples/made-hits/test.toml -o model.json
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
 pub struct Arguments {
@@ -23,31 +31,15 @@ pub struct Arguments {
     /// Model file to write (orthopanel.model/1, JSON)
     #[arg(short, long, value_name = "MODEL.json")]
     output: Option<PathBuf>,
-    /// How to search: on exact sensitivities, or by the paper's downhill simplex
-    #[arg(long, value_enum, default_value_t = SearchWord::LeastSquares)]
-    search: SearchWord,
+    #[command(flatten)]
+    options: IdentifyOptions,
     /// Print one JSON object (orthopanel.identified/1) on standard output
     #[arg(long)]
     json: bool,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-pub enum SearchWord {
-    LeastSquares,
-    Simplex,
-}
-
-impl From<SearchWord> for Search {
-    fn from(word: SearchWord) -> Self {
-        match word {
-            SearchWord::LeastSquares => Self::LeastSquares,
-            SearchWord::Simplex => Self::Simplex,
-        }
-    }
-}
-
 pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
-    let identified = Identified::from_test(&arguments.test, arguments.search.into())?;
+    let identified = Identified::from_test(&arguments.test, arguments.options.settings())?;
     if let Some(path) = &arguments.output {
         let mut files = output::Files::default();
         for (fit, model) in identified.found.pieces.iter().zip(&identified.models) {

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use orthopanel_export::{FmiVersion, Fmu, FmuOptions};
-use orthopanel_identify::{PieceFit, Search};
+use orthopanel_identify::PieceFit;
 use orthopanel_model::PanelModel;
 use serde::Serialize;
 
@@ -11,6 +11,7 @@ use crate::arguments::{DENSE_MODES, USUAL_MODES};
 use crate::error::{CommandError, InFile as _};
 use crate::force_file::ForceHistory;
 use crate::identified::{Answer, Identified};
+use crate::record_options::IdentifyOptions;
 use crate::time_response::Hold;
 use crate::{output, pictures, time_response};
 
@@ -29,6 +30,8 @@ pub struct Arguments {
     /// Folder for the results; made where it is not there
     #[arg(short, long, value_name = "DIR")]
     output: PathBuf,
+    #[command(flatten)]
+    options: IdentifyOptions,
     /// Print one JSON object (orthopanel.run/1) on standard output
     #[arg(long)]
     json: bool,
@@ -42,7 +45,7 @@ struct RunAnswer<'a> {
 }
 
 pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
-    let identified = Identified::from_test(&arguments.test, Search::default())?;
+    let identified = Identified::from_test(&arguments.test, arguments.options.settings())?;
     let mut files = output::Files::default();
     files.add("identified.json", output::json(&identified.answer));
     for (fit, model) in identified.found.pieces.iter().zip(&identified.models) {

@@ -1,0 +1,34 @@
+//! Signs of life on long work, on standard error, and only where that is a terminal.
+
+use std::time::Duration;
+
+use indicatif::{ProgressBar, ProgressStyle};
+
+/// A spinner that turns until it is dropped; in pipes and log files nothing is drawn.
+pub fn spinner(message: &'static str) -> Shown {
+    let bar = ProgressBar::new_spinner().with_message(message);
+    bar.enable_steady_tick(Duration::from_millis(100));
+    Shown(bar)
+}
+
+/// A bar over `steps` steps of work.
+pub fn bar(message: &'static str, steps: usize) -> Shown {
+    let style = ProgressStyle::with_template("{msg} [{bar:30}] {pos}/{len}").unwrap_or(ProgressStyle::default_bar());
+    Shown(ProgressBar::new(steps as u64).with_message(message).with_style(style))
+}
+
+/// Work that is being shown; dropping it clears the line.
+pub struct Shown(ProgressBar);
+
+impl Shown {
+    /// One step is done.
+    pub fn step(&self) {
+        self.0.inc(1);
+    }
+}
+
+impl Drop for Shown {
+    fn drop(&mut self) {
+        self.0.finish_and_clear();
+    }
+}
