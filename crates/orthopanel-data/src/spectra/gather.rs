@@ -30,7 +30,28 @@ impl TimeHistory {
     }
 }
 
+/// Records of one pair of places.
+enum Gathered {
+    Hits(TimeHistory),
+    Line(Accelerance),
+}
+
 impl ImpactTest {
+    /// Reads every time history of the test, in the order of the file, each with its piece's index.
+    ///
+    /// Files of one piece with the same places are joined, as in [`ImpactTest::accelerances`].
+    ///
+    /// # Errors
+    /// As [`TimeHistory::read`] and [`TimeHistory::join`].
+    pub fn time_histories(&self) -> Result<Vec<(usize, TimeHistory)>, DataError> {
+        let hits = self.gathered(|data| matches!(data, MeasurementData::TimeHistory(_)))?.into_iter();
+        let hits = hits.filter_map(|(piece, gathered)| match gathered {
+            Gathered::Hits(history) => Some((piece, history)),
+            Gathered::Line(_) => None,
+        });
+        Ok(hits.collect())
+    }
+
     /// Reads every time history and accelerance of the test, in the order of the file, each with its piece's index.
     ///
     /// Time histories of one piece with the same places are hits of one accelerance, which stands where the first of
@@ -39,12 +60,16 @@ impl ImpactTest {
     /// # Errors
     /// As [`TimeHistory::read`], [`TimeHistory::join`], [`TimeHistory::accelerance`] and [`Accelerance::read`].
     pub fn accelerances(&self, estimation: Estimation) -> Result<Vec<(usize, Accelerance)>, DataError> {
-        enum Gathered {
-            Hits(TimeHistory),
-            Line(Accelerance),
-        }
+        let estimated = self.gathered(|_| true)?.into_iter().map(|(piece, gathered)| match gathered {
+            Gathered::Hits(history) => Ok((piece, history.accelerance(estimation)?)),
+            Gathered::Line(accelerance) => Ok((piece, accelerance)),
+        });
+        estimated.collect()
+    }
+
+    fn gathered(&self, wanted: impl Fn(&MeasurementData) -> bool) -> Result<Vec<(usize, Gathered)>, DataError> {
         let mut gathered: Vec<(usize, Gathered)> = Vec::new();
-        for Measurement { piece, data } in &self.measurements {
+        for Measurement { piece, data } in self.measurements.iter().filter(|measurement| wanted(&measurement.data)) {
             match data {
                 MeasurementData::NaturalFrequencies(_) => {}
                 MeasurementData::Accelerance(recorded) => {
@@ -69,10 +94,6 @@ impl ImpactTest {
                 }
             }
         }
-        let estimated = gathered.into_iter().map(|(piece, gathered)| match gathered {
-            Gathered::Hits(history) => Ok((piece, history.accelerance(estimation)?)),
-            Gathered::Line(accelerance) => Ok((piece, accelerance)),
-        });
-        estimated.collect()
+        Ok(gathered)
     }
 }
