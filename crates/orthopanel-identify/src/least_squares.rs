@@ -87,6 +87,8 @@ pub(crate) enum Stuck<E> {
 const MOST_ITERATIONS: usize = 100;
 /// A step this small in logarithms ends a search: the next would be a thousand times smaller still.
 const SMALL_STEP: f64 = 1e-8;
+/// Part of the sum of squares that is not worth another step: it moves a parameter by 1e-5 of its standard deviation.
+const SMALL_GAIN: f64 = 1e-10;
 
 /// Minimises $\sum r_i^2$ from `start`; each parameter stays within its `(low, high)`.
 ///
@@ -128,12 +130,15 @@ pub(crate) fn levenberg_marquardt<E>(
             .enumerate()
             .map(|(i, (p, &(low, high)))| (p - step[(i, 0)]).clamp(low, high))
             .collect();
+        // What the step promises, to first order; once that is nothing beside what is left, either end is the minimum.
+        let promised: f64 =
+            trial.iter().zip(&parameters).zip(&at.gradient).map(|((new, old), g)| (old - new) * g).sum::<f64>().abs();
         let moved = trial.iter().zip(&parameters).fold(0.0_f64, |most, (a, b)| most.max((a - b).abs()));
         if let Ok(next) = linearise(&trial) {
             let (before, after) = (at.cost, next.cost);
             // At the bottom both are equal but for rounding, and either is the minimum.
             if after <= before {
-                let settled = moved < SMALL_STEP;
+                let settled = moved < SMALL_STEP || promised <= SMALL_GAIN * before;
                 (parameters, at) = (trial, next);
                 (damping, growth) = (damping * 0.1, 2.0);
                 if settled {
@@ -142,7 +147,7 @@ pub(crate) fn levenberg_marquardt<E>(
                 continue;
             }
         }
-        if moved < SMALL_STEP {
+        if moved < SMALL_STEP || promised <= SMALL_GAIN * at.cost {
             return Ok(Minimum { parameters, at });
         }
         damping *= growth;
@@ -159,7 +164,8 @@ mod tests {
     fn rosenbrock(p: &[f64]) -> Result<Quadratic, ()> {
         let (x, y) = (p[0], p[1]);
         let rows = [[-20.0 * x, 10.0], [-1.0, 0.0]];
-        Ok(Linearised { residuals: vec![10.0 * (y - x * x), 1.0 - x], jacobian: Mat::from_fn(2, 2, |i, j| rows[i][j]) })
+        let residuals = vec![10.0 * (y - x * x), 1.0 - x];
+        Ok(Linearised { residuals, jacobian: Mat::from_fn(2, 2, |i, j| rows[i][j]) }.quadratic())
     }
 
     #[test]

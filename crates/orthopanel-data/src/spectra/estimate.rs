@@ -52,8 +52,9 @@ const LEAST_NOISE_LINES: usize = 32;
 impl TimeHistory {
     /// Estimates the accelerance; the line at 0 Hz, which holds nothing but offsets, is left out.
     ///
-    /// The variance of a line is, for $n \ge 2$ hits, $|H_1|^2 (1 - \gamma^2) / ((n - 1)\gamma^2)$ from the scatter
-    /// between hits (Bendat and Piersol, Random Data, chapter 9, with the degrees of freedom of $n$ hits). For a single
+    /// The variance of a line is, for two hits and more, that of their scatter; for hits alike it is
+    /// $|H_1|^2 (1 - \gamma^2) / ((n - 1)\gamma^2)$ (Bendat and Piersol, Random Data, chapter 9, with the degrees of
+    /// freedom of $n$ hits), and a hard hit may be noisier than a soft one. For a single
     /// hit it is $(N_a + |H|^2 N_f)/|F|^2$ with the noise $N$ of either channel read above the band, and unknown where
     /// no line stands there.
     ///
@@ -103,7 +104,7 @@ impl TimeHistory {
             coherence.push(gamma);
             variance.push(match noise {
                 Some((force_noise, motion_noise)) => (motion_noise + first * force_noise) / force,
-                None => (motion / force - first).max(0.0) / (kept.len().max(2) - 1) as f64,
+                None => sums.scatter(line),
             });
         }
         if result.frequency.is_empty() {

@@ -14,6 +14,29 @@ pub(super) struct Sums {
     pub(super) force: Vec<f64>,
     pub(super) motion: Vec<f64>,
     pub(super) cross: Vec<Complex64>,
+    /// The same three weighted with $|F|^2$ again: the hits' own scatter about their common quotient.
+    weighted: Weighted,
+}
+
+struct Weighted {
+    force: Vec<f64>,
+    motion: Vec<f64>,
+    cross: Vec<Complex64>,
+}
+
+impl Sums {
+    /// Variance of $H_1$ at a line from the scatter of the hits, each with a noise of its own size:
+    /// $$\frac{\sum|F_i|^2|A_i-H_1F_i|^2}{(\sum|F_i|^2)^2}\Big/\Big(1-\frac{\sum|F_i|^4}{(\sum|F_i|^2)^2}\Big)$$
+    ///
+    /// The numerator holds whether a hard hit is noisier than a soft one or not (White, Econometrica 48, 1980); the
+    /// denominator makes it free of bias where all hits are equally noisy.
+    pub(super) fn scatter(&self, line: usize) -> f64 {
+        let (force, quotient) = (self.force[line], self.cross[line] / self.force[line]);
+        let Weighted { force: force4, motion, cross } = &self.weighted;
+        let misfit = motion[line] - 2.0 * (quotient.conj() * cross[line]).re + quotient.norm_sqr() * force4[line];
+        let one_hit_share = force4[line] / (force * force);
+        (misfit / (force * force) / (1.0 - one_hit_share)).max(0.0)
+    }
 }
 
 /// Sums the spectra of `hits`, all of length `samples`.
@@ -23,7 +46,16 @@ pub(super) fn sums<'a>(hits: impl Iterator<Item = &'a Hit>, samples: usize, wind
     let (mut force_spectrum, mut motion_spectrum) = (transform.make_output_vec(), transform.make_output_vec());
     let mut scratch = transform.make_scratch_vec();
     let lines = force_spectrum.len();
-    let mut sums = Sums { force: vec![0.0; lines], motion: vec![0.0; lines], cross: vec![Complex64::default(); lines] };
+    let mut sums = Sums {
+        force: vec![0.0; lines],
+        motion: vec![0.0; lines],
+        cross: vec![Complex64::default(); lines],
+        weighted: Weighted {
+            force: vec![0.0; lines],
+            motion: vec![0.0; lines],
+            cross: vec![Complex64::default(); lines],
+        },
+    };
     for hit in hits {
         // The hammer is off the piece nearly all the time, so the median is its channel's offset; the mean is not,
         // for it holds the impulse.
@@ -38,11 +70,14 @@ pub(super) fn sums<'a>(hits: impl Iterator<Item = &'a Hit>, samples: usize, wind
             .and_then(|()| transform.process_with_scratch(&mut motion, &mut motion_spectrum, &mut scratch));
         // It fails for other lengths than planned only; the caller has checked that all hits are of one length.
         debug_assert!(transformed.is_ok());
-        let sums = sums.force.iter_mut().zip(&mut sums.motion).zip(&mut sums.cross);
-        for (((force, motion), cross), (f, a)) in sums.zip(force_spectrum.iter().zip(&motion_spectrum)) {
-            *force += f.norm_sqr();
-            *motion += a.norm_sqr();
-            *cross += f.conj() * a;
+        for (line, (f, a)) in force_spectrum.iter().zip(&motion_spectrum).enumerate() {
+            let (power, cross) = (f.norm_sqr(), f.conj() * a);
+            sums.force[line] += power;
+            sums.motion[line] += a.norm_sqr();
+            sums.cross[line] += cross;
+            sums.weighted.force[line] += power * power;
+            sums.weighted.motion[line] += power * a.norm_sqr();
+            sums.weighted.cross[line] += power * cross;
         }
     }
     sums

@@ -4,8 +4,9 @@ use orthopanel_data::Accelerance;
 
 /// Lines on either side over which the noise is taken to be even.
 const HALF_WINDOW: usize = 40;
-/// Ratios of force noise to motion noise tried, as $|H|^2$ at which both weigh alike, relative to the median $|H|^2$.
-const RATIOS: [f64; 10] = [0.0, 1e-5, 1e-4, 1e-3, 1e-2, 1e-1, 1.0, 1e1, 1e2, 1e3];
+/// Ratios of force noise to motion noise tried, as $|H|^2$ at which both weigh alike, relative to the median
+/// $|H|^2$: lowest, highest and steps.
+const RATIOS: (f64, f64, usize) = (1e-6, 1e4, 60);
 
 /// The variance $E|\hat H-H|^2$ of each line.
 ///
@@ -25,7 +26,9 @@ pub(super) fn line_variance(accelerance: &Accelerance) -> Vec<f64> {
     };
     let typical = median(&power).max(f64::MIN_POSITIVE);
     let mut best: Option<(f64, Vec<f64>)> = None;
-    for ratio in RATIOS {
+    let (lowest, highest, steps) = RATIOS;
+    for step in 0..=steps {
+        let ratio = lowest * (highest / lowest).powf(step as f64 / steps as f64);
         let shape: Vec<f64> = power.iter().map(|p| 1.0 + ratio * p / typical).collect();
         let level = running_mean(&raw.iter().zip(&shape).map(|(v, s)| v / s).collect::<Vec<_>>());
         let variance: Vec<f64> = level.iter().zip(&shape).map(|(l, s)| (l * s).max(f64::MIN_POSITIVE)).collect();

@@ -32,6 +32,28 @@ struct Start {
     notes: Vec<String>,
 }
 
+impl Start {
+    /// Whether the starting model's resonances overlap those of the records, so that a fit line by line can pull them
+    /// together. Where one lies wholly beside its peak, the misfit has no slope towards it: damping would grow instead.
+    fn resonances_meet(&self) -> Result<bool, IdentifyError> {
+        let [e_x, g_zx] = self.matching.constants;
+        for ((piece, own), matched) in self.poles.iter().zip(&self.pieces).zip(&self.matching.modes) {
+            let beam = ExactBeam::new(&piece.sizes, piece.boundary, BeamConstants { e_x, g_zx })?;
+            let modes = beam.natural_frequencies(matched.iter().flatten().max().map_or(0, |mode| mode + 1));
+            for (pole, mode) in own.poles.iter().zip(matched) {
+                let Some(mode) = mode.and_then(|mode| modes.get(mode)) else { continue };
+                if (mode - pole.frequency).abs() > OVERLAP * pole.zeta * pole.frequency {
+                    return Ok(false);
+                }
+            }
+        }
+        Ok(true)
+    }
+}
+
+/// Resonances overlap within this many half-power half-widths.
+const OVERLAP: f64 = 2.0;
+
 struct StartPiece {
     index: usize,
     sizes: Piece,
@@ -56,6 +78,9 @@ pub(crate) fn identify_records(test: &ImpactTest, settings: Settings) -> Result<
     let parameters = starting_parameters(&problem, &start);
     let bounds = problem.bounds();
     let minimum = match settings.search {
+        Search::LeastSquares if !start.resonances_meet()? => {
+            return outcome::from_poles(test, start, &problem, &parameters);
+        }
         Search::LeastSquares => {
             levenberg_marquardt(|p| problem.linearise(p), &parameters, &bounds).map_err(|stuck| match stuck {
                 Stuck::Refused(error) => error.into(),

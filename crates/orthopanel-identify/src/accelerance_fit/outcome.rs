@@ -22,29 +22,71 @@ pub(super) fn outcome(
     problem: &AcceleranceProblem,
     minimum: Minimum,
 ) -> Result<Identification, IdentifyError> {
-    let Minimum { mut parameters, at } = minimum;
+    let Minimum { parameters, at } = minimum;
     refuse_bounds(problem, &parameters)?;
     let freedom = problem.data().saturating_sub(problem.size()).max(1) as f64;
     let chi_square = at.cost / freedom;
-    let noise_known = problem.pieces.iter().flat_map(|piece| &piece.records).all(|record| record.variance_known);
+    let noise_known = problem.noise_is_known();
     let covariance = at.covariance();
     let std_factor = if noise_known { chi_square.max(1.0).sqrt() } else { chi_square.sqrt() };
     let std = |i: usize| covariance.as_ref().map(|matrix| std_factor * matrix[(i, i)].sqrt());
-    let mut log_std: Vec<Option<f64>> = (0..problem.size()).map(std).collect();
-    let mut correlation = covariance.as_ref().and_then(|matrix| {
+    if settings.search == Search::LeastSquares && noise_known && chi_square > FAR_FROM_NOISE {
+        return from_poles(test, start, problem, &parameters);
+    }
+    let log_std: Vec<Option<f64>> = (0..problem.size()).map(std).collect();
+    let correlation = covariance.as_ref().and_then(|matrix| {
         (problem.free.len() == 2).then(|| matrix[(0, 1)] / (matrix[(0, 0)] * matrix[(1, 1)]).sqrt())
     });
-    let mut notes = start.notes.clone();
+    report(
+        test,
+        &start,
+        problem,
+        Found { parameters, log_std, correlation, chi_square: noise_known.then_some(chi_square) },
+    )
+}
 
-    if settings.search == Search::LeastSquares && noise_known && chi_square > FAR_FROM_NOISE {
-        notes.push(format!(
-            "the model misses the records by {:.0} times their noise: constants are from the frequencies of the \
-             resonances, damping from each resonance by itself",
-            chi_square.sqrt()
-        ));
-        correlation = take_from_poles(&start, problem, &mut parameters, &mut log_std);
+/// Parameters and what is known of them.
+struct Found {
+    parameters: Vec<f64>,
+    log_std: Vec<Option<f64>>,
+    correlation: Option<f64>,
+    chi_square: Option<f64>,
+}
+
+/// Constants from the frequencies of the resonances, damping from each resonance by itself; `parameters` fill in for
+/// what no resonance shows.
+pub(super) fn from_poles(
+    test: &ImpactTest,
+    mut start: Start,
+    problem: &AcceleranceProblem,
+    parameters: &[f64],
+) -> Result<Identification, IdentifyError> {
+    start.notes.push(
+        "the model's resonances lie beside those of the records by more than their width or their noise: constants are \
+         from the frequencies of the resonances, damping from each resonance by itself"
+            .to_owned(),
+    );
+    let mut found = Found {
+        parameters: parameters.to_vec(),
+        log_std: vec![None; problem.size()],
+        correlation: None,
+        chi_square: None,
+    };
+    found.correlation = take_from_poles(&start, problem, &mut found.parameters, &mut found.log_std);
+    let at = problem.linearise(&found.parameters)?;
+    if problem.noise_is_known() {
+        found.chi_square = Some(at.cost / problem.data() as f64);
     }
+    report(test, &start, problem, found)
+}
 
+fn report(
+    test: &ImpactTest,
+    start: &Start,
+    problem: &AcceleranceProblem,
+    found: Found,
+) -> Result<Identification, IdentifyError> {
+    let Found { parameters, log_std, correlation, chi_square } = found;
     let values = problem.values(&parameters);
     let constants = problem.constants.iter().enumerate().map(|(index, constant)| {
         let free = problem.free.iter().position(|&at| at == index);
@@ -58,7 +100,7 @@ pub(super) fn outcome(
         }
     });
     let (fits, accelerance_rms_percent) = accelerance_fits(problem, &parameters)?;
-    let pieces = piece_fits(test, &start, problem, &parameters, &log_std)?;
+    let pieces = piece_fits(test, start, problem, &parameters, &log_std)?;
     let errors = pieces.iter().flat_map(|piece| &piece.modes).map(|mode| mode.error_percent().powi(2));
     let count = pieces.iter().map(|piece| piece.modes.len()).sum::<usize>().max(1);
     Ok(Identification {
@@ -71,9 +113,9 @@ pub(super) fn outcome(
         frequency_rms_percent: (errors.sum::<f64>() / count as f64).sqrt(),
         left_one_out_percent: None,
         accelerance_rms_percent: Some(accelerance_rms_percent),
-        chi_square: noise_known.then_some(chi_square),
+        chi_square,
         accelerances: fits,
-        notes,
+        notes: start.notes.clone(),
         pieces,
     })
 }

@@ -115,6 +115,11 @@ impl AcceleranceProblem {
         self.pieces.iter().flat_map(|piece| &piece.records).map(|record| 2 * record.value.len()).sum()
     }
 
+    /// Whether every record tells its own noise.
+    pub(super) fn noise_is_known(&self) -> bool {
+        self.pieces.iter().flat_map(|piece| &piece.records).all(|record| record.variance_known)
+    }
+
     /// Where the damping of a piece begins in the parameters.
     pub(super) fn zeta_offset(&self, piece: usize) -> usize {
         self.free.len() + self.pieces[..piece].iter().map(|piece| piece.free_zetas).sum::<usize>()

@@ -1,0 +1,82 @@
+//! Identification from hammer records made by `tests/record_generator`, which shares no code with the crates.
+//!
+//! These need Python with numpy and scipy, named by `ORTHOPANEL_PYTHON`; without it they say so and pass.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use orthopanel_data::ImpactTest;
+use orthopanel_identify::{Identification, Search, Settings, identify};
+
+/// Table 9's constants and damping, which the generator puts in unless told otherwise.
+const E_X: f64 = 1.067e10;
+const G_ZX: f64 = 5.304e8;
+const ZETAS: [f64; 6] = [2.364e-3, 1.306e-3, 1.108e-3, 2.251e-3, 5.485e-3, 4.488e-3];
+
+/// Makes a test with the generator; `None` where there is no Python for it.
+fn made(folder: &Path, options: &[&str]) -> Option<ImpactTest> {
+    let Some(python) = std::env::var_os("ORTHOPANEL_PYTHON") else {
+        println!("skipped: ORTHOPANEL_PYTHON names no Python with numpy and scipy");
+        return None;
+    };
+    // Tests run in the crate's folder, whatever the variable was relative to.
+    let output = Command::new(PathBuf::from(python))
+        .current_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests"))
+        .args(["-m", "record_generator"])
+        .arg(folder)
+        .args(options)
+        .output()
+        .unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    Some(ImpactTest::read(folder.join("test.toml")).unwrap())
+}
+
+fn assert_truth(found: &Identification, zeta_tolerance: f64, name: &str) {
+    let relative = |index: usize, truth: f64| (found.constants[index].value / truth - 1.0).abs();
+    assert!(relative(0, E_X) < 1e-3, "{name}: E_x {:e}", found.constants[0].value);
+    assert!(relative(1, G_ZX) < 3e-3, "{name}: G_zx {:e}", found.constants[1].value);
+    for (mode, truth) in ZETAS.iter().enumerate() {
+        let zeta = found.pieces[0].damping[mode].value;
+        assert!((zeta / truth - 1.0).abs() < zeta_tolerance, "{name}: zeta {} = {zeta:e}, truth {truth:e}", mode + 1);
+    }
+}
+
+#[test]
+fn val_one_place_gives_constants_and_damping() {
+    for noise in ["0.001", "0.003", "0.01"] {
+        let folder = tempfile::tempdir().unwrap();
+        let Some(test) = made(&folder.path().join("one"), &["--noise", noise, "--seed", "11"]) else { return };
+        let found = identify(&test, Settings::default()).unwrap();
+        assert_truth(&found, 0.03, &format!("noise {noise}"));
+        // The records lack nothing that the model has, so the misfit is the noise.
+        let chi_square = found.chi_square.unwrap();
+        assert!((0.8..1.25).contains(&chi_square), "noise {noise}: chi-square {chi_square}");
+    }
+}
+
+#[test]
+fn val_five_places_give_constants_and_damping() {
+    for noise in ["0.001", "0.01"] {
+        let folder = tempfile::tempdir().unwrap();
+        let options = ["--five-places", "--noise", noise, "--seed", "12", "--format", "uff-binary"];
+        let Some(test) = made(&folder.path().join("five"), &options) else { return };
+        let found = identify(&test, Settings::default()).unwrap();
+        assert_truth(&found, 0.01, &format!("noise {noise}"));
+        let misses = found.pieces[0].modes.iter().filter(|mode| mode.error_percent().abs() > 0.01).count();
+        assert_eq!(misses, 0, "{:?}", found.pieces[0].modes);
+    }
+}
+
+/// The paper's own search on the same records. Eq. 23 reads the peaks only, line by line, so it is coarser.
+#[test]
+fn val_the_papers_error_leads_to_the_same_constants() {
+    let folder = tempfile::tempdir().unwrap();
+    let Some(test) = made(&folder.path().join("one"), &["--noise", "0.003", "--seed", "13"]) else { return };
+    let found = identify(&test, Search::Simplex).unwrap();
+    // Lines stand 0.5 Hz apart: half of that is 0.08 % of mode 1, and a magnitude off its peak by a line's half
+    // weighs 1e5 times more than a frequency in eq. 23.
+    assert!((found.constants[0].value / E_X - 1.0).abs() < 0.02, "{:e}", found.constants[0].value);
+    assert!((found.constants[1].value / G_ZX - 1.0).abs() < 0.02, "{:e}", found.constants[1].value);
+    let Some(zeta) = found.pieces[0].damping.first() else { panic!("no damping") };
+    assert!((zeta.value / ZETAS[0] - 1.0).abs() < 0.1, "{zeta:?}");
+}
