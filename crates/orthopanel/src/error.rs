@@ -31,6 +31,18 @@ pub enum CommandError {
     NoPort { path: PathBuf, kind: &'static str, key: &'static str },
     #[error("--{option} {},{}: {source}", .place.x, .place.y)]
     Place { option: &'static str, place: Place, source: ModelError },
+    #[error(
+        "{}: the accelerance of a model needs --force, --response, --from, --to and --lines; a test file (.toml) gives \
+         measured ones and needs none of them", .path.display()
+    )]
+    NoGrid { path: PathBuf },
+    #[error(
+        "{}: --{option} belongs to a model, and this is a test file: leave it out; places and lines are those of the \
+         records", .path.display()
+    )]
+    GridOfRecords { path: PathBuf, option: &'static str },
+    #[error("{}: {problem}", .path.display())]
+    Records { path: PathBuf, problem: String },
     #[error("--{option} {value}: {remedy}")]
     Option { option: &'static str, value: String, remedy: String },
     #[error("{}{}: {problem}", .path.display(), line.map_or(String::new(), |line| format!(":{line}")))]

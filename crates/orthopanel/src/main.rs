@@ -6,6 +6,7 @@ mod error;
 mod force_file;
 mod identified;
 mod importer;
+mod measured_pairs;
 mod model_file;
 mod output;
 mod pictures;

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use orthopanel_export::{FmiVersion, Fmu, FmuOptions};
-use orthopanel_identify::PieceFit;
+use orthopanel_identify::{ForceBetweenSamples, PieceFit};
 use orthopanel_model::PanelModel;
 use serde::Serialize;
 
@@ -11,9 +11,10 @@ use crate::arguments::{DENSE_MODES, USUAL_MODES};
 use crate::error::{CommandError, InFile as _};
 use crate::force_file::ForceHistory;
 use crate::identified::{Answer, Identified};
+use crate::measured_pairs::{ComparedPair, HitMisfit, misfit_table};
 use crate::record_options::IdentifyOptions;
 use crate::time_response::Hold;
-use crate::{output, pictures, time_response};
+use crate::{output, pictures, progress, time_response};
 
 /// Do all of it: identify the panel of a test, export its FMUs, simulate a hit, draw the result
 ///
@@ -21,7 +22,11 @@ use crate::{output, pictures, time_response};
 /// hit of 100 N and 0.5 ms at the first force place) and pictures as SVG. With several pieces in the test, each has
 /// its own: model-NAME.json and so on.
 ///
-/// Example: orthopanel run examples/piece-1/test.toml -o out
+/// Of records, each pair of places gets a picture of the accelerance, measured and calculated, and one of a hit with
+/// the accelerations measured and calculated under it; time-histories.json tells how far the model is from every hit.
+///
+/// Examples: orthopanel run examples/piece-1/test.toml -o out
+///           orthopanel run examples/made-hits/test.toml -o out
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
 pub struct Arguments {
@@ -41,7 +46,15 @@ pub struct Arguments {
 struct RunAnswer<'a> {
     schema: &'static str,
     identified: &'a Answer,
+    /// One entry a measured hit.
+    hits: &'a [HitMisfit],
     files: &'a [PathBuf],
+}
+
+#[derive(Serialize)]
+struct HitsAnswer<'a> {
+    schema: &'static str,
+    hits: &'a [HitMisfit],
 }
 
 pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
@@ -49,17 +62,22 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
     let mut files = output::Files::default();
     files.add("identified.json", output::json(&identified.answer));
     for (fit, model) in identified.found.pieces.iter().zip(&identified.models) {
-        add_piece(&mut files, arguments, &identified.suffix(fit), fit, model)?;
+        add_piece(&mut files, arguments, &identified, fit, model)?;
     }
+    let hits = add_records(&mut files, arguments, &identified)?;
     let files = files.write_into(&arguments.output)?;
     for path in &files {
         eprintln!("wrote {}", path.display());
     }
     if arguments.json {
-        let answer = RunAnswer { schema: "orthopanel.run/1", identified: &identified.answer, files: &files };
+        let answer =
+            RunAnswer { schema: "orthopanel.run/1", identified: &identified.answer, hits: &hits, files: &files };
         output::print_json(&answer);
     } else {
         output::print(&identified.tables());
+        if !hits.is_empty() {
+            output::print(&format!("\nmeasured hits, and the model driven by their forces\n{}", misfit_table(&hits)));
+        }
     }
     Ok(())
 }
@@ -68,10 +86,11 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
 fn add_piece(
     files: &mut output::Files,
     arguments: &Arguments,
-    suffix: &str,
+    identified: &Identified,
     fit: &PieceFit,
     model: &PanelModel,
 ) -> Result<(), CommandError> {
+    let suffix = identified.suffix(fit);
     files.add(format!("model{suffix}.json"), model.to_json());
     let ports = &model.ports;
     let seen = model.modal_model(USUAL_MODES, &ports.forces, &ports.responses).in_file(&arguments.test)?;
@@ -87,7 +106,58 @@ fn add_piece(
     if !fit.modes.is_empty() {
         files.add(format!("frequencies{suffix}.svg"), pictures::frequencies(fit)?);
     }
+    if !identified.found.accelerances.is_empty() {
+        return Ok(());
+    }
     let dense = model.modal_model(DENSE_MODES, &ports.forces, &ports.responses).in_file(&arguments.test)?;
     files.add(format!("accelerance{suffix}.svg"), pictures::accelerance(fit, ports, &dense)?);
     Ok(())
+}
+
+/// Pictures of the records, measured against calculated, and the misfit of every hit.
+fn add_records(
+    files: &mut output::Files,
+    arguments: &Arguments,
+    identified: &Identified,
+) -> Result<Vec<HitMisfit>, CommandError> {
+    let Identified { test, found, models, .. } = identified;
+    for (index, fit) in found.pieces.iter().enumerate() {
+        let own: Vec<_> = found.accelerances.iter().filter(|pair| pair.piece == index).collect();
+        for (number, pair) in own.iter().enumerate() {
+            let name = format!("accelerance{}{}.svg", identified.suffix(fit), numbered(number, own.len()));
+            files.add(name, pictures::measured_accelerance(&fit.name, pair)?);
+        }
+    }
+    let histories = test.time_histories()?;
+    let counts = |piece: usize| histories.iter().filter(|(of, _)| *of == piece).count();
+    let counts: Vec<usize> = (0..found.pieces.len()).map(counts).collect();
+    let mut done = vec![0; counts.len()];
+    let mut misfits = Vec::new();
+    let shown = progress::bar("driving the model", histories.len());
+    for (piece, history) in histories {
+        let (Some(fit), Some(model)) = (found.pieces.get(piece), models.get(piece)) else { continue };
+        let places = (history.force_at, history.response_at);
+        let mut own = found.accelerances.iter().filter(|pair| pair.piece == piece);
+        let pair = own.find(|pair| (pair.force_at, pair.response_at) == places);
+        let band = pair.and_then(|pair| Some(*pair.frequency.first()?..=*pair.frequency.last()?));
+        let compared = ComparedPair::of(model, history, ForceBetweenSamples::BandLimited, band)
+            .map_err(|source| CommandError::Identify { path: arguments.test.clone(), source })?;
+        let name = format!("time-history{}{}.svg", identified.suffix(fit), numbered(done[piece], counts[piece]));
+        files.add(name, pictures::time_history(&fit.name, &compared)?);
+        misfits.extend(compared.misfits());
+        done[piece] += 1;
+        shown.step();
+    }
+    if !misfits.is_empty() {
+        files.add(
+            "time-histories.json",
+            output::json(&HitsAnswer { schema: "orthopanel.simulated-hits/1", hits: &misfits }),
+        );
+    }
+    Ok(misfits)
+}
+
+/// `-NUMBER` from 1 where there are several.
+fn numbered(index: usize, of: usize) -> String {
+    if of == 1 { String::new() } else { format!("-{}", index + 1) }
 }

@@ -4,7 +4,7 @@ use orthopanel_identify::PieceFit;
 use orthopanel_model::{ModalModel, Place, Ports};
 use plotters::prelude::*;
 
-use super::{FONT, GRID, MEASURED, MODEL, two_charts};
+use super::{FONT, GRID, MEASURED, MODEL, stacked};
 use crate::error::CommandError;
 
 /// Lines drawn, and drawn again around each peak, which at zeta = 0.001 is a hundredth of that spacing wide.
@@ -28,7 +28,7 @@ pub fn accelerance(fit: &PieceFit, ports: &Ports, seen: &ModalModel) -> Result<S
     let (from, to) = (ports.forces.first(), ports.responses.first());
     let at = |place: Option<&Place>| place.map_or(String::new(), |place| format!("({}, {}) m", place.x, place.y));
     let title = format!("Piece {}: accelerance, force at {}, response at {}", fit.name, at(from), at(to));
-    two_charts("accelerance", &title, 360, |upper, lower| {
+    stacked("accelerance", &title, [360, 240], |[upper, lower]| {
         let mut chart = ChartBuilder::on(upper)
             .margin(12)
             .x_label_area_size(30)

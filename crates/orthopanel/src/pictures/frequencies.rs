@@ -3,7 +3,7 @@
 use orthopanel_identify::PieceFit;
 use plotters::prelude::*;
 
-use super::{FONT, GRID, MEASURED, MODEL, spaced, two_charts};
+use super::{FONT, GRID, MEASURED, MODEL, spaced, stacked};
 use crate::error::CommandError;
 
 pub fn frequencies(fit: &PieceFit) -> Result<String, CommandError> {
@@ -11,7 +11,7 @@ pub fn frequencies(fit: &PieceFit) -> Result<String, CommandError> {
     let last = fit.modes.iter().map(|mode| mode.mode).max().unwrap_or(1);
     let across = 0.5..last as f64 + 0.5;
     let highest = fit.modes.iter().map(|mode| mode.measured.max(mode.model)).fold(1.0, f64::max);
-    two_charts("frequencies", &title, 360, |upper, lower| {
+    stacked("frequencies", &title, [360, 240], |[upper, lower]| {
         let mut chart = ChartBuilder::on(upper)
             .margin(12)
             .x_label_area_size(30)

@@ -1,12 +1,17 @@
 //! Pictures as SVG: what was measured in orange, what the model says in blue.
 
 mod accelerance;
+mod envelope;
 mod frequencies;
+mod measured_accelerance;
 mod response;
+mod time_history;
 
 pub use accelerance::accelerance;
 pub use frequencies::frequencies;
+pub use measured_accelerance::measured_accelerance;
 pub use response::response;
+pub use time_history::time_history;
 
 use plotters::coord::Shift;
 use plotters::prelude::*;
@@ -23,20 +28,29 @@ const SIZE: (u32, u32) = (900, 640);
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 type Drawn = Result<(), Box<dyn std::error::Error>>;
 
-/// A picture of two charts, one above the other, under a title; `split` is the height of the upper one.
-fn two_charts(
+/// A picture of charts one above the other under a title, of these heights \[pixels\]; the last takes what is left.
+fn stacked<const CHARTS: usize>(
     name: &'static str,
     title: &str,
-    split: u32,
-    draw: impl for<'a> FnOnce(&Area<'a>, &Area<'a>) -> Drawn,
+    heights: [u32; CHARTS],
+    draw: impl for<'a> FnOnce(&[Area<'a>; CHARTS]) -> Drawn,
 ) -> Result<String, CommandError> {
     let mut text = String::new();
     let drawn = (|| {
         let area = SVGBackend::with_string(&mut text, SIZE).into_drawing_area();
         area.fill(&WHITE)?;
-        let area = area.titled(title, (FONT, 22))?;
-        let (upper, lower) = area.split_vertically(split);
-        draw(&upper, &lower)?;
+        let mut rest = area.titled(title, (FONT, 22))?;
+        let mut placed = 1;
+        let charts = heights.map(|height| {
+            if placed == CHARTS {
+                return rest.clone();
+            }
+            placed += 1;
+            let (chart, left) = rest.split_vertically(height);
+            rest = left;
+            chart
+        });
+        draw(&charts)?;
         area.present()?;
         Ok(())
     })();

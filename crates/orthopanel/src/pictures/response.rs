@@ -2,7 +2,7 @@
 
 use plotters::prelude::*;
 
-use super::{FONT, GRID, MEASURED, MODEL, spaced, two_charts};
+use super::{FONT, GRID, MEASURED, MODEL, spaced, stacked};
 use crate::error::CommandError;
 use crate::force_file::ForceHistory;
 use crate::time_response::Motion;
@@ -12,7 +12,7 @@ const SHOWN: f64 = 20.0;
 
 pub fn response(force: &ForceHistory, motions: &[Motion]) -> Result<String, CommandError> {
     let last = force.time.last().map_or(0.0, |&time| 1000.0 * time).min(SHOWN);
-    two_charts("response", "Simulated hit and response of the model", 230, |upper, lower| {
+    stacked("response", "Simulated hit and response of the model", [230, 370], |[upper, lower]| {
         let rows = [
             (upper, force.forces.first(), "force [N]", "", MEASURED),
             (lower, motions.first().map(|motion| &motion.acceleration), "acceleration [m/s²]", "time [ms]", MODEL),

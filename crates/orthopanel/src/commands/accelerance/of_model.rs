@@ -1,6 +1,6 @@
-//! `accelerance`: acceleration per force against frequency.
+//! The accelerance that a model has between two places.
 
-use std::path::PathBuf;
+use std::path::Path;
 
 use orthopanel_model::{ModeRange, Place};
 use serde::Serialize;
@@ -9,42 +9,44 @@ use crate::arguments::{DENSE_MODES, frequency, on_piece, place};
 use crate::error::{CommandError, InFile as _};
 use crate::{model_file, output};
 
-/// Calculate the accelerance between two places of a model
-///
-/// The convention is e^(+j omega t); lines are evenly spaced, both ends included. Without -o the CSV
-/// (frequency_hz,real,imag; (m/s2)/N) goes to standard output. The sum runs over the rigid modes and
-/// --modes flexible ones: those far above the band still move the valleys between the peaks.
-///
-/// Example: orthopanel accelerance out/model.json --force -0.3 --response 0.3 --from 0 --to 4500 --lines 1801 -o h.csv
+/// The pair of places and the lines of a calculated accelerance.
 #[derive(clap::Args)]
-#[command(verbatim_doc_comment)]
-pub struct Arguments {
-    /// Model file (orthopanel.model/1, JSON)
-    model: PathBuf,
+#[command(next_help_heading = "Of a model")]
+pub struct Grid {
     /// Where force goes in, in m from the centre
     #[arg(long, value_name = "X[,Y]", value_parser = place, allow_hyphen_values = true)]
-    force: Place,
+    force: Option<Place>,
     /// Where acceleration comes out, in m from the centre
     #[arg(long, value_name = "X[,Y]", value_parser = place, allow_hyphen_values = true)]
-    response: Place,
+    response: Option<Place>,
     /// First frequency
     #[arg(long, value_name = "HZ", value_parser = frequency, allow_hyphen_values = true)]
-    from: f64,
+    from: Option<f64>,
     /// Last frequency
     #[arg(long, value_name = "HZ", value_parser = frequency, allow_hyphen_values = true)]
-    to: f64,
+    to: Option<f64>,
     /// Number of lines
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
-    lines: u32,
+    lines: Option<u32>,
     /// Number of flexible modes in the sum [default: 1000]
     #[arg(long, value_name = "N")]
     modes: Option<usize>,
-    /// CSV file to write
-    #[arg(short, long, value_name = "X.csv")]
-    output: Option<PathBuf>,
-    /// Print one JSON object (orthopanel.accelerance/1) on standard output
-    #[arg(long)]
-    json: bool,
+}
+
+impl Grid {
+    /// The first option that was given, for a refusal.
+    pub fn given(&self) -> Option<&'static str> {
+        let Self { force, response, from, to, lines, modes } = self;
+        let given = [
+            (force.is_some(), "force"),
+            (response.is_some(), "response"),
+            (from.is_some(), "from"),
+            (to.is_some(), "to"),
+            (lines.is_some(), "lines"),
+            (modes.is_some(), "modes"),
+        ];
+        given.into_iter().find_map(|(given, name)| given.then_some(name))
+    }
 }
 
 #[derive(Serialize)]
@@ -57,17 +59,27 @@ struct Answer {
     imag: Vec<f64>,
 }
 
-pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
-    let &Arguments { force, response, from, to, lines, .. } = arguments;
+pub fn execute(path: &Path, grid: &Grid, output: Option<&Path>, json: bool) -> Result<(), CommandError> {
+    let &Grid {
+        force: Some(force),
+        response: Some(response),
+        from: Some(from),
+        to: Some(to),
+        lines: Some(lines),
+        modes,
+    } = grid
+    else {
+        return Err(CommandError::NoGrid { path: path.into() });
+    };
     if to < from || (to == from) != (lines == 1) {
         let remedy = format!("must lie above --from {from}, or be the same for a single line");
         return Err(CommandError::Option { option: "to", value: to.to_string(), remedy });
     }
-    let model = model_file::read(&arguments.model)?;
+    let model = model_file::read(path)?;
     on_piece(&model, "force", &[force])?;
     on_piece(&model, "response", &[response])?;
-    let range = arguments.modes.map_or(DENSE_MODES, ModeRange::Count);
-    let seen = model.modal_model(range, &[force], &[response]).in_file(&arguments.model)?;
+    let range = modes.map_or(DENSE_MODES, ModeRange::Count);
+    let seen = model.modal_model(range, &[force], &[response]).in_file(path)?;
     let step = if lines > 1 { (to - from) / f64::from(lines - 1) } else { 0.0 };
     let frequency_hz: Vec<f64> = (0..lines).map(|line| from + f64::from(line) * step).collect();
     let (real, imag) = frequency_hz
@@ -78,13 +90,13 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
     let answer = Answer { schema: "orthopanel.accelerance/1", force, response, frequency_hz, real, imag };
     let names = ["frequency_hz", "real", "imag"].map(String::from);
     let table = || output::csv(&names, &[&answer.frequency_hz, &answer.real, &answer.imag]);
-    if let Some(path) = &arguments.output {
+    if let Some(path) = output {
         output::write(path, table())?;
         eprintln!("wrote {} ({lines} lines)", path.display());
     }
-    if arguments.json {
+    if json {
         output::print_json(&answer);
-    } else if arguments.output.is_none() {
+    } else if output.is_none() {
         output::print(&table());
     }
     Ok(())

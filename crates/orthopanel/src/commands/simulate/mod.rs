@@ -1,5 +1,7 @@
 //! `simulate`: response in time of a model, or of an FMU, to a measured or made-up force.
 
+mod on_records;
+
 use std::path::PathBuf;
 
 use serde::Serialize;
@@ -12,25 +14,33 @@ use crate::{importer, model_file, output, time_response};
 
 /// Calculate the motion of a model, or of an FMU, under a force given against time
 ///
-/// The force file is CSV with the columns time_s,force_n (several force places: time_s,force_1_n,force_2_n,...).
+/// A made-up force is CSV with the columns time_s,force_n (several force places: time_s,force_1_n,force_2_n,...).
 /// The panel is at rest before the first sample. Between samples the force runs linearly, unless --hold held is
 /// given; each mode is then stepped exactly, so the samples may be as far apart as the force allows. An FMU is
 /// unpacked and run as a simulator would run it. Without -o the CSV (time_s,force_n,acceleration_m_s2,velocity_m_s,
 /// displacement_m) goes to standard output.
 ///
-/// Example: orthopanel simulate out/panel.fmu --force-file examples/half-sine.csv -o response.csv
+/// Measured hits drive a model too, and then its acceleration is held against the measured one: a test file (.toml)
+/// with its records, a UFF file, or a CSV of time_s,force_n,acceleration_m_s2. The table gives the error of each hit in
+/// per cent of the peak, and the part of the variance that the model explains; -o writes
+/// pair,hit,time_s,force_n,measured_m_s2,calculated_m_s2. Between measured samples the force is the band-limited
+/// function through them, as an anti-alias filter leaves it, unless --hold linear is given. The places are those of the
+/// test file, else the model's ports or --force and --response.
+///
+/// Examples: orthopanel simulate out/panel.fmu --force-file examples/half-sine.csv -o response.csv
+///           orthopanel simulate out/model.json --force-file examples/made-hits/test.toml
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
 pub struct Arguments {
     /// Model file (orthopanel.model/1, JSON) or FMU written by `orthopanel export`
     #[arg(value_name = "MODEL|X.fmu")]
     model: PathBuf,
-    /// Force against time (CSV)
-    #[arg(long, value_name = "X.csv")]
+    /// Force against time (CSV), or measured hits (test.toml, UFF, CSV)
+    #[arg(long, value_name = "X.csv|X.uff|TEST.toml")]
     force_file: PathBuf,
-    /// How the force runs between samples
-    #[arg(long, value_enum, default_value_t = Hold::Linear)]
-    hold: Hold,
+    /// How the force runs between samples [default: linear; of measured hits band-limited]
+    #[arg(long, value_enum)]
+    hold: Option<Hold>,
     /// CSV file to write
     #[arg(short, long, value_name = "Y.csv")]
     output: Option<PathBuf>,
@@ -41,6 +51,12 @@ pub struct Arguments {
     /// Print one JSON object (orthopanel.simulation/1) on standard output
     #[arg(long)]
     json: bool,
+}
+
+impl Arguments {
+    fn hold(&self) -> Hold {
+        self.hold.unwrap_or(Hold::Linear)
+    }
 }
 
 #[derive(Serialize)]
@@ -59,6 +75,9 @@ struct ResponseEntry<'a> {
 }
 
 pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
+    if on_records::is_measured(&arguments.force_file)? {
+        return on_records::execute(arguments);
+    }
     let (force, motions) =
         if importer::is_archive(&arguments.model)? { run_fmu(arguments)? } else { run_model(arguments)? };
     for (port, motion) in motions.iter().enumerate() {
@@ -82,7 +101,7 @@ fn run_model(arguments: &Arguments) -> Result<(ForceHistory, Vec<Motion>), Comma
     let ports = arguments.ports.needed(&model, path)?;
     let force = ForceHistory::read(&arguments.force_file, ports.forces.len())?;
     let seen = model.modal_model(arguments.modes.range(), &ports.forces, &ports.responses).in_file(path)?;
-    let motions = time_response::simulate(&seen, &force, arguments.hold).in_file(path)?;
+    let motions = time_response::simulate(&seen, &force, arguments.hold()).in_file(path)?;
     Ok((force, motions))
 }
 
@@ -90,7 +109,7 @@ fn run_fmu(arguments: &Arguments) -> Result<(ForceHistory, Vec<Motion>), Command
     if arguments.ports.is_given() || arguments.modes.is_given() {
         return Err(CommandError::FixedInFmu { path: arguments.model.clone() });
     }
-    importer::simulate(&arguments.model, |places| ForceHistory::read(&arguments.force_file, places), arguments.hold)
+    importer::simulate(&arguments.model, |places| ForceHistory::read(&arguments.force_file, places), arguments.hold())
 }
 
 fn answer<'a>(force: &'a ForceHistory, motions: &'a [Motion]) -> Answer<'a> {

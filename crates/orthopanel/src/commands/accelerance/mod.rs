@@ -1,0 +1,53 @@
+//! `accelerance`: acceleration per force against frequency, calculated from a model or measured in a test.
+
+mod of_model;
+mod of_test;
+
+use std::path::PathBuf;
+
+use crate::error::CommandError;
+use crate::measured_pairs::is_test_file;
+use crate::record_options::EstimationOptions;
+
+/// Calculate the accelerance of a model, or estimate those of a test from its records
+///
+/// The convention is e^(+j omega t), the unit (m/s2)/N.
+///
+/// Of a model: between two places, on evenly spaced lines, both ends included. Without -o the CSV
+/// (frequency_hz,real,imag) goes to standard output. The sum runs over the rigid modes and --modes flexible ones:
+/// those far above the band still move the valleys between the peaks.
+///
+/// Of a test (a file that ends in .toml): one CSV a pair of places, with the coherence and the variance of each line
+/// where the hits tell them. -o names the file of a single pair, or a folder for accelerance-1.csv, accelerance-2.csv,
+/// ... in the order of the test. The table says which hits were kept and which left out, and why.
+///
+/// Examples: orthopanel accelerance out/model.json --force -0.3 --response 0.3 --from 0 --to 4500 --lines 1801 -o h.csv
+///           orthopanel accelerance examples/made-hits/test.toml -o measured.csv
+#[derive(clap::Args)]
+#[command(verbatim_doc_comment)]
+pub struct Arguments {
+    /// Model file (orthopanel.model/1, JSON) or test file with records
+    #[arg(value_name = "MODEL|TEST.toml")]
+    source: PathBuf,
+    #[command(flatten)]
+    grid: of_model::Grid,
+    #[command(flatten)]
+    estimation: EstimationOptions,
+    /// CSV file to write; a folder where a test has several pairs of places
+    #[arg(short, long, value_name = "X.csv|DIR")]
+    output: Option<PathBuf>,
+    /// Print one JSON object (orthopanel.accelerance/1; of a test orthopanel.accelerances/1) on standard output
+    #[arg(long)]
+    json: bool,
+}
+
+pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
+    let Arguments { source, grid, estimation, output, json } = arguments;
+    if !is_test_file(source) {
+        return of_model::execute(source, grid, output.as_deref(), *json);
+    }
+    match grid.given() {
+        Some(option) => Err(CommandError::GridOfRecords { path: source.clone(), option }),
+        None => of_test::execute(source, estimation.estimation(), output.as_deref(), *json),
+    }
+}

@@ -1,0 +1,134 @@
+//! The accelerances that the records of a test show.
+
+use std::path::{Path, PathBuf};
+
+use orthopanel_data::{Accelerance, Estimation, ImpactTest, MeasurementData};
+use orthopanel_model::Place;
+use serde::Serialize;
+
+use crate::error::CommandError;
+use crate::measured_pairs::{HitVerdict, place_text, verdicts};
+use crate::{output, progress, tables};
+
+#[derive(Serialize)]
+struct Answer {
+    schema: &'static str,
+    accelerances: Vec<Entry>,
+}
+
+#[derive(Serialize)]
+struct Entry {
+    piece: String,
+    force: Place,
+    response: Place,
+    /// Hits averaged; 0 where an accelerance file does not tell.
+    hits_kept: usize,
+    hits: Vec<HitVerdict>,
+    from_hz: f64,
+    to_hz: f64,
+    lines: usize,
+    /// The accelerance stands at s = decay_rate + j omega [1/s].
+    decay_rate: f64,
+    file: Option<PathBuf>,
+    notes: Vec<String>,
+}
+
+pub fn execute(path: &Path, estimation: Estimation, output: Option<&Path>, json: bool) -> Result<(), CommandError> {
+    let test = ImpactTest::read(path)?;
+    let mut measured = {
+        let _shown = progress::spinner("reading the records");
+        estimated(&test, estimation)?
+    };
+    if measured.is_empty() {
+        let problem = "no records in this test: add a [[measurement]] of kind time-history or accelerance".into();
+        return Err(CommandError::Records { path: path.into(), problem });
+    }
+    let into_folder = output.filter(|path| measured.len() > 1 || path.is_dir());
+    let mut files = output::Files::default();
+    for (index, (entry, accelerance)) in measured.iter_mut().enumerate() {
+        let name = PathBuf::from(format!("accelerance-{}.csv", index + 1));
+        if let Some(output) = output {
+            entry.file = Some(into_folder.map_or(output.to_path_buf(), |folder| folder.join(&name)));
+            files.add(if into_folder.is_some() { name } else { output.to_path_buf() }, csv(accelerance));
+        }
+    }
+    let written = match into_folder {
+        Some(folder) => files.write_into(folder)?,
+        None => files.write()?,
+    };
+    let accelerances: Vec<Entry> = measured.into_iter().map(|(entry, _)| entry).collect();
+    for entry in &accelerances {
+        let pair = format!("{} to {}", place_text(entry.force), place_text(entry.response));
+        entry.notes.iter().for_each(|note| eprintln!("note: {pair}: {note}"));
+    }
+    written.iter().for_each(|path| eprintln!("wrote {}", path.display()));
+    if json {
+        output::print_json(&Answer { schema: "orthopanel.accelerances/1", accelerances });
+    } else {
+        output::print(&table(&accelerances));
+    }
+    Ok(())
+}
+
+/// Every accelerance of the test: those estimated from hits first, then those given as files.
+fn estimated(test: &ImpactTest, estimation: Estimation) -> Result<Vec<(Entry, Accelerance)>, CommandError> {
+    let mut all = Vec::new();
+    for (piece, history) in test.time_histories()? {
+        let accelerance = history.accelerance(estimation)?;
+        all.push((entry(test, piece, &accelerance, verdicts(&history)), accelerance));
+    }
+    for measurement in &test.measurements {
+        if let MeasurementData::Accelerance(recorded) = &measurement.data {
+            let accelerance = Accelerance::read(recorded)?;
+            all.push((entry(test, measurement.piece, &accelerance, Vec::new()), accelerance));
+        }
+    }
+    Ok(all)
+}
+
+fn entry(test: &ImpactTest, piece: usize, of: &Accelerance, hits: Vec<HitVerdict>) -> Entry {
+    Entry {
+        piece: test.pieces.get(piece).map_or(String::new(), |piece| piece.name.clone()),
+        force: of.force_at,
+        response: of.response_at,
+        hits_kept: of.hits,
+        hits,
+        from_hz: of.frequency.first().copied().unwrap_or(0.0),
+        to_hz: of.frequency.last().copied().unwrap_or(0.0),
+        lines: of.frequency.len(),
+        decay_rate: of.decay_rate,
+        file: None,
+        notes: of.notes.clone(),
+    }
+}
+
+/// `frequency_hz,real,imag`, and `coherence`, `variance` where they are known.
+fn csv(of: &Accelerance) -> String {
+    let (real, imag): (Vec<f64>, Vec<f64>) = of.value.iter().map(|value| (value.re, value.im)).unzip();
+    let mut names: Vec<String> = ["frequency_hz", "real", "imag"].map(String::from).into();
+    let mut columns: Vec<&[f64]> = vec![&of.frequency, &real, &imag];
+    for (name, column) in [("coherence", &of.coherence), ("variance", &of.variance)] {
+        if let Some(column) = column {
+            names.push(name.into());
+            columns.push(column);
+        }
+    }
+    output::csv(&names, &columns)
+}
+
+fn table(entries: &[Entry]) -> String {
+    let row = |entry: &Entry| {
+        vec![
+            entry.piece.clone(),
+            place_text(entry.force),
+            place_text(entry.response),
+            if entry.hits_kept == 0 { "not told".into() } else { entry.hits_kept.to_string() },
+            entry.hits.iter().filter(|hit| !hit.kept).count().to_string(),
+            format!("{:.1}", entry.from_hz),
+            format!("{:.1}", entry.to_hz),
+            entry.lines.to_string(),
+        ]
+    };
+    let heading = ["piece", "force [m]", "response [m]", "hits kept", "left out", "from [Hz]", "to [Hz]", "lines"];
+    tables::aligned(&heading, &entries.iter().map(row).collect::<Vec<_>>())
+}

@@ -1,0 +1,169 @@
+//! Pairs of places with measured hits: what is wrong with each hit, and how far a model is from it.
+
+use std::ops::RangeInclusive;
+use std::path::Path;
+
+use orthopanel_data::TimeHistory;
+use orthopanel_identify::{
+    ForceBetweenSamples, HistorySettings, HitComparison, IdentifyError, Misfit, compare_time_history,
+};
+use orthopanel_model::{ModeRange, PanelModel, Place, StaticFlexibility};
+use serde::Serialize;
+
+use crate::{output, tables};
+
+/// Whether a file is a test file, by its name: a test is TOML, a model JSON, an FMU an archive.
+pub fn is_test_file(path: &Path) -> bool {
+    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml"))
+}
+
+/// A place for people: `-0.3`, or `-0.3,0.02` off the centre line.
+pub fn place_text(place: Place) -> String {
+    if place.y == 0.0 { place.x.to_string() } else { format!("{},{}", place.x, place.y) }
+}
+
+/// What became of one hit.
+#[derive(Serialize)]
+pub struct HitVerdict {
+    /// From 1.
+    hit: usize,
+    pub kept: bool,
+    faults: Vec<String>,
+}
+
+pub fn verdicts(history: &TimeHistory) -> Vec<HitVerdict> {
+    let verdict = |(index, hit): (usize, &orthopanel_data::Hit)| {
+        let faults = hit.faults(history.rate);
+        HitVerdict {
+            hit: index + 1,
+            kept: !faults.iter().any(|fault| fault.is_fatal()),
+            faults: faults.iter().map(ToString::to_string).collect(),
+        }
+    };
+    history.hits.iter().enumerate().map(verdict).collect()
+}
+
+/// A pair of places whose measured forces drove a model.
+pub struct ComparedPair {
+    pub history: TimeHistory,
+    /// In the order of `history.hits`.
+    pub hits: Vec<HitComparison>,
+}
+
+impl ComparedPair {
+    /// Drives `model` with every hit of `history`.
+    ///
+    /// Modes up to the sampling rate, twice the highest frequency of the record, and the static part of those left out:
+    /// what truncation leaves is below 1e-5 of the variance (see [`compare_time_history`]).
+    pub fn of(
+        model: &PanelModel,
+        history: TimeHistory,
+        between_samples: ForceBetweenSamples,
+        band: Option<RangeInclusive<f64>>,
+    ) -> Result<Self, IdentifyError> {
+        let (force, response) = (history.force_at, history.response_at);
+        let seen = model.modal_model(ModeRange::UpTo(history.rate), &[force], &[response])?;
+        let all = StaticFlexibility::new(&model.piece, model.boundary)?;
+        let (flexibility, _) = all.between(force.x, response.x, model.constant("e_x")?, model.constant("g_zx")?);
+        let settings = HistorySettings { between_samples, static_flexibility: Some(flexibility), band };
+        let hits = compare_time_history(&seen, &history, &settings)?;
+        Ok(Self { history, hits })
+    }
+
+    /// The hit to draw: the first without a fault that spoils it, else the first.
+    pub fn shown(&self) -> usize {
+        verdicts(&self.history).iter().position(|hit| hit.kept).unwrap_or(0)
+    }
+
+    pub fn misfits(&self) -> Vec<HitMisfit> {
+        let hits = self.hits.iter().zip(verdicts(&self.history));
+        hits.map(|(compared, verdict)| HitMisfit {
+            force: self.history.force_at,
+            response: self.history.response_at,
+            verdict,
+            whole: compared.whole.misfit.into(),
+            in_band: compared.in_band.as_ref().map(|signals| signals.misfit.into()),
+        })
+        .collect()
+    }
+}
+
+/// How far the model is from one hit.
+#[derive(Serialize)]
+pub struct HitMisfit {
+    force: Place,
+    response: Place,
+    #[serde(flatten)]
+    verdict: HitVerdict,
+    whole: MisfitEntry,
+    /// With every line outside the band of the identification taken out; `null` where there was none.
+    in_band: Option<MisfitEntry>,
+}
+
+#[derive(Serialize)]
+struct MisfitEntry {
+    peak_m_s2: f64,
+    rms_percent_of_peak: f64,
+    greatest_percent_of_peak: f64,
+    variance_explained: f64,
+}
+
+impl From<Misfit> for MisfitEntry {
+    fn from(misfit: Misfit) -> Self {
+        Self {
+            peak_m_s2: misfit.peak,
+            rms_percent_of_peak: misfit.rms_percent_of_peak,
+            greatest_percent_of_peak: misfit.greatest_percent_of_peak,
+            variance_explained: misfit.variance_explained,
+        }
+    }
+}
+
+/// A row a hit.
+pub fn misfit_table(misfits: &[HitMisfit]) -> String {
+    let with_band = misfits.iter().any(|misfit| misfit.in_band.is_some());
+    let row = |misfit: &HitMisfit| {
+        let mut row = vec![
+            place_text(misfit.force),
+            place_text(misfit.response),
+            misfit.verdict.hit.to_string(),
+            format!("{:.1}", misfit.whole.peak_m_s2),
+            format!("{:.2}", misfit.whole.rms_percent_of_peak),
+            format!("{:.2}", misfit.whole.greatest_percent_of_peak),
+            format!("{:.5}", misfit.whole.variance_explained),
+        ];
+        if with_band {
+            row.push(misfit.in_band.as_ref().map_or(String::new(), |band| format!("{:.5}", band.variance_explained)));
+        }
+        row
+    };
+    let heading = [
+        "force [m]",
+        "response [m]",
+        "hit",
+        "peak [m/s2]",
+        "rms [% of peak]",
+        "greatest [% of peak]",
+        "variance explained",
+        "in the band",
+    ];
+    let columns = if with_band { heading.len() } else { heading.len() - 1 };
+    tables::aligned(&heading[..columns], &misfits.iter().map(row).collect::<Vec<_>>())
+}
+
+/// Measured and calculated acceleration of every hit, one below the other.
+pub fn csv(pairs: &[ComparedPair]) -> String {
+    let mut columns: [Vec<f64>; 6] = Default::default();
+    for (pair_index, pair) in pairs.iter().enumerate() {
+        for (hit_index, (hit, compared)) in pair.history.hits.iter().zip(&pair.hits).enumerate() {
+            let signals = hit.force.iter().zip(&compared.whole.measured).zip(&compared.whole.calculated);
+            for (sample, ((&force, &measured), &calculated)) in signals.enumerate() {
+                let time = sample as f64 / pair.history.rate;
+                let row = [(pair_index + 1) as f64, (hit_index + 1) as f64, time, force, measured, calculated];
+                columns.iter_mut().zip(row).for_each(|(column, value)| column.push(value));
+            }
+        }
+    }
+    let names = ["pair", "hit", "time_s", "force_n", "measured_m_s2", "calculated_m_s2"].map(String::from);
+    output::csv(&names, &columns.each_ref().map(Vec::as_slice))
+}
