@@ -19,26 +19,29 @@ pub(super) struct Matching {
 
 /// $E_x/(k'G_{zx})$ tried, four a decade.
 const SOFTNESS_STEPS: usize = 15;
-/// Numbers that the lowest pole may have: its mode, and the ones below it unseen.
+/// Poles that may be the first of the piece: those below may come from its suspension.
+const ANCHORS: usize = 3;
+/// Modes that the anchor may be: those below may be unseen.
 const LOWEST_MODES: usize = 4;
 /// A pole further than this from every mode belongs to none.
 const REACH: f64 = 0.05;
 
 /// Finds the constants whose modes meet the poles best.
 ///
-/// For each ratio of the constants and each number of the lowest pole, $E_x$ follows from that pole; the score counts
+/// For each ratio of the constants and each mode that one of the lowest poles may be, $E_x$ follows from it; the score counts
 /// how far the poles lie from their nearest modes, with a charge for a pole that no mode meets and for a mode that no
 /// pole shows, so that many modes are no way to meet few poles. `held` constants stay.
 pub(super) fn match_poles(pieces: &[PiecePoles], held: [Option<f64>; 2]) -> Result<Option<Matching>, ModelError> {
     let Some(guide) = pieces.iter().max_by_key(|piece| piece.frequencies.len()) else { return Ok(None) };
-    let Some(&lowest) = guide.frequencies.first() else { return Ok(None) };
     let mut best: Option<(f64, Matching)> = None;
     for step in 0..SOFTNESS_STEPS {
         let shear_ratio = SHEAR_COEFFICIENT * 10.0_f64.powf(0.25 * step as f64);
         let unit = [1e9, 1e9 / shear_ratio];
         let beam = exact(guide, unit)?;
-        for base in beam.natural_frequencies(LOWEST_MODES) {
-            let factor = (lowest / base).powi(2);
+        let bases = beam.natural_frequencies(LOWEST_MODES);
+        let anchors = guide.frequencies.iter().take(ANCHORS);
+        for (anchor, base) in anchors.flat_map(|anchor| bases.iter().map(move |base| (anchor, base))) {
+            let factor = (anchor / base).powi(2);
             let free = unit.map(|value| value * factor);
             let constants = [held[0].unwrap_or(free[0]), held[1].unwrap_or(free[1])];
             let mut score = 0.0;

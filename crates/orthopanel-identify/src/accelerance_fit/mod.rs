@@ -51,8 +51,8 @@ impl Start {
     }
 }
 
-/// Resonances overlap within this many half-power half-widths.
-const OVERLAP: f64 = 2.0;
+/// Resonances overlap well within this part of half a half-power width.
+const OVERLAP: f64 = 0.5;
 
 struct StartPiece {
     index: usize,
