@@ -70,6 +70,7 @@ impl CommandError {
         match self {
             Self::Model { source: ModelError::Unsupported(_) | ModelError::Eigenproblem, .. }
             | Self::Data(DataError::NoUsableHit { .. })
+            | Self::Identify { source: IdentifyError::Data(DataError::NoUsableHit { .. }), .. }
             | Self::FmuCall { .. }
             | Self::Picture { .. }
             | Self::Export(ExportError::Assemble(_)) => SAYS_NO,

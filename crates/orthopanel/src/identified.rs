@@ -9,7 +9,7 @@ use orthopanel_model::{PanelModel, Piece, Place, Ports, StructureKind};
 use serde::Serialize;
 
 use crate::error::CommandError;
-use crate::{progress, tables};
+use crate::{notes, progress, tables};
 
 /// Modal damping ratio assumed where a test measures none: typical of the paper's table 9.
 const ASSUMED_DAMPING: f64 = 0.003;
@@ -32,7 +32,7 @@ impl Identified {
             let _shown = progress::spinner("reading the records and identifying");
             identify(&test, settings).map_err(|source| CommandError::Identify { path: path.into(), source })?
         };
-        found.notes.iter().for_each(|note| eprintln!("note: {note}"));
+        notes::say("", &found.notes);
         let law = settings.damping_law;
         let models =
             found.pieces.iter().enumerate().map(|(index, fit)| model(&test, &found, index, fit, law)).collect();

@@ -8,6 +8,7 @@ mod identified;
 mod importer;
 mod measured_pairs;
 mod model_file;
+mod notes;
 mod output;
 mod pictures;
 mod progress;

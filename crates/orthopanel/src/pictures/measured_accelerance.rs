@@ -8,7 +8,7 @@ use super::{FONT, GRID, MEASURED, MODEL, stacked};
 use crate::error::CommandError;
 use crate::measured_pairs::place_text;
 
-/// Magnitudes drawn below the greatest \[1\]: valleys deeper than this are noise.
+/// Least measured magnitude that stretches the axis, over the greatest \[1\]; calculated valleys have no floor at all.
 const DEPTH: f64 = 1e-6;
 
 pub fn measured_accelerance(piece: &str, fit: &AcceleranceFit) -> Result<String, CommandError> {
@@ -17,8 +17,7 @@ pub fn measured_accelerance(piece: &str, fit: &AcceleranceFit) -> Result<String,
     let highest = fit.frequency.last().copied().unwrap_or(1.0);
     let greatest = fit.measured.iter().chain(&fit.model).map(|value| value.norm()).fold(0.0, f64::max);
     let greatest = if greatest > 0.0 { greatest } else { 1.0 };
-    let floor = DEPTH * greatest;
-    let sizes = fit.measured.iter().chain(&fit.model).map(|value| value.norm()).filter(|size| *size > floor);
+    let sizes = fit.measured.iter().map(|value| value.norm()).filter(|size| *size > DEPTH * greatest);
     let low = 0.5 * sizes.fold(greatest, f64::min);
     stacked("measured accelerance", &title, [360, 240], |[upper, lower]| {
         let mut chart = ChartBuilder::on(upper)

@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use crate::error::CommandError;
 use crate::measured_pairs::{HitVerdict, place_text, verdicts};
-use crate::{output, progress, tables};
+use crate::{notes, output, progress, tables};
 
 #[derive(Serialize)]
 struct Answer {
@@ -59,7 +59,7 @@ pub fn execute(path: &Path, estimation: Estimation, output: Option<&Path>, json:
     let accelerances: Vec<Entry> = measured.into_iter().map(|(entry, _)| entry).collect();
     for entry in &accelerances {
         let pair = format!("{} to {}", place_text(entry.force), place_text(entry.response));
-        entry.notes.iter().for_each(|note| eprintln!("note: {pair}: {note}"));
+        notes::say(&format!("{pair}: "), &entry.notes);
     }
     written.iter().for_each(|path| eprintln!("wrote {}", path.display()));
     if json {

@@ -11,7 +11,7 @@ use super::Arguments;
 use crate::error::CommandError;
 use crate::measured_pairs::{ComparedPair, HitMisfit, csv, is_test_file, misfit_table};
 use crate::time_response::Hold;
-use crate::{importer, model_file, output, progress};
+use crate::{importer, model_file, notes, output, progress};
 
 /// Whether the force file holds measured accelerations beside the force: a test, a UFF, or a CSV of a record's three
 /// columns. A CSV with more is a force with other columns, such as `simulate` itself writes.
@@ -58,12 +58,14 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
     let shown = progress::bar("driving the model", histories.len());
     let mut pairs = Vec::with_capacity(histories.len());
     for history in histories {
-        history.notes.iter().for_each(|note| eprintln!("note: {}: {note}", history.file.display()));
         let compared = ComparedPair::of(&model, history, between_samples, None);
         pairs.push(compared.map_err(|source| CommandError::Identify { path: arguments.force_file.clone(), source })?);
         shown.step();
     }
     drop(shown);
+    for ComparedPair { history, .. } in &pairs {
+        notes::say(&format!("{}: ", history.file.display()), &history.notes);
+    }
     if let Some(path) = &arguments.output {
         output::write(path, csv(&pairs))?;
         eprintln!("wrote {}", path.display());

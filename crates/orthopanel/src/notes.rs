@@ -1,0 +1,37 @@
+//! What the layers below have to say about the records, for people.
+
+/// Prints each note once on standard error, behind `about`, with how often it was made.
+pub fn say(about: &str, notes: &[String]) {
+    for (note, times) in folded(notes) {
+        let times = if times > 1 { format!(" ({times} times)") } else { String::new() };
+        eprintln!("note: {about}{note}{times}");
+    }
+}
+
+/// Notes that differ by the number of their record alone are one: a test of 31 places has hundreds of records.
+fn folded(notes: &[String]) -> Vec<(&str, usize)> {
+    let mut folded: Vec<(&str, usize)> = Vec::new();
+    for note in notes {
+        let numbered = note.strip_prefix("record ").and_then(|rest| rest.split_once(": "));
+        let text = match numbered {
+            Some((number, text)) if number.bytes().all(|byte| byte.is_ascii_digit()) => text,
+            _ => note,
+        };
+        match folded.iter_mut().find(|(known, _)| *known == text) {
+            Some((_, times)) => *times += 1,
+            None => folded.push((text, 1)),
+        }
+    }
+    folded
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn notes_of_records_alike_are_said_once() {
+        let notes = ["record 1: rounded", "hit 2 left out: double hit", "record 2: rounded"].map(String::from);
+        assert_eq!(folded(&notes), [("rounded", 2), ("hit 2 left out: double hit", 1)]);
+    }
+}
