@@ -2,27 +2,7 @@
 
 mod support;
 
-use support::{Bench, FORCE, MODEL, TEST};
-
-/// Runs `line` and wants it refused with `code` and one line on standard error that holds all of `said`.
-fn refused(bench: &Bench, line: &str, code: i32, said: &[&str]) {
-    let before = bench.listing();
-    let output = bench.run(line);
-    let message = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(code), "{line}: {message}");
-    assert_eq!(message.lines().count(), 1, "{line}: {message}");
-    for part in said {
-        assert!(message.contains(part), "{line}: {message:?} does not say {part:?}");
-    }
-    assert!(output.stdout.is_empty(), "{line}: standard output is not empty");
-    assert_eq!(bench.listing(), before, "{line} left something behind");
-}
-
-/// `text` with `from` replaced, which must be there.
-fn changed(text: &str, from: &str, to: &str) -> String {
-    assert!(text.contains(from), "{from:?} is not in {text:?}");
-    text.replacen(from, to, 1)
-}
+use support::{Bench, FORCE, MODEL, TEST, changed, refused};
 
 /// Every command that reads a test refuses this one.
 fn test_refused(from: &str, to: &str, said: &[&str]) {

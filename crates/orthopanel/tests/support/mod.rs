@@ -65,6 +65,12 @@ impl Bench {
         value
     }
 
+    /// A file that holds one JSON object.
+    pub fn read_json(&self, name: &str) -> serde_json::Value {
+        let text = std::fs::read_to_string(self.path(name)).expect("a JSON file");
+        serde_json::from_str(&text).expect("one JSON object")
+    }
+
     /// The rows of numbers of a CSV file.
     pub fn rows(&self, name: &str) -> Vec<Vec<f64>> {
         let text = std::fs::read_to_string(self.path(name)).expect("a CSV file");
@@ -105,4 +111,42 @@ fn copy(from: &Path, to: &Path) {
 
 pub fn number(value: &serde_json::Value, path: &str) -> f64 {
     value.pointer(path).and_then(serde_json::Value::as_f64).unwrap_or_else(|| panic!("no number at {path}: {value}"))
+}
+
+/// Runs `line` and wants it refused with `code` and one line on standard error that holds all of `said`.
+pub fn refused(bench: &Bench, line: &str, code: i32, said: &[&str]) {
+    let before = bench.listing();
+    let output = bench.run(line);
+    let message = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(code), "{line}: {message}");
+    assert_eq!(message.lines().count(), 1, "{line}: {message}");
+    for part in said {
+        assert!(message.contains(part), "{line}: {message:?} does not say {part:?}");
+    }
+    assert!(output.stdout.is_empty(), "{line}: standard output is not empty");
+    assert_eq!(bench.listing(), before, "{line} left something behind");
+}
+
+/// `text` with `from` replaced, which must be there.
+pub fn changed(text: &str, from: &str, to: &str) -> String {
+    assert!(text.contains(from), "{from:?} is not in {text:?}");
+    text.replacen(from, to, 1)
+}
+
+/// Makes hammer records with a known truth in `folder` of the bench, by tests/record_generator; prints why and returns
+/// `None` where there is no Python for it.
+pub fn made_records(bench: &Bench, folder: &str, options: &str) -> Option<serde_json::Value> {
+    let Some(python) = std::env::var_os("ORTHOPANEL_PYTHON") else {
+        println!("skipped: ORTHOPANEL_PYTHON names no Python with numpy, scipy and pyuff");
+        return None;
+    };
+    let output = Command::new(python)
+        .current_dir(Path::new(ROOT).join("tests"))
+        .args(["-m", "record_generator"])
+        .arg(bench.path(folder))
+        .args(options.split_whitespace())
+        .output()
+        .expect("the generator starts");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    Some(bench.read_json(&format!("{folder}/truth.json")))
 }
