@@ -1,7 +1,7 @@
 //! Mutates good files and feeds them to every reader: none may panic, whatever the bytes.
 //!
 //! `cargo run -p orthopanel-data --example fuzz_readers -- [SECONDS] [SEED]`; 10 s and seed 1 unless said.
-//! Without `--release`, so that overflow checks are on.
+//! Without `--release` overflow checks are on; `.ci/run` trades them for many more rounds in its minute.
 //! A panic prints its seed and round with the bytes, so that the run repeats it and a test can be made of them.
 //! Coverage-guided fuzzing (cargo-fuzz) would go deeper, and needs a nightly compiler.
 
