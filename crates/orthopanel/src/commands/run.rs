@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use orthopanel_export::{FmiVersion, Fmu, FmuOptions};
-use orthopanel_identify::{ForceBetweenSamples, PieceFit};
+use orthopanel_identify::ForceBetweenSamples;
 use orthopanel_model::PanelModel;
 use serde::Serialize;
 
@@ -61,8 +61,8 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
     let identified = Identified::from_test(&arguments.test, arguments.options.settings())?;
     let mut files = output::Files::default();
     files.add("identified.json", output::json(&identified.answer));
-    for (fit, model) in identified.found.pieces.iter().zip(&identified.models) {
-        add_piece(&mut files, arguments, &identified, fit, model)?;
+    for (index, model) in identified.models.iter().enumerate() {
+        add_piece(&mut files, arguments, &identified, index, model)?;
     }
     let hits = add_records(&mut files, arguments, &identified)?;
     let files = files.write_into(&arguments.output)?;
@@ -87,9 +87,10 @@ fn add_piece(
     files: &mut output::Files,
     arguments: &Arguments,
     identified: &Identified,
-    fit: &PieceFit,
+    index: usize,
     model: &PanelModel,
 ) -> Result<(), CommandError> {
+    let Some(fit) = identified.found.pieces.get(index) else { return Ok(()) };
     let suffix = identified.suffix(fit);
     files.add(format!("model{suffix}.json"), model.to_json());
     let ports = &model.ports;
@@ -106,7 +107,8 @@ fn add_piece(
     if !fit.modes.is_empty() {
         files.add(format!("frequencies{suffix}.svg"), pictures::frequencies(fit)?);
     }
-    if !identified.found.accelerances.is_empty() {
+    // Measured ones are drawn with the records.
+    if identified.found.accelerances.iter().any(|pair| pair.piece == index) {
         return Ok(());
     }
     let dense = model.modal_model(DENSE_MODES, &ports.forces, &ports.responses).in_file(&arguments.test)?;
@@ -121,11 +123,12 @@ fn add_records(
     identified: &Identified,
 ) -> Result<Vec<HitMisfit>, CommandError> {
     let Identified { test, found, models, .. } = identified;
+    let decay_rate = arguments.options.settings().estimation.window.decay_rate();
     for (index, fit) in found.pieces.iter().enumerate() {
         let own: Vec<_> = found.accelerances.iter().filter(|pair| pair.piece == index).collect();
         for (number, pair) in own.iter().enumerate() {
             let name = format!("accelerance{}{}.svg", identified.suffix(fit), numbered(number, own.len()));
-            files.add(name, pictures::measured_accelerance(&fit.name, pair)?);
+            files.add(name, pictures::measured_accelerance(&fit.name, pair, decay_rate)?);
         }
     }
     let histories = test.time_histories()?;

@@ -11,9 +11,11 @@ use crate::measured_pairs::place_text;
 /// Least measured magnitude that stretches the axis, over the greatest \[1\]; calculated valleys have no floor at all.
 const DEPTH: f64 = 1e-6;
 
-pub fn measured_accelerance(piece: &str, fit: &AcceleranceFit) -> Result<String, CommandError> {
+/// `decay_rate` is that of the window over the records \[1/s\], which both curves carry alike.
+pub fn measured_accelerance(piece: &str, fit: &AcceleranceFit, decay_rate: f64) -> Result<String, CommandError> {
     let (force, response) = (place_text(fit.force_at), place_text(fit.response_at));
-    let title = format!("Piece {piece}: accelerance, force at {force} m, response at {response} m");
+    let window = if decay_rate > 0.0 { format!(", window exp(-{decay_rate:.3} t)") } else { String::new() };
+    let title = format!("Piece {piece}: accelerance, force at {force} m, response at {response} m{window}");
     let highest = fit.frequency.last().copied().unwrap_or(1.0);
     let greatest = fit.measured.iter().chain(&fit.model).map(|value| value.norm()).fold(0.0, f64::max);
     let greatest = if greatest > 0.0 { greatest } else { 1.0 };
