@@ -1,0 +1,76 @@
+//! What an identification found, as JSON (`orthopanel.identified/1`), as tables, and as one model a piece.
+
+mod answer;
+mod models;
+mod report;
+
+use std::path::Path;
+
+use orthopanel_data::ImpactTest;
+use orthopanel_identify::{Identification, PieceFit, Settings, identify};
+use orthopanel_model::PanelModel;
+
+use crate::error::CommandError;
+use crate::{notes, progress};
+pub use answer::Answer;
+use models::{ASSUMED_DAMPING, model};
+
+/// A test, what was identified from it, and a model of each of its pieces.
+pub struct Identified {
+    pub test: ImpactTest,
+    pub found: Identification,
+    /// In the order of `found.pieces`.
+    pub models: Vec<PanelModel>,
+    /// The JSON object.
+    pub answer: Answer,
+}
+
+impl Identified {
+    /// Reads the test at `path` and identifies its panel; says on standard error what was noted and had to be assumed.
+    pub fn from_test(path: &Path, settings: Settings) -> Result<Self, CommandError> {
+        let test = ImpactTest::read(path)?;
+        let found = {
+            let _shown = progress::spinner("reading the records and identifying");
+            identify(&test, settings).map_err(|source| CommandError::Identify { path: path.into(), source })?
+        };
+        notes::say("", &found.notes);
+        let law = settings.damping_law;
+        let models =
+            found.pieces.iter().enumerate().map(|(index, fit)| model(&test, &found, index, fit, law)).collect();
+        if found.pieces.iter().flat_map(|fit| &fit.modes).all(|mode| mode.damping.is_none()) {
+            eprintln!(
+                "damping: natural frequencies alone measure none; the model takes zeta = {ASSUMED_DAMPING} for every \
+                 mode, an assumption (damping.beyond in the model file)"
+            );
+        }
+        let answer = Answer::of(&found);
+        Ok(Self { test, found, models, answer })
+    }
+
+    /// `-NAME` where there are several pieces, safe in file names; nothing for a single one.
+    pub fn suffix(&self, piece: &PieceFit) -> String {
+        if self.found.pieces.len() == 1 { String::new() } else { format!("-{}", file_name_part(&piece.name)) }
+    }
+}
+
+/// A name as part of a file name: letters, digits, `-` and `_` stay, every other byte becomes `%XX`.
+fn file_name_part(name: &str) -> String {
+    let part = |byte: u8| match byte {
+        b'-' | b'_' => char::from(byte).to_string(),
+        _ if byte.is_ascii_alphanumeric() => char::from(byte).to_string(),
+        _ => format!("%{byte:02X}"),
+    };
+    name.bytes().map(part).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn file_names_stay_in_their_folder_and_apart() {
+        assert_eq!(file_name_part("piece_2-a"), "piece_2-a");
+        assert_eq!(file_name_part("../x"), "%2E%2E%2Fx");
+        assert_ne!(file_name_part("a/b"), file_name_part("a_b"));
+    }
+}

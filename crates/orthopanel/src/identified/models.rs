@@ -1,0 +1,62 @@
+//! A model of one identified piece: its damping beyond the band, its ports, and where it comes from.
+
+use orthopanel_data::{ImpactTest, MeasurementData};
+use orthopanel_identify::{DampingLaw, Identification, PieceFit};
+use orthopanel_model::{PanelModel, Piece, Place, Ports};
+
+/// Modal damping ratio assumed where a test measures none: typical of the paper's table 9.
+pub(super) const ASSUMED_DAMPING: f64 = 0.003;
+
+pub(super) fn model(
+    test: &ImpactTest,
+    found: &Identification,
+    index: usize,
+    fit: &PieceFit,
+    damping_law: DampingLaw,
+) -> PanelModel {
+    let mut model = found.panel_model(fit, test.boundary, ports(test, index, &fit.piece));
+    let (beyond, origin) = match usual_damping(fit) {
+        None => (ASSUMED_DAMPING, "assumed, not measured".to_owned()),
+        Some(usual) => (usual, "measured inside the band; beyond it assumed, the median of the measured".to_owned()),
+    };
+    model.damping.beyond = beyond;
+    model.provenance.insert("damping".into(), origin.into());
+    if damping_law == DampingLaw::Hysteretic && !model.damping.ratios.is_empty() {
+        let text = "identified as hysteretic, loss factor 2 zeta; the model is viscous, which is the same at resonance";
+        model.provenance.insert("damping_law".into(), text.into());
+    }
+    model.provenance.insert("piece".into(), fit.name.clone().into());
+    model.provenance.insert("program".into(), concat!("orthopanel ", env!("CARGO_PKG_VERSION")).into());
+    model
+}
+
+/// Median of the damping ratios that the piece's records show.
+///
+/// Ratios scatter by factors of five from mode to mode (the paper's table 9), and the median is not carried away by one
+/// of them as the last one or the mean would be.
+fn usual_damping(fit: &PieceFit) -> Option<f64> {
+    let mut ratios: Vec<f64> = fit.modes.iter().filter_map(|mode| Some(mode.damping?.value)).collect();
+    ratios.sort_by(f64::total_cmp);
+    ratios.get(ratios.len() / 2).copied()
+}
+
+/// The places of the piece's records; without records the paper's, -3/8 and 3/8 of the length.
+fn ports(test: &ImpactTest, index: usize, piece: &Piece) -> Ports {
+    let mut ports = Ports::default();
+    for measurement in test.measurements.iter().filter(|measurement| measurement.piece == index) {
+        if let MeasurementData::TimeHistory(record) | MeasurementData::Accelerance(record) = &measurement.data {
+            for (places, place) in [(&mut ports.forces, record.force_at), (&mut ports.responses, record.response_at)] {
+                if !places.contains(&place) {
+                    places.push(place);
+                }
+            }
+        }
+    }
+    if ports.forces.is_empty() {
+        // To the micrometre, so that it reads as a round number in the files.
+        let place = (375e3 * piece.length).round() / 1e6;
+        ports.forces.push(Place { x: -place, y: 0.0 });
+        ports.responses.push(Place { x: place, y: 0.0 });
+    }
+    ports
+}

@@ -1,0 +1,67 @@
+//! What an identification found, as tables for people.
+
+use orthopanel_identify::{IdentifiedConstant, ModeFit, PieceFit};
+use orthopanel_model::Piece;
+
+use super::Identified;
+use crate::tables;
+
+impl Identified {
+    /// Measured against model, mode by mode, then the constants.
+    pub fn tables(&self) -> String {
+        let mut text = String::new();
+        for fit in self.found.pieces.iter().filter(|fit| !fit.modes.is_empty()) {
+            let Piece { length, width, thickness, mass_per_area } = fit.piece;
+            text += &format!("piece {}: {length} x {width} x {thickness} m, {mass_per_area:.4} kg/m2\n", fit.name);
+            text += &(mode_table(fit) + "\n");
+        }
+        let row = |constant: &IdentifiedConstant| {
+            let std = match constant.std {
+                Some(std) => format!("{std:.1e}"),
+                None if constant.held => "held".into(),
+                None => "unknown".into(),
+            };
+            vec![constant.name.into(), format!("{:.3e}", constant.value), std, constant.unit.into()]
+        };
+        let rows: Vec<_> = self.found.constants.iter().map(row).collect();
+        text += &tables::aligned(&["constant", "value", "std", "unit"], &rows);
+        for pair in &self.found.correlations {
+            text += &format!("correlation of {} and {}: {:+.3}\n", pair.first, pair.second, pair.value);
+        }
+        text += &format!("error of the frequencies: {:.3} % rms", self.found.frequency_rms_percent);
+        if let Some(error) = self.found.left_one_out_percent {
+            text += &format!("; of each predicted from the others: {error:.3} % rms");
+        }
+        text += "\n";
+        if let Some(error) = self.found.accelerance_rms_percent {
+            text += &format!("error of the accelerances: {error:.2} % rms");
+            if let Some(chi_square) = self.found.chi_square {
+                text += &format!("; chi-square per datum {chi_square:.2} (1: all that is left is noise)");
+            }
+            text += "\n";
+        }
+        text
+    }
+}
+
+/// A row a mode; with the damping where the test measures it.
+fn mode_table(fit: &PieceFit) -> String {
+    let with_damping = fit.modes.iter().any(|mode| mode.damping.is_some());
+    let row = |mode: &ModeFit| {
+        let mut row = vec![
+            mode.mode.to_string(),
+            format!("{:.1}", mode.measured),
+            format!("{:.1}", mode.model),
+            format!("{:+.2}", mode.error_percent()),
+        ];
+        if with_damping {
+            let std = mode.damping.and_then(|zeta| zeta.std);
+            row.push(mode.damping.map_or("not seen".into(), |zeta| format!("{:.3e}", zeta.value)));
+            row.push(std.map_or("unknown".into(), |std| format!("{std:.1e}")));
+        }
+        row
+    };
+    let heading = ["mode", "measured [Hz]", "model [Hz]", "error [%]", "zeta", "std"];
+    let columns = if with_damping { heading.len() } else { heading.len() - 2 };
+    tables::aligned(&heading[..columns], &fit.modes.iter().map(row).collect::<Vec<_>>())
+}
