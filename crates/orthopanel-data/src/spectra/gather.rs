@@ -1,5 +1,7 @@
 //! All accelerances of a test, hits of the same places put together.
 
+use rayon::prelude::*;
+
 use super::{Accelerance, Estimation, TimeHistory};
 use crate::{DataError, ImpactTest, Measurement, MeasurementData};
 
@@ -36,6 +38,18 @@ enum Gathered {
     Line(Accelerance),
 }
 
+impl Gathered {
+    /// Reads the file of a measurement, with its piece's index; `None` for one that has no file.
+    fn read(measurement: &Measurement) -> Option<Result<(usize, Self), DataError>> {
+        let read = match &measurement.data {
+            MeasurementData::NaturalFrequencies(_) => return None,
+            MeasurementData::Accelerance(recorded) => Accelerance::read(recorded).map(Self::Line),
+            MeasurementData::TimeHistory(recorded) => TimeHistory::read(recorded).map(Self::Hits),
+        };
+        Some(read.map(|read| (measurement.piece, read)))
+    }
+}
+
 impl ImpactTest {
     /// Reads every time history of the test, in the order of the file, each with its piece's index.
     ///
@@ -60,26 +74,24 @@ impl ImpactTest {
     /// # Errors
     /// As [`TimeHistory::read`], [`TimeHistory::join`], [`TimeHistory::accelerance`] and [`Accelerance::read`].
     pub fn accelerances(&self, estimation: Estimation) -> Result<Vec<(usize, Accelerance)>, DataError> {
-        let estimated = self.gathered(|_| true)?.into_iter().map(|(piece, gathered)| match gathered {
+        let estimated = self.gathered(|_| true)?.into_par_iter().map(|(piece, gathered)| match gathered {
             Gathered::Hits(history) => Ok((piece, history.accelerance(estimation)?)),
             Gathered::Line(accelerance) => Ok((piece, accelerance)),
         });
-        estimated.collect()
+        // First all, then the first error in the order of the file: the same message whichever thread was quicker.
+        estimated.collect::<Vec<_>>().into_iter().collect()
     }
 
     fn gathered(&self, wanted: impl Fn(&MeasurementData) -> bool) -> Result<Vec<(usize, Gathered)>, DataError> {
+        let measurements: Vec<_> = self.measurements.iter().filter(|measurement| wanted(&measurement.data)).collect();
+        let read: Vec<_> = measurements.into_par_iter().filter_map(Gathered::read).collect();
         let mut gathered: Vec<(usize, Gathered)> = Vec::new();
-        for Measurement { piece, data } in self.measurements.iter().filter(|measurement| wanted(&measurement.data)) {
-            match data {
-                MeasurementData::NaturalFrequencies(_) => {}
-                MeasurementData::Accelerance(recorded) => {
-                    gathered.push((*piece, Gathered::Line(Accelerance::read(recorded)?)));
-                }
-                MeasurementData::TimeHistory(recorded) => {
-                    let history = TimeHistory::read(recorded)?;
+        for of_file in read {
+            match of_file? {
+                (piece, Gathered::Hits(history)) => {
                     let same = gathered.iter_mut().find_map(|(of, earlier)| match earlier {
                         Gathered::Hits(earlier)
-                            if of == piece
+                            if *of == piece
                                 && earlier.force_at == history.force_at
                                 && earlier.response_at == history.response_at =>
                         {
@@ -89,9 +101,10 @@ impl ImpactTest {
                     });
                     match same {
                         Some(earlier) => earlier.join(history)?,
-                        None => gathered.push((*piece, Gathered::Hits(history))),
+                        None => gathered.push((piece, Gathered::Hits(history))),
                     }
                 }
+                line => gathered.push(line),
             }
         }
         Ok(gathered)

@@ -78,8 +78,10 @@ pub(super) fn values(
 
     let data = rest.get(..needed).unwrap_or_default();
     Ok(match (widths.ordinate, header.layout.even || widths.abscissa == widths.ordinate) {
-        (4, true) => decode(data, if big_endian { f32::from_be_bytes } else { f32::from_le_bytes }),
-        (_, true) => decode(data, if big_endian { f64::from_be_bytes } else { f64::from_le_bytes }),
+        (4, true) if big_endian => decode(data, f32::from_be_bytes),
+        (4, true) => decode(data, f32::from_le_bytes),
+        (_, true) if big_endian => decode(data, f64::from_be_bytes),
+        (_, true) => decode(data, f64::from_le_bytes),
         (_, false) => {
             let points = data.chunks_exact(widths.point(header));
             let parts = points.filter_map(|point| point.split_at_checked(widths.abscissa));
@@ -91,8 +93,8 @@ pub(super) fn values(
 }
 
 /// All numbers in `bytes`, one every `N` bytes.
-fn decode<T: Into<f64>, const N: usize>(bytes: &[u8], number: fn([u8; N]) -> T) -> Vec<f64> {
-    bytes.chunks_exact(N).filter_map(|bytes| bytes.try_into().ok()).map(|bytes| number(bytes).into()).collect()
+fn decode<T: Into<f64>, const N: usize>(bytes: &[u8], number: impl Fn([u8; N]) -> T) -> Vec<f64> {
+    bytes.as_chunks().0.iter().map(|&bytes| number(bytes).into()).collect()
 }
 
 fn declared(header: &Header) -> Widths {
