@@ -3,7 +3,7 @@
 mod support;
 
 use orthopanel_data::{
-    Accelerance, AccelerationUnit, Channel, Direction, HitFault, RecordFile, RecordedResponse, TimeHistory,
+    Accelerance, AccelerationUnit, Channel, Direction, Hit, HitFault, RecordFile, RecordedResponse, TimeHistory,
 };
 use orthopanel_model::Place;
 use support::{
@@ -264,4 +264,21 @@ fn val_hits_of_the_same_places_are_put_together() {
     assert_eq!((found[0].0, found[1].1.response_at.x), (0, 0.2));
     let message = read(&[&one, &short]).unwrap_err().to_string();
     assert!(message.contains("c.csv: 900 samples at 1000"), "{message}");
+}
+
+/// A channel that touches its range for a sample at a time, at every crest, as a fast oscillation does.
+#[test]
+fn val_a_range_touched_again_and_again_is_an_overload() {
+    let rate = 16384.0;
+    let push =
+        |n: usize| if (40..50).contains(&n) { (std::f64::consts::PI * (n - 40) as f64 / 10.0).sin() } else { 0.0 };
+    let force: Vec<f64> = (0..8192).map(|n| 100.0 * push(n) + 1e-3 * (n as f64 * 1.7).sin()).collect();
+    let free = |n: usize| 500.0 * (-(n as f64) / 700.0).exp() * (n as f64 * 1.31).sin();
+    let hit = |limit: f64| Hit {
+        force: force.clone(),
+        acceleration: (0..8192).map(|n| if n < 45 { 0.0 } else { free(n - 45).clamp(-limit, limit) }).collect(),
+    };
+    let overloaded = |hit: &Hit| hit.faults(rate).iter().any(|fault| matches!(fault, HitFault::Overload { .. }));
+    assert!(overloaded(&hit(300.0)));
+    assert!(!overloaded(&hit(1e9)), "{:?}", hit(1e9).faults(rate));
 }

@@ -10,7 +10,8 @@ use crate::{Identification, IdentifyError, Settings, accelerance_fit, frequency_
 /// `settings` may be a [`crate::Search`] alone.
 ///
 /// # Errors
-/// [`IdentifyError`]: too few data, an unknown constant, no convergence, a constant on its bound, records that cannot be
+/// [`IdentifyError`]: too few data, an unknown constant, no convergence, a constant on its bound or known no better than
+/// its own size, records that contradict the test file, records that cannot be
 /// read, or a test that this version cannot evaluate.
 pub fn identify(test: &ImpactTest, settings: impl Into<Settings>) -> Result<Identification, IdentifyError> {
     let settings = settings.into();
@@ -21,9 +22,9 @@ pub fn identify(test: &ImpactTest, settings: impl Into<Settings>) -> Result<Iden
     let is_frequencies = |data: &MeasurementData| matches!(data, MeasurementData::NaturalFrequencies(_));
     let lists = test.measurements.iter().filter(|measurement| is_frequencies(&measurement.data)).count();
     if lists == test.measurements.len() {
-        frequency_fit::identify_frequencies(test, settings.search)
+        frequency_fit::identify_frequencies(test, settings.search)?.determined()
     } else if lists == 0 {
-        accelerance_fit::identify_records(test, settings)
+        accelerance_fit::identify_records(test, settings)?.determined()
     } else {
         let message = "natural frequencies and records in one test: put them in two test files, since the frequencies \
                        are most likely read off the same records and would count twice";

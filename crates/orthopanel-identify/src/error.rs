@@ -21,6 +21,18 @@ pub enum IdentifyError {
         /// Their names.
         names: String,
     },
+    /// Records in which too few resonances stand out.
+    #[error(
+        "{found} resonances of the piece stand out from the records, {needed} are needed: look at the accelerance; a \
+         Hann window cuts off a hit near the record's start (take none, or force-exponential), and the sampling rate must \
+         be more than twice the highest mode asked for"
+    )]
+    TooFewResonances {
+        /// Resonances found.
+        found: usize,
+        /// Constants to find.
+        needed: usize,
+    },
     /// The test holds a constant that the structure does not have.
     #[error("constants.{name}: the structure has no such constant, it has {known}")]
     UnknownConstant {
@@ -91,6 +103,31 @@ pub enum IdentifyError {
         /// The hit, from 1.
         hit: usize,
     },
+    /// A constant that the data leave open.
+    #[error(
+        "{name} = {value:.3e} {unit} is known no better than to +- {std:.1e}: these data do not determine it; hold it under \
+         [constants], measure more modes, or check that no mode is missing from the list"
+    )]
+    NotDetermined {
+        /// The constant.
+        name: &'static str,
+        /// Its value at the minimum.
+        value: f64,
+        /// Its standard deviation.
+        std: f64,
+        /// Its unit.
+        unit: &'static str,
+    },
+    /// Records that no panel of these sizes could give.
+    #[error(
+        "half of all lines miss the model by more than {percent:.0} %: the records contradict the test file; check \
+         force_at and response_at, the sensor's direction, units and gain, the sizes and mass of the piece, the window and \
+         the sampling rate"
+    )]
+    Contradiction {
+        /// Median of $|H_{cal}-H_{exp}|/|H_{exp}|$ \[%\].
+        percent: f64,
+    },
     /// A test that this version cannot evaluate.
     #[error("{0}")]
     Unsupported(String),
@@ -105,6 +142,13 @@ pub enum IdentifyError {
 impl IdentifyError {
     /// Whether the test itself must be mended, rather than that its data or the model say no.
     pub fn is_bad_input(&self) -> bool {
-        !matches!(self, Self::NotConverged { .. } | Self::OnBound { .. })
+        !matches!(
+            self,
+            Self::NotConverged { .. }
+                | Self::OnBound { .. }
+                | Self::NotDetermined { .. }
+                | Self::Contradiction { .. }
+                | Self::TooFewResonances { .. }
+        )
     }
 }

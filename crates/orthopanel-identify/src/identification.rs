@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use crate::IdentifyError;
 use num_complex::Complex64;
 use orthopanel_model::{Boundary, Damping, Estimate, MODEL_SCHEMA, PanelModel, Piece, Place, Ports, StructureKind};
 
@@ -110,6 +111,16 @@ impl ModeFit {
 }
 
 impl Identification {
+    /// Refuses a constant whose standard deviation exceeds it: that is no result.
+    pub(crate) fn determined(self) -> Result<Self, IdentifyError> {
+        let open = self.constants.iter().find_map(|constant| {
+            let std = constant.std.filter(|std| *std > constant.value || std.is_nan())?;
+            let IdentifiedConstant { name, unit, value, .. } = *constant;
+            Some(IdentifyError::NotDetermined { name, value, std, unit })
+        });
+        open.map_or(Ok(self), Err)
+    }
+
     /// The model of one piece with the identified constants, ready for a model file.
     ///
     /// Damping holds the ratios that were measured; `beyond` is left at zero for the caller to state.

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use orthopanel_data::ImpactTest;
-use orthopanel_identify::{Identification, Search, Settings, identify};
+use orthopanel_identify::{Identification, IdentifyError, Search, Settings, identify};
 
 /// Table 9's constants and damping, which the generator puts in unless told otherwise.
 const E_X: f64 = 1.067e10;
@@ -79,4 +79,15 @@ fn val_the_papers_error_leads_to_the_same_constants() {
     assert!((found.constants[1].value / G_ZX - 1.0).abs() < 0.02, "{:e}", found.constants[1].value);
     let Some(zeta) = found.pieces[0].damping.first() else { panic!("no damping") };
     assert!((zeta.value / ZETAS[0] - 1.0).abs() < 0.1, "{zeta:?}");
+}
+
+/// The hammer's place typed wrongly: the resonances are right, the lines between them are not.
+#[test]
+fn a_wrong_place_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let Some(_) = made(&folder.path().join("one"), &["--noise", "0.003", "--seed", "14"]) else { return };
+    let path = folder.path().join("one/test.toml");
+    let text = std::fs::read_to_string(&path).unwrap().replace("force_at = [-0.3", "force_at = [-0.02");
+    let refused = identify(&ImpactTest::from_toml(&text, &path).unwrap(), Settings::default());
+    assert!(matches!(refused, Err(IdentifyError::Contradiction { .. })), "{:?}", refused.map(|found| found.constants));
 }

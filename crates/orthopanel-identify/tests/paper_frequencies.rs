@@ -214,3 +214,12 @@ fn too_few_frequencies_are_refused_with_the_count() {
     let refused = identify(&ImpactTest::from_toml(&text, "test.toml").unwrap(), Search::LeastSquares);
     assert!(matches!(refused, Err(IdentifyError::TooFewFrequencies { found: 1, needed: 2, .. })), "{refused:?}");
 }
+
+/// Mode 3 left out of the list, so that modes 4 to 6 stand for 3 to 5: no shear modulus gives such a series.
+#[test]
+fn a_list_with_a_missing_mode_is_refused() {
+    let text = piece(1).replace("[[piece]]\nname = \"1\"", "[piece]")
+        + "[[measurement]]\nkind = \"natural-frequencies\"\nvalues = [321.3, 837.5, 2312.5, 3150.0, 3987.5]\n";
+    let refused = identify(&ImpactTest::from_toml(&text, "test.toml").unwrap(), Search::LeastSquares);
+    assert!(matches!(refused, Err(IdentifyError::NotDetermined { name: "g_zx", .. })), "{refused:?}");
+}

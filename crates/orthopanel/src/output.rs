@@ -20,7 +20,10 @@ impl Files {
     /// Writes each file beside its place, then renames them all: on failure nothing new is left, and an older file is
     /// as it was unless its own rename was done.
     pub fn write(self) -> Result<Vec<PathBuf>, CommandError> {
-        let stage_one = |(path, content): (PathBuf, Vec<u8>)| stage(&path, &content).map(|file| (file, path));
+        let stage_one = |(path, content): (PathBuf, Vec<u8>)| {
+            let path = destination(path)?;
+            stage(&path, &content).map(|file| (file, path))
+        };
         let staged: Vec<_> = self.0.into_iter().map(stage_one).collect::<Result<_, _>>()?;
         let mut written: Vec<PathBuf> = Vec::with_capacity(staged.len());
         for (file, path) in staged {
@@ -52,6 +55,16 @@ pub fn write(path: &Path, content: impl Into<Vec<u8>>) -> Result<(), CommandErro
     let mut files = Files::default();
     files.add(path, content);
     files.write().map(drop)
+}
+
+/// Where a file really goes: behind a link, the file it points to. What is there must be a file, since renaming onto a
+/// device or a pipe would take its place.
+fn destination(path: PathBuf) -> Result<PathBuf, CommandError> {
+    match std::fs::metadata(&path) {
+        Ok(there) if there.is_file() => std::fs::canonicalize(&path).map_err(|error| unwritable(&path, &error)),
+        Ok(_) => Err(unwritable(&path, &"it is there and is no regular file")),
+        Err(_) => Ok(path),
+    }
 }
 
 fn stage(path: &Path, content: &[u8]) -> Result<NamedTempFile, CommandError> {
@@ -119,6 +132,20 @@ mod tests {
         let text = csv(&["a".into()], &[&numbers]);
         let back: Vec<f64> = text.lines().skip(1).map(|line| line.parse().expect("a number")).collect();
         assert_eq!(back, numbers);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn what_is_no_regular_file_is_not_replaced_and_a_link_is_followed() {
+        let home = tempfile::tempdir().expect("a temporary folder");
+        let (real, link) = (home.path().join("real"), home.path().join("link"));
+        std::fs::write(&real, "old").expect("written");
+        std::os::unix::fs::symlink(&real, &link).expect("linked");
+        write(&link, "new").expect("written");
+        assert!(std::fs::symlink_metadata(&link).expect("there").is_symlink());
+        assert_eq!(std::fs::read_to_string(&real).expect("read"), "new");
+        assert!(matches!(write(home.path(), "x"), Err(CommandError::Unwritable { .. })));
+        assert!(matches!(write(Path::new("/dev/null"), "x"), Err(CommandError::Unwritable { .. })));
     }
 
     #[test]

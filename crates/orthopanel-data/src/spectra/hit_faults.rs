@@ -91,6 +91,9 @@ const FLAT_RUN: usize = 8;
 /// Force that counts as a touch, over the peak: less does not change the spectrum by more than this.
 const TOUCH: f64 = 0.05;
 
+/// Samples exactly on the extreme, in runs of any length, from which it may be the end of the range.
+const SCATTERED_TOUCHES: usize = 8;
+
 /// Next to the pulse, within three times its length, up to this the anti-alias filter rings.
 const FILTER_RINGING: f64 = 0.2;
 
@@ -141,6 +144,13 @@ fn overload(channel: Channel, values: &[f64]) -> Option<HitFault> {
                 }
             }
             start = end;
+        }
+        // A fast oscillation touches its range for a sample or two at a time, but again and again, and seldom comes
+        // close to it without touching: a free extreme is met once, and its neighbourhood often.
+        let touches = values.iter().filter(|&&other| other == value).count();
+        let close = values.iter().filter(|&&other| other != value && (other - value).abs() < TOUCH * reach).count();
+        if touches >= SCATTERED_TOUCHES && touches > 2 * close {
+            samples = samples.max(touches);
         }
         (samples > 0).then_some(HitFault::Overload { channel, samples, value })
     })

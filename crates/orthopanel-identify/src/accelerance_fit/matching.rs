@@ -1,6 +1,6 @@
 //! Which pole is which mode: starting constants from poles alone.
 
-use orthopanel_model::{BeamConstants, Boundary, ExactBeam, ModelError, Piece, SHEAR_COEFFICIENT};
+use orthopanel_model::{BEAM_CONSTANTS, BeamConstants, Boundary, ExactBeam, ModelError, Piece, SHEAR_COEFFICIENT};
 
 /// Poles of one piece \[Hz\], rising.
 pub(super) struct PiecePoles {
@@ -44,6 +44,9 @@ pub(super) fn match_poles(pieces: &[PiecePoles], held: [Option<f64>; 2]) -> Resu
             let factor = (anchor / base).powi(2);
             let free = unit.map(|value| value * factor);
             let constants = [held[0].unwrap_or(free[0]), held[1].unwrap_or(free[1])];
+            if BEAM_CONSTANTS.iter().zip(constants).any(|(constant, value)| constant.check(value).is_err()) {
+                continue;
+            }
             let mut score = 0.0;
             let mut modes = Vec::new();
             for piece in pieces {

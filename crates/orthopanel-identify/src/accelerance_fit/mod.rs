@@ -76,19 +76,17 @@ pub(crate) fn identify_records(test: &ImpactTest, settings: Settings) -> Result<
     let start = start(test, settings)?;
     let problem = assemble(test, &start, settings)?;
     let parameters = starting_parameters(&problem, &start);
-    let bounds = problem.bounds();
     let minimum = match settings.search {
         Search::LeastSquares if !start.resonances_meet()? => {
             return outcome::from_poles(test, start, &problem, &parameters);
         }
         Search::LeastSquares => {
-            levenberg_marquardt(|p| problem.linearise(p), &parameters, &bounds).map_err(|stuck| match stuck {
-                Stuck::Refused(error) => error.into(),
-                Stuck::Iterations { count, cost } => IdentifyError::NotConverged {
-                    iterations: count,
-                    error_percent: 100.0 * (cost / problem.data() as f64).sqrt(),
-                },
-            })?
+            let fitted = levenberg_marquardt(|p| problem.linearise(p), &parameters, &problem.bounds());
+            match fitted {
+                Ok(minimum) => minimum,
+                // What cannot be fitted line by line is judged by its resonances, and refused there if need be.
+                Err(_) => return outcome::from_poles(test, start, &problem, &parameters),
+            }
         }
         Search::Simplex => {
             let parameters = paper_error::minimise(&problem, &start, &parameters)?;
@@ -103,7 +101,9 @@ fn start(test: &ImpactTest, settings: Settings) -> Result<Start, IdentifyError> 
     let mut pieces: Vec<StartPiece> = Vec::new();
     let mut notes = Vec::new();
     for (index, accelerance) in test.accelerances(settings.estimation)? {
-        notes.extend(accelerance.notes.iter().cloned());
+        let (force, response) = (accelerance.force_at, accelerance.response_at);
+        let pair = format!("force at ({}, {}), response at ({}, {})", force.x, force.y, response.x, response.y);
+        notes.extend(accelerance.notes.iter().map(|note| format!("{pair}: {note}")));
         let record = PlaceRecord::of(&accelerance);
         match pieces.iter_mut().find(|piece| piece.index == index) {
             Some(piece) => piece.records.push(record),
@@ -127,11 +127,7 @@ fn start(test: &ImpactTest, settings: Settings) -> Result<Start, IdentifyError> 
         .collect();
     let free = held.iter().filter(|held| held.is_none()).count();
     let found: usize = poles.iter().map(|piece| piece.frequencies.len()).sum();
-    let too_few = || IdentifyError::TooFewFrequencies {
-        found,
-        needed: free.max(1),
-        names: BEAM_CONSTANTS.map(|constant| constant.name).join(", "),
-    };
+    let too_few = || IdentifyError::TooFewResonances { found, needed: free.max(1) };
     if found < free {
         return Err(too_few());
     }
