@@ -23,7 +23,7 @@ pub enum IdentifyError {
     },
     /// Records in which too few resonances stand out.
     #[error(
-        "{found} resonances of the piece stand out from the records, {needed} are needed: look at the accelerance; a \
+        "{found} resonances stand out from the records, for {needed} constants: look at the accelerance; a \
          Hann window cuts off a hit near the record's start (take none, or force-exponential), and the sampling rate must \
          be more than twice the highest mode asked for"
     )]
@@ -144,11 +144,7 @@ impl IdentifyError {
     pub fn is_bad_input(&self) -> bool {
         !matches!(
             self,
-            Self::NotConverged { .. }
-                | Self::OnBound { .. }
-                | Self::NotDetermined { .. }
-                | Self::Contradiction { .. }
-                | Self::TooFewResonances { .. }
+            Self::NotConverged { .. } | Self::OnBound { .. } | Self::NotDetermined { .. } | Self::Contradiction { .. }
         )
     }
 }
