@@ -2,6 +2,7 @@
 
 mod accelerance_fit;
 mod downhill_simplex;
+mod elastic_constants;
 mod entry;
 mod error;
 mod frequency_fit;

@@ -12,8 +12,9 @@ mod smooth_part;
 mod synthesis;
 
 use orthopanel_data::ImpactTest;
-use orthopanel_model::{BEAM_CONSTANTS, BeamConstants, ExactBeam, Piece};
+use orthopanel_model::{BeamConstants, ExactBeam, Piece};
 
+use crate::elastic_constants::held_constants;
 use crate::least_squares::{Minimum, Stuck, levenberg_marquardt};
 use crate::{Identification, IdentifyError, Search, Settings};
 use matching::{Matching, PiecePoles, match_at, match_poles};
@@ -149,20 +150,6 @@ fn start(test: &ImpactTest, settings: Settings) -> Result<Start, IdentifyError> 
         matching = match_at(&poles, constants)?;
     }
     Ok(Start { pieces, poles, matching, held, notes })
-}
-
-fn held_constants(test: &ImpactTest) -> Result<[Option<f64>; 2], IdentifyError> {
-    for name in test.constants.keys() {
-        if BEAM_CONSTANTS.iter().all(|constant| constant.name != name) {
-            let known = BEAM_CONSTANTS.map(|constant| constant.name).join(", ");
-            return Err(IdentifyError::UnknownConstant { name: name.clone(), known });
-        }
-    }
-    let held = BEAM_CONSTANTS.map(|constant| test.constants.get(constant.name).copied());
-    for (constant, value) in BEAM_CONSTANTS.iter().zip(held) {
-        value.map_or(Ok(()), |value| constant.check(value))?;
-    }
-    Ok(held)
 }
 
 fn assemble(test: &ImpactTest, start: &Start, settings: Settings) -> Result<AcceleranceProblem, IdentifyError> {

@@ -5,6 +5,7 @@ use orthopanel_model::{Estimate, StructureKind};
 
 use super::problem::AcceleranceProblem;
 use super::{Start, StartPiece, pole_constants};
+use crate::elastic_constants::refuse_bounds;
 use crate::least_squares::Minimum;
 use crate::{
     AcceleranceFit, Correlation, Identification, IdentifiedConstant, IdentifyError, ModeFit, PieceFit, Search, Settings,
@@ -103,7 +104,7 @@ fn report(
             held: free.is_none(),
         }
     });
-    refuse_bounds(problem, &parameters)?;
+    refuse_bounds(&problem.constants, &problem.free, &parameters)?;
     let (fits, accelerance_rms_percent) = accelerance_fits(problem, &parameters)?;
     let percent = median_misfit_percent(&fits);
     if percent > CONTRADICTION {
@@ -127,16 +128,6 @@ fn report(
         notes: start.notes.clone(),
         pieces,
     })
-}
-
-fn refuse_bounds(problem: &AcceleranceProblem, parameters: &[f64]) -> Result<(), IdentifyError> {
-    for ((log, (low, high)), &index) in parameters.iter().zip(problem.bounds()).zip(&problem.free) {
-        if log - low < 1e-6 || high - log < 1e-6 {
-            let constant = problem.constants[index];
-            return Err(IdentifyError::OnBound { name: constant.name, value: log.exp(), unit: constant.unit });
-        }
-    }
-    Ok(())
 }
 
 /// Puts the constants of the poles' frequencies, and the poles' damping, in place of the fit's; the correlation of the

@@ -13,6 +13,7 @@ use orthopanel_model::StructureKind;
 
 use crate::Search;
 use crate::downhill_simplex::{Penalised, downhill_simplex};
+use crate::elastic_constants::refuse_bounds;
 use crate::least_squares::{Stuck, levenberg_marquardt};
 use crate::{Identification, IdentifiedConstant, IdentifyError, ModeFit, PieceFit};
 use problem::FrequencyProblem;
@@ -32,7 +33,7 @@ pub(crate) fn identify_frequencies(test: &ImpactTest, search: Search) -> Result<
     let problem = FrequencyProblem::of(test)?;
     let start = starting_values::starting_values(&problem)?;
     let found = minimise(&problem, &start, search)?;
-    problem.refuse_bounds(&found)?;
+    refuse_bounds(&problem.constants, &problem.free, &found)?;
     let at = problem.linearise(&found)?;
     let uncertainty = uncertainty::uncertainty(&problem, &at);
     let values = problem.values(&found);

@@ -6,6 +6,7 @@ use orthopanel_model::{BEAM_CONSTANTS, Boundary, Constant, Piece};
 
 use super::prediction::{Prediction, beam_frequencies, beam_predictions};
 use crate::IdentifyError;
+use crate::elastic_constants::held_constants;
 use crate::least_squares::Linearised;
 
 /// Measured frequencies of one piece.
@@ -45,16 +46,7 @@ pub(super) struct FrequencyProblem {
 impl FrequencyProblem {
     pub(super) fn of(test: &ImpactTest) -> Result<Self, IdentifyError> {
         let constants = BEAM_CONSTANTS;
-        for name in test.constants.keys() {
-            if constants.iter().all(|constant| constant.name != name) {
-                let known = constants.map(|constant| constant.name).join(", ");
-                return Err(IdentifyError::UnknownConstant { name: name.clone(), known });
-            }
-        }
-        let held = constants.map(|constant| test.constants.get(constant.name).copied());
-        for (constant, value) in constants.iter().zip(held) {
-            value.map_or(Ok(()), |value| constant.check(value))?;
-        }
+        let held = held_constants(test)?;
         let free: Vec<usize> = (0..constants.len()).filter(|&index| held[index].is_none()).collect();
         let sets = frequency_sets(test)?;
         let problem = Self { constants, held, free, sets };
@@ -114,17 +106,6 @@ impl FrequencyProblem {
             sum += pairs.map(|(calculated, measured)| (calculated / measured - 1.0).powi(2)).sum::<f64>();
         }
         Ok(sum / self.count() as f64)
-    }
-
-    /// Refuses a minimum that lies on a bound: such a value is the bound's, not the data's.
-    pub(super) fn refuse_bounds(&self, logs: &[f64]) -> Result<(), IdentifyError> {
-        for ((log, (low, high)), &index) in logs.iter().zip(self.log_bounds()).zip(&self.free) {
-            if log - low < 1e-6 || high - log < 1e-6 {
-                let Constant { name, unit, .. } = self.constants[index];
-                return Err(IdentifyError::OnBound { name, value: log.exp(), unit });
-            }
-        }
-        Ok(())
     }
 }
 

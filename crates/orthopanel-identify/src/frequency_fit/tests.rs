@@ -4,6 +4,7 @@ use super::minimise;
 use super::problem::FrequencyProblem;
 use crate::IdentifyError;
 use crate::Search;
+use crate::elastic_constants::refuse_bounds;
 use orthopanel_data::ImpactTest;
 
 fn piece_1() -> FrequencyProblem {
@@ -68,7 +69,7 @@ fn a_minimum_on_a_bound_is_refused() {
     problem.constants[0].high = 8e9;
     for search in [Search::Simplex, Search::LeastSquares] {
         let Ok(found) = minimise(&problem, &[7e9_f64.ln(), 5e8_f64.ln()], search) else { panic!("no minimum") };
-        let refused = problem.refuse_bounds(&found);
+        let refused = refuse_bounds(&problem.constants, &problem.free, &found);
         assert!(matches!(refused, Err(IdentifyError::OnBound { name: "e_x", .. })), "{search:?}: {refused:?}");
     }
 }
