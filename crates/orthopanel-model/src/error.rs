@@ -71,15 +71,34 @@ pub enum ModelError {
         value: f64,
     },
     /// A model file whose text cannot be read.
-    #[error("not a model file: {0}")]
-    ModelText(String),
+    #[error("line {line}: {problem}")]
+    ModelText {
+        /// Line of the file, from 1.
+        line: usize,
+        /// The key, what was found there and what is wanted.
+        problem: String,
+    },
     /// A model file of another schema.
     #[error("schema = {found:?}: this version reads {expected:?}")]
     Schema {
-        /// The schema found; empty where the key is missing.
+        /// The schema found.
         found: String,
         /// The schema read.
         expected: &'static str,
+    },
+    /// A model file that does not say its schema.
+    #[error("schema is missing: a model file begins with {{\"schema\": {expected:?}, ...")]
+    MissingSchema {
+        /// The schema read.
+        expected: &'static str,
+    },
+    /// A constant that the structure does not have.
+    #[error("constants.{name} is unknown: the structure has {}", .known.join(", "))]
+    UnknownConstant {
+        /// Name in the file.
+        name: String,
+        /// Names that the structure has.
+        known: &'static [&'static str],
     },
     /// A constant that the structure needs and the file lacks.
     #[error("constants.{name} is missing: the structure needs it")]

@@ -7,6 +7,7 @@ mod error;
 mod legendre;
 mod modal_model;
 mod modal_sensitivity;
+mod model_text;
 mod panel_model;
 mod panel_modes;
 mod piece;

@@ -48,9 +48,19 @@ pub enum StructureKind {
     MindlinPlate,
 }
 
+impl StructureKind {
+    /// Names of the constants that the structure has.
+    fn constant_names(self) -> &'static [&'static str] {
+        match self {
+            Self::TimoshenkoBeam => &["e_x", "g_zx"],
+            Self::MindlinPlate => &["e_x", "e_y", "nu_xy", "g_xy", "g_yz", "g_zx"],
+        }
+    }
+}
+
 /// A number, with its standard deviation where it was identified; in files `1.07e10` or `{"value", "std"}`.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(from = "EstimateText", into = "EstimateText")]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[serde(into = "EstimateText")]
 pub struct Estimate {
     /// The value.
     pub value: f64,
@@ -58,24 +68,11 @@ pub struct Estimate {
     pub std: Option<f64>,
 }
 
-#[derive(Serialize, Deserialize)]
+#[derive(Serialize)]
 #[serde(untagged)]
 enum EstimateText {
     Bare(f64),
-    #[serde(rename_all = "lowercase")]
-    Full {
-        value: f64,
-        std: f64,
-    },
-}
-
-impl From<EstimateText> for Estimate {
-    fn from(text: EstimateText) -> Self {
-        match text {
-            EstimateText::Bare(value) => Self { value, std: None },
-            EstimateText::Full { value, std } => Self { value, std: Some(std) },
-        }
-    }
+    Full { value: f64, std: f64 },
 }
 
 impl From<Estimate> for EstimateText {
@@ -141,40 +138,19 @@ pub struct EffectEntry {
 }
 
 impl PanelModel {
-    /// Reads a model file's text.
+    /// Checks sizes, damping, the names of the constants and the places of the ports; the values of the constants are
+    /// checked by the structure they belong to.
     ///
     /// # Errors
-    /// [`ModelError::ModelText`] where the text is not such a file (with line and column),
-    /// [`ModelError::Schema`] for another schema, and what [`PanelModel::check`] finds.
-    pub fn from_json(text: &str) -> Result<Self, ModelError> {
-        #[derive(Deserialize)]
-        struct SchemaOnly {
-            schema: Option<String>,
-        }
-        let malformed = |error: serde_json::Error| ModelError::ModelText(error.to_string());
-        // The schema is judged first: a file of another schema has other keys, and naming those would mislead.
-        let found = serde_json::from_str::<SchemaOnly>(text).map_err(malformed)?.schema.unwrap_or_default();
-        if found != MODEL_SCHEMA {
-            return Err(ModelError::Schema { found, expected: MODEL_SCHEMA });
-        }
-        let model: Self = serde_json::from_str(text).map_err(malformed)?;
-        model.check()?;
-        Ok(model)
-    }
-
-    /// The text of the model file, indented, with a final newline.
-    pub fn to_json(&self) -> String {
-        // Every field is a plain number, text or list: serialisation has nothing to fail on.
-        serde_json::to_string_pretty(self).unwrap_or_default() + "\n"
-    }
-
-    /// Checks sizes, damping and the places of the ports; constants are checked by the structure they belong to.
-    ///
-    /// # Errors
-    /// The first of [`ModelError::Size`], [`ModelError::Damping`], [`ModelError::OffPiece`] that holds.
+    /// The first of [`ModelError::Size`], [`ModelError::Damping`], [`ModelError::UnknownConstant`],
+    /// [`ModelError::OffPiece`] that holds.
     pub fn check(&self) -> Result<(), ModelError> {
         self.piece.checked()?;
         self.damping.check()?;
+        let known = self.structure.constant_names();
+        if let Some(name) = self.constants.keys().find(|name| !known.contains(&name.as_str())) {
+            return Err(ModelError::UnknownConstant { name: name.clone(), known });
+        }
         for &place in self.ports.forces.iter().chain(&self.ports.responses) {
             self.piece.contains(place)?;
         }

@@ -78,7 +78,7 @@ fn a_test_that_is_not_there() {
 #[test]
 fn a_model_of_another_schema() {
     model_refused("orthopanel.model/1", "orthopanel.model/9", &["schema", "orthopanel.model/9", "orthopanel.model/1"]);
-    model_refused("\"schema\": \"orthopanel.model/1\",", "", &["schema", "orthopanel.model/1"]);
+    model_refused("\"schema\": \"orthopanel.model/1\",", "", &["schema is missing", "orthopanel.model/1"]);
 }
 
 #[test]
@@ -86,14 +86,16 @@ fn a_model_with_keys_missing_or_unknown() {
     model_refused("\"length\": 0.8, ", "", &["length"]);
     model_refused("\"length\"", "\"lenght\"", &["lenght", "length"]);
     model_refused(", \"g_zx\": 5.363e8", "", &["g_zx", "missing"]);
+    model_refused("\"e_x\"", "\"e_y\": 1e9, \"e_x\"", &["constants.e_y is unknown", "e_x, g_zx"]);
 }
 
 #[test]
 fn a_model_with_impossible_numbers() {
     for size in ["0", "-0.8", "1e999", "\"long\""] {
-        model_refused("\"length\": 0.8", &format!("\"length\": {size}"), &[]);
+        model_refused("\"length\": 0.8", &format!("\"length\": {size}"), &["length"]);
     }
     model_refused("\"length\": 0.8", "\"length\": -0.8", &["length = -0.8 m", "greater than zero"]);
+    model_refused("1.07e10", "\"stiff\"", &["model.json: line 3: constants.e_x: must be a number", "\"stiff\""]);
     model_refused("1.07e10", "-1.07e10", &["e_x", "must lie between"]);
     model_refused("0.003", "1.5", &["damping", "1.5"]);
     model_refused("[-0.3, 0]", "[-0.5, 0]", &["-0.5", "off the piece", "0.4"]);
