@@ -44,7 +44,7 @@ fn val_the_whole_file_of_the_design_is_read() {
     std::fs::write(&path, text).unwrap();
     let test = ImpactTest::read(&path).unwrap();
     assert_eq!(test.pieces[0].piece.thickness, 0.03);
-    assert_eq!(test.boundary, Boundary { left: End::Free, right: End::Clamped });
+    assert_eq!(test.boundary, Boundary { left: End::Free, right: End::Clamped, ..Boundary::FREE });
     assert_eq!(test.suspension, [Place { x: -0.22, y: 0.0 }, Place { x: 0.22, y: 0.0 }]);
     assert_eq!(test.constants["e_x"], 7.0e10);
     assert_eq!((test.effects[0].id.as_str(), test.effects[0].parameters["mass"]), ("sensor-mass", 0.005));

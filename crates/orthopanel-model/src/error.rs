@@ -2,6 +2,8 @@
 
 use thiserror::Error;
 
+use crate::End;
+
 /// Errors of this crate.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
@@ -29,6 +31,14 @@ pub enum ModelError {
         low: f64,
         /// Greatest value allowed.
         high: f64,
+    },
+    /// A beam that is held along its front or back.
+    #[error("{edge} = {end}: a beam is free there; leave it out, or take the structure \"mindlin-plate\"")]
+    HeldSide {
+        /// `front` or `back`.
+        edge: &'static str,
+        /// What holds it.
+        end: End,
     },
     /// A place outside the piece.
     #[error("place ({x}, {y}) m lies off the piece: |x| <= {x_limit} m and |y| <= {y_limit} m, from its centre")]

@@ -8,7 +8,7 @@ use proptest::prelude::*;
 const ENDS: [End; 3] = [End::Free, End::Pinned, End::Clamped];
 
 fn boundaries() -> impl Iterator<Item = Boundary> {
-    ENDS.into_iter().flat_map(|left| ENDS.map(|right| Boundary { left, right }))
+    ENDS.into_iter().flat_map(|left| ENDS.map(|right| Boundary { left, right, ..Boundary::FREE }))
 }
 
 /// A piece of slenderness a/t and a pair of constants of ratio E/(k'G).
@@ -148,7 +148,7 @@ proptest! {
         left in 0_usize..3,
         right in 0_usize..3,
     ) {
-        let boundary = Boundary { left: ENDS[left], right: ENDS[right] };
+        let boundary = Boundary { left: ENDS[left], right: ENDS[right], ..Boundary::FREE };
         let (piece, constants) = beam(slenderness, softness);
         let exact = ExactBeam::new(&piece, boundary, constants).unwrap();
         let frequencies = exact.natural_frequencies(100);
@@ -169,7 +169,7 @@ proptest! {
         left in 0_usize..3,
         right in 0_usize..3,
     ) {
-        let boundary = Boundary { left: ENDS[left], right: ENDS[right] };
+        let boundary = Boundary { left: ENDS[left], right: ENDS[right], ..Boundary::FREE };
         let (piece, constants) = beam(slenderness, softness);
         let modes = ExactBeam::new(&piece, boundary, constants).unwrap().modes(10);
         let mass = piece.mass_per_area * piece.width;

@@ -13,7 +13,7 @@ const ENDS: [End; 3] = [End::Free, End::Pinned, End::Clamped];
 fn val_static_flexibility_is_the_sum_over_all_modes() {
     for left in ENDS {
         for right in ENDS {
-            let boundary = Boundary { left, right };
+            let boundary = Boundary { left, right, ..Boundary::FREE };
             let beam = ExactBeam::new(&PIECE, boundary, CONSTANTS).unwrap();
             let modes: Vec<_> = beam.flexible_modes().take(4000).collect();
             let flexibility = StaticFlexibility::new(&PIECE, boundary).unwrap();
@@ -41,7 +41,7 @@ fn val_static_flexibility_is_the_sum_over_all_modes() {
 #[test]
 fn val_derivatives_of_the_flexibility() {
     for (left, right) in [(End::Free, End::Free), (End::Clamped, End::Clamped), (End::Clamped, End::Pinned)] {
-        let flexibility = StaticFlexibility::new(&PIECE, Boundary { left, right }).unwrap();
+        let flexibility = StaticFlexibility::new(&PIECE, Boundary { left, right, ..Boundary::FREE }).unwrap();
         let at = |e: f64, g: f64| flexibility.between(0.1, -0.2, 1.07e10 * e, 5.36e8 * g);
         let (_, [by_e, by_g]) = at(1.0, 1.0);
         let step = 1e-4;
@@ -54,7 +54,7 @@ fn val_derivatives_of_the_flexibility() {
 #[test]
 fn val_derivatives_of_modes_are_those_of_differences() {
     let places = [Place { x: -0.3, y: 0.0 }, Place { x: 0.17, y: 0.0 }, Place { x: 0.4, y: 0.0 }];
-    for boundary in [Boundary::FREE, Boundary { left: End::Clamped, right: End::Free }] {
+    for boundary in [Boundary::FREE, Boundary { left: End::Clamped, right: End::Free, ..Boundary::FREE }] {
         let beam = TimoshenkoBeam::new(&PIECE, boundary, 50).unwrap();
         let at = |e: f64, g: f64| sensitive_modes(&beam, &[1.07e10 * e, 5.36e8 * g], 8, &places).unwrap();
         let here = at(1.0, 1.0);

@@ -31,9 +31,10 @@ impl BeamElements {
     /// A beam of `elements` equal elements (at least one).
     ///
     /// # Errors
-    /// [`ModelError::Size`] where the piece has no physical meaning.
+    /// [`ModelError::Size`] where the piece has no physical meaning, [`ModelError::HeldSide`] where front or back is held.
     pub fn new(piece: &Piece, boundary: Boundary, elements: usize) -> Result<Self, ModelError> {
         let piece = piece.checked()?;
+        let boundary = boundary.of_beam()?;
         let elements = elements.max(1);
         let (half_length, element_length) = (0.5 * piece.length, piece.length / elements as f64);
         let free = free_coordinates(boundary, elements);

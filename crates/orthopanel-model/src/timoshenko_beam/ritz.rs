@@ -24,9 +24,10 @@ impl TimoshenkoBeam {
     /// A beam with `terms` Legendre terms (at least 4) of curvature and as many of shear strain.
     ///
     /// # Errors
-    /// [`ModelError::Size`] where the piece has no physical meaning.
+    /// [`ModelError::Size`] where the piece has no physical meaning, [`ModelError::HeldSide`] where front or back is held.
     pub fn new(piece: &Piece, boundary: Boundary, terms: usize) -> Result<Self, ModelError> {
         let piece = piece.checked()?;
+        let boundary = boundary.of_beam()?;
         let section = Section::of(&piece);
         let half_length = 0.5 * piece.length;
         let (mut even, mut odd, mut all) = (vec![], vec![], vec![]);

@@ -24,9 +24,10 @@ impl StaticFlexibility {
     /// Of a beam with these sizes and ends.
     ///
     /// # Errors
-    /// [`ModelError::Size`] where the piece has no physical meaning.
+    /// [`ModelError::Size`] where the piece has no physical meaning, [`ModelError::HeldSide`] where front or back is held.
     pub fn new(piece: &Piece, boundary: Boundary) -> Result<Self, ModelError> {
         let piece = piece.checked()?;
+        let boundary = boundary.of_beam()?;
         Ok(Self { half_length: 0.5 * piece.length, section: Section::of(&piece), boundary })
     }
 

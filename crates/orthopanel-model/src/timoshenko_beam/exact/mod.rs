@@ -37,9 +37,11 @@ impl ExactBeam {
     /// A beam of the piece's length, section and mass.
     ///
     /// # Errors
-    /// [`ModelError::Size`] or [`ModelError::Constant`] where a number has no physical meaning.
+    /// [`ModelError::Size`] or [`ModelError::Constant`] where a number has no physical meaning, [`ModelError::HeldSide`]
+    /// where front or back is held.
     pub fn new(piece: &Piece, boundary: Boundary, constants: BeamConstants) -> Result<Self, ModelError> {
         let piece = piece.checked()?;
+        let boundary = boundary.of_beam()?;
         let BeamConstants { e_x, g_zx } = constants.checked()?;
         let section = Section::of(&piece);
         let a2 = piece.length * piece.length;
