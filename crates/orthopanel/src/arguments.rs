@@ -40,10 +40,10 @@ pub const DENSE_MODES: ModeRange = ModeRange::Count(1000);
 #[derive(Args)]
 pub struct ModeArguments {
     /// Number of flexible modes beside the rigid ones [default: 20]
-    #[arg(long, value_name = "N", conflicts_with = "up_to")]
+    #[arg(long, value_name = "N", value_parser = count, allow_negative_numbers = true, conflicts_with = "up_to")]
     modes: Option<usize>,
     /// Every flexible mode up to this frequency
-    #[arg(long, value_name = "HZ")]
+    #[arg(long, value_name = "HZ", value_parser = frequency, allow_negative_numbers = true)]
     up_to: Option<f64>,
 }
 
@@ -112,6 +112,11 @@ pub fn place(text: &str) -> Result<Place, String> {
         _ => Err(format!("{text:?} is no finite number: give a place as X or X,Y in m, such as -0.3 or -0.3,0.02")),
     };
     Ok(Place { x: coordinate(x)?, y: coordinate(y)? })
+}
+
+/// Reads a number of modes.
+pub fn count(text: &str) -> Result<usize, String> {
+    text.trim().parse().map_err(|_| "a number of modes must be a whole number, not below zero".into())
 }
 
 /// Reads a frequency in Hz: finite, not negative.

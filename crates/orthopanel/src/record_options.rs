@@ -11,10 +11,10 @@ pub struct EstimationOptions {
     #[arg(long, value_enum, default_value_t = WindowWord::None)]
     window: WindowWord,
     /// Time constant of the exponential; a third of the record's length leaves 5 % at its end
-    #[arg(long, value_name = "SECONDS", value_parser = seconds, required_if_eq("window", "force-exponential"))]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds, allow_negative_numbers = true, required_if_eq("window", "force-exponential"))]
     tau: Option<f64>,
     /// Half the width of the force window; must hold the whole blow
-    #[arg(long, value_name = "SECONDS", value_parser = seconds, default_value = "0.004")]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds, allow_negative_numbers = true, default_value = "0.004")]
     force_half_width: f64,
     /// Average over the hits
     #[arg(long, value_enum, default_value_t = EstimatorWord::H1)]

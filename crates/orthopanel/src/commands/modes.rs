@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use orthopanel_model::{BeamMode, ModeRange};
 use serde::Serialize;
 
+use crate::arguments::count;
 use crate::error::{CommandError, InFile as _};
 use crate::{model_file, output, tables};
 
@@ -17,7 +18,7 @@ pub struct Arguments {
     /// Model file (orthopanel.model/1, JSON)
     model: PathBuf,
     /// Number of flexible modes
-    #[arg(long, value_name = "N", default_value_t = 10)]
+    #[arg(long, value_name = "N", value_parser = count, allow_negative_numbers = true, default_value_t = 10)]
     count: usize,
     /// Print one JSON object (orthopanel.modes/1) on standard output
     #[arg(long)]

@@ -5,7 +5,7 @@ use std::path::Path;
 use orthopanel_model::{ModeRange, Place};
 use serde::Serialize;
 
-use crate::arguments::{DENSE_MODES, frequency, on_piece, place};
+use crate::arguments::{DENSE_MODES, count, frequency, on_piece, place};
 use crate::error::{CommandError, InFile as _};
 use crate::{model_file, output};
 
@@ -26,10 +26,10 @@ pub struct Grid {
     #[arg(long, value_name = "HZ", value_parser = frequency, allow_hyphen_values = true)]
     to: Option<f64>,
     /// Number of lines
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000_000), allow_negative_numbers = true)]
     lines: Option<u32>,
     /// Number of flexible modes in the sum [default: 1000]
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = count, allow_negative_numbers = true)]
     modes: Option<usize>,
 }
 
