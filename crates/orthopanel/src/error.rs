@@ -49,6 +49,8 @@ pub enum CommandError {
     ForceFile { path: PathBuf, line: Option<u64>, problem: String },
     #[error("{}: not an FMU that orthopanel wrote: {problem}", .path.display())]
     ForeignFmu { path: PathBuf, problem: String },
+    #[error("{}: an FMU, where a model file (JSON) is wanted: name the one that the FMU was made from", .path.display())]
+    FmuForModel { path: PathBuf },
     #[error(
         "{}: modes and places are fixed inside an FMU: leave out --modes, --up-to, --force and --response, or give them \
          to `orthopanel export`", .path.display()

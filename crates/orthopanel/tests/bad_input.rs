@@ -146,8 +146,17 @@ fn an_fmu_that_is_none_of_ours() {
     let bench = Bench::new();
     std::fs::write(bench.path("broken.fmu"), b"PK\x03\x04 and then nothing of a zip archive")
         .expect("a file is written");
-    refused(&bench, "simulate broken.fmu --force-file force.csv -o out.csv", 2, &["broken.fmu"]);
+    refused(&bench, "simulate broken.fmu --force-file force.csv -o out.csv", 2, &["broken.fmu", "zip archive"]);
+    std::fs::write(bench.path("junk.fmu"), "no archive at all").expect("a file is written");
+    refused(&bench, "simulate junk.fmu --force-file force.csv", 2, &["junk.fmu", "not an FMU", "no zip archive"]);
+    // The smallest zip archive: one empty file named "a", its directory, and the end record.
+    let local = b"PK\x03\x04\x0a\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\x01\0\0\0a";
+    let directory = [&b"PK\x01\x02\x0a\0\x0a\0"[..], &[0; 20], b"\x01\0", &[0; 16], b"a"].concat();
+    let end = b"PK\x05\x06\0\0\0\0\x01\0\x01\0\x2f\0\0\0\x1f\0\0\0\0\0";
+    std::fs::write(bench.path("empty.fmu"), [&local[..], &directory, end].concat()).expect("a file is written");
+    refused(&bench, "simulate empty.fmu --force-file force.csv", 2, &["empty.fmu", "no modelDescription.xml"]);
     bench.done("export model.json -o panel.fmu");
+    refused(&bench, "modes panel.fmu", 2, &["panel.fmu: an FMU", "model file"]);
     refused(&bench, "simulate panel.fmu --force-file force.csv --modes 3", 2, &["panel.fmu", "orthopanel export"]);
 }
 
@@ -157,6 +166,26 @@ fn what_this_version_cannot_solve_is_no_bad_input() {
     let plate = changed(MODEL, "timoshenko-beam", "mindlin-plate");
     std::fs::write(bench.path("model.json"), plate).expect("a file is written");
     refused(&bench, "modes model.json", 1, &["model.json", "mindlin-plate", "not supported"]);
+}
+
+#[test]
+fn a_number_below_zero_is_told_what_is_allowed() {
+    let bench = Bench::new();
+    let grid = "accelerance model.json --force 0 --response 0 --from 1 --to 2";
+    for (line, said) in [
+        ("modes model.json --count -1", "whole number, not below zero"),
+        ("modes model.json --count 2.5", "whole number, not below zero"),
+        ("export model.json -o x.fmu --modes -3", "whole number, not below zero"),
+        ("export model.json -o x.fmu --up-to -3", "finite number, not below zero"),
+        (&format!("{grid} --lines 3 --modes -3"), "whole number, not below zero"),
+        (&format!("{grid} --lines -3"), "not in 1..=10000000"),
+        ("identify test.toml --window force-exponential --tau -1", "finite number above zero"),
+    ] {
+        let output = bench.run(line);
+        let message = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{line}");
+        assert!(message.contains(said) && !message.contains("use '--"), "{line}: {message}");
+    }
 }
 
 #[test]

@@ -6,7 +6,6 @@ mod fmi3;
 use std::path::Path;
 
 use fmi_rs::model_description::{FMIMajorVersion, peek_fmi_major_version};
-use fmi_rs::sim::SimulationError;
 
 use crate::error::CommandError;
 use crate::force_file::ForceHistory;
@@ -50,13 +49,19 @@ impl References {
     }
 }
 
-/// True where the file is a zip archive, as every FMU is.
-pub fn is_archive(path: &Path) -> Result<bool, CommandError> {
+/// Whether the file is an FMU: by its content a zip archive, as every FMU is.
+///
+/// A file of that name alone is refused, since nobody who writes `x.fmu` means a model file.
+pub fn is_fmu(path: &Path) -> Result<bool, CommandError> {
     use std::io::Read as _;
     let unreadable = |source| CommandError::Unreadable { path: path.into(), source };
     let mut start = Vec::new();
     std::fs::File::open(path).map_err(unreadable)?.take(4).read_to_end(&mut start).map_err(unreadable)?;
-    Ok(start == b"PK\x03\x04")
+    let archive = start == b"PK\x03\x04";
+    if !archive && path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("fmu")) {
+        return Err(foreign(path, "it is no zip archive".into()));
+    }
+    Ok(archive)
 }
 
 /// Runs the FMU at `path`; `force` is read once the FMU has told how many force places it has.
@@ -66,7 +71,7 @@ pub fn simulate(
     hold: Hold,
 ) -> Result<(ForceHistory, Vec<Motion>), CommandError> {
     let import = |source| CommandError::Import { path: path.into(), source };
-    match version(path).map_err(import)? {
+    match version(path)? {
         FMIMajorVersion::V2 => {
             let fmu = fmi_rs::fmi2::builder::FMU2Builder::new(&path).map_err(import)?;
             let references = fmi2::references(&fmu.model_description);
@@ -91,10 +96,15 @@ pub fn simulate(
     }
 }
 
-fn version(path: &Path) -> Result<FMIMajorVersion, SimulationError> {
-    let folder = tempfile::tempdir().map_err(SimulationError::io(path))?;
-    fmi_rs::zip::extract_zip_archive(path, &folder)?;
-    Ok(peek_fmi_major_version(&folder.path().join("modelDescription.xml"))?)
+fn version(path: &Path) -> Result<FMIMajorVersion, CommandError> {
+    let folder = tempfile::tempdir().map_err(|source| CommandError::Unreadable { path: path.into(), source })?;
+    fmi_rs::zip::extract_zip_archive(path, &folder)
+        .map_err(|error| foreign(path, format!("its zip archive cannot be unpacked ({error})")))?;
+    let description = folder.path().join("modelDescription.xml");
+    if !description.is_file() {
+        return Err(foreign(path, "its zip archive has no modelDescription.xml".into()));
+    }
+    peek_fmi_major_version(&description).map_err(|error| foreign(path, format!("its modelDescription.xml: {error}")))
 }
 
 fn foreign(path: &Path, problem: String) -> CommandError {

@@ -79,7 +79,7 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
         return on_records::execute(arguments);
     }
     let (force, motions) =
-        if importer::is_archive(&arguments.model)? { run_fmu(arguments)? } else { run_model(arguments)? };
+        if importer::is_fmu(&arguments.model)? { run_fmu(arguments)? } else { run_model(arguments)? };
     for (port, motion) in motions.iter().enumerate() {
         eprintln!("response {}: peak acceleration {:.4e} m/s2", port + 1, motion.peak_acceleration());
     }

@@ -35,7 +35,7 @@ struct Answer {
 
 pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
     let path = &arguments.model;
-    if importer::is_archive(path)? {
+    if importer::is_fmu(path)? {
         let problem = "measured hits are held against a model file, not an FMU: give MODEL.json, or a force file of \
                        time_s,force_n"
             .into();
