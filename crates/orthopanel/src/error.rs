@@ -41,6 +41,11 @@ pub enum CommandError {
          records", .path.display()
     )]
     GridOfRecords { path: PathBuf, option: &'static str },
+    #[error(
+        "{}: --{option} belongs to hammer records, and this is a model: leave it out, or name a test file (.toml)",
+        .path.display()
+    )]
+    EstimationOfModel { path: PathBuf, option: &'static str },
     #[error("{}: {problem}", .path.display())]
     Records { path: PathBuf, problem: String },
     #[error("--{option} {value}: {remedy}")]

@@ -50,6 +50,16 @@ impl Files {
     }
 }
 
+/// `folder/stem.extension` as `folder/stem{suffix}.extension`.
+pub fn with_suffix(path: &Path, suffix: &str) -> PathBuf {
+    if suffix.is_empty() {
+        return path.to_path_buf();
+    }
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+    let extension = path.extension().map_or(String::new(), |extension| format!(".{}", extension.to_string_lossy()));
+    path.with_file_name(format!("{stem}{suffix}{extension}"))
+}
+
 /// Writes one file, or leaves nothing behind.
 pub fn write(path: &Path, content: impl Into<Vec<u8>>) -> Result<(), CommandError> {
     let mut files = Files::default();

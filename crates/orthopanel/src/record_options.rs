@@ -1,24 +1,30 @@
 //! How records become accelerances, and accelerances constants: the options that several commands share.
 
 use clap::{Args, ValueEnum};
-use orthopanel_data::{Estimation, Estimator, Window};
+use orthopanel_data::{Estimation, Estimator, ImpactTest, MeasurementData, Window};
 use orthopanel_identify::{DampingLaw, Search, Settings};
+
+use crate::error::CommandError;
+use crate::notes;
+
+/// Half the width of the force window unless said \[s\]: ten times a usual blow.
+const FORCE_HALF_WIDTH: f64 = 0.004;
 
 #[derive(Args)]
 #[command(next_help_heading = "Records to accelerance")]
 pub struct EstimationOptions {
-    /// Window over each hit
-    #[arg(long, value_enum, default_value_t = WindowWord::None)]
-    window: WindowWord,
+    /// Window over each hit [default: none]
+    #[arg(long, value_enum)]
+    window: Option<WindowWord>,
     /// Time constant of the exponential; a third of the record's length leaves 5 % at its end
     #[arg(long, value_name = "SECONDS", value_parser = seconds, allow_negative_numbers = true, required_if_eq("window", "force-exponential"))]
     tau: Option<f64>,
-    /// Half the width of the force window; must hold the whole blow
-    #[arg(long, value_name = "SECONDS", value_parser = seconds, allow_negative_numbers = true, default_value = "0.004")]
-    force_half_width: f64,
-    /// Average over the hits
-    #[arg(long, value_enum, default_value_t = EstimatorWord::H1)]
-    estimator: EstimatorWord,
+    /// Half the width of the force window; must hold the whole blow [default: 0.004]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds, allow_negative_numbers = true)]
+    force_half_width: Option<f64>,
+    /// Average over the hits [default: h1]
+    #[arg(long, value_enum)]
+    estimator: Option<EstimatorWord>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -43,21 +49,49 @@ enum EstimatorWord {
 }
 
 impl EstimationOptions {
-    pub fn estimation(&self) -> Estimation {
+    /// # Errors
+    /// [`CommandError::Option`] for the size of a window that is not asked for.
+    pub fn estimation(&self) -> Result<Estimation, CommandError> {
         let window = match (self.window, self.tau) {
-            (WindowWord::Hann, _) => Window::Hann,
-            (WindowWord::ForceExponential, Some(tau)) => {
-                Window::ForceExponential { half_width: self.force_half_width, tau }
+            (Some(WindowWord::ForceExponential), Some(tau)) => {
+                Window::ForceExponential { half_width: self.force_half_width.unwrap_or(FORCE_HALF_WIDTH), tau }
             }
-            // clap has refused the exponential without its time constant.
-            (WindowWord::None | WindowWord::ForceExponential, _) => Window::None,
+            (window, tau) => {
+                for (option, value) in [("tau", tau), ("force-half-width", self.force_half_width)] {
+                    if let Some(value) = value {
+                        let remedy = "it has no effect without --window force-exponential: give both or neither".into();
+                        return Err(CommandError::Option { option, value: value.to_string(), remedy });
+                    }
+                }
+                if window == Some(WindowWord::Hann) { Window::Hann } else { Window::None }
+            }
         };
         let estimator = match self.estimator {
-            EstimatorWord::H1 => Estimator::H1,
-            EstimatorWord::H2 => Estimator::H2,
-            EstimatorWord::Hv => Estimator::Hv,
+            None | Some(EstimatorWord::H1) => Estimator::H1,
+            Some(EstimatorWord::H2) => Estimator::H2,
+            Some(EstimatorWord::Hv) => Estimator::Hv,
         };
-        Estimation { window, estimator, ..Estimation::default() }
+        Ok(Estimation { window, estimator, ..Estimation::default() })
+    }
+
+    /// The first option that was given.
+    pub fn given(&self) -> Option<&'static str> {
+        let Self { window, tau, force_half_width, estimator } = self;
+        let given = [
+            (window.is_some(), "window"),
+            (tau.is_some(), "tau"),
+            (force_half_width.is_some(), "force-half-width"),
+            (estimator.is_some(), "estimator"),
+        ];
+        given.into_iter().find_map(|(given, name)| given.then_some(name))
+    }
+
+    /// Says on standard error where an option was given and the test has nothing for it to act on.
+    pub fn say_if_idle(&self, test: &ImpactTest) {
+        let has_hits = test.measurements.iter().any(|of| matches!(of.data, MeasurementData::TimeHistory(_)));
+        if let (Some(option), false) = (self.given(), has_hits) {
+            notes::say("", &[format!("--{option} has no effect: no measurement of this test is a time-history")]);
+        }
     }
 }
 
@@ -91,8 +125,10 @@ enum DampingWord {
 }
 
 impl IdentifyOptions {
-    pub fn settings(&self) -> Settings {
-        Settings {
+    /// # Errors
+    /// As [`EstimationOptions::estimation`].
+    pub fn settings(&self) -> Result<Settings, CommandError> {
+        Ok(Settings {
             search: match self.search {
                 SearchWord::LeastSquares => Search::LeastSquares,
                 SearchWord::Simplex => Search::Simplex,
@@ -101,8 +137,13 @@ impl IdentifyOptions {
                 DampingWord::Viscous => DampingLaw::Viscous,
                 DampingWord::Hysteretic => DampingLaw::Hysteretic,
             },
-            estimation: self.records.estimation(),
-        }
+            estimation: self.records.estimation()?,
+        })
+    }
+
+    /// As [`EstimationOptions::say_if_idle`].
+    pub fn say_if_idle(&self, test: &ImpactTest) {
+        self.records.say_if_idle(test);
     }
 }
 

@@ -189,6 +189,20 @@ fn a_number_below_zero_is_told_what_is_allowed() {
 }
 
 #[test]
+fn an_option_that_would_be_ignored_is_refused() {
+    let bench = Bench::new();
+    refused(&bench, "identify test.toml --tau 0.1", 2, &["--tau 0.1", "no effect", "--window force-exponential"]);
+    refused(&bench, "run test.toml --window hann --force-half-width 0.1 -o out", 2, &["--force-half-width", "both"]);
+    let grid = "accelerance model.json --force 0 --response 0 --from 1 --to 2 --lines 3";
+    refused(&bench, &format!("{grid} --window hann"), 2, &["--window", "hammer records", "a test file"]);
+    refused(&bench, &format!("{grid} --estimator h2"), 2, &["--estimator", "hammer records"]);
+    // Here it would be right in another test, so it is said and no more.
+    let output = bench.run("identify test.toml --window hann");
+    let message = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success() && message.contains("--window has no effect"), "{message}");
+}
+
+#[test]
 fn bad_usage_leaves_with_two() {
     let bench = Bench::new();
     for line in [

@@ -103,3 +103,24 @@ fn val_bad_hits_are_left_out_and_said() {
     assert!(rows.iter().all(|row| (0.0..=1.0).contains(&row[3]) && row[4] >= 0.0));
     assert_truth(&bench.json("identify bad/test.toml"), &truth, 3, 3.0);
 }
+
+/// Several pairs of places from one test: numbered files beside a name that ends in .csv, else a folder.
+#[test]
+fn accelerances_of_several_pairs_are_numbered() {
+    let bench = Bench::new();
+    let text = std::fs::read_to_string(bench.path("examples/made-hits/test.toml")).expect("a test");
+    let (before, measurement) = text.split_once("[[measurement]]").expect("a measurement");
+    let other = measurement.replace("force_at = [-0.3", "force_at = [-0.2");
+    assert_ne!(other, measurement);
+    let both = format!("{before}[[measurement]]{measurement}\n[[measurement]]{other}");
+    std::fs::write(bench.path("examples/made-hits/two.toml"), both).expect("a file is written");
+    let answer = bench.json("accelerance examples/made-hits/two.toml -o h.csv");
+    for (index, name) in ["h-1.csv", "h-2.csv"].into_iter().enumerate() {
+        assert_eq!(answer["accelerances"][index]["file"], name);
+        assert!(bench.rows(name).len() > 100);
+    }
+    assert!(!bench.path("h.csv").exists());
+    let answer = bench.json("accelerance examples/made-hits/two.toml -o folder");
+    assert_eq!(answer["accelerances"][1]["file"], "folder/accelerance-2.csv");
+    assert!(bench.path("folder/accelerance-1.csv").exists());
+}

@@ -1,8 +1,6 @@
 //! `identify`: elastic constants from a test.
 
-use std::path::{Path, PathBuf};
-
-use orthopanel_identify::PieceFit;
+use std::path::PathBuf;
 
 use crate::error::CommandError;
 use crate::identified::Identified;
@@ -39,11 +37,11 @@ pub struct Arguments {
 }
 
 pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
-    let identified = Identified::from_test(&arguments.test, arguments.options.settings())?;
+    let identified = Identified::from_test(&arguments.test, &arguments.options)?;
     if let Some(path) = &arguments.output {
         let mut files = output::Files::default();
         for (fit, model) in identified.found.pieces.iter().zip(&identified.models) {
-            files.add(model_path(path, &identified, fit), model.to_json());
+            files.add(output::with_suffix(path, &identified.suffix(fit)), model.to_json());
         }
         for path in files.write()? {
             eprintln!("wrote {}", path.display());
@@ -55,14 +53,4 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
         output::print(&identified.tables());
     }
     Ok(())
-}
-
-fn model_path(path: &Path, identified: &Identified, fit: &PieceFit) -> PathBuf {
-    let suffix = identified.suffix(fit);
-    if suffix.is_empty() {
-        return path.to_path_buf();
-    }
-    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
-    let extension = path.extension().map_or(String::new(), |extension| format!(".{}", extension.to_string_lossy()));
-    path.with_file_name(format!("{stem}{suffix}{extension}"))
 }

@@ -58,7 +58,7 @@ struct HitsAnswer<'a> {
 }
 
 pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
-    let identified = Identified::from_test(&arguments.test, arguments.options.settings())?;
+    let identified = Identified::from_test(&arguments.test, &arguments.options)?;
     let mut files = output::Files::default();
     files.add("identified.json", output::json(&identified.answer));
     for (index, model) in identified.models.iter().enumerate() {
@@ -123,7 +123,7 @@ fn add_records(
     identified: &Identified,
 ) -> Result<Vec<HitMisfit>, CommandError> {
     let Identified { test, found, models, .. } = identified;
-    let decay_rate = arguments.options.settings().estimation.window.decay_rate();
+    let decay_rate = arguments.options.settings()?.estimation.window.decay_rate();
     for (index, fit) in found.pieces.iter().enumerate() {
         let own: Vec<_> = found.accelerances.iter().filter(|pair| pair.piece == index).collect();
         for (number, pair) in own.iter().enumerate() {

@@ -7,10 +7,11 @@ mod report;
 use std::path::Path;
 
 use orthopanel_data::ImpactTest;
-use orthopanel_identify::{Identification, PieceFit, Settings, identify};
+use orthopanel_identify::{Identification, PieceFit, identify};
 use orthopanel_model::PanelModel;
 
 use crate::error::CommandError;
+use crate::record_options::IdentifyOptions;
 use crate::{notes, progress};
 pub use answer::Answer;
 use models::{ASSUMED_DAMPING, model};
@@ -27,8 +28,10 @@ pub struct Identified {
 
 impl Identified {
     /// Reads the test at `path` and identifies its panel; says on standard error what was noted and had to be assumed.
-    pub fn from_test(path: &Path, settings: Settings) -> Result<Self, CommandError> {
+    pub fn from_test(path: &Path, options: &IdentifyOptions) -> Result<Self, CommandError> {
+        let settings = options.settings()?;
         let test = ImpactTest::read(path)?;
+        options.say_if_idle(&test);
         let found = {
             let _shown = progress::spinner("reading the records and identifying");
             identify(&test, settings).map_err(|source| CommandError::Identify { path: path.into(), source })?

@@ -14,12 +14,12 @@ use crate::record_options::EstimationOptions;
 /// The convention is e^(+j omega t), the unit (m/s2)/N.
 ///
 /// Of a model: between two places, on evenly spaced lines, both ends included. Without -o the CSV
-/// (frequency_hz,real,imag) goes to standard output. The sum runs over the rigid modes and --modes flexible ones:
-/// those far above the band still move the valleys between the peaks.
+/// (frequency_hz,real,imag) goes to standard output. The sum runs over the rigid modes and --modes flexible ones; all
+/// that lie beyond, which still move the valleys between the peaks, enter a beam's by their static flexibility.
 ///
 /// Of a test (a file that ends in .toml): one CSV a pair of places, with the coherence and the variance of each line
-/// where the hits tell them. -o names the file of a single pair, or a folder for accelerance-1.csv, accelerance-2.csv,
-/// ... in the order of the test. The table says which hits were kept and which left out, and why.
+/// where the hits tell them. With several pairs -o X.csv writes X-1.csv, X-2.csv, ... in the order of the table; -o of
+/// any other name is a folder for accelerance-1.csv, accelerance-2.csv, ... The table says which hits were kept and which left out, and why.
 ///
 /// Examples: orthopanel accelerance out/model.json --force -0.3 --response 0.3 --from 0 --to 4500 --lines 1801 -o h.csv
 ///           orthopanel accelerance examples/made-hits/test.toml -o measured.csv
@@ -33,7 +33,7 @@ pub struct Arguments {
     grid: of_model::Grid,
     #[command(flatten)]
     estimation: EstimationOptions,
-    /// CSV file to write; a folder where a test has several pairs of places
+    /// CSV file to write; with several pairs of places X-1.csv, X-2.csv, ..., or a folder for them
     #[arg(short, long, value_name = "X.csv|DIR")]
     output: Option<PathBuf>,
     /// Print one JSON object (orthopanel.accelerance/1; of a test orthopanel.accelerances/1) on standard output
@@ -43,11 +43,11 @@ pub struct Arguments {
 
 pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
     let Arguments { source, grid, estimation, output, json } = arguments;
-    if !is_test_file(source) {
-        return of_model::execute(source, grid, output.as_deref(), *json);
-    }
-    match grid.given() {
-        Some(option) => Err(CommandError::GridOfRecords { path: source.clone(), option }),
-        None => of_test::execute(source, estimation.estimation(), output.as_deref(), *json),
+    let path = || source.clone();
+    match (is_test_file(source), grid.given(), estimation.given()) {
+        (true, Some(option), _) => Err(CommandError::GridOfRecords { path: path(), option }),
+        (true, None, _) => of_test::execute(source, estimation, output.as_deref(), *json),
+        (false, _, Some(option)) => Err(CommandError::EstimationOfModel { path: path(), option }),
+        (false, _, None) => of_model::execute(source, grid, output.as_deref(), *json),
     }
 }

@@ -8,6 +8,7 @@ use serde::Serialize;
 
 use crate::error::CommandError;
 use crate::measured_pairs::{HitVerdict, place_text, verdicts};
+use crate::record_options::EstimationOptions;
 use crate::{notes, output, progress, tables};
 
 #[derive(Serialize)]
@@ -33,8 +34,15 @@ struct Entry {
     notes: Vec<String>,
 }
 
-pub fn execute(path: &Path, estimation: Estimation, output: Option<&Path>, json: bool) -> Result<(), CommandError> {
+pub fn execute(
+    path: &Path,
+    options: &EstimationOptions,
+    output: Option<&Path>,
+    json: bool,
+) -> Result<(), CommandError> {
+    let estimation = options.estimation()?;
     let test = ImpactTest::read(path)?;
+    options.say_if_idle(&test);
     let mut measured = {
         let _shown = progress::spinner("reading the records");
         estimated(&test, estimation)?
@@ -43,14 +51,25 @@ pub fn execute(path: &Path, estimation: Estimation, output: Option<&Path>, json:
         let problem = "no records in this test: add a [[measurement]] of kind time-history or accelerance".into();
         return Err(CommandError::Records { path: path.into(), problem });
     }
-    let into_folder = output.filter(|path| measured.len() > 1 || path.is_dir());
+    let several = measured.len() > 1;
+    let is_csv = |path: &Path| path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("csv"));
+    let into_folder = output.filter(|path| path.is_dir() || (several && !is_csv(path)));
     let mut files = output::Files::default();
     for (index, (entry, accelerance)) in measured.iter_mut().enumerate() {
-        let name = PathBuf::from(format!("accelerance-{}.csv", index + 1));
-        if let Some(output) = output {
-            entry.file = Some(into_folder.map_or(output.to_path_buf(), |folder| folder.join(&name)));
-            files.add(if into_folder.is_some() { name } else { output.to_path_buf() }, csv(accelerance));
-        }
+        let Some(output) = output else { break };
+        let number = format!("-{}", index + 1);
+        let (named, seen) = match into_folder {
+            Some(folder) => {
+                let name = PathBuf::from(format!("accelerance{number}.csv"));
+                (name.clone(), folder.join(name))
+            }
+            None => {
+                let name = output::with_suffix(output, if several { &number } else { "" });
+                (name.clone(), name)
+            }
+        };
+        entry.file = Some(seen);
+        files.add(named, csv(accelerance));
     }
     let written = match into_folder {
         Some(folder) => files.write_into(folder)?,
