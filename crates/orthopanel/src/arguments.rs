@@ -34,9 +34,6 @@ pub enum Command {
 /// Twenty reach past 16 kHz on the paper's thin pieces, four times the band of their hammer.
 pub const USUAL_MODES: ModeRange = ModeRange::Count(20);
 
-/// Flexible modes in an accelerance unless said: the valleys near a driving point gather the tails of very high modes.
-pub const DENSE_MODES: ModeRange = ModeRange::Count(1000);
-
 #[derive(Args)]
 pub struct ModeArguments {
     /// Number of flexible modes beside the rigid ones [default: 20]

@@ -15,6 +15,7 @@ mod progress;
 mod record_options;
 mod tables;
 mod time_response;
+mod whole_accelerance;
 
 use std::process::ExitCode;
 

@@ -7,9 +7,10 @@ use orthopanel_data::TimeHistory;
 use orthopanel_identify::{
     ForceBetweenSamples, HistorySettings, HitComparison, IdentifyError, Misfit, compare_time_history,
 };
-use orthopanel_model::{ModeRange, PanelModel, Place, StaticFlexibility};
+use orthopanel_model::{ModeRange, PanelModel, Place};
 use serde::Serialize;
 
+use crate::whole_accelerance::static_flexibility;
 use crate::{output, tables};
 
 /// Whether a file is a test file, by its name: a test is TOML, a model JSON, an FMU an archive.
@@ -63,9 +64,8 @@ impl ComparedPair {
     ) -> Result<Self, IdentifyError> {
         let (force, response) = (history.force_at, history.response_at);
         let seen = model.modal_model(ModeRange::UpTo(history.rate), &[force], &[response])?;
-        let all = StaticFlexibility::new(&model.piece, model.boundary)?;
-        let (flexibility, _) = all.between(force.x, response.x, model.constant("e_x")?, model.constant("g_zx")?);
-        let settings = HistorySettings { between_samples, static_flexibility: Some(flexibility), band };
+        let static_flexibility = static_flexibility(model, force, response)?;
+        let settings = HistorySettings { between_samples, static_flexibility, band };
         let hits = compare_time_history(&seen, &history, &settings)?;
         Ok(Self { history, hits })
     }

@@ -7,13 +7,14 @@ use orthopanel_identify::ForceBetweenSamples;
 use orthopanel_model::PanelModel;
 use serde::Serialize;
 
-use crate::arguments::{DENSE_MODES, USUAL_MODES};
+use crate::arguments::USUAL_MODES;
 use crate::error::{CommandError, InFile as _};
 use crate::force_file::ForceHistory;
 use crate::identified::{Answer, Identified};
 use crate::measured_pairs::{ComparedPair, HitMisfit, misfit_table};
 use crate::record_options::IdentifyOptions;
 use crate::time_response::Hold;
+use crate::whole_accelerance::WholeAccelerance;
 use crate::{output, pictures, progress, time_response};
 
 /// Do all of it: identify the panel of a test, export its FMUs, simulate a hit, draw the result
@@ -111,8 +112,11 @@ fn add_piece(
     if identified.found.accelerances.iter().any(|pair| pair.piece == index) {
         return Ok(());
     }
-    let dense = model.modal_model(DENSE_MODES, &ports.forces, &ports.responses).in_file(&arguments.test)?;
-    files.add(format!("accelerance{suffix}.svg"), pictures::accelerance(fit, ports, &dense)?);
+    if let (Some(&force), Some(&response)) = (ports.forces.first(), ports.responses.first()) {
+        let highest = fit.modes.iter().map(|mode| mode.measured).fold(0.0, f64::max);
+        let seen = WholeAccelerance::up_to(model, highest, force, response).in_file(&arguments.test)?;
+        files.add(format!("accelerance{suffix}.svg"), pictures::accelerance(fit, [force, response], &seen)?);
+    }
     Ok(())
 }
 

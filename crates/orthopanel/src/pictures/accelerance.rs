@@ -1,33 +1,32 @@
 //! Accelerance of the identified model between its first ports, over the measured natural frequencies.
 
 use orthopanel_identify::PieceFit;
-use orthopanel_model::{ModalModel, Place, Ports};
+use orthopanel_model::Place;
 use plotters::prelude::*;
 
 use super::{FONT, GRID, MEASURED, MODEL, stacked};
 use crate::error::CommandError;
+use crate::measured_pairs::place_text;
+use crate::whole_accelerance::WholeAccelerance;
 
 /// Lines drawn, and drawn again around each peak, which at zeta = 0.001 is a hundredth of that spacing wide.
 const LINES: u32 = 1500;
 
-/// `seen` is the model from `ports`, with modes enough for the valleys too.
-pub fn accelerance(fit: &PieceFit, ports: &Ports, seen: &ModalModel) -> Result<String, CommandError> {
-    let tau = std::f64::consts::TAU;
-    let flexible = || seen.modes().iter().map(|mode| mode.angular_frequency / tau).filter(|&frequency| frequency > 0.0);
+/// `seen` is the model's, from the first of `places` to the second.
+pub fn accelerance(fit: &PieceFit, places: [Place; 2], seen: &WholeAccelerance) -> Result<String, CommandError> {
     let highest = fit.modes.iter().map(|mode| mode.measured).fold(0.0, f64::max);
-    let highest = 1.12 * if highest > 0.0 { highest } else { flexible().nth(5).unwrap_or(1.0) };
+    let highest = 1.12 * if highest > 0.0 { highest } else { seen.natural_frequencies().nth(5).unwrap_or(1.0) };
     let mut lines: Vec<f64> = (1..=LINES).map(|line| highest * f64::from(line) / f64::from(LINES)).collect();
-    for peak in flexible().take_while(|&peak| peak < highest) {
+    for peak in seen.natural_frequencies().take_while(|&peak| peak < highest) {
         lines.extend((-20..=20).map(|line| peak * (1.0 + 5e-4 * f64::from(line))).filter(|&line| line <= highest));
     }
     lines.sort_by(f64::total_cmp);
-    let values: Vec<_> = lines.iter().map(|&line| (line, seen.accelerance(0, 0, line))).collect();
-    let sizes = || values.iter().map(|(_, value)| value.norm()).filter(|size| *size > 0.0);
+    let values: Vec<_> = lines.iter().map(|&line| (line, seen.at(line))).collect();
+    let sizes = || values.iter().map(|(_, (re, im))| re.hypot(*im)).filter(|size| *size > 0.0);
     let (low, high) = (sizes().fold(f64::INFINITY, f64::min), sizes().fold(0.0, f64::max));
     let (low, high) = if low <= high { (0.5 * low, 2.0 * high) } else { (0.1, 10.0) };
-    let (from, to) = (ports.forces.first(), ports.responses.first());
-    let at = |place: Option<&Place>| place.map_or(String::new(), |place| format!("({}, {}) m", place.x, place.y));
-    let title = format!("Piece {}: accelerance, force at {}, response at {}", fit.name, at(from), at(to));
+    let [from, to] = places.map(place_text);
+    let title = format!("Piece {}: accelerance, force at {from} m, response at {to} m", fit.name);
     stacked("accelerance", &title, [360, 240], |[upper, lower]| {
         let mut chart = ChartBuilder::on(upper)
             .margin(12)
@@ -51,7 +50,7 @@ pub fn accelerance(fit: &PieceFit, ports: &Ports, seen: &ModalModel) -> Result<S
                     .legend(|(x, y)| PathElement::new([(x, y), (x + 16, y)], MEASURED));
             }
         }
-        let magnitude = values.iter().map(|(line, value)| (*line, value.norm().max(low)));
+        let magnitude = values.iter().map(|(line, (re, im))| (*line, re.hypot(*im).max(low)));
         chart
             .draw_series(LineSeries::new(magnitude, MODEL.stroke_width(2)))?
             .label("model")
@@ -79,7 +78,7 @@ pub fn accelerance(fit: &PieceFit, ports: &Ports, seen: &ModalModel) -> Result<S
             .y_desc("phase [degrees]")
             .label_style((FONT, 15))
             .draw()?;
-        let phase = values.iter().map(|(line, value)| (*line, value.arg().to_degrees()));
+        let phase = values.iter().map(|(line, (re, im))| (*line, im.atan2(*re).to_degrees()));
         chart.draw_series(LineSeries::new(phase, MODEL.stroke_width(2)))?;
         Ok(())
     })

@@ -5,8 +5,9 @@ use std::path::Path;
 use orthopanel_model::{ModeRange, Place};
 use serde::Serialize;
 
-use crate::arguments::{DENSE_MODES, count, frequency, on_piece, place};
+use crate::arguments::{count, frequency, on_piece, place};
 use crate::error::{CommandError, InFile as _};
+use crate::whole_accelerance::WholeAccelerance;
 use crate::{model_file, output};
 
 /// The pair of places and the lines of a calculated accelerance.
@@ -28,7 +29,7 @@ pub struct Grid {
     /// Number of lines
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000_000), allow_negative_numbers = true)]
     lines: Option<u32>,
-    /// Number of flexible modes in the sum [default: 1000]
+    /// Number of flexible modes in the sum [default: 300, or all up to 20 times --to where that is more]
     #[arg(long, value_name = "N", value_parser = count, allow_negative_numbers = true)]
     modes: Option<usize>,
 }
@@ -78,15 +79,14 @@ pub fn execute(path: &Path, grid: &Grid, output: Option<&Path>, json: bool) -> R
     let model = model_file::read(path)?;
     on_piece(&model, "force", &[force])?;
     on_piece(&model, "response", &[response])?;
-    let range = modes.map_or(DENSE_MODES, ModeRange::Count);
-    let seen = model.modal_model(range, &[force], &[response]).in_file(path)?;
+    let seen = match modes {
+        Some(count) => WholeAccelerance::of(&model, ModeRange::Count(count), force, response),
+        None => WholeAccelerance::up_to(&model, to, force, response),
+    };
+    let seen = seen.in_file(path)?;
     let step = if lines > 1 { (to - from) / f64::from(lines - 1) } else { 0.0 };
     let frequency_hz: Vec<f64> = (0..lines).map(|line| from + f64::from(line) * step).collect();
-    let (real, imag) = frequency_hz
-        .iter()
-        .map(|&frequency| seen.accelerance(0, 0, frequency))
-        .map(|value| (value.re, value.im))
-        .unzip();
+    let (real, imag) = frequency_hz.iter().map(|&frequency| seen.at(frequency)).unzip();
     let answer = Answer { schema: "orthopanel.accelerance/1", force, response, frequency_hz, real, imag };
     let names = ["frequency_hz", "real", "imag"].map(String::from);
     let table = || output::csv(&names, &[&answer.frequency_hz, &answer.real, &answer.imag]);
