@@ -2,6 +2,7 @@
 
 mod arguments;
 mod commands;
+mod driving_force;
 mod error;
 mod force_file;
 mod identified;

@@ -203,6 +203,13 @@ fn an_option_that_would_be_ignored_is_refused() {
 }
 
 #[test]
+fn a_band_limited_force_wants_even_times() {
+    let bench = Bench::new();
+    let line = "simulate model.json --force-file force.csv --hold band-limited";
+    refused(&bench, line, 2, &["force.csv", "sample 2", "even"]);
+}
+
+#[test]
 fn bad_usage_leaves_with_two() {
     let bench = Bench::new();
     for line in [

@@ -21,6 +21,22 @@ pub enum ForceBetweenSamples {
 }
 
 impl ForceBetweenSamples {
+    /// Forces \[N\] at finer instants such that straight lines between them drive a model as this force does, and the
+    /// number of such steps from one sample to the next.
+    ///
+    /// The samples are even in time. Band-limited, the record is taken to repeat, so it should end as it begins; and the
+    /// new values at the samples are not the old ones, since what straight lines lose is made up for.
+    pub fn straight_lines(self, force: &[f64]) -> (Vec<f64>, usize) {
+        if force.is_empty() { (Vec::new(), 1) } else { self.lines(force.to_vec(), &mut Transforms::new()) }
+    }
+
+    fn lines(self, force: Vec<f64>, transforms: &mut Transforms) -> (Vec<f64>, usize) {
+        match self {
+            Self::BandLimited => (transforms.finer(&force, FINER), FINER),
+            Self::Linear => (force, 1),
+        }
+    }
+
     /// Acceleration \[m/s²\] at the model's first response port at the instants of the samples; at rest before.
     pub(super) fn acceleration(
         self,
@@ -29,10 +45,7 @@ impl ForceBetweenSamples {
         rate: f64,
         transforms: &mut Transforms,
     ) -> Result<Vec<f64>, ModelError> {
-        let (force, finer) = match self {
-            Self::BandLimited => (transforms.finer(&force, FINER), FINER),
-            Self::Linear => (force, 1),
-        };
+        let (force, finer) = self.lines(force, transforms);
         let record = ForceRecord::new(1.0 / (rate * finer as f64), vec![force])?;
         let first = model.acceleration_under(&record)?.into_iter().next().unwrap_or_default();
         Ok(first.into_iter().step_by(finer).collect())

@@ -8,6 +8,7 @@ use orthopanel_model::PanelModel;
 use serde::Serialize;
 
 use crate::arguments::USUAL_MODES;
+use crate::driving_force::DrivingForce;
 use crate::error::{CommandError, InFile as _};
 use crate::force_file::ForceHistory;
 use crate::identified::{Answer, Identified};
@@ -101,8 +102,9 @@ fn add_piece(
         let fmu = Fmu::new(seen.clone(), ports.clone(), &options)?;
         files.add(format!("panel{suffix}{ending}.fmu"), fmu.to_bytes()?);
     }
-    let hit = ForceHistory::half_sine(ports.forces.len());
-    let motions = time_response::simulate(&seen, &hit, Hold::Linear).in_file(&arguments.test)?;
+    let hit = DrivingForce::new(ForceHistory::half_sine(ports.forces.len()), Hold::Linear, &arguments.test)?;
+    let motions = time_response::simulate(&seen, &hit).in_file(&arguments.test)?;
+    let hit = hit.samples;
     files.add(format!("response{suffix}.csv"), time_response::csv(&hit, &motions));
     files.add(format!("response{suffix}.svg"), pictures::response(&hit, &motions)?);
     if !fit.modes.is_empty() {

@@ -7,9 +7,9 @@ use std::path::Path;
 
 use fmi_rs::model_description::{FMIMajorVersion, peek_fmi_major_version};
 
+use crate::driving_force::DrivingForce;
 use crate::error::CommandError;
-use crate::force_file::ForceHistory;
-use crate::time_response::{Hold, Motion, steps};
+use crate::time_response::{Motion, steps};
 
 /// One FMU instance, whatever its version. `Err` carries the name of the call that failed.
 trait Instance {
@@ -67,9 +67,8 @@ pub fn is_fmu(path: &Path) -> Result<bool, CommandError> {
 /// Runs the FMU at `path`; `force` is read once the FMU has told how many force places it has.
 pub fn simulate(
     path: &Path,
-    force: impl FnOnce(usize) -> Result<ForceHistory, CommandError>,
-    hold: Hold,
-) -> Result<(ForceHistory, Vec<Motion>), CommandError> {
+    force: impl FnOnce(usize) -> Result<DrivingForce, CommandError>,
+) -> Result<(DrivingForce, Vec<Motion>), CommandError> {
     let import = |source| CommandError::Import { path: path.into(), source };
     match version(path)? {
         FMIMajorVersion::V2 => {
@@ -79,7 +78,7 @@ pub fn simulate(
             let force = force(references.forces.len())?;
             let instance =
                 fmi2::Fmi2 { instance: fmu.instantiate_cs("panel").map_err(import)?, references: &references };
-            let motions = run(&instance, &references, &force, hold).map_err(|call| failed(path, call))?;
+            let motions = run(&instance, &references, &force).map_err(|call| failed(path, call))?;
             Ok((force, motions))
         }
         FMIMajorVersion::V3 => {
@@ -90,7 +89,7 @@ pub fn simulate(
             let force = force(references.forces.len())?;
             let instance =
                 fmi3::Fmi3 { instance: fmu.instantiate_cs("panel").map_err(import)?, references: &references };
-            let motions = run(&instance, &references, &force, hold).map_err(|call| failed(path, call))?;
+            let motions = run(&instance, &references, &force).map_err(|call| failed(path, call))?;
             Ok((force, motions))
         }
     }
@@ -116,31 +115,27 @@ fn failed(path: &Path, call: &str) -> CommandError {
 }
 
 /// The co-simulation itself, at the samples of the force.
-fn run(
-    instance: &dyn Instance,
-    references: &References,
-    force: &ForceHistory,
-    hold: Hold,
-) -> Result<Vec<Motion>, &'static str> {
+fn run(instance: &dyn Instance, references: &References, driving: &DrivingForce) -> Result<Vec<Motion>, &'static str> {
+    let (force, held) = (driving.stepped(), driving.is_held());
     let responses = references.outputs.len() / 3;
     let mut motions = vec![Motion::default(); responses];
-    instance.set_force_linear(hold == Hold::Linear)?;
+    instance.set_force_linear(!held)?;
     instance.initialise(force.time.first().copied().unwrap_or(0.0), &force.at(0))?;
     record(instance, &mut motions)?;
     for (index, (step, from)) in steps(&force.time).into_iter().zip(&force.time).enumerate() {
         let forces = force.at(index + 1);
         // A linear force is set to its value at the step's end before the step, a held one after it.
-        if hold == Hold::Linear {
+        if !held {
             instance.set_forces(&forces)?;
         }
         instance.step(*from, step)?;
-        if hold == Hold::Held {
+        if held {
             instance.set_forces(&forces)?;
         }
         record(instance, &mut motions)?;
     }
     instance.terminate()?;
-    Ok(motions)
+    Ok(driving.at_samples(motions))
 }
 
 fn record(instance: &dyn Instance, motions: &mut [Motion]) -> Result<(), &'static str> {

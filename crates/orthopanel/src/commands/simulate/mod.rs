@@ -7,6 +7,7 @@ use std::path::PathBuf;
 use serde::Serialize;
 
 use crate::arguments::{ModeArguments, PortArguments};
+use crate::driving_force::DrivingForce;
 use crate::error::{CommandError, InFile as _};
 use crate::force_file::ForceHistory;
 use crate::time_response::{Hold, Motion};
@@ -15,8 +16,8 @@ use crate::{importer, model_file, output, time_response};
 /// Calculate the motion of a model, or of an FMU, under a force given against time
 ///
 /// A made-up force is CSV with the columns time_s,force_n (several force places: time_s,force_1_n,force_2_n,...).
-/// The panel is at rest before the first sample. Between samples the force runs linearly, unless --hold held is
-/// given; each mode is then stepped exactly, so the samples may be as far apart as the force allows. An FMU is
+/// The panel is at rest before the first sample. Between samples the force runs linearly, unless --hold says
+/// otherwise; each mode is then stepped exactly, so the samples may be as far apart as the force allows. An FMU is
 /// unpacked and run as a simulator would run it. Without -o the CSV (time_s,force_n,acceleration_m_s2,velocity_m_s,
 /// displacement_m) goes to standard output.
 ///
@@ -51,12 +52,6 @@ pub struct Arguments {
     /// Print one JSON object (orthopanel.simulation/1) on standard output
     #[arg(long)]
     json: bool,
-}
-
-impl Arguments {
-    fn hold(&self) -> Hold {
-        self.hold.unwrap_or(Hold::Linear)
-    }
 }
 
 #[derive(Serialize)]
@@ -99,17 +94,23 @@ fn run_model(arguments: &Arguments) -> Result<(ForceHistory, Vec<Motion>), Comma
     let path = &arguments.model;
     let model = model_file::read(path)?;
     let ports = arguments.ports.needed(&model, path)?;
-    let force = ForceHistory::read(&arguments.force_file, ports.forces.len())?;
+    let force = driving_force(arguments, ports.forces.len())?;
     let seen = model.modal_model(arguments.modes.range(), &ports.forces, &ports.responses).in_file(path)?;
-    let motions = time_response::simulate(&seen, &force, arguments.hold()).in_file(path)?;
-    Ok((force, motions))
+    let motions = time_response::simulate(&seen, &force).in_file(path)?;
+    Ok((force.samples, motions))
 }
 
 fn run_fmu(arguments: &Arguments) -> Result<(ForceHistory, Vec<Motion>), CommandError> {
     if arguments.ports.is_given() || arguments.modes.is_given() {
         return Err(CommandError::FixedInFmu { path: arguments.model.clone() });
     }
-    importer::simulate(&arguments.model, |places| ForceHistory::read(&arguments.force_file, places), arguments.hold())
+    let (force, motions) = importer::simulate(&arguments.model, |places| driving_force(arguments, places))?;
+    Ok((force.samples, motions))
+}
+
+fn driving_force(arguments: &Arguments, places: usize) -> Result<DrivingForce, CommandError> {
+    let path = &arguments.force_file;
+    DrivingForce::new(ForceHistory::read(path, places)?, arguments.hold.unwrap_or(Hold::Linear), path)
 }
 
 fn answer<'a>(force: &'a ForceHistory, motions: &'a [Motion]) -> Answer<'a> {

@@ -46,7 +46,7 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
         return Err(CommandError::Records { path: arguments.force_file.clone(), problem });
     }
     let between_samples = match arguments.hold {
-        None => ForceBetweenSamples::BandLimited,
+        None | Some(Hold::BandLimited) => ForceBetweenSamples::BandLimited,
         Some(Hold::Linear) => ForceBetweenSamples::Linear,
         Some(Hold::Held) => {
             let remedy = "measured hits are not held: leave it out for band-limited, or give linear".into();
