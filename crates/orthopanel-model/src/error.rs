@@ -40,6 +40,31 @@ pub enum ModelError {
         /// What holds it.
         end: End,
     },
+    /// Constants of a plate whose law is not positive definite.
+    #[error(
+        "nu_xy = {nu_xy} with e_x = {e_x:e} Pa and e_y = {e_y:e} Pa has no definite law: nu_xy must lie below \
+         sqrt(e_x / e_y) = {limit:.4}"
+    )]
+    IndefiniteLaw {
+        /// $E_x$.
+        e_x: f64,
+        /// $E_y$.
+        e_y: f64,
+        /// $\nu_{xy}$.
+        nu_xy: f64,
+        /// $\sqrt{E_x/E_y}$.
+        limit: f64,
+    },
+    /// A number of basis functions along one direction that the plate does not take.
+    #[error("{found} terms along one direction of the plate: take {least} to {most}")]
+    TermCount {
+        /// Number asked for.
+        found: usize,
+        /// Fewest.
+        least: usize,
+        /// Most.
+        most: usize,
+    },
     /// A place outside the piece.
     #[error("place ({x}, {y}) m lies off the piece: |x| <= {x_limit} m and |y| <= {y_limit} m, from its centre")]
     OffPiece {

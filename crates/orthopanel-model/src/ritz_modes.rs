@@ -14,13 +14,12 @@ use crate::{Constant, ModelError};
 ///
 /// # Errors
 /// [`ModelError::Constant`] for a value outside its bounds, what [`Structure::coefficients`] refuses,
-/// [`ModelError::BasisTooSmall`] where `count` is more than half of what the basis has,
+/// [`ModelError::BasisTooSmall`] where `count` is more than the basis resolves,
 /// [`ModelError::Eigenproblem`] where the stiffness is not positive.
 pub fn ritz_modes(structure: &dyn Structure, values: &[f64], count: usize) -> Result<Vec<RitzMode>, ModelError> {
-    // The upper half of a Ritz spectrum belongs to the basis, not to the structure.
-    let coordinates: usize = structure.blocks().iter().map(Block::size).sum();
-    if 2 * count > coordinates {
-        return Err(ModelError::BasisTooSmall { asked: count, available: coordinates / 2 });
+    let available = structure.resolved_modes();
+    if count > available {
+        return Err(ModelError::BasisTooSmall { asked: count, available });
     }
     let mut modes = all_ritz_modes(structure, values)?;
     let rigid: usize = structure.blocks().iter().map(|block| block.rigid.len()).sum();

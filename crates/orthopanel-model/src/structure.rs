@@ -33,6 +33,12 @@ pub trait Structure {
 
     /// Deflection $w$ at a place of each coordinate of a block: with coordinates $\phi$, $w = \text{row}\cdot\phi$.
     fn shape_row(&self, block: usize, place: Place) -> Vec<f64>;
+
+    /// Number of flexible modes that the basis resolves. Half of its coordinates unless said: the upper half of a Ritz
+    /// spectrum belongs to the basis, not to the structure.
+    fn resolved_modes(&self) -> usize {
+        self.blocks().iter().map(Block::size).sum::<usize>() / 2
+    }
 }
 
 /// Coordinates that only couple among themselves.

@@ -1,0 +1,123 @@
+//! Stiffness and mass matrices of the plate, block by block: sums of products of integrals along x and along y.
+
+use faer::Mat;
+
+use super::Field;
+use super::edge_basis::EdgeBasis;
+use crate::Piece;
+use crate::structure::{Block, quadratic_form};
+
+/// One product of a function along x and a function along y, of one field.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Coordinate {
+    pub field: Field,
+    /// Number of its function along x.
+    pub x: usize,
+    /// Number of its function along y.
+    pub y: usize,
+}
+
+/// A field with its orders of differentiation along x and y.
+type Term = (Field, usize, usize);
+
+const CURVATURE_X: &[Term] = &[(Field::RotationX, 1, 0)];
+const CURVATURE_Y: &[Term] = &[(Field::RotationY, 0, 1)];
+const TWIST: &[Term] = &[(Field::RotationX, 0, 1), (Field::RotationY, 1, 0)];
+const SHEAR_X: &[Term] = &[(Field::Deflection, 1, 0), (Field::RotationX, 0, 0)];
+const SHEAR_Y: &[Term] = &[(Field::Deflection, 0, 1), (Field::RotationY, 0, 0)];
+
+/// The coordinates of each block, and the blocks. Stiffnesses stand in the order $D_{11}, D_{22}, D_{12}, D_{66},
+/// A_{55}, A_{44}$.
+pub(super) fn assemble(piece: &Piece, along: &[EdgeBasis; 2]) -> (Vec<Vec<Coordinate>>, Vec<Block>) {
+    let [x, y] = along;
+    let mut coordinates = Vec::new();
+    for &odd_y in y.parities() {
+        for &odd_x in x.parities() {
+            coordinates.push(block_coordinates(along, [odd_x, odd_y]));
+        }
+    }
+    let blocks = coordinates.iter().map(|list| block(piece, along, list)).collect();
+    (coordinates, blocks)
+}
+
+/// Each rotation has the parity of the slope of $w$ along its own direction.
+fn block_coordinates([x, y]: &[EdgeBasis; 2], [odd_x, odd_y]: [bool; 2]) -> Vec<Coordinate> {
+    let mut list = Vec::new();
+    for field in Field::ALL {
+        let flips_x = field == Field::RotationX;
+        let flips_y = field == Field::RotationY;
+        for i in x.of_parity(field, odd_x != flips_x) {
+            list.extend(y.of_parity(field, odd_y != flips_y).map(|j| Coordinate { field, x: i, y: j }));
+        }
+    }
+    list
+}
+
+fn block(piece: &Piece, along: &[EdgeBasis; 2], list: &[Coordinate]) -> Block {
+    let form = |f: &[Term], g: &[Term]| product(along, list, f, g);
+    let crossed = form(CURVATURE_X, CURVATURE_Y);
+    let stiffness = vec![
+        form(CURVATURE_X, CURVATURE_X),
+        form(CURVATURE_Y, CURVATURE_Y),
+        &crossed + crossed.transpose(),
+        form(TWIST, TWIST),
+        form(SHEAR_X, SHEAR_X),
+        form(SHEAR_Y, SHEAR_Y),
+    ];
+    let rotary_inertia = piece.mass_per_area * piece.thickness * piece.thickness / 12.0;
+    let mut mass = Mat::zeros(list.len(), list.len());
+    for (field, inertia) in Field::ALL.into_iter().zip([piece.mass_per_area, rotary_inertia, rotary_inertia]) {
+        let own: &[Term] = &[(field, 0, 0)];
+        mass += faer::Scale(inertia) * form(own, own);
+    }
+    let rigid = rigid_modes(along, list, &mass);
+    Block { stiffness, mass, rigid }
+}
+
+/// $\int fg\,dx\,dy$ of two strains in the coordinates of a block: a row a coordinate of `f`, a column one of `g`.
+fn product([x, y]: &[EdgeBasis; 2], list: &[Coordinate], f: &[Term], g: &[Term]) -> Mat<f64> {
+    let mut matrix = Mat::zeros(list.len(), list.len());
+    for &(left, left_x, left_y) in f {
+        for &(right, right_x, right_y) in g {
+            for (column, b) in list.iter().enumerate().filter(|(_, b)| b.field == right) {
+                for (row, a) in list.iter().enumerate().filter(|(_, a)| a.field == left) {
+                    matrix[(row, column)] += x.integral((left, left_x, a.x), (right, right_x, b.x))
+                        * y.integral((left, left_y, a.y), (right, right_y, b.y));
+                }
+            }
+        }
+    }
+    matrix
+}
+
+/// The motions of a block without strain: $w$ a product of functions that is at most linear, with the rotations that
+/// cancel its slopes.
+fn rigid_modes([x, y]: &[EdgeBasis; 2], list: &[Coordinate], mass: &Mat<f64>) -> Vec<Vec<f64>> {
+    let mut modes = Vec::new();
+    for (position, candidate) in list.iter().enumerate().filter(|(_, c)| c.field == Field::Deflection) {
+        let slopes = (x.linear_slope(candidate.x), y.linear_slope(candidate.y));
+        let (Some(slope_x), Some(slope_y)) = slopes else { continue };
+        // The other factor of a linear function is a constant, one over the unit of that direction.
+        let rotation = match (slope_x != 0.0, slope_y != 0.0) {
+            (false, false) => None,
+            (true, false) => Some((Field::RotationX, slope_x, y.unit(Field::Deflection))),
+            (false, true) => Some((Field::RotationY, slope_y, x.unit(Field::Deflection))),
+            (true, true) => continue,
+        };
+        let mut mode = vec![0.0; list.len()];
+        mode[position] = 1.0;
+        if let Some((field, slope, other)) = rotation {
+            let own = Coordinate { field, x: 0, y: 0 };
+            let place = list.iter().position(|c| *c == own);
+            let (Some(place), Some(other), Some(unit_x), Some(unit_y)) = (place, other, x.unit(field), y.unit(field))
+            else {
+                continue;
+            };
+            mode[place] = -slope / other * unit_x * unit_y;
+        }
+        let scale = quadratic_form(mass, &mode).sqrt().recip();
+        mode.iter_mut().for_each(|value| *value *= scale);
+        modes.push(mode);
+    }
+    modes
+}
