@@ -1,7 +1,7 @@
 //! The exact step of one mode over a time $h$, free of cancellation at any $\omega h$.
 
 /// Modes are handled in groups of this many, so that the compiler turns each operation into vector instructions.
-pub(super) const LANES: usize = 4;
+pub(super) const LANES: usize = 8;
 
 /// One number of each mode in a group.
 pub(super) type Lane = [f64; LANES];

@@ -32,7 +32,8 @@ struct Propagator {
 /// $$\ddot a + 2\zeta\omega\,\dot a + \omega^2 a = \sum_k W(x_k)\,f_k(t),$$
 /// and is stepped by its own closed solution for a force held or linear over the step, so the step may have any
 /// size: the result carries rounding only. The coefficients of the last step size are kept; steps of one size cost
-/// no sine. No step allocates.
+/// no sine. No step allocates. What runs at each step is inlined, so that a caller compiled for wider vectors than
+/// this crate gets them here too.
 ///
 /// Units: force \[N\] along +z, time \[s\]; outputs \[m\], \[m/s\], \[m/s²\] at the response ports of the model,
 /// each the sum over the modes that the model holds. A new stepper is at rest with no force.
@@ -92,6 +93,7 @@ impl ModalStepper {
     ///
     /// # Errors
     /// [`ModelError::ForceCount`], [`ModelError::NotFinite`]; the force stays as it was.
+    #[inline(always)]
     pub fn set_forces(&mut self, forces: &[f64]) -> Result<(), ModelError> {
         self.check_forces(forces)?;
         project(&self.at_forces, forces, &mut self.force_after);
@@ -107,6 +109,7 @@ impl ModalStepper {
     /// # Errors
     /// [`ModelError::Size`] for a step that is not above zero, [`ModelError::NotFinite`] where a state would
     /// overflow; the state stays as it was.
+    #[inline(always)]
     pub fn advance_held(&mut self, step: f64) -> Result<(), ModelError> {
         self.prepare(step)?;
         self.advance_prepared::<false>()
@@ -117,6 +120,7 @@ impl ModalStepper {
     ///
     /// # Errors
     /// As [`ModalStepper::set_forces`] and [`ModalStepper::advance_held`]; state and force stay as they were.
+    #[inline(always)]
     pub fn advance_linear(&mut self, step: f64, forces: &[f64]) -> Result<(), ModelError> {
         self.check_forces(forces)?;
         self.prepare(step)?;
@@ -127,18 +131,21 @@ impl ModalStepper {
     }
 
     /// Displacement $w = \sum W a$ \[m\] at a response port, counted from 0; `None` where there is no such port.
+    #[inline(always)]
     pub fn displacement(&self, response: usize) -> Option<f64> {
         let shape = self.at_responses.get(response)?;
         Some(sum(shape, &self.state, |state, i| state.position[i]))
     }
 
     /// Velocity \[m/s\] at a response port, counted from 0.
+    #[inline(always)]
     pub fn velocity(&self, response: usize) -> Option<f64> {
         let shape = self.at_responses.get(response)?;
         Some(sum(shape, &self.state, |state, i| state.velocity[i]))
     }
 
     /// Acceleration $\sum W(p - 2\zeta\omega\dot a - \omega^2 a)$ \[m/s²\] at a response port under the force now.
+    #[inline(always)]
     pub fn acceleration(&self, response: usize) -> Option<f64> {
         let shape = self.at_responses.get(response)?;
         let modes = self.state.iter().zip(&self.groups).zip(&self.force);
@@ -149,8 +156,22 @@ impl ModalStepper {
 
     /// Modal coordinate $a$ \[m kg^1/2\] and its rate $\dot a$ of each mode, in the order of the model.
     pub fn state(&self) -> Vec<[f64; 2]> {
-        let pairs = self.state.iter().flat_map(|group| group.position.into_iter().zip(group.velocity));
-        pairs.take(self.mode_count).map(|(position, velocity)| [position, velocity]).collect()
+        (0..self.mode_count).filter_map(|mode| self.mode_state(mode)).collect()
+    }
+
+    /// $a$ and $\dot a$ of one mode, counted from 0; `None` where there is no such mode.
+    pub fn mode_state(&self, mode: usize) -> Option<[f64; 2]> {
+        let (group, i) = (self.state.get(mode / LANES)?, mode % LANES);
+        (mode < self.mode_count).then(|| [group.position[i], group.velocity[i]])
+    }
+
+    /// $\dot a$ and $\ddot a = p - 2\zeta\omega\dot a - \omega^2 a$ of one mode under the force now, counted from 0;
+    /// `None` where there is no such mode.
+    pub fn mode_rate(&self, mode: usize) -> Option<[f64; 2]> {
+        let [position, velocity] = self.mode_state(mode)?;
+        let (index, i) = (mode / LANES, mode % LANES);
+        let (group, force) = (self.groups.get(index)?, self.force.get(index)?);
+        Some([velocity, force[i] - group.damping[i] * velocity - group.stiffness[i] * position])
     }
 
     /// Puts back what [`ModalStepper::state`] gave.
@@ -172,6 +193,21 @@ impl ModalStepper {
         Ok(())
     }
 
+    /// Sets $a$ and $\dot a$ of one mode, counted from 0.
+    ///
+    /// # Errors
+    /// [`ModelError::StateCount`] where there is no such mode, [`ModelError::NotFinite`]; the state stays as it was.
+    pub fn set_mode_state(&mut self, mode: usize, state: [f64; 2]) -> Result<(), ModelError> {
+        if let Some(&value) = state.iter().find(|value| !value.is_finite()) {
+            return Err(ModelError::NotFinite { what: "modal state", value });
+        }
+        let group = self.state.get_mut(mode / LANES).filter(|_| mode < self.mode_count);
+        let group = group.ok_or(ModelError::StateCount { found: mode.saturating_add(1), expected: self.mode_count })?;
+        (group.position[mode % LANES], group.velocity[mode % LANES]) = (state[0], state[1]);
+        Ok(())
+    }
+
+    #[inline(always)]
     fn check_forces(&self, forces: &[f64]) -> Result<(), ModelError> {
         if forces.len() != self.at_forces.len() {
             return Err(ModelError::ForceCount { found: forces.len(), expected: self.at_forces.len() });
@@ -183,10 +219,13 @@ impl ModalStepper {
     }
 
     /// Makes the coefficients for `step`, unless the last step had the same size.
+    #[inline(always)]
     fn prepare(&mut self, step: f64) -> Result<(), ModelError> {
-        if step == self.step {
-            return Ok(());
-        }
+        if step == self.step { Ok(()) } else { self.make_propagators(step) }
+    }
+
+    #[cold]
+    fn make_propagators(&mut self, step: f64) -> Result<(), ModelError> {
         if !(step.is_finite() && step > 0.0) {
             return Err(ModelError::Size { name: "step", value: step, unit: "s" });
         }
@@ -208,6 +247,7 @@ impl ModalStepper {
 
     /// The step itself, from `state` to `state_after`, which then change places. Where the force is not `LINEAR` it
     /// stays, `force_after` is not read, and the compiler leaves its loads out.
+    #[inline(always)]
     fn advance_prepared<const LINEAR: bool>(&mut self) -> Result<(), ModelError> {
         let forces = self.force.iter().zip(&self.force_after);
         let modes = self.groups.iter().zip(&self.propagators).zip(forces);
@@ -249,6 +289,7 @@ fn lane(values: &[f64]) -> Lane {
 }
 
 /// Modal forces $p = \sum_k W(x_k) f_k$.
+#[inline(always)]
 fn project(at_forces: &[Vec<Lane>], forces: &[f64], modal: &mut [Lane]) {
     modal.fill(Lane::default());
     for (shape, &force) in at_forces.iter().zip(forces) {
@@ -261,6 +302,7 @@ fn project(at_forces: &[Vec<Lane>], forces: &[f64], modal: &mut [Lane]) {
 }
 
 /// $\sum_m W_m q_m$ with `quantity` giving $q$ of a lane.
+#[inline(always)]
 fn sum<T: Copy>(shape: &[Lane], modes: impl IntoIterator<Item = T>, quantity: impl Fn(T, usize) -> f64) -> f64 {
     let mut total = Lane::default();
     for (w, mode) in shape.iter().zip(modes) {
