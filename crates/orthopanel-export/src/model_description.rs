@@ -5,7 +5,7 @@ mod fmi3;
 
 use std::io;
 
-use orthopanel_fmu::{LOG_CATEGORIES, Resource, UNITS, VariableTable};
+use orthopanel_fmu::{GENERATOR, LOG_CATEGORIES, MODEL_IDENTIFIER, Resource, UNITS, Variable, VariableTable};
 use quick_xml::Writer;
 use quick_xml::events::{BytesDecl, Event};
 
@@ -22,18 +22,122 @@ struct Description<'a> {
     experiment: (f64, f64),
 }
 
+impl Description<'_> {
+    /// Variables of which the standard wants to know what they depend on: outputs, then derivatives of the states.
+    fn unknowns(&self) -> impl Iterator<Item = (Unknown, &Variable)> {
+        let all = self.variables.variables();
+        let outputs = all.iter().filter(|variable| variable.quantity.causality() == "output");
+        let derivatives = all.iter().filter(|variable| variable.derivative_of.is_some());
+        outputs.map(|variable| (Unknown::Output, variable)).chain(derivatives.map(|v| (Unknown::Derivative, v)))
+    }
+}
+
+/// What an unknown is, beside being an initial unknown.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Unknown {
+    Output,
+    Derivative,
+}
+
 /// The text of the file.
 pub(crate) fn write(resource: &Resource, options: &FmuOptions, token: &str) -> Result<String, ExportError> {
     let description = Description { options, token, variables: resource.variables(), experiment: experiment(resource) };
     let mut xml = Writer::new_with_indent(Vec::new(), b' ', 2);
-    let written =
-        xml.write_event(Event::Decl(BytesDecl::new("1.0", Some("UTF-8"), None))).and_then(|()| match options.version {
-            FmiVersion::Fmi2 => fmi2::write(&mut xml, &description),
-            FmiVersion::Fmi3 => fmi3::write(&mut xml, &description),
-        });
+    let written = xml
+        .write_event(Event::Decl(BytesDecl::new("1.0", Some("UTF-8"), None)))
+        .and_then(|()| root(&mut xml, &description));
     written.map_err(|error| ExportError::Assemble(error.to_string()))?;
     let text = String::from_utf8(xml.into_inner()).map_err(|error| ExportError::Assemble(error.to_string()))?;
     Ok(text + "\n")
+}
+
+/// All elements; the versions differ in attributes, in how a variable is written and in the model structure.
+fn root(xml: &mut Xml, description: &Description) -> io::Result<()> {
+    let (version, token, interfaces, last) = match description.options.version {
+        FmiVersion::Fmi2 => ("2.0", "guid", fmi2::INTERFACES, Some(("numberOfEventIndicators", "0"))),
+        FmiVersion::Fmi3 => ("3.0", "instantiationToken", fmi3::INTERFACES, None),
+    };
+    let attributes = [
+        ("fmiVersion", version),
+        ("modelName", &description.options.name),
+        (token, description.token),
+        ("description", &description.options.description),
+        ("generationTool", GENERATOR),
+        ("variableNamingConvention", "flat"),
+    ];
+    xml.create_element("fmiModelDescription").with_attributes(attributes.into_iter().chain(last)).write_inner_content(
+        |xml| {
+            for (element, flags) in interfaces {
+                let attributes = [("modelIdentifier", MODEL_IDENTIFIER)].into_iter().chain(flags.iter().copied());
+                xml.create_element(element).with_attributes(attributes).write_empty()?;
+            }
+            units(xml)?;
+            log_categories(xml)?;
+            default_experiment(xml, description.experiment)?;
+            let variables = description.variables.variables();
+            match description.options.version {
+                FmiVersion::Fmi2 => {
+                    xml.create_element("ModelVariables")
+                        .write_inner_content(|xml| variables.iter().try_for_each(|v| fmi2::variable(xml, v)))?;
+                    xml.create_element("ModelStructure")
+                        .write_inner_content(|xml| fmi2::structure(xml, description))?;
+                }
+                FmiVersion::Fmi3 => {
+                    xml.create_element("ModelVariables")
+                        .write_inner_content(|xml| variables.iter().try_for_each(|v| fmi3::variable(xml, v)))?;
+                    xml.create_element("ModelStructure")
+                        .write_inner_content(|xml| fmi3::structure(xml, description))?;
+                }
+            }
+            Ok(())
+        },
+    )?;
+    Ok(())
+}
+
+/// What both versions say of a variable in the same words.
+fn common_attributes(variable: &Variable) -> Vec<(&'static str, String)> {
+    let quantity = variable.quantity;
+    let mut attributes = vec![
+        ("name", variable.name.clone()),
+        ("valueReference", variable.reference.to_string()),
+        ("description", variable.description.clone()),
+        ("causality", quantity.causality().into()),
+        ("variability", quantity.variability().into()),
+    ];
+    attributes.extend(quantity.initial().map(|initial| ("initial", initial.into())));
+    attributes
+}
+
+/// Unit, nominal and start value of a variable, and of which state it is the derivative (`state` names that).
+fn value_attributes(variable: &Variable, state: Option<String>) -> Vec<(&'static str, String)> {
+    let quantity = variable.quantity;
+    let texts = [
+        ("unit", quantity.unit().map(String::from)),
+        ("nominal", variable.nominal.map(|nominal| format!("{nominal:e}"))),
+        ("start", quantity.start().map(String::from)),
+        ("derivative", state),
+    ];
+    texts.into_iter().filter_map(|(name, value)| Some((name, value?))).collect()
+}
+
+/// An element without content.
+fn empty(xml: &mut Xml, element: &str, attributes: &[(&str, String)]) -> io::Result<()> {
+    let attributes = attributes.iter().map(|(name, value)| (*name, value.as_str()));
+    xml.create_element(element).with_attributes(attributes).write_empty()?;
+    Ok(())
+}
+
+/// An unknown of the model structure: `id` names it, `names` what it depends on; without names, on nothing.
+///
+/// Each dependency is a factor that stays as it is once initialization ends; before, it is only said to be there.
+fn unknown(xml: &mut Xml, element: &str, id: (&str, String), names: &[String], initial: bool) -> io::Result<()> {
+    let mut attributes = vec![id, ("dependencies", names.join(" "))];
+    if !names.is_empty() {
+        let kind = if initial { "dependent" } else { "fixed" };
+        attributes.push(("dependenciesKind", vec![kind; names.len()].join(" ")));
+    }
+    empty(xml, element, &attributes)
 }
 
 /// A step of at most a twentieth of the shortest period (1, 2 or 5 times a power of ten), and a thousand steps.
@@ -55,7 +159,12 @@ fn decimal(digit: u8, exponent: i32) -> f64 {
 fn units(xml: &mut Xml) -> io::Result<()> {
     xml.create_element("UnitDefinitions").write_inner_content(|xml| {
         for unit in UNITS {
-            xml.create_element("Unit").with_attribute(("name", unit.name)).write_inner_content(|xml| {
+            let element = xml.create_element("Unit").with_attribute(("name", unit.name));
+            if unit.exponents.is_empty() {
+                element.write_empty()?;
+                continue;
+            }
+            element.write_inner_content(|xml| {
                 let exponents = unit.exponents.iter().map(|&(base, power)| (base, power.to_string()));
                 let mut element = xml.create_element("BaseUnit");
                 for (base, power) in exponents {
@@ -85,13 +194,4 @@ fn default_experiment(xml: &mut Xml, (step, stop): (f64, f64)) -> io::Result<()>
     let attributes = [("startTime", "0"), ("stopTime", stop.as_str()), ("stepSize", step.as_str())];
     xml.create_element("DefaultExperiment").with_attributes(attributes).write_empty()?;
     Ok(())
-}
-
-/// `dependencies` and `dependenciesKind`: an output without entries says that it depends on nothing.
-fn dependencies(names: &[String]) -> Vec<(&'static str, String)> {
-    let mut attributes = vec![("dependencies", names.join(" "))];
-    if !names.is_empty() {
-        attributes.push(("dependenciesKind", vec!["dependent"; names.len()].join(" ")));
-    }
-    attributes
 }

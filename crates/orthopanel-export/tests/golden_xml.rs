@@ -39,13 +39,13 @@ fn compare(file: &str, version: FmiVersion) {
 }
 
 #[test]
-fn regress_fmi2_co_simulation() {
-    compare("fmi2-cosimulation.xml", FmiVersion::Fmi2);
+fn regress_fmi2() {
+    compare("fmi2.xml", FmiVersion::Fmi2);
 }
 
 #[test]
-fn regress_fmi3_co_simulation() {
-    compare("fmi3-cosimulation.xml", FmiVersion::Fmi3);
+fn regress_fmi3() {
+    compare("fmi3.xml", FmiVersion::Fmi3);
 }
 
 /// The importer `fmi-rs` has a validator of its own.

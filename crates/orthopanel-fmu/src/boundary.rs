@@ -4,13 +4,17 @@
 //! not been freed, an array has as many entries as its length says. What can be checked (null) is checked.
 #![allow(unsafe_code)]
 
+mod entries;
+
 use std::ffi::{CStr, CString, c_char, c_int, c_void};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
 
-use crate::component::Component;
+use crate::component::{Component, Interface};
 use crate::logging::{Category, Logger, Sink};
 use crate::{FmuError, Resource};
+
+pub(crate) use entries::{absent_types, entries, fmu_state_entries, model_exchange_entries, not_offered, transitions};
 
 /// FMI status; OK and Error have the same numbers in both versions.
 pub(crate) type Status = c_int;
@@ -27,6 +31,7 @@ pub(crate) struct Instance {
 /// What both instantiate functions are given.
 pub(crate) struct Instantiation {
     pub call: &'static str,
+    pub interface: Interface,
     pub token: *const c_char,
     pub location: *const c_char,
     pub to_folder: fn(&str) -> Result<PathBuf, FmuError>,
@@ -47,7 +52,8 @@ pub(crate) unsafe fn instantiate(
         check()?;
         // SAFETY: the caller passes null or C strings.
         let (token, location) = unsafe { (text(given.token, "token")?, text(given.location, "resource location")?) };
-        Ok::<_, FmuError>(Component::new(&Resource::read(&(given.to_folder)(location)?, token)?))
+        let resource = Resource::read(&(given.to_folder)(location)?, token)?;
+        Ok::<_, FmuError>(Component::new(&resource, given.interface, token))
     }));
     match made {
         Ok(Ok(component)) => {
@@ -131,6 +137,15 @@ pub(crate) unsafe fn array_mut<'a, T>(
     }
 }
 
+/// A place that the importer wants an answer in.
+///
+/// # Safety
+/// `pointer` is null or a place that lives as long as the call and that nothing else refers to.
+pub(crate) unsafe fn place<'a, T>(pointer: *mut T, what: &'static str) -> Result<&'a mut T, FmuError> {
+    // SAFETY: null, or a place that the caller vouches for.
+    unsafe { pointer.as_mut() }.ok_or(FmuError::Null(what))
+}
+
 /// A text that the importer passes in.
 ///
 /// # Safety
@@ -164,20 +179,6 @@ pub(crate) fn c_text(message: &str) -> CString {
     CString::new(message.replace('\0', "")).unwrap_or_default()
 }
 
-/// Defines the entry points of a capability that is not offered: each says which flag of the XML says so.
-macro_rules! not_offered {
-    ($($flag:literal: $($name:ident($($argument:ty),*);)*)*) => {$($(
-        #[unsafe(no_mangle)]
-        unsafe extern "C" fn $name(instance: *mut std::ffi::c_void, $(_: $argument),*) -> $crate::boundary::Status {
-            // SAFETY: `instance` comes from the importer under the FMI contract; no other argument is touched.
-            unsafe {
-                $crate::boundary::call(instance, stringify!($name), |_| Err($crate::FmuError::NotOffered($flag)))
-            }
-        }
-    )*)*};
-}
-pub(crate) use not_offered;
-
 #[cfg(test)]
 mod tests {
     use std::cell::RefCell;
@@ -191,7 +192,7 @@ mod tests {
         let resource = Resource::new(ModalModel::new(0, 0, vec![]).expect("no mode"), Ports::default()).expect("sound");
         let messages = Rc::clone(messages);
         let sink: Sink = Box::new(move |_, message| messages.borrow_mut().push(message.into()));
-        Instance { component: Component::new(&resource), logger: Logger::new(sink, false) }
+        Instance { component: Component::new(&resource, Interface::CoSimulation, ""), logger: Logger::new(sink, false) }
     }
 
     #[test]

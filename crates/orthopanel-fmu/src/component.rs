@@ -1,69 +1,57 @@
 //! One instance without any C: the state of the FMI life cycle, the values set, and the stepper.
 
+mod continuous;
+mod fmu_states;
+mod phase;
+mod sensitivities;
+mod situation;
 mod step;
 mod values;
 
-use orthopanel_model::ModalStepper;
+use crate::wide_stepper::WideStepper;
+use crate::{FmuError, Quantity, Resource, VariableTable};
 
-use crate::{FmuError, Resource, VariableTable};
-
-/// States of the life cycle, common to FMI 2.0 and 3.0 co-simulation.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Phase {
-    Instantiated,
-    Initialization,
-    Step,
-    Terminated,
-}
-
-impl Phase {
-    fn name(self) -> &'static str {
-        match self {
-            Self::Instantiated => "instantiated",
-            Self::Initialization => "initialization mode",
-            Self::Step => "step mode (initialized, between steps)",
-            Self::Terminated => "terminated",
-        }
-    }
-}
+use fmu_states::FmuStates;
+pub(crate) use phase::{Interface, Phase};
+use situation::Situation;
 
 /// One panel in a simulation.
 #[derive(Debug)]
 pub(crate) struct Component {
     variables: VariableTable,
-    stepper: ModalStepper,
-    phase: Phase,
-    time: f64,
-    stop_time: Option<f64>,
-    force_linear: bool,
-    /// Force at each port as set, and whether the stepper has yet to be told.
-    forces: Vec<f64>,
+    stepper: WideStepper,
+    now: Situation,
+    /// Has the stepper yet to be told the forces?
     forces_changed: bool,
-    /// Force at the end of the last step: where a linear force starts.
-    forces_before: Vec<f64>,
-    /// Input derivatives for the next step, and whether the importer gave some.
-    force_rates: Vec<f64>,
-    rates_given: bool,
-    /// Force at the end of a step at these rates, while it is computed.
+    /// Force at the end of a step at given rates, while it is computed.
     forces_after: Vec<f64>,
+    /// A panel of the same modes that derivatives are asked of.
+    probe: Probe,
+    nominals: Vec<[f64; 2]>,
+    states: FmuStates,
+}
+
+#[derive(Debug)]
+struct Probe {
+    stepper: WideStepper,
+    forces: Vec<f64>,
 }
 
 impl Component {
-    pub(crate) fn new(resource: &Resource) -> Self {
-        let forces = vec![0.0; resource.model().force_count()];
+    /// An instance of this resource, whose token is `token`.
+    pub(crate) fn new(resource: &Resource, interface: Interface, token: &str) -> Self {
+        let model = resource.model();
+        let stepper = WideStepper::new(model);
+        let forces = vec![0.0; model.force_count()];
         Self {
             variables: resource.variables(),
-            stepper: ModalStepper::new(resource.model()),
-            phase: Phase::Instantiated,
-            time: 0.0,
-            stop_time: None,
-            force_linear: false,
+            probe: Probe { stepper: stepper.clone(), forces: forces.clone() },
+            stepper,
+            now: Situation::new(interface, forces.len()),
             forces_changed: false,
-            forces_before: forces.clone(),
-            force_rates: forces.clone(),
-            rates_given: false,
-            forces_after: forces.clone(),
-            forces,
+            forces_after: forces,
+            nominals: crate::nominals::of(model),
+            states: FmuStates::new(token),
         }
     }
 
@@ -77,66 +65,42 @@ impl Component {
                 return Err(FmuError::StopBeforeStart { start, stop });
             }
         }
-        (self.time, self.stop_time) = (start, stop);
+        (self.now.time, self.now.stop_time) = (start, stop);
         Ok(())
     }
 
-    pub(crate) fn enter_initialization(&mut self) -> Result<(), FmuError> {
-        self.require(&[Phase::Instantiated])?;
-        self.phase = Phase::Initialization;
-        Ok(())
-    }
-
-    pub(crate) fn exit_initialization(&mut self) -> Result<(), FmuError> {
-        self.require(&[Phase::Initialization])?;
-        self.phase = Phase::Step;
-        self.forces_before.copy_from_slice(&self.forces);
-        Ok(())
-    }
-
-    pub(crate) fn terminate(&mut self) -> Result<(), FmuError> {
-        self.require(&[Phase::Step])?;
-        self.phase = Phase::Terminated;
-        Ok(())
-    }
-
-    /// Back to where instantiation left it.
-    pub(crate) fn reset(&mut self) -> Result<(), FmuError> {
-        let at_rest = vec![[0.0; 2]; self.stepper.state().len()];
-        self.stepper.set_state(&at_rest)?;
-        self.forces.fill(0.0);
-        self.forces_before.fill(0.0);
-        self.forget_rates();
-        (self.forces_changed, self.force_linear) = (true, false);
-        (self.phase, self.time, self.stop_time) = (Phase::Instantiated, 0.0, None);
-        Ok(())
-    }
-
-    /// Time of the instance \[s\]: the end of the last step that succeeded.
+    /// Time of the instance \[s\]: the end of the last step that succeeded, or the time that the importer set.
     pub(crate) fn time(&self) -> f64 {
-        self.time
-    }
-
-    fn require(&self, allowed: &[Phase]) -> Result<(), FmuError> {
-        if allowed.contains(&self.phase) {
-            return Ok(());
-        }
-        let allowed = allowed.iter().map(|phase| phase.name()).collect::<Vec<_>>().join(", ");
-        Err(FmuError::Order { state: self.phase.name(), allowed })
+        self.now.time
     }
 
     fn forget_rates(&mut self) {
-        self.force_rates.fill(0.0);
-        self.rates_given = false;
+        self.now.force_rates.fill(0.0);
+        self.now.rates_given = false;
     }
 
-    /// Tells the stepper the force now, if it changed since.
-    fn apply_forces(&mut self) -> Result<(), FmuError> {
+    /// Tells the stepper what was set since it was last asked.
+    fn apply(&mut self) -> Result<(), FmuError> {
         if self.forces_changed {
-            self.stepper.set_forces(&self.forces)?;
+            self.stepper.set_forces(&self.now.forces)?;
             self.forces_changed = false;
         }
         Ok(())
+    }
+
+    /// Value of a quantity of the panel, given its modes and forces; `None` for what is none of the panel's.
+    fn panel_value(&self, quantity: Quantity, stepper: &WideStepper, forces: &[f64]) -> Option<f64> {
+        match quantity {
+            Quantity::Time | Quantity::ForceLinear => None,
+            Quantity::Force(port) => forces.get(port).copied(),
+            Quantity::Acceleration(port) => stepper.acceleration(port),
+            Quantity::Velocity(port) => stepper.velocity(port),
+            Quantity::Displacement(port) => stepper.displacement(port),
+            Quantity::ModalPosition(mode) => stepper.mode_state(mode).map(|[position, _]| position),
+            Quantity::ModalVelocity(mode) => stepper.mode_state(mode).map(|[_, velocity]| velocity),
+            Quantity::ModalPositionRate(mode) => stepper.mode_rate(mode).map(|[velocity, _]| velocity),
+            Quantity::ModalVelocityRate(mode) => stepper.mode_rate(mode).map(|[_, acceleration]| acceleration),
+        }
     }
 }
 

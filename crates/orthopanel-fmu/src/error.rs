@@ -117,6 +117,41 @@ pub enum FmuError {
         /// The order.
         order: i32,
     },
+    /// A derivative of an output of another order than the first.
+    #[error("output derivative of order {order}: only order 1 is offered (maxOutputDerivativeOrder = 1)")]
+    OutputDerivativeOrder {
+        /// The order.
+        order: i32,
+    },
+    /// A partial derivative of or by a variable that has none.
+    #[error("{name} (value reference {reference}) has no such derivative: {reason}")]
+    NotDifferentiable {
+        /// Name of the variable.
+        name: String,
+        /// Its reference.
+        reference: u32,
+        /// Why.
+        reason: &'static str,
+    },
+    /// Another number of continuous states than the FMU has.
+    #[error("{found} continuous states given or asked for: the FMU has {expected}, two a mode")]
+    StateCount {
+        /// Number found.
+        found: usize,
+        /// Number expected.
+        expected: usize,
+    },
+    /// An FMU state that cannot be used.
+    #[error("FMU state: {0}")]
+    State(&'static str),
+    /// A buffer for a serialized state that is too small.
+    #[error("the buffer has {given} bytes, the state needs {needed}: ask for its serialized size")]
+    StateBuffer {
+        /// Size of the buffer.
+        given: usize,
+        /// Size needed.
+        needed: usize,
+    },
     /// Input derivatives beside `force_linear`.
     #[error("force_linear is true: the force already runs linearly between the values set; give no input derivatives")]
     DerivativeBesideLinear,

@@ -4,7 +4,10 @@
 //! `boundary`). A capability moves from `not_offered` to a file of its own once it is offered.
 #![allow(unsafe_code, non_snake_case)]
 
+mod derivatives;
+mod fmu_state;
 mod instance;
+mod model_exchange;
 mod not_offered;
 mod step;
 mod values;

@@ -7,11 +7,15 @@ mod error;
 mod fmi2;
 mod fmi3;
 mod logging;
+mod nominals;
 mod resource;
 mod resource_location;
 mod variables;
+mod wide_stepper;
 
-pub use capabilities::{FMI2_CO_SIMULATION, FMI3_CO_SIMULATION, LOG_CATEGORIES, MODEL_IDENTIFIER};
+pub use capabilities::{
+    FMI2_CO_SIMULATION, FMI2_MODEL_EXCHANGE, FMI3_CO_SIMULATION, FMI3_MODEL_EXCHANGE, LOG_CATEGORIES, MODEL_IDENTIFIER,
+};
 pub use error::FmuError;
 pub use resource::{GENERATOR, RESOURCE_FILE, Resource, content_token};
 pub use variables::{Quantity, UNITS, Unit, Variable, VariableTable};

@@ -1,9 +1,18 @@
 //! The variables of an FMU: one table for the XML and for the calls at run time.
 
+mod dependencies;
+mod units;
+
+use std::f64::consts::TAU;
+
 use orthopanel_model::{ModalModel, Place, Ports};
 
+use crate::nominals;
+
+pub use units::{UNITS, Unit};
+
 /// What a variable stands for; ports are counted from 0.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Quantity {
     /// The independent variable \[s\].
     Time,
@@ -17,6 +26,14 @@ pub enum Quantity {
     Velocity(usize),
     /// Output: displacement \[m\] at a response port.
     Displacement(usize),
+    /// Continuous state: coordinate $a$ of a mode \[m kg^1/2\]; modes are counted from 0, rigid ones first.
+    ModalPosition(usize),
+    /// Continuous state: $\dot a$ of a mode \[m kg^1/2/s\].
+    ModalVelocity(usize),
+    /// Derivative of [`Quantity::ModalPosition`] by time.
+    ModalPositionRate(usize),
+    /// Derivative of [`Quantity::ModalVelocity`] by time.
+    ModalVelocityRate(usize),
 }
 
 impl Quantity {
@@ -29,6 +46,9 @@ impl Quantity {
             Self::Acceleration(_) => Some("m/s2"),
             Self::Velocity(_) => Some("m/s"),
             Self::Displacement(_) => Some("m"),
+            Self::ModalPosition(_) => Some(units::MODAL_POSITION),
+            Self::ModalVelocity(_) | Self::ModalPositionRate(_) => Some(units::MODAL_VELOCITY),
+            Self::ModalVelocityRate(_) => Some(units::MODAL_ACCELERATION),
         }
     }
 
@@ -39,6 +59,33 @@ impl Quantity {
             Self::ForceLinear => "parameter",
             Self::Force(_) => "input",
             Self::Acceleration(_) | Self::Velocity(_) | Self::Displacement(_) => "output",
+            Self::ModalPosition(_)
+            | Self::ModalVelocity(_)
+            | Self::ModalPositionRate(_)
+            | Self::ModalVelocityRate(_) => "local",
+        }
+    }
+
+    /// FMI variability.
+    pub fn variability(self) -> &'static str {
+        if self == Self::ForceLinear { "fixed" } else { "continuous" }
+    }
+
+    /// FMI attribute `initial`; `None` where the standard has none.
+    pub fn initial(self) -> Option<&'static str> {
+        match self {
+            Self::Time | Self::Force(_) => None,
+            Self::ForceLinear | Self::ModalPosition(_) | Self::ModalVelocity(_) => Some("exact"),
+            _ => Some("calculated"),
+        }
+    }
+
+    /// Start value as the XML says it; `None` for what is calculated.
+    pub fn start(self) -> Option<&'static str> {
+        match self {
+            Self::ForceLinear => Some("false"),
+            Self::Force(_) | Self::ModalPosition(_) | Self::ModalVelocity(_) => Some("0"),
+            _ => None,
         }
     }
 }
@@ -54,33 +101,19 @@ pub struct Variable {
     pub description: String,
     /// What it stands for.
     pub quantity: Quantity,
-    /// References of the inputs on which an output depends directly (without an integration between); empty for all
-    /// but accelerations.
+    /// References of the inputs and continuous states on which an output or a derivative depends directly (without an
+    /// integration between); empty for what is neither.
     pub dependencies: Vec<u32>,
+    /// Of a derivative: reference of the continuous state.
+    pub derivative_of: Option<u32>,
+    /// Of a continuous state: the size to be expected.
+    pub nominal: Option<f64>,
 }
-
-/// A unit with its exponents of kg, m and s.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Unit {
-    /// Name.
-    pub name: &'static str,
-    /// Exponents of the base units, those that are zero left out.
-    pub exponents: &'static [(&'static str, i8)],
-}
-
-/// Every unit in use.
-pub const UNITS: [Unit; 5] = [
-    Unit { name: "s", exponents: &[("s", 1)] },
-    Unit { name: "N", exponents: &[("kg", 1), ("m", 1), ("s", -2)] },
-    Unit { name: "m/s2", exponents: &[("m", 1), ("s", -2)] },
-    Unit { name: "m/s", exponents: &[("m", 1), ("s", -1)] },
-    Unit { name: "m", exponents: &[("m", 1)] },
-];
 
 /// The variables of a panel; a variable's reference is its index.
 ///
-/// Order: `time`, `force_linear`, then `force_1`.., `acceleration_1`.., `velocity_1`.., `displacement_1`..; ports are
-/// counted from 1 in names.
+/// Order: `time`, `force_linear`, then `force_1`.., `acceleration_1`.., `velocity_1`.., `displacement_1`.., then of each
+/// mode `modal_position_1`, `modal_velocity_1` and the derivatives of both; ports and modes are counted from 1 in names.
 #[derive(Debug, Clone, PartialEq)]
 pub struct VariableTable(Vec<Variable>);
 
@@ -96,7 +129,8 @@ impl VariableTable {
         table.push_outputs("acceleration", Quantity::Acceleration, ports);
         table.push_outputs("velocity", Quantity::Velocity, ports);
         table.push_outputs("displacement", Quantity::Displacement, ports);
-        table.depend(model);
+        table.push_modes(model);
+        dependencies::fill(&mut table.0, model);
         table
     }
 
@@ -110,10 +144,22 @@ impl VariableTable {
         self.0.get(usize::try_from(reference).ok()?)
     }
 
-    fn push(&mut self, quantity: Quantity, name: String, description: String) {
-        // A table of 2^32 ports cannot be built in memory, so the index always fits.
+    /// Adds a variable that so far depends on nothing; returns its reference.
+    fn push(&mut self, quantity: Quantity, name: String, description: String) -> u32 {
+        // A table of 2^32 variables cannot be built in memory, so the index always fits.
         let reference = u32::try_from(self.0.len()).unwrap_or(u32::MAX);
-        self.0.push(Variable { reference, name, description, quantity, dependencies: Vec::new() });
+        let (dependencies, derivative_of, nominal) = (Vec::new(), None, None);
+        self.0.push(Variable { reference, name, description, quantity, dependencies, derivative_of, nominal });
+        reference
+    }
+
+    /// Adds a continuous state and its derivative.
+    fn push_state(&mut self, state: Quantity, rate: Quantity, name: &str, description: String, nominal: f64) {
+        let of = self.push(state, name.into(), description);
+        self.push(rate, format!("der({name})"), format!("Time derivative of {name}"));
+        if let [.., state, rate] = self.0.as_mut_slice() {
+            (state.nominal, rate.derivative_of) = (Some(nominal), Some(of));
+        }
     }
 
     fn push_outputs(&mut self, word: &str, quantity: fn(usize) -> Quantity, ports: &Ports) {
@@ -123,26 +169,14 @@ impl VariableTable {
         }
     }
 
-    /// An acceleration depends on the forces that some mode joins it to: $\partial a_r/\partial f_k = \sum_m W_r W_k$.
-    fn depend(&mut self, model: &ModalModel) {
-        let forces: Vec<(u32, usize)> = self
-            .0
-            .iter()
-            .filter_map(|variable| match variable.quantity {
-                Quantity::Force(port) => Some((variable.reference, port)),
-                _ => None,
-            })
-            .collect();
-        for variable in &mut self.0 {
-            if let Quantity::Acceleration(response) = variable.quantity {
-                let reached = |&&(_, force): &&(u32, usize)| {
-                    model.modes().iter().any(|mode| {
-                        let at = |values: &[f64], port: usize| values.get(port).is_some_and(|&value| value != 0.0);
-                        at(&mode.at_responses, response) && at(&mode.at_forces, force)
-                    })
-                };
-                variable.dependencies = forces.iter().filter(reached).map(|&(reference, _)| reference).collect();
-            }
+    fn push_modes(&mut self, model: &ModalModel) {
+        for (index, (mode, [position, velocity])) in model.modes().iter().zip(nominals::of(model)).enumerate() {
+            let number = index + 1;
+            let of = format!("of mode {number} ({:.2} Hz), mass-normalised", mode.angular_frequency / TAU);
+            let (state, rate) = (Quantity::ModalPosition(index), Quantity::ModalPositionRate(index));
+            self.push_state(state, rate, &format!("modal_position_{number}"), format!("Coordinate {of}"), position);
+            let (state, rate) = (Quantity::ModalVelocity(index), Quantity::ModalVelocityRate(index));
+            self.push_state(state, rate, &format!("modal_velocity_{number}"), format!("Velocity {of}"), velocity);
         }
     }
 }

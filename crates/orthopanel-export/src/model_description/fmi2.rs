@@ -1,82 +1,49 @@
-//! The description of FMI 2.0.
+//! What only FMI 2.0 says: variables in two elements each, and names by their place in the list, from 1.
 
 use std::io;
 
-use orthopanel_fmu::{FMI2_CO_SIMULATION, GENERATOR, MODEL_IDENTIFIER, Quantity, Variable};
+use orthopanel_fmu::{FMI2_CO_SIMULATION, FMI2_MODEL_EXCHANGE, Variable};
 
-use super::{Description, Xml, default_experiment, dependencies, log_categories, units};
+use super::{Description, Unknown, Xml, common_attributes, empty, unknown, value_attributes};
 
-pub(super) fn write(xml: &mut Xml, description: &Description) -> io::Result<()> {
-    let root = [
-        ("fmiVersion", "2.0"),
-        ("modelName", &description.options.name),
-        ("guid", description.token),
-        ("description", &description.options.description),
-        ("generationTool", GENERATOR),
-        ("variableNamingConvention", "flat"),
-        ("numberOfEventIndicators", "0"),
-    ];
-    xml.create_element("fmiModelDescription").with_attributes(root).write_inner_content(|xml| {
-        xml.create_element("CoSimulation")
-            .with_attribute(("modelIdentifier", MODEL_IDENTIFIER))
-            .with_attributes(FMI2_CO_SIMULATION.iter().copied())
-            .write_empty()?;
-        units(xml)?;
-        log_categories(xml)?;
-        default_experiment(xml, description.experiment)?;
-        xml.create_element("ModelVariables").write_inner_content(|xml| {
-            description.variables.variables().iter().try_for_each(|variable| scalar(xml, variable))
-        })?;
-        structure(xml, description)
-    })?;
-    Ok(())
-}
+pub(super) const INTERFACES: [(&str, &[(&str, &str)]); 2] =
+    [("ModelExchange", FMI2_MODEL_EXCHANGE), ("CoSimulation", FMI2_CO_SIMULATION)];
 
-fn scalar(xml: &mut Xml, variable: &Variable) -> io::Result<()> {
-    let reference = variable.reference.to_string();
-    let mut attributes = vec![
-        ("name", variable.name.as_str()),
-        ("valueReference", &reference),
-        ("description", &variable.description),
-        ("causality", variable.quantity.causality()),
-    ];
-    attributes.extend(match variable.quantity.causality() {
-        "parameter" => vec![("variability", "fixed"), ("initial", "exact")],
-        "output" => vec![("variability", "continuous"), ("initial", "calculated")],
-        _ => vec![("variability", "continuous")],
-    });
+pub(super) fn variable(xml: &mut Xml, variable: &Variable) -> io::Result<()> {
+    let attributes = common_attributes(variable);
+    let attributes = attributes.iter().map(|(name, value)| (*name, value.as_str()));
     xml.create_element("ScalarVariable").with_attributes(attributes).write_inner_content(|xml| {
-        let element = match variable.quantity.unit() {
-            Some(unit) => xml.create_element("Real").with_attribute(("unit", unit)),
-            None => xml.create_element("Boolean").with_attribute(("start", "false")),
-        };
-        let starts = matches!(variable.quantity, Quantity::Force(_));
-        let element = if starts { element.with_attribute(("start", "0")) } else { element };
-        element.write_empty().map(drop)
+        let kind = if variable.quantity.unit().is_some() { "Real" } else { "Boolean" };
+        empty(xml, kind, &value_attributes(variable, variable.derivative_of.map(index)))
     })?;
     Ok(())
 }
 
-/// Outputs, and as initial unknowns the same again; FMI 2.0 names variables by their place in the list, from 1.
-fn structure(xml: &mut Xml, description: &Description) -> io::Result<()> {
-    let index = |reference: u32| (u64::from(reference) + 1).to_string();
-    xml.create_element("ModelStructure").write_inner_content(|xml| {
-        for list in ["Outputs", "InitialUnknowns"] {
-            xml.create_element(list).write_inner_content(|xml| {
-                let variables = description.variables.variables().iter();
-                for variable in variables.filter(|variable| variable.quantity.causality() == "output") {
-                    let names: Vec<String> = variable.dependencies.iter().map(|&reference| index(reference)).collect();
-                    let mut element =
-                        xml.create_element("Unknown").with_attribute(("index", index(variable.reference).as_str()));
-                    for (name, value) in dependencies(&names) {
-                        element = element.with_attribute((name, value.as_str()));
-                    }
-                    element.write_empty()?;
-                }
-                Ok(())
-            })?;
+pub(super) fn structure(xml: &mut Xml, description: &Description) -> io::Result<()> {
+    let lists = [
+        ("Outputs", Some(Unknown::Output)),
+        ("Derivatives", Some(Unknown::Derivative)),
+        // All of them are calculated from forces and states, at the start as later.
+        ("InitialUnknowns", None),
+    ];
+    for (list, only) in lists {
+        let unknowns = description.unknowns().filter(|(kind, _)| only.is_none_or(|only| only == *kind));
+        let variables: Vec<&Variable> = unknowns.map(|(_, variable)| variable).collect();
+        if variables.is_empty() {
+            continue;
         }
-        Ok(())
-    })?;
+        xml.create_element(list).write_inner_content(|xml| {
+            for variable in variables {
+                let names: Vec<String> = variable.dependencies.iter().map(|&reference| index(reference)).collect();
+                unknown(xml, "Unknown", ("index", index(variable.reference)), &names, only.is_none())?;
+            }
+            Ok(())
+        })?;
+    }
     Ok(())
+}
+
+/// Place in the list of variables, from 1.
+fn index(reference: u32) -> String {
+    (u64::from(reference) + 1).to_string()
 }

@@ -1,77 +1,31 @@
-//! The description of FMI 3.0.
+//! What only FMI 3.0 says: variables in elements of their type, and names by their value reference.
 
 use std::io;
 
-use orthopanel_fmu::{FMI3_CO_SIMULATION, GENERATOR, MODEL_IDENTIFIER, Quantity, Variable};
+use orthopanel_fmu::{FMI3_CO_SIMULATION, FMI3_MODEL_EXCHANGE, Variable};
 
-use super::{Description, Xml, default_experiment, dependencies, log_categories, units};
+use super::{Description, Unknown, Xml, common_attributes, empty, unknown, value_attributes};
 
-pub(super) fn write(xml: &mut Xml, description: &Description) -> io::Result<()> {
-    let root = [
-        ("fmiVersion", "3.0"),
-        ("modelName", &description.options.name),
-        ("instantiationToken", description.token),
-        ("description", &description.options.description),
-        ("generationTool", GENERATOR),
-        ("variableNamingConvention", "flat"),
-    ];
-    xml.create_element("fmiModelDescription").with_attributes(root).write_inner_content(|xml| {
-        xml.create_element("CoSimulation")
-            .with_attribute(("modelIdentifier", MODEL_IDENTIFIER))
-            .with_attributes(FMI3_CO_SIMULATION.iter().copied())
-            .write_empty()?;
-        units(xml)?;
-        log_categories(xml)?;
-        default_experiment(xml, description.experiment)?;
-        xml.create_element("ModelVariables").write_inner_content(|xml| {
-            description.variables.variables().iter().try_for_each(|variable| typed(xml, variable))
-        })?;
-        structure(xml, description)
-    })?;
-    Ok(())
+pub(super) const INTERFACES: [(&str, &[(&str, &str)]); 2] =
+    [("ModelExchange", FMI3_MODEL_EXCHANGE), ("CoSimulation", FMI3_CO_SIMULATION)];
+
+pub(super) fn variable(xml: &mut Xml, variable: &Variable) -> io::Result<()> {
+    let mut attributes = common_attributes(variable);
+    attributes.extend(value_attributes(variable, variable.derivative_of.map(|state| state.to_string())));
+    empty(xml, if variable.quantity.unit().is_some() { "Float64" } else { "Boolean" }, &attributes)
 }
 
-fn typed(xml: &mut Xml, variable: &Variable) -> io::Result<()> {
-    let reference = variable.reference.to_string();
-    let mut attributes = vec![
-        ("name", variable.name.as_str()),
-        ("valueReference", &reference),
-        ("description", &variable.description),
-        ("causality", variable.quantity.causality()),
-    ];
-    attributes.extend(match variable.quantity.causality() {
-        "parameter" => vec![("variability", "fixed"), ("initial", "exact")],
-        "output" => vec![("variability", "continuous"), ("initial", "calculated")],
-        _ => vec![("variability", "continuous")],
-    });
-    let unit = variable.quantity.unit();
-    attributes.extend(unit.map(|unit| ("unit", unit)));
-    match variable.quantity {
-        Quantity::Force(_) => attributes.push(("start", "0")),
-        Quantity::ForceLinear => attributes.push(("start", "false")),
-        _ => {}
-    }
-    let kind = if unit.is_some() { "Float64" } else { "Boolean" };
-    xml.create_element(kind).with_attributes(attributes).write_empty()?;
-    Ok(())
-}
-
-/// Outputs, and as initial unknowns the same again; FMI 3.0 names variables by their value reference.
-fn structure(xml: &mut Xml, description: &Description) -> io::Result<()> {
-    xml.create_element("ModelStructure").write_inner_content(|xml| {
-        for kind in ["Output", "InitialUnknown"] {
-            let variables = description.variables.variables().iter();
-            for variable in variables.filter(|variable| variable.quantity.causality() == "output") {
-                let names: Vec<String> = variable.dependencies.iter().map(u32::to_string).collect();
-                let reference = variable.reference.to_string();
-                let mut element = xml.create_element(kind).with_attribute(("valueReference", reference.as_str()));
-                for (name, value) in dependencies(&names) {
-                    element = element.with_attribute((name, value.as_str()));
-                }
-                element.write_empty()?;
-            }
+pub(super) fn structure(xml: &mut Xml, description: &Description) -> io::Result<()> {
+    let mut element = |element: &str, variable: &Variable, initial| {
+        let names: Vec<String> = variable.dependencies.iter().map(u32::to_string).collect();
+        unknown(xml, element, ("valueReference", variable.reference.to_string()), &names, initial)
+    };
+    for (kind, variable) in description.unknowns() {
+        match kind {
+            Unknown::Output => element("Output", variable, false)?,
+            Unknown::Derivative => element("ContinuousStateDerivative", variable, false)?,
         }
-        Ok(())
-    })?;
-    Ok(())
+    }
+    // All of them are calculated from forces and states, at the start as later.
+    description.unknowns().try_for_each(|(_, variable)| element("InitialUnknown", variable, true))
 }

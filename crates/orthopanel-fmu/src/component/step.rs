@@ -22,43 +22,49 @@ impl Component {
             return Err(orthopanel_model::ModelError::Size { name: "step", value: step, unit: "s" }.into());
         }
         let slack = TIME_SLACK * step + TIME_ROUNDING * start.abs();
-        if (start - self.time).abs() > slack {
-            return Err(FmuError::CommunicationPoint { given: start, time: self.time });
+        if (start - self.now.time).abs() > slack {
+            return Err(FmuError::CommunicationPoint { given: start, time: self.now.time });
         }
         let end = start + step;
         finite("end of the step", end)?;
-        if let Some(stop) = self.stop_time.filter(|&stop| end > stop + slack) {
+        if let Some(stop) = self.now.stop_time.filter(|&stop| end > stop + slack) {
             return Err(FmuError::PastStop { end, stop });
         }
-        if self.force_linear {
+        if self.now.force_linear {
             self.step_between_values(step)?;
-        } else if self.rates_given {
+        } else if self.now.rates_given {
             self.step_at_rates(step)?;
         } else {
-            self.apply_forces()?;
+            self.apply()?;
             self.stepper.advance_held(step)?;
+            self.now.slopes.fill(0.0);
         }
-        self.forces_before.copy_from_slice(&self.forces);
-        self.time = end;
+        self.now.forces_before.copy_from_slice(&self.now.forces);
+        self.now.time = end;
         Ok(())
     }
 
     fn step_between_values(&mut self, step: f64) -> Result<(), FmuError> {
         // Until the step succeeds the stepper holds the old force: then the values set are still to be told.
         self.forces_changed = true;
-        self.stepper.set_forces(&self.forces_before)?;
-        self.stepper.advance_linear(step, &self.forces)?;
+        self.stepper.set_forces(&self.now.forces_before)?;
+        self.stepper.advance_linear(step, &self.now.forces)?;
         self.forces_changed = false;
+        let ends = self.now.forces_before.iter().zip(&self.now.forces);
+        for (slope, (from, to)) in self.now.slopes.iter_mut().zip(ends) {
+            *slope = ((to - from) / step).clamp(f64::MIN, f64::MAX);
+        }
         Ok(())
     }
 
     fn step_at_rates(&mut self, step: f64) -> Result<(), FmuError> {
-        self.apply_forces()?;
-        for ((end, force), rate) in self.forces_after.iter_mut().zip(&self.forces).zip(&self.force_rates) {
+        self.apply()?;
+        for ((end, force), rate) in self.forces_after.iter_mut().zip(&self.now.forces).zip(&self.now.force_rates) {
             *end = force + rate * step;
         }
         self.stepper.advance_linear(step, &self.forces_after)?;
-        std::mem::swap(&mut self.forces, &mut self.forces_after);
+        self.now.forces.copy_from_slice(&self.forces_after);
+        self.now.slopes.copy_from_slice(&self.now.force_rates);
         self.forget_rates();
         Ok(())
     }

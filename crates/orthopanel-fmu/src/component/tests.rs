@@ -24,7 +24,7 @@ fn resource() -> Resource {
 }
 
 fn initialized(force_linear: bool) -> Component {
-    let mut component = Component::new(&resource());
+    let mut component = Component::new(&resource(), Interface::CoSimulation, "");
     component.set_booleans(&[FORCE_LINEAR], &[force_linear]).expect("a parameter");
     component.enter_initialization().expect("enter");
     component.exit_initialization().expect("exit");
@@ -88,7 +88,7 @@ fn refused_calls_change_nothing() {
     component.set_reals(&[FORCE], &[3.0]).expect("set");
     component.do_step(0.0, 1e-3).expect("step");
     let before = outputs(&mut component);
-    assert!(matches!(component.set_reals(&[FORCE, 99], &[8.0, 8.0]), Err(FmuError::UnknownReference { last: 5, .. })));
+    assert!(matches!(component.set_reals(&[FORCE, 99], &[8.0, 8.0]), Err(FmuError::UnknownReference { last: 13, .. })));
     assert!(matches!(component.set_reals(&[FORCE], &[f64::NAN]), Err(FmuError::NotFinite { .. })));
     assert!(matches!(component.set_reals(&[ACCELERATION], &[1.0]), Err(FmuError::NotSettable { .. })));
     assert!(matches!(component.set_reals(&[FORCE_LINEAR], &[1.0]), Err(FmuError::VariableType { .. })));
@@ -148,7 +148,7 @@ fn communication_points_added_up_with_rounding_are_accepted() {
 
 #[test]
 fn the_stop_time_bounds_the_steps() {
-    let mut component = Component::new(&resource());
+    let mut component = Component::new(&resource(), Interface::CoSimulation, "");
     assert!(matches!(component.set_experiment(1.0, Some(0.5)), Err(FmuError::StopBeforeStart { .. })));
     component.set_experiment(0.0, Some(0.3)).expect("experiment");
     component.enter_initialization().expect("enter");
@@ -195,7 +195,7 @@ proptest! {
     /// Whatever is called in whatever order: no panic, outputs stay numbers, a refused call changes nothing.
     #[test]
     fn random_calls_leave_a_sound_instance(calls in prop::collection::vec(any_call(), 1..40)) {
-        let mut component = Component::new(&resource());
+        let mut component = Component::new(&resource(), Interface::CoSimulation, "");
         for call in calls {
             let readable = |component: &mut Component| {
                 let mut values = [0.0; 5];

@@ -1,50 +1,62 @@
 //! Getting and setting variables; a call with one bad entry changes nothing.
 
-use super::{Component, Phase, finite};
+use super::{Component, Interface, Phase, finite};
 use crate::{FmuError, Quantity, Variable};
-
-const READABLE: &[Phase] = &[Phase::Initialization, Phase::Step, Phase::Terminated];
-const WRITABLE: &[Phase] = &[Phase::Instantiated, Phase::Initialization, Phase::Step];
 
 impl Component {
     /// Reads real variables; accelerations answer to the force now set (direct feedthrough).
     pub(crate) fn get_reals(&mut self, references: &[u32], values: &mut [f64]) -> Result<(), FmuError> {
-        self.require(READABLE)?;
+        self.require(Phase::READABLE)?;
         same_count(values.len(), references.len())?;
         for &reference in references {
             self.real(reference)?;
         }
-        self.apply_forces()?;
+        self.apply()?;
         for (&reference, value) in references.iter().zip(values) {
-            let quantity = self.real(reference)?;
-            // The table has the ports of the stepper: none of these is ever missing.
-            *value = match quantity {
-                Quantity::Time | Quantity::ForceLinear => Some(self.time),
-                Quantity::Force(port) => self.forces.get(port).copied(),
-                Quantity::Acceleration(port) => self.stepper.acceleration(port),
-                Quantity::Velocity(port) => self.stepper.velocity(port),
-                Quantity::Displacement(port) => self.stepper.displacement(port),
-            }
-            .unwrap_or(f64::NAN);
+            // The table has the ports and modes of the stepper: none of these is ever missing.
+            *value = match self.quantity(reference)? {
+                Quantity::Time => self.now.time,
+                quantity => self.panel_value(quantity, &self.stepper, &self.now.forces).unwrap_or(f64::NAN),
+            };
         }
         Ok(())
     }
 
-    /// Sets forces \[N\].
+    /// Sets forces \[N\], and before the start the initial state of the modes.
     pub(crate) fn set_reals(&mut self, references: &[u32], values: &[f64]) -> Result<(), FmuError> {
-        self.require(WRITABLE)?;
+        self.require(Phase::SETTABLE)?;
         same_count(values.len(), references.len())?;
         for (&reference, &value) in references.iter().zip(values) {
-            self.force_port(reference)?;
-            finite(&self.variable(reference)?.name, value)?;
-        }
-        for (&reference, &value) in references.iter().zip(values) {
-            let port = self.force_port(reference)?;
-            if let Some(force) = self.forces.get_mut(port) {
-                *force = value;
+            self.check_settable(reference)?;
+            if !value.is_finite() {
+                return finite(&self.variable(reference)?.name, value);
             }
         }
+        for (&reference, &value) in references.iter().zip(values) {
+            self.set_real(self.quantity(reference)?, value)?;
+        }
         self.forces_changed = true;
+        Ok(())
+    }
+
+    fn set_real(&mut self, quantity: Quantity, value: f64) -> Result<(), FmuError> {
+        match quantity {
+            Quantity::Force(port) => {
+                if let Some(force) = self.now.forces.get_mut(port) {
+                    *force = value;
+                }
+            }
+            Quantity::ModalPosition(mode) => {
+                let [_, velocity] = self.stepper.mode_state(mode).unwrap_or_default();
+                self.stepper.set_mode_state(mode, [value, velocity])?;
+            }
+            Quantity::ModalVelocity(mode) => {
+                let [position, _] = self.stepper.mode_state(mode).unwrap_or_default();
+                self.stepper.set_mode_state(mode, [position, value])?;
+            }
+            // Refused by `check_settable`.
+            _ => {}
+        }
         Ok(())
     }
 
@@ -55,10 +67,15 @@ impl Component {
         orders: &[i32],
         rates: &[f64],
     ) -> Result<(), FmuError> {
-        self.require(WRITABLE)?;
+        self.require(Phase::SETTABLE)?;
+        if self.now.interface == Interface::ModelExchange {
+            return Err(FmuError::NotOffered(
+                "input derivatives are of <CoSimulation>: in model exchange set the input",
+            ));
+        }
         same_count(rates.len(), references.len())?;
         same_count(orders.len(), references.len())?;
-        if self.force_linear {
+        if self.now.force_linear {
             return Err(FmuError::DerivativeBesideLinear);
         }
         for ((&reference, &order), &rate) in references.iter().zip(orders).zip(rates) {
@@ -70,39 +87,46 @@ impl Component {
         }
         for (&reference, &rate) in references.iter().zip(rates) {
             let port = self.force_port(reference)?;
-            if let Some(slot) = self.force_rates.get_mut(port) {
+            if let Some(slot) = self.now.force_rates.get_mut(port) {
                 *slot = rate;
-                self.rates_given = true;
+                self.now.rates_given = true;
             }
         }
         Ok(())
     }
 
-    /// Reads Boolean variables.
-    pub(crate) fn get_booleans(&self, references: &[u32], values: &mut [bool]) -> Result<(), FmuError> {
-        self.require(READABLE)?;
+    /// Reads Boolean variables, in the type that the version of the standard has for them.
+    pub(crate) fn get_booleans<B: From<bool> + Clone>(
+        &self,
+        references: &[u32],
+        values: &mut [B],
+    ) -> Result<(), FmuError> {
+        self.require(Phase::READABLE)?;
         same_count(values.len(), references.len())?;
         for &reference in references {
             self.boolean(reference)?;
         }
-        values.fill(self.force_linear);
+        values.fill(B::from(self.now.force_linear));
         Ok(())
     }
 
-    /// Sets Boolean variables: the fixed parameter `force_linear`, until initialization ends.
-    pub(crate) fn set_booleans(&mut self, references: &[u32], values: &[bool]) -> Result<(), FmuError> {
-        self.require(WRITABLE)?;
+    /// Sets Boolean variables: the fixed parameter `force_linear`, until initialization ends. All but false is true.
+    pub(crate) fn set_booleans<B: From<bool> + PartialEq>(
+        &mut self,
+        references: &[u32],
+        values: &[B],
+    ) -> Result<(), FmuError> {
+        self.require(Phase::SETTABLE)?;
         same_count(values.len(), references.len())?;
         for &reference in references {
             let variable = self.boolean(reference)?;
-            if self.phase == Phase::Step {
-                let reason = "a fixed parameter is set before or in initialization mode";
-                return Err(not_settable(variable, reason));
+            if !Phase::BEFORE_START.contains(&self.now.phase) {
+                return Err(not_settable(variable, "a fixed parameter is set before or in initialization mode"));
             }
         }
-        if let Some(&last) = values.last() {
-            self.force_linear = last;
-            if last {
+        if let Some(last) = values.last() {
+            self.now.force_linear = *last != B::from(false);
+            if self.now.force_linear {
                 self.forget_rates();
             }
         }
@@ -118,14 +142,19 @@ impl Component {
     }
 
     fn variable(&self, reference: u32) -> Result<&Variable, FmuError> {
-        let last = u32::try_from(self.variables.variables().len()).unwrap_or(u32::MAX).saturating_sub(1);
-        self.variables.get(reference).ok_or(FmuError::UnknownReference { reference, last })
+        self.variables.get(reference).ok_or_else(|| {
+            let last = u32::try_from(self.variables.variables().len()).unwrap_or(u32::MAX).saturating_sub(1);
+            FmuError::UnknownReference { reference, last }
+        })
+    }
+
+    pub(super) fn quantity(&self, reference: u32) -> Result<Quantity, FmuError> {
+        self.variable(reference).map(|variable| variable.quantity)
     }
 
     fn real(&self, reference: u32) -> Result<Quantity, FmuError> {
-        let variable = self.variable(reference)?;
-        match variable.quantity {
-            Quantity::ForceLinear => Err(wrong_type(variable, REAL)),
+        match self.quantity(reference)? {
+            Quantity::ForceLinear => Err(wrong_type(self.variable(reference)?, REAL)),
             quantity => Ok(quantity),
         }
     }
@@ -141,9 +170,24 @@ impl Component {
     fn force_port(&self, reference: u32) -> Result<usize, FmuError> {
         match self.real(reference)? {
             Quantity::Force(port) => Ok(port),
-            Quantity::Time => Err(not_settable(self.variable(reference)?, "time follows the steps")),
-            _ => Err(not_settable(self.variable(reference)?, "it is an output")),
+            _ => Err(not_settable(self.variable(reference)?, "input derivatives are of forces only")),
         }
+    }
+
+    fn check_settable(&self, reference: u32) -> Result<(), FmuError> {
+        let reason = match self.real(reference)? {
+            Quantity::Force(_) => return Ok(()),
+            Quantity::ModalPosition(_) | Quantity::ModalVelocity(_) => {
+                if Phase::BEFORE_START.contains(&self.now.phase) {
+                    return Ok(());
+                }
+                "the initial state is set before or in initialization mode (model exchange: set continuous states)"
+            }
+            Quantity::Time => "time follows the steps",
+            Quantity::ModalPositionRate(_) | Quantity::ModalVelocityRate(_) => "it is the derivative of a state",
+            _ => "it is an output",
+        };
+        Err(not_settable(self.variable(reference)?, reason))
     }
 }
 
@@ -159,6 +203,6 @@ fn not_settable(variable: &Variable, reason: &'static str) -> FmuError {
     FmuError::NotSettable { name: variable.name.clone(), reference: variable.reference, reason }
 }
 
-fn same_count(values: usize, references: usize) -> Result<(), FmuError> {
+pub(super) fn same_count(values: usize, references: usize) -> Result<(), FmuError> {
     if values == references { Ok(()) } else { Err(FmuError::Count { values, references }) }
 }

@@ -4,10 +4,12 @@ use std::ffi::c_int;
 
 use super::{Boolean, Callbacks, Pointer, Text};
 use crate::FmuError;
-use crate::boundary::{self, Instantiation, Status, c_text};
+use crate::boundary::{self, Instantiation, c_text, entries, transitions};
+use crate::component::Interface;
 use crate::logging::{Category, Sink};
 use crate::resource_location::from_uri;
 
+const MODEL_EXCHANGE: c_int = 0;
 const CO_SIMULATION: c_int = 1;
 
 #[unsafe(no_mangle)]
@@ -28,6 +30,7 @@ unsafe extern "C" fn fmi2Instantiate(
     let instance_name = unsafe { boundary::text(name, "instanceName") };
     let given = Instantiation {
         call: "fmi2Instantiate",
+        interface: if kind == MODEL_EXCHANGE { Interface::ModelExchange } else { Interface::CoSimulation },
         token: guid,
         location,
         to_folder: from_uri,
@@ -35,8 +38,8 @@ unsafe extern "C" fn fmi2Instantiate(
     };
     let sink = sink(callbacks, instance_name.as_ref().copied().unwrap_or_default());
     let check = || match kind {
-        CO_SIMULATION => instance_name.map(drop),
-        _ => Err(FmuError::NotOffered("<CoSimulation> only: pass fmi2CoSimulation")),
+        MODEL_EXCHANGE | CO_SIMULATION => instance_name.map(drop),
+        _ => Err(FmuError::NotOffered("<ModelExchange> and <CoSimulation>: pass one of these as fmuType")),
     };
     // SAFETY: null or C strings of the importer.
     unsafe { boundary::instantiate(&given, sink, check) }
@@ -62,43 +65,15 @@ unsafe extern "C" fn fmi2FreeInstance(c: Pointer) {
     unsafe { boundary::free(c) }
 }
 
-#[unsafe(no_mangle)]
-unsafe extern "C" fn fmi2SetDebugLogging(c: Pointer, on: Boolean, count: usize, categories: *const Text) -> Status {
-    // SAFETY: a live instance and `count` C strings, under the FMI contract.
-    unsafe {
-        boundary::call(c, "fmi2SetDebugLogging", |instance| boundary::set_logging(instance, on != 0, count, categories))
-    }
-}
-
-#[unsafe(no_mangle)]
-unsafe extern "C" fn fmi2SetupExperiment(
-    c: Pointer,
-    _tolerance_defined: Boolean,
-    _tolerance: f64,
-    start: f64,
-    stop_defined: Boolean,
-    stop: f64,
-) -> Status {
-    let stop = (stop_defined != 0).then_some(stop);
-    // SAFETY: a live instance, under the FMI contract.
-    unsafe { boundary::call(c, "fmi2SetupExperiment", |instance| instance.component.set_experiment(start, stop)) }
-}
-
-/// Defines calls that take the instance alone.
-macro_rules! transitions {
-    ($($name:ident: $method:ident, $event:literal;)*) => {$(
-        #[unsafe(no_mangle)]
-        unsafe extern "C" fn $name(c: Pointer) -> Status {
-            // SAFETY: a live instance, under the FMI contract.
-            unsafe {
-                boundary::call(c, stringify!($name), |instance| {
-                    instance.component.$method()?;
-                    instance.logger.log(Category::Events, $event);
-                    Ok(())
-                })
-            }
-        }
-    )*};
+entries! {
+    fmi2SetDebugLogging(on: Boolean, count: usize, categories: *const Text) |instance| {
+        boundary::set_logging(instance, on != 0, count, categories)
+    };
+    fmi2SetupExperiment(
+        _tolerance_defined: Boolean, _tolerance: f64, start: f64, stop_defined: Boolean, stop: f64
+    ) |instance| {
+        instance.component.set_experiment(start, (stop_defined != 0).then_some(stop))
+    };
 }
 
 transitions! {

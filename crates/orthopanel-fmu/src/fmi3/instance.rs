@@ -2,7 +2,8 @@
 
 use super::{Boolean, LogMessage, Pointer, Reference, Text, Unused};
 use crate::FmuError;
-use crate::boundary::{self, Instantiation, Status, c_text};
+use crate::boundary::{self, Instantiation, c_text, entries, transitions};
+use crate::component::Interface;
 use crate::logging::{Category, Sink};
 use crate::resource_location::from_path;
 
@@ -23,6 +24,7 @@ unsafe extern "C" fn fmi3InstantiateCoSimulation(
 ) -> Pointer {
     let given = Instantiation {
         call: "fmi3InstantiateCoSimulation",
+        interface: Interface::CoSimulation,
         token,
         location: resources,
         to_folder: from_path,
@@ -45,15 +47,25 @@ unsafe extern "C" fn fmi3InstantiateCoSimulation(
 
 #[unsafe(no_mangle)]
 unsafe extern "C" fn fmi3InstantiateModelExchange(
-    _name: Text,
-    _token: Text,
-    _resources: Text,
+    name: Text,
+    token: Text,
+    resources: Text,
     _visible: Boolean,
-    _logging_on: Boolean,
+    logging_on: Boolean,
     environment: Pointer,
     log_message: LogMessage,
 ) -> Pointer {
-    not_instantiated(sink(environment, log_message), "fmi3InstantiateModelExchange")
+    let given = Instantiation {
+        call: "fmi3InstantiateModelExchange",
+        interface: Interface::ModelExchange,
+        token,
+        location: resources,
+        to_folder: from_path,
+        logging_on: logging_on != 0,
+    };
+    // SAFETY: null or C strings of the importer, here and in the check.
+    let check = || unsafe { boundary::text(name, "instanceName") }.map(drop);
+    unsafe { boundary::instantiate(&given, sink(environment, log_message), check) }
 }
 
 #[unsafe(no_mangle)]
@@ -69,12 +81,8 @@ unsafe extern "C" fn fmi3InstantiateScheduledExecution(
     _lock_preemption: Unused,
     _unlock_preemption: Unused,
 ) -> Pointer {
-    not_instantiated(sink(environment, log_message), "fmi3InstantiateScheduledExecution")
-}
-
-fn not_instantiated(sink: Sink, call: &str) -> Pointer {
-    let error = FmuError::NotOffered("<CoSimulation> only: call fmi3InstantiateCoSimulation");
-    sink(Category::Error, &format!("{call}: {error}"));
+    let error = FmuError::NotOffered("<ModelExchange> and <CoSimulation> only: call the function of one of these");
+    sink(environment, log_message)(Category::Error, &format!("fmi3InstantiateScheduledExecution: {error}"));
     std::ptr::null_mut()
 }
 
@@ -94,57 +102,18 @@ unsafe extern "C" fn fmi3FreeInstance(instance: Pointer) {
     unsafe { boundary::free(instance) }
 }
 
-#[unsafe(no_mangle)]
-unsafe extern "C" fn fmi3SetDebugLogging(
-    instance: Pointer,
-    on: Boolean,
-    count: usize,
-    categories: *const Text,
-) -> Status {
-    // SAFETY: a live instance and `count` C strings, under the FMI contract.
-    unsafe {
-        boundary::call(instance, "fmi3SetDebugLogging", |instance| {
-            boundary::set_logging(instance, on != 0, count, categories)
-        })
-    }
-}
-
-#[unsafe(no_mangle)]
-unsafe extern "C" fn fmi3EnterInitializationMode(
-    instance: Pointer,
-    _tolerance_defined: Boolean,
-    _tolerance: f64,
-    start: f64,
-    stop_defined: Boolean,
-    stop: f64,
-) -> Status {
-    let stop = (stop_defined != 0).then_some(stop);
-    // SAFETY: a live instance, under the FMI contract.
-    unsafe {
-        boundary::call(instance, "fmi3EnterInitializationMode", |instance| {
-            instance.component.set_experiment(start, stop)?;
-            instance.component.enter_initialization()?;
-            instance.logger.log(Category::Events, "initialization begins");
-            Ok(())
-        })
-    }
-}
-
-/// Defines calls that take the instance alone.
-macro_rules! transitions {
-    ($($name:ident: $method:ident, $event:literal;)*) => {$(
-        #[unsafe(no_mangle)]
-        unsafe extern "C" fn $name(instance: Pointer) -> Status {
-            // SAFETY: a live instance, under the FMI contract.
-            unsafe {
-                boundary::call(instance, stringify!($name), |instance| {
-                    instance.component.$method()?;
-                    instance.logger.log(Category::Events, $event);
-                    Ok(())
-                })
-            }
-        }
-    )*};
+entries! {
+    fmi3SetDebugLogging(on: Boolean, count: usize, categories: *const Text) |instance| {
+        boundary::set_logging(instance, on != 0, count, categories)
+    };
+    fmi3EnterInitializationMode(
+        _tolerance_defined: Boolean, _tolerance: f64, start: f64, stop_defined: Boolean, stop: f64
+    ) |instance| {
+        instance.component.set_experiment(start, (stop_defined != 0).then_some(stop))?;
+        instance.component.enter_initialization()?;
+        instance.logger.log(Category::Events, "initialization begins");
+        Ok(())
+    };
 }
 
 transitions! {

@@ -1,98 +1,25 @@
 //! FMI 3.0, 2.2.7: getting and setting variables; all are scalars.
 
-use super::{Boolean, Pointer, Reference, Text};
-use crate::boundary::{self, Status, array, array_mut};
+use super::{Boolean, Reference, Text};
+use crate::boundary::{absent_types, array, array_mut, entries};
 
-#[unsafe(no_mangle)]
-unsafe extern "C" fn fmi3GetFloat64(
-    instance: Pointer,
-    references: *const Reference,
-    count: usize,
-    values: *mut f64,
-    value_count: usize,
-) -> Status {
-    // SAFETY: a live instance and arrays of the lengths given, under the FMI contract.
-    unsafe {
-        boundary::call(instance, "fmi3GetFloat64", |instance| {
-            let references = array(references, count, "valueReferences")?;
-            instance.component.get_reals(references, array_mut(values, value_count, "values")?)
-        })
-    }
-}
-
-#[unsafe(no_mangle)]
-unsafe extern "C" fn fmi3SetFloat64(
-    instance: Pointer,
-    references: *const Reference,
-    count: usize,
-    values: *const f64,
-    value_count: usize,
-) -> Status {
-    // SAFETY: a live instance and arrays of the lengths given, under the FMI contract.
-    unsafe {
-        boundary::call(instance, "fmi3SetFloat64", |instance| {
-            let references = array(references, count, "valueReferences")?;
-            instance.component.set_reals(references, array(values, value_count, "values")?)
-        })
-    }
-}
-
-#[unsafe(no_mangle)]
-unsafe extern "C" fn fmi3GetBoolean(
-    instance: Pointer,
-    references: *const Reference,
-    count: usize,
-    values: *mut Boolean,
-    value_count: usize,
-) -> Status {
-    // SAFETY: a live instance and arrays of the lengths given, under the FMI contract.
-    unsafe {
-        boundary::call(instance, "fmi3GetBoolean", |instance| {
-            let references = array(references, count, "valueReferences")?;
-            let values = array_mut(values, value_count, "values")?;
-            let mut read = vec![false; values.len()];
-            instance.component.get_booleans(references, &mut read)?;
-            values.iter_mut().zip(read).for_each(|(value, read)| *value = Boolean::from(read));
-            Ok(())
-        })
-    }
-}
-
-#[unsafe(no_mangle)]
-unsafe extern "C" fn fmi3SetBoolean(
-    instance: Pointer,
-    references: *const Reference,
-    count: usize,
-    values: *const Boolean,
-    value_count: usize,
-) -> Status {
-    // SAFETY: a live instance and arrays of the lengths given, under the FMI contract.
-    unsafe {
-        boundary::call(instance, "fmi3SetBoolean", |instance| {
-            let values: Vec<bool> = array(values, value_count, "values")?.iter().map(|&value| value != 0).collect();
-            instance.component.set_booleans(array(references, count, "valueReferences")?, &values)
-        })
-    }
-}
-
-/// Defines getters and setters of types that no variable has: a call with no reference is done, any other refused.
-macro_rules! absent_types {
-    ($($name:ident($asked:literal, $($argument:ty),+);)*) => {$(
-        #[unsafe(no_mangle)]
-        unsafe extern "C" fn $name(
-            instance: Pointer,
-            references: *const Reference,
-            count: usize,
-            $(_: $argument),+
-        ) -> Status {
-            // SAFETY: a live instance and `count` references, under the FMI contract.
-            unsafe {
-                boundary::call(instance, stringify!($name), |instance| {
-                    instance.component.refuse_type(array(references, count, "valueReferences")?, $asked)
-                })
-            }
-        }
-    )*};
+entries! {
+    fmi3GetFloat64(references: *const Reference, count: usize, values: *mut f64, value_count: usize) |instance| {
+        let references = array(references, count, "valueReferences")?;
+        instance.component.get_reals(references, array_mut(values, value_count, "values")?)
+    };
+    fmi3SetFloat64(references: *const Reference, count: usize, values: *const f64, value_count: usize) |instance| {
+        let references = array(references, count, "valueReferences")?;
+        instance.component.set_reals(references, array(values, value_count, "values")?)
+    };
+    fmi3GetBoolean(references: *const Reference, count: usize, values: *mut Boolean, value_count: usize) |instance| {
+        let references = array(references, count, "valueReferences")?;
+        instance.component.get_booleans(references, array_mut(values, value_count, "values")?)
+    };
+    fmi3SetBoolean(references: *const Reference, count: usize, values: *const Boolean, value_count: usize) |instance| {
+        let references = array(references, count, "valueReferences")?;
+        instance.component.set_booleans(references, array(values, value_count, "values")?)
+    };
 }
 
 absent_types! {

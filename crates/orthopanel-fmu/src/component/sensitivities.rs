@@ -1,0 +1,154 @@
+//! Derivatives: of outputs and state derivatives by inputs and states, and of outputs by time.
+//!
+//! Every output is linear in forces and modal states and zero where these are. So its derivative along a direction
+//! is the output itself, asked of a panel whose forces and states *are* that direction.
+
+use super::{Component, Phase, finite};
+use crate::{FmuError, Quantity};
+
+impl Component {
+    /// $\delta y = \sum_k (\partial y/\partial x_k)\,\delta x_k$ for each unknown $y$.
+    pub(crate) fn directional_derivative(
+        &mut self,
+        unknowns: &[u32],
+        knowns: &[u32],
+        seed: &[f64],
+        sensitivity: &mut [f64],
+    ) -> Result<(), FmuError> {
+        self.require(Phase::DIFFERENTIABLE)?;
+        super::values::same_count(seed.len(), knowns.len())?;
+        super::values::same_count(sensitivity.len(), unknowns.len())?;
+        self.check_unknowns(unknowns)?;
+        for (&known, &value) in knowns.iter().zip(seed) {
+            self.check_known(known)?;
+            finite("seed", value)?;
+        }
+        self.rest_probe()?;
+        for (&known, &value) in knowns.iter().zip(seed) {
+            self.add_to_probe(known, value)?;
+        }
+        self.probe.stepper.set_forces(&self.probe.forces)?;
+        for (&unknown, value) in unknowns.iter().zip(sensitivity) {
+            *value = self.probe_output(unknown)?;
+        }
+        Ok(())
+    }
+
+    /// $\bar x_k = \sum_y \bar y\,\partial y/\partial x_k$ for each known $x_k$: the transpose, known by known.
+    pub(crate) fn adjoint_derivative(
+        &mut self,
+        unknowns: &[u32],
+        knowns: &[u32],
+        seed: &[f64],
+        sensitivity: &mut [f64],
+    ) -> Result<(), FmuError> {
+        self.require(Phase::DIFFERENTIABLE)?;
+        super::values::same_count(seed.len(), unknowns.len())?;
+        super::values::same_count(sensitivity.len(), knowns.len())?;
+        self.check_unknowns(unknowns)?;
+        for &value in seed {
+            finite("seed", value)?;
+        }
+        for &known in knowns {
+            self.check_known(known)?;
+        }
+        for (&known, value) in knowns.iter().zip(sensitivity) {
+            self.rest_probe()?;
+            self.add_to_probe(known, 1.0)?;
+            self.probe.stepper.set_forces(&self.probe.forces)?;
+            let mut sum = 0.0;
+            for (&unknown, weight) in unknowns.iter().zip(seed) {
+                sum += weight * self.probe_output(unknown)?;
+            }
+            *value = sum;
+        }
+        Ok(())
+    }
+
+    /// First derivatives of outputs by time: at the end of a step, along the force of that step.
+    pub(crate) fn output_derivatives(
+        &mut self,
+        references: &[u32],
+        orders: &[i32],
+        values: &mut [f64],
+    ) -> Result<(), FmuError> {
+        self.require(&[Phase::Step, Phase::Terminated])?;
+        super::values::same_count(orders.len(), references.len())?;
+        super::values::same_count(values.len(), references.len())?;
+        for (&reference, &order) in references.iter().zip(orders) {
+            match self.quantity(reference)? {
+                Quantity::Acceleration(_) | Quantity::Velocity(_) | Quantity::Displacement(_) => {}
+                _ => return Err(self.not_differentiable(reference, "give outputs only")),
+            }
+            if order != 1 {
+                return Err(FmuError::OutputDerivativeOrder { order });
+            }
+        }
+        self.apply()?;
+        self.probe.forces.copy_from_slice(&self.now.slopes);
+        for mode in 0..self.mode_count() {
+            self.probe.stepper.set_mode_state(mode, self.stepper.mode_rate(mode).unwrap_or_default())?;
+        }
+        self.probe.stepper.set_forces(&self.probe.forces)?;
+        for (&reference, value) in references.iter().zip(values) {
+            *value = self.probe_output(reference)?;
+        }
+        Ok(())
+    }
+
+    fn check_unknowns(&self, unknowns: &[u32]) -> Result<(), FmuError> {
+        for &unknown in unknowns {
+            match self.quantity(unknown)? {
+                Quantity::Time | Quantity::ForceLinear | Quantity::Force(_) => {
+                    return Err(self.not_differentiable(unknown, "unknowns are outputs and derivatives of states"));
+                }
+                _ => {}
+            }
+        }
+        Ok(())
+    }
+
+    fn check_known(&self, known: u32) -> Result<(), FmuError> {
+        match self.quantity(known)? {
+            Quantity::Force(_) | Quantity::ModalPosition(_) | Quantity::ModalVelocity(_) => Ok(()),
+            _ => Err(self.not_differentiable(known, "knowns are inputs and continuous states")),
+        }
+    }
+
+    fn rest_probe(&mut self) -> Result<(), FmuError> {
+        for mode in 0..self.mode_count() {
+            self.probe.stepper.set_mode_state(mode, [0.0; 2])?;
+        }
+        self.probe.forces.fill(0.0);
+        Ok(())
+    }
+
+    fn add_to_probe(&mut self, known: u32, value: f64) -> Result<(), FmuError> {
+        let quantity = self.quantity(known)?;
+        let probe = &mut self.probe;
+        match quantity {
+            Quantity::Force(port) => {
+                if let Some(force) = probe.forces.get_mut(port) {
+                    *force += value;
+                }
+            }
+            Quantity::ModalPosition(mode) | Quantity::ModalVelocity(mode) => {
+                let mut state = probe.stepper.mode_state(mode).unwrap_or_default();
+                state[usize::from(matches!(quantity, Quantity::ModalVelocity(_)))] += value;
+                probe.stepper.set_mode_state(mode, state)?;
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+
+    fn probe_output(&self, reference: u32) -> Result<f64, FmuError> {
+        let value = self.panel_value(self.quantity(reference)?, &self.probe.stepper, &self.probe.forces);
+        Ok(value.unwrap_or(f64::NAN))
+    }
+
+    fn not_differentiable(&self, reference: u32, reason: &'static str) -> FmuError {
+        let name = self.variables.get(reference).map(|variable| variable.name.clone()).unwrap_or_default();
+        FmuError::NotDifferentiable { name, reference, reason }
+    }
+}

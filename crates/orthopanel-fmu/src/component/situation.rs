@@ -1,0 +1,105 @@
+//! All that calls can change in an instance, so that it can be kept, put back and carried away.
+
+use serde::{Deserialize, Serialize};
+
+use super::{Component, Interface, Phase};
+use crate::FmuError;
+
+/// What an instance holds beside the motion of its modes.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Situation {
+    pub(super) interface: Interface,
+    pub(super) phase: Phase,
+    /// \[s\]
+    pub(super) time: f64,
+    pub(super) stop_time: Option<f64>,
+    pub(super) force_linear: bool,
+    /// Force at each port as set \[N\].
+    pub(super) forces: Vec<f64>,
+    /// Force at the end of the last step: where a linear force starts.
+    pub(super) forces_before: Vec<f64>,
+    /// Input derivatives for the next step \[N/s\], and whether the importer gave some.
+    pub(super) force_rates: Vec<f64>,
+    pub(super) rates_given: bool,
+    /// Rate of each force over the last step \[N/s\], for the derivatives of outputs.
+    pub(super) slopes: Vec<f64>,
+}
+
+impl Situation {
+    pub(super) fn new(interface: Interface, force_count: usize) -> Self {
+        let forces = vec![0.0; force_count];
+        Self {
+            interface,
+            phase: Phase::Instantiated,
+            time: 0.0,
+            stop_time: None,
+            force_linear: false,
+            forces_before: forces.clone(),
+            force_rates: forces.clone(),
+            rates_given: false,
+            slopes: forces.clone(),
+            forces,
+        }
+    }
+
+    /// Does it fit an instance of this interface with so many forces, and is every number one?
+    fn check(&self, interface: Interface, force_count: usize) -> Result<(), FmuError> {
+        if self.interface != interface {
+            return Err(FmuError::State("it was taken from an instance of the other interface"));
+        }
+        let lists = [&self.forces, &self.forces_before, &self.force_rates, &self.slopes];
+        if lists.iter().any(|list| list.len() != force_count) {
+            return Err(FmuError::State("it holds another number of forces"));
+        }
+        let numbers = lists.into_iter().flatten().chain(&self.stop_time).chain([&self.time]);
+        if numbers.into_iter().any(|number| !number.is_finite()) {
+            return Err(FmuError::State("it holds a number that is not finite"));
+        }
+        Ok(())
+    }
+}
+
+/// An FMU state: where an instance stands, with the motion of its modes.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Snapshot {
+    situation: Situation,
+    /// Modal coordinate and its rate of each mode.
+    motion: Vec<[f64; 2]>,
+}
+
+impl Component {
+    /// All that a later [`Component::restore`] needs to go on from here.
+    pub(crate) fn snapshot(&self) -> Snapshot {
+        Snapshot { situation: self.now.clone(), motion: self.stepper.state() }
+    }
+
+    /// Does a snapshot fit this instance?
+    pub(super) fn check_snapshot(&self, snapshot: &Snapshot) -> Result<(), FmuError> {
+        snapshot.situation.check(self.now.interface, self.now.forces.len())?;
+        if snapshot.motion.len() != self.mode_count() {
+            return Err(FmuError::State("it holds another number of modes"));
+        }
+        if snapshot.motion.iter().flatten().any(|number| !number.is_finite()) {
+            return Err(FmuError::State("it holds a number that is not finite"));
+        }
+        Ok(())
+    }
+
+    /// Goes back to where a snapshot was taken; one that does not fit changes nothing.
+    pub(crate) fn restore(&mut self, snapshot: &Snapshot) -> Result<(), FmuError> {
+        self.check_snapshot(snapshot)?;
+        self.stepper.set_state(&snapshot.motion)?;
+        self.now.clone_from(&snapshot.situation);
+        self.forces_changed = true;
+        Ok(())
+    }
+
+    /// Back to where instantiation left it.
+    pub(crate) fn reset(&mut self) -> Result<(), FmuError> {
+        let at_rest = vec![[0.0; 2]; self.mode_count()];
+        self.stepper.set_state(&at_rest)?;
+        self.now = Situation::new(self.now.interface, self.now.forces.len());
+        self.forces_changed = true;
+        Ok(())
+    }
+}
