@@ -1,13 +1,14 @@
-"""A co-simulation master of a few lines for both versions, over FMPy's bindings."""
+"""A master of a few lines for both versions and both interfaces, over FMPy's bindings."""
 
 import contextlib
+import ctypes
 import shutil
 
 import numpy as np
 from fmpy import extract, read_model_description
 from fmpy.fmi1 import FMICallException
-from fmpy.fmi2 import FMU2Slave, fmi2CallbackFunctions, fmi2CallbackLoggerTYPE
-from fmpy.fmi3 import FMU3Slave
+from fmpy.fmi2 import FMU2Model, FMU2Slave, fmi2CallbackFunctions, fmi2CallbackLoggerTYPE
+from fmpy.fmi3 import FMU3Model, FMU3Slave
 
 REFUSED = FMICallException
 OUTPUTS = ("displacement", "velocity", "acceleration")
@@ -16,17 +17,19 @@ OUTPUTS = ("displacement", "velocity", "acceleration")
 class Panel:
     """One instance, driven by names.
 
-    `fmu` is the file, or the folder where it was unpacked; `messages` keeps what the logger was told.
+    `fmu` is the file, or the folder where it was unpacked; `model_exchange` chooses that interface in place of
+    co-simulation; `messages` keeps what the logger was told.
     """
 
-    def __init__(self, fmu, guid=None, logging=False, messages=None):
+    def __init__(self, fmu, guid=None, logging=False, messages=None, model_exchange=False):
         self.description = read_model_description(str(fmu))
         self.version = int(self.description.fmiVersion[0])
         self.references = {v.name: v.valueReference for v in self.description.modelVariables}
         self.temporary = not fmu.is_dir()
         self.folder = extract(str(fmu)) if self.temporary else str(fmu)
         self.messages = [] if messages is None else messages
-        kind = {2: FMU2Slave, 3: FMU3Slave}[self.version]
+        kinds = {2: FMU2Model, 3: FMU3Model} if model_exchange else {2: FMU2Slave, 3: FMU3Slave}
+        kind = kinds[self.version]
         self.fmu = kind(
             guid=self.description.guid if guid is None else guid,
             unzipDirectory=self.folder,
@@ -62,6 +65,11 @@ class Panel:
     def get(self, *names):
         getter = self.fmu.getReal if self.version == 2 else self.fmu.getFloat64
         return list(getter([self.references[name] for name in names]))
+
+    def call(self, names, *arguments):
+        """Status of a C function, called past FMPy's checks; `names` are those of FMI 2.0 and 3.0."""
+        name = names[self.version - 2]
+        return getattr(self.fmu.dll, name)(ctypes.c_void_p(self.fmu.component), *arguments)
 
     def step(self, start, size):
         self.fmu.doStep(currentCommunicationPoint=start, communicationStepSize=size)

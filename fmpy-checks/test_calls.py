@@ -98,11 +98,8 @@ def test_null_pointers(running):
 
 
 def test_what_is_not_offered_says_so(running):
-    component = ctypes.c_void_p(running.fmu.component)
-    name = "fmi2GetFMUstate" if running.version == 2 else "fmi3GetFMUState"
-    state = ctypes.c_void_p()
-    assert getattr(running.fmu.dll, name)(component, ctypes.byref(state)) == 3
-    assert "canGetAndSetFMU" in running.messages[-1] and "= false" in running.messages[-1]
+    assert running.call(("fmi2CancelStep", "fmi3EnterConfigurationMode")) == 3
+    assert "not offered: modelDescription.xml says" in running.messages[-1]
 
 
 def test_input_derivatives_of_another_order(fmu2):
