@@ -1,0 +1,5 @@
+"""`python -m blind_tracing`: see cli.py."""
+
+from .cli import main
+
+main()

@@ -1,0 +1,170 @@
+r"""The Timoshenko beam of the test cases, by finite elements: what a sandwich beam is where it is not uniform or free.
+
+$$ (E I \psi')' - k' G A\, g(x) (w' + \psi) = r \rho I \ddot\psi, \qquad
+   (k' G A\, g(x) (w' + \psi) + N w')' + f = \rho A \ddot w $$
+
+with g(x) the shear stiffness along the beam over its nominal one, r a factor on the rotary inertia, N a tension, and a
+left end that is free, clamped, or held by springs. I = b t^3/12, A = b t, k' = 2/3, x from the centre of the piece.
+Elements are Lagrange polynomials of order 8 on Gauss-Lobatto nodes; an element boundary stands at every point and at
+every step of g. Source of the equations: Saito, Parbery, Okuno, Kawano, J. Sound Vib. 208(2), 1997. SI units.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.polynomial import legendre
+from scipy.linalg import eigh
+
+from .modes import reduced
+
+SHEAR_COEFFICIENT = 2.0 / 3.0
+ORDER = 8
+ELEMENT = 0.04  # m, the longest element: seven nodes in the shortest wave at modes.CUT
+
+
+@dataclass(frozen=True)
+class Panel:
+    """A piece and its constants (m, m, m, kg/m2, Pa, Pa), and where it departs from the uniform free beam.
+
+    `shear_along(x)` is g(x), `steps` the places where g jumps; `rotary` is r; `tension` is N [N]; `left` is "free",
+    "clamped", or the pair (translation [N/m], rotation [N m/rad]) of the springs that hold the left end.
+    """
+
+    length: float
+    width: float
+    thickness: float
+    mass_per_area: float
+    e_x: float
+    g_zx: float
+    shear_along: Callable | None = None
+    steps: tuple = ()
+    rotary: float = 1.0
+    tension: float = 0.0
+    left: str | tuple = "free"
+
+    @property
+    def bending(self):
+        """E_x I, N m2."""
+        return self.e_x * self.width * self.thickness**3 / 12.0
+
+    @property
+    def shear(self):
+        """k' G_zx A, N."""
+        return SHEAR_COEFFICIENT * self.g_zx * self.width * self.thickness
+
+    @property
+    def mass_per_length(self):
+        """rho A, kg/m."""
+        return self.mass_per_area * self.width
+
+    @property
+    def rotary_inertia(self):
+        """r rho I, kg m."""
+        return self.rotary * self.mass_per_length * self.thickness**2 / 12.0
+
+    @property
+    def mass(self):
+        """Of the whole piece, kg."""
+        return self.mass_per_length * self.length
+
+
+def solve(panel, points, zeta, spans=()):
+    """Modes seen from `points` [m] and, after those, as the mean shear strain w' + psi over each of `spans` [m, m]."""
+    ends = _boundaries(panel, points)
+    mesh = _Mesh(panel, ends)
+    stiffness = mesh.bending + mesh.shear + mesh.tension
+    held = _hold(panel, stiffness, len(mesh.nodes))
+    free = np.setdiff1d(np.arange(len(stiffness)), held)
+    square, vectors = eigh(stiffness[np.ix_(free, free)], mesh.mass[np.ix_(free, free)])
+    seen = np.vstack([*(mesh.deflection(x) for x in points), *(mesh.mean_strain(*span) for span in spans)])
+    rigid = _rigid_shapes(panel, points, len(spans))
+    return reduced(square, vectors, seen[:, free], rigid, zeta, mesh.shear[np.ix_(free, free)])
+
+
+def _boundaries(panel, points):
+    """Both ends, every point, every step of the shear stiffness, and equal parts no longer than ELEMENT between."""
+    half = panel.length / 2.0
+    outside = [x for x in points if abs(x) > half]
+    if outside:
+        raise ValueError(f"x = {outside[0]} m lies off the piece: |x| <= {half} m")
+    inner = [x for x in panel.steps if abs(x) < half]
+    fixed = np.unique(np.round([-half, half, *points, *inner], 9))
+    parts = [np.linspace(a, b, int(np.ceil((b - a) / ELEMENT)) + 1)[:-1] for a, b in zip(fixed[:-1], fixed[1:])]
+    return np.concatenate([*parts, fixed[-1:]])
+
+
+def _hold(panel, stiffness, count):
+    """Put the left end's springs into `stiffness`; the unknowns that a clamp takes away."""
+    if panel.left == "free":
+        return []
+    if panel.left == "clamped":
+        return [0, count]
+    translation, rotation = panel.left
+    stiffness[0, 0] += translation
+    stiffness[count, count] += rotation
+    return []
+
+
+def _rigid_shapes(panel, points, strains):
+    """Translation, and rotation (w = x, psi = -1) unless a tension turns it back, seen from the points."""
+    if panel.left != "free":
+        return np.zeros((0, len(points) + strains))
+    inertia = panel.mass * panel.length**2 / 12.0 + panel.rotary_inertia * panel.length
+    shapes = [np.full(len(points), 1.0 / np.sqrt(panel.mass)), np.asarray(points) / np.sqrt(inertia)]
+    if panel.tension:
+        shapes.pop()
+    return np.hstack([np.stack(shapes), np.zeros((len(shapes), strains))])
+
+
+class _Mesh:
+    """Node places and matrices; unknowns are w at all nodes, then psi at all nodes."""
+
+    def __init__(self, panel, ends):
+        self.ends = ends
+        # The interior Gauss-Lobatto nodes are the roots of the Legendre polynomial's slope.
+        inner = np.sort(legendre.legroots(legendre.legder([0.0] * ORDER + [1.0])).real)
+        self.lobatto = np.concatenate([[-1.0], inner, [1.0]])
+        self.modal = np.linalg.inv(legendre.legvander(self.lobatto, ORDER))
+        count = ORDER * (len(ends) - 1) + 1
+        self.nodes = np.empty(count)
+        self.bending, self.shear, self.tension, self.mass = (np.zeros((2 * count, 2 * count)) for _ in range(4))
+        point, weight = legendre.leggauss(ORDER + 3)
+        value, slope = self._basis(point)
+        for element, (left, right) in enumerate(zip(ends[:-1], ends[1:])):
+            half = (right - left) / 2.0
+            w = np.arange(ORDER * element, ORDER * (element + 1) + 1)
+            psi = w + count
+            both = np.concatenate([w, psi])
+            self.nodes[w] = left + half * (self.lobatto + 1.0)
+            factor = np.ones(len(point))
+            if panel.shear_along is not None:
+                factor = panel.shear_along(left + half * (point + 1.0))
+            strain = np.hstack([slope / half, value])
+            self.shear[np.ix_(both, both)] += panel.shear * half * strain.T @ ((weight * factor)[:, None] * strain)
+            squares, slopes = (a.T @ (weight[:, None] * a) for a in (value, slope))
+            self.bending[np.ix_(psi, psi)] += panel.bending / half * slopes
+            self.tension[np.ix_(w, w)] += panel.tension / half * slopes
+            self.mass[np.ix_(w, w)] += panel.mass_per_length * half * squares
+            self.mass[np.ix_(psi, psi)] += panel.rotary_inertia * half * squares
+
+    def _basis(self, point):
+        """The element's shape functions and their slopes at `point` in -1..1."""
+        slope = np.stack([legendre.legval(point, legendre.legder(row)) for row in np.eye(ORDER + 1)], axis=1)
+        return legendre.legvander(point, ORDER) @ self.modal, slope @ self.modal
+
+    def mean_strain(self, left, right):
+        """The row that reads the mean of w' + psi from `left` to `right`."""
+        point, weight = legendre.leggauss(40)
+        places = (left + right) / 2.0 + (right - left) / 2.0 * point
+        turned = sum(part / 2.0 * np.roll(self.deflection(x), len(self.nodes)) for x, part in zip(places, weight))
+        return (self.deflection(right) - self.deflection(left)) / (right - left) + turned
+
+    def deflection(self, x):
+        """The row that reads w(x)."""
+        element = int(np.clip(np.searchsorted(self.ends, x, side="right") - 1, 0, len(self.ends) - 2))
+        left, right = self.ends[element : element + 2]
+        value, _ = self._basis(np.array([(2.0 * x - left - right) / (right - left)]))
+        row = np.zeros(len(self.mass))
+        row[ORDER * element : ORDER * (element + 1) + 1] = value[0]
+        return row

@@ -1,0 +1,155 @@
+"""What counts as right: one case, and the rates over a set.
+
+In the rough set a `record-gain` within 3 % of one and a `hammer-offset` below 3 mm are true of the test beside the
+effect put in, so naming them is no fault, and they are passed over when the first name is read.
+"""
+
+import math
+from collections import Counter
+
+import numpy as np
+
+SMALL_GAIN = 0.03
+SMALL_OFFSET = 3e-3  # m
+INTERVAL = 1.96  # standard deviations: 95 %
+# Of each set: name, key in a judged case, rate asked, and whether that is the least or the most.
+RIGHT = ("right effect named first", "right_first")
+INSIDE = ("parameters inside their 95 % interval", "inside", 0.90, "least")
+FLOOR = ("held-out error after within 1.2 of the noise floor", "at_floor", 0.90, "least")
+ASKED = {
+    "clean": [(*RIGHT, 0.98, "least"), INSIDE, FLOOR],
+    "rough": [(*RIGHT, 0.90, "least"), INSIDE, FLOOR],
+    "single-place": [("right effect named or among the alternatives", "named", 0.95, "least"), INSIDE, FLOOR],
+    "none": [("no false effect", "quiet", 0.99, "least"), FLOOR],
+    "pairs": [("both effects of the pair named", "both", 0.90, "least"), INSIDE, FLOOR],
+    "outside": [("explained by a wrong name", "explained", 0.10, "most")],
+}
+
+
+def case(truth, answer):
+    """One case judged: its faults in words and a truth value (or list) for every rate."""
+    wanted = [effect["id"] for effect in truth["effects"]]
+    named = [effect for effect in answer["effects"] if not (truth["rough"] and _small(effect, wanted))]
+    ids = [effect.get("id") for effect in named]
+    explained = answer["verdict"] in ("explained", "ambiguous")
+    judged = {
+        "case": truth["case"],
+        "kind": truth["kind"],
+        "verdict": answer["verdict"],
+        "named": bool(set(wanted) & {*ids, *answer["alternatives"]}),
+        "ids": ids,
+        "alternatives": list(answer["alternatives"]),
+        "right_first": explained and ids[:1] == wanted[:1],
+        "both": set(wanted) <= set(ids),
+        "quiet": answer["verdict"] == "nothing-missing",
+        "explained": answer["verdict"] == "explained",
+        "inside": [],
+        "at_floor": None,
+    }
+    faults = [answer["reason"]] if "reason" in answer else []
+    known = {effect["id"]: effect["parameters"] for effect in truth["effects"]}
+    for effect in named:
+        if effect.get("id") in known:
+            for name, ok, why in _parameters(known[effect["id"]], effect.get("parameters", {})):
+                judged["inside"].append(ok)
+                if not ok:
+                    faults.append(f"{effect['id']} {name} {why}")
+    ratio = _ratio(answer)
+    judged["held_out_over_floor"] = ratio
+    if ratio is not None:
+        judged["at_floor"] = ratio <= 1.2
+    judged["faults"] = faults
+    return judged
+
+
+def summary(name, judged):
+    """Rates asked and reached, the confusion matrix and every judged case. `reached` is true where all rates are."""
+    rates = []
+    for label, key, asked, at in ASKED[name]:
+        values = [one for case in judged for one in _listed(case[key])]
+        reached = float(np.mean(values)) if values else None
+        met = reached is not None and (reached >= asked if at == "least" else reached <= asked)
+        rates.append({"name": label, "asked": asked, "at": at, "reached": reached, "of": len(values), "met": met})
+        if key != "inside" and key != "at_floor":
+            for case in judged:
+                if bool(case[key]) != (at == "least"):
+                    case["faults"].insert(0, f"{case['verdict']}: {_called(case)}")
+    confusion = {}
+    for case in judged:
+        confusion.setdefault(case["kind"], Counter())[_called(case)] += 1
+    ratios = [case["held_out_over_floor"] for case in judged if case["held_out_over_floor"] is not None]
+    return {
+        "cases": len(judged),
+        "rates": rates,
+        "reached": all(rate["met"] for rate in rates),
+        "held_out_over_floor": {
+            "median": float(np.median(ratios)) if ratios else None,
+            "worst": float(np.max(ratios)) if ratios else None,
+            "of": len(ratios),
+        },
+        "confusion": {kind: dict(count) for kind, count in sorted(confusion.items())},
+        "judged": judged,
+    }
+
+
+def _called(case):
+    """The effects named where the verdict is that some explain the data (+ for pairs, * where ambiguous)."""
+    if case["verdict"] not in ("explained", "ambiguous") or not case["ids"]:
+        return case["verdict"]
+    return " + ".join(map(str, case["ids"])) + ("*" if case["verdict"] == "ambiguous" else "")
+
+
+def _small(effect, wanted):
+    """True where a rough test has this by nature and it is not the effect put in."""
+    if effect.get("id") in wanted:
+        return False
+    values = [value for name, value, _ in _flat(effect.get("parameters", {})) if name.split("_")[0] != "record"]
+    if effect.get("id") == "record-gain":
+        return all(abs(value - 1.0) <= SMALL_GAIN for value in values)
+    if effect.get("id") == "hammer-offset":
+        return all(abs(value) <= SMALL_OFFSET for value in values)
+    return False
+
+
+def _parameters(known, found):
+    """Name, whether the truth lies in the 95 % interval, and what is wrong, for every parameter that both give.
+
+    A list in the truth (one number a record) is met by parameters name_0, name_1, ... or by a list of values."""
+    given = {name: (value, std) for name, value, std in _flat(found)}
+    judged = []
+    for name, true, _ in _flat({name: {"value": value, "std": 0.0} for name, value in known.items()}):
+        if name not in given or name == "record":
+            continue
+        value, std = given[name]
+        inside = std is not None and abs(value - true) <= INTERVAL * std
+        judged.append((name, inside, f"{value:.4g} +- {'?' if std is None else f'{std:.1g}'}, truth {true:.4g}"))
+    return judged
+
+
+def _flat(parameters):
+    """(name, value, std) of parameters as {"value", "std"} or as numbers; lists become name_0, name_1, ..."""
+    flat = []
+    for name, entry in parameters.items():
+        value, std = (entry.get("value"), entry.get("std")) if isinstance(entry, dict) else (entry, None)
+        if isinstance(value, list):
+            stds = std if isinstance(std, list) else [std] * len(value)
+            flat += [(f"{name}_{i}", v, s) for i, (v, s) in enumerate(zip(value, stds))]
+        elif isinstance(value, (int, float)) and math.isfinite(value):
+            flat.append((name, float(value), std))
+    return flat
+
+
+def _ratio(answer):
+    """Held-out error after over the noise floor, as the tracer states both; None where it does not."""
+    error = answer.get("error") or {}
+    after, floor = (error.get("after") or {}).get("held_out"), error.get("noise_floor")
+    if not isinstance(after, (int, float)) or not isinstance(floor, (int, float)) or floor <= 0.0:
+        return None
+    return after / floor
+
+
+def _listed(value):
+    """The truth values a case adds to a rate: none, one or several."""
+    if value is None:
+        return []
+    return value if isinstance(value, list) else [value]

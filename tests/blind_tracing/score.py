@@ -1,0 +1,65 @@
+"""Running a tracer over a made set, and how often it was right.
+
+A case's answer is one `orthopanel.trace/1` object on standard output. A command that fails, runs over its time or
+prints something else counts as a wrong answer, with its reason kept.
+"""
+
+import json
+import subprocess
+from concurrent.futures import ThreadPoolExecutor
+
+from . import files, judge
+
+SCHEMA = "orthopanel.blind-score/1"
+NO_ANSWER = {"verdict": "no answer", "effects": [], "alternatives": []}
+
+
+def score(out, command, parallel=2, timeout=120.0):
+    """The score of `command` on the set in `out`: a dictionary, see `judge.summary`."""
+    truth = files.read_truth(out)
+    folders = [out / case["case"] for case in truth["cases"]]
+    with ThreadPoolExecutor(parallel) as pool:
+        answers = list(pool.map(lambda folder: trace(folder, command, timeout), folders))
+    judged = [judge.case(case, answer) for case, answer in zip(truth["cases"], answers)]
+    return {"schema": SCHEMA, "set": truth["set"], "seed": truth["seed"]} | judge.summary(truth["set"], judged)
+
+
+def trace(folder, command, timeout):
+    """The tracer's answer to one case; NO_ANSWER with a `reason` where there is none."""
+    call = [*command, str(folder / "test.toml"), "--json"]
+    try:
+        done = subprocess.run(call, capture_output=True, text=True, timeout=timeout, check=False)
+    except subprocess.TimeoutExpired:
+        return NO_ANSWER | {"reason": f"no answer within {timeout:g} s"}
+    try:
+        answer = json.loads(done.stdout)
+    except json.JSONDecodeError:
+        said = done.stderr.strip().splitlines()
+        return NO_ANSWER | {"reason": f"exit {done.returncode}: {said[-1] if said else 'nothing printed'}"}
+    if not isinstance(answer, dict) or answer.get("schema") != "orthopanel.trace/1":
+        return NO_ANSWER | {"reason": "printed JSON that is no orthopanel.trace/1"}
+    return NO_ANSWER | answer
+
+
+def text(result):
+    """The score as a page: rates asked and reached, the confusion matrix, and the cases that went wrong."""
+    lines = [f"set {result['set']}, seed {result['seed']}: {result['cases']} cases", ""]
+    lines.append(f"{'rate':58} {'asked':>8} {'reached':>8}  of")
+    for rate in result["rates"]:
+        reached = "-" if rate["reached"] is None else f"{100.0 * rate['reached']:.1f} %"
+        mark = "" if rate["met"] else "  below" if rate["at"] == "least" else "  above"
+        asked = f"{'>=' if rate['at'] == 'least' else '<='}{100.0 * rate['asked']:.0f} %"
+        lines.append(f"{rate['name']:58} {asked:>8} {reached:>8}  {rate['of']}{mark}")
+    ratio = result["held_out_over_floor"]
+    if ratio["of"]:
+        lines.append(f"held-out error after over noise floor: median {ratio['median']:.2f}, worst {ratio['worst']:.2f}")
+    lines += ["", "truth (rows) and the effect named first, or the verdict:"]
+    width = max(len(kind) for kind in result["confusion"])
+    for kind, named in result["confusion"].items():
+        counts = sorted(named.items(), key=lambda pair: -pair[1])
+        lines.append(f"  {kind:{width}}  " + ", ".join(f"{count} {name}" for name, count in counts))
+    wrong = [case for case in result["judged"] if case["faults"]]
+    if wrong:
+        lines += ["", "cases with a fault:"]
+        lines += [f"  {case['case']} ({case['kind']}): " + "; ".join(case["faults"]) for case in wrong]
+    return "\n".join(lines)

@@ -1,0 +1,73 @@
+"""Which tests stand in which set, and how each is drawn from its seed."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from . import bench as benches
+from .catalogue import CANTILEVER, EFFECTS, NOT_SINGLE, PAIRS
+from .draw import Draw
+from .outside import OUTSIDE
+
+SETS = ("clean", "rough", "single-place", "none", "pairs", "outside")
+HIT_SPREAD = 0.7e-3  # m, of each hit about its place (rough)
+GAIN_SPREAD = 3e-3  # of each record's gain (rough)
+CORE_SPREAD = 5e-3  # rms of the core's shear stiffness along the piece (rough)
+
+
+@dataclass(frozen=True)
+class Case:
+    """A test to make: the name of its kind and what is in it."""
+
+    kind: str
+    effects: tuple
+    places: str = "roving"
+    rough: bool = False
+    cantilever: bool = False
+
+
+def cases(name, count):
+    """The cases of a set, `count` of each kind."""
+    if name in ("clean", "rough"):
+        kinds = [Case(e, (e,), rough=name == "rough", cantilever=e in CANTILEVER) for e in EFFECTS]
+    elif name == "single-place":
+        kinds = [Case(e, (e,), "single", cantilever=e in CANTILEVER) for e in EFFECTS if e not in NOT_SINGLE]
+    elif name == "none":
+        kinds = [Case("none", ()), Case("none, one place", (), "single"), Case("none, clamped", (), cantilever=True)]
+    elif name == "pairs":
+        kinds = [Case(" + ".join(pair), pair) for pair in PAIRS]
+    elif name == "outside":
+        kinds = [Case(kind, (kind,)) for kind in OUTSIDE]
+    else:
+        raise ValueError(f'set "{name}": one of {", ".join(SETS)}')
+    return [case for _ in range(count) for case in kinds]
+
+
+def build(case, random, sampling=None):
+    """The bench of a case and its truth: a list of effects with their parameters."""
+    bench = benches.draw(random, case.places, sampling, case.cantilever)
+    truth = []
+    for name in case.effects:
+        change = EFFECTS.get(name) or OUTSIDE[name]
+        truth.append({"id": name, "parameters": change(bench, Draw(random, strong=len(case.effects) > 1))})
+    if case.rough:
+        roughen(bench, random)
+    return bench, truth
+
+
+def roughen(bench, random):
+    """What every test by hand has: hits beside their place, gains that differ, a core that is not even."""
+    bench.off = bench.off + HIT_SPREAD * random.standard_normal(bench.off.shape)
+    bench.record_gain = bench.record_gain * (1.0 + GAIN_SPREAD * random.standard_normal(len(bench.forces)))
+    if bench.across is not None:
+        return  # the plate is even: its core cannot vary here
+    length, before = bench.panel.length, bench.panel.shear_along
+    waves = random.standard_normal((2, 6))
+    waves *= CORE_SPREAD / np.sqrt(np.sum(waves**2) / 2.0)
+
+    def uneven(x):
+        turns = 2.0 * np.pi * np.outer(x, np.arange(1, 7)) / length
+        field = 1.0 + np.cos(turns) @ waves[0] + np.sin(turns) @ waves[1]
+        return field * (before(x) if before else 1.0)
+
+    bench.change_panel(shear_along=uneven)
