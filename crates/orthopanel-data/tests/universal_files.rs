@@ -73,7 +73,7 @@ fn val_all_eight_layouts_are_read_as_text() {
     for index in 0..8 {
         let (dataset, abscissa, ordinate) = layout(index);
         let file = read(&dataset.text());
-        assert_eq!(file.records[0].abscissa, abscissa, "layout {index}");
+        assert_eq!(*file.records[0].abscissa, *abscissa, "layout {index}");
         // Six digits are printed.
         assert_close(&file.records[0].ordinate, &ordinate, 5e-6);
         assert_eq!(file.notes, [""; 0], "layout {index}");
@@ -86,7 +86,7 @@ fn val_all_eight_layouts_are_read_as_bytes_of_either_order() {
         for big_endian in [false, true] {
             let (dataset, abscissa, ordinate) = layout(index);
             let file = read(&dataset.binary(big_endian));
-            assert_eq!(file.records[0].abscissa, abscissa, "layout {index}");
+            assert_eq!(*file.records[0].abscissa, *abscissa, "layout {index}");
             // Half a unit in the last place of single precision.
             assert_close(&file.records[0].ordinate, &ordinate, 6e-8);
             assert_eq!(file.notes, [""; 0], "layout {index}");
@@ -145,7 +145,7 @@ fn val_a_single_abscissa_with_double_values_is_found_by_the_length() {
         })
         .collect();
     let file = read(&dataset.binary_with(false, data.len(), &data));
-    assert_eq!(file.records[0].abscissa, abscissa);
+    assert_eq!(*file.records[0].abscissa, *abscissa);
     assert_close(&file.records[0].ordinate, &ordinate, 0.0);
 }
 

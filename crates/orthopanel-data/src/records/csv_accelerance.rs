@@ -1,6 +1,6 @@
 //! CSV of an accelerance: columns `frequency_hz,real,imag` and, where known, `coherence`.
 
-use std::path::Path;
+use std::{path::Path, sync::Arc};
 
 use num_complex::Complex64;
 
@@ -17,6 +17,7 @@ fn read(bytes: &[u8], path: &Path) -> Result<RecordFile, DataError> {
     let mut columns = csv_columns::read(bytes, path, &["frequency_hz", "real", "imag"], &["coherence"])?.into_iter();
     let mut next = || columns.next().flatten();
     let (frequency, re, im) = (next().unwrap_or_default(), next().unwrap_or_default(), next().unwrap_or_default());
+    let frequency: Arc<[f64]> = frequency.into();
     let value = re.iter().zip(&im).map(|(&re, &im)| Complex64::new(re, im)).collect();
     let record = |kind, title: &str, abscissa, ordinate, numerator, denominator| Record {
         kind,

@@ -1,6 +1,6 @@
 //! CSV of one hit: columns `time_s,force_n,acceleration_m_s2`.
 
-use std::path::Path;
+use std::{path::Path, sync::Arc};
 
 use super::{Axis, Format, Port, Record, RecordFile, RecordKind, Samples, csv_columns, record, whole};
 use crate::{DataError, Location};
@@ -14,9 +14,10 @@ pub(super) const FORMAT: Format = Format {
 fn read(bytes: &[u8], path: &Path) -> Result<RecordFile, DataError> {
     let columns = csv_columns::read(bytes, path, &["time_s", "force_n", "acceleration_m_s2"], &[])?;
     let mut columns = columns.into_iter().map(Option::unwrap_or_default);
-    let (time, force) = (columns.next().unwrap_or_default(), columns.next().unwrap_or_default());
+    let time: Arc<[f64]> = columns.next().unwrap_or_default().into();
+    let force = columns.next().unwrap_or_default();
     let acceleration = columns.next().unwrap_or_default();
-    let record = |title: &str, abscissa: Vec<f64>, ordinate: Vec<f64>, data_type: i64, unit: &str| Record {
+    let record = |title: &str, abscissa: Arc<[f64]>, ordinate: Vec<f64>, data_type: i64, unit: &str| Record {
         kind: RecordKind::Time,
         title: title.into(),
         at: Box::new(Location { key: title.into(), ..*whole(path) }),

@@ -1,5 +1,7 @@
 //! What every reader returns.
 
+use std::sync::Arc;
+
 use num_complex::Complex64;
 
 use crate::Location;
@@ -28,8 +30,8 @@ pub struct Record {
     pub response: Port,
     /// Where and in which direction the reference acts, for functions of two channels.
     pub reference: Port,
-    /// Time \[s\] or frequency \[Hz\].
-    pub abscissa: Vec<f64>,
+    /// Time \[s\] or frequency \[Hz\]; records of one file that stand at the same times share it.
+    pub abscissa: Arc<[f64]>,
     /// Values, in the units of `numerator` over `denominator`.
     pub ordinate: Samples,
     /// What is measured along the ordinate.

@@ -9,7 +9,7 @@ mod cursor;
 mod header;
 mod step;
 
-use std::path::Path;
+use std::{path::Path, sync::Arc};
 
 use num_complex::Complex64;
 
@@ -41,7 +41,8 @@ fn read(bytes: &[u8], path: &Path) -> Result<RecordFile, DataError> {
         match text.trim_start().get(..digits).and_then(|number| number.parse::<u32>().ok()) {
             Some(58) => {
                 let number = records.len() + 1;
-                let read = record(&mut cursor, &text, line.start, number, &mut notes)?;
+                let before = records.last().map(|record: &Record| &record.abscissa);
+                let read = record(&mut cursor, &text, line.start, number, before, &mut notes)?;
                 records.push(read);
             }
             Some(other) => {
@@ -65,6 +66,7 @@ fn record(
     first_line: &str,
     start: usize,
     number: usize,
+    before: Option<&Arc<[f64]>>,
     notes: &mut Vec<String>,
 ) -> Result<Record, DataError> {
     let key = format!("record {number}");
@@ -75,7 +77,7 @@ fn record(
         Encoding::Binary { big_endian, .. } => binary::values(cursor, &header, big_endian, &key, notes)?,
     };
     let layout = header.layout;
-    let mut abscissa = Vec::with_capacity(header.points);
+    let mut listed = Vec::new();
     let mut real = Vec::new();
     let mut complex = Vec::new();
     if layout.even {
@@ -86,7 +88,6 @@ fn record(
             ));
             header.step = restored;
         }
-        abscissa.extend((0..header.points).map(|index| header.start + header.step * index as f64));
     }
     match (layout.even, layout.complex) {
         (true, false) => real = values,
@@ -95,11 +96,11 @@ fn record(
             for point in values.chunks_exact(layout.values_per_point()) {
                 match point {
                     [x, value] => {
-                        abscissa.push(*x);
+                        listed.push(*x);
                         real.push(*value);
                     }
                     [x, value @ ..] => {
-                        abscissa.push(*x);
+                        listed.push(*x);
                         complex.extend(complex_number(value));
                     }
                     [] => {}
@@ -116,10 +117,26 @@ fn record(
         }
     }
     let ordinate = if layout.complex { Samples::Complex(complex) } else { Samples::Real(real) };
-    check_numbers(cursor, data_start, &key, &abscissa, &ordinate)?;
+    let abscissa = if layout.even { even(&header, before) } else { listed.into() };
+    check_numbers(cursor, data_start, &key, &abscissa, &ordinate, layout.even)?;
     let Header { title, response, reference, numerator, denominator, .. } = header;
     let at = cursor.at(start, &key);
     Ok(Record { kind, title, at, response, reference, abscissa, ordinate, numerator, denominator })
+}
+
+/// Times or frequencies of an even record: those of the record before where they are the same.
+fn even(header: &Header, before: Option<&Arc<[f64]>>) -> Arc<[f64]> {
+    let (start, step, points) = (header.start, header.step, header.points);
+    let due = |index: usize| start + step * index as f64;
+    // Two even grids of one length that share the first two and the last point share all.
+    let same = |other: &[f64]| {
+        other.len() == points
+            && [0, 1, points - 1].iter().all(|&index| other.get(index).is_none_or(|&x| x == due(index)))
+    };
+    match before {
+        Some(before) if same(before) => Arc::clone(before),
+        _ => (0..points).map(due).collect(),
+    }
 }
 
 fn complex_number(parts: &[f64]) -> Option<Complex64> {
@@ -135,14 +152,24 @@ fn check_numbers(
     key: &str,
     abscissa: &[f64],
     ordinate: &Samples,
+    even: bool,
 ) -> Result<(), DataError> {
     let finite = |value: &Complex64| value.re.is_finite() && value.im.is_finite();
     let bad = match ordinate {
-        Samples::Real(values) => values.iter().position(|value| !value.is_finite()),
+        Samples::Real(values) => first_not_finite(values),
         Samples::Complex(values) => values.iter().position(|value| !finite(value)),
     };
-    if let Some(point) = bad.or_else(|| abscissa.iter().position(|x| !x.is_finite())) {
+    let last = abscissa.len().saturating_sub(1);
+    let bad_abscissa = || match abscissa.last() {
+        // Even times rise by a step that the header's reader has checked: only their end can overflow.
+        Some(end) if even => (!end.is_finite()).then_some(last),
+        _ => first_not_finite(abscissa),
+    };
+    if let Some(point) = bad.or_else(bad_abscissa) {
         return Err(DataError::NotFinite { at: cursor.at(data_start, key), point: point + 1 });
+    }
+    if even && ends_rise(abscissa) {
+        return Ok(());
     }
     let falls = abscissa.windows(2).position(|pair| !matches!(pair, [before, after] if before < after));
     match falls {
@@ -152,6 +179,18 @@ fn check_numbers(
             Err(DataError::Header { at: cursor.at(data_start, key), problem })
         }
     }
+}
+
+/// True where an even grid rises: where its points are greatest, at one of its ends, the step would be lost first.
+fn ends_rise(abscissa: &[f64]) -> bool {
+    let rises = |pair: Option<&[f64]>| !matches!(pair, Some([before, after]) if before >= after);
+    rises(abscissa.get(..2)) && rises(abscissa.get(abscissa.len().saturating_sub(2)..))
+}
+
+/// The first value that is not finite. Files are mostly sound, so all values are tested in one pass without branches.
+fn first_not_finite(values: &[f64]) -> Option<usize> {
+    let sound = values.iter().fold(true, |sound, value| sound & value.is_finite());
+    if sound { None } else { values.iter().position(|value| !value.is_finite()) }
 }
 
 /// Enough of a line to know it by: a corrupt file's line may be a megabyte long.
