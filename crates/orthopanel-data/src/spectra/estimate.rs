@@ -4,7 +4,9 @@ use num_complex::Complex64;
 
 use super::{
     accelerance::Accelerance,
-    hit_faults::median,
+    extremes::median,
+    hit_faults::HitFault,
+    overload::shared_extremes,
     spectrum::{Sums, sums},
     time_history::{Hit, TimeHistory},
     window::Window,
@@ -66,8 +68,13 @@ impl TimeHistory {
         let mut notes = self.notes.clone();
         let mut kept: Vec<&Hit> = Vec::new();
         let mut reasons = Vec::new();
+        let shared = shared_extremes(&self.hits);
         for (index, hit) in self.hits.iter().enumerate() {
-            let faults = hit.faults(self.rate);
+            let mut faults = hit.faults(self.rate);
+            let own = |fault: &HitFault| matches!(fault, HitFault::Overload { .. });
+            if !faults.iter().any(own) {
+                faults.extend(shared.iter().filter(|(of, _)| *of == index).map(|(_, fault)| *fault));
+            }
             let fatal = faults.iter().any(|fault| fault.is_fatal());
             for fault in &faults {
                 let verdict = if fault.is_fatal() { "left out" } else { "kept" };
@@ -185,7 +192,7 @@ fn noise_above(sums: &Sums, end: usize) -> Option<(f64, f64)> {
     let above = |spectrum: &[f64]| {
         let lines = spectrum.get(end.midpoint(top)..top).filter(|lines| lines.len() >= LEAST_NOISE_LINES)?;
         // |noise|^2 is exponentially distributed: its median is ln 2 of its mean, and what leaks hardly moves it.
-        Some(median(lines) / std::f64::consts::LN_2)
+        Some(median(lines.to_vec()) / std::f64::consts::LN_2)
     };
     above(&sums.force).zip(above(&sums.motion))
 }

@@ -2,7 +2,11 @@
 
 use std::fmt;
 
-use super::time_history::Hit;
+use super::{
+    extremes::{median, peak, sampled_median},
+    overload::overload,
+    time_history::Hit,
+};
 
 /// A channel of a hit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -22,7 +26,7 @@ pub enum HitFault {
     Overload {
         /// The channel.
         channel: Channel,
-        /// Samples in a row at the extreme.
+        /// Samples at the extreme, in a row or scattered.
         samples: usize,
         /// The extreme \[N or m/s²\].
         value: f64,
@@ -33,6 +37,13 @@ pub enum HitFault {
         after: f64,
         /// Its peak over the first one's \[1\].
         ratio: f64,
+    },
+    /// A blow too short for the sampling rate: the force is an anti-alias filter's ringing, not its own shape.
+    RateTooLow {
+        /// Samples that the pulse lasts.
+        samples: usize,
+        /// The sampling rate \[Hz\].
+        rate: f64,
     },
     /// A force that hardly stands out of its channel's noise.
     WeakForce {
@@ -63,11 +74,16 @@ impl fmt::Display for HitFault {
             Self::Silent(channel) => write!(f, "no signal in the {}", name(channel).0),
             Self::Overload { channel, samples, value } => {
                 let (name, unit) = name(channel);
-                write!(f, "{name} cut off: {samples} samples in a row at {value:.4} {unit} (overload)")
+                write!(f, "{name} cut off: {samples} samples at exactly {value:.4} {unit} (overload)")
             }
             Self::DoubleHit { after, ratio } => {
                 write!(f, "double hit: {:.1} % of the force again after {:.1} ms", 100.0 * ratio, 1e3 * after)
             }
+            Self::RateTooLow { samples, rate } => write!(
+                f,
+                "the force lasts {samples} samples and rings on: the sampling rate of {rate:.1} Hz is too low for this \
+                 blow, or the record was decimated: record faster, or hit with a softer tip"
+            ),
             Self::WeakForce { signal_to_noise } => {
                 write!(f, "force only {signal_to_noise:.1} times its noise, {LEAST_SIGNAL_TO_NOISE} needed")
             }
@@ -79,23 +95,14 @@ impl fmt::Display for HitFault {
     }
 }
 
-/// Samples in a row at the very same extreme, next to a drop: a smooth peak has two at most.
-const CLIPPED_RUN: usize = 3;
-
-/// The drop beside it, over the signal's reach: a peak flat by few bits falls by a bit, a clipped one at once.
-const CLIPPED_DROP: f64 = 0.01;
-
-/// Samples in a row at the extreme that are clipped, drop or not.
-const FLAT_RUN: usize = 8;
-
 /// Force that counts as a touch, over the peak: less does not change the spectrum by more than this.
 const TOUCH: f64 = 0.05;
 
-/// Samples exactly on the extreme, in runs of any length, from which it may be the end of the range.
-const SCATTERED_TOUCHES: usize = 8;
-
 /// Next to the pulse, within three times its length, up to this the anti-alias filter rings.
 const FILTER_RINGING: f64 = 0.2;
+
+/// Samples that a pulse lasts at most where the sampling rate decides its shape: a band-limited pulse is no shorter.
+const SHORTEST_PULSE: usize = 4;
 
 /// Peak over noise below which the force spectrum is no better than a few per cent.
 const LEAST_SIGNAL_TO_NOISE: f64 = 20.0;
@@ -126,45 +133,16 @@ impl Hit {
     }
 }
 
-fn overload(channel: Channel, values: &[f64]) -> Option<HitFault> {
-    let middle = sampled_median(values);
-    let extremes = [values.iter().copied().fold(f64::MIN, f64::max), values.iter().copied().fold(f64::MAX, f64::min)];
-    let reach = extremes.iter().fold(0.0, |reach: f64, extreme| reach.max((extreme - middle).abs()));
-    // A quiet side rests on its last bit; a clipped one stands far from the middle.
-    extremes.into_iter().filter(|extreme| (extreme - middle).abs() > 0.5 * reach).find_map(|value| {
-        let mut samples = 0;
-        let mut start = 0;
-        for run in values.chunk_by(|a, b| a == b) {
-            let end = start + run.len();
-            if run.first() == Some(&value) && run.len() > samples {
-                let beside = [start.checked_sub(1), Some(end)].map(|n| n.and_then(|n| values.get(n)));
-                let drop = beside.into_iter().flatten().fold(0.0, |drop: f64, next| drop.max((value - next).abs()));
-                if run.len() >= FLAT_RUN || (run.len() >= CLIPPED_RUN && drop > CLIPPED_DROP * reach) {
-                    samples = run.len();
-                }
-            }
-            start = end;
-        }
-        // A fast oscillation touches its range for a sample or two at a time, but again and again, and seldom comes
-        // close to it without touching: a free extreme is met once, and its neighbourhood often.
-        let touches = values.iter().filter(|&&other| other == value).count();
-        let close = values.iter().filter(|&&other| other != value && (other - value).abs() < TOUCH * reach).count();
-        if touches >= SCATTERED_TOUCHES && touches > 2 * close {
-            samples = samples.max(touches);
-        }
-        (samples > 0).then_some(HitFault::Overload { channel, samples, value })
-    })
-}
-
 fn force_fault(force: &[f64], rate: f64) -> Option<HitFault> {
     let offset = sampled_median(force);
     let (peak, height) = peak(force, offset);
     let sign = height.signum();
-    let push: Vec<f64> = force.iter().map(|value| sign * (value - offset)).collect();
+    let push = |value: f64| sign * (value - offset);
     let threshold = TOUCH * height.abs();
     // Runs of samples that push: [from, to).
     let mut runs: Vec<(usize, usize, f64)> = Vec::new();
-    for (n, &value) in push.iter().enumerate() {
+    for (n, &value) in force.iter().enumerate() {
+        let value = push(value);
         if value <= threshold {
             continue;
         }
@@ -175,14 +153,12 @@ fn force_fault(force: &[f64], rate: f64) -> Option<HitFault> {
     }
     let &(from, to, _) = runs.iter().find(|(from, to, _)| (*from..*to).contains(&peak))?;
     let near = 3 * (to - from);
-    let quiet: Vec<f64> = push
-        .iter()
-        .enumerate()
-        .filter(|(n, _)| n + near < from || *n >= to + near)
-        .map(|(_, value)| value.abs())
-        .collect();
+    let before = force.get(..from.saturating_sub(near)).unwrap_or_default();
+    let after = force.get(to + near..).unwrap_or_default();
+    let stride = ((before.len() + after.len()) / 1000).max(1);
+    let quiet = before.iter().chain(after).step_by(stride).map(|&value| push(value).abs()).collect();
     // The median of |noise| is 0.6745 standard deviations; second touches hardly move it.
-    let noise = sampled_median(&quiet) / 0.674_49;
+    let noise = median(quiet) / 0.674_49;
     let signal_to_noise = height.abs() / noise;
     if noise > 0.0 && signal_to_noise < LEAST_SIGNAL_TO_NOISE {
         return Some(HitFault::WeakForce { signal_to_noise });
@@ -191,9 +167,14 @@ fn force_fault(force: &[f64], rate: f64) -> Option<HitFault> {
         let gap = if other_from >= to { other_from - to } else { from.saturating_sub(other_to) };
         gap > near || top > FILTER_RINGING * height.abs()
     });
-    second.map(|&(other, _, top)| HitFault::DoubleHit {
-        after: (other as f64 - from as f64) / rate,
-        ratio: top / height.abs(),
+    let &(other, _, top) = second?;
+    // A hammer only pushes, a filter swings both ways. Between the pulse and what looks like a second touch of a pulse
+    // this short, a pull tells the filter's ringing.
+    let (start, end) = (from.min(other), to.max(other));
+    let pulls = force.get(start..end).unwrap_or_default().iter().any(|&value| push(value) < -threshold);
+    Some(match to - from {
+        samples if samples <= SHORTEST_PULSE && pulls => HitFault::RateTooLow { samples, rate },
+        _ => HitFault::DoubleHit { after: (other as f64 - from as f64) / rate, ratio: top / height.abs() },
     })
 }
 
@@ -209,27 +190,4 @@ fn not_decayed(acceleration: &[f64]) -> Option<HitFault> {
     let mut last_eight = rms.rchunks(4).map(|part| part.iter().sum::<f64>());
     let falls = last_eight.next().zip(last_eight.next()).is_some_and(|(last, before)| last < FALLING * before);
     (ratio > RINGING || (ratio > DECAYED && falls)).then_some(HitFault::NotDecayed { ratio })
-}
-
-/// The sample farthest from the offset, and its height over it.
-pub(super) fn peak(values: &[f64], offset: f64) -> (usize, f64) {
-    let heights = values.iter().map(|value| value - offset).enumerate();
-    heights.fold(
-        (0, 0.0),
-        |best, (n, height): (usize, f64)| if height.abs() > f64::abs(best.1) { (n, height) } else { best },
-    )
-}
-
-/// The median of at most some thousand values spread over all, which is good to 4 % of a standard deviation: sorting a
-/// long record would take longer than its transform.
-pub(super) fn sampled_median(values: &[f64]) -> f64 {
-    let stride = (values.len() / 1000).max(1);
-    median(&values.iter().step_by(stride).copied().collect::<Vec<_>>())
-}
-
-/// The middle value; 0 of an empty list.
-pub(super) fn median(values: &[f64]) -> f64 {
-    let mut sorted = values.to_vec();
-    let middle = sorted.len() / 2;
-    if sorted.is_empty() { 0.0 } else { *sorted.select_nth_unstable_by(middle, f64::total_cmp).1 }
 }

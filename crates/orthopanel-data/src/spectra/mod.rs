@@ -3,8 +3,10 @@
 mod accelerance;
 mod channels;
 mod estimate;
+mod extremes;
 mod gather;
 mod hit_faults;
+mod overload;
 mod spectrum;
 mod time_history;
 mod window;

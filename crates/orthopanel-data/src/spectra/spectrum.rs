@@ -4,7 +4,7 @@ use num_complex::Complex64;
 use realfft::RealFftPlanner;
 
 use super::{
-    hit_faults::{peak, sampled_median},
+    extremes::{peak, sampled_median},
     time_history::Hit,
     window::Window,
 };

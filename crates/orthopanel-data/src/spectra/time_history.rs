@@ -1,10 +1,13 @@
 //! Force and acceleration against time, hit by hit.
 
-use std::path::PathBuf;
+use std::{path::PathBuf, sync::Arc};
 
 use orthopanel_model::Place;
 
-use super::channels::{self, Quantity};
+use super::{
+    channels::{self, Quantity},
+    extremes::{LANES, extremes},
+};
 use crate::{
     DataError, RecordedResponse,
     records::{Record, RecordFile, RecordKind, Samples},
@@ -60,7 +63,10 @@ impl TimeHistory {
         let RecordFile { records, mut notes } = file;
         let (mut forces, mut accelerations) = (Vec::new(), Vec::new());
         let mut untold = Vec::new();
-        for record in records.iter().filter(|record| record.kind == RecordKind::Time) {
+        let Some(first) = records.first().map(|record| record.at.clone()) else {
+            return Err(DataError::Contradiction { at: whole(measurement), problem: "no record is given".into() });
+        };
+        for record in records.into_iter().filter(|record| record.kind == RecordKind::Time) {
             match channels::quantity(&record.numerator) {
                 Quantity::Force => forces.push(record),
                 Quantity::Acceleration => accelerations.push(record),
@@ -75,21 +81,28 @@ impl TimeHistory {
         }
         if forces.is_empty() && accelerations.is_empty() && !untold.is_empty() {
             notes.push("the records do not tell what they measure: taken as force, acceleration, force, ...".into());
-            forces = untold.iter().step_by(2).copied().collect();
-            accelerations = untold.iter().skip(1).step_by(2).copied().collect();
+            for (index, record) in untold.into_iter().enumerate() {
+                if index % 2 == 0 { forces.push(record) } else { accelerations.push(record) }
+            }
         }
-        let Some(first) = records.first() else {
-            return Err(DataError::Contradiction { at: whole(measurement), problem: "no record is given".into() });
-        };
         if forces.len() != accelerations.len() || forces.is_empty() {
             let (f, a) = (forces.len(), accelerations.len());
             let problem = format!("{f} force and {a} acceleration records against time: one of each a hit is needed");
-            return Err(DataError::Channels { at: first.at.clone(), problem });
+            return Err(DataError::Channels { at: first, problem });
         }
         let mut hits = Vec::with_capacity(forces.len());
         let mut grid: Option<(usize, f64)> = None;
+        let mut times: Option<(Arc<[f64]>, f64)> = None;
         for (force, acceleration) in forces.into_iter().zip(accelerations) {
-            let (length, rate) = common_grid(force, acceleration)?;
+            // Records of one file mostly share their times: what was found even stays even.
+            let known = times
+                .as_ref()
+                .filter(|(known, _)| Arc::ptr_eq(known, &force.abscissa) && Arc::ptr_eq(known, &acceleration.abscissa));
+            let (length, rate) = match known {
+                Some((known, rate)) => (known.len(), *rate),
+                None => common_grid(&force, &acceleration)?,
+            };
+            times = Some((Arc::clone(&force.abscissa), rate));
             match grid {
                 Some((first_length, first_rate))
                     if first_length != length || (first_rate - rate).abs() > 1e-6 * first_rate =>
@@ -98,7 +111,7 @@ impl TimeHistory {
                         "hit {}: {length} samples at {rate} Hz, the hit before had {first_length} at {first_rate} Hz",
                         hits.len() + 1
                     );
-                    return Err(DataError::Channels { at: force.at.clone(), problem });
+                    return Err(DataError::Channels { at: force.at, problem });
                 }
                 _ => grid = Some((length, rate)),
             }
@@ -111,22 +124,26 @@ impl TimeHistory {
 }
 
 fn hit(
-    force: &Record,
-    acceleration: &Record,
+    force: Record,
+    acceleration: Record,
     measurement: &RecordedResponse,
     notes: &mut Vec<String>,
 ) -> Result<Hit, DataError> {
-    channels::check_force_unit(force, &force.numerator)?;
+    channels::check_force_unit(&force, &force.numerator)?;
     let directions = [acceleration.response.direction, force.response.direction];
-    let factor = channels::acceleration_factor(acceleration, &acceleration.numerator, directions, measurement, notes)?;
-    let scaled = |record: &Record, factor: f64| match &record.ordinate {
-        Samples::Real(values) => Ok(values.iter().map(|value| factor * value).collect::<Vec<_>>()),
+    let factor = channels::acceleration_factor(&acceleration, &acceleration.numerator, directions, measurement, notes)?;
+    let real = |record: Record| match record.ordinate {
+        Samples::Real(values) => Ok(values),
         Samples::Complex(_) => {
             let problem = "a record against time must be real".into();
-            Err(DataError::Channels { at: record.at.clone(), problem })
+            Err(DataError::Channels { at: record.at, problem })
         }
     };
-    let hit = Hit { force: scaled(force, 1.0)?, acceleration: scaled(acceleration, factor)? };
+    let force_record = force.at.clone();
+    let mut hit = Hit { force: real(force)?, acceleration: real(acceleration)? };
+    if factor != 1.0 {
+        hit.acceleration.iter_mut().for_each(|value| *value *= factor);
+    }
     let (pulse, ringing) = (effective_samples(&hit.force), effective_samples(&hit.acceleration));
     // A blow is over before the piece has rung: whatever the damping, a longer "force" is no force.
     if pulse > ringing && ringing > 0.0 {
@@ -134,22 +151,30 @@ fn hit(
             "the force lasts longer ({pulse:.0} samples) than the response ({ringing:.0}): the channels are swapped, or \
              this was no hammer"
         );
-        return Err(DataError::Channels { at: force.at.clone(), problem });
+        return Err(DataError::Channels { at: force_record, problem });
     }
     Ok(hit)
 }
 
 /// Number of samples over which a signal's energy is spread, $(\sum x^2)^2 / \sum x^4$.
 fn effective_samples(values: &[f64]) -> f64 {
-    let peak = values.iter().fold(0.0, |peak: f64, value| peak.max(value.abs()));
-    if peak == 0.0 {
+    let [least, greatest] = extremes(values);
+    let peak = greatest.max(-least);
+    if peak <= 0.0 {
         return 0.0;
     }
-    let (squares, fourths) = values
-        .iter()
-        .map(|value| (value / peak).powi(2))
-        .fold((0.0, 0.0), |(two, four), square| (two + square, four + square * square));
-    squares * squares / fourths
+    // Scaled, so that no fourth power overflows; several sums side by side, since one would wait for itself.
+    let scale = 1.0 / peak;
+    let (mut squares, mut fourths) = ([0.0; LANES], [0.0; LANES]);
+    for chunk in values.chunks(LANES) {
+        for ((two, four), value) in squares.iter_mut().zip(&mut fourths).zip(chunk) {
+            let square = (value * scale).powi(2);
+            *two += square;
+            *four += square * square;
+        }
+    }
+    let (squares, fourths) = (squares.iter().sum::<f64>(), fourths.iter().sum::<f64>());
+    if fourths > 0.0 { squares * squares / fourths } else { 0.0 }
 }
 
 /// Samples and rate that two records share.
@@ -163,7 +188,9 @@ fn common_grid(force: &Record, acceleration: &Record) -> Result<(usize, f64), Da
         return refused(force, format!("{length} samples: at least {LEAST_SAMPLES} are needed"));
     }
     let step = mean_step(force)?;
-    for (record, name) in [(force, "force"), (acceleration, "acceleration")] {
+    let shared = Arc::ptr_eq(&force.abscissa, &acceleration.abscissa);
+    let both = [(force, "force"), (acceleration, "acceleration")];
+    for (record, name) in both.into_iter().take(if shared { 1 } else { 2 }) {
         let start = force.abscissa.first().copied().unwrap_or_default();
         let uneven = record.abscissa.iter().enumerate().find(|(index, time)| {
             let due = start + step * *index as f64;
