@@ -94,7 +94,7 @@ fn val_a_weak_force_a_ringing_response_and_a_silent_channel_are_found() {
 
 fn measurement() -> RecordedResponse {
     let place = Place { x: 0.0, y: 0.0 };
-    RecordedResponse { file: "hits.uff".into(), force_at: place, response_at: place, unit: None, direction: None }
+    RecordedResponse { file: "hits.uff".into(), force_at: place, response_at: place, unit: None, direction: None, record: None }
 }
 
 /// A force and an acceleration record of one hit.

@@ -3,7 +3,7 @@
 mod support;
 
 use orthopanel_data::{AccelerationUnit, DataError, Direction, ImpactTest, MeasurementData, Position};
-use orthopanel_model::{Boundary, End, Place};
+use orthopanel_model::{Boundary, End, Place, StructureKind};
 use proptest::prelude::*;
 
 const PIECE: &str = "[piece]\nlength = 0.8\nwidth = 0.1\nthickness = 0.03\nmass_per_area = 6.88\n";
@@ -84,6 +84,36 @@ fn val_weighings_give_the_mean_mass_per_area() {
 }
 
 #[test]
+fn val_structure_and_own_constants_are_read() {
+    let text = format!("structure = \"mindlin-plate\"\n{PIECE}own_constants = [\"g_zx\"]\n{FREQUENCIES}");
+    let test = read(&text).unwrap();
+    assert_eq!(
+        (test.structure, &test.pieces[0].own_constants[..]),
+        (Some(StructureKind::MindlinPlate), &["g_zx".to_owned()][..])
+    );
+    let silent = read(&format!("{PIECE}{FREQUENCIES}")).unwrap();
+    assert_eq!((silent.structure, silent.pieces[0].own_constants.len()), (None, 0));
+    let cases = [
+        (
+            "mindlin-plate",
+            "shell",
+            "test.toml:1: structure = \"shell\": must be \"timoshenko-beam\" or \"mindlin-plate\"",
+        ),
+        (
+            "[\"g_zx\"]",
+            "[\"g_zx\", \"g_zx\"]",
+            "test.toml:7: piece.own_constants[2] = \"g_zx\": the name stands before",
+        ),
+        ("[\"g_zx\"]", "[\" \"]", "test.toml:7: piece.own_constants[1] is missing"),
+        ("[\"g_zx\"]", "\"g_zx\"", "test.toml:7: piece.own_constants: text \"g_zx\" given, wanted is a list of names"),
+    ];
+    for (from, to, said) in cases {
+        let found = message(&text.replacen(from, to, 1));
+        assert!(found.contains(said), "\n  said   {found}\n  wanted {said}");
+    }
+}
+
+#[test]
 fn val_plate_shapes_may_share_a_bin_and_stand_one_a_mode() {
     let text = format!("{PIECE}{}shape = [[2, 0], [1, 1], [3, 0]]\n", FREQUENCIES.replace("837.5", "321.3"));
     assert_eq!(frequencies(&read(&text).unwrap(), 0).shape, [[2, 0], [1, 1], [3, 0]]);
@@ -116,7 +146,11 @@ fn val_each_fault_gets_line_key_and_remedy() {
         ("width = 0.1", "width = -0.1", "test.toml:3: piece.width = -0.1"),
         ("width = 0.1", "width = nan", "test.toml:3: piece.width = NaN"),
         ("thickness = 0.03", "thickness = inf", "test.toml:4: piece.thickness = inf"),
-        ("thickness = 0.03", "thickness = \"0.03\"", "test.toml:4: invalid type: string \"0.03\", expected f64"),
+        (
+            "thickness = 0.03",
+            "thickness = \"0.03\"",
+            "test.toml:4: piece.thickness: text \"0.03\" given, wanted is a number in m",
+        ),
         ("mass_per_area = 6.88\n", "", "piece.mass_per_area is missing: give it in kg/m2, or weighings"),
         ("mass_per_area = 6.88", "weighings = []", "piece.weighings has 0 entries"),
         ("mass_per_area = 6.88", "weighings = [[0.1, 0.1, -1]]", "piece.weighings[1][3] = -1"),
@@ -138,12 +172,32 @@ fn val_each_fault_gets_line_key_and_remedy() {
         ),
         ("1520]", "1520]\nresolution = [1, 0, 2]", "measurement[1].resolution[2] = 0"),
         ("1520]", "1520]\nresolution = -1", "measurement[1].resolution = -1"),
-        ("1520]", "1520]\nresolution = \"1\"", "expected one number [Hz], or a list with one number a mode"),
+        (
+            "1520]",
+            "1520]\nresolution = \"1\"",
+            "test.toml:9: measurement[1].resolution: text \"1\" given, wanted is one number [Hz], or a list with one",
+        ),
         (
             "1520]",
             "1520]\nresponse_at = [0.5, 0]",
             "test.toml:9: measurement[1].response_at: place (0.5, 0) m lies off",
         ),
+        (
+            "1520]",
+            "1520]\nshape = [[2, 0], [-1, 1], [3, 0]]",
+            "measurement[1].shape: -1 given, wanted is a list with one [nodes",
+        ),
+        (
+            "1520]",
+            "1520]\nshape = [[2, 0], [1.5, 1], [3, 0]]",
+            "measurement[1].shape: 1.5 given, wanted is a list with one [nodes",
+        ),
+        (
+            "1520]",
+            "1520]\n[constants]\ne_x = \"70\"",
+            "test.toml:10: constants.e_x: text \"70\" given, wanted is a number (Pa",
+        ),
+        ("837.5", "\n  true", "test.toml:9: measurement[1].values: true given, wanted is a list of frequencies in Hz"),
         ("1520]", "1520]\nresponse_at = [nan, 0]", "measurement[1].response_at: place (NaN, 0) m lies off the piece"),
         ("1520]", "1520]\nunit = \"g\"", "measurement[1].unit: does not belong to kind = \"natural-frequencies\""),
         ("1520]", "1520]\npiece = \"wide\"", "measurement[1].piece = \"wide\": the pieces are named \"1\""),
@@ -182,9 +236,14 @@ fn val_a_recorded_response_needs_file_places_and_known_units() {
         ("hits.uff", ".", "is not a file"),
         ("force_at = [0.4, 0]\n", "", "measurement[1].force_at is missing"),
         ("[0.4, 0]", "[0.41, 0]", "measurement[1].force_at: place (0.41, 0) m lies off the piece"),
-        ("[0.4, 0]", "[0.4]", "test.toml:9: invalid length 1"),
+        (
+            "[0.4, 0]",
+            "[0.4]",
+            "test.toml:9: measurement[1].force_at: a list of 1 given, wanted is a place [x, y] in m from the piece's centre",
+        ),
         ("m/s2", "m/s", "measurement[1].unit = \"m/s\": must be \"m/s2\" or \"g\""),
         ("direction = 1", "direction = 0", "measurement[1].direction = 0: must be 1 (sensor along the force) or -1"),
+        ("direction = 1", "record = 2", "measurement[1].record: does not belong to kind = \"time-history\""),
         ("direction = 1", "values = [1]", "measurement[1].values: does not belong to kind = \"time-history\""),
     ];
     for (from, to, said) in faults {

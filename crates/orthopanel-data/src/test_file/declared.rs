@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use orthopanel_model::Place;
+use orthopanel_model::{Place, StructureKind};
 use toml::Spanned;
 
 use super::{pieces::NamedPiece, source::Source, syntax};
@@ -27,6 +27,18 @@ pub struct DeclaredEffect {
     pub id: String,
     /// Its parameters by name \[SI units\], all finite.
     pub parameters: BTreeMap<String, f64>,
+}
+
+pub(super) fn structure(source: &Source, name: &Spanned<String>) -> Result<StructureKind, DataError> {
+    match name.get_ref().as_str() {
+        "timoshenko-beam" => Ok(StructureKind::TimoshenkoBeam),
+        "mindlin-plate" => Ok(StructureKind::MindlinPlate),
+        other => {
+            let (name, at) = (other.to_owned(), source.at(name.span(), "structure"));
+            let remedy = "must be \"timoshenko-beam\" or \"mindlin-plate\"".into();
+            Err(DataError::UnknownName { at, name, remedy })
+        }
+    }
 }
 
 pub(super) fn suspension(

@@ -5,10 +5,11 @@ mod measurements;
 mod pieces;
 mod source;
 mod syntax;
+mod wrong_type;
 
 use std::{collections::BTreeMap, fs, path::Path};
 
-use orthopanel_model::{Boundary, Place};
+use orthopanel_model::{Boundary, Place, StructureKind};
 
 use crate::{DataError, Location, Position};
 pub use declared::DeclaredEffect;
@@ -22,7 +23,10 @@ use source::Source;
 /// every file it names was there.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ImpactTest {
-    /// The pieces, all of one material; at least one.
+    /// `structure`, a key before the tables: what is identified; `None` where the file says nothing, which means the
+    /// Timoshenko beam.
+    pub structure: Option<StructureKind>,
+    /// The pieces, of one material but for their [`NamedPiece::own_constants`]; at least one.
     pub pieces: Vec<NamedPiece>,
     /// What holds the ends; free unless said.
     pub boundary: Boundary,
@@ -64,6 +68,7 @@ impl ImpactTest {
         let file: syntax::TestFile = toml::from_str(text).map_err(|error| source.syntax(&error))?;
         let pieces = pieces::pieces(&source, file.piece)?;
         Ok(Self {
+            structure: file.structure.map(|name| declared::structure(&source, &name)).transpose()?,
             suspension: declared::suspension(&source, file.suspension, &pieces)?,
             constants: declared::constants(&source, file.constants)?,
             effects: declared::effects(&source, file.effect)?,

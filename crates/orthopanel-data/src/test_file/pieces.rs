@@ -13,6 +13,8 @@ pub struct NamedPiece {
     pub name: String,
     /// Its sizes and mass per area.
     pub piece: Piece,
+    /// `own_constants`: names of the constants that this piece has of its own, each once; the pieces share all others.
+    pub own_constants: Vec<String>,
 }
 
 pub(super) fn pieces(source: &Source, pieces: Option<syntax::Pieces>) -> Result<Vec<NamedPiece>, DataError> {
@@ -55,7 +57,25 @@ fn one(source: &Source, piece: syntax::Piece, key: &str, default_name: Option<&s
             remedy: "with several pieces each needs a name, which measurements then give as piece = \"...\"",
         })?,
     };
-    Ok(NamedPiece { name, piece: Piece { length, width, thickness, mass_per_area } })
+    let own_constants = own_constants(source, piece.own_constants, key)?;
+    Ok(NamedPiece { name, piece: Piece { length, width, thickness, mass_per_area }, own_constants })
+}
+
+/// Which names a structure has is judged where the structure is known.
+fn own_constants(source: &Source, given: Vec<Spanned<String>>, key: &str) -> Result<Vec<String>, DataError> {
+    let mut names: Vec<String> = Vec::with_capacity(given.len());
+    for (index, name) in given.into_iter().enumerate() {
+        let at = source.at(name.span(), format!("{key}.own_constants[{}]", index + 1));
+        let name = name.into_inner();
+        if name.trim().is_empty() {
+            return Err(DataError::Missing { at, remedy: "give a constant's name, such as \"g_zx\"" });
+        }
+        if names.contains(&name) {
+            return Err(DataError::Duplicate { at, name });
+        }
+        names.push(name);
+    }
+    Ok(names)
 }
 
 /// $\rho t$ as given, or the mean of mass / (length x width) over the weighed coupons (the paper's table 2).

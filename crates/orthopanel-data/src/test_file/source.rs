@@ -7,6 +7,7 @@ use std::{
 
 use toml::Spanned;
 
+use super::wrong_type;
 use crate::{DataError, Location, Position};
 
 /// A test file's name and text.
@@ -34,8 +35,14 @@ impl<'a> Source<'a> {
 
     /// What the TOML reader says, with its line.
     pub(super) fn syntax(&self, error: &toml::de::Error) -> DataError {
-        let at = error.span().map_or_else(|| self.whole(""), |span| self.at(span, ""));
-        DataError::Syntax { at, message: error.message().trim().replace('\n', ": ") }
+        let (message, span) = (error.message().trim(), error.span());
+        let start = span.as_ref().map(|span| span.start);
+        let (key, message) = match start.and_then(|start| wrong_type::in_plain_words(self.text, start, message)) {
+            Some((key, message)) => (key, message),
+            None => (String::new(), message.replace('\n', ": ")),
+        };
+        let at = span.map_or_else(|| self.whole(key.as_str()), |span| self.at(span, key.as_str()));
+        DataError::Syntax { at, message }
     }
 
     /// A number that must be finite and greater than zero.

@@ -15,6 +15,7 @@ use toml::Spanned;
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct TestFile {
+    pub(super) structure: Option<Spanned<String>>,
     pub(super) piece: Option<Pieces>,
     #[serde(default)]
     pub(super) boundary: Boundary,
@@ -42,6 +43,8 @@ pub(super) struct Piece {
     pub(super) thickness: Option<Spanned<f64>>,
     pub(super) mass_per_area: Option<Spanned<f64>>,
     pub(super) weighings: Option<Spanned<Vec<[Spanned<f64>; 3]>>>,
+    #[serde(default)]
+    pub(super) own_constants: Vec<Spanned<String>>,
 }
 
 #[derive(Deserialize)]
@@ -63,6 +66,7 @@ pub(super) struct Measurement {
     pub(super) response_at: Option<Spanned<[f64; 2]>>,
     pub(super) unit: Option<Spanned<String>>,
     pub(super) direction: Option<Spanned<f64>>,
+    pub(super) record: Option<Spanned<u32>>,
 }
 
 /// One number for all modes, or one a mode.

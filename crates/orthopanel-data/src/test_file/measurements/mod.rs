@@ -71,12 +71,16 @@ impl Entry<'_> {
                 self.unwanted(kind, entry.force_at.as_ref(), "force_at")?;
                 self.unwanted(kind, entry.unit.as_ref(), "unit")?;
                 self.unwanted(kind, entry.direction.as_ref(), "direction")?;
+                self.unwanted(kind, entry.record.as_ref(), "record")?;
                 MeasurementData::NaturalFrequencies(self.natural_frequencies(&entry, named)?)
             }
             "time-history" | "accelerance" => {
                 self.unwanted(kind, entry.values.as_ref(), "values")?;
                 self.unwanted(kind, entry.resolution.as_ref(), "resolution")?;
                 self.unwanted(kind, entry.shape.as_ref(), "shape")?;
+                if kind.get_ref() == "time-history" {
+                    self.unwanted(kind, entry.record.as_ref(), "record")?;
+                }
                 let recorded = self.recorded(&entry, &named.piece)?;
                 if kind.get_ref() == "accelerance" {
                     MeasurementData::Accelerance(recorded)

@@ -20,6 +20,8 @@ pub struct RecordedResponse {
     pub unit: Option<AccelerationUnit>,
     /// Direction of the sensor, where declared.
     pub direction: Option<Direction>,
+    /// Number of the frequency response among the file's records, from 1; needed where the file holds several.
+    pub record: Option<usize>,
 }
 
 /// Unit of a recorded acceleration, or of the acceleration in an accelerance.
@@ -77,6 +79,14 @@ impl Entry<'_> {
                 return Err(DataError::OutOfRange { at: self.at(direction.span(), "direction"), value, range });
             }
         };
+        let record = match entry.record.as_ref().map(|record| (usize::try_from(*record.get_ref()), record)) {
+            None => None,
+            Some((Ok(number), _)) if number > 0 => Some(number),
+            Some((_, record)) => {
+                let (at, value) = (self.at(record.span(), "record"), f64::from(*record.get_ref()));
+                return Err(DataError::OutOfRange { at, value, range: "records are counted from 1".into() });
+            }
+        };
         let file = self.source.beside(name.get_ref());
         // `metadata` tells a missing file from one that may not be read, and a folder is no file of records.
         let missing = match std::fs::metadata(&file) {
@@ -87,6 +97,6 @@ impl Entry<'_> {
         if let Some(source) = missing {
             return Err(DataError::Unreadable { at: self.at(name.span(), "file"), source });
         }
-        Ok(RecordedResponse { file, force_at, response_at, unit, direction })
+        Ok(RecordedResponse { file, force_at, response_at, unit, direction, record })
     }
 }

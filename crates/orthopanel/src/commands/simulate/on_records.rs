@@ -114,6 +114,7 @@ fn histories(arguments: &Arguments, model: &PanelModel) -> Result<Vec<TimeHistor
         response_at: *response_at,
         unit: None,
         direction: None,
+        record: None,
     };
     Ok(vec![TimeHistory::read(&record)?])
 }
