@@ -94,7 +94,14 @@ fn val_a_weak_force_a_ringing_response_and_a_silent_channel_are_found() {
 
 fn measurement() -> RecordedResponse {
     let place = Place { x: 0.0, y: 0.0 };
-    RecordedResponse { file: "hits.uff".into(), force_at: place, response_at: place, unit: None, direction: None, record: None }
+    RecordedResponse {
+        file: "hits.uff".into(),
+        force_at: place,
+        response_at: place,
+        unit: None,
+        direction: None,
+        record: None,
+    }
 }
 
 /// A force and an acceleration record of one hit.
@@ -202,6 +209,73 @@ fn val_a_recorded_accelerance_brings_variance_from_its_coherence() {
     assert_eq!(found.coherence.unwrap(), [0.5, 0.0]);
     assert_eq!(found.variance.unwrap(), [2.0, f64::INFINITY]);
     assert_eq!(Accelerance::from_records(records(&[response(3)]), &measurement()).unwrap().variance, None);
+}
+
+#[test]
+fn val_a_sensor_that_is_not_along_the_force_is_refused_unless_declared() {
+    let [force, acceleration] = pair();
+    let along = Some(Direction::AlongForce);
+    for (direction, said) in
+        [(1, "direction 1 of the motion is along x"), (-2, "direction -2 of the motion is along y")]
+    {
+        let turned = Dataset { response_direction: direction, ..acceleration.clone() };
+        let refused = history(&[force.clone(), turned.clone()], &measurement()).unwrap_err();
+        assert!(refused.contains(said) && refused.contains("record 2"), "{refused}");
+        assert!(refused.contains("declare direction = 1 (or -1, turned round)"), "{refused}");
+        let declared = RecordedResponse { direction: along, ..measurement() };
+        let taken = history(&[force.clone(), turned], &declared).unwrap();
+        assert_eq!(taken.hits[0], good());
+        assert!(taken.notes.iter().any(|note| note.contains("taken as the test file declares")), "{:?}", taken.notes);
+    }
+    let rotation = Dataset { response_direction: 5, ..acceleration };
+    let declared = RecordedResponse { direction: along, ..measurement() };
+    assert!(history(&[force, rotation], &declared).unwrap_err().contains("direction 5 of the motion is a rotation"));
+}
+
+#[test]
+fn val_csv_in_g_is_told_by_its_column_or_by_the_test_file() {
+    let csv = |column: &str| {
+        let hit = good();
+        let rows = hit.force.iter().zip(&hit.acceleration).enumerate();
+        let rows: String = rows.map(|(n, (f, a))| format!("{},{f},{a}\n", n as f64 / RATE)).collect();
+        RecordFile::from_bytes(format!("time_s,force_n,{column}\n{rows}").as_bytes(), "a.csv").unwrap()
+    };
+    let in_g = TimeHistory::from_records(csv("acceleration_g"), &measurement()).unwrap();
+    assert_eq!(in_g.hits[0].acceleration[210], 9.80665 * good().acceleration[210]);
+    assert!(in_g.notes.iter().any(|note| note.contains("brought from g")), "{:?}", in_g.notes);
+    let declared = RecordedResponse { unit: Some(AccelerationUnit::StandardGravity), ..measurement() };
+    assert!(TimeHistory::from_records(csv("acceleration_m_s2"), &declared).is_err());
+    let file = RecordFile::from_bytes(b"frequency_hz,real,imag\n1,2,0\n", "a.csv").unwrap();
+    assert_eq!(Accelerance::from_records(file, &declared).unwrap().value[0].re, 2.0 * 9.80665);
+}
+
+#[test]
+fn val_one_of_several_frequency_responses_is_named_by_its_number() {
+    let twice = Dataset { points: vec![vec![2.0, 0.0]; 3], ..response(3) };
+    let file = || records(&[pair()[0].clone(), response(3), twice.clone()]);
+    let of = |record| Accelerance::from_records(file(), &RecordedResponse { record, ..measurement() });
+    assert_eq!(of(Some(3)).unwrap().value[0].re, 2.0);
+    assert_eq!(of(Some(2)).unwrap().value[0].re, 1.0);
+    let said = of(None).unwrap_err().to_string();
+    assert!(said.contains("record 3: a second frequency response: say which by record = N"), "{said}");
+    assert!(said.contains("one of 2, 3, or"), "{said}");
+    let said = of(Some(1)).unwrap_err().to_string();
+    assert!(said.contains("record = 1 is no frequency response: those of the file are 2, 3"), "{said}");
+}
+
+/// What `orthopanel accelerance TEST -o x.csv` writes is read back, with its variance.
+#[test]
+fn val_an_accelerance_csv_may_bring_its_variance() {
+    let read = |text: &str| {
+        let file = RecordFile::from_bytes(text.as_bytes(), "a.csv").unwrap();
+        Accelerance::from_records(file, &measurement()).map_err(|error| error.to_string())
+    };
+    let found = read("frequency_hz,real,imag,coherence,variance\n0,1,0,1,9\n1,2,3,0.5,0.25\n2,4,5,1,0\n").unwrap();
+    assert_eq!(found.variance.unwrap(), [0.25, 0.0]);
+    assert_eq!(found.coherence.unwrap(), [0.5, 1.0]);
+    assert_eq!(found.notes.iter().filter(|note| note.contains("variance")).count(), 0);
+    let refused = read("frequency_hz,real,imag,variance\n1,2,3,-1\n").unwrap_err();
+    assert!(refused.contains("a.csv: variance: variance -1 in line 1: must be zero or more"), "{refused}");
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! CSV of an accelerance: columns `frequency_hz,real,imag` and, where known, `coherence`.
+//! CSV of an accelerance: columns `frequency_hz,real,imag` and, where known, `coherence` and `variance`.
 
 use std::{path::Path, sync::Arc};
 
@@ -8,13 +8,14 @@ use super::{Axis, Format, Port, Record, RecordFile, RecordKind, Samples, csv_col
 use crate::{DataError, Location};
 
 pub(super) const FORMAT: Format = Format {
-    name: "CSV with the columns frequency_hz,real,imag[,coherence]",
+    name: "CSV with the columns frequency_hz,real,imag[,coherence][,variance]",
     recognises: |bytes| csv_columns::starts_with_column(bytes, "frequency_hz"),
     read,
 };
 
 fn read(bytes: &[u8], path: &Path) -> Result<RecordFile, DataError> {
-    let mut columns = csv_columns::read(bytes, path, &["frequency_hz", "real", "imag"], &["coherence"])?.into_iter();
+    let mut columns =
+        csv_columns::read(bytes, path, &["frequency_hz", "real", "imag"], &["coherence", "variance"])?.into_iter();
     let mut next = || columns.next().flatten();
     let (frequency, re, im) = (next().unwrap_or_default(), next().unwrap_or_default(), next().unwrap_or_default());
     let frequency: Arc<[f64]> = frequency.into();
@@ -32,13 +33,14 @@ fn read(bytes: &[u8], path: &Path) -> Result<RecordFile, DataError> {
     };
     let axis = |data_type, unit: &str| Axis { data_type, unit: unit.into() };
     let mut records = Vec::new();
-    let (motion, force) = (axis(record::ACCELERATION, "m/s2"), axis(record::FORCE, "N"));
+    let (motion, force) = (axis(record::ACCELERATION, ""), axis(record::FORCE, "N"));
     let frf = RecordKind::FrequencyResponse;
     records.push(record(frf, "accelerance", frequency.clone(), Samples::Complex(value), motion, force));
-    if let Some(coherence) = next() {
-        let coherence = Samples::Real(coherence);
-        let none = (Axis::default(), Axis::default());
-        records.push(record(RecordKind::Coherence, "coherence", frequency, coherence, none.0, none.1));
+    for (kind, title) in [(RecordKind::Coherence, "coherence"), (RecordKind::Variance, "variance")] {
+        if let Some(values) = next() {
+            let (abscissa, values) = (Arc::clone(&frequency), Samples::Real(values));
+            records.push(record(kind, title, abscissa, values, Axis::default(), Axis::default()));
+        }
     }
     Ok(RecordFile { records, notes: Vec::new() })
 }

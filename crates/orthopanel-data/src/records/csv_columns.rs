@@ -13,6 +13,13 @@ pub(super) fn starts_with_column(bytes: &[u8], name: &str) -> bool {
     first.is_some_and(|first| first.trim_ascii() == name.as_bytes())
 }
 
+/// True where the first line that is no comment names the column `name`.
+pub(super) fn has_column(bytes: &[u8], name: &str) -> bool {
+    let lines = bytes.split(|&byte| byte == b'\n').map(<[u8]>::trim_ascii);
+    let header = lines.into_iter().find(|line| !line.is_empty() && !line.starts_with(b"#"));
+    header.is_some_and(|line| line.split(|&byte| byte == b',').any(|found| found.trim_ascii() == name.as_bytes()))
+}
+
 /// Reads the columns `needed`, and `optional` where they are there, in this order; each is as long as the first.
 ///
 /// The first column must rise, since it is time or frequency.
@@ -30,7 +37,14 @@ pub(super) fn read(
     let mut reader = csv::ReaderBuilder::new().comment(Some(b'#')).trim(csv::Trim::All).from_reader(bytes);
     let broken = |error: csv::Error| {
         let line = error.position().map_or(1, csv::Position::line);
-        DataError::Header { at: at(line, ""), problem: error.to_string() }
+        let problem = match error.kind() {
+            csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
+                format!("{len} values where the first line names {expected_len} columns")
+            }
+            csv::ErrorKind::Utf8 { .. } => "not UTF-8 text: save the file as UTF-8".into(),
+            _ => error.to_string(),
+        };
+        DataError::Header { at: at(line, ""), problem }
     };
     let names = reader.headers().map_err(broken)?.clone();
     let expected = || [needed, optional].concat().join(",");

@@ -1,4 +1,4 @@
-//! CSV of one hit: columns `time_s,force_n,acceleration_m_s2`.
+//! CSV of one hit: columns `time_s,force_n,acceleration_m_s2`, or `acceleration_g` in its place.
 
 use std::{path::Path, sync::Arc};
 
@@ -6,13 +6,18 @@ use super::{Axis, Format, Port, Record, RecordFile, RecordKind, Samples, csv_col
 use crate::{DataError, Location};
 
 pub(super) const FORMAT: Format = Format {
-    name: "CSV with the columns time_s,force_n,acceleration_m_s2",
+    name: "CSV with the columns time_s,force_n,acceleration_m_s2 (or acceleration_g)",
     recognises: |bytes| csv_columns::starts_with_column(bytes, "time_s"),
     read,
 };
 
 fn read(bytes: &[u8], path: &Path) -> Result<RecordFile, DataError> {
-    let columns = csv_columns::read(bytes, path, &["time_s", "force_n", "acceleration_m_s2"], &[])?;
+    // The column's name is its unit; m/s2 is what is asked for where neither is there.
+    let (title, unit) = match csv_columns::has_column(bytes, "acceleration_g") {
+        true => ("acceleration_g", "g"),
+        false => ("acceleration_m_s2", "m/s2"),
+    };
+    let columns = csv_columns::read(bytes, path, &["time_s", "force_n", title], &[])?;
     let mut columns = columns.into_iter().map(Option::unwrap_or_default);
     let time: Arc<[f64]> = columns.next().unwrap_or_default().into();
     let force = columns.next().unwrap_or_default();
@@ -30,7 +35,7 @@ fn read(bytes: &[u8], path: &Path) -> Result<RecordFile, DataError> {
     };
     let records = vec![
         record("force_n", time.clone(), force, record::FORCE, "N"),
-        record("acceleration_m_s2", time, acceleration, record::ACCELERATION, "m/s2"),
+        record(title, time, acceleration, record::ACCELERATION, unit),
     ];
     Ok(RecordFile { records, notes: Vec::new() })
 }

@@ -53,6 +53,8 @@ pub enum RecordKind {
     FrequencyResponse,
     /// Coherence (6).
     Coherence,
+    /// Variance $E|\hat H - H|^2$ of a frequency response; universal files have no number for it.
+    Variance,
     /// Any other number, and 0 for a kind that the file does not tell.
     Other(i64),
 }

@@ -59,7 +59,7 @@ impl Accelerance {
         Self::from_records(RecordFile::read(&measurement.file)?, measurement)
     }
 
-    /// Takes the one frequency response of a file, with its coherence where that is there too, and puts unit and
+    /// Takes the frequency response of a file, the one that [`RecordedResponse::record`] names where there are several, with its coherence where that is there too, and puts unit and
     /// direction right.
     ///
     /// With coherence the variance is $|H|^2 (1 - \gamma^2)/\gamma^2$, that of one hit: files do not tell how many
@@ -67,12 +67,23 @@ impl Accelerance {
     ///
     /// # Errors
     /// [`DataError::NoRecords`] where no frequency response is in the file; [`DataError::Channels`] where there are
-    /// several, where it is not complex or no accelerance, or where unit or coherence do not fit.
+    /// several and none is named, where it is not complex or no accelerance, or where unit or coherence do not fit.
     pub fn from_records(file: RecordFile, measurement: &RecordedResponse) -> Result<Self, DataError> {
         let RecordFile { records, mut notes } = file;
         let of_kind = |kind| records.iter().filter(move |record| record.kind == kind);
-        let mut responses = of_kind(RecordKind::FrequencyResponse);
-        let Some(record) = responses.next() else {
+        let responses: Vec<(usize, &Record)> =
+            (1..).zip(&records).filter(|(_, record)| record.kind == RecordKind::FrequencyResponse).collect();
+        let chosen = match measurement.record {
+            Some(number) => responses.iter().find(|(of, _)| *of == number),
+            None => responses.first(),
+        };
+        let numbers = || responses.iter().map(|(number, _)| number.to_string()).collect::<Vec<_>>().join(", ");
+        let refused = |record: &Record, problem: String| Err(DataError::Channels { at: record.at.clone(), problem });
+        if let (None, Some(number), Some((_, first))) = (chosen, measurement.record, responses.first()) {
+            let problem = format!("record = {number} is no frequency response: those of the file are {}", numbers());
+            return refused(first, problem);
+        }
+        let Some(&(_, record)) = chosen else {
             let at = crate::Location {
                 file: measurement.file.clone(),
                 position: crate::Position::Whole,
@@ -80,9 +91,12 @@ impl Accelerance {
             };
             return Err(DataError::NoRecords { at: Box::new(at), what: "frequency response (function type 4)" });
         };
-        let refused = |record: &Record, problem: String| Err(DataError::Channels { at: record.at.clone(), problem });
-        if let Some(second) = responses.next() {
-            let problem = "a second frequency response: give each pair of places a file of its own".into();
+        if let (None, Some((_, second))) = (measurement.record, responses.get(1)) {
+            let problem = format!(
+                "a second frequency response: say which by record = N in its [[measurement]], one of {}, or give each \
+                 pair of places a file of its own",
+                numbers()
+            );
             return refused(second, problem);
         }
         match (channels::quantity(&record.numerator), channels::quantity(&record.denominator)) {
@@ -100,10 +114,16 @@ impl Accelerance {
         let Samples::Complex(values) = &record.ordinate else {
             return refused(record, "a frequency response must be complex: magnitude alone is not enough".into());
         };
-        let coherence = match of_kind(RecordKind::Coherence).next() {
+        // Beside several responses a coherence is known by its places and directions.
+        let alone = responses.len() == 1;
+        let of_same =
+            |other: &&Record| alone || (other.response, other.reference) == (record.response, record.reference);
+        let coherence = match of_kind(RecordKind::Coherence).find(of_same) {
             None => None,
             Some(coherence) => Some(matching_coherence(record, coherence)?),
         };
+        let told = of_kind(RecordKind::Variance).next();
+        let told = told.map(|variance| matching_variance(record, variance)).transpose()?;
         let mut result = Self::empty(measurement.force_at, measurement.response_at);
         let positive = record.abscissa.partition_point(|&frequency| frequency <= 0.0);
         if positive > 0 {
@@ -122,10 +142,30 @@ impl Accelerance {
             });
             result.variance = Some(variance.map(|value| if value.is_nan() { f64::INFINITY } else { value }).collect());
             result.coherence = Some(coherence);
-            notes.push(format!("{}: number of averages not told, variance is that of one hit", record.at.key));
+            if told.is_none() {
+                notes.push(format!("{}: number of averages not told, variance is that of one hit", record.at.key));
+            }
+        }
+        if let Some(variance) = told {
+            // Told by who averaged the hits: better than what one hit's coherence bounds.
+            let factor = factor * factor;
+            result.variance = Some(variance.into_iter().skip(positive).map(|variance| variance * factor).collect());
         }
         result.notes = notes;
         Ok(result)
+    }
+}
+
+/// The variance of each line, checked.
+fn matching_variance(response: &Record, variance: &Record) -> Result<Vec<f64>, DataError> {
+    let refused = |problem: String| Err(DataError::Channels { at: variance.at.clone(), problem });
+    let Samples::Real(values) = &variance.ordinate else { return refused("a variance must be real".into()) };
+    if variance.abscissa != response.abscissa {
+        return refused("the variance stands at other frequencies than the frequency response".into());
+    }
+    match values.iter().enumerate().find(|(_, value)| **value < 0.0) {
+        None => Ok(values.clone()),
+        Some((line, value)) => refused(format!("variance {value} in line {}: must be zero or more", line + 1)),
     }
 }
 

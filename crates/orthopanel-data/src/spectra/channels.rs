@@ -50,7 +50,7 @@ pub(super) fn check_force_unit(record: &Record, axis: &Axis) -> Result<(), DataE
 /// else as the record does. `directions` are those of motion and force in the record.
 ///
 /// # Errors
-/// [`DataError::Channels`] where declared and recorded unit contradict each other, or none of them is known.
+/// [`DataError::Channels`] for a direction that is not along z and not declared, and where declared and recorded unit contradict each other, or none of them is known.
 pub(super) fn acceleration_factor(
     record: &Record,
     axis: &Axis,
@@ -87,6 +87,28 @@ pub(super) fn acceleration_factor(
         notes.push(format!("{}: acceleration brought from g to m/s2", record.at.key));
     }
     let [motion, force] = directions;
+    for (channel, number) in [("motion", motion), ("force", force)] {
+        let along = match number.abs() {
+            0 | 3 => continue,
+            1 => "x",
+            2 => "y",
+            4..=6 => {
+                return Err(refused(format!("direction {number} of the {channel} is a rotation, no motion along z")));
+            }
+            _ => return Err(refused(format!("direction {number} of the {channel} is none: 3 and -3 are along z"))),
+        };
+        if declared.direction.is_none() {
+            return Err(refused(format!(
+                "direction {number} of the {channel} is along {along}, bending moves along z (3): where the sensor did \
+                 stand along the force, declare direction = 1 (or -1, turned round) in the test file; else take the \
+                 record out"
+            )));
+        }
+        notes.push(format!(
+            "{}: direction {number} of the {channel} is along {along}, taken as the test file declares",
+            record.at.key
+        ));
+    }
     let against = motion.signum() * force.signum() < 0;
     let reversed = match declared.direction {
         Some(direction) => direction == Direction::AgainstForce,
