@@ -71,18 +71,18 @@ class Panel:
 
 def solve(panel, points, zeta, spans=()):
     """Modes seen from `points` [m] and, after those, as the mean shear strain w' + psi over each of `spans` [m, m]."""
-    ends = _boundaries(panel, points)
-    mesh = _Mesh(panel, ends)
+    ends = boundaries(panel, points)
+    mesh = Mesh(panel, ends)
     stiffness = mesh.bending + mesh.shear + mesh.tension
     held = _hold(panel, stiffness, len(mesh.nodes))
     free = np.setdiff1d(np.arange(len(stiffness)), held)
     square, vectors = eigh(stiffness[np.ix_(free, free)], mesh.mass[np.ix_(free, free)])
     seen = np.vstack([*(mesh.deflection(x) for x in points), *(mesh.mean_strain(*span) for span in spans)])
-    rigid = _rigid_shapes(panel, points, len(spans))
-    return reduced(square, vectors, seen[:, free], rigid, zeta, mesh.shear[np.ix_(free, free)])
+    rigid = rigid_shapes(panel, points, len(spans))
+    return reduced(square, vectors, seen[:, free], rigid, zeta)
 
 
-def _boundaries(panel, points):
+def boundaries(panel, points):
     """Both ends, every point, every step of the shear stiffness, and equal parts no longer than ELEMENT between."""
     half = panel.length / 2.0
     outside = [x for x in points if abs(x) > half]
@@ -106,7 +106,7 @@ def _hold(panel, stiffness, count):
     return []
 
 
-def _rigid_shapes(panel, points, strains):
+def rigid_shapes(panel, points, strains):
     """Translation, and rotation (w = x, psi = -1) unless a tension turns it back, seen from the points."""
     if panel.left != "free":
         return np.zeros((0, len(points) + strains))
@@ -117,41 +117,72 @@ def _rigid_shapes(panel, points, strains):
     return np.hstack([np.stack(shapes), np.zeros((len(shapes), strains))])
 
 
-class _Mesh:
+# The interior Gauss-Lobatto nodes are the roots of the Legendre polynomial's slope.
+LOBATTO = np.concatenate([[-1.0], np.sort(legendre.legroots(legendre.legder([0.0] * ORDER + [1.0])).real), [1.0]])
+NODAL = np.linalg.inv(legendre.legvander(LOBATTO, ORDER))
+
+
+def node_places(ends):
+    """x of all nodes of elements with these ends."""
+    inner = [left + (right - left) / 2.0 * (LOBATTO[:-1] + 1.0) for left, right in zip(ends[:-1], ends[1:])]
+    return np.concatenate([*inner, ends[-1:]])
+
+
+def line_matrices(ends):
+    """Integrals along x of the shape functions: value times value, value times slope, slope times slope."""
+    count = ORDER * (len(ends) - 1) + 1
+    whole = np.zeros((3, count, count))
+    point, weight = legendre.leggauss(ORDER + 1)
+    value, slope = _shape_functions(point)
+    for element, half in enumerate(np.diff(ends) / 2.0):
+        at = slice(ORDER * element, ORDER * (element + 1) + 1)
+        whole[0, at, at] += half * value.T @ (weight[:, None] * value)
+        whole[1, at, at] += value.T @ (weight[:, None] * slope)
+        whole[2, at, at] += slope.T @ (weight[:, None] * slope) / half
+    return whole
+
+
+def _shape_functions(point):
+    """An element's shape functions and their slopes at `point` in -1..1."""
+    slope = np.stack([legendre.legval(point, legendre.legder(row)) for row in np.eye(ORDER + 1)], axis=1)
+    return legendre.legvander(point, ORDER) @ NODAL, slope @ NODAL
+
+
+class Mesh:
     """Node places and matrices; unknowns are w at all nodes, then psi at all nodes."""
 
     def __init__(self, panel, ends):
-        self.ends = ends
-        # The interior Gauss-Lobatto nodes are the roots of the Legendre polynomial's slope.
-        inner = np.sort(legendre.legroots(legendre.legder([0.0] * ORDER + [1.0])).real)
-        self.lobatto = np.concatenate([[-1.0], inner, [1.0]])
-        self.modal = np.linalg.inv(legendre.legvander(self.lobatto, ORDER))
-        count = ORDER * (len(ends) - 1) + 1
-        self.nodes = np.empty(count)
-        self.bending, self.shear, self.tension, self.mass = (np.zeros((2 * count, 2 * count)) for _ in range(4))
-        point, weight = legendre.leggauss(ORDER + 3)
-        value, slope = self._basis(point)
-        for element, (left, right) in enumerate(zip(ends[:-1], ends[1:])):
+        self.ends, self.nodes = ends, node_places(ends)
+        count = len(self.nodes)
+        value, mixed, slope = line_matrices(ends)
+        none = np.zeros((count, count))
+        self.mass = np.block([[panel.mass_per_length * value, none], [none, panel.rotary_inertia * value]])
+        self.bending = np.block([[none, none], [none, panel.bending * slope]])
+        self.tension = np.block([[panel.tension * slope, none], [none, none]])
+        self.shear = panel.shear * np.block([[slope, mixed.T], [mixed, value]])
+        if panel.shear_along is not None:
+            self.shear = self._uneven_shear(panel)
+
+    def _uneven_shear(self, panel):
+        """The shear part where the stiffness varies along x; more points, as its factor is no polynomial."""
+        point, weight = legendre.leggauss(ORDER + 5)
+        value, slope = _shape_functions(point)
+        shear, count = np.zeros_like(self.mass), len(self.nodes)
+        for element, (left, right) in enumerate(zip(self.ends[:-1], self.ends[1:])):
             half = (right - left) / 2.0
             w = np.arange(ORDER * element, ORDER * (element + 1) + 1)
-            psi = w + count
-            both = np.concatenate([w, psi])
-            self.nodes[w] = left + half * (self.lobatto + 1.0)
-            factor = np.ones(len(point))
-            if panel.shear_along is not None:
-                factor = panel.shear_along(left + half * (point + 1.0))
+            at = np.concatenate([w, w + count])
+            factor = weight * panel.shear_along(left + half * (point + 1.0))
             strain = np.hstack([slope / half, value])
-            self.shear[np.ix_(both, both)] += panel.shear * half * strain.T @ ((weight * factor)[:, None] * strain)
-            squares, slopes = (a.T @ (weight[:, None] * a) for a in (value, slope))
-            self.bending[np.ix_(psi, psi)] += panel.bending / half * slopes
-            self.tension[np.ix_(w, w)] += panel.tension / half * slopes
-            self.mass[np.ix_(w, w)] += panel.mass_per_length * half * squares
-            self.mass[np.ix_(psi, psi)] += panel.rotary_inertia * half * squares
+            shear[np.ix_(at, at)] += panel.shear * half * strain.T @ (factor[:, None] * strain)
+        return shear
 
-    def _basis(self, point):
-        """The element's shape functions and their slopes at `point` in -1..1."""
-        slope = np.stack([legendre.legval(point, legendre.legder(row)) for row in np.eye(ORDER + 1)], axis=1)
-        return legendre.legvander(point, ORDER) @ self.modal, slope @ self.modal
+    def rigid(self):
+        """Translation and rotation (unknowns, 2), mass-normalised."""
+        count = len(self.nodes)
+        shapes = np.zeros((2 * count, 2))
+        shapes[:count, 0], shapes[:count, 1], shapes[count:, 1] = 1.0, self.nodes, -1.0
+        return shapes / np.sqrt(np.sum(shapes * (self.mass @ shapes), axis=0))
 
     def mean_strain(self, left, right):
         """The row that reads the mean of w' + psi from `left` to `right`."""
@@ -164,7 +195,7 @@ class _Mesh:
         """The row that reads w(x)."""
         element = int(np.clip(np.searchsorted(self.ends, x, side="right") - 1, 0, len(self.ends) - 2))
         left, right = self.ends[element : element + 2]
-        value, _ = self._basis(np.array([(2.0 * x - left - right) / (right - left)]))
+        value, _ = _shape_functions(np.array([(2.0 * x - left - right) / (right - left)]))
         row = np.zeros(len(self.mass))
         row[ORDER * element : ORDER * (element + 1) + 1] = value[0]
         return row

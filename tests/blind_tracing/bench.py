@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from . import beam, plate
+from . import beam, core, plate
 from .contour import Sampling
 
 GRID = 1e-3  # m: places are measured to a millimetre
@@ -68,6 +68,8 @@ class Bench:
 
     def modes(self, points):
         """Modes of the panel seen from `points`, and after those as the mean shear strain of `restoring_spans`."""
+        if self.core is not None:
+            return core.solve(self.panel, points, self.zeta, self.core, self.sampling)
         if self.across is not None:
             return plate.solve(self.panel, self.across, points, self.zeta)
         return beam.solve(self.panel, points, self.zeta, self.restoring_spans)

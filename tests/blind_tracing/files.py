@@ -5,7 +5,6 @@ The truth lies in one file beside the case folders, and in none of them.
 
 import json
 
-import numpy as np
 import pyuff
 
 from .beam import SHEAR_COEFFICIENT
@@ -13,7 +12,7 @@ from .beam import SHEAR_COEFFICIENT
 TRUTH = "truth.json"
 SCHEMA = "orthopanel.blind-truth/1"
 TIME_RESPONSE, ACCELERATION, FORCE, TIME = 1, 12, 13, 17  # codes of dataset 58
-SINGLE, Z_TRANSLATION = 2, 3
+Z_TRANSLATION = 3
 
 
 def write_case(folder, bench, played):
@@ -81,7 +80,7 @@ def _measurement(name, force, response):
 
 
 def _write_records(path, place, bench, played):
-    """All hits of a place, force then acceleration, in single precision: 6e-8, far below any noise."""
+    """All hits of a place, force then acceleration."""
     sets = []
     for hit in range(bench.hits):
         channels = (
@@ -102,12 +101,11 @@ def _write_records(path, place, bench, played):
                     abscissa_spacing=1,
                     abscissa_spec_data_type=TIME,
                     abscissa_axis_units_lab="s",
-                    ord_data_type=SINGLE,
                     ordinate_spec_data_type=code,
                     ordinate_axis_units_lab=unit,
                     orddenom_spec_data_type=0,
                     x=bench.sampling.time,
-                    data=np.asarray(data[place, hit]),
+                    data=data[place, hit],
                 )
             )
     pyuff.UFF(str(path)).write_sets(sets, mode="add")

@@ -21,14 +21,13 @@ BEYOND = 0.005  # damping ratio of modes that no test case names
 
 @dataclass(frozen=True)
 class Modes:
-    """`omega` [rad/s] (n), `zeta` (n), `shape` (n, points); `shear` (n, n) is the shear part of the stiffness in these
-    coordinates [1/s2], where the structure has one, and `rigid` counts the modes that start the list at zero."""
+    """`omega` [rad/s] (n), `zeta` (n), `shape` (n, points); `rigid` counts the modes that start the
+    list at zero."""
 
     omega: np.ndarray
     zeta: np.ndarray
     shape: np.ndarray
     rigid: int
-    shear: np.ndarray | None = None
 
     def receptance(self, s, rows, columns):
         """G [m/N] (lines, rows, columns) at complex `s` [1/s] between points given by their index."""
@@ -37,27 +36,17 @@ class Modes:
         flat = pairs.reshape(len(self.omega), -1)
         return (weight @ flat).reshape(len(s), len(rows), len(columns))
 
-    def receptance_with_core(self, s, rows, columns, modulus):
-        """The same where the shear stiffness is `modulus` (lines) times the structure's own: one solve a line."""
-        excess = (modulus - 1.0)[:, None, None]
-        dynamic = excess * self.shear
-        diagonal = s[:, None] ** 2 + 2.0 * (self.zeta * self.omega) * s[:, None] + self.omega**2
-        n = len(self.omega)
-        dynamic[:, np.arange(n), np.arange(n)] += diagonal
-        solved = np.linalg.solve(dynamic, np.broadcast_to(self.shape[:, columns], (len(s), n, len(columns))))
-        return self.shape[:, rows].T @ solved
-
     def stiffer(self, factor):
         """All stiffness times `factor`: frequencies by its root, shapes as they are."""
-        return Modes(self.omega * np.sqrt(factor), self.zeta, self.shape, self.rigid, self.shear)
+        return Modes(self.omega * np.sqrt(factor), self.zeta, self.shape, self.rigid)
 
 
-def reduced(square, vectors, seen, rigid_shape, zeta, shear=None):
+def reduced(square, vectors, seen, rigid_shape, zeta):
     """Modes from a full eigensolution.
 
     `square` [1/s2] rising and `vectors` (unknowns, n) mass-normalised, `seen` (points, unknowns) reads the points off
     a vector, `rigid_shape` (rigid, points) is what the first modes are in closed form, `zeta` the damping ratios of the
-    flexible modes in order, `shear` the shear part of the stiffness matrix.
+    flexible modes in order.
     """
     rigid = len(rigid_shape)
     square = np.concatenate([np.zeros(rigid), square[rigid:]])
@@ -72,12 +61,7 @@ def reduced(square, vectors, seen, rigid_shape, zeta, shear=None):
     damping[:rigid] = 0.0
     count = min(len(zeta), int(kept.sum()) - rigid)
     damping[rigid : rigid + count] = zeta[:count]
-    part = None
-    if shear is not None:
-        basis = np.hstack([vectors[:, kept], vectors[:, ~kept] @ mix])
-        part = basis.T @ shear @ basis
-        part[:rigid], part[:, :rigid] = 0.0, 0.0
-    return Modes(omega, damping, np.vstack([shape[kept], mix.T @ shape[~kept]]), rigid, part)
+    return Modes(omega, damping, np.vstack([shape[kept], mix.T @ shape[~kept]]), rigid)
 
 
 def _static_part(square, shape):

@@ -71,13 +71,8 @@ def _motion(bench, s, blows, pulse):
     index = lambda places: [at[x] for x in np.round(places, 9)]  # noqa: E731
     modes = bench.modes(points)
 
-    def compliance(modes, rows, columns):
-        if bench.core is not None:
-            return modes.receptance_with_core(s, rows, columns, bench.core(s))
-        return modes.receptance(s, rows, columns)
-
     def coupled(modes, columns):
-        bare = lambda r, c: compliance(modes, r, c)  # noqa: E731
+        bare = lambda r, c: modes.receptance(s, r, c)  # noqa: E731
         stiffnesses = [stiffness for _, stiffness in bench.attachments]
         return attachments.coupled(bare, s, index([bench.sensed()]), columns, index(fixed), stiffnesses)[:, 0].T
 
@@ -85,7 +80,7 @@ def _motion(bench, s, blows, pulse):
     for factor in np.unique(bench.drift):
         hits = np.flatnonzero(bench.drift.ravel() == factor)
         places, of = np.unique(struck[hits], return_inverse=True)
-        answer[hits] = (coupled(modes.stiffer(factor), index(places))[of] * blows[hits]) * s**2
+        answer[hits] = (coupled(modes if factor == 1.0 else modes.stiffer(factor), index(places))[of] * blows[hits]) * s**2
     if bench.restoring is not None:
         held = [*index(bench.restoring_at), *range(len(points), modes.shape.shape[1])]
         back = _restoring(bench, modes, index(struck), held, pulse, len(s))
