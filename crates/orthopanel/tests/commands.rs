@@ -2,7 +2,7 @@
 
 mod support;
 
-use support::{Bench, number};
+use support::{Bench, number, refused};
 
 /// The paper's table 5, "Calculation".
 const TABLE_5: [f64; 6] = [321.4, 837.6, 1522.5, 2306.1, 3141.7, 4000.4];
@@ -20,6 +20,18 @@ fn val_modes_are_those_of_table_5() {
         assert_eq!(answer["modes"][index]["nodes"], serde_json::json!([index + 2, 0]));
         assert_eq!(number(&answer, &format!("/modes/{index}/zeta")), 0.003);
     }
+}
+
+#[test]
+fn val_a_picture_shows_the_nodes_of_every_mode() {
+    let bench = Bench::new();
+    bench.done("modes model.json --count 5 --picture modes.svg");
+    let text = std::fs::read_to_string(bench.path("modes.svg")).expect("a picture");
+    // A free-free beam's flexible mode m has m + 1 nodes: 2 + 3 + 4 + 5 + 6 dots.
+    assert_eq!(text.matches("<circle").count(), 20);
+    assert!(text.contains("mode 1: 321.4 Hz, 2 nodes"), "{text}");
+    bench.done("modes model.json --count 0 --picture modes.svg");
+    refused(&bench, "modes model.json --picture nowhere/modes.svg", 2, &["nowhere/modes.svg", "cannot be written"]);
 }
 
 #[test]

@@ -7,11 +7,13 @@ use serde::Serialize;
 
 use crate::arguments::count;
 use crate::error::{CommandError, InFile as _};
+use crate::pictures::{self, ModeShape};
 use crate::{model_file, output, tables};
 
 /// List the natural frequencies of a model, flexible modes from 1
 ///
-/// Example: orthopanel modes out/model.json --count 6
+/// Examples: orthopanel modes out/model.json --count 6
+///           orthopanel modes out/model.json --picture out/modes.svg
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
 pub struct Arguments {
@@ -20,6 +22,9 @@ pub struct Arguments {
     /// Number of flexible modes
     #[arg(long, value_name = "N", value_parser = count, allow_negative_numbers = true, default_value_t = 10)]
     count: usize,
+    /// Picture of the mode shapes to write
+    #[arg(long, value_name = "X.svg")]
+    picture: Option<PathBuf>,
     /// Print one JSON object (orthopanel.modes/1) on standard output
     #[arg(long)]
     json: bool,
@@ -49,8 +54,14 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
         nodes: [nodes_along_x(mode, model.piece.length, index + 1), 0],
         zeta: model.damping.ratio(index + 1),
     };
-    let flexible = modes.iter().skip(model.boundary.rigid_modes());
-    let answer = Answer { schema: "orthopanel.modes/1", modes: flexible.enumerate().map(entry).collect() };
+    let flexible = || modes.iter().skip(model.boundary.rigid_modes());
+    let answer = Answer { schema: "orthopanel.modes/1", modes: flexible().enumerate().map(entry).collect() };
+    if let Some(path) = &arguments.picture {
+        let shape = |(mode, entry): (_, &ModeEntry)| shape(mode, entry);
+        let shapes: Vec<ModeShape> = flexible().zip(&answer.modes).map(shape).collect();
+        output::write(path, pictures::mode_shapes(&model.piece, &shapes)?)?;
+        eprintln!("wrote {}", path.display());
+    }
     if arguments.json {
         output::print_json(&answer);
     } else {
@@ -66,6 +77,12 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
         output::print(&tables::aligned(&["mode", "frequency [Hz]", "nodes along x", "zeta"], &rows));
     }
     Ok(())
+}
+
+fn shape<'a>(mode: &'a BeamMode, entry: &ModeEntry) -> ModeShape<'a> {
+    let ModeEntry { mode: number, frequency_hz, nodes: [nodes, _], .. } = entry;
+    let name = format!("mode {number}: {frequency_hz:.1} Hz, {nodes} node{}", if *nodes == 1 { "" } else { "s" });
+    ModeShape { name, deflection: Box::new(|x| mode.deflection(x)) }
 }
 
 /// Sign changes of the deflection between the ends.

@@ -4,12 +4,14 @@ mod accelerance;
 mod envelope;
 mod frequencies;
 mod measured_accelerance;
+mod mode_shapes;
 mod response;
 mod time_history;
 
 pub use accelerance::accelerance;
 pub use frequencies::frequencies;
 pub use measured_accelerance::measured_accelerance;
+pub use mode_shapes::{ModeShape, mode_shapes};
 pub use response::response;
 pub use time_history::time_history;
 
@@ -35,11 +37,7 @@ fn stacked<const CHARTS: usize>(
     heights: [u32; CHARTS],
     draw: impl for<'a> FnOnce(&[Area<'a>; CHARTS]) -> Drawn,
 ) -> Result<String, CommandError> {
-    let mut text = String::new();
-    let drawn = (|| {
-        let area = SVGBackend::with_string(&mut text, SIZE).into_drawing_area();
-        area.fill(&WHITE)?;
-        let mut rest = area.titled(title, (FONT, 22))?;
+    titled(name, title, SIZE, |mut rest| {
         let mut placed = 1;
         let charts = heights.map(|height| {
             if placed == CHARTS {
@@ -50,7 +48,22 @@ fn stacked<const CHARTS: usize>(
             rest = left;
             chart
         });
-        draw(&charts)?;
+        draw(&charts)
+    })
+}
+
+/// A picture of this size \[pixels\]: a title, and below it what `draw` puts there.
+fn titled(
+    name: &'static str,
+    title: &str,
+    size: (u32, u32),
+    draw: impl for<'a> FnOnce(Area<'a>) -> Drawn,
+) -> Result<String, CommandError> {
+    let mut text = String::new();
+    let drawn = (|| {
+        let area = SVGBackend::with_string(&mut text, size).into_drawing_area();
+        area.fill(&WHITE)?;
+        draw(area.titled(title, (FONT, 22))?)?;
         area.present()?;
         Ok(())
     })();

@@ -57,7 +57,7 @@ fn line(area: &Area, piece: &Piece, shape: &ModeShape) -> Drawn {
         .bold_line_style(GRID)
         .x_labels(5)
         // Adding zero takes the sign off a negative one.
-        .x_label_formatter(&|x| format!("{} mm", (1000.0 * x).round() + 0.0))
+        .x_label_formatter(&|x| format!("{} mm", (1000.0_f64 * x).round() + 0.0))
         .label_style((FONT, 12))
         .draw()?;
     chart.draw_series(LineSeries::new([(-half, 0.0), (half, 0.0)], BLACK.mix(0.5)))?;
