@@ -4,6 +4,7 @@ use orthopanel_identify::PieceFit;
 use orthopanel_model::Place;
 use plotters::prelude::*;
 
+use super::frequency_axes::{self, degrees};
 use super::{FONT, GRID, MEASURED, MODEL, stacked};
 use crate::error::CommandError;
 use crate::measured_pairs::place_text;
@@ -28,20 +29,7 @@ pub fn accelerance(fit: &PieceFit, places: [Place; 2], seen: &WholeAccelerance) 
     let [from, to] = places.map(place_text);
     let title = format!("Piece {}: accelerance, force at {from} m, response at {to} m", fit.name);
     stacked("accelerance", &title, [360, 240], |[upper, lower]| {
-        let mut chart = ChartBuilder::on(upper)
-            .margin(12)
-            .x_label_area_size(30)
-            .y_label_area_size(70)
-            .build_cartesian_2d(0.0..highest, (low..high).log_scale())?;
-        chart
-            .configure_mesh()
-            .light_line_style(TRANSPARENT)
-            .bold_line_style(GRID)
-            .x_label_formatter(&|frequency| format!("{frequency:.0}"))
-            .y_label_formatter(&|size| if (0.01..1e4).contains(size) { format!("{size}") } else { format!("{size:e}") })
-            .y_desc("magnitude [(m/s²)/N]")
-            .label_style((FONT, 15))
-            .draw()?;
+        let mut chart = frequency_axes::magnitude(upper, highest, low, high)?;
         for (index, mode) in fit.modes.iter().enumerate() {
             let drawn = chart.draw_series(LineSeries::new([(mode.measured, low), (mode.measured, high)], MEASURED))?;
             if index == 0 {
@@ -63,22 +51,8 @@ pub fn accelerance(fit: &PieceFit, places: [Place; 2], seen: &WholeAccelerance) 
             .label_font((FONT, 15))
             .draw()?;
 
-        let mut chart = ChartBuilder::on(lower)
-            .margin(12)
-            .x_label_area_size(45)
-            .y_label_area_size(70)
-            .build_cartesian_2d(0.0..highest, -190.0..190.0)?;
-        chart
-            .configure_mesh()
-            .light_line_style(TRANSPARENT)
-            .bold_line_style(GRID)
-            .x_label_formatter(&|frequency| format!("{frequency:.0}"))
-            .y_label_formatter(&|phase| format!("{phase:.0}"))
-            .x_desc("frequency [Hz]")
-            .y_desc("phase [degrees]")
-            .label_style((FONT, 15))
-            .draw()?;
-        let phase = values.iter().map(|(line, (re, im))| (*line, im.atan2(*re).to_degrees()));
+        let mut chart = frequency_axes::phase(lower, highest)?;
+        let phase = values.iter().map(|(line, (re, im))| (*line, degrees(im.atan2(*re))));
         chart.draw_series(LineSeries::new(phase, MODEL.stroke_width(2)))?;
         Ok(())
     })

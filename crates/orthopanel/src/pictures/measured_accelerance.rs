@@ -4,6 +4,7 @@ use orthopanel_identify::AcceleranceFit;
 use plotters::prelude::*;
 
 use super::envelope::envelope;
+use super::frequency_axes::{self, degrees};
 use super::{FONT, GRID, MEASURED, MODEL, stacked};
 use crate::error::CommandError;
 use crate::measured_pairs::place_text;
@@ -22,20 +23,7 @@ pub fn measured_accelerance(piece: &str, fit: &AcceleranceFit, decay_rate: f64) 
     let sizes = fit.measured.iter().map(|value| value.norm()).filter(|size| *size > DEPTH * greatest);
     let low = 0.5 * sizes.fold(greatest, f64::min);
     stacked("measured accelerance", &title, [360, 240], |[upper, lower]| {
-        let mut chart = ChartBuilder::on(upper)
-            .margin(12)
-            .x_label_area_size(30)
-            .y_label_area_size(70)
-            .build_cartesian_2d(0.0..highest, (low..2.0 * greatest).log_scale())?;
-        chart
-            .configure_mesh()
-            .light_line_style(TRANSPARENT)
-            .bold_line_style(GRID)
-            .x_label_formatter(&|frequency| format!("{frequency:.0}"))
-            .y_label_formatter(&|size| if (0.01..1e4).contains(size) { format!("{size}") } else { format!("{size:e}") })
-            .y_desc("magnitude [(m/s²)/N]")
-            .label_style((FONT, 15))
-            .draw()?;
+        let mut chart = frequency_axes::magnitude(upper, highest, low, 2.0 * greatest)?;
         let curves = [("measured", &fit.measured, MEASURED, 3), ("calculated", &fit.model, MODEL, 1)];
         for (label, values, colour, width) in curves {
             let sizes = fit.frequency.iter().zip(values).map(|(&line, value)| (line, value.norm().max(low)));
@@ -52,33 +40,11 @@ pub fn measured_accelerance(piece: &str, fit: &AcceleranceFit, decay_rate: f64) 
             .label_font((FONT, 15))
             .draw()?;
 
-        let mut chart = ChartBuilder::on(lower)
-            .margin(12)
-            .x_label_area_size(45)
-            .y_label_area_size(70)
-            .build_cartesian_2d(0.0..highest, -100.0..280.0)?;
-        chart
-            .configure_mesh()
-            .light_line_style(TRANSPARENT)
-            .bold_line_style(GRID)
-            .y_labels(5)
-            .x_label_formatter(&|frequency| format!("{frequency:.0}"))
-            .y_label_formatter(&|phase| format!("{phase:.0}"))
-            .x_desc("frequency [Hz]")
-            .y_desc("phase [degrees]")
-            .label_style((FONT, 15))
-            .draw()?;
+        let mut chart = frequency_axes::phase(lower, highest)?;
         for (_, values, colour, width) in curves {
-            let phases = fit.frequency.iter().zip(values).map(|(&line, value)| (line, phase(value.arg())));
+            let phases = fit.frequency.iter().zip(values).map(|(&line, value)| (line, degrees(value.arg())));
             chart.draw_series(LineSeries::new(envelope(phases.collect()), colour.stroke_width(width)))?;
         }
         Ok(())
     })
-}
-
-/// Degrees from -90 to 270: between its resonances a lightly damped panel has a phase of 0 or 180 degrees, and a cut
-/// there would let noise draw lines from edge to edge.
-fn phase(radians: f64) -> f64 {
-    let degrees = radians.to_degrees();
-    if degrees < -90.0 { degrees + 360.0 } else { degrees }
 }

@@ -3,6 +3,7 @@
 mod accelerance;
 mod envelope;
 mod frequencies;
+mod frequency_axes;
 mod measured_accelerance;
 mod mode_shapes;
 mod response;
