@@ -30,11 +30,16 @@ impl Quadratic {
         }
     }
 
-    /// Adds another sum over the same parameters.
-    pub fn add(&mut self, other: &Self) {
-        self.cost += other.cost;
-        self.gradient.iter_mut().zip(&other.gradient).for_each(|(sum, part)| *sum += part);
-        self.normal += &other.normal;
+    /// Adds $[J\,r]^T[J\,r]$ of some residuals by some parameters, in rising order of these; fills the lower triangle.
+    pub fn add_products(&mut self, products: &Mat<f64>, parameters: &[usize]) {
+        let last = parameters.len();
+        self.cost += products[(last, last)];
+        for (i, &row) in parameters.iter().enumerate() {
+            self.gradient[row] += products[(last, i)];
+            for (j, &column) in parameters.iter().enumerate().take(i + 1) {
+                self.normal[(row, column)] += products[(i, j)];
+            }
+        }
     }
 
     /// Copies the lower triangle onto the upper one.

@@ -8,6 +8,9 @@ const HALF_WINDOW: usize = 40;
 /// $|H|^2$: lowest, highest and steps.
 const RATIOS: (f64, f64, usize) = (1e-6, 1e4, 60);
 
+/// Steps passed over in the first search for the ratio.
+const STRIDE: usize = 5;
+
 /// The variance $E|\hat H-H|^2$ of each line.
 ///
 /// The scatter of $n$ hits tells a line's variance to $1/\sqrt{n-1}$ only: as weights such numbers would favour lines
@@ -17,7 +20,6 @@ const RATIOS: (f64, f64, usize) = (1e-6, 1e4, 60);
 ///
 /// Where the records tell no variance, an even one is returned; the fit's own scatter then gives its size.
 pub(super) fn line_variance(accelerance: &Accelerance) -> Vec<f64> {
-    let count = accelerance.value.len();
     let power: Vec<f64> = accelerance.value.iter().map(|value| value.norm_sqr()).collect();
     let Some(raw) = &accelerance.variance else {
         // Nothing is known but that strong lines carry the errors of gain: a thousandth of each and of the median.
@@ -25,21 +27,26 @@ pub(super) fn line_variance(accelerance: &Accelerance) -> Vec<f64> {
         return power.iter().map(|p| 1e-6 * (p + floor)).collect();
     };
     let typical = median(&power).max(f64::MIN_POSITIVE);
-    let mut best: Option<(f64, Vec<f64>)> = None;
-    let (lowest, highest, steps) = RATIOS;
-    for step in 0..=steps {
+    let smooth = |step: usize| {
+        let (lowest, highest, steps) = RATIOS;
         let ratio = lowest * (highest / lowest).powf(step as f64 / steps as f64);
         let shape: Vec<f64> = power.iter().map(|p| 1.0 + ratio * p / typical).collect();
         let level = running_mean(&raw.iter().zip(&shape).map(|(v, s)| v / s).collect::<Vec<_>>());
-        let variance: Vec<f64> = level.iter().zip(&shape).map(|(l, s)| (l * s).max(f64::MIN_POSITIVE)).collect();
-        // Gamma likelihood of the raw variances given the smooth ones.
-        let misfit: f64 =
-            raw.iter().zip(&variance).filter(|(v, _)| v.is_finite()).map(|(v, smooth)| v / smooth + smooth.ln()).sum();
-        if best.as_ref().is_none_or(|(least, _)| misfit < *least) {
-            best = Some((misfit, variance));
-        }
-    }
-    best.map_or_else(|| vec![1.0; count], |(_, variance)| variance)
+        level.iter().zip(&shape).map(|(l, s)| (l * s).max(f64::MIN_POSITIVE)).collect::<Vec<f64>>()
+    };
+    // Gamma likelihood of the raw variances given the smooth ones.
+    let misfit = |step: usize| -> f64 {
+        let pairs = raw.iter().zip(smooth(step)).filter(|(v, _)| v.is_finite());
+        pairs.map(|(v, smooth)| v / smooth + smooth.ln()).sum()
+    };
+    let least = |steps: &mut dyn Iterator<Item = usize>| {
+        let scored = steps.map(|step| (misfit(step), step));
+        scored.min_by(|a, b| a.0.total_cmp(&b.0)).map_or(0, |(_, step)| step)
+    };
+    // Every few steps, then each beside the best: the misfit bends but slowly with the ratio.
+    let coarse = least(&mut (0..=RATIOS.2).step_by(STRIDE));
+    let nearest = coarse.saturating_sub(STRIDE - 1)..=(coarse + STRIDE - 1).min(RATIOS.2);
+    smooth(least(&mut { nearest }))
 }
 
 /// Mean over the neighbours within [`HALF_WINDOW`], lines without a finite value left out.

@@ -1,5 +1,6 @@
 //! Identification by accelerance: maximum likelihood over the whole complex band, or the paper's eq. 23.
 
+mod line_block;
 mod line_noise;
 mod matching;
 mod outcome;
@@ -13,6 +14,7 @@ mod synthesis;
 
 use orthopanel_data::ImpactTest;
 use orthopanel_model::{BeamConstants, ExactBeam, Piece};
+use rayon::prelude::*;
 
 use crate::elastic_constants::held_constants;
 use crate::least_squares::{Minimum, Stuck, levenberg_marquardt};
@@ -101,11 +103,13 @@ fn start(test: &ImpactTest, settings: Settings) -> Result<Start, IdentifyError> 
     let held = held_constants(test)?;
     let mut pieces: Vec<StartPiece> = Vec::new();
     let mut notes = Vec::new();
-    for (index, accelerance) in test.accelerances(settings.estimation)? {
+    let accelerances = test.accelerances(settings.estimation)?;
+    let records: Vec<PlaceRecord> =
+        accelerances.par_iter().map(|(_, accelerance)| PlaceRecord::of(accelerance)).collect();
+    for ((index, accelerance), record) in accelerances.into_iter().zip(records) {
         let (force, response) = (accelerance.force_at, accelerance.response_at);
         let pair = format!("force at ({}, {}), response at ({}, {})", force.x, force.y, response.x, response.y);
         notes.extend(accelerance.notes.iter().map(|note| format!("{pair}: {note}")));
-        let record = PlaceRecord::of(&accelerance);
         match pieces.iter_mut().find(|piece| piece.index == index) {
             Some(piece) => piece.records.push(record),
             None => {

@@ -1,7 +1,10 @@
 //! Poles of the records without a model: natural frequencies and damping read off each resonance.
 
+use std::ops::Range;
+
 use faer::Mat;
 use num_complex::Complex64;
+use rayon::prelude::*;
 
 use super::records::PlaceRecord;
 use crate::least_squares::{Linearised, Quadratic, levenberg_marquardt};
@@ -31,8 +34,9 @@ pub(super) fn poles(records: &[PlaceRecord]) -> Vec<Pole> {
     let power: Vec<f64> =
         (0..first.frequency.len()).map(|line| alike.iter().map(|record| record.value[line].norm_sqr()).sum()).collect();
     let noise = |line: usize| alike.iter().map(|record| record.variance[line]).sum::<f64>();
-    let heard = peaks(&power).into_iter().filter(|&line| power[line] > SIGNAL_TO_NOISE * noise(line));
-    let mut found: Vec<Pole> = heard.filter_map(|line| common_pole(&alike, &power, line)).collect();
+    let mut heard = peaks(&power);
+    heard.retain(|&line| power[line] > SIGNAL_TO_NOISE * noise(line));
+    let mut found: Vec<Pole> = heard.par_iter().filter_map(|&line| common_pole(&alike, &power, line)).collect();
     found.sort_by(|a, b| a.frequency.total_cmp(&b.frequency));
     // Two peaks of one resonance, split by noise, lead to one pole.
     found.dedup_by(|later, earlier| later.frequency - earlier.frequency < earlier.zeta * earlier.frequency);
@@ -74,7 +78,7 @@ const SIDE_LINES: (usize, usize) = (15, 400);
 /// Records are fitted one by one, since a test drifts: at a damping ratio of 1e-4 a shift of 1e-4 between two records is
 /// a whole half-power width, and a common pole would come out wide.
 fn common_pole(records: &[&PlaceRecord], power: &[f64], peak: usize) -> Option<Pole> {
-    let own: Vec<Pole> = records.iter().filter_map(|record| fit_pole(record, power, peak)).collect();
+    let own: Vec<Pole> = records.iter().filter_map(|record| Some(fit_pole(record, power, peak)?.0)).collect();
     let weights = own.iter().map(|pole| pole.log_zeta_std.max(1e-6).powi(-2));
     let total: f64 = weights.clone().sum();
     let mean = |value: &dyn Fn(&Pole) -> f64| {
@@ -87,7 +91,8 @@ fn common_pole(records: &[&PlaceRecord], power: &[f64], peak: usize) -> Option<P
     (!own.is_empty()).then(|| Pole { frequency: mean(&|pole| pole.frequency), zeta: log_zeta.exp(), log_zeta_std })
 }
 
-fn fit_pole(record: &PlaceRecord, power: &[f64], peak: usize) -> Option<Pole> {
+/// The pole of one record at a peak of `power`, and the lines it was read from.
+pub(super) fn fit_pole(record: &PlaceRecord, power: &[f64], peak: usize) -> Option<(Pole, Range<usize>)> {
     let frequency = &record.frequency;
     let step = frequency.get(peak + 1)? - frequency[peak];
     // Half-power width from the first lines below half on each side.
@@ -113,14 +118,14 @@ fn fit_pole(record: &PlaceRecord, power: &[f64], peak: usize) -> Option<Pole> {
     // A pole away from its peak, or of any damping, is no resonance but a bump of the background.
     let at_peak = (found - frequency[peak]).abs() < 2.0 * width.max(step);
     let sure = log_zeta_std < 0.5 && zeta < MOST_DAMPING;
-    (at_peak && sure).then_some(Pole { frequency: found, zeta, log_zeta_std })
+    (at_peak && sure).then_some((Pole { frequency: found, zeta, log_zeta_std }, local.lines))
 }
 
 /// Residuals of one resonance over a straight background, amplitudes eliminated (variable projection):
 /// $H \approx As^2/d(s) + B + C(f-f_0)$ with $A$, $B$, $C$ complex.
 struct LocalFit<'a> {
     record: &'a PlaceRecord,
-    lines: std::ops::Range<usize>,
+    lines: Range<usize>,
 }
 
 impl LocalFit<'_> {

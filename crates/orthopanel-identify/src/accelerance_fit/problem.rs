@@ -1,5 +1,7 @@
 //! The likelihood of the records: residuals over the noise, and their derivatives.
 
+use faer::linalg::matmul::matmul;
+use faer::{Accum, Mat, Par};
 use num_complex::Complex64;
 use orthopanel_model::{
     BEAM_CONSTANTS, Boundary, Constant, ModelError, Piece, Place, StaticFlexibility, Structure, TimoshenkoBeam,
@@ -7,6 +9,7 @@ use orthopanel_model::{
 };
 use rayon::prelude::*;
 
+use super::line_block::{BLOCK, LineBlock};
 use super::records::PlaceRecord;
 use super::synthesis::{DampingLaw, PairModel};
 use crate::least_squares::Quadratic;
@@ -22,9 +25,9 @@ pub(super) struct PieceProblem {
     /// Modes whose damping is free: those below 1.3 times the band, whose flanks reach into it.
     pub free_zetas: usize,
     /// Modes summed one by one: those below 2.5 times the band.
-    summed: usize,
+    pub summed: usize,
     beam: TimoshenkoBeam,
-    flexibility: StaticFlexibility,
+    pub flexibility: StaticFlexibility,
     places: Vec<Place>,
     pairs: Vec<(usize, usize)>,
 }
@@ -78,7 +81,7 @@ impl PieceProblem {
     }
 
     /// All damping ratios of the sum: the free ones, then the last of those inside the band.
-    fn zetas(&self, log_zetas: &[f64]) -> Vec<f64> {
+    pub(super) fn zetas(&self, log_zetas: &[f64]) -> Vec<f64> {
         let beyond = log_zetas.get(self.in_band.saturating_sub(1)).or(log_zetas.last()).copied().unwrap_or(-6.0);
         (0..self.summed).map(|mode| log_zetas.get(mode).copied().unwrap_or(beyond).exp()).collect()
     }
@@ -136,9 +139,7 @@ impl AcceleranceProblem {
     pub(super) fn bounds(&self) -> Vec<(f64, f64)> {
         let constants =
             self.free.iter().map(|&index| (self.constants[index].low.ln(), self.constants[index].high.ln()));
-        // Eq. 25: zeta below 1/√2.
-        let zeta = (1e-7_f64.ln(), -0.5 * 2.0_f64.ln() - 1e-9);
-        constants.chain(std::iter::repeat(zeta)).take(self.size()).collect()
+        constants.chain(std::iter::repeat(log_zeta_bounds())).take(self.size()).collect()
     }
 
     /// The model's lines of every record, piece by piece.
@@ -147,12 +148,13 @@ impl AcceleranceProblem {
         for (index, piece) in self.pieces.iter().enumerate() {
             let models = self.pair_models(index, parameters)?;
             for (record, model) in piece.records.iter().zip(&models) {
-                let mut out = vec![Complex64::ZERO; 3 + piece.free_zetas];
-                let line = |line| {
-                    model.line(record.s(line), &mut out);
-                    out[0]
-                };
-                all.push((0..record.value.len()).map(line).collect());
+                let mut out = vec![LineBlock::ZERO; model.functions()];
+                let mut lines = Vec::with_capacity(record.value.len());
+                for from in (0..record.value.len()).step_by(BLOCK) {
+                    model.lines(&record.s_block(from), &mut out);
+                    lines.extend(out.iter().take(1).flat_map(LineBlock::values).take(record.value.len() - from));
+                }
+                all.push(lines);
             }
         }
         Ok(all)
@@ -176,14 +178,18 @@ impl AcceleranceProblem {
                 .iter()
                 .map(|&j| (0..by_constants.nrows()).map(|i| by_constants[(i, j)] * values[j]).collect())
                 .collect();
-            let jobs: Vec<(&PlaceRecord, &PairModel)> = piece.records.iter().zip(&models).collect();
-            let parts: Vec<Quadratic> = jobs
-                .into_par_iter()
-                .map(|(record, model)| {
-                    self.record_part(record, model, &chain, self.zeta_offset(index), piece.free_zetas)
-                })
+            let columns: Vec<usize> =
+                (0..self.free.len()).chain((0..piece.free_zetas).map(|mode| self.zeta_offset(index) + mode)).collect();
+            let run = |record: &PlaceRecord| (0..record.value.len()).step_by(RUN);
+            let jobs: Vec<(&PlaceRecord, &PairModel, usize)> = piece
+                .records
+                .iter()
+                .zip(&models)
+                .flat_map(|(record, model)| run(record).map(move |from| (record, model, from)))
                 .collect();
-            parts.iter().for_each(|part| sum.add(part));
+            let parts: Vec<Mat<f64>> =
+                jobs.into_par_iter().map(|(record, model, from)| run_products(record, model, &chain, from)).collect();
+            parts.iter().for_each(|part| sum.add_products(part, &columns));
         }
         for (column, log_zeta) in parameters.iter().enumerate().skip(self.free.len()) {
             sum.add_row((log_zeta - self.usual_log_zeta) / PRIOR_LOG_ZETA_STD, &[(column, 1.0 / PRIOR_LOG_ZETA_STD)]);
@@ -191,35 +197,42 @@ impl AcceleranceProblem {
         sum.mirror();
         Ok(sum)
     }
+}
 
-    fn record_part(
-        &self,
-        record: &PlaceRecord,
-        model: &PairModel,
-        chain: &[Vec<f64>],
-        offset: usize,
-        free_zetas: usize,
-    ) -> Quadratic {
-        let mut part = Quadratic::zero(self.size());
-        let coefficients = chain.first().map_or(2, Vec::len);
-        let mut out = vec![Complex64::ZERO; 1 + coefficients + free_zetas];
-        let columns: Vec<usize> = (0..self.free.len()).chain(offset..offset + free_zetas).collect();
-        let (mut real, mut imaginary) = (vec![(0, 0.0); columns.len()], vec![(0, 0.0); columns.len()]);
-        for line in 0..record.value.len() {
-            model.line(record.s(line), &mut out);
-            let weight = (2.0 / record.variance[line]).sqrt();
-            let (structural, by_zeta) = out.split_at(1 + coefficients);
-            let constants = chain
-                .iter()
-                .map(|share| structural[1..].iter().zip(share).map(|(by, share)| by * *share).sum::<Complex64>());
-            for (slot, derivative) in constants.chain(by_zeta.iter().copied()).enumerate() {
-                real[slot] = (columns[slot], weight * derivative.re);
-                imaginary[slot] = (columns[slot], weight * derivative.im);
+/// Bounds of $\ln\zeta$: eq. 25 wants a ratio below $1/\sqrt2$.
+pub(super) fn log_zeta_bounds() -> (f64, f64) {
+    (1e-7_f64.ln(), -0.5 * 2.0_f64.ln() - 1e-9)
+}
+
+/// Lines summed by one task: enough to be worth a task, few enough to share out evenly.
+const RUN: usize = 32 * BLOCK;
+
+/// $[J\,r]^T[J\,r]$ of a run of lines, with the derivatives by the free constants first, then by each $\ln\zeta$.
+/// `chain` has $\partial c_i/\partial\ln p_j$, a list a free constant.
+fn run_products(record: &PlaceRecord, model: &PairModel, chain: &[Vec<f64>], from: usize) -> Mat<f64> {
+    let mut functions = vec![LineBlock::ZERO; model.functions()];
+    let coefficients = chain.first().map_or(model.coefficients(), Vec::len);
+    let zetas = model.functions() - 1 - coefficients;
+    let size = chain.len() + zetas + 1;
+    let (mut rows, mut products) = (Mat::zeros(2 * BLOCK, size), Mat::zeros(size, size));
+    for from in (from..record.value.len().min(from + RUN)).step_by(BLOCK) {
+        model.lines(&record.s_block(from), &mut functions);
+        let weights = record.weights(from);
+        let (structural, by_zeta) = functions.split_at_mut(1 + coefficients);
+        let Some((value, by_coefficients)) = structural.split_first_mut() else { continue };
+        for (column, shares) in chain.iter().enumerate() {
+            let mut by = LineBlock::ZERO;
+            for (by_coefficient, share) in by_coefficients.iter().zip(shares) {
+                by.add_multiple(by_coefficient, *share);
             }
-            let misfit = weight * (structural[0] - record.value[line]);
-            part.add_row(misfit.re, &real);
-            part.add_row(misfit.im, &imaginary);
+            by.write_weighted(&weights, rows.col_as_slice_mut(column));
         }
-        part
+        for (by, column) in by_zeta.iter().zip(chain.len()..) {
+            by.write_weighted(&weights, rows.col_as_slice_mut(column));
+        }
+        value.subtract(&record.value[from..]);
+        value.write_weighted(&weights, rows.col_as_slice_mut(size - 1));
+        matmul(&mut products, Accum::Add, rows.transpose(), &rows, 1.0, Par::Seq);
     }
+    products
 }

@@ -4,6 +4,7 @@ use num_complex::Complex64;
 use orthopanel_data::Accelerance;
 use orthopanel_model::Place;
 
+use super::line_block::{BLOCK, LineBlock};
 use super::line_noise::line_variance;
 
 /// One accelerance of one piece.
@@ -42,6 +43,21 @@ impl PlaceRecord {
     /// $s$ of a line.
     pub(super) fn s(&self, line: usize) -> Complex64 {
         Complex64::new(self.decay_rate, std::f64::consts::TAU * self.frequency[line])
+    }
+
+    /// $s$ of the lines from one on; past the record's end its last line again.
+    pub(super) fn s_block(&self, from: usize) -> LineBlock {
+        LineBlock::filled((from..self.frequency.len()).map(|line| self.s(line)))
+    }
+
+    /// $\sqrt{2/\mathrm{var}}$ of the lines from one on, since the variance counts real and imaginary part together; past
+    /// the record's end 0.
+    pub(super) fn weights(&self, from: usize) -> [f64; BLOCK] {
+        let mut weights = [0.0; BLOCK];
+        for (weight, variance) in weights.iter_mut().zip(self.variance.iter().skip(from)) {
+            *weight = (2.0 / variance).sqrt();
+        }
+        weights
     }
 
     /// Highest line \[Hz\].

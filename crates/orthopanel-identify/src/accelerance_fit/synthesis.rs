@@ -3,6 +3,7 @@
 use num_complex::Complex64;
 use orthopanel_model::SensitiveModes;
 
+use super::line_block::{BLOCK, LineBlock};
 use super::smooth_part::SmoothPart;
 
 /// How a mode loses energy.
@@ -16,14 +17,19 @@ pub enum DampingLaw {
 }
 
 impl DampingLaw {
-    /// The damping term of $d_m$, and its derivative by $\omega_m^2$.
-    fn loss(self, omega2: f64, omega: f64, zeta: f64, s: Complex64) -> (Complex64, Complex64) {
+    /// $(\alpha, \beta)$ of the damping term $\alpha s + j\beta$ of $d_m$.
+    fn loss(self, omega: f64, zeta: f64) -> (f64, f64) {
         match self {
-            Self::Viscous => {
-                let loss = 2.0 * zeta * omega * s;
-                (loss, loss / (2.0 * omega2))
-            }
-            Self::Hysteretic => (Complex64::new(0.0, 2.0 * zeta * omega2), Complex64::new(0.0, 2.0 * zeta)),
+            Self::Viscous => (2.0 * zeta * omega, 0.0),
+            Self::Hysteretic => (0.0, 2.0 * zeta * omega * omega),
+        }
+    }
+
+    /// The derivatives of $\alpha$ and $\beta$ by $\omega_m^2$.
+    fn loss_by_omega2(self, omega: f64, zeta: f64) -> (f64, f64) {
+        match self {
+            Self::Viscous => (zeta / omega, 0.0),
+            Self::Hysteretic => (0.0, 2.0 * zeta),
         }
     }
 }
@@ -107,46 +113,69 @@ impl PairModel {
         let far = summed.split_off(near.min(summed.len()));
         let coefficients = static_by.len();
         let smooth = SmoothPart::tabulate(decay_rate, band, 1 + coefficients, |s, out| {
-            let s2 = s * s;
-            let power = series.iter().rev().fold(Complex64::ZERO, |sum, coefficient| *coefficient - s2 * sum);
-            out[0] = s2 * power + rigid;
-            for (total, by) in out[1..].iter_mut().zip(&static_by) {
-                *total = s2 * by;
+            let Some((value, by_coefficients)) = out.split_first_mut() else { return };
+            let power = |s2| series.iter().rev().fold(Complex64::ZERO, |sum, coefficient| *coefficient - s2 * sum);
+            *value = LineBlock::filled(s.values().map(|s| s * s * power(s * s) + rigid));
+            for (total, by) in by_coefficients.iter_mut().zip(&static_by) {
+                *total = LineBlock::filled(s.values().map(|s| s * s * *by));
             }
+            let mut unused = LineBlock::ZERO;
             for mode in &far {
-                mode.add(law, s, out);
+                mode.add(law, s, out, &mut unused);
             }
         });
         Self { law, near: summed, coefficients, smooth }
     }
 
+    /// Number of the structure's coefficients.
+    pub(super) fn coefficients(&self) -> usize {
+        self.coefficients
+    }
+
+    /// Number of functions that [`Self::lines`] writes.
+    pub(super) fn functions(&self) -> usize {
+        1 + self.coefficients + self.near.len()
+    }
+
     /// Writes into `out`: $H(s)$, its derivatives by the structure's coefficients, then by each near mode's $\ln\zeta$.
-    pub(super) fn line(&self, s: Complex64, out: &mut [Complex64]) {
-        let (structural, by_zeta) = out.split_at_mut(1 + self.coefficients);
+    pub(super) fn lines(&self, s: &LineBlock, out: &mut [LineBlock]) {
+        let (structural, by_zeta) = out.split_at_mut((1 + self.coefficients).min(out.len()));
         self.smooth.at(s, structural);
         for (mode, by) in self.near.iter().zip(by_zeta) {
-            *by = mode.add(self.law, s, structural);
+            mode.add(self.law, s, structural, by);
         }
     }
 }
 
 impl NearMode {
-    /// Adds the mode's part to value and derivatives by coefficients; returns that by $\ln\zeta$.
-    fn add(&self, law: DampingLaw, s: Complex64, out: &mut [Complex64]) -> Complex64 {
-        let s2 = s * s;
-        let (loss, loss_by_omega2) = law.loss(self.omega2, self.omega, self.zeta, s);
-        let inverse = (s2 + loss + self.omega2).inv();
-        let gain = s2 * inverse;
-        let by_dynamic = -self.product * gain * inverse;
-        let by_omega2 = by_dynamic * (1.0 + loss_by_omega2);
-        if let Some((value, by_coefficients)) = out.split_first_mut() {
-            *value += self.product * gain;
-            for ((total, omega2_by), product_by) in
-                by_coefficients.iter_mut().zip(&self.omega2_by).zip(&self.product_by)
-            {
-                *total += by_omega2 * *omega2_by + gain * *product_by;
-            }
+    /// Adds the mode's part to value and derivatives by coefficients; writes that by $\ln\zeta$.
+    fn add(&self, law: DampingLaw, s: &LineBlock, out: &mut [LineBlock], by_log_zeta: &mut LineBlock) {
+        let (slope, constant) = law.loss(self.omega, self.zeta);
+        let (slope_by, constant_by) = law.loss_by_omega2(self.omega, self.zeta);
+        let (mut gain, mut by_omega2) = (LineBlock::ZERO, LineBlock::ZERO);
+        for line in 0..BLOCK {
+            let (a, b) = (s.re[line], s.im[line]);
+            let (s2_re, s2_im) = (a * a - b * b, 2.0 * a * b);
+            let (loss_re, loss_im) = (slope * a, slope * b + constant);
+            let (d_re, d_im) = (s2_re + loss_re + self.omega2, s2_im + loss_im);
+            let scale = 1.0 / (d_re * d_re + d_im * d_im);
+            let (inverse_re, inverse_im) = (d_re * scale, -d_im * scale);
+            let (gain_re, gain_im) = (s2_re * inverse_re - s2_im * inverse_im, s2_re * inverse_im + s2_im * inverse_re);
+            // By d itself: -P s²/d².
+            let by_re = -self.product * (gain_re * inverse_re - gain_im * inverse_im);
+            let by_im = -self.product * (gain_re * inverse_im + gain_im * inverse_re);
+            let (d_by_re, d_by_im) = (1.0 + slope_by * a, slope_by * b + constant_by);
+            (gain.re[line], gain.im[line]) = (gain_re, gain_im);
+            by_omega2.re[line] = by_re * d_by_re - by_im * d_by_im;
+            by_omega2.im[line] = by_re * d_by_im + by_im * d_by_re;
+            by_log_zeta.re[line] = by_re * loss_re - by_im * loss_im;
+            by_log_zeta.im[line] = by_re * loss_im + by_im * loss_re;
         }
-        by_dynamic * loss
+        let Some((value, by_coefficients)) = out.split_first_mut() else { return };
+        value.add_multiple(&gain, self.product);
+        for ((total, omega2_by), product_by) in by_coefficients.iter_mut().zip(&self.omega2_by).zip(&self.product_by) {
+            total.add_multiple(&by_omega2, *omega2_by);
+            total.add_multiple(&gain, *product_by);
+        }
     }
 }
