@@ -34,8 +34,11 @@ impl<F: Fn(&[f64]) -> Result<f64, IdentifyError>> CostFunction for &Penalised<F>
 
 /// Edge of the first simplex, in logarithms.
 const FIRST_EDGE: f64 = 0.2;
-/// Spread of the error over the corners at which a run ends: the rounding of the frequencies leaves some 1e-18.
+/// Spread of the error over the corners at which a run ends: the rounding of the frequencies leaves some 1e-18,
 const SMALL_SPREAD: f64 = 1e-16;
+/// and that of magnitudes at narrow resonances this part of the error: below it corners differ by chance, and a run
+/// would never end. It moves no parameter by more than 1e-5.
+const ROUNDING: f64 = 1e-11;
 const MOST_ITERATIONS: u64 = 2000;
 /// A run that moves the logarithms by less has found what the one before it found.
 const SETTLED: f64 = 1e-7;
@@ -57,15 +60,18 @@ pub(crate) fn downhill_simplex<F: Fn(&[f64]) -> Result<f64, IdentifyError>>(
             let moved = |(i, log): (usize, &f64)| if i + 1 == corner { log + edge } else { *log };
             best.iter().enumerate().map(moved).collect::<Vec<f64>>()
         });
-        let solver = NelderMead::new(corners.collect()).with_sd_tolerance(SMALL_SPREAD).map_err(refused)?;
+        let before = problem.cost(&best).map_err(refused)?;
+        let spread = SMALL_SPREAD.max(ROUNDING * before);
+        let solver = NelderMead::new(corners.collect()).with_sd_tolerance(spread).map_err(refused)?;
         let result = Executor::new(problem, solver)
             .configure(|state| state.max_iters(MOST_ITERATIONS))
             .run()
             .map_err(refused)?;
         let found = result.state().get_best_param().cloned().unwrap_or_else(|| best.clone());
         let moved = found.iter().zip(&best).fold(0.0_f64, |most, (a, b)| most.max((a - b).abs()));
+        let gained = before - problem.cost(&found).map_err(refused)?;
         best = found;
-        if moved < SETTLED {
+        if moved < SETTLED || gained <= spread {
             return Ok(best);
         }
         edge = (0.1 * edge).max(1e-3);

@@ -15,7 +15,7 @@ pub use accelerance_fit::DampingLaw;
 pub use entry::identify;
 pub use error::IdentifyError;
 pub use identification::{AcceleranceFit, Correlation, Identification, IdentifiedConstant, ModeFit, PieceFit};
-pub use settings::{Search, Settings};
+pub use settings::{PaperWeights, Search, Settings};
 pub use time_history::{
     ComparedSignals, ForceBetweenSamples, HistorySettings, HitComparison, Misfit, compare_time_history,
 };

@@ -138,6 +138,7 @@ impl IdentifyOptions {
                 DampingWord::Hysteretic => DampingLaw::Hysteretic,
             },
             estimation: self.records.estimation()?,
+            ..Settings::default()
         })
     }
 

@@ -9,6 +9,7 @@ mod pole_constants;
 mod poles;
 mod problem;
 mod records;
+mod resonance_point;
 mod smooth_part;
 mod synthesis;
 
@@ -92,7 +93,7 @@ pub(crate) fn identify_records(test: &ImpactTest, settings: Settings) -> Result<
             }
         }
         Search::Simplex => {
-            let parameters = paper_error::minimise(&problem, &start, &parameters)?;
+            let parameters = paper_error::minimise(&problem, &start, &parameters, settings.paper_weights)?;
             Minimum { at: problem.linearise(&parameters)?, parameters }
         }
     };

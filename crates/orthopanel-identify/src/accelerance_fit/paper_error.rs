@@ -1,25 +1,20 @@
 //! The paper's second problem: eq. 23 under eq. 25, by downhill simplex with a penalty.
 
-use orthopanel_model::{BeamConstants, ExactBeam, ModalModel, Mode, ModelError};
+use num_complex::Complex64;
+use orthopanel_model::{BeamConstants, ExactBeam, ModelError};
+use rayon::prelude::*;
 
-use super::Start;
-use super::problem::AcceleranceProblem;
+use super::problem::{AcceleranceProblem, PieceProblem, log_zeta_bounds};
+use super::records::PlaceRecord;
+use super::resonance_point::{MeasuredPoint, greatest, half_width, measured_point};
+use super::synthesis::DampingLaw;
+use super::{Pole, Start};
 use crate::IdentifyError;
 use crate::downhill_simplex::{Penalised, downhill_simplex};
+use crate::settings::PaperWeights;
 
-/// Weights of eq. 23 as in section 3.4 of the paper.
-const FREQUENCY_WEIGHT: f64 = 0.1;
-const MAGNITUDE_WEIGHT: f64 = 1e4;
-
-/// One measured resonance point of one record.
-struct ResonancePoint {
-    mode: usize,
-    frequency: f64,
-    magnitude: f64,
-}
-
-/// Modes beyond the band that take part in the calculated accelerance.
-const MODES_BEYOND: usize = 20;
+/// Resonance points of one piece, a list a record.
+type PiecePoints = Vec<Vec<MeasuredPoint>>;
 
 /// Eq. 23, summed over the records,
 /// $$W_f\sum_m\frac{(f_{exp}-f_{cal})^2}{f_{exp}^2} + W_G\sum_m\frac{(G(f_{exp})-G(f_{cal}))^2}{G(f_{exp})^2}$$
@@ -27,92 +22,184 @@ const MODES_BEYOND: usize = 20;
 struct PaperError<'a> {
     problem: &'a AcceleranceProblem,
     start: &'a Start,
-    /// For each piece, for each record, its resonance points.
-    points: Vec<Vec<Vec<ResonancePoint>>>,
+    /// The start of the damping ratios, as logarithms.
+    parameters: &'a [f64],
+    weights: PaperWeights,
+    points: Vec<PiecePoints>,
 }
 
 /// The minimum of eq. 23 from `parameters`, which are those of the likelihood.
+///
+/// The simplex moves the free constants. At each of its corners the damping ratios take the values that are best there
+/// ([`PaperError::best_damping`]), so the minimum is that over all parameters of eq. 25.
 pub(super) fn minimise(
     problem: &AcceleranceProblem,
     start: &Start,
     parameters: &[f64],
+    weights: PaperWeights,
 ) -> Result<Vec<f64>, IdentifyError> {
-    let points = problem.pieces.iter().enumerate().map(|(index, _)| resonance_points(problem, start, index)).collect();
-    let error = PaperError { problem, start, points };
-    downhill_simplex(&Penalised { error: |p: &[f64]| Ok(error.at(p)?), bounds: problem.bounds() }, parameters)
+    let pieces = problem.pieces.iter().zip(&start.pieces).zip(&start.matching.modes);
+    let points = pieces.map(|((piece, own), modes)| piece_points(&piece.records, &own.poles, modes)).collect();
+    let error = PaperError { problem, start, parameters, weights, points };
+    let free = problem.free.len();
+    let mut found = parameters.to_vec();
+    if free > 0 {
+        let bounds: Vec<(f64, f64)> = problem.bounds().into_iter().take(free).collect();
+        let penalised = Penalised { error: |logs: &[f64]| Ok(error.at(logs)?.0), bounds };
+        let constants = downhill_simplex(&penalised, &parameters[..free])?;
+        found[..free].copy_from_slice(&constants);
+    }
+    let (_, log_zetas) = error.at(&found[..free])?;
+    found[free..].copy_from_slice(&log_zetas);
+    Ok(found)
 }
 
-/// The greatest magnitude within three half-power widths of each matched pole.
-fn resonance_points(problem: &AcceleranceProblem, start: &Start, piece: usize) -> Vec<Vec<ResonancePoint>> {
-    let poles = start.pieces[piece].poles.iter().zip(&start.matching.modes[piece]);
-    let matched: Vec<_> = poles.filter_map(|(pole, mode)| Some((pole, (*mode)?))).collect();
-    let of_record = |record: &super::records::PlaceRecord| {
-        let point = |&(pole, mode): &(&super::Pole, usize)| {
-            let reach = 6.0 * pole.zeta * pole.frequency;
-            let near = |f: f64| (f - pole.frequency).abs() <= reach.max(1e-3 * pole.frequency);
-            let lines = (0..record.value.len()).filter(|&line| near(record.frequency[line]));
-            let line = lines.max_by(|&a, &b| record.value[a].norm().total_cmp(&record.value[b].norm()))?;
-            let magnitude = record.value[line].norm();
-            (magnitude > 0.0).then_some(ResonancePoint { mode, frequency: record.frequency[line], magnitude })
-        };
-        matched.iter().filter_map(point).collect()
+/// A place takes part in a mode whose height it knows within this factor of the place that knows it best. Eq. 23 weighs
+/// all magnitudes alike, and a place near a node, which rises little over its noise, would push the constants.
+const WORST_KNOWN: f64 = 2.0;
+
+fn piece_points(records: &[PlaceRecord], poles: &[Pole], modes: &[Option<usize>]) -> PiecePoints {
+    let of_record = |record: &PlaceRecord| -> Vec<MeasuredPoint> {
+        let matched = poles.iter().zip(modes).filter_map(|(pole, mode)| Some((pole, (*mode)?)));
+        matched.filter_map(|(pole, mode)| measured_point(record, pole, mode)).collect()
     };
-    problem.pieces[piece].records.iter().map(of_record).collect()
+    let mut points: PiecePoints = records.par_iter().map(of_record).collect();
+    let all: Vec<MeasuredPoint> = points.iter().flatten().copied().collect();
+    let best = |mode: usize| {
+        all.iter().filter(|point| point.mode == mode).fold(f64::INFINITY, |least, point| least.min(point.log_std))
+    };
+    points.iter_mut().for_each(|own| own.retain(|point| point.log_std <= WORST_KNOWN * best(point.mode)));
+    points
 }
+
+/// One record's accelerance as a sum over the exact modes below 2.5 times the band and the static part of the others.
+struct PlaceModel {
+    rigid: f64,
+    /// $\omega_m$ and $W_m(l_1)W_m(l_x)$ of each flexible mode.
+    modes: Vec<(f64, f64)>,
+    /// Static flexibility less that of the modes in the sum.
+    rest: f64,
+    decay_rate: f64,
+}
+
+impl PlaceModel {
+    fn at(&self, frequency: f64, zetas: &[f64], law: DampingLaw) -> Complex64 {
+        let s = Complex64::new(self.decay_rate, std::f64::consts::TAU * frequency);
+        let s2 = s * s;
+        let modes = self.modes.iter().zip(zetas);
+        let sum: Complex64 = modes
+            .map(|(&(omega, product), &zeta)| {
+                // s² + ω_m² by its factors: near the resonance the sum would lose as many digits as 1/ζ has.
+                let real = self.decay_rate * self.decay_rate + (omega - s.im) * (omega + s.im);
+                let d = Complex64::new(real, s2.im) + law.term(omega, zeta, s);
+                product * s2 / d
+            })
+            .sum();
+        sum + self.rigid + self.rest * s2
+    }
+
+    /// $\partial H/\partial\ln\zeta_m$.
+    fn by_log_zeta(&self, frequency: f64, zeta: f64, mode: usize, law: DampingLaw) -> Complex64 {
+        let s = Complex64::new(self.decay_rate, std::f64::consts::TAU * frequency);
+        let Some(&(omega, product)) = self.modes.get(mode) else { return Complex64::ZERO };
+        let loss = law.term(omega, zeta, s);
+        let d = s * s + omega * omega + loss;
+        -product * s * s * loss / (d * d)
+    }
+}
+
+/// Gauss-Newton steps on the damping ratios: the reciprocal magnitude is nearly straight in the ratio.
+const DAMPING_STEPS: usize = 20;
+/// A step this small in $\ln\zeta$ ends them.
+const SMALL_DAMPING_STEP: f64 = 1e-11;
 
 impl PaperError<'_> {
-    fn at(&self, parameters: &[f64]) -> Result<f64, ModelError> {
-        let [e_x, g_zx] = self.problem.values(parameters);
-        let mut sum = 0.0;
+    /// The error at logarithms of the free constants, with the logarithms of the best damping ratios.
+    fn at(&self, logs: &[f64]) -> Result<(f64, Vec<f64>), ModelError> {
+        let [e_x, g_zx] = self.problem.values(logs);
+        let (mut sum, mut all) = (0.0, Vec::new());
         for (index, piece) in self.problem.pieces.iter().enumerate() {
-            let boundary = self.start.poles[index].boundary;
-            let beam = ExactBeam::new(&piece.sizes, boundary, BeamConstants { e_x, g_zx })?;
-            let modes = beam.modes(piece.free_zetas + MODES_BEYOND);
-            let rigid = boundary.rigid_modes();
+            let models = self.place_models(index, piece, BeamConstants { e_x, g_zx })?;
             let offset = self.problem.zeta_offset(index);
-            let zetas = &parameters[offset..offset + piece.free_zetas];
-            for (record, points) in piece.records.iter().zip(&self.points[index]) {
-                let seen = modes.iter().enumerate().map(|(number, mode)| Mode {
-                    angular_frequency: mode.angular_frequency(),
-                    damping_ratio: match number.checked_sub(rigid) {
-                        None => 0.0,
-                        Some(number) => zetas.get(number).or(zetas.last()).map_or(0.0, |zeta| zeta.exp()),
-                    },
-                    at_forces: vec![mode.deflection(record.force_at.x)],
-                    at_responses: vec![mode.deflection(record.response_at.x)],
-                });
-                let model = ModalModel::new(1, 1, seen.collect())?;
-                for point in points {
-                    let Some(mode) = model.modes().get(rigid + point.mode) else { continue };
-                    let (frequency, magnitude) = resonance(&model, mode);
-                    sum += FREQUENCY_WEIGHT * (frequency / point.frequency - 1.0).powi(2)
-                        + MAGNITUDE_WEIGHT * (magnitude / point.magnitude - 1.0).powi(2);
+            let start = &self.parameters[offset..offset + piece.free_zetas];
+            let (error, log_zetas) = self.best_damping(piece, &models, &self.points[index], start);
+            sum += error;
+            all.extend(log_zetas);
+        }
+        Ok((sum, all))
+    }
+
+    fn place_models(
+        &self,
+        index: usize,
+        piece: &PieceProblem,
+        constants: BeamConstants,
+    ) -> Result<Vec<PlaceModel>, ModelError> {
+        let beam = ExactBeam::new(&piece.sizes, self.start.poles[index].boundary, constants)?;
+        let rigid = beam.rigid_modes();
+        let flexible: Vec<_> = beam.flexible_modes().take(piece.summed).collect();
+        let model = |record: &PlaceRecord| {
+            let (force, response) = (record.force_at.x, record.response_at.x);
+            let product = |mode: &orthopanel_model::BeamMode| mode.deflection(force) * mode.deflection(response);
+            let modes: Vec<(f64, f64)> =
+                flexible.iter().map(|mode| (mode.angular_frequency(), product(mode))).collect();
+            let (flexibility, _) = piece.flexibility.between(force, response, constants.e_x, constants.g_zx);
+            let summed: f64 = modes.iter().map(|(omega, product)| product / (omega * omega)).sum();
+            let rigid = rigid.iter().map(product).sum();
+            PlaceModel { rigid, modes, rest: flexibility - summed, decay_rate: record.decay_rate }
+        };
+        Ok(piece.records.iter().map(model).collect())
+    }
+
+    /// The error of one piece with the best damping ratios, and their logarithms.
+    ///
+    /// A resonance's magnitude follows its own mode's ratio, all others shift it by less than that ratio's square; its
+    /// frequency moves by $\zeta^2$ only. So each ratio takes Gauss-Newton steps on the magnitudes of its own mode. A
+    /// ratio that no record shows stays at its start.
+    fn best_damping(
+        &self,
+        piece: &PieceProblem,
+        models: &[PlaceModel],
+        points: &PiecePoints,
+        start: &[f64],
+    ) -> (f64, Vec<f64>) {
+        let law = self.problem.law;
+        let (lowest, highest) = log_zeta_bounds();
+        let mut log_zetas = start.to_vec();
+        let mut error = 0.0;
+        for _ in 0..DAMPING_STEPS {
+            let zetas = piece.zetas(&log_zetas);
+            // (gradient, curvature) of each mode's magnitudes.
+            let mut steps = vec![(0.0_f64, 0.0_f64); log_zetas.len()];
+            error = 0.0;
+            for (model, points) in models.iter().zip(points) {
+                for &MeasuredPoint { mode, point: measured, .. } in points {
+                    let (Some(&(omega, _)), Some(&zeta)) = (model.modes.get(mode), zetas.get(mode)) else { continue };
+                    let natural = omega / std::f64::consts::TAU;
+                    let value = |f: f64| model.at(f, &zetas, law);
+                    let found = greatest(value, natural, half_width(omega, zeta, model.decay_rate));
+                    let missed = found.magnitude / measured.magnitude - 1.0;
+                    error += self.weights.frequency * (found.frequency / measured.frequency - 1.0).powi(2)
+                        + self.weights.magnitude * missed * missed;
+                    let by = model.by_log_zeta(found.frequency, zeta, mode, law);
+                    let slope = (value(found.frequency).conj() * by).re / (found.magnitude * measured.magnitude);
+                    if let Some((gradient, curvature)) = steps.get_mut(mode) {
+                        *gradient += slope * missed;
+                        *curvature += slope * slope;
+                    }
                 }
             }
+            let mut most = 0.0_f64;
+            for (log_zeta, (gradient, curvature)) in log_zetas.iter_mut().zip(steps) {
+                let step = if curvature > 0.0 { (-gradient / curvature).clamp(-1.0, 1.0) } else { 0.0 };
+                let next = (*log_zeta + step).clamp(lowest, highest);
+                most = most.max((next - *log_zeta).abs());
+                *log_zeta = next;
+            }
+            if most < SMALL_DAMPING_STEP {
+                break;
+            }
         }
-        Ok(sum)
+        (error, log_zetas)
     }
-}
-
-/// Frequency and magnitude of the calculated resonance of a mode: golden section within two half-power widths.
-fn resonance(model: &ModalModel, mode: &Mode) -> (f64, f64) {
-    let natural = mode.angular_frequency / std::f64::consts::TAU;
-    let width = 2.0 * mode.damping_ratio.max(1e-7) * natural;
-    let magnitude = |f: f64| model.accelerance(0, 0, f).norm();
-    let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
-    let (mut low, mut high) = (natural - 2.0 * width, natural + 2.0 * width);
-    let (mut left, mut right) = (high - golden * (high - low), low + golden * (high - low));
-    let (mut at_left, mut at_right) = (magnitude(left), magnitude(right));
-    for _ in 0..30 {
-        if at_left > at_right {
-            (high, right, at_right) = (right, left, at_left);
-            left = high - golden * (high - low);
-            at_left = magnitude(left);
-        } else {
-            (low, left, at_left) = (left, right, at_right);
-            right = low + golden * (high - low);
-            at_right = magnitude(right);
-        }
-    }
-    (0.5 * (low + high), at_left.max(at_right))
 }

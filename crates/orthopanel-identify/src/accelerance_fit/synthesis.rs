@@ -32,6 +32,12 @@ impl DampingLaw {
             Self::Hysteretic => (0.0, 2.0 * zeta),
         }
     }
+
+    /// $d_m(s)$ less $s^2 + \omega_m^2$: what the mode loses.
+    pub(super) fn term(self, omega: f64, zeta: f64, s: Complex64) -> Complex64 {
+        let (slope, constant) = self.loss(omega, zeta);
+        slope * s + Complex64::new(0.0, constant)
+    }
 }
 
 /// Terms of the series in $s^2$ that stands for the modes above the sum: with these at least 2.5 times above the band,
