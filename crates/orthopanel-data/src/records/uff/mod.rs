@@ -80,14 +80,14 @@ fn record(
     let mut listed = Vec::new();
     let mut real = Vec::new();
     let mut complex = Vec::new();
-    if layout.even {
-        if let Some(restored) = step::restored(header.step, header.step_digits, header.points) {
-            notes.push(format!(
-                "{key}: the step printed as {} is a rounded {restored}, which makes rate or length round: used that",
-                header.step
-            ));
-            header.step = restored;
-        }
+    if layout.even
+        && let Some(restored) = step::restored(header.step, header.step_digits, header.points)
+    {
+        notes.push(format!(
+            "{key}: the step printed as {} is a rounded {restored}, which makes rate or length round: used that",
+            header.step
+        ));
+        header.step = restored;
     }
     match (layout.even, layout.complex) {
         (true, false) => real = values,
