@@ -82,15 +82,15 @@ def solve(panel, points, zeta, spans=()):
     return reduced(square, vectors, seen[:, free], rigid, zeta)
 
 
-def boundaries(panel, points):
-    """Both ends, every point, every step of the shear stiffness, and equal parts no longer than ELEMENT between."""
+def boundaries(panel, points, element=ELEMENT):
+    """Both ends, every point, every step of the shear stiffness, and equal parts no longer than `element` between."""
     half = panel.length / 2.0
     outside = [x for x in points if abs(x) > half]
     if outside:
         raise ValueError(f"x = {outside[0]} m lies off the piece: |x| <= {half} m")
     inner = [x for x in panel.steps if abs(x) < half]
     fixed = np.unique(np.round([-half, half, *points, *inner], 9))
-    parts = [np.linspace(a, b, int(np.ceil((b - a) / ELEMENT)) + 1)[:-1] for a, b in zip(fixed[:-1], fixed[1:])]
+    parts = [np.linspace(a, b, int(np.ceil((b - a) / element)) + 1)[:-1] for a, b in zip(fixed[:-1], fixed[1:])]
     return np.concatenate([*parts, fixed[-1:]])
 
 

@@ -4,8 +4,8 @@ $$ x(t) = e^{\sigma t} \frac{1}{2\pi} \int X(\sigma + j\omega) e^{j\omega t} d\o
 
 Every linear effect is a factor of X, however it depends on frequency, so no time step and no modal sum enters a
 record. The period is the record itself; what wraps round is damped by e^{-sigma T} = 1e-7, and rounding grows by the
-inverse. Both channels pass the analyser's anti-alias filter, $\tfrac12 \mathrm{erfc}((f - 0.435 r)/(0.0156 r))$ at the sampling
-rate r: flat within 1e-4 up to r/2.56, the bandwidth that analysers state, and 1e-9 at r/2. Its delay is taken out.
+inverse. Both channels pass the analyser's anti-alias filter, erfc((f - 0.435 r)/(0.0156 r))/2 at the sampling rate r:
+flat within 1e-4 up to r/2.56, the bandwidth that analysers state, and 1e-9 at r/2. Its delay is taken out.
 """
 
 from dataclasses import dataclass

@@ -1,7 +1,7 @@
 r"""Modes of a beam whose core's shear modulus depends on frequency, K(s) = K_bending + g(s) K_shear.
 
 At each g the problem has modes of its own, complex, with phi' M phi = 1; they change smoothly along the path that
-g(s) takes. They are found at a few values of s and read off between them, mode by mode, so a line costs no eigenproblem:
+g(s) takes. They are found at a few values of s and read off between them, so a line costs no eigenproblem:
 
 $$ G_{ij}(s) = \sum_k \frac{\phi_k(i)\phi_k(j)}{s^2 + 2\zeta_k\omega_k s + \omega_k^2}
    + \sum_{p=0}^{4} (-s^2)^p R^{(p)}_{ij} ,  $$

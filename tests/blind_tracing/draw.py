@@ -1,4 +1,4 @@
-"""Random values of an effect's parameters over the range that tests have; `strong` keeps to the half that shows more."""
+"""Random values of an effect's parameters, over the range that tests have."""
 
 import numpy as np
 

@@ -14,7 +14,8 @@ ROUNDS = 60
 
 def restoring_force(modes, at, motion, speed, step, law):
     """f (places, samples, hits) from the linear `motion` [m] and `speed` [m/s] (places, samples, hits) at the points
-    `at`, `step` [s] apart; samples in a multiple of BLOCK. Raises ArithmeticError where the iteration does not settle."""
+    `at`, `step` [s] apart; samples in a multiple of BLOCK. Raises ArithmeticError where the
+    iteration does not settle."""
     places, samples, hits = motion.shape
     shape = modes.shape[:, at]
     carry, before, after = _steps(modes, step)

@@ -23,8 +23,9 @@ from . import beam
 from .modes import BEYOND, Modes
 
 TERMS_Y = 10  # of each parity used
-NEAREST = 0.05  # m between hammer and sensor
+NEAREST = 0.1  # m between hammer and sensor
 CUT = 14e3  # Hz: modes below stay as they are
+ELEMENT = 0.1  # m, the longest along x: nine nodes in the shortest wave at CUT
 SHIFT = -((2.0 * np.pi * 300.0) ** 2)  # 1/s2, below all modes: the rigid ones make K itself singular
 ORDERS = 3  # of the upper modes' answer to a force, in omega^2
 
@@ -41,7 +42,7 @@ class Across:
 
 def solve(panel, across, points, zeta, terms=TERMS_Y):
     """Modes seen from `points` [m] along y = 0."""
-    line = beam.boundaries(panel, points)
+    line = beam.boundaries(panel, points, ELEMENT)
     stiffness, mass = _matrices(panel, across, line, terms)
     nodes = beam.node_places(line)
     middle = np.concatenate([_values(panel.width, 2 * np.arange(terms), 0.0), np.zeros(2 * terms)])
@@ -49,7 +50,8 @@ def solve(panel, across, points, zeta, terms=TERMS_Y):
     for row, x in enumerate(points):
         seen[row, int(np.argmin(np.abs(nodes - x)))] = middle
     seen = seen.reshape(len(points), -1)
-    factor = splu((stiffness - SHIFT * mass).tocsc())
+    symmetric = {"permc_spec": "MMD_AT_PLUS_A", "diag_pivot_thresh": 0.0, "options": {"SymmetricMode": True}}
+    factor = splu((stiffness - SHIFT * mass).tocsc(), **symmetric)
     square, vectors = _modes_below(stiffness, mass, factor)
     upper = _answers(seen, vectors, mass, factor)
     pseudo, turn = eigh(upper.T @ (stiffness @ upper))

@@ -80,7 +80,8 @@ def _motion(bench, s, blows, pulse):
     for factor in np.unique(bench.drift):
         hits = np.flatnonzero(bench.drift.ravel() == factor)
         places, of = np.unique(struck[hits], return_inverse=True)
-        answer[hits] = (coupled(modes if factor == 1.0 else modes.stiffer(factor), index(places))[of] * blows[hits]) * s**2
+        warmed = modes if factor == 1.0 else modes.stiffer(factor)
+        answer[hits] = coupled(warmed, index(places))[of] * blows[hits] * s**2
     if bench.restoring is not None:
         held = [*index(bench.restoring_at), *range(len(points), modes.shape.shape[1])]
         back = _restoring(bench, modes, index(struck), held, pulse, len(s))

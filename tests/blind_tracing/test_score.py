@@ -1,0 +1,142 @@
+"""The scorer against answers whose score is plain, and the folder against what a tracer may see."""
+
+import json
+import sys
+
+import pytest
+
+from . import cli, files, judge, score
+
+TRUTH = {
+    "case": "case-000",
+    "kind": "sensor-mass",
+    "rough": False,
+    "effects": [{"id": "sensor-mass", "parameters": {"mass": 0.010}}],
+}
+
+
+def answer(verdict, *effects, alternatives=(), after=1.0, floor=1.0):
+    """A trace that names `effects`: pairs (id, parameters)."""
+    named = [{"id": name, "owner": "rig", "parameters": parameters} for name, parameters in effects]
+    error = {"before": {"held_out": 9.0}, "after": {"held_out": after}, "noise_floor": floor}
+    return {"verdict": verdict, "effects": named, "alternatives": list(alternatives), "error": error}
+
+
+def mass(value, std):
+    """The parameters of a mass."""
+    return {"mass": {"value": value, "std": std, "unit": "kg"}}
+
+
+def reached(name, truth, given):
+    """The rates of one case, by their names."""
+    return {rate["name"]: rate["reached"] for rate in judge.summary(name, [judge.case(truth, given)])["rates"]}
+
+
+def test_the_right_name_first_with_a_fair_interval_is_right():
+    """One standard deviation off is inside; the held-out error at 1.1 of the floor is near it."""
+    rates = reached("clean", TRUTH, answer("explained", ("sensor-mass", mass(0.011, 0.001)), after=1.1))
+    assert list(rates.values()) == [1.0, 1.0, 1.0]
+
+
+@pytest.mark.parametrize(
+    "given, wrong",
+    [
+        (answer("explained", ("local-mass", {})), "right effect named first"),
+        (answer("nothing-missing"), "right effect named first"),
+        (answer("explained", ("sensor-mass", mass(0.013, 0.001))), "parameters inside their 95 % interval"),
+        (answer("explained", ("sensor-mass", {"mass": 0.010})), "parameters inside their 95 % interval"),
+        (answer("explained", ("sensor-mass", mass(0.01, 0.001)), after=1.3), "held-out error after"),
+    ],
+)
+def test_each_fault_is_counted(given, wrong):
+    """A wrong name, no name, three deviations off, no deviation stated, an error above the floor."""
+    rates = reached("clean", TRUTH, given)
+    assert [value for name, value in rates.items() if name.startswith(wrong)] == [0.0]
+
+
+def test_an_alternative_counts_at_a_single_place_only():
+    """With one place the right effect may stand among the alternatives."""
+    given = answer("ambiguous", ("local-mass", {}), alternatives=["sensor-mass"])
+    assert reached("single-place", TRUTH, given)["right effect named or among the alternatives"] == 1.0
+    assert reached("clean", TRUTH, given)["right effect named first"] == 0.0
+
+
+def test_a_pair_needs_both():
+    """One of two is not the pair; the order does not count."""
+    pair = TRUTH | {"effects": [*TRUTH["effects"], {"id": "gain", "parameters": {"gain": 1.1}}]}
+    one = answer("explained", ("gain", {}))
+    both = answer("explained", ("gain", {}), ("sensor-mass", {}))
+    name = "both effects of the pair named"
+    assert [reached("pairs", pair, given)[name] for given in (one, both)] == [0.0, 1.0]
+
+
+def test_small_gains_and_offsets_are_passed_over_in_the_rough_set_only():
+    """A record's gain of 0.4 % named before the mass: true of a rough test, a wrong name in a clean one."""
+    given = answer(
+        "explained", ("record-gain", {"gain": {"value": 1.004, "std": 1e-3}, "record": 2}),
+        ("sensor-mass", mass(0.01, 0.001)),
+    )
+    name = "right effect named first"
+    assert reached("rough", TRUTH | {"rough": True}, given)[name] == 1.0
+    assert reached("clean", TRUTH, given)[name] == 0.0
+    large = answer("explained", ("record-gain", {"gain": 1.08, "record": 2}), ("sensor-mass", {}))
+    assert reached("rough", TRUTH | {"rough": True}, large)[name] == 0.0
+
+
+def test_offsets_of_each_record_are_met_by_a_list():
+    """One number a record in the truth, value and std as lists in the answer."""
+    truth = TRUTH | {"effects": [{"id": "hammer-offset", "parameters": {"offset": [0.004, -0.003]}}]}
+    offset = {"offset": {"value": [0.0041, -0.0023], "std": [2e-4, 2e-4]}}
+    rates = reached("clean", truth, answer("explained", ("hammer-offset", offset)))
+    assert rates["parameters inside their 95 % interval"] == 0.5
+
+
+def test_a_set_is_made_and_scored(tmp_path, capsys):
+    """From the command line: the same seed makes the same files, no case folder knows its truth, and a tracer that
+    says nothing at all scores nothing."""
+    made = []
+    for name in ("one", "other"):
+        options = ["--set", "clean", "--count", "1", "--kind", "gain", "--kind", "sensor-mass", "--samples", "2048"]
+        cli.main(["make", str(tmp_path / name), *options, "--seed", "7"])
+        made.append({p.relative_to(tmp_path / name): p.read_bytes() for p in (tmp_path / name).rglob("*.toml")})
+    assert made[0] == made[1] and len(made[0]) == 2
+    case = tmp_path / "one" / "case-000"
+    assert sorted(p.name for p in case.iterdir()) == [*(f"point-{i}.uff" for i in range(5)), "test.toml"]
+    words = (case / "test.toml").read_text()
+    assert not any(word in words for word in ("gain", "sensor-mass", "e_x"))
+
+    mute = tmp_path / "mute.py"
+    mute.write_text("import sys; sys.exit('no answer here')")
+    with pytest.raises(SystemExit) as stop:
+        cli.main(["score", str(tmp_path / "one"), "--command", f"{sys.executable} {mute}"])
+    assert stop.value.code == 1
+    assert "no answer here" in capsys.readouterr().out
+
+
+def test_a_tracer_that_reads_the_truth_reaches_every_rate(tmp_path):
+    """The scorer's own path from the command to the rates, with a command that cheats."""
+    out = tmp_path / "set"
+    options = ["--set", "pairs", "--count", "1", "--kind", "edge-mass + high-pass", "--samples", "2048"]
+    cli.main(["make", str(out), *options])
+    cheat = tmp_path / "cheat.py"
+    cheat.write_text(
+        "import json, sys, pathlib\n"
+        "case = pathlib.Path(sys.argv[1]).parent\n"
+        "truth = [c for c in json.loads((case.parent / 'truth.json').read_text())['cases'] if c['case'] == case.name]\n"
+        "effects = [{'id': e['id'], 'parameters': {k: {'value': v, 'std': 1e-9} for k, v in e['parameters'].items()}}\n"
+        "           for e in truth[0]['effects']]\n"
+        "error = {'after': {'held_out': 1.0}, 'noise_floor': 1.0}\n"
+        "print(json.dumps({'schema': 'orthopanel.trace/1', 'verdict': 'explained', 'effects': effects,\n"
+        "                  'alternatives': [], 'error': error}))\n"
+    )
+    result = score.score(out, [sys.executable, str(cheat)])
+    assert result["reached"] and result["cases"] == 1
+    assert "edge-mass + high-pass" in score.text(result)
+    json.dumps(result)
+
+
+def test_another_file_is_no_truth(tmp_path):
+    """The message names the schema that was found."""
+    (tmp_path / files.TRUTH).write_text('{"schema": "else"}')
+    with pytest.raises(ValueError, match="'else'"):
+        files.read_truth(tmp_path)
