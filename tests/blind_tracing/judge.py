@@ -15,6 +15,7 @@ INTERVAL = 1.96  # standard deviations: 95 %
 # Of each set: name, key in a judged case, rate asked, and whether that is the least or the most.
 RIGHT = ("right effect named first", "right_first")
 INSIDE = ("parameters inside their 95 % interval", "inside", 0.90, "least")
+ANSWERED = ("an answer at all", "answered", 1.0, "least")
 FLOOR = ("held-out error after within 1.2 of the noise floor", "at_floor", 0.90, "least")
 ASKED = {
     "clean": [(*RIGHT, 0.98, "least"), INSIDE, FLOOR],
@@ -43,6 +44,7 @@ def case(truth, answer):
         "both": set(wanted) <= set(ids),
         "quiet": answer["verdict"] == "nothing-missing",
         "explained": answer["verdict"] == "explained",
+        "answered": answer["verdict"] != "no answer",
         "inside": [],
         "at_floor": None,
     }
@@ -65,12 +67,12 @@ def case(truth, answer):
 def summary(name, judged):
     """Rates asked and reached, the confusion matrix and every judged case. `reached` is true where all rates are."""
     rates = []
-    for label, key, asked, at in ASKED[name]:
+    for label, key, asked, at in [*ASKED[name], ANSWERED]:
         values = [one for case in judged for one in _listed(case[key])]
         reached = float(np.mean(values)) if values else None
         met = reached is not None and (reached >= asked if at == "least" else reached <= asked)
         rates.append({"name": label, "asked": asked, "at": at, "reached": reached, "of": len(values), "met": met})
-        if key != "inside" and key != "at_floor":
+        if key not in ("inside", "at_floor", "answered"):
             for case in judged:
                 if bool(case[key]) != (at == "least"):
                     case["faults"].insert(0, f"{case['verdict']}: {_called(case)}")

@@ -35,7 +35,7 @@ def reached(name, truth, given):
 def test_the_right_name_first_with_a_fair_interval_is_right():
     """One standard deviation off is inside; the held-out error at 1.1 of the floor is near it."""
     rates = reached("clean", TRUTH, answer("explained", ("sensor-mass", mass(0.011, 0.001)), after=1.1))
-    assert list(rates.values()) == [1.0, 1.0, 1.0]
+    assert list(rates.values()) == [1.0, 1.0, 1.0, 1.0]
 
 
 @pytest.mark.parametrize(
@@ -140,3 +140,10 @@ def test_another_file_is_no_truth(tmp_path):
     (tmp_path / files.TRUTH).write_text('{"schema": "else"}')
     with pytest.raises(ValueError, match="'else'"):
         files.read_truth(tmp_path)
+
+
+def test_no_answer_is_not_a_cautious_one():
+    """Outside the catalogue a tracer that fails names nothing wrong, and still does not reach what is asked."""
+    result = judge.summary("outside", [judge.case(TRUTH, score.NO_ANSWER | {"reason": "exit 2"})])
+    assert not result["reached"]
+    assert result["rates"][0]["met"]
