@@ -1,33 +1,11 @@
-//! The words of the command line, and the arguments that several commands share.
+//! Arguments that several commands share.
 
 use std::path::Path;
 
-use clap::{Args, Parser, Subcommand};
+use clap::Args;
 use orthopanel_model::{ModeRange, PanelModel, Place, Ports};
 
-use crate::commands::{accelerance, export, identify, modes, run, simulate};
 use crate::error::CommandError;
-
-/// From a hammer test of a honeycomb sandwich panel to its elastic constants and an FMU.
-///
-/// Units are SI; x and y are counted from the piece's centre, force and motion positive along +z.
-/// Exit status: 0 done, 1 the data or the model says no, 2 bad usage or input.
-#[derive(Parser)]
-#[command(version, propagate_version = true, max_term_width = 110)]
-pub struct Arguments {
-    #[command(subcommand)]
-    pub command: Command,
-}
-
-#[derive(Subcommand)]
-pub enum Command {
-    Run(run::Arguments),
-    Identify(identify::Arguments),
-    Modes(modes::Arguments),
-    Accelerance(accelerance::Arguments),
-    Export(export::Arguments),
-    Simulate(simulate::Arguments),
-}
 
 /// How many modes go into an FMU or a simulation, beside the rigid ones, unless said.
 ///
@@ -126,14 +104,7 @@ pub fn frequency(text: &str) -> Result<f64, String> {
 
 #[cfg(test)]
 mod tests {
-    use clap::CommandFactory as _;
-
     use super::*;
-
-    #[test]
-    fn arguments_are_consistent() {
-        Arguments::command().debug_assert();
-    }
 
     #[test]
     fn a_place_is_one_or_two_finite_numbers() {

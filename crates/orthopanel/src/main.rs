@@ -24,8 +24,7 @@ use clap::Parser;
 
 fn main() -> ExitCode {
     // clap itself answers --help and --version, and leaves with 2 on bad usage.
-    let arguments = arguments::Arguments::parse();
-    match commands::execute(arguments.command) {
+    match commands::execute(commands::Arguments::parse()) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             eprintln!("orthopanel: {error}");

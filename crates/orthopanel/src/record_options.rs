@@ -1,7 +1,7 @@
 //! How records become accelerances, and accelerances constants: the options that several commands share.
 
 use clap::{Args, ValueEnum};
-use orthopanel_data::{Estimation, Estimator, ImpactTest, MeasurementData, Window};
+use orthopanel_data::{Estimation, Estimator, ImpactTest, Measurement, MeasurementData, Window};
 use orthopanel_identify::{DampingLaw, Search, Settings};
 
 use crate::error::CommandError;
@@ -142,9 +142,16 @@ impl IdentifyOptions {
         })
     }
 
-    /// As [`EstimationOptions::say_if_idle`].
+    /// As [`EstimationOptions::say_if_idle`], of the law of damping too.
     pub fn say_if_idle(&self, test: &ImpactTest) {
         self.records.say_if_idle(test);
+        let is_frequencies = |of: &Measurement| matches!(of.data, MeasurementData::NaturalFrequencies(_));
+        if self.damping == DampingWord::Hysteretic && test.measurements.iter().all(is_frequencies) {
+            notes::say(
+                "",
+                &["--damping hysteretic has no effect: natural frequencies tell nothing of the damping".into()],
+            );
+        }
     }
 }
 

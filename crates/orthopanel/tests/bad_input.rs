@@ -200,6 +200,9 @@ fn an_option_that_would_be_ignored_is_refused() {
     let output = bench.run("identify test.toml --window hann");
     let message = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success() && message.contains("--window has no effect"), "{message}");
+    let output = bench.run("identify test.toml --damping hysteretic");
+    let message = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success() && message.contains("--damping hysteretic has no effect"), "{message}");
 }
 
 #[test]

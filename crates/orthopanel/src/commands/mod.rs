@@ -7,16 +7,50 @@ pub mod modes;
 pub mod run;
 pub mod simulate;
 
-use crate::arguments::Command;
+use clap::{Parser, Subcommand};
+
 use crate::error::CommandError;
 
-pub fn execute(command: Command) -> Result<(), CommandError> {
-    match command {
+/// From a hammer test of a honeycomb sandwich panel to its elastic constants and an FMU.
+///
+/// Units are SI; x and y are counted from the piece's centre, force and motion positive along +z.
+/// Exit status: 0 done, 1 the data or the model says no, 2 bad usage or input.
+#[derive(Parser)]
+#[command(version, propagate_version = true, max_term_width = 110)]
+pub struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    Run(run::Arguments),
+    Identify(identify::Arguments),
+    Modes(modes::Arguments),
+    Accelerance(accelerance::Arguments),
+    Export(export::Arguments),
+    Simulate(simulate::Arguments),
+}
+
+pub fn execute(arguments: Arguments) -> Result<(), CommandError> {
+    match arguments.command {
         Command::Run(arguments) => run::execute(&arguments),
         Command::Identify(arguments) => identify::execute(&arguments),
         Command::Modes(arguments) => modes::execute(&arguments),
         Command::Accelerance(arguments) => accelerance::execute(&arguments),
         Command::Export(arguments) => export::execute(&arguments),
         Command::Simulate(arguments) => simulate::execute(&arguments),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory as _;
+
+    use super::*;
+
+    #[test]
+    fn arguments_are_consistent() {
+        Arguments::command().debug_assert();
     }
 }
