@@ -187,6 +187,19 @@ pub enum ModelError {
         /// Modes that the basis resolves.
         available: usize,
     },
+    /// Modes up to a frequency that the largest basis does not reach.
+    #[error(
+        "modes up to {frequency} Hz asked, but the largest basis resolves {available} modes, up to {reached:.0} Hz: ask \
+         for less"
+    )]
+    BeyondBasis {
+        /// Frequency asked for \[Hz\].
+        frequency: f64,
+        /// Modes that the basis resolves, rigid ones included.
+        available: usize,
+        /// Frequency of the last of them \[Hz\].
+        reached: f64,
+    },
     /// Another number of constants than the structure has.
     #[error("{found} constants given, the structure has {expected}")]
     ConstantCount {

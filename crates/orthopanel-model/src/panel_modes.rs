@@ -1,6 +1,11 @@
 //! From a [`PanelModel`] to its modes and to the hinge, [`ModalModel`].
 
-use crate::{BeamConstants, BeamMode, ExactBeam, ModalModel, ModelError, PanelModel, Place, StructureKind};
+use std::sync::Arc;
+
+use crate::{
+    BeamConstants, BeamMode, ExactBeam, MindlinPlate, ModalModel, ModelError, PLATE_CONSTANTS, PanelMode, PanelModel,
+    Place, RitzMode, Structure, StructureKind, TimoshenkoBeam, ritz_modes,
+};
 
 /// Which modes to keep beside the rigid ones.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -29,19 +34,113 @@ impl ModeRange {
 }
 
 impl PanelModel {
-    /// The rigid modes, then the flexible ones of `range`, in rising order.
+    /// The rigid modes, then the flexible ones of `range`, in rising order, of whatever structure the model has: exact
+    /// for a beam, and for a plate on a basis that holds them to about 1e-4 of their frequencies.
+    ///
+    /// # Errors
+    /// [`ModelError::MissingConstant`], [`ModelError::Constant`], [`ModelError::Size`] or
+    /// [`ModelError::IndefiniteLaw`] where the model has no physical meaning, [`ModelError::BasisTooSmall`] or
+    /// [`ModelError::BeyondBasis`] for more modes than can be found, [`ModelError::Unsupported`] for an effect that this
+    /// version cannot solve.
+    pub fn modes(&self, range: ModeRange) -> Result<Vec<PanelMode>, ModelError> {
+        match self.structure {
+            StructureKind::TimoshenkoBeam => {
+                let modes = self.beam_modes(range)?;
+                let rigid = self.boundary.rigid_modes();
+                let number = |index: usize| (index + 1).saturating_sub(rigid);
+                let named = |(index, mode)| PanelMode::of_beam(mode, self.piece.length, number(index));
+                Ok(modes.into_iter().enumerate().map(named).collect())
+            }
+            StructureKind::MindlinPlate => {
+                self.check()?;
+                self.check_effects()?;
+                let (plate, modes) = self.plate_modes(range.checked()?)?;
+                let plate = Arc::new(plate);
+                Ok(modes.into_iter().map(|mode| PanelMode::of_plate(&plate, mode)).collect())
+            }
+        }
+    }
+
+    /// The structure on a basis that holds its first `count` flexible modes, and the values of its constants in the
+    /// order of [`Structure::constants`].
+    ///
+    /// # Errors
+    /// As [`PanelModel::modes`].
+    pub fn structure_for(&self, count: usize) -> Result<(Box<dyn Structure>, Vec<f64>), ModelError> {
+        self.check()?;
+        Ok(match self.structure {
+            StructureKind::TimoshenkoBeam => {
+                let values = vec![self.constant("e_x")?, self.constant("g_zx")?];
+                // 60 terms hold 20 modes to 1e-9, 220 terms 100 (tests/beam_three_ways.rs).
+                let terms = 2 * count + 20;
+                (Box::new(TimoshenkoBeam::new(&self.piece, self.boundary, terms)?), values)
+            }
+            StructureKind::MindlinPlate => {
+                let values = self.plate_constants()?;
+                (Box::new(MindlinPlate::with_basis_for(&self.piece, self.boundary, &values, count)?), values.to_vec())
+            }
+        })
+    }
+
+    fn plate_constants(&self) -> Result<[f64; 6], ModelError> {
+        let mut values = [0.0; 6];
+        for (value, constant) in values.iter_mut().zip(&PLATE_CONSTANTS) {
+            *value = self.constant(constant.name)?;
+            constant.check(*value)?;
+        }
+        Ok(values)
+    }
+
+    fn plate_modes(&self, range: ModeRange) -> Result<(MindlinPlate, Vec<RitzMode>), ModelError> {
+        let values = self.plate_constants()?;
+        let first = |count: usize| {
+            let plate = MindlinPlate::with_basis_for(&self.piece, self.boundary, &values, count)?;
+            let modes = ritz_modes(&plate, &values, count)?;
+            Ok::<_, ModelError>((plate, modes))
+        };
+        let frequency = match range {
+            ModeRange::Count(count) => return first(count),
+            ModeRange::UpTo(frequency) => frequency,
+        };
+        let limit = frequency * std::f64::consts::TAU;
+        let estimate = MindlinPlate::estimated_count(&self.piece, self.boundary, &values, frequency)?;
+        let mut count = estimate + estimate / 4 + 4;
+        loop {
+            let (exhausted, (plate, mut modes)) = match first(count) {
+                Err(ModelError::BasisTooSmall { available, .. }) if available > 0 => (true, first(available)?),
+                found => (false, found?),
+            };
+            let reached = modes.last().map_or(0.0, |mode| mode.angular_frequency);
+            if reached > limit {
+                modes.retain(|mode| mode.angular_frequency <= limit);
+                return Ok((plate, modes));
+            }
+            if exhausted {
+                let (available, reached) = (modes.len(), reached / std::f64::consts::TAU);
+                return Err(ModelError::BeyondBasis { frequency, available, reached });
+            }
+            count += count / 2;
+        }
+    }
+
+    fn check_effects(&self) -> Result<(), ModelError> {
+        match self.effects.first() {
+            Some(effect) => Err(ModelError::Unsupported(format!("effect {:?}", effect.id))),
+            None => Ok(()),
+        }
+    }
+
+    /// The exact modes of a beam: the rigid ones, then the flexible ones of `range`, in rising order.
     ///
     /// # Errors
     /// [`ModelError::MissingConstant`], [`ModelError::Constant`] or [`ModelError::Size`] where the model has no
-    /// physical meaning; [`ModelError::Unsupported`] for a structure or an effect that this version cannot solve.
+    /// physical meaning; [`ModelError::Unsupported`] for a plate, or an effect that this version cannot solve.
     pub fn beam_modes(&self, range: ModeRange) -> Result<Vec<BeamMode>, ModelError> {
         self.check()?;
         if self.structure != StructureKind::TimoshenkoBeam {
-            return Err(ModelError::Unsupported("structure \"mindlin-plate\"".into()));
+            return Err(ModelError::Unsupported("the exact beam of structure \"mindlin-plate\"".into()));
         }
-        if let Some(effect) = self.effects.first() {
-            return Err(ModelError::Unsupported(format!("effect {:?}", effect.id)));
-        }
+        self.check_effects()?;
         let constants = BeamConstants { e_x: self.constant("e_x")?, g_zx: self.constant("g_zx")? };
         let beam = ExactBeam::new(&self.piece, self.boundary, constants)?;
         Ok(match range.checked()? {
@@ -56,7 +155,7 @@ impl PanelModel {
     /// The modes of `range` as seen from these ports.
     ///
     /// # Errors
-    /// As [`PanelModel::beam_modes`], and [`ModelError::OffPiece`] for a port off the piece.
+    /// As [`PanelModel::modes`], and [`ModelError::OffPiece`] for a port off the piece.
     pub fn modal_model(
         &self,
         range: ModeRange,
@@ -66,6 +165,6 @@ impl PanelModel {
         for &place in forces.iter().chain(responses) {
             self.piece.contains(place)?;
         }
-        ModalModel::of_modes(&self.beam_modes(range)?, &self.damping, forces, responses)
+        ModalModel::of_modes(&self.modes(range)?, &self.damping, forces, responses)
     }
 }

@@ -2,6 +2,7 @@
 
 use std::f64::consts::TAU;
 
+use faer::{Mat, Side};
 use orthopanel_model::{
     BeamConstants, Boundary, End, ExactBeam, MindlinPlate, Piece, RitzMode, SHEAR_COEFFICIENT, Structure, ritz_modes,
 };
@@ -31,35 +32,8 @@ fn navier(piece: &Piece, values: &[f64; 6], m: usize, n: usize) -> [f64; 3] {
     ];
     let rotary = piece.mass_per_area * t * t / 12.0;
     let inertia = [piece.mass_per_area, rotary, rotary];
-    let matrix: [[f64; 3]; 3] =
-        std::array::from_fn(|i| std::array::from_fn(|j| stiffness[i][j] / (inertia[i] * inertia[j]).sqrt()));
-    symmetric_roots(matrix)
-}
-
-/// Eigenvalues of a symmetric 3 x 3 matrix by Jacobi's rotations, rising.
-fn symmetric_roots(mut a: [[f64; 3]; 3]) -> [f64; 3] {
-    for _ in 0..60 {
-        for (p, q) in [(0, 1), (0, 2), (1, 2)] {
-            if a[p][q] == 0.0 {
-                continue;
-            }
-            let theta = 0.5 * (a[q][q] - a[p][p]) / a[p][q];
-            let t = theta.signum() / (theta.abs() + theta.hypot(1.0));
-            let c = 1.0 / t.hypot(1.0);
-            let s = t * c;
-            for k in 0..3 {
-                let (left, right) = (a[k][p], a[k][q]);
-                (a[k][p], a[k][q]) = (c * left - s * right, s * left + c * right);
-            }
-            for k in 0..3 {
-                let (left, right) = (a[p][k], a[q][k]);
-                (a[p][k], a[q][k]) = (c * left - s * right, s * left + c * right);
-            }
-        }
-    }
-    let mut roots = [a[0][0], a[1][1], a[2][2]];
-    roots.sort_by(f64::total_cmp);
-    roots
+    let matrix = Mat::from_fn(3, 3, |i, j| stiffness[i][j] / (inertia[i] * inertia[j]).sqrt());
+    matrix.self_adjoint_eigenvalues(Side::Lower).unwrap().try_into().unwrap()
 }
 
 fn navier_frequencies(piece: &Piece, values: &[f64; 6], count: usize) -> Vec<f64> {

@@ -53,6 +53,17 @@ impl EdgeBasis {
         if self.symmetric { &[false, true] } else { &[false] }
     }
 
+    /// Number of a field's functions.
+    pub(super) fn count(&self, field: Field) -> usize {
+        self.fields[field as usize].len()
+    }
+
+    /// $\int f_if_j\,dx$ of a field's functions.
+    pub(super) fn gram(&self, field: Field) -> Mat<f64> {
+        let count = self.count(field);
+        Mat::from_fn(count, count, |i, j| self.integral((field, 0, i), (field, 0, j)))
+    }
+
     /// $\int f^{(p)}g^{(q)}dx$ of function `i` of field `f` and `j` of field `g`.
     pub(super) fn integral(&self, (f, p, i): (Field, usize, usize), (g, q, j): (Field, usize, usize)) -> f64 {
         self.integrals[(self.index(f, p, i), self.index(g, q, j))]

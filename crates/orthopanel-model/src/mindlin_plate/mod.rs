@@ -15,18 +15,22 @@
 //! Reference: R. D. Mindlin, J. Appl. Mech. 18 (1951) 31; the paper's eq. 2 with its shear moduli outside the fraction.
 
 mod assembly;
+mod basis_choice;
 mod edge_basis;
 mod law;
+mod mode_names;
 
 use faer::Mat;
 
 pub use law::PLATE_CONSTANTS;
+pub use mode_names::{ModeKind, ModeName};
 
 use crate::structure::{Block, Structure};
 use crate::{Boundary, Constant, ModelError, Piece, Place};
 use assembly::{Coordinate, assemble};
 use edge_basis::EdgeBasis;
 use law::{plate_stiffness_derivatives, plate_stiffnesses};
+use mode_names::beam_functions;
 
 /// What moves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -55,9 +59,12 @@ impl Field {
 pub struct MindlinPlate {
     piece: Piece,
     terms: [usize; 2],
+    resolved_modes: usize,
     along: [EdgeBasis; 2],
     coordinates: Vec<Vec<Coordinate>>,
     blocks: Vec<Block>,
+    /// Integrals of the deflection functions with beam functions, by their nodes.
+    beam_functions: [Mat<f64>; 2],
 }
 
 /// Fewest and most terms along one direction.
@@ -78,14 +85,19 @@ impl MindlinPlate {
         let Boundary { left, right, front, back } = boundary;
         let x = EdgeBasis::new(0.5 * piece.length, [left, right], Field::RotationX, terms[0]);
         let y = EdgeBasis::new(0.5 * piece.width, [front, back], Field::RotationY, terms[1]);
+        let beam_functions =
+            [beam_functions(&x, piece.length, [left, right])?, beam_functions(&y, piece.width, [front, back])?];
         let along = [x, y];
         let (coordinates, blocks) = assemble(&piece, &along);
-        Ok(Self { piece, terms, along, coordinates, blocks })
+        // In each direction n polynomials follow 2n/π half-waves; some nx ny/3 products lie within the ellipse that both
+        // span, and the lower half of these hold 1e-4.
+        let resolved_modes = terms[0] * terms[1] / 6;
+        Ok(Self { piece, terms, resolved_modes, along, coordinates, blocks, beam_functions })
     }
 
-    /// The piece.
-    pub fn piece(&self) -> &Piece {
-        &self.piece
+    /// Number of polynomials of each field along x and y.
+    pub fn terms(&self) -> [usize; 2] {
+        self.terms
     }
 }
 
@@ -117,9 +129,7 @@ impl Structure for MindlinPlate {
         coordinates.iter().map(value).collect()
     }
 
-    // In each direction a polynomial of degree n follows 2n/π half-waves; within the ellipse that both span lie some
-    // nx ny/3 deflection shapes. Half of these hold 1e-4.
     fn resolved_modes(&self) -> usize {
-        self.terms[0] * self.terms[1] / 6
+        self.resolved_modes
     }
 }

@@ -78,7 +78,7 @@ impl Section {
 }
 
 /// Gauss points and weights on $[-1, 1]$: four of them integrate the products of two cubics exactly.
-fn gauss_points() -> [(f64, f64); 4] {
+pub(crate) fn gauss_points() -> [(f64, f64); 4] {
     let root = (6.0_f64 / 5.0).sqrt() * 2.0 / 7.0;
     let (near, far) = ((3.0 / 7.0 - root).sqrt(), (3.0 / 7.0 + root).sqrt());
     let (heavy, light) = ((18.0 + 30.0_f64.sqrt()) / 36.0, (18.0 - 30.0_f64.sqrt()) / 36.0);

@@ -1,0 +1,137 @@
+//! The names of plate modes: nodal lines across x and across y, told by the products of beam functions they resemble.
+
+use faer::Mat;
+use serde::Serialize;
+
+use super::edge_basis::EdgeBasis;
+use super::{Field, MindlinPlate};
+use crate::structure::RitzMode;
+use crate::timoshenko_beam::gauss_points;
+use crate::{BeamConstants, Boundary, End, ExactBeam, ModelError, Piece};
+
+/// What a mode of a plate looks like.
+///
+/// With $f_m$ and $g_n$ the beam functions of the plate's edges with $m$ and $n$ nodes between the edges (free: the rigid
+/// translation has none, the rigid turn one), the overlap of a mode with their product is
+/// $$o_{mn} = \left|\int wf_mg_n\,dx\,dy\right|\Big/\sqrt{\int w^2\,dx\,dy\int f_m^2g_n^2\,dx\,dy}.$$
+/// The squares of all overlaps add up to one. Beam functions are those without shear and rotary inertia.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ModeName {
+    /// Nodal lines crossed along x and along y, of the product with the largest overlap.
+    pub nodes: [usize; 2],
+    /// The family.
+    pub kind: ModeKind,
+    /// The largest overlap, 0 to 1.
+    pub overlap: f64,
+    /// Nodes of the product with the second largest overlap; two modes that veer share their two products.
+    pub second_nodes: [usize; 2],
+    /// The second largest overlap.
+    pub second_overlap: f64,
+}
+
+/// The family of a plate mode.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum ModeKind {
+    /// No node across the width: the plate bends as a beam along x.
+    Bending,
+    /// One node across the width: on free edges it twists.
+    Torsion,
+    /// Two or more nodes across the width.
+    Transverse,
+    /// No product holds two thirds of $\int w^2$: modes that veer, and the plus-minus pairs of square plates.
+    Mixed,
+}
+
+/// Share of $\int w^2$ from which a mode carries the name of one product.
+const NAMED_SHARE: f64 = 2.0 / 3.0;
+
+impl MindlinPlate {
+    /// The name of one of this plate's modes.
+    ///
+    /// A mode that shears through the thickness without deflection has overlap zero with all products and is
+    /// [`ModeKind::Mixed`].
+    pub fn mode_name(&self, mode: &RitzMode) -> ModeName {
+        let overlaps = self.overlaps(mode);
+        let mut ranked: Vec<([usize; 2], f64)> = (0..overlaps.nrows())
+            .flat_map(|m| (0..overlaps.ncols()).map(move |n| [m, n]))
+            .map(|[m, n]| ([m, n], overlaps[(m, n)]))
+            .collect();
+        ranked.sort_by(|a, b| b.1.total_cmp(&a.1));
+        let at = |rank: usize| ranked.get(rank).copied().unwrap_or(([0, 0], 0.0));
+        let ((nodes, overlap), (second_nodes, second_overlap)) = (at(0), at(1));
+        let kind = match nodes[1] {
+            _ if overlap * overlap < NAMED_SHARE => ModeKind::Mixed,
+            0 => ModeKind::Bending,
+            1 => ModeKind::Torsion,
+            _ => ModeKind::Transverse,
+        };
+        ModeName { nodes, kind, overlap, second_nodes, second_overlap }
+    }
+
+    /// Overlap, 0 to 1, of one of this plate's modes with the product of beam functions with these nodes along x and y
+    /// (see [`ModeName`]); zero for more nodes than the basis resolves.
+    pub fn overlap(&self, mode: &RitzMode, nodes: [usize; 2]) -> f64 {
+        let overlaps = self.overlaps(mode);
+        if nodes[0] < overlaps.nrows() && nodes[1] < overlaps.ncols() { overlaps[(nodes[0], nodes[1])] } else { 0.0 }
+    }
+
+    /// A row a number of nodes along x, a column a number along y.
+    fn overlaps(&self, mode: &RitzMode) -> Mat<f64> {
+        let [x, y] = &self.along;
+        let w = Field::Deflection;
+        let mut shape = Mat::zeros(x.count(w), y.count(w));
+        let coordinates = self.coordinates.get(mode.block).map_or(&[][..], |list| list);
+        for (coordinate, value) in coordinates.iter().zip(&mode.coordinates).filter(|(c, _)| c.field == w) {
+            shape[(coordinate.x, coordinate.y)] = *value;
+        }
+        let [along_x, along_y] = &self.beam_functions;
+        let square = (x.gram(w) * &shape).transpose() * (&shape * y.gram(w));
+        let size = (0..square.nrows()).map(|i| square[(i, i)]).sum::<f64>().sqrt();
+        // Where all motion is rotation, what is left of w is rounding and has no shape.
+        let moving = size * self.piece.mass_per_area.sqrt() > 1e-9;
+        let products = along_x * shape * along_y.transpose();
+        Mat::from_fn(
+            products.nrows(),
+            products.ncols(),
+            |m, n| {
+                if moving { (products[(m, n)] / size).abs() } else { 0.0 }
+            },
+        )
+    }
+}
+
+/// $\int f_m\varphi_i\,dx$ of the beam functions of these edges and the plate's deflection functions: a row a number of
+/// nodes, from none up to what `terms` polynomials follow.
+///
+/// # Errors
+/// [`ModelError::Size`] where the length has no physical meaning.
+pub(super) fn beam_functions(basis: &EdgeBasis, length: f64, [left, right]: [End; 2]) -> Result<Mat<f64>, ModelError> {
+    // So slender that neither shear nor rotary inertia counts.
+    let piece = Piece { length, width: length, thickness: 1e-3 * length, mass_per_area: 1.0 };
+    let beam =
+        ExactBeam::new(&piece, Boundary { left, right, ..Boundary::FREE }, BeamConstants { e_x: 1e9, g_zx: 1.5e9 })?;
+    // A polynomial of degree n follows 2n/π half-waves.
+    let terms = basis.count(Field::Deflection);
+    let most = 2 * terms / 3;
+    let functions = beam.modes(most);
+    let mut products = Mat::<f64>::zeros(functions.len(), terms);
+    let mut squares = vec![0.0; products.nrows()];
+    let cells = 2 * terms;
+    let cell = length / cells as f64;
+    for index in 0..cells {
+        for (point, weight) in gauss_points() {
+            let place = (index as f64 + 0.5 * (1.0 + point)) * cell - 0.5 * length;
+            let weight = 0.5 * cell * weight;
+            let values = basis.deflections_at(place);
+            for (row, (function, square)) in functions.iter().zip(&mut squares).enumerate() {
+                let deflection = function.deflection(place);
+                *square += weight * deflection * deflection;
+                for (column, value) in values.iter().enumerate() {
+                    products[(row, column)] += weight * deflection * value;
+                }
+            }
+        }
+    }
+    Ok(Mat::from_fn(products.nrows(), terms, |row, column| products[(row, column)] / squares[row].sqrt()))
+}
