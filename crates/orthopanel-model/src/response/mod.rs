@@ -2,6 +2,7 @@
 //! Runge-Kutta beside it.
 
 mod force_record;
+mod lane;
 mod propagator;
 mod runge_kutta;
 mod stepper;

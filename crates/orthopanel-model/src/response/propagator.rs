@@ -1,11 +1,5 @@
 //! The exact step of one mode over a time $h$, free of cancellation at any $\omega h$.
 
-/// Modes are handled in groups of this many, so that the compiler turns each operation into vector instructions.
-pub(super) const LANES: usize = 8;
-
-/// One number of each mode in a group.
-pub(super) type Lane = [f64; LANES];
-
 /// Steps with $\omega h$ up to here use the power series, longer ones the closed form.
 ///
 /// Below, the closed form of $G_2$ would subtract nearly equal numbers; above, the series would.

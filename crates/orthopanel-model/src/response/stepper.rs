@@ -1,13 +1,23 @@
 //! [`ModalStepper`]: the state of all modes, advanced together.
 
-use super::propagator::{Coefficients, LANES, Lane};
-use crate::{ModalModel, ModelError};
+use super::lane::{LANES, Lane};
+use super::propagator::Coefficients;
+use crate::{ModalModel, Mode, ModelError};
 
-/// What a group of modes keeps for good: $\omega^2$ and $2\zeta\omega$.
+/// What is known of a group of modes beside its state.
 #[derive(Debug, Clone, Copy, Default)]
 struct Group {
+    /// $\omega^2$ and $2\zeta\omega$.
     stiffness: Lane,
     damping: Lane,
+    /// [`Coefficients`] of the last step size.
+    impulse: Lane,
+    held: Lane,
+    ramp: Lane,
+    ramp_rate: Lane,
+    /// Modal force now, and at the end of a linear step while that is computed.
+    force: Lane,
+    force_after: Lane,
 }
 
 /// Modal coordinates and their rates of one group.
@@ -15,15 +25,6 @@ struct Group {
 struct State {
     position: Lane,
     velocity: Lane,
-}
-
-/// [`Coefficients`] of one group.
-#[derive(Debug, Clone, Copy, Default)]
-struct Propagator {
-    impulse: Lane,
-    held: Lane,
-    ramp: Lane,
-    ramp_rate: Lane,
 }
 
 /// Advances the modes of a [`ModalModel`] exactly in time.
@@ -45,14 +46,11 @@ pub struct ModalStepper {
     /// Shape values, port after port, each in groups; modes that fill up the last group have none.
     at_forces: Vec<Vec<Lane>>,
     at_responses: Vec<Vec<Lane>>,
-    /// Modal force now.
-    force: Vec<Lane>,
-    /// Modal force at the end of a linear step, while it is computed.
-    force_after: Vec<Lane>,
+    /// Largest $|W|$ at each force port: bounds every modal force.
+    largest_at_forces: Vec<f64>,
     state: Vec<State>,
     state_after: Vec<State>,
     step: f64,
-    propagators: Vec<Propagator>,
 }
 
 impl ModalStepper {
@@ -62,30 +60,31 @@ impl ModalStepper {
         let count = modes.len().div_ceil(LANES);
         let mut groups = vec![Group::default(); count];
         for (group, modes) in groups.iter_mut().zip(modes.chunks(LANES)) {
-            for ((stiffness, damping), mode) in group.stiffness.iter_mut().zip(&mut group.damping).zip(modes) {
-                *stiffness = mode.angular_frequency * mode.angular_frequency;
-                *damping = 2.0 * mode.damping_ratio * mode.angular_frequency;
+            for (i, mode) in modes.iter().enumerate() {
+                group.stiffness.0[i] = mode.angular_frequency * mode.angular_frequency;
+                group.damping.0[i] = 2.0 * mode.damping_ratio * mode.angular_frequency;
             }
         }
-        let port = |values: Vec<f64>| values.chunks(LANES).map(lane).collect::<Vec<_>>();
-        let at_forces = (0..model.force_count())
-            .map(|k| port(modes.iter().filter_map(|mode| mode.at_forces.get(k).copied()).collect()))
-            .collect();
-        let at_responses = (0..model.response_count())
-            .map(|k| port(modes.iter().filter_map(|mode| mode.at_responses.get(k).copied()).collect()))
-            .collect();
+        let port = |of: &dyn Fn(&Mode) -> Option<f64>| -> Vec<Lane> {
+            let values: Vec<f64> = modes.iter().filter_map(of).collect();
+            values.chunks(LANES).map(Lane::of).collect()
+        };
+        let at_forces: Vec<_> =
+            (0..model.force_count()).map(|k| port(&|mode| mode.at_forces.get(k).copied())).collect();
+        let at_responses =
+            (0..model.response_count()).map(|k| port(&|mode| mode.at_responses.get(k).copied())).collect();
+        let largest =
+            |shape: &Vec<Lane>| shape.iter().flat_map(|lane| lane.0).fold(0.0, |most: f64, w| most.max(w.abs()));
         Self {
             mode_count: modes.len(),
             parameters: modes.iter().map(|mode| [mode.angular_frequency, mode.damping_ratio]).collect(),
             groups,
+            largest_at_forces: at_forces.iter().map(largest).collect(),
             at_forces,
             at_responses,
-            force: vec![Lane::default(); count],
-            force_after: vec![Lane::default(); count],
             state: vec![State::default(); count],
             state_after: vec![State::default(); count],
             step: 0.0,
-            propagators: vec![Propagator::default(); count],
         }
     }
 
@@ -96,11 +95,7 @@ impl ModalStepper {
     #[inline(always)]
     pub fn set_forces(&mut self, forces: &[f64]) -> Result<(), ModelError> {
         self.check_forces(forces)?;
-        project(&self.at_forces, forces, &mut self.force_after);
-        if let Some(&value) = self.force_after.iter().flatten().find(|value| !value.is_finite()) {
-            return Err(ModelError::NotFinite { what: "modal force", value });
-        }
-        std::mem::swap(&mut self.force, &mut self.force_after);
+        project(&self.at_forces, forces, &mut self.groups, |group| &mut group.force);
         Ok(())
     }
 
@@ -124,9 +119,11 @@ impl ModalStepper {
     pub fn advance_linear(&mut self, step: f64, forces: &[f64]) -> Result<(), ModelError> {
         self.check_forces(forces)?;
         self.prepare(step)?;
-        project(&self.at_forces, forces, &mut self.force_after);
+        project(&self.at_forces, forces, &mut self.groups, |group| &mut group.force_after);
         self.advance_prepared::<true>()?;
-        std::mem::swap(&mut self.force, &mut self.force_after);
+        for group in &mut self.groups {
+            group.force = group.force_after;
+        }
         Ok(())
     }
 
@@ -134,23 +131,22 @@ impl ModalStepper {
     #[inline(always)]
     pub fn displacement(&self, response: usize) -> Option<f64> {
         let shape = self.at_responses.get(response)?;
-        Some(sum(shape, &self.state, |state, i| state.position[i]))
+        Some(sum(shape, &self.state, |state| state.position))
     }
 
     /// Velocity \[m/s\] at a response port, counted from 0.
     #[inline(always)]
     pub fn velocity(&self, response: usize) -> Option<f64> {
         let shape = self.at_responses.get(response)?;
-        Some(sum(shape, &self.state, |state, i| state.velocity[i]))
+        Some(sum(shape, &self.state, |state| state.velocity))
     }
 
     /// Acceleration $\sum W(p - 2\zeta\omega\dot a - \omega^2 a)$ \[m/s²\] at a response port under the force now.
     #[inline(always)]
     pub fn acceleration(&self, response: usize) -> Option<f64> {
         let shape = self.at_responses.get(response)?;
-        let modes = self.state.iter().zip(&self.groups).zip(&self.force);
-        Some(sum(shape, modes, |((state, group), force), i| {
-            force[i] - group.damping[i] * state.velocity[i] - group.stiffness[i] * state.position[i]
+        Some(sum(shape, self.state.iter().zip(&self.groups), |(state, group)| {
+            group.force - group.damping * state.velocity - group.stiffness * state.position
         }))
     }
 
@@ -162,16 +158,15 @@ impl ModalStepper {
     /// $a$ and $\dot a$ of one mode, counted from 0; `None` where there is no such mode.
     pub fn mode_state(&self, mode: usize) -> Option<[f64; 2]> {
         let (group, i) = (self.state.get(mode / LANES)?, mode % LANES);
-        (mode < self.mode_count).then(|| [group.position[i], group.velocity[i]])
+        (mode < self.mode_count).then(|| [group.position.0[i], group.velocity.0[i]])
     }
 
     /// $\dot a$ and $\ddot a = p - 2\zeta\omega\dot a - \omega^2 a$ of one mode under the force now, counted from 0;
     /// `None` where there is no such mode.
     pub fn mode_rate(&self, mode: usize) -> Option<[f64; 2]> {
         let [position, velocity] = self.mode_state(mode)?;
-        let (index, i) = (mode / LANES, mode % LANES);
-        let (group, force) = (self.groups.get(index)?, self.force.get(index)?);
-        Some([velocity, force[i] - group.damping[i] * velocity - group.stiffness[i] * position])
+        let (group, i) = (self.groups.get(mode / LANES)?, mode % LANES);
+        Some([velocity, group.force.0[i] - group.damping.0[i] * velocity - group.stiffness.0[i] * position])
     }
 
     /// Puts back what [`ModalStepper::state`] gave.
@@ -186,8 +181,8 @@ impl ModalStepper {
             return Err(ModelError::NotFinite { what: "modal state", value });
         }
         for (group, modes) in self.state.iter_mut().zip(state.chunks(LANES)) {
-            for ((position, velocity), mode) in group.position.iter_mut().zip(&mut group.velocity).zip(modes) {
-                [*position, *velocity] = *mode;
+            for (i, mode) in modes.iter().enumerate() {
+                [group.position.0[i], group.velocity.0[i]] = *mode;
             }
         }
         Ok(())
@@ -203,7 +198,7 @@ impl ModalStepper {
         }
         let group = self.state.get_mut(mode / LANES).filter(|_| mode < self.mode_count);
         let group = group.ok_or(ModelError::StateCount { found: mode.saturating_add(1), expected: self.mode_count })?;
-        (group.position[mode % LANES], group.velocity[mode % LANES]) = (state[0], state[1]);
+        [group.position.0[mode % LANES], group.velocity.0[mode % LANES]] = state;
         Ok(())
     }
 
@@ -212,10 +207,12 @@ impl ModalStepper {
         if forces.len() != self.at_forces.len() {
             return Err(ModelError::ForceCount { found: forces.len(), expected: self.at_forces.len() });
         }
-        match forces.iter().find(|force| !force.is_finite()) {
-            Some(&value) => Err(ModelError::NotFinite { what: "force", value }),
-            None => Ok(()),
+        // Where this bound is a number, so is every force and every modal force.
+        let mut bound = 0.0;
+        for (force, largest) in forces.iter().zip(&self.largest_at_forces) {
+            bound += force.abs() * largest;
         }
+        if bound.is_finite() { Ok(()) } else { Err(not_finite(forces, bound)) }
     }
 
     /// Makes the coefficients for `step`, unless the last step had the same size.
@@ -231,14 +228,14 @@ impl ModalStepper {
         }
         // Should a mode refuse the step, the coefficients are half old, half new: forget which step they are for.
         self.step = 0.0;
-        for (group, modes) in self.propagators.iter_mut().zip(self.parameters.chunks(LANES)) {
+        for (group, modes) in self.groups.iter_mut().zip(self.parameters.chunks(LANES)) {
             for (i, &[omega, zeta]) in modes.iter().enumerate() {
                 let new = Coefficients::new(omega, zeta, step);
                 if !new.is_finite() {
                     return Err(ModelError::NotFinite { what: "angular frequency times step", value: omega * step });
                 }
-                (group.impulse[i], group.held[i]) = (new.impulse, new.held);
-                (group.ramp[i], group.ramp_rate[i]) = (new.ramp, new.ramp_rate);
+                (group.impulse.0[i], group.held.0[i]) = (new.impulse, new.held);
+                (group.ramp.0[i], group.ramp_rate.0[i]) = (new.ramp, new.ramp_rate);
             }
         }
         self.step = step;
@@ -249,28 +246,23 @@ impl ModalStepper {
     /// stays, `force_after` is not read, and the compiler leaves its loads out.
     #[inline(always)]
     fn advance_prepared<const LINEAR: bool>(&mut self) -> Result<(), ModelError> {
-        let forces = self.force.iter().zip(&self.force_after);
-        let modes = self.groups.iter().zip(&self.propagators).zip(forces);
         // A sum of zeros that only an infinity or a NaN can spoil: cheaper than asking each number.
         let mut zero = Lane::default();
-        for ((before, after), ((group, by), (force, force_after))) in
-            self.state.iter().zip(&mut self.state_after).zip(modes)
-        {
-            for i in 0..LANES {
-                let (a, v, p) = (before.position[i], before.velocity[i], force[i]);
-                let change = if LINEAR { force_after[i] - p } else { 0.0 };
-                let elastic = p - group.stiffness[i] * a;
-                let acceleration = elastic - group.damping[i] * v;
-                after.position[i] = a + by.impulse[i] * v + by.held[i] * elastic;
-                after.velocity[i] = v + by.impulse[i] * acceleration - group.stiffness[i] * by.held[i] * v;
-                if LINEAR {
-                    after.position[i] += by.ramp[i] * change;
-                    after.velocity[i] += by.ramp_rate[i] * change;
-                }
-                zero[i] += 0.0 * after.position[i] + 0.0 * after.velocity[i];
+        for ((before, after), group) in self.state.iter().zip(&mut self.state_after).zip(&self.groups) {
+            let State { position: a, velocity: v } = *before;
+            let elastic = group.force - group.stiffness * a;
+            let acceleration = elastic - group.damping * v;
+            let mut position = a + group.impulse * v + group.held * elastic;
+            let mut velocity = v + group.impulse * acceleration - group.stiffness * group.held * v;
+            if LINEAR {
+                let change = group.force_after - group.force;
+                position = position + group.ramp * change;
+                velocity = velocity + group.ramp_rate * change;
             }
+            zero = zero + Lane::all(0.0) * (position + velocity);
+            *after = State { position, velocity };
         }
-        let zero: f64 = zero.iter().sum();
+        let zero = zero.sum();
         if zero != 0.0 || zero.is_nan() {
             return Err(ModelError::NotFinite { what: "modal state after the step", value: zero });
         }
@@ -279,36 +271,33 @@ impl ModalStepper {
     }
 }
 
-/// Up to [`LANES`] numbers, filled up with zeros.
-fn lane(values: &[f64]) -> Lane {
-    let mut lane = Lane::default();
-    for (to, from) in lane.iter_mut().zip(values) {
-        *to = *from;
+/// Which force, or with these forces which modal force, is not finite.
+#[cold]
+fn not_finite(forces: &[f64], bound: f64) -> ModelError {
+    match forces.iter().find(|force| !force.is_finite()) {
+        Some(&value) => ModelError::NotFinite { what: "force", value },
+        None => ModelError::NotFinite { what: "modal force", value: bound },
     }
-    lane
 }
 
-/// Modal forces $p = \sum_k W(x_k) f_k$.
+/// Modal forces $p = \sum_k W(x_k) f_k$, written where `place` says.
 #[inline(always)]
-fn project(at_forces: &[Vec<Lane>], forces: &[f64], modal: &mut [Lane]) {
-    modal.fill(Lane::default());
-    for (shape, &force) in at_forces.iter().zip(forces) {
-        for (p, w) in modal.iter_mut().zip(shape) {
-            for i in 0..LANES {
-                p[i] += w[i] * force;
-            }
+fn project(at_forces: &[Vec<Lane>], forces: &[f64], groups: &mut [Group], place: impl Fn(&mut Group) -> &mut Lane) {
+    for (port, (shape, &force)) in at_forces.iter().zip(forces).enumerate() {
+        for (group, &w) in groups.iter_mut().zip(shape) {
+            let modal = place(group);
+            let term = w * Lane::all(force);
+            *modal = if port == 0 { term } else { *modal + term };
         }
     }
 }
 
-/// $\sum_m W_m q_m$ with `quantity` giving $q$ of a lane.
+/// $\sum_m W_m q_m$ with `quantity` giving $q$ of a group.
 #[inline(always)]
-fn sum<T: Copy>(shape: &[Lane], modes: impl IntoIterator<Item = T>, quantity: impl Fn(T, usize) -> f64) -> f64 {
-    let mut total = Lane::default();
-    for (w, mode) in shape.iter().zip(modes) {
-        for i in 0..LANES {
-            total[i] += w[i] * quantity(mode, i);
-        }
+fn sum<T>(shape: &[Lane], groups: impl IntoIterator<Item = T>, quantity: impl Fn(T) -> Lane) -> f64 {
+    let mut sums = Lane::default();
+    for (&w, group) in shape.iter().zip(groups) {
+        sums = sums + w * quantity(group);
     }
-    total.iter().sum()
+    sums.sum()
 }
