@@ -94,17 +94,18 @@ pub(crate) unsafe fn call(
     let Some(instance) = (unsafe { instance.cast::<Instance>().as_mut() }) else {
         return ERROR;
     };
-    match catch_unwind(AssertUnwindSafe(|| body(instance))) {
-        Ok(Ok(())) => OK,
-        Ok(Err(error)) => {
-            instance.logger.log(Category::Error, &format!("{name}: {error}"));
-            ERROR
-        }
-        Err(_) => {
-            instance.logger.log(Category::Error, &format!("{name}: internal error (a panic); please report it"));
-            ERROR
-        }
-    }
+    // Judged inside, so that a result of many words need not be carried out of the frame that catches panics.
+    let judged = catch_unwind(AssertUnwindSafe(|| match body(instance) {
+        Ok(()) => OK,
+        Err(error) => log_error(instance, name, &error),
+    }));
+    judged.unwrap_or_else(|_| log_error(instance, name, &"internal error (a panic); please report it"))
+}
+
+#[cold]
+fn log_error(instance: &Instance, name: &str, reason: &dyn std::fmt::Display) -> Status {
+    instance.logger.log(Category::Error, &format!("{name}: {reason}"));
+    ERROR
 }
 
 /// An array that the importer passes in.

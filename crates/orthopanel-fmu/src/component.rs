@@ -57,7 +57,7 @@ impl Component {
 
     /// Sets start and stop time; both versions allow it before initialization.
     pub(crate) fn set_experiment(&mut self, start: f64, stop: Option<f64>) -> Result<(), FmuError> {
-        self.require(&[Phase::Instantiated])?;
+        self.require(Phase::INSTANTIATED)?;
         finite("start time", start)?;
         if let Some(stop) = stop {
             finite("stop time", stop)?;
@@ -80,15 +80,19 @@ impl Component {
     }
 
     /// Tells the stepper what was set since it was last asked.
+    #[inline(always)]
     fn apply(&mut self) -> Result<(), FmuError> {
-        if self.forces_changed {
-            self.stepper.set_forces(&self.now.forces)?;
-            self.forces_changed = false;
-        }
+        if self.forces_changed { self.tell_forces() } else { Ok(()) }
+    }
+
+    fn tell_forces(&mut self) -> Result<(), FmuError> {
+        self.stepper.set_forces(&self.now.forces)?;
+        self.forces_changed = false;
         Ok(())
     }
 
     /// Value of a quantity of the panel, given its modes and forces; `None` for what is none of the panel's.
+    #[inline(always)]
     fn panel_value(&self, quantity: Quantity, stepper: &WideStepper, forces: &[f64]) -> Option<f64> {
         match quantity {
             Quantity::Time | Quantity::ForceLinear => None,

@@ -144,6 +144,12 @@ impl VariableTable {
         self.0.get(usize::try_from(reference).ok()?)
     }
 
+    /// What the variable of a reference stands for.
+    #[inline]
+    pub fn quantity(&self, reference: u32) -> Option<Quantity> {
+        self.get(reference).map(|variable| variable.quantity)
+    }
+
     /// Adds a variable that so far depends on nothing; returns its reference.
     fn push(&mut self, quantity: Quantity, name: String, description: String) -> u32 {
         // A table of 2^32 variables cannot be built in memory, so the index always fits.

@@ -46,7 +46,12 @@ macro_rules! both_versions {
                 // SAFETY: `avx2` is set only where the processor said that it has AVX2.
                 return unsafe { with_avx2(&$($mut)? self.stepper, $($argument),+) };
             }
-            self.stepper.$name($($argument),+)
+            // Out of line, so that what calls this stays small where it is not taken.
+            #[inline(never)]
+            fn without(stepper: &$($mut)? ModalStepper, $($argument: $kind),+) -> $result {
+                stepper.$name($($argument),+)
+            }
+            without(&$($mut)? self.stepper, $($argument),+)
         }
     )*};
 }

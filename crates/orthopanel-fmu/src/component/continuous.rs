@@ -7,8 +7,6 @@
 use super::{Component, Phase, finite};
 use crate::FmuError;
 
-const MODEL: &[Phase] = &[Phase::Event, Phase::ContinuousTime];
-
 impl Component {
     /// Number of modes, rigid ones included.
     pub(super) fn mode_count(&self) -> usize {
@@ -22,14 +20,14 @@ impl Component {
 
     /// Sets the time \[s\] at which derivatives and outputs are asked for.
     pub(crate) fn set_time(&mut self, time: f64) -> Result<(), FmuError> {
-        self.require(MODEL)?;
+        self.require(Phase::MODEL_EXCHANGE)?;
         finite("time", time)?;
         self.now.time = time;
         Ok(())
     }
 
     pub(crate) fn set_continuous_states(&mut self, states: &[f64]) -> Result<(), FmuError> {
-        self.require(&[Phase::ContinuousTime])?;
+        self.require(Phase::CONTINUOUS_TIME)?;
         self.same_states(states.len())?;
         if let Some(&value) = states.iter().find(|state| !state.is_finite()) {
             return finite("continuous state", value);

@@ -28,16 +28,42 @@ pub(crate) enum Phase {
     Terminated,
 }
 
+/// Phases that allow a call, as bits: asked at every call, so it must cost nothing.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Phases(u8);
+
+impl Phases {
+    const fn of(phases: &[Phase]) -> Self {
+        let (mut bits, mut index) = (0, 0);
+        while index < phases.len() {
+            bits |= 1 << phases[index] as u8;
+            index += 1;
+        }
+        Self(bits)
+    }
+
+    pub(super) fn contain(self, phase: Phase) -> bool {
+        self.0 & (1 << phase as u8) != 0
+    }
+}
+
 impl Phase {
-    pub(super) const RUNNING: &[Self] = &[Self::Step, Self::Event, Self::ContinuousTime];
-    pub(super) const SETTABLE: &[Self] =
-        &[Self::Instantiated, Self::Initialization, Self::Step, Self::Event, Self::ContinuousTime];
-    pub(super) const READABLE: &[Self] =
-        &[Self::Initialization, Self::Step, Self::Event, Self::ContinuousTime, Self::Terminated];
-    /// Where partial derivatives of equations exist.
-    pub(super) const DIFFERENTIABLE: &[Self] = Self::READABLE;
+    const ALL: [Self; 6] =
+        [Self::Instantiated, Self::Initialization, Self::Step, Self::Event, Self::ContinuousTime, Self::Terminated];
+    pub(super) const STEP: Phases = Phases::of(&[Self::Step]);
+    pub(super) const INSTANTIATED: Phases = Phases::of(&[Self::Instantiated]);
+    pub(super) const INITIALIZATION: Phases = Phases::of(&[Self::Initialization]);
+    pub(super) const EVENT: Phases = Phases::of(&[Self::Event]);
+    pub(super) const CONTINUOUS_TIME: Phases = Phases::of(&[Self::ContinuousTime]);
+    pub(super) const MODEL_EXCHANGE: Phases = Phases::of(&[Self::Event, Self::ContinuousTime]);
+    pub(super) const RUNNING: Phases = Phases::of(&[Self::Step, Self::Event, Self::ContinuousTime]);
+    pub(super) const STEPPED: Phases = Phases::of(&[Self::Step, Self::Terminated]);
+    pub(super) const SETTABLE: Phases =
+        Phases::of(&[Self::Instantiated, Self::Initialization, Self::Step, Self::Event, Self::ContinuousTime]);
+    pub(super) const READABLE: Phases =
+        Phases::of(&[Self::Initialization, Self::Step, Self::Event, Self::ContinuousTime, Self::Terminated]);
     /// Until here parameters and the initial state are set.
-    pub(super) const BEFORE_START: &[Self] = &[Self::Instantiated, Self::Initialization];
+    pub(super) const BEFORE_START: Phases = Phases::of(&[Self::Instantiated, Self::Initialization]);
 
     fn name(self) -> &'static str {
         match self {
@@ -53,52 +79,55 @@ impl Phase {
 
 impl Component {
     /// Refuses a call that the present state does not allow.
-    pub(super) fn require(&self, allowed: &[Phase]) -> Result<(), FmuError> {
-        if allowed.contains(&self.now.phase) {
-            return Ok(());
-        }
-        let allowed = allowed.iter().map(|phase| phase.name()).collect::<Vec<_>>().join(", ");
-        Err(FmuError::Order { state: self.now.phase.name(), allowed })
+    #[inline]
+    pub(super) fn require(&self, allowed: Phases) -> Result<(), FmuError> {
+        if allowed.contain(self.now.phase) { Ok(()) } else { Err(self.out_of_order(allowed)) }
     }
 
-    fn change(&mut self, from: &[Phase], to: Phase) -> Result<(), FmuError> {
+    #[cold]
+    fn out_of_order(&self, allowed: Phases) -> FmuError {
+        let names = Phase::ALL.into_iter().filter(|&phase| allowed.contain(phase)).map(Phase::name);
+        FmuError::Order { state: self.now.phase.name(), allowed: names.collect::<Vec<_>>().join(", ") }
+    }
+
+    fn change(&mut self, from: Phases, to: Phase) -> Result<(), FmuError> {
         self.require(from)?;
         self.now.phase = to;
         Ok(())
     }
 
     pub(crate) fn enter_initialization(&mut self) -> Result<(), FmuError> {
-        self.change(&[Phase::Instantiated], Phase::Initialization)
+        self.change(Phase::INSTANTIATED, Phase::Initialization)
     }
 
     /// Ends initialization; an instance that the importer integrates then stands at an event.
     pub(crate) fn exit_initialization(&mut self) -> Result<(), FmuError> {
-        self.require(&[Phase::Initialization])?;
+        self.require(Phase::INITIALIZATION)?;
         self.apply()?;
         self.now.forces_before.copy_from_slice(&self.now.forces);
         let next = match self.now.interface {
             Interface::CoSimulation => Phase::Step,
             Interface::ModelExchange => Phase::Event,
         };
-        self.change(&[Phase::Initialization], next)
+        self.change(Phase::INITIALIZATION, next)
     }
 
     pub(crate) fn enter_event_mode(&mut self) -> Result<(), FmuError> {
-        self.change(&[Phase::ContinuousTime], Phase::Event)
+        self.change(Phase::CONTINUOUS_TIME, Phase::Event)
     }
 
     pub(crate) fn enter_continuous_time_mode(&mut self) -> Result<(), FmuError> {
-        self.change(&[Phase::Event], Phase::ContinuousTime)
+        self.change(Phase::EVENT, Phase::ContinuousTime)
     }
 
     /// An event needs nothing of a linear panel: this only asks whether it is allowed now.
     pub(crate) fn update_discrete_states(&self) -> Result<(), FmuError> {
-        self.require(&[Phase::Event])
+        self.require(Phase::EVENT)
     }
 
     /// As [`Component::update_discrete_states`], after a step of the importer's integrator.
     pub(crate) fn completed_integrator_step(&self) -> Result<(), FmuError> {
-        self.require(&[Phase::ContinuousTime])
+        self.require(Phase::CONTINUOUS_TIME)
     }
 
     pub(crate) fn terminate(&mut self) -> Result<(), FmuError> {

@@ -15,7 +15,7 @@ impl Component {
         seed: &[f64],
         sensitivity: &mut [f64],
     ) -> Result<(), FmuError> {
-        self.require(Phase::DIFFERENTIABLE)?;
+        self.require(Phase::READABLE)?;
         super::values::same_count(seed.len(), knowns.len())?;
         super::values::same_count(sensitivity.len(), unknowns.len())?;
         self.check_unknowns(unknowns)?;
@@ -42,7 +42,7 @@ impl Component {
         seed: &[f64],
         sensitivity: &mut [f64],
     ) -> Result<(), FmuError> {
-        self.require(Phase::DIFFERENTIABLE)?;
+        self.require(Phase::READABLE)?;
         super::values::same_count(seed.len(), unknowns.len())?;
         super::values::same_count(sensitivity.len(), knowns.len())?;
         self.check_unknowns(unknowns)?;
@@ -72,7 +72,7 @@ impl Component {
         orders: &[i32],
         values: &mut [f64],
     ) -> Result<(), FmuError> {
-        self.require(&[Phase::Step, Phase::Terminated])?;
+        self.require(Phase::STEPPED)?;
         super::values::same_count(orders.len(), references.len())?;
         super::values::same_count(values.len(), references.len())?;
         for (&reference, &order) in references.iter().zip(orders) {
@@ -85,7 +85,11 @@ impl Component {
             }
         }
         self.apply()?;
-        self.probe.forces.copy_from_slice(&self.now.slopes);
+        if self.now.slopes_given {
+            self.probe.forces.copy_from_slice(&self.now.slopes);
+        } else {
+            self.probe.forces.fill(0.0);
+        }
         for mode in 0..self.mode_count() {
             self.probe.stepper.set_mode_state(mode, self.stepper.mode_rate(mode).unwrap_or_default())?;
         }

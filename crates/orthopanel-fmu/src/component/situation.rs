@@ -16,13 +16,14 @@ pub(crate) struct Situation {
     pub(super) force_linear: bool,
     /// Force at each port as set \[N\].
     pub(super) forces: Vec<f64>,
-    /// Force at the end of the last step: where a linear force starts.
+    /// With `force_linear`: force at the end of the last step, where the next one starts.
     pub(super) forces_before: Vec<f64>,
     /// Input derivatives for the next step \[N/s\], and whether the importer gave some.
     pub(super) force_rates: Vec<f64>,
     pub(super) rates_given: bool,
-    /// Rate of each force over the last step \[N/s\], for the derivatives of outputs.
+    /// Rate of each force over the last step \[N/s\], for the derivatives of outputs; zero where none was given.
     pub(super) slopes: Vec<f64>,
+    pub(super) slopes_given: bool,
 }
 
 impl Situation {
@@ -38,6 +39,7 @@ impl Situation {
             force_rates: forces.clone(),
             rates_given: false,
             slopes: forces.clone(),
+            slopes_given: false,
             forces,
         }
     }

@@ -1,6 +1,6 @@
 //! The communication step.
 
-use super::{Component, Phase, finite};
+use super::{Component, Phase};
 use crate::FmuError;
 
 /// Share of a step by which the importer's time may differ from ours: importers add up their steps with rounding.
@@ -16,19 +16,13 @@ impl Component {
     /// with input derivatives from the value set at that rate; else held at the value set. Where the step is
     /// refused, everything stays as it was.
     pub(crate) fn do_step(&mut self, start: f64, step: f64) -> Result<(), FmuError> {
-        self.require(&[Phase::Step])?;
-        finite("communication point", start)?;
-        if !(step.is_finite() && step > 0.0) {
-            return Err(orthopanel_model::ModelError::Size { name: "step", value: step, unit: "s" }.into());
-        }
-        let slack = TIME_SLACK * step + TIME_ROUNDING * start.abs();
-        if (start - self.now.time).abs() > slack {
-            return Err(FmuError::CommunicationPoint { given: start, time: self.now.time });
-        }
+        self.require(Phase::STEP)?;
         let end = start + step;
-        finite("end of the step", end)?;
-        if let Some(stop) = self.now.stop_time.filter(|&stop| end > stop + slack) {
-            return Err(FmuError::PastStop { end, stop });
+        let slack = TIME_SLACK * step + TIME_ROUNDING * start.abs();
+        // Each comparison fails for what is not a number.
+        let sound = step > 0.0 && (start - self.now.time).abs() <= slack && slack.is_finite() && end.is_finite();
+        if !sound || self.now.stop_time.is_some_and(|stop| end > stop + slack) {
+            return Err(self.refused_step(start, step, slack));
         }
         if self.now.force_linear {
             self.step_between_values(step)?;
@@ -37,11 +31,29 @@ impl Component {
         } else {
             self.apply()?;
             self.stepper.advance_held(step)?;
-            self.now.slopes.fill(0.0);
+            self.now.slopes_given = false;
         }
-        self.now.forces_before.copy_from_slice(&self.now.forces);
         self.now.time = end;
         Ok(())
+    }
+
+    /// Why a step is refused.
+    #[cold]
+    fn refused_step(&self, start: f64, step: f64, slack: f64) -> FmuError {
+        if !start.is_finite() {
+            return FmuError::NotFinite { what: "communication point".into(), value: start };
+        }
+        if !(step.is_finite() && step > 0.0) {
+            return orthopanel_model::ModelError::Size { name: "step", value: step, unit: "s" }.into();
+        }
+        if (start - self.now.time).abs() > slack {
+            return FmuError::CommunicationPoint { given: start, time: self.now.time };
+        }
+        let end = start + step;
+        match self.now.stop_time.filter(|_| end.is_finite()) {
+            Some(stop) => FmuError::PastStop { end, stop },
+            None => FmuError::NotFinite { what: "end of the step".into(), value: end },
+        }
     }
 
     fn step_between_values(&mut self, step: f64) -> Result<(), FmuError> {
@@ -54,6 +66,8 @@ impl Component {
         for (slope, (from, to)) in self.now.slopes.iter_mut().zip(ends) {
             *slope = ((to - from) / step).clamp(f64::MIN, f64::MAX);
         }
+        self.now.slopes_given = true;
+        self.now.forces_before.copy_from_slice(&self.now.forces);
         Ok(())
     }
 
@@ -65,6 +79,7 @@ impl Component {
         self.stepper.advance_linear(step, &self.forces_after)?;
         self.now.forces.copy_from_slice(&self.forces_after);
         self.now.slopes.copy_from_slice(&self.now.force_rates);
+        self.now.slopes_given = true;
         self.forget_rates();
         Ok(())
     }

@@ -8,15 +8,13 @@ impl Component {
     pub(crate) fn get_reals(&mut self, references: &[u32], values: &mut [f64]) -> Result<(), FmuError> {
         self.require(Phase::READABLE)?;
         same_count(values.len(), references.len())?;
-        for &reference in references {
-            self.real(reference)?;
-        }
         self.apply()?;
         for (&reference, value) in references.iter().zip(values) {
             // The table has the ports and modes of the stepper: none of these is ever missing.
-            *value = match self.quantity(reference)? {
-                Quantity::Time => self.now.time,
-                quantity => self.panel_value(quantity, &self.stepper, &self.now.forces).unwrap_or(f64::NAN),
+            *value = match self.variables.quantity(reference) {
+                Some(Quantity::Time) => self.now.time,
+                None | Some(Quantity::ForceLinear) => return Err(self.no_real(reference)),
+                Some(quantity) => self.panel_value(quantity, &self.stepper, &self.now.forces).unwrap_or(f64::NAN),
             };
         }
         Ok(())
@@ -27,36 +25,34 @@ impl Component {
         self.require(Phase::SETTABLE)?;
         same_count(values.len(), references.len())?;
         for (&reference, &value) in references.iter().zip(values) {
-            self.check_settable(reference)?;
-            if !value.is_finite() {
-                return finite(&self.variable(reference)?.name, value);
+            // A force, which is what is set at every step, is asked for nothing more.
+            if !(matches!(self.variables.quantity(reference), Some(Quantity::Force(_))) && value.is_finite()) {
+                self.check_settable(reference, value)?;
             }
         }
         for (&reference, &value) in references.iter().zip(values) {
-            self.set_real(self.quantity(reference)?, value)?;
+            match self.variables.quantity(reference) {
+                Some(Quantity::Force(port)) => {
+                    if let Some(force) = self.now.forces.get_mut(port) {
+                        *force = value;
+                    }
+                }
+                other => self.set_initial(other, value)?,
+            }
         }
         self.forces_changed = true;
         Ok(())
     }
 
-    fn set_real(&mut self, quantity: Quantity, value: f64) -> Result<(), FmuError> {
-        match quantity {
-            Quantity::Force(port) => {
-                if let Some(force) = self.now.forces.get_mut(port) {
-                    *force = value;
-                }
-            }
-            Quantity::ModalPosition(mode) => {
-                let [_, velocity] = self.stepper.mode_state(mode).unwrap_or_default();
-                self.stepper.set_mode_state(mode, [value, velocity])?;
-            }
-            Quantity::ModalVelocity(mode) => {
-                let [position, _] = self.stepper.mode_state(mode).unwrap_or_default();
-                self.stepper.set_mode_state(mode, [position, value])?;
-            }
-            // Refused by `check_settable`.
-            _ => {}
-        }
+    /// Sets one number of the initial state; other quantities were refused before.
+    #[cold]
+    fn set_initial(&mut self, quantity: Option<Quantity>, value: f64) -> Result<(), FmuError> {
+        let (Some(Quantity::ModalPosition(mode)) | Some(Quantity::ModalVelocity(mode))) = quantity else {
+            return Ok(());
+        };
+        let [position, velocity] = self.stepper.mode_state(mode).unwrap_or_default();
+        let is_position = matches!(quantity, Some(Quantity::ModalPosition(_)));
+        self.stepper.set_mode_state(mode, if is_position { [value, velocity] } else { [position, value] })?;
         Ok(())
     }
 
@@ -120,7 +116,7 @@ impl Component {
         same_count(values.len(), references.len())?;
         for &reference in references {
             let variable = self.boolean(reference)?;
-            if !Phase::BEFORE_START.contains(&self.now.phase) {
+            if !Phase::BEFORE_START.contain(self.now.phase) {
                 return Err(not_settable(variable, "a fixed parameter is set before or in initialization mode"));
             }
         }
@@ -159,6 +155,15 @@ impl Component {
         }
     }
 
+    /// Why a reference is that of no real variable.
+    #[cold]
+    fn no_real(&self, reference: u32) -> FmuError {
+        match self.variable(reference) {
+            Ok(variable) => wrong_type(variable, REAL),
+            Err(error) => error,
+        }
+    }
+
     fn boolean(&self, reference: u32) -> Result<&Variable, FmuError> {
         let variable = self.variable(reference)?;
         match variable.quantity {
@@ -174,12 +179,13 @@ impl Component {
         }
     }
 
-    fn check_settable(&self, reference: u32) -> Result<(), FmuError> {
+    #[cold]
+    fn check_settable(&self, reference: u32, value: f64) -> Result<(), FmuError> {
         let reason = match self.real(reference)? {
-            Quantity::Force(_) => return Ok(()),
+            Quantity::Force(_) => return finite(&self.variable(reference)?.name, value),
             Quantity::ModalPosition(_) | Quantity::ModalVelocity(_) => {
-                if Phase::BEFORE_START.contains(&self.now.phase) {
-                    return Ok(());
+                if Phase::BEFORE_START.contain(self.now.phase) {
+                    return finite(&self.variable(reference)?.name, value);
                 }
                 "the initial state is set before or in initialization mode (model exchange: set continuous states)"
             }
