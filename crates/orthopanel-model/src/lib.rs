@@ -1,6 +1,8 @@
 #![doc = include_str!("../README.md")]
 
 mod accelerance;
+mod block_krylov;
+mod block_pencil;
 mod boundary;
 mod constant;
 mod error;

@@ -1,47 +1,115 @@
-//! Modes of any [`Structure`]: one symmetric eigenproblem a block.
+//! Modes of any [`Structure`]: one symmetric eigenproblem a block, the blocks side by side.
 
-use faer::linalg::triangular_solve::{solve_lower_triangular_in_place, solve_upper_triangular_in_place};
-use faer::{Mat, Par, Side};
+use rayon::prelude::*;
 
+use crate::block_krylov::lowest_modes;
+use crate::block_pencil::{BlockPencil, Eigenpair};
 use crate::structure::{Block, RitzMode, Structure};
-use crate::symmetric_eigen::symmetric_eigen;
 use crate::{Constant, ModelError};
 
 /// The rigid modes, then the first `count` flexible ones in rising order, at these values of the constants.
 ///
-/// Each block is solved as $\theta$ of $L^{-1}ML^{-T}$ with $LL^T = K + \sigma M$ and $\omega^2 = 1/\theta - \sigma$:
-/// the lowest modes are then the largest eigenvalues and come out to rounding, however stiff the highest are.
+/// Small blocks are solved whole, large ones for their lowest modes alone. Then a count of negative pivots between the
+/// last mode and the next proves that none is missing; a block where one is, is solved whole.
 ///
 /// # Errors
 /// [`ModelError::Constant`] for a value outside its bounds, what [`Structure::coefficients`] refuses,
-/// [`ModelError::BasisTooSmall`] where `count` is more than the basis resolves,
-/// [`ModelError::Eigenproblem`] where the stiffness is not positive.
+/// [`ModelError::BasisTooSmall`] where `count` is more than the basis resolves, [`ModelError::Eigenproblem`] where the
+/// stiffness is not positive.
 pub fn ritz_modes(structure: &dyn Structure, values: &[f64], count: usize) -> Result<Vec<RitzMode>, ModelError> {
     let available = structure.resolved_modes();
     if count > available {
         return Err(ModelError::BasisTooSmall { asked: count, available });
     }
-    let mut modes = all_ritz_modes(structure, values)?;
-    let rigid: usize = structure.blocks().iter().map(|block| block.rigid.len()).sum();
-    modes.truncate(rigid + count);
-    Ok(modes)
+    let coefficients = checked_coefficients(structure, values)?;
+    let blocks = structure.blocks();
+    // Blocks share the modes evenly but for a few.
+    let wanted = count / blocks.len().max(1) + 3;
+    let mut solved: Vec<SolvedBlock> = blocks
+        .par_iter()
+        .map(|block| SolvedBlock::new(BlockPencil::new(block, &coefficients)?, wanted))
+        .collect::<Result<_, _>>()?;
+    let limit = loop {
+        let limit = limit_above(&solved, count);
+        let short = |block: &SolvedBlock| !block.whole && block.modes.last().is_none_or(|last| last.0 < limit);
+        if !solved.iter().any(short) {
+            break limit;
+        }
+        solved.par_iter_mut().filter(|block| short(block)).try_for_each(SolvedBlock::solve_more)?;
+    };
+    solved.par_iter_mut().filter(|block| !block.whole).try_for_each(|block| block.prove_below(limit))?;
+
+    let mut modes = flexible(solved.into_iter().map(|block| block.modes));
+    modes.truncate(count);
+    Ok(rigid(blocks).chain(modes).collect())
 }
 
 /// The rigid modes, then as many flexible ones as the basis has coordinates left, rising.
 pub(crate) fn all_ritz_modes(structure: &dyn Structure, values: &[f64]) -> Result<Vec<RitzMode>, ModelError> {
-    check_constants(structure.constants(), values)?;
-    let coefficients = structure.coefficients(values)?;
-    let mut rigid = Vec::new();
-    let mut flexible = Vec::new();
-    for (index, block) in structure.blocks().iter().enumerate() {
-        for coordinates in &block.rigid {
-            rigid.push(RitzMode { angular_frequency: 0.0, block: index, coordinates: coordinates.clone() });
-        }
-        flexible.extend(flexible_modes(block, index, &coefficients)?);
+    let coefficients = checked_coefficients(structure, values)?;
+    let blocks = structure.blocks();
+    let solved: Vec<Vec<Eigenpair>> = blocks
+        .par_iter()
+        .map(|block| BlockPencil::new(block, &coefficients)?.all_modes())
+        .collect::<Result<_, ModelError>>()?;
+    Ok(rigid(blocks).chain(flexible(solved.into_iter())).collect())
+}
+
+/// The modes known of one block.
+struct SolvedBlock<'a> {
+    pencil: BlockPencil<'a>,
+    /// The lowest flexible ones, rising.
+    modes: Vec<Eigenpair>,
+    /// Whether these are all of them.
+    whole: bool,
+}
+
+impl<'a> SolvedBlock<'a> {
+    fn new(pencil: BlockPencil<'a>, wanted: usize) -> Result<Self, ModelError> {
+        let mut block = Self { pencil, modes: Vec::new(), whole: false };
+        block.solve(wanted)?;
+        Ok(block)
     }
-    flexible.sort_by(|a, b| a.angular_frequency.total_cmp(&b.angular_frequency));
-    rigid.append(&mut flexible);
-    Ok(rigid)
+
+    fn solve(&mut self, wanted: usize) -> Result<(), ModelError> {
+        match lowest_modes(&self.pencil, wanted) {
+            Some(modes) => self.modes = modes,
+            None => {
+                self.modes = self.pencil.all_modes()?;
+                self.whole = true;
+            }
+        }
+        Ok(())
+    }
+
+    fn solve_more(&mut self) -> Result<(), ModelError> {
+        self.solve(2 * self.modes.len())
+    }
+
+    /// Makes sure that no mode with $\omega^2$ below `limit` is missing.
+    fn prove_below(&mut self, limit: f64) -> Result<(), ModelError> {
+        let known = self.modes.iter().filter(|mode| mode.0 < limit).count() + self.pencil.rigid_count();
+        if self.pencil.count_below(limit) != Some(known) {
+            self.modes = self.pencil.all_modes()?;
+            self.whole = true;
+        }
+        Ok(())
+    }
+}
+
+/// An $\omega^2$ between the mode of number `count` and the next that clearly lies above it.
+fn limit_above(solved: &[SolvedBlock], count: usize) -> f64 {
+    let mut all: Vec<f64> = solved.iter().flat_map(|block| block.modes.iter().map(|mode| mode.0)).collect();
+    all.sort_by(f64::total_cmp);
+    let last = count.checked_sub(1).and_then(|index| all.get(index)).copied().unwrap_or(0.0);
+    // Modes that nearly coincide are counted together: between them a pivot nearly vanishes.
+    let clear = all.iter().find(|&&omega2| omega2 > last * (1.0 + 1e-6));
+    clear.map_or(last * (1.0 + 1e-6), |next| 0.5 * (last + next))
+}
+
+fn checked_coefficients(structure: &dyn Structure, values: &[f64]) -> Result<Vec<f64>, ModelError> {
+    check_constants(structure.constants(), values)?;
+    structure.coefficients(values)
 }
 
 fn check_constants(constants: &[Constant], values: &[f64]) -> Result<(), ModelError> {
@@ -51,47 +119,26 @@ fn check_constants(constants: &[Constant], values: &[f64]) -> Result<(), ModelEr
     constants.iter().zip(values).try_for_each(|(constant, &value)| constant.check(value))
 }
 
-fn flexible_modes(block: &Block, index: usize, coefficients: &[f64]) -> Result<Vec<RitzMode>, ModelError> {
-    let size = block.size();
-    let mut shifted = Mat::<f64>::zeros(size, size);
-    for (matrix, &coefficient) in block.stiffness.iter().zip(coefficients) {
-        shifted += faer::Scale(coefficient) * matrix;
-    }
-    let sigma = shift(&shifted, &block.mass);
-    shifted += faer::Scale(sigma) * &block.mass;
-
-    // Unit diagonal first: Cholesky then keeps the digits of soft and stiff coordinates alike.
-    let scale: Vec<f64> = (0..size).map(|i| shifted[(i, i)].sqrt().recip()).collect();
-    if scale.iter().any(|value| !value.is_finite()) {
-        return Err(ModelError::Eigenproblem);
-    }
-    let scaled = |matrix: &Mat<f64>| Mat::from_fn(size, size, |i, j| scale[i] * matrix[(i, j)] * scale[j]);
-    let factor = scaled(&shifted).llt(Side::Lower).map_err(|_| ModelError::Eigenproblem)?;
-    let lower = factor.L();
-    let mut flexibility = scaled(&block.mass);
-    solve_lower_triangular_in_place(lower, flexibility.as_mut(), Par::Seq);
-    let mut flexibility = flexibility.transpose().to_owned();
-    solve_lower_triangular_in_place(lower, flexibility.as_mut(), Par::Seq);
-    let symmetric = Mat::from_fn(size, size, |i, j| 0.5 * (flexibility[(i, j)] + flexibility[(j, i)]));
-
-    let (thetas, mut vectors) = symmetric_eigen(&symmetric).ok_or(ModelError::Eigenproblem)?;
-    solve_upper_triangular_in_place(lower.transpose(), vectors.as_mut(), Par::Seq);
-    // Largest θ first; the rigid modes are the very largest and are replaced by their exact shapes.
-    let modes = (0..size).rev().skip(block.rigid.len()).map(|column| {
-        let theta = thetas[column];
-        let norm = theta.sqrt().recip();
-        RitzMode {
-            angular_frequency: (1.0 / theta - sigma).max(0.0).sqrt(),
-            block: index,
-            coordinates: (0..size).map(|row| norm * scale[row] * vectors[(row, column)]).collect(),
-        }
-    });
-    Ok(modes.filter(|mode| mode.angular_frequency.is_finite()).collect())
+fn rigid(blocks: &[Block]) -> impl Iterator<Item = RitzMode> {
+    blocks.iter().enumerate().flat_map(|(block, matrices)| {
+        matrices.rigid.iter().map(move |coordinates| RitzMode {
+            angular_frequency: 0.0,
+            block,
+            coordinates: coordinates.clone(),
+        })
+    })
 }
 
-/// A shift of the size of the lowest $\omega^2$: the least Rayleigh quotient of a single coordinate that has stiffness.
-fn shift(stiffness: &Mat<f64>, mass: &Mat<f64>) -> f64 {
-    let quotients = (0..mass.nrows()).map(|i| stiffness[(i, i)] / mass[(i, i)]);
-    let greatest = quotients.clone().fold(0.0, f64::max);
-    quotients.filter(|&quotient| quotient > 1e-14 * greatest).fold(greatest, f64::min)
+/// The modes of all blocks, rising.
+fn flexible(solved: impl Iterator<Item = Vec<Eigenpair>>) -> Vec<RitzMode> {
+    let of_block = |(block, modes): (usize, Vec<Eigenpair>)| {
+        modes.into_iter().map(move |(omega2, coordinates)| RitzMode {
+            angular_frequency: omega2.sqrt(),
+            block,
+            coordinates,
+        })
+    };
+    let mut modes: Vec<RitzMode> = solved.enumerate().flat_map(of_block).collect();
+    modes.sort_by(|a, b| a.angular_frequency.total_cmp(&b.angular_frequency));
+    modes
 }

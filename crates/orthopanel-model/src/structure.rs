@@ -1,6 +1,6 @@
 //! What can vibrate: the layer on which beams, plates and every later structure stand.
 
-use faer::Mat;
+use faer::{ColRef, Mat};
 
 use crate::{Constant, ModelError, Place};
 
@@ -86,11 +86,6 @@ impl RitzMode {
 
 /// $v^TAv$.
 pub(crate) fn quadratic_form(matrix: &Mat<f64>, vector: &[f64]) -> f64 {
-    let mut sum = 0.0;
-    for (j, &column) in vector.iter().enumerate() {
-        for (i, &row) in vector.iter().enumerate() {
-            sum += row * matrix[(i, j)] * column;
-        }
-    }
-    sum
+    let vector = ColRef::from_slice(vector);
+    vector.transpose() * (matrix * vector)
 }

@@ -1,6 +1,7 @@
 //! Stiffness and mass matrices of the plate, block by block: sums of products of integrals along x and along y.
 
 use faer::Mat;
+use rayon::prelude::*;
 
 use super::Field;
 use super::edge_basis::EdgeBasis;
@@ -36,7 +37,7 @@ pub(super) fn assemble(piece: &Piece, along: &[EdgeBasis; 2]) -> (Vec<Vec<Coordi
             coordinates.push(block_coordinates(along, [odd_x, odd_y]));
         }
     }
-    let blocks = coordinates.iter().map(|list| block(piece, along, list)).collect();
+    let blocks = coordinates.par_iter().map(|list| block(piece, along, list)).collect();
     (coordinates, blocks)
 }
 
@@ -77,12 +78,21 @@ fn block(piece: &Piece, along: &[EdgeBasis; 2], list: &[Coordinate]) -> Block {
 /// $\int fg\,dx\,dy$ of two strains in the coordinates of a block: a row a coordinate of `f`, a column one of `g`.
 fn product([x, y]: &[EdgeBasis; 2], list: &[Coordinate], f: &[Term], g: &[Term]) -> Mat<f64> {
     let mut matrix = Mat::zeros(list.len(), list.len());
+    // The coordinates of a block stand field by field.
+    let own = |field: Field| {
+        let first = list.partition_point(|c| (c.field as usize) < field as usize);
+        (first, list.iter().filter(move |c| c.field == field))
+    };
     for &(left, left_x, left_y) in f {
         for &(right, right_x, right_y) in g {
-            for (column, b) in list.iter().enumerate().filter(|(_, b)| b.field == right) {
-                for (row, a) in list.iter().enumerate().filter(|(_, a)| a.field == left) {
-                    matrix[(row, column)] += x.integral((left, left_x, a.x), (right, right_x, b.x))
-                        * y.integral((left, left_y, a.y), (right, right_y, b.y));
+            let along_x = x.integrals((left, left_x), (right, right_x));
+            let along_y = y.integrals((left, left_y), (right, right_y));
+            let ((first_row, rows), (first_column, columns)) = (own(left), own(right));
+            let rows: Vec<&Coordinate> = rows.collect();
+            for (column, b) in columns.enumerate() {
+                let entries = &mut matrix.col_as_slice_mut(first_column + column)[first_row..];
+                for (entry, a) in entries.iter_mut().zip(&rows) {
+                    *entry += along_x[(a.x, b.x)] * along_y[(a.y, b.y)];
                 }
             }
         }

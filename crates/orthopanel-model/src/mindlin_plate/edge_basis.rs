@@ -5,7 +5,7 @@
 //! All are scaled to $\int f^2dt = 1$. The products' integrals are sums of two or three terms or, for derivatives, finite
 //! sums: nothing is left to quadrature.
 
-use faer::Mat;
+use faer::{Mat, MatRef};
 
 use super::Field;
 use crate::End;
@@ -58,15 +58,10 @@ impl EdgeBasis {
         self.fields[field as usize].len()
     }
 
-    /// $\int f_if_j\,dx$ of a field's functions.
-    pub(super) fn gram(&self, field: Field) -> Mat<f64> {
-        let count = self.count(field);
-        Mat::from_fn(count, count, |i, j| self.integral((field, 0, i), (field, 0, j)))
-    }
-
-    /// $\int f^{(p)}g^{(q)}dx$ of function `i` of field `f` and `j` of field `g`.
-    pub(super) fn integral(&self, (f, p, i): (Field, usize, usize), (g, q, j): (Field, usize, usize)) -> f64 {
-        self.integrals[(self.index(f, p, i), self.index(g, q, j))]
+    /// $\int f^{(p)}g^{(q)}dx$: a row a function of field `f`, a column one of field `g`.
+    pub(super) fn integrals(&self, (f, p): (Field, usize), (g, q): (Field, usize)) -> MatRef<'_, f64> {
+        let (row, column) = (self.index(f, p, 0), self.index(g, q, 0));
+        self.integrals.submatrix(row, column, self.count(f), self.count(g))
     }
 
     fn index(&self, field: Field, order: usize, number: usize) -> usize {
@@ -178,10 +173,11 @@ mod tests {
     fn val_integrals_by_parts() {
         let basis = EdgeBasis::new(0.15, [End::Free, End::Clamped], Field::RotationX, 8);
         let w = Field::Deflection;
+        let slopes = basis.integrals((w, 1), (w, 0));
         let (low, high) = (basis.deflections_at(-0.15), basis.deflections_at(0.15));
         for i in 0..7 {
             for j in 0..7 {
-                let parts = basis.integral((w, 1, i), (w, 0, j)) + basis.integral((w, 0, i), (w, 1, j));
+                let parts = slopes[(i, j)] + slopes[(j, i)];
                 let edges = high[i] * high[j] - low[i] * low[j];
                 assert!((parts - edges).abs() < 1e-12, "{i} {j}: {parts} {edges}");
             }

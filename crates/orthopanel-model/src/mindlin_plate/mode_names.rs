@@ -86,7 +86,7 @@ impl MindlinPlate {
             shape[(coordinate.x, coordinate.y)] = *value;
         }
         let [along_x, along_y] = &self.beam_functions;
-        let square = (x.gram(w) * &shape).transpose() * (&shape * y.gram(w));
+        let square = (x.integrals((w, 0), (w, 0)) * &shape).transpose() * (&shape * y.integrals((w, 0), (w, 0)));
         let size = (0..square.nrows()).map(|i| square[(i, i)]).sum::<f64>().sqrt();
         // Where all motion is rotation, what is left of w is rounding and has no shape.
         let moving = size * self.piece.mass_per_area.sqrt() > 1e-9;

@@ -1,0 +1,101 @@
+//! The lowest modes of a block without solving for all of them: block Lanczos on the inverted problem.
+//!
+//! Reference: G. H. Golub and R. Underwood, The block Lanczos method for computing eigenvalues, in Mathematical Software
+//! III (1977) 361. All vectors are kept and orthogonalised twice, so no eigenvalue returns as a ghost.
+
+use faer::prelude::ReborrowMut;
+use faer::{Mat, MatMut, MatRef};
+
+use crate::block_pencil::{BlockPencil, Eigenpair};
+use crate::symmetric_eigen::symmetric_eigen;
+
+/// Vectors a step; modes that coincide in this number are found together.
+const WIDTH: usize = 2;
+/// Residual, over its eigenvalue, at which a vector has converged: its frequency is then exact to rounding.
+const CONVERGED: f64 = 1e-9;
+
+/// The lowest `wanted` flexible modes, rising; `None` where a dense solution is the cheaper or the surer way.
+pub(crate) fn lowest_modes(pencil: &BlockPencil<'_>, wanted: usize) -> Option<Vec<Eigenpair>> {
+    let size = pencil.size();
+    let rigid = pencil.rigid_vectors();
+    let capacity = size - rigid.ncols();
+    if 6 * wanted > capacity || wanted == 0 {
+        return None;
+    }
+    // Orthonormal columns: the rigid modes, then the Krylov space; images are those of the latter.
+    let mut basis = rigid.clone();
+    let mut images = Mat::<f64>::zeros(size, 0);
+    let mut next = orthonormal(&basis, start(size))?;
+    while 2 * images.ncols() < capacity {
+        let image = pencil.apply(next.as_ref());
+        basis = beside(&basis, &next);
+        images = beside(&images, &image);
+        let found = images.ncols();
+        // The projection costs more than a step: look only where convergence is likely, and then every other step.
+        let enough = found >= 4 * wanted && (found / WIDTH) % 2 == 0;
+        if enough && let Some(modes) = converged(pencil, &basis, rigid.ncols(), &images, wanted) {
+            return Some(modes);
+        }
+        next = orthonormal(&basis, image)?;
+    }
+    None
+}
+
+/// The modes of the projection on the Krylov space, where all that are wanted have small residuals.
+fn converged(
+    pencil: &BlockPencil<'_>,
+    basis: &Mat<f64>,
+    rigid: usize,
+    images: &Mat<f64>,
+    wanted: usize,
+) -> Option<Vec<Eigenpair>> {
+    let found = images.ncols();
+    let space = basis.subcols(rigid, found);
+    let projection = space.transpose() * images;
+    let (thetas, vectors) = symmetric_eigen(&projection)?;
+    let highest = |column: usize| found - 1 - column;
+    let thetas: Vec<f64> = (0..wanted).map(|column| thetas[highest(column)]).collect();
+    let vectors = Mat::from_fn(found, wanted, |i, j| vectors[(i, highest(j))]);
+    let mut shapes = space * &vectors;
+    let mut residual = images * &vectors;
+    let along_rigid = basis.subcols(0, rigid);
+    residual -= along_rigid * (along_rigid.transpose() * &residual);
+    residual -= Mat::from_fn(shapes.nrows(), wanted, |i, j| thetas[j] * shapes[(i, j)]);
+    let mut norms = residual.col_iter().map(|column| column.norm_l2()).zip(&thetas);
+    norms.all(|(norm, theta)| norm <= CONVERGED * theta).then(|| pencil.modes(&thetas, shapes.as_mut()))
+}
+
+/// Columns without preference for any coordinate, the same in every run.
+fn start(size: usize) -> Mat<f64> {
+    // Multiples of the golden ratio, modulo one, fall evenly.
+    let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
+    Mat::from_fn(size, WIDTH, |i, j| (golden * (1 + i * WIDTH + j) as f64).fract() - 0.5)
+}
+
+/// `block` made orthogonal to `basis`, and its columns to each other; `None` where a column vanishes.
+fn orthonormal(basis: &Mat<f64>, mut block: Mat<f64>) -> Option<Mat<f64>> {
+    for _ in 0..2 {
+        block -= basis * (basis.transpose() * &block);
+        for column in 0..block.ncols() {
+            let (done, mut rest) = block.as_mut().split_at_col_mut(column);
+            orthogonalise(done.as_ref(), rest.rb_mut().subcols_mut(0, 1))?;
+        }
+    }
+    Some(block)
+}
+
+fn orthogonalise(done: MatRef<'_, f64>, mut column: MatMut<'_, f64>) -> Option<()> {
+    let before = column.norm_l2();
+    let shares = done.transpose() * &column;
+    column -= done * shares;
+    let norm = column.norm_l2();
+    if norm.is_nan() || norm <= 1e-12 * before {
+        return None;
+    }
+    column /= faer::Scale(norm);
+    Some(())
+}
+
+fn beside(left: &Mat<f64>, right: &Mat<f64>) -> Mat<f64> {
+    faer::concat![[left, right]]
+}

@@ -1,0 +1,151 @@
+//! Stiffness and mass of one block at given coefficients, ready to be solved.
+
+use faer::linalg::solvers::Llt;
+use faer::linalg::triangular_solve::{solve_lower_triangular_in_place, solve_upper_triangular_in_place};
+use faer::prelude::ReborrowMut;
+use faer::{Mat, MatMut, MatRef, Par, Side};
+
+use crate::ModelError;
+use crate::structure::Block;
+use crate::symmetric_eigen::symmetric_eigen;
+
+/// $K$ and $M$ of a block, and the operator whose largest eigenvalues are its lowest modes.
+///
+/// With $LL^T = S(K+\sigma M)S$, $S$ the scale that makes the diagonal one, it is $A = L^{-1}SMSL^{-T}$, with
+/// eigenvalues $\theta = 1/(\omega^2+\sigma)$ and shapes $\phi = SL^{-T}v/\sqrt\theta$. The lowest modes come out to
+/// rounding, however stiff the highest are.
+pub(crate) struct BlockPencil<'a> {
+    block: &'a Block,
+    stiffness: Mat<f64>,
+    sigma: f64,
+    scale: Vec<f64>,
+    factor: Llt<f64>,
+    mass: Mat<f64>,
+}
+
+/// One mode of a block: $\omega^2$ and its mass-normalised coordinates.
+pub(crate) type Eigenpair = (f64, Vec<f64>);
+
+impl<'a> BlockPencil<'a> {
+    /// # Errors
+    /// [`ModelError::Eigenproblem`] where stiffness or mass is not positive.
+    pub(crate) fn new(block: &'a Block, coefficients: &[f64]) -> Result<Self, ModelError> {
+        let size = block.size();
+        let mut stiffness = Mat::<f64>::zeros(size, size);
+        for (matrix, &coefficient) in block.stiffness.iter().zip(coefficients) {
+            add_scaled(&mut stiffness, coefficient, matrix);
+        }
+        let sigma = shift(&stiffness, &block.mass);
+        // Unit diagonal first: Cholesky then keeps the digits of soft and stiff coordinates alike.
+        let diagonal = |i: usize| stiffness[(i, i)] + sigma * block.mass[(i, i)];
+        let scale: Vec<f64> = (0..size).map(|i| diagonal(i).sqrt().recip()).collect();
+        if scale.iter().any(|value| !value.is_finite()) {
+            return Err(ModelError::Eigenproblem);
+        }
+        let mass = scaled(&block.mass, &scale);
+        let mut shifted = scaled(&stiffness, &scale);
+        add_scaled(&mut shifted, sigma, &mass);
+        let factor = shifted.llt(Side::Lower).map_err(|_| ModelError::Eigenproblem)?;
+        Ok(Self { block, stiffness, sigma, scale, factor, mass })
+    }
+
+    pub(crate) fn size(&self) -> usize {
+        self.block.size()
+    }
+
+    pub(crate) fn rigid_count(&self) -> usize {
+        self.block.rigid.len()
+    }
+
+    /// The rigid modes as unit vectors of $A$, a column each.
+    pub(crate) fn rigid_vectors(&self) -> Mat<f64> {
+        let coordinates = Mat::from_fn(self.size(), self.rigid_count(), |i, n| self.block.rigid[n][i] / self.scale[i]);
+        let mut vectors = self.factor.L().transpose() * coordinates;
+        for mut column in vectors.col_iter_mut() {
+            let norm = column.norm_l2();
+            column /= faer::Scale(norm);
+        }
+        vectors
+    }
+
+    /// $AV$.
+    pub(crate) fn apply(&self, vectors: MatRef<'_, f64>) -> Mat<f64> {
+        let lower = self.factor.L();
+        let mut half = vectors.to_owned();
+        solve_upper_triangular_in_place(lower.transpose(), half.as_mut(), Par::Seq);
+        let mut image = &self.mass * half;
+        solve_lower_triangular_in_place(lower, image.as_mut(), Par::Seq);
+        image
+    }
+
+    /// $\omega^2$ that an eigenvalue of $A$ stands for.
+    pub(crate) fn omega2(&self, theta: f64) -> f64 {
+        (1.0 / theta - self.sigma).max(0.0)
+    }
+
+    /// Modes of unit eigenvectors of $A$, given as columns, with their eigenvalues.
+    pub(crate) fn modes(&self, thetas: &[f64], mut vectors: MatMut<'_, f64>) -> Vec<Eigenpair> {
+        solve_upper_triangular_in_place(self.factor.L().transpose(), vectors.rb_mut(), Par::Seq);
+        let mode = |(column, &theta): (usize, &f64)| {
+            let norm = theta.sqrt().recip();
+            let coordinates = self.scale.iter().enumerate().map(|(row, s)| norm * s * vectors[(row, column)]).collect();
+            (self.omega2(theta), coordinates)
+        };
+        thetas.iter().enumerate().map(mode).collect()
+    }
+
+    /// All flexible modes, rising.
+    ///
+    /// # Errors
+    /// [`ModelError::Eigenproblem`] where the eigenvalues are not found.
+    pub(crate) fn all_modes(&self) -> Result<Vec<Eigenpair>, ModelError> {
+        let size = self.size();
+        let image = self.apply(Mat::identity(size, size).as_ref());
+        let symmetric = Mat::from_fn(size, size, |i, j| 0.5 * (image[(i, j)] + image[(j, i)]));
+        let (mut thetas, vectors) = symmetric_eigen(&symmetric).ok_or(ModelError::Eigenproblem)?;
+        // Largest θ first; the rigid modes are the very largest and are replaced by their exact shapes.
+        let flexible = size - self.rigid_count();
+        thetas.truncate(flexible);
+        thetas.reverse();
+        let mut vectors = Mat::from_fn(size, flexible, |i, j| vectors[(i, flexible - 1 - j)]);
+        let modes = self.modes(&thetas, vectors.as_mut());
+        Ok(modes.into_iter().filter(|(omega2, _)| omega2.is_finite()).collect())
+    }
+
+    /// Number of modes, rigid ones included, with $\omega^2$ below `limit`: the negative pivots of $K - \text{limit}\,M$
+    /// (Sylvester's law of inertia). `None` where a pivot vanishes.
+    pub(crate) fn count_below(&self, limit: f64) -> Option<usize> {
+        let mut shifted = scaled(&self.stiffness, &self.scale);
+        add_scaled(&mut shifted, -limit, &self.mass);
+        let factor = shifted.ldlt(Side::Lower).ok()?;
+        let pivots = factor.D().column_vector();
+        pivots.iter().all(|pivot| pivot.is_finite()).then(|| pivots.iter().filter(|pivot| **pivot < 0.0).count())
+    }
+}
+
+/// A shift of the size of the lowest $\omega^2$: the least Rayleigh quotient of a single coordinate that has stiffness.
+fn shift(stiffness: &Mat<f64>, mass: &Mat<f64>) -> f64 {
+    let quotients = (0..mass.nrows()).map(|i| stiffness[(i, i)] / mass[(i, i)]);
+    let greatest = quotients.clone().fold(0.0, f64::max);
+    quotients.filter(|&quotient| quotient > 1e-14 * greatest).fold(greatest, f64::min)
+}
+
+/// $A \mathrel{+}= cB$, by columns.
+fn add_scaled(sum: &mut Mat<f64>, coefficient: f64, matrix: &Mat<f64>) {
+    for column in 0..sum.ncols().min(matrix.ncols()) {
+        for (total, value) in sum.col_as_slice_mut(column).iter_mut().zip(matrix.col_as_slice(column)) {
+            *total += coefficient * value;
+        }
+    }
+}
+
+/// $SAS$ with a diagonal $S$.
+fn scaled(matrix: &Mat<f64>, scale: &[f64]) -> Mat<f64> {
+    let mut product = matrix.clone();
+    for (column, own) in scale.iter().enumerate() {
+        for (value, row) in product.col_as_slice_mut(column).iter_mut().zip(scale) {
+            *value *= own * row;
+        }
+    }
+    product
+}
