@@ -211,6 +211,48 @@ pub enum ModelError {
     /// A stiffness or mass matrix that is not positive: the constants have no physical meaning together.
     #[error("the eigenproblem has no real solution: stiffness or mass is not positive at these constants")]
     Eigenproblem,
+    /// An effect that is not in the catalogue.
+    #[error("effect {id:?} is not in the catalogue: take one of {known}")]
+    UnknownEffect {
+        /// The id given.
+        id: String,
+        /// The ids of the catalogue.
+        known: String,
+    },
+    /// Another number of values than an effect has parameters.
+    #[error("effect {effect}: {found} values given, it has {expected} parameters")]
+    EffectValues {
+        /// Its id.
+        effect: &'static str,
+        /// Number given.
+        found: usize,
+        /// Number of its parameters.
+        expected: usize,
+    },
+    /// A parameter of an effect outside its bounds.
+    #[error("effect {effect}: {name} = {value:e} {unit}: must lie between {low:e} and {high:e}")]
+    EffectParameter {
+        /// Id of the effect.
+        effect: &'static str,
+        /// Name of the parameter.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+        /// Its unit.
+        unit: &'static str,
+        /// Least value allowed.
+        low: f64,
+        /// Greatest value allowed.
+        high: f64,
+    },
+    /// An effect in a test that does not tell what the effect needs.
+    #[error("effect {effect} needs {what}: say it in the test file, or leave the effect out")]
+    EffectNeeds {
+        /// Id of the effect.
+        effect: &'static str,
+        /// What it needs.
+        what: &'static str,
+    },
     /// What this version cannot solve.
     #[error("{0} is not supported by this version of orthopanel")]
     Unsupported(String),

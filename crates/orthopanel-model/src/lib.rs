@@ -5,6 +5,7 @@ mod block_krylov;
 mod block_pencil;
 mod boundary;
 mod constant;
+mod effects;
 mod error;
 mod legendre;
 mod mindlin_plate;
@@ -24,6 +25,11 @@ mod timoshenko_beam;
 
 pub use boundary::{Boundary, End};
 pub use constant::Constant;
+pub use effects::{
+    Action, ChannelFactor, CoreLine, CoreModulus, Effect, EffectParameter, EffectSetting, EffectState, ElementLaw,
+    ElementLine, FactorLine, FieldTerm, LineEvaluator, Owner, PointElement, ReceptanceModel, ReceptanceSetup,
+    RecordSetting, Reference, Scale, Seat, Share, Shift, catalogue, effect,
+};
 pub use error::ModelError;
 pub use mindlin_plate::{MindlinPlate, ModeKind, ModeName, PLATE_CONSTANTS};
 pub use modal_model::{ModalModel, Mode};
@@ -34,8 +40,8 @@ pub use panel_modes::ModeRange;
 pub use piece::{Piece, Place};
 pub use response::{ForceRecord, ModalStepper};
 pub use ritz_modes::ritz_modes;
-pub use structure::{Block, RitzMode, Structure};
+pub use structure::{Block, Flexibility, Motion, RitzMode, Structure, TermDerivative};
 pub use timoshenko_beam::{
-    BEAM_CONSTANTS, BeamConstants, BeamElements, BeamMode, ExactBeam, SHEAR_COEFFICIENT, StaticFlexibility,
-    TimoshenkoBeam,
+    BEAM_CONSTANTS, BeamConstants, BeamElements, BeamMode, BeamTerms, ExactBeam, SHEAR_COEFFICIENT, ShearLoss,
+    StaticFlexibility, Support, TimoshenkoBeam,
 };

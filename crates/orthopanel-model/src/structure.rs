@@ -39,6 +39,65 @@ pub trait Structure {
     fn resolved_modes(&self) -> usize {
         self.blocks().iter().map(Block::size).sum::<usize>() / 2
     }
+
+    /// What [`Structure::shape_row`] is for the deflection, for any [`Motion`]; `None` where the structure has no such row.
+    fn motion_row(&self, block: usize, motion: Motion, place: Place) -> Option<Vec<f64>> {
+        (motion == Motion::Deflection).then(|| self.shape_row(block, place))
+    }
+
+    /// Static flexibility between two motions, of all flexible modes together and without the error of the basis; `None`
+    /// where no closed form is known.
+    fn static_flexibility(&self, _values: &[f64], _motions: [(Motion, Place); 2]) -> Option<Flexibility> {
+        None
+    }
+
+    /// How stiffness and mass follow each parameter of the structure's own terms; none unless said.
+    fn term_derivatives(&self, _values: &[f64]) -> Vec<TermDerivative> {
+        vec![]
+    }
+}
+
+/// What moves at a place. A force works on a deflection, a couple on a rotation.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Motion {
+    /// $w$ \[m\].
+    Deflection,
+    /// $\partial w/\partial x$ \[1\]: how the deflection changes when its place moves.
+    Slope,
+    /// $\psi$ \[rad\], counted so that $\psi = -w'$ without shear.
+    Rotation,
+    /// $\partial\psi/\partial x$ \[1/m\]: how the rotation changes when its place moves.
+    Curvature,
+}
+
+impl Motion {
+    /// The motion's derivative by the place.
+    pub(crate) fn by_place(self) -> Self {
+        match self {
+            Self::Deflection | Self::Slope => Self::Slope,
+            Self::Rotation | Self::Curvature => Self::Curvature,
+        }
+    }
+}
+
+/// A static flexibility $\sum\phi_m(a)\phi_m(b)/\omega_m^2$ over all flexible modes, with its derivatives.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Flexibility {
+    /// The sum.
+    pub value: f64,
+    /// By each constant.
+    pub by_constants: Vec<f64>,
+    /// By the parameter of each of [`Structure::term_derivatives`]; `None` where only the modes tell.
+    pub by_terms: Vec<Option<f64>>,
+}
+
+/// $\partial K/\partial p$ and $\partial M/\partial p$ by one parameter, a matrix a block; empty where it does not enter.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TermDerivative {
+    /// Of the stiffness.
+    pub stiffness: Vec<Mat<f64>>,
+    /// Of the mass.
+    pub mass: Vec<Mat<f64>>,
 }
 
 /// Coordinates that only couple among themselves.

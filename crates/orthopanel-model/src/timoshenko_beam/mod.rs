@@ -7,12 +7,16 @@
 //! with $A = bt$, $I = bt^3/12$ and the shear coefficient $k' = 2/3$. The rotation $\psi$ is counted so that the
 //! shear strain is $w' + \psi$: without shear, $\psi = -w'$.
 
+mod beam_terms;
 mod exact;
 mod finite_element;
 mod ritz;
+mod static_field;
 mod static_flexibility;
 mod strain_basis;
+mod term_matrices;
 
+pub use beam_terms::{BeamTerms, ShearLoss, Support};
 pub use exact::{BeamMode, ExactBeam};
 pub use finite_element::BeamElements;
 pub use ritz::TimoshenkoBeam;

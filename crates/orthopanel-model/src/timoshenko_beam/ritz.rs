@@ -2,60 +2,93 @@
 
 use faer::Mat;
 
-use super::strain_basis::{Parity, StrainFunction, strain_functions};
-use super::{BEAM_CONSTANTS, Section};
+use super::beam_terms::BeamTerms;
+use super::strain_basis::{Parity, StrainFunction, end_motions, strain_functions};
+use super::term_matrices::{mass_by_rotary_factor, span_edge, span_stiffness, support_stiffness};
+use super::{BEAM_CONSTANTS, Section, StaticFlexibility};
 use crate::legendre::{legendre, norm};
-use crate::structure::{Block, Structure};
+use crate::structure::{Block, Flexibility, Motion, Structure, TermDerivative};
 use crate::{Boundary, Constant, ModelError, Piece, Place};
 
 /// The beam of eq. 5 as a [`Structure`]: coefficients are $E_x$ and $G_{zx}$ themselves, with
 /// $K_E = I\int\psi_i'\psi_j'dx$ and $K_G = k'A\int(w'+\psi)_i(w'+\psi)_jdx$.
 ///
 /// Converges as fast as any power of the number of terms: with 60, the first 20 modes agree with [`crate::ExactBeam`]
-/// to 1e-9.
+/// to 1e-9. Where shear stiffness is lost over a span, the strain jumps and the error falls with one over the terms.
 #[derive(Debug, Clone)]
 pub struct TimoshenkoBeam {
     half_length: f64,
+    section: Section,
+    terms: BeamTerms,
     functions: Vec<Vec<StrainFunction>>,
     blocks: Vec<Block>,
+    flexibility: StaticFlexibility,
 }
 
 impl TimoshenkoBeam {
     /// A beam with `terms` Legendre terms (at least 4) of curvature and as many of shear strain.
     ///
     /// # Errors
-    /// [`ModelError::Size`] where the piece has no physical meaning, [`ModelError::HeldSide`] where front or back is held.
+    /// [`ModelError::Size`] where the piece has no physical meaning.
     pub fn new(piece: &Piece, boundary: Boundary, terms: usize) -> Result<Self, ModelError> {
+        Self::with_terms(piece, boundary, terms, BeamTerms::default())
+    }
+
+    /// A beam that is not even, or whose clamped ends yield: see [`BeamTerms`].
+    ///
+    /// Where supports yield, the springs add a third coefficient of fixed value 1. The parameters of
+    /// [`Structure::term_derivatives`] stand in this order: the rotary factor; loss, span and place of each shear loss;
+    /// translation and rotation stiffness of the supports.
+    ///
+    /// # Errors
+    /// [`ModelError::Size`] where a size, factor or stiffness has no physical meaning.
+    pub fn with_terms(piece: &Piece, boundary: Boundary, order: usize, terms: BeamTerms) -> Result<Self, ModelError> {
         let piece = piece.checked()?;
-        let boundary = boundary.of_beam()?;
-        let section = Section::of(&piece);
+        terms.check()?;
+        let mut section = Section::of(&piece);
+        section.rotary_inertia *= terms.rotary_factor;
         let half_length = 0.5 * piece.length;
+        let mut functions = strain_functions(half_length, boundary, order.max(4));
+        if terms.support.is_some() {
+            functions.extend(end_motions(half_length, boundary));
+        }
+        let uneven = !terms.losses.is_empty() || terms.support.is_some();
         let (mut even, mut odd, mut all) = (vec![], vec![], vec![]);
-        for function in strain_functions(half_length, boundary, terms.max(4)) {
+        for function in functions {
             match function.parity {
+                _ if uneven => all.push(function),
                 Parity::Even => even.push(function),
                 Parity::Odd => odd.push(function),
                 Parity::Neither => all.push(function),
             }
         }
         let functions: Vec<_> = [even, odd, all].into_iter().filter(|block| !block.is_empty()).collect();
-        let blocks = functions.iter().map(|block| assemble(block, section, half_length)).collect();
-        Ok(Self { half_length, functions, blocks })
+        let blocks = functions.iter().map(|block| assemble(block, section, half_length, &terms)).collect();
+        let flexibility = StaticFlexibility::with_terms(&piece, boundary, &terms)?;
+        Ok(Self { half_length, section, terms, functions, blocks, flexibility })
     }
 }
 
-fn assemble(functions: &[StrainFunction], section: Section, half_length: f64) -> Block {
+fn assemble(functions: &[StrainFunction], section: Section, half_length: f64, terms: &BeamTerms) -> Block {
     let size = functions.len();
     let matrix = |entry: &dyn Fn(&StrainFunction, &StrainFunction) -> f64| {
         Mat::from_fn(size, size, |i, j| half_length * entry(&functions[i], &functions[j]))
     };
     let Section { second_moment, shear_area, mass, rotary_inertia } = section;
     let bending = matrix(&|f, g| second_moment * product(&f.curvature, &g.curvature));
-    let shear = matrix(&|f, g| shear_area * product(&f.shear, &g.shear));
+    let mut shear = matrix(&|f, g| shear_area * product(&f.shear, &g.shear));
+    for loss in &terms.losses {
+        shear -= faer::Scale(loss.loss * shear_area) * span_stiffness(functions, half_length, loss);
+    }
     let mass = matrix(&|f, g| {
         mass * product(&f.deflection, &g.deflection) + rotary_inertia * product(&f.rotation, &g.rotation)
     });
-    let strainless = |f: &StrainFunction| f.curvature.iter().chain(&f.shear).all(|&value| value == 0.0);
+    let mut stiffness = vec![bending, shear];
+    if let Some(support) = terms.support {
+        stiffness.push(support_stiffness(functions, [support.translation, support.rotation]));
+    }
+    let strainless =
+        |f: &StrainFunction| terms.support.is_none() && f.curvature.iter().chain(&f.shear).all(|&value| value == 0.0);
     let rigid = (0..size)
         .filter(|&i| strainless(&functions[i]))
         .map(|i| {
@@ -63,11 +96,11 @@ fn assemble(functions: &[StrainFunction], section: Section, half_length: f64) ->
             (0..size).map(|j| if i == j { scale } else { 0.0 }).collect()
         })
         .collect();
-    Block { stiffness: vec![bending, shear], mass, rigid }
+    Block { stiffness, mass, rigid }
 }
 
 /// $\int_{-1}^1 fg\,dt$ of two Legendre series.
-fn product(f: &[f64], g: &[f64]) -> f64 {
+pub(super) fn product(f: &[f64], g: &[f64]) -> f64 {
     f.iter().zip(g).enumerate().map(|(n, (a, b))| a * b * norm(n)).sum()
 }
 
@@ -77,11 +110,13 @@ impl Structure for TimoshenkoBeam {
     }
 
     fn coefficients(&self, values: &[f64]) -> Result<Vec<f64>, ModelError> {
-        Ok(values.to_vec())
+        let springs = self.terms.support.map(|_| 1.0);
+        Ok(values.iter().copied().chain(springs).collect())
     }
 
     fn coefficient_derivatives(&self, values: &[f64]) -> Result<Mat<f64>, ModelError> {
-        Ok(Mat::identity(values.len(), values.len()))
+        let springs = usize::from(self.terms.support.is_some());
+        Ok(Mat::identity(values.len() + springs, values.len()))
     }
 
     fn blocks(&self) -> &[Block] {
@@ -89,9 +124,59 @@ impl Structure for TimoshenkoBeam {
     }
 
     fn shape_row(&self, block: usize, place: Place) -> Vec<f64> {
-        let Some(functions) = self.functions.get(block) else { return vec![] };
+        self.motion_row(block, Motion::Deflection, place).unwrap_or_default()
+    }
+
+    fn motion_row(&self, block: usize, motion: Motion, place: Place) -> Option<Vec<f64>> {
+        let functions = self.functions.get(block)?;
         let terms = functions.iter().map(|f| f.deflection.len()).max().unwrap_or(0);
         let values = legendre(terms, place.x / self.half_length);
-        functions.iter().map(|f| f.deflection.iter().zip(&values).map(|(c, p)| c * p).sum()).collect()
+        let sum = |series: &[f64]| -> f64 { series.iter().zip(&values).map(|(c, p)| c * p).sum() };
+        let of = |f: &StrainFunction| match motion {
+            Motion::Deflection => sum(&f.deflection),
+            Motion::Slope => sum(&f.shear) - sum(&f.rotation),
+            Motion::Rotation => sum(&f.rotation),
+            Motion::Curvature => sum(&f.curvature),
+        };
+        Some(functions.iter().map(of).collect())
+    }
+
+    fn static_flexibility(&self, values: &[f64], motions: [(Motion, Place); 2]) -> Option<Flexibility> {
+        let [&e_x, &g_zx] = [values.first()?, values.get(1)?];
+        let parts = self.flexibility.between_motions(motions.map(|(motion, place)| (motion, place.x)), [e_x, g_zx]);
+        let known = parts.by_losses.into_iter().flatten();
+        let support = self.terms.support.map(|_| parts.by_support).into_iter().flatten();
+        Some(Flexibility {
+            value: parts.value,
+            by_constants: parts.by_constants.to_vec(),
+            // Rotary inertia alters the field that a free beam's own inertia balances.
+            by_terms: std::iter::once(None).chain(known.chain(support).map(Some)).collect(),
+        })
+    }
+
+    fn term_derivatives(&self, values: &[f64]) -> Vec<TermDerivative> {
+        let shear = values.get(1).copied().unwrap_or_default() * self.section.shear_area;
+        let of_stiffness = |matrix: &dyn Fn(&[StrainFunction]) -> Mat<f64>| TermDerivative {
+            stiffness: self.functions.iter().map(|functions| matrix(functions)).collect(),
+            mass: vec![],
+        };
+        let even_inertia = self.section.rotary_inertia / self.terms.rotary_factor;
+        let by_rotary = |functions: &Vec<StrainFunction>| {
+            faer::Scale(even_inertia * self.half_length) * mass_by_rotary_factor(functions)
+        };
+        let mut list = vec![TermDerivative { stiffness: vec![], mass: self.functions.iter().map(by_rotary).collect() }];
+        for loss in &self.terms.losses {
+            let edge = |functions: &[StrainFunction], side: usize| {
+                span_edge(functions, loss.edges(self.half_length)[side], self.half_length)
+            };
+            list.push(of_stiffness(&|f| faer::Scale(-shear) * span_stiffness(f, self.half_length, loss)));
+            list.push(of_stiffness(&|f| faer::Scale(-0.5 * shear * loss.loss) * (edge(f, 0) + edge(f, 1))));
+            list.push(of_stiffness(&|f| faer::Scale(-shear * loss.loss) * (edge(f, 1) - edge(f, 0))));
+        }
+        if self.terms.support.is_some() {
+            list.push(of_stiffness(&|f| support_stiffness(f, [1.0, 0.0])));
+            list.push(of_stiffness(&|f| support_stiffness(f, [0.0, 1.0])));
+        }
+        list
     }
 }

@@ -24,6 +24,8 @@ pub(super) struct StrainFunction {
     pub deflection: Vec<f64>,
     /// Whether $w$ is even in $x$, odd, or neither.
     pub parity: Parity,
+    /// 1 where this function alone deflects a yielding end, and 1 where it alone rotates one.
+    pub moves_end: [f64; 2],
 }
 
 /// Symmetry of a deflection.
@@ -61,7 +63,28 @@ fn integrated(h: f64, [w0, psi0]: [f64; 2], curvature: Vec<f64>, shear: Vec<f64>
     let mut deflection: Vec<f64> = antiderivative(&slope).iter().map(|value| h * value).collect();
     deflection[0] += w0;
     // ∫P_1 leaves P_2/3 − P_0/3, which vanishes at the ends as the module's formulas want.
-    StrainFunction { curvature, shear, rotation, deflection, parity }
+    StrainFunction { curvature, shear, rotation, deflection, parity, moves_end: [0.0; 2] }
+}
+
+/// Motions of clamped ends that yield: one function deflects an end by one, one rotates it by one, and every other
+/// function of the basis leaves that end at rest. Springs of any stiffness then stand alone on the diagonal, and an
+/// infinite one is the clamp. Where the other end is free, these are the two rigid motions.
+pub(super) fn end_motions(half_length: f64, boundary: Boundary) -> Vec<StrainFunction> {
+    let h = half_length;
+    let sides = [(boundary.left, boundary.right, -1.0), (boundary.right, boundary.left, 1.0)];
+    let yielding = sides.into_iter().filter(|(own, ..)| *own == End::Clamped);
+    let motions = yielding.flat_map(|(_, other, side)| {
+        [[1.0, 0.0], [0.0, 1.0]].map(|[w, psi]| {
+            let [w0, psi0, k0, g0] = match other {
+                End::Free => [w + side * h * psi, psi, 0.0, 0.0],
+                // w and ψ vanish at the other end: w0 = w/2, ψ0 = ψ/2, hk0 = side·ψ/2, h(g0 − ψ0) = side·w/2.
+                _ => [0.5 * w, 0.5 * psi, 0.5 * side * psi / h, 0.5 * side * w / h + 0.5 * psi],
+            };
+            let function = integrated(h, [w0, psi0], vec![k0, 0.0], vec![g0], Parity::Neither);
+            StrainFunction { moves_end: [w, psi], ..function }
+        })
+    });
+    motions.collect()
 }
 
 /// What the end conditions leave of $(w_0, \psi_0, k_0, k_1, g_0)$; rigid motions first.

@@ -1,0 +1,32 @@
+//! `gain`.
+
+use super::{Action, ChannelFactor, Effect, EffectParameter, EffectSetting, Owner};
+use crate::ModelError;
+
+/// One factor \[1\] on all records: a wrong sensitivity of hammer or sensor.
+///
+/// A rigid line fixes it only where the piece's mass is known. Source: the ratio of two sensitivities.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Gain;
+
+const PARAMETERS: [EffectParameter; 1] = [EffectParameter::log("gain", "1", [0.05, 20.0], &[1.0, 0.9, 1.1])];
+
+impl Effect for Gain {
+    fn id(&self) -> &'static str {
+        "gain"
+    }
+
+    fn owner(&self) -> Owner {
+        Owner::Channel
+    }
+
+    fn parameters(&self) -> &'static [EffectParameter] {
+        &PARAMETERS
+    }
+
+    fn act(&self, values: &[f64], setting: &EffectSetting) -> Result<Vec<Action>, ModelError> {
+        self.check(values, &setting.piece)?;
+        let &[gain] = values else { return Ok(vec![]) };
+        Ok(vec![Action::Channel(ChannelFactor::Gain { gain }, vec![0])])
+    }
+}

@@ -1,0 +1,37 @@
+//! `local-mass`.
+
+use super::{Action, Effect, EffectParameter, EffectSetting, ElementLaw, Owner, PointElement, Reference, Seat};
+use crate::{ModelError, Place};
+
+/// A mass $m$ \[kg\] at $x$ on the centre line, negative where one is missing: $Z = ms^2$.
+///
+/// Limits: down to a tenth of the piece's mass may be missing. More of it at a free end, where $W_m^2 = 4/M$, would
+/// leave a modal mass without meaning. Source: Newton's law.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct LocalMass;
+
+const PARAMETERS: [EffectParameter; 2] = [
+    EffectParameter::linear("mass", "kg", [-0.1, 0.5], &[0.01, -0.01, 0.05]).of(Reference::Mass),
+    EffectParameter::place(),
+];
+
+impl Effect for LocalMass {
+    fn id(&self) -> &'static str {
+        "local-mass"
+    }
+
+    fn owner(&self) -> Owner {
+        Owner::Panel
+    }
+
+    fn parameters(&self) -> &'static [EffectParameter] {
+        &PARAMETERS
+    }
+
+    fn act(&self, values: &[f64], setting: &EffectSetting) -> Result<Vec<Action>, ModelError> {
+        self.check(values, &setting.piece)?;
+        let &[mass, x] = values else { return Ok(vec![]) };
+        let seat = Seat::Free(Place { x, y: 0.0 }, 1);
+        Ok(vec![Action::Element(PointElement::on_deflection(ElementLaw::Mass { mass }, seat))])
+    }
+}

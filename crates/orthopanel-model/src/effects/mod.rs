@@ -1,0 +1,105 @@
+//! Effects: pieces of physics that the base model may lack, one file each, and the receptances of a piece with them.
+//!
+//! An effect is a name, an owner and a few parameters; [`Effect::act`] says what they do to a test. What carries it out
+//! is [`ReceptanceModel`], line by line of a spectrum. [`catalogue`] lists all.
+
+mod action;
+mod catalogue;
+mod channel_factor;
+mod core_modulus;
+mod parameter;
+mod point_element;
+mod receptance;
+mod setting;
+
+mod channel_delay;
+mod cubic_stiffness;
+mod edge_mass;
+mod exponential_window;
+mod gain;
+mod hammer_offset;
+mod high_pass;
+mod local_mass;
+mod position_error;
+mod record_gain;
+mod resonator;
+mod rotary_inertia;
+mod sensor_mass;
+mod sensor_resonance;
+mod stiffness_loss;
+mod support_compliance;
+mod suspension;
+mod viscoelastic_core;
+mod width_coupling;
+
+pub use action::{Action, FieldTerm, Shift};
+pub use catalogue::{catalogue, effect};
+pub use channel_factor::{ChannelFactor, FactorLine};
+pub use core_modulus::{CoreLine, CoreModulus};
+pub use parameter::{EffectParameter, Reference, Scale};
+pub use point_element::{ElementLaw, ElementLine, PointElement, Seat, Share};
+pub use receptance::{EffectState, LineEvaluator, ReceptanceModel, ReceptanceSetup};
+pub use setting::{EffectSetting, RecordSetting};
+
+use crate::{ModelError, Piece};
+
+/// Who an effect belongs to, and so whether it stays in a model of the panel.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Owner {
+    /// The panel: the effect stays in the model file and in the FMU.
+    Panel,
+    /// The rig: sensor, suspension, clamp; taken out of the FMU.
+    Rig,
+    /// The measuring chain; taken out of the FMU.
+    Channel,
+}
+
+impl Owner {
+    /// The word in files: `panel`, `rig` or `channel`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Panel => "panel",
+            Self::Rig => "rig",
+            Self::Channel => "channel",
+        }
+    }
+}
+
+/// A piece of physics that changes a prediction.
+pub trait Effect: Sync {
+    /// Its id in files and reports.
+    fn id(&self) -> &'static str;
+
+    /// Who it belongs to.
+    fn owner(&self) -> Owner;
+
+    /// Its parameters; all lists of values stand in this order.
+    fn parameters(&self) -> &'static [EffectParameter];
+
+    /// What it does at these values of its parameters, in one record of a test.
+    ///
+    /// A parameter that has a value in each record ([`EffectParameter::each_record`]) is given that record's.
+    ///
+    /// # Errors
+    /// [`ModelError::EffectNeeds`] where the test does not tell what the effect needs.
+    fn act(&self, values: &[f64], setting: &EffectSetting) -> Result<Vec<Action>, ModelError>;
+
+    /// Checks number and bounds of values.
+    ///
+    /// # Errors
+    /// [`ModelError::EffectValues`] for another number of them, [`ModelError::EffectParameter`] for one out of bounds.
+    fn check(&self, values: &[f64], piece: &Piece) -> Result<(), ModelError> {
+        let expected = self.parameters().len();
+        if values.len() != expected {
+            return Err(ModelError::EffectValues { effect: self.id(), found: values.len(), expected });
+        }
+        self.parameters().iter().zip(values).try_for_each(|(parameter, &value)| {
+            let (low, high) = parameter.range(piece);
+            if (low..=high).contains(&value) {
+                return Ok(());
+            }
+            let (name, unit) = (parameter.name, parameter.unit);
+            Err(ModelError::EffectParameter { effect: self.id(), name, value, unit, low, high })
+        })
+    }
+}

@@ -1,0 +1,107 @@
+//! Name, unit, bounds and starting values of an effect's parameter.
+
+use crate::Piece;
+
+/// One parameter of an effect.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct EffectParameter {
+    /// Name in files.
+    pub name: &'static str,
+    /// SI unit of the value.
+    pub unit: &'static str,
+    low: f64,
+    high: f64,
+    starts: &'static [f64],
+    relative_to: Reference,
+    /// How a search should step.
+    pub scale: Scale,
+    /// Whether each record has a value of its own.
+    pub each_record: bool,
+    /// The value that it keeps unless it is asked for; `None` where the effect always needs it.
+    pub held_at: Option<f64>,
+}
+
+/// How a search should step through the values of a parameter.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Scale {
+    /// In the value itself.
+    Linear,
+    /// In its logarithm: it spans decades.
+    Log,
+    /// One whole number after the other.
+    Index,
+}
+
+/// What bounds and starting values are counted in.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Reference {
+    /// The parameter's own unit.
+    Unit,
+    /// The piece's length.
+    Length,
+    /// The piece's mass.
+    Mass,
+}
+
+impl EffectParameter {
+    pub(super) const fn linear(
+        name: &'static str,
+        unit: &'static str,
+        range: [f64; 2],
+        starts: &'static [f64],
+    ) -> Self {
+        let ([low, high], relative_to, scale) = (range, Reference::Unit, Scale::Linear);
+        Self { name, unit, low, high, starts, relative_to, scale, each_record: false, held_at: None }
+    }
+
+    pub(super) const fn log(name: &'static str, unit: &'static str, range: [f64; 2], starts: &'static [f64]) -> Self {
+        Self { scale: Scale::Log, ..Self::linear(name, unit, range, starts) }
+    }
+
+    /// Held at a value unless it is asked for.
+    pub(super) const fn held_at(self, value: f64) -> Self {
+        Self { held_at: Some(value), ..self }
+    }
+
+    /// With a value of its own in each record.
+    pub(super) const fn in_each_record(self) -> Self {
+        Self { each_record: true, ..self }
+    }
+
+    /// The number of a record, from 1.
+    pub(super) const fn record() -> Self {
+        Self { scale: Scale::Index, ..Self::linear("record", "1", [1.0, 1e6], &[1.0]) }
+    }
+
+    pub(super) const fn of(self, relative_to: Reference) -> Self {
+        Self { relative_to, ..self }
+    }
+
+    /// A place along x, anywhere on the piece.
+    pub(super) const fn place() -> Self {
+        const GRID: &[f64] = &[-0.45, -0.35, -0.25, -0.15, -0.05, 0.05, 0.15, 0.25, 0.35, 0.45];
+        Self::linear("x", "m", [-0.5, 0.5], GRID).of(Reference::Length)
+    }
+
+    /// Least and greatest value for a piece.
+    pub fn range(&self, piece: &Piece) -> (f64, f64) {
+        let scale = self.relative_to.of(piece);
+        (self.low * scale, self.high * scale)
+    }
+
+    /// Where a search should start, the likeliest first.
+    pub fn starts(&self, piece: &Piece) -> Vec<f64> {
+        let scale = self.relative_to.of(piece);
+        self.starts.iter().map(|start| start * scale).collect()
+    }
+}
+
+impl Reference {
+    fn of(self, piece: &Piece) -> f64 {
+        match self {
+            Self::Unit => 1.0,
+            Self::Length => piece.length,
+            Self::Mass => piece.mass(),
+        }
+    }
+}

@@ -1,0 +1,34 @@
+//! `position-error`.
+
+use super::{Action, Effect, EffectParameter, EffectSetting, Owner, Reference, Shift};
+use crate::ModelError;
+
+/// The sensor sits beside the place that is written down: an offset \[m\] along x, the same in every record. What the
+/// sensor carries (`sensor-mass`) moves with it.
+///
+/// Bounds: a tenth of the piece. Source: geometry; the response's shape row moves with its place.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct PositionError;
+
+const PARAMETERS: [EffectParameter; 1] =
+    [EffectParameter::linear("offset", "m", [-0.1, 0.1], &[0.005, -0.005]).of(Reference::Length)];
+
+impl Effect for PositionError {
+    fn id(&self) -> &'static str {
+        "position-error"
+    }
+
+    fn owner(&self) -> Owner {
+        Owner::Channel
+    }
+
+    fn parameters(&self) -> &'static [EffectParameter] {
+        &PARAMETERS
+    }
+
+    fn act(&self, values: &[f64], setting: &EffectSetting) -> Result<Vec<Action>, ModelError> {
+        self.check(values, &setting.piece)?;
+        let &[offset] = values else { return Ok(vec![]) };
+        Ok(vec![Action::Place(Shift { of_response: true, offset, parameter: 0 })])
+    }
+}

@@ -1,0 +1,16 @@
+//! Receptances and accelerances of a piece with effects, line by line, with exact derivatives.
+//!
+//! The structure's modes near the band are summed at every line; what is above stands as a series in $s^2$ whose first
+//! term is the exact static flexibility. Point elements are then joined without any further error
+//! ([`coupling`]), for each record its own.
+
+mod coupling;
+mod modal_base;
+mod model;
+mod modulus_path;
+mod record;
+mod setup;
+mod view;
+
+pub use model::{LineEvaluator, ReceptanceModel};
+pub use setup::{EffectState, ReceptanceSetup};

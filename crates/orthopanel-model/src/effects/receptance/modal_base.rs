@@ -1,0 +1,119 @@
+//! All modes of a structure's basis, with how stiffness and mass couple them when a parameter changes.
+
+use faer::Mat;
+
+use crate::ritz_modes::all_ritz_modes;
+use crate::structure::{Motion, Structure};
+use crate::{ModelError, Place};
+
+/// What moves, and where.
+pub(super) type Row = (Motion, Place);
+
+/// Modes of one block, rigid ones first, and $\kappa = \Phi^T\partial K\,\Phi$, $\mu = \Phi^T\partial M\,\Phi$ for each
+/// parameter of the structure.
+pub(super) struct BlockModes {
+    /// $\omega^2$, zero for the rigid modes.
+    pub lambda: Vec<f64>,
+    /// Coordinates, a column a mode.
+    pub vectors: Mat<f64>,
+    /// $\kappa$ and $\mu$; an empty matrix where the parameter does not enter.
+    pub couplings: Vec<[Mat<f64>; 2]>,
+}
+
+/// The modes of a structure at some values of its constants.
+pub(super) struct ModalBase<'a> {
+    pub structure: &'a dyn Structure,
+    pub values: Vec<f64>,
+    pub blocks: Vec<BlockModes>,
+    /// The modes that are summed at every line: block and number in it; rigid ones first, then rising.
+    pub near: Vec<(usize, usize)>,
+    /// How many of `near` are rigid.
+    pub rigid: usize,
+    /// Number of parameters: the constants, then the terms of the structure that were asked for.
+    pub parameters: usize,
+    /// Positions in [`Structure::term_derivatives`] of those terms.
+    pub terms: Vec<usize>,
+}
+
+impl<'a> ModalBase<'a> {
+    /// With the rigid modes and `near` flexible ones to be summed, and the structure's own terms of these numbers among
+    /// the parameters.
+    pub(super) fn new(
+        structure: &'a dyn Structure,
+        values: &[f64],
+        near: usize,
+        terms: &[usize],
+    ) -> Result<Self, ModelError> {
+        let modes = all_ritz_modes(structure, values)?;
+        let by_constants = structure.coefficient_derivatives(values)?;
+        let mut derivatives = structure.term_derivatives(values);
+        let mut blocks = Vec::new();
+        let mut order = Vec::new();
+        for (index, block) in structure.blocks().iter().enumerate() {
+            let own: Vec<_> = modes.iter().filter(|mode| mode.block == index).collect();
+            let vectors = Mat::from_fn(block.size(), own.len(), |i, m| own[m].coordinates[i]);
+            let in_modes = |matrix: &Mat<f64>| vectors.transpose() * (matrix * &vectors);
+            let stiffness: Vec<Mat<f64>> = block.stiffness.iter().map(in_modes).collect();
+            let of_constant = |j: usize| {
+                let mut sum = Mat::zeros(own.len(), own.len());
+                for (i, matrix) in stiffness.iter().enumerate() {
+                    sum += faer::Scale(by_constants[(i, j)]) * matrix;
+                }
+                [sum, Mat::new()]
+            };
+            let mut couplings: Vec<[Mat<f64>; 2]> = (0..values.len()).map(of_constant).collect();
+            for &term in terms {
+                let Some(by) = derivatives.get_mut(term) else { continue };
+                couplings.push([&by.stiffness, &by.mass].map(|list| list.get(index).map_or(Mat::new(), in_modes)));
+            }
+            let lambda: Vec<f64> = own.iter().map(|mode| mode.angular_frequency.powi(2)).collect();
+            order.extend(lambda.iter().enumerate().map(|(number, &lambda)| (lambda, index, number)));
+            blocks.push(BlockModes { lambda, vectors, couplings });
+        }
+        let rigid = order.iter().filter(|(lambda, ..)| *lambda == 0.0).count();
+        order.sort_by(|a, b| a.0.total_cmp(&b.0));
+        if rigid + near >= order.len() {
+            return Err(ModelError::BasisTooSmall { asked: near, available: (order.len() - rigid) / 2 });
+        }
+        let near = order.iter().take(rigid + near).map(|&(_, block, number)| (block, number)).collect();
+        let parameters = values.len() + terms.len();
+        Ok(Self { structure, values: values.to_vec(), blocks, near, rigid, parameters, terms: terms.to_vec() })
+    }
+
+    /// The same selection of modes as another base of this structure, with the same signs.
+    pub(super) fn aligned_with(mut self, other: &Self) -> Self {
+        self.near.clone_from(&other.near);
+        for (index, block) in self.blocks.iter_mut().enumerate() {
+            let (Some(own), Some(with)) = (self.structure.blocks().get(index), other.blocks.get(index)) else {
+                continue;
+            };
+            let overlap = with.vectors.transpose() * (&own.mass * &block.vectors);
+            for m in 0..block.vectors.ncols().min(with.vectors.ncols()) {
+                if overlap[(m, m)] >= 0.0 {
+                    continue;
+                }
+                (0..block.vectors.nrows()).for_each(|i| block.vectors[(i, m)] *= -1.0);
+                for matrix in block.couplings.iter_mut().flatten().filter(|matrix| matrix.nrows() > 0) {
+                    for n in 0..matrix.nrows() {
+                        matrix[(m, n)] *= -1.0;
+                        matrix[(n, m)] *= -1.0;
+                    }
+                }
+            }
+        }
+        self
+    }
+
+    /// Values of the modes of a block in some rows: a row each, a column a mode.
+    pub(super) fn rows(&self, block: usize, rows: &[Row]) -> Result<Mat<f64>, ModelError> {
+        let Some(modes) = self.blocks.get(block) else { return Ok(Mat::new()) };
+        let mut matrix = Mat::zeros(rows.len(), modes.vectors.nrows());
+        for (i, &(motion, place)) in rows.iter().enumerate() {
+            let row = self.structure.motion_row(block, motion, place).ok_or_else(|| {
+                ModelError::Unsupported(format!("an effect on the {motion:?} of this structure").to_lowercase())
+            })?;
+            row.iter().enumerate().for_each(|(j, &value)| matrix[(i, j)] = value);
+        }
+        Ok(matrix * &modes.vectors)
+    }
+}

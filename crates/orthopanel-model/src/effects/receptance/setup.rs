@@ -1,0 +1,217 @@
+//! A test as its receptances need it: piece, records, and the effects that are switched on.
+
+use super::modal_base::ModalBase;
+use super::model::{ReceptanceModel, RecordModel};
+use super::modulus_path::NodeBases;
+use super::record::RecordPlan;
+use super::view::View;
+use crate::effects::{Action, CoreModulus, Effect, EffectSetting, FieldTerm, RecordSetting};
+use crate::{BEAM_CONSTANTS, BeamTerms, Boundary, Damping, ModelError, Piece, Place, Structure, TimoshenkoBeam};
+
+/// An effect that is switched on, at some values of its parameters.
+#[derive(Clone)]
+pub struct EffectState {
+    /// The effect.
+    pub effect: &'static dyn Effect,
+    /// One value a parameter, in order; where a parameter has a value in each record, one a record in its place.
+    pub values: Vec<f64>,
+    records: usize,
+}
+
+impl EffectState {
+    /// An effect in a test of so many records.
+    ///
+    /// # Errors
+    /// [`ModelError::EffectValues`] for another number of values than the parameters want.
+    pub fn new(effect: &'static dyn Effect, values: Vec<f64>, records: usize) -> Result<Self, ModelError> {
+        let each = effect.parameters().iter().map(|parameter| if parameter.each_record { records } else { 1 });
+        let expected = each.sum();
+        if values.len() != expected {
+            return Err(ModelError::EffectValues { effect: effect.id(), found: values.len(), expected });
+        }
+        Ok(Self { effect, values, records })
+    }
+
+    /// Where in the values a parameter of a record stands.
+    pub(super) fn position(&self, parameter: usize, record: usize) -> usize {
+        let before = self.effect.parameters().iter().take(parameter);
+        let start: usize = before.map(|parameter| if parameter.each_record { self.records } else { 1 }).sum();
+        let each = self.effect.parameters().get(parameter).is_some_and(|parameter| parameter.each_record);
+        if each { start + record.saturating_sub(1) } else { start }
+    }
+
+    /// The values as one record sees them.
+    pub(super) fn values_in(&self, record: usize) -> Result<Vec<f64>, ModelError> {
+        let at = |parameter: usize| self.values.get(self.position(parameter, record)).copied();
+        let expected = self.effect.parameters().len();
+        let found: Vec<f64> = (0..expected).map_while(at).collect();
+        if found.len() == expected {
+            return Ok(found);
+        }
+        Err(ModelError::EffectValues { effect: self.effect.id(), found: found.len(), expected })
+    }
+
+    /// The column of each effect's first value.
+    pub(super) fn starts(effects: &[Self], first: usize) -> impl Iterator<Item = usize> {
+        effects.iter().scan(first, |next, effect| {
+            let start = *next;
+            *next += effect.values.len();
+            Some(start)
+        })
+    }
+}
+
+/// What stays the same while a search moves constants, damping and the parameters of effects.
+pub struct ReceptanceSetup {
+    piece: Piece,
+    boundary: Boundary,
+    suspension: Vec<Place>,
+    records: Vec<RecordSetting>,
+    summed: usize,
+    beam: TimoshenkoBeam,
+}
+
+impl ReceptanceSetup {
+    /// A beam with these records. `summed` flexible modes enter at every line: take those below 2.5 times the highest
+    /// line, or the series that stands for the others ends too early. Records are numbered from 1 in their order.
+    ///
+    /// # Errors
+    /// As [`TimoshenkoBeam::new`], and [`ModelError::OffPiece`] for a place off the piece.
+    pub fn new(
+        piece: &Piece,
+        boundary: Boundary,
+        suspension: &[Place],
+        records: &[RecordSetting],
+        summed: usize,
+    ) -> Result<Self, ModelError> {
+        let piece = piece.checked()?;
+        let summed = summed.max(1);
+        let places = records.iter().flat_map(|record| [record.force_at, record.response_at]).flatten();
+        places.chain(suspension.iter().copied()).try_for_each(|place| piece.contains(place))?;
+        let records: Vec<_> = records.to_vec();
+        let records =
+            records.into_iter().enumerate().map(|(i, record)| RecordSetting { number: i + 1, ..record }).collect();
+        let beam = TimoshenkoBeam::new(&piece, boundary, basis_terms(summed))?;
+        Ok(Self { piece, boundary, suspension: suspension.to_vec(), records, summed, beam })
+    }
+
+    /// What an effect may ask about record `index`, counted from zero.
+    pub fn setting(&self, index: usize) -> Option<EffectSetting> {
+        let record = self.records.get(index)?.clone();
+        Some(self.setting_of(record))
+    }
+
+    fn setting_of(&self, record: RecordSetting) -> EffectSetting {
+        EffectSetting { piece: self.piece, boundary: self.boundary, suspension: self.suspension.clone(), record }
+    }
+
+    /// Accelerances of all records at the constants $E_x$, $G_{zx}$ (or those of the structure), these damping ratios
+    /// of the flexible modes, and these effects.
+    ///
+    /// Damping belongs to the modes of the piece without point elements and at its relaxed modulus, but with every term
+    /// that is spread over it and with its supports: $\zeta_m$ of $s^2 + 2\zeta_m\omega_ms + \omega_m^2$. Ratios in the list
+    /// have a derivative each; the modes beyond share one that has none.
+    ///
+    /// # Errors
+    /// [`ModelError::EffectValues`], [`ModelError::EffectParameter`] and [`ModelError::EffectNeeds`] where an effect cannot
+    /// act, [`ModelError::OffPiece`] where it moves a place off the piece, and as [`crate::ritz_modes()`].
+    pub fn model(
+        &self,
+        values: &[f64],
+        damping: &Damping,
+        effects: &[EffectState],
+    ) -> Result<ReceptanceModel, ModelError> {
+        let zetas: Vec<f64> = (1..=self.summed).map(|mode| damping.ratio(mode)).collect();
+        let free = damping.ratios.len().min(self.summed);
+        let constants = BEAM_CONSTANTS.len();
+        let first_effect = constants + free;
+        let dressed = self.dress(effects, first_effect)?;
+        let uneven;
+        let structure: &dyn Structure = match dressed.terms {
+            Some(terms) => {
+                // A jump of the shear strain wants a finer basis than smooth modes do.
+                let fine = if terms.losses.is_empty() { 0 } else { 24 };
+                uneven =
+                    TimoshenkoBeam::with_terms(&self.piece, self.boundary, basis_terms(self.summed) + fine, terms)?;
+                &uneven
+            }
+            None => &self.beam,
+        };
+        let (numbers, columns): (Vec<usize>, Vec<usize>) = dressed.parameters.into_iter().unzip();
+        let structural: Vec<usize> = (0..constants).chain(columns).collect();
+        let bases = match dressed.core {
+            Some((core, _)) => Bases::Complex(NodeBases::new(structure, values, &core, self.summed, &numbers)?),
+            None => Bases::Real(ModalBase::new(structure, values, self.summed, &numbers)?),
+        };
+        let shear_modulus = values.get(1).copied().unwrap_or_default();
+        let records = self.records.iter().map(|record| {
+            let mut plan = RecordPlan::new(&self.setting_of(record.clone()), effects, first_effect)?;
+            plan.columns.structure.clone_from(&structural);
+            plan.columns.zetas = (constants, free);
+            Ok(match &bases {
+                Bases::Real(base) => RecordModel::real(View::new(base, &plan.active, &plan.slopes)?, plan),
+                Bases::Complex(bases) => {
+                    let path = bases.path(&plan.active, &plan.slopes)?;
+                    RecordModel::complex(path, dressed.core, shear_modulus, plan)
+                }
+            })
+        });
+        let records = records.collect::<Result<Vec<_>, ModelError>>()?;
+        let columns = first_effect + effects.iter().map(|effect| effect.values.len()).sum::<usize>();
+        Ok(ReceptanceModel::new(records, zetas, columns))
+    }
+
+    /// What the effects do to the structure itself.
+    fn dress(&self, effects: &[EffectState], first: usize) -> Result<Dressed, ModelError> {
+        let setting = self.setting_of(self.records.first().cloned().unwrap_or_default());
+        let mut dressed = Dressed::default();
+        let mut terms = BeamTerms::default();
+        let (mut rotary, mut losses, mut support) = (vec![], vec![], vec![]);
+        for (effect, start) in effects.iter().zip(EffectState::starts(effects, first)) {
+            for action in effect.effect.act(&effect.values_in(setting.record.number)?, &setting)? {
+                match action {
+                    Action::Field(FieldTerm::RotaryFactor(factor), numbers) => {
+                        terms.rotary_factor *= factor;
+                        rotary.extend(numbers.iter().map(|number| start + number));
+                    }
+                    Action::Field(FieldTerm::ShearLoss(loss), numbers) => {
+                        terms.losses.push(loss);
+                        losses.extend(numbers.iter().map(|number| start + number));
+                    }
+                    Action::Field(FieldTerm::Support(springs), numbers) => {
+                        terms.support = Some(springs);
+                        support = numbers.iter().map(|number| start + number).collect();
+                    }
+                    Action::Core(core) => dressed.core = Some((core, start)),
+                    Action::Plate(_) => {
+                        return Err(ModelError::Unsupported("width-coupling in a beam's receptances".into()));
+                    }
+                    _ => {}
+                }
+            }
+        }
+        // In the order of the beam's own terms: the rotary factor is there always.
+        let later = losses.into_iter().chain(support).enumerate().map(|(i, column)| (i + 1, column));
+        dressed.parameters = rotary.into_iter().map(|column| (0, column)).chain(later).collect();
+        dressed.terms = (!dressed.parameters.is_empty()).then_some(terms);
+        Ok(dressed)
+    }
+}
+
+#[derive(Default)]
+struct Dressed {
+    terms: Option<BeamTerms>,
+    /// Position among the beam's terms, and column.
+    parameters: Vec<(usize, usize)>,
+    core: Option<(CoreModulus, usize)>,
+}
+
+enum Bases<'a> {
+    Real(ModalBase<'a>),
+    Complex(NodeBases<'a>),
+}
+
+/// Twice as many terms as modes, and some: the sum's modes then stand to rounding.
+fn basis_terms(summed: usize) -> usize {
+    2 * summed + 24
+}

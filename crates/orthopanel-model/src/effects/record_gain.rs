@@ -1,0 +1,36 @@
+//! `record-gain`.
+
+use super::{Action, ChannelFactor, Effect, EffectParameter, EffectSetting, Owner};
+use crate::ModelError;
+
+/// A factor \[1\] on one record, `record` being its number from 1: an oblique hit, a loose sensor.
+///
+/// Source: the ratio of two sensitivities.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct RecordGain;
+
+const PARAMETERS: [EffectParameter; 2] =
+    [EffectParameter::log("gain", "1", [0.05, 20.0], &[0.9, 1.1]), EffectParameter::record()];
+
+impl Effect for RecordGain {
+    fn id(&self) -> &'static str {
+        "record-gain"
+    }
+
+    fn owner(&self) -> Owner {
+        Owner::Channel
+    }
+
+    fn parameters(&self) -> &'static [EffectParameter] {
+        &PARAMETERS
+    }
+
+    fn act(&self, values: &[f64], setting: &EffectSetting) -> Result<Vec<Action>, ModelError> {
+        self.check(values, &setting.piece)?;
+        let &[gain, record] = values else { return Ok(vec![]) };
+        if record.round() != setting.record.number as f64 {
+            return Ok(vec![]);
+        }
+        Ok(vec![Action::Channel(ChannelFactor::Gain { gain }, vec![0])])
+    }
+}

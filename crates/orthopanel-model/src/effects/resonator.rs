@@ -1,0 +1,39 @@
+//! `resonator`.
+
+use super::{Action, Effect, EffectParameter, EffectSetting, ElementLaw, Owner, PointElement, Reference, Seat};
+use crate::{ModelError, Place};
+
+/// A mass on a spring and a dashpot at $x$: a loose bracket, a cable.
+/// $$Z(s) = ms^2\,\frac{\omega_0^2 + 2\zeta\omega_0s}{s^2 + 2\zeta\omega_0s + \omega_0^2}$$
+///
+/// Source: the dynamic absorber, Den Hartog, Mechanical Vibrations (1934), chapter 3.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Resonator;
+
+const PARAMETERS: [EffectParameter; 4] = [
+    EffectParameter::log("mass", "kg", [1e-5, 0.5], &[0.01, 0.05]).of(Reference::Mass),
+    EffectParameter::log("frequency", "Hz", [5.0, 2e4], &[100.0, 300.0, 600.0, 1000.0, 1700.0, 2500.0, 3500.0]),
+    EffectParameter::log("zeta", "1", [1e-4, 0.9], &[0.02, 0.1]),
+    EffectParameter::place(),
+];
+
+impl Effect for Resonator {
+    fn id(&self) -> &'static str {
+        "resonator"
+    }
+
+    fn owner(&self) -> Owner {
+        Owner::Panel
+    }
+
+    fn parameters(&self) -> &'static [EffectParameter] {
+        &PARAMETERS
+    }
+
+    fn act(&self, values: &[f64], setting: &EffectSetting) -> Result<Vec<Action>, ModelError> {
+        self.check(values, &setting.piece)?;
+        let &[mass, frequency, zeta, x] = values else { return Ok(vec![]) };
+        let law = ElementLaw::Resonator { mass, frequency, zeta };
+        Ok(vec![Action::Element(PointElement::on_deflection(law, Seat::Free(Place { x, y: 0.0 }, 3)))])
+    }
+}

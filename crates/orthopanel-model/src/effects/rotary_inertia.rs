@@ -1,0 +1,33 @@
+//! `rotary-inertia`.
+
+use super::{Action, Effect, EffectParameter, EffectSetting, FieldTerm, Owner};
+use crate::ModelError;
+
+/// Factor \[1\] on the rotary inertia $\rho t\,b\,t^2/12$ of evenly spread mass. Faces carry most of a sandwich's mass:
+/// 2.4 for faces of 1 mm and a light core; at most 3, all mass in the skins.
+///
+/// Source: $\int\rho z^2dz$ over the section, in place of eq. 5's $\rho I$.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct RotaryInertia;
+
+const PARAMETERS: [EffectParameter; 1] = [EffectParameter::linear("factor", "1", [0.05, 4.0], &[1.5, 2.4, 1.0])];
+
+impl Effect for RotaryInertia {
+    fn id(&self) -> &'static str {
+        "rotary-inertia"
+    }
+
+    fn owner(&self) -> Owner {
+        Owner::Panel
+    }
+
+    fn parameters(&self) -> &'static [EffectParameter] {
+        &PARAMETERS
+    }
+
+    fn act(&self, values: &[f64], setting: &EffectSetting) -> Result<Vec<Action>, ModelError> {
+        self.check(values, &setting.piece)?;
+        let &[factor] = values else { return Ok(vec![]) };
+        Ok(vec![Action::Field(FieldTerm::RotaryFactor(factor), vec![0])])
+    }
+}

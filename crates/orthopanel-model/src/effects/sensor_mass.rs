@@ -1,0 +1,46 @@
+//! `sensor-mass`.
+
+use super::{Action, Effect, EffectParameter, EffectSetting, ElementLaw, Owner, PointElement, Reference, Seat, Share};
+use crate::{ModelError, Motion};
+
+/// The sensor's mass $m$ \[kg\] and, where it shows, its moment of inertia $J$ \[kg m²\] about the panel's middle plane, at
+/// the record's response place: $Z_w = ms^2$, $Z_\psi = Js^2$. Each record carries its own sensor.
+///
+/// Source: Newton's law; coupling of receptances in Bishop and Johnson, The Mechanics of Vibration (1960), chapter 1.
+/// Without a response place (natural frequencies heard by ear) there is no sensor and nothing happens.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct SensorMass;
+
+const PARAMETERS: [EffectParameter; 2] = [
+    EffectParameter::log("mass", "kg", [1e-5, 0.5], &[0.01, 0.002, 0.05]).of(Reference::Mass),
+    EffectParameter::linear("inertia", "kg m2", [0.0, 1e-3], &[1e-7]).held_at(0.0),
+];
+
+impl Effect for SensorMass {
+    fn id(&self) -> &'static str {
+        "sensor-mass"
+    }
+
+    fn owner(&self) -> Owner {
+        Owner::Rig
+    }
+
+    fn parameters(&self) -> &'static [EffectParameter] {
+        &PARAMETERS
+    }
+
+    fn act(&self, values: &[f64], setting: &EffectSetting) -> Result<Vec<Action>, ModelError> {
+        self.check(values, &setting.piece)?;
+        let &[mass, inertia] = values else { return Ok(vec![]) };
+        if setting.record.response_at.is_none() {
+            return Ok(vec![]);
+        }
+        let turning = PointElement {
+            motion: Motion::Rotation,
+            shares: vec![Share { number: 0, parameter: 1, factor: 1.0 }],
+            ..PointElement::on_deflection(ElementLaw::Mass { mass: inertia }, Seat::AtResponse)
+        };
+        let moving = PointElement::on_deflection(ElementLaw::Mass { mass }, Seat::AtResponse);
+        Ok(vec![Action::Element(moving), Action::Element(turning)])
+    }
+}

@@ -1,0 +1,37 @@
+//! `viscoelastic-core`.
+
+use super::{Action, CoreModulus, Effect, EffectParameter, EffectSetting, Owner};
+use crate::ModelError;
+
+/// A core whose shear modulus rises with frequency and takes energy: see [`CoreModulus`], parameters $\Delta$, $\tau$,
+/// $\alpha$. $G_{zx}$ is then the modulus at low frequency.
+///
+/// Source: Bagley and Torvik, J. Rheology 27 (1983) 201.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct ViscoelasticCore;
+
+const PARAMETERS: [EffectParameter; 3] = [
+    EffectParameter::log("strength", "1", [1e-3, 3.0], &[0.1, 0.5]),
+    EffectParameter::log("tau", "s", [1e-6, 1.0], &[1e-4, 1e-3, 1e-5]),
+    EffectParameter::linear("alpha", "1", [0.1, 1.0], &[0.5, 0.8]),
+];
+
+impl Effect for ViscoelasticCore {
+    fn id(&self) -> &'static str {
+        "viscoelastic-core"
+    }
+
+    fn owner(&self) -> Owner {
+        Owner::Panel
+    }
+
+    fn parameters(&self) -> &'static [EffectParameter] {
+        &PARAMETERS
+    }
+
+    fn act(&self, values: &[f64], setting: &EffectSetting) -> Result<Vec<Action>, ModelError> {
+        self.check(values, &setting.piece)?;
+        let &[strength, tau, alpha] = values else { return Ok(vec![]) };
+        Ok(vec![Action::Core(CoreModulus { strength, tau, alpha })])
+    }
+}

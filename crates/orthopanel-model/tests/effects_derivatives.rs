@@ -1,0 +1,149 @@
+//! Every derivative of every effect against central differences.
+
+use num_complex::Complex64;
+use orthopanel_model::{
+    Boundary, Damping, Effect, EffectState, End, Piece, Place, ReceptanceSetup, RecordSetting, catalogue, effect,
+};
+
+const PIECE: Piece = Piece { length: 0.8, width: 0.1, thickness: 0.03, mass_per_area: 6.88 };
+const CONSTANTS: [f64; 2] = [1.07e10, 5.363e8];
+const RATIOS: [f64; 9] = [0.004, 0.005, 0.006, 0.004, 0.007, 0.005, 0.006, 0.004, 0.005];
+const RECORDS: usize = 2;
+
+fn at(x: f64) -> Place {
+    Place { x, y: 0.0 }
+}
+
+fn setup(boundary: Boundary) -> ReceptanceSetup {
+    let record = |force: f64| RecordSetting {
+        force_at: Some(at(force)),
+        response_at: Some(at(0.27)),
+        hit_time: 2e-3,
+        suspension_amplitudes: vec![3e-5, 2e-5],
+        ..RecordSetting::default()
+    };
+    ReceptanceSetup::new(&PIECE, boundary, &[at(-0.22), at(0.22)], &[record(-0.31), record(0.12)], 12).unwrap()
+}
+
+/// Values somewhere inside, at which every parameter shows.
+fn values(effect: &dyn Effect) -> Vec<f64> {
+    match effect.id() {
+        "sensor-mass" => vec![0.02, 2e-5],
+        "suspension" => vec![4e4, 15.0],
+        "local-mass" => vec![-0.03, 0.11],
+        "edge-mass" => vec![0.02],
+        "stiffness-loss" => vec![0.4, 0.13, -0.17],
+        "resonator" => vec![0.03, 900.0, 0.03, 0.21],
+        "rotary-inertia" => vec![2.3],
+        "viscoelastic-core" => vec![0.4, 2e-4, 0.6],
+        "cubic-stiffness" => vec![8e13],
+        "channel-delay" => vec![2e-5],
+        "sensor-resonance" => vec![6000.0, 0.03],
+        "high-pass" => vec![20.0],
+        "exponential-window" => vec![0.05],
+        "gain" => vec![0.93],
+        "record-gain" => vec![0.9, 2.0],
+        "hammer-offset" => vec![0.004, -0.003],
+        "support-compliance" => vec![2e4, 3e6],
+        "position-error" => vec![0.006],
+        id => unreachable!("{id} has no values in this test"),
+    }
+}
+
+/// All lines of both records, and every derivative.
+fn lines(setup: &ReceptanceSetup, constants: [f64; 2], ratios: &[f64], effects: &[EffectState]) -> Vec<Vec<Complex64>> {
+    let damping = Damping { ratios: ratios.to_vec(), beyond: 0.003 };
+    let model = setup.model(&constants, &damping, effects).unwrap();
+    let mut found = vec![vec![]; 1 + model.columns()];
+    for record in 0..model.records() {
+        let mut evaluator = model.evaluator(record).unwrap();
+        let mut by = vec![Complex64::ZERO; model.columns()];
+        for frequency in [40.0, 180.0, 320.0, 833.0, 1490.0, 2400.0, 3300.0, 4100.0] {
+            let s = Complex64::new(15.0, std::f64::consts::TAU * frequency);
+            found[0].push(evaluator.line(s, &mut by));
+            found[1..].iter_mut().zip(&by).for_each(|(list, value)| list.push(*value));
+        }
+    }
+    found
+}
+
+fn norm(list: &[Complex64]) -> f64 {
+    list.iter().map(|value| value.norm_sqr()).sum::<f64>().sqrt()
+}
+
+/// Compares column `column` with differences of `moved`, which steps the value of size `scale`.
+fn check(name: &str, by: &[Complex64], scale: f64, moved: &dyn Fn(f64) -> Vec<Complex64>) {
+    // Two steps extrapolated: rounding near 1e-10, the fourth power of the step near 1e-9.
+    let difference = |h: f64| -> Vec<Complex64> {
+        moved(h).iter().zip(moved(-h)).map(|(high, low)| (high - low) / (2.0 * h)).collect()
+    };
+    let h = 1e-4 * scale;
+    let best: Vec<Complex64> =
+        difference(h).iter().zip(difference(2.0 * h)).map(|(fine, coarse)| (4.0 * fine - coarse) / 3.0).collect();
+    let error: Vec<Complex64> = by.iter().zip(&best).map(|(by, best)| by - best).collect();
+    assert!(norm(&best) > 0.0, "{name}: nothing moves");
+    assert!(norm(&error) < 1e-6 * norm(&best), "{name}: {:e}", norm(&error) / norm(&best));
+}
+
+fn check_all(name: &str, boundary: Boundary, chosen: &[EffectState]) {
+    let setup = setup(boundary);
+    let found = lines(&setup, CONSTANTS, &RATIOS, chosen);
+    for j in 0..2 {
+        let moved = |h: f64| {
+            let mut constants = CONSTANTS;
+            constants[j] += h;
+            lines(&setup, constants, &RATIOS, chosen).swap_remove(0)
+        };
+        check(&format!("{name}, constant {j}"), &found[1 + j], CONSTANTS[j], &moved);
+    }
+    for mode in [0, 4] {
+        let moved = |h: f64| {
+            let mut ratios = RATIOS;
+            ratios[mode] *= h.exp();
+            lines(&setup, CONSTANTS, &ratios, chosen).swap_remove(0)
+        };
+        check(&format!("{name}, ln zeta {}", mode + 1), &found[3 + mode], 1.0, &moved);
+    }
+    let mut column = 3 + RATIOS.len();
+    for (i, state) in chosen.iter().enumerate() {
+        for (k, &value) in state.values.iter().enumerate() {
+            let index = state.effect.id() == "record-gain" && k == 1;
+            if !index {
+                let moved = |h: f64| {
+                    let mut states = chosen.to_vec();
+                    states[i].values[k] += h;
+                    lines(&setup, CONSTANTS, &RATIOS, &states).swap_remove(0)
+                };
+                let scale = if state.effect.id() == "hammer-offset" { 0.1 } else { value.abs() };
+                check(&format!("{name}, {} {k}", state.effect.id()), &found[column], scale, &moved);
+            }
+            column += 1;
+        }
+    }
+    assert_eq!(column, found.len());
+}
+
+fn state(id: &str) -> EffectState {
+    let effect = effect(id).unwrap();
+    EffectState::new(effect, values(effect), RECORDS).unwrap()
+}
+
+#[test]
+fn val_every_effect_alone() {
+    let clamped = Boundary { left: End::Clamped, ..Boundary::FREE };
+    // The plate is no change of the beam's receptances.
+    for effect in catalogue().iter().filter(|effect| effect.id() != "width-coupling") {
+        let boundary = if effect.id() == "support-compliance" { clamped } else { Boundary::FREE };
+        check_all(effect.id(), boundary, &[state(effect.id())]);
+    }
+}
+
+/// What moves a place, what sits there, and what bends the line in between.
+#[test]
+fn val_effects_together() {
+    let ids = ["sensor-mass", "position-error", "hammer-offset", "resonator", "exponential-window", "sensor-resonance"];
+    check_all("together", Boundary::FREE, &ids.map(state));
+    let clamped = Boundary { left: End::Clamped, right: End::Clamped, ..Boundary::FREE };
+    let ids = ["viscoelastic-core", "stiffness-loss", "rotary-inertia", "support-compliance", "local-mass"];
+    check_all("spread", clamped, &ids.map(state));
+}
