@@ -142,7 +142,7 @@ mod tests {
     #[test]
     fn val_derivatives_are_those_of_differences() {
         let s = Complex64::new(30.0, 900.0);
-        let laws: [&dyn Fn(&[f64]) -> ElementLaw; 3] =
+        let laws: [Family; 3] =
             [&|p| ElementLaw::Mass { mass: p[0] }, &|p| ElementLaw::Spring { stiffness: p[0], damping: p[1] }, &|p| {
                 ElementLaw::Resonator { mass: p[0], frequency: p[1], zeta: p[2] }
             }];

@@ -29,7 +29,7 @@ impl TimoshenkoBeam {
     /// A beam with `terms` Legendre terms (at least 4) of curvature and as many of shear strain.
     ///
     /// # Errors
-    /// [`ModelError::Size`] where the piece has no physical meaning.
+    /// [`ModelError::Size`] where the piece has no physical meaning, [`ModelError::HeldSide`] where front or back is held.
     pub fn new(piece: &Piece, boundary: Boundary, terms: usize) -> Result<Self, ModelError> {
         Self::with_terms(piece, boundary, terms, BeamTerms::default())
     }
@@ -41,9 +41,11 @@ impl TimoshenkoBeam {
     /// translation and rotation stiffness of the supports.
     ///
     /// # Errors
-    /// [`ModelError::Size`] where a size, factor or stiffness has no physical meaning.
+    /// [`ModelError::Size`] where a size, factor or stiffness has no physical meaning, [`ModelError::HeldSide`]
+    /// where front or back is held.
     pub fn with_terms(piece: &Piece, boundary: Boundary, order: usize, terms: BeamTerms) -> Result<Self, ModelError> {
         let piece = piece.checked()?;
+        let boundary = boundary.of_beam()?;
         terms.check()?;
         let mut section = Section::of(&piece);
         section.rotary_inertia *= terms.rotary_factor;

@@ -40,13 +40,14 @@ impl StaticFlexibility {
     /// Of a beam with these sizes and ends.
     ///
     /// # Errors
-    /// [`ModelError::Size`] where the piece has no physical meaning.
+    /// [`ModelError::Size`] where the piece has no physical meaning, [`ModelError::HeldSide`] where front or back is held.
     pub fn new(piece: &Piece, boundary: Boundary) -> Result<Self, ModelError> {
         Self::with_terms(piece, boundary, &BeamTerms::default())
     }
 
     pub(super) fn with_terms(piece: &Piece, boundary: Boundary, terms: &BeamTerms) -> Result<Self, ModelError> {
         let piece = piece.checked()?;
+        let boundary = boundary.of_beam()?;
         let mut section = Section::of(&piece);
         section.rotary_inertia *= terms.rotary_factor;
         let support = terms.support.map_or([0.0; 2], |support| [1.0 / support.translation, 1.0 / support.rotation]);

@@ -43,6 +43,8 @@ pub(super) struct Columns {
     pub zetas: (usize, usize),
     /// Element, number of its law, column, factor.
     pub elements: Vec<(usize, usize, usize, f64)>,
+    /// Whether the derivative by $s$ is needed.
+    pub frequency: bool,
     /// Active row whose place moves, and column; row `i` of the slopes belongs to entry `i`.
     pub places: Vec<(usize, usize)>,
 }
@@ -50,7 +52,12 @@ pub(super) struct Columns {
 /// Space for the numbers of one line.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Coupling {
+    /// $1/(s^2 + 2\zeta\omega s + \omega^2)$ and $\omega$ of each mode.
     gains: Vec<Complex64>,
+    roots: Vec<Complex64>,
+    /// Squared gain times both effective shapes: what a softer mode adds.
+    weights: Vec<Complex64>,
+    /// $H$ between the active rows.
     bare: Vec<Complex64>,
     system: Vec<Complex64>,
     /// $\mu$ for a unit force at the force's place and at the response's.
@@ -85,9 +92,14 @@ impl Coupling {
         for (p, element) in elements.iter().enumerate() {
             value -= self.bare[layout.active + 2 + p] * element.pair[0] * self.states[0][p];
         }
-        let by_s = self.by_modes(layout, numbers, zetas, columns, s, out) + self.by_elements(elements, columns, out);
-        self.by_structure(layout, numbers, zetas, columns, s, out);
-        self.by_places(layout, numbers, columns, s, out);
+        self.by_damping(layout, zetas, columns, s, out);
+        for &(p, number, column, factor) in &columns.elements {
+            out[column] += factor * self.change(elements, p, elements[p].by_numbers[number]);
+        }
+        self.by_structure((layout, numbers), zetas, columns, s, out);
+        self.by_places((layout, numbers), columns, s, out);
+        let zero = Complex64::ZERO;
+        let by_s = if columns.frequency { self.by_frequency((layout, numbers), zetas, elements, s) } else { zero };
         Receptance { value, by_s }
     }
 
@@ -98,6 +110,7 @@ impl Coupling {
         self.bare.clear();
         self.bare.resize(n * n, Complex64::ZERO);
         self.gains.clear();
+        self.roots.clear();
         // Horner in −s².
         for k in (0..SERIES_TERMS).rev() {
             let at = layout.series(k);
@@ -106,10 +119,11 @@ impl Coupling {
             }
         }
         for (m, &lambda) in numbers.iter().enumerate().take(layout.modes) {
-            let loss =
-                if m < layout.rigid { Complex64::ZERO } else { lambda.root() * (2.0 * zetas[m - layout.rigid] * s) };
-            let gain = (s2 + loss + lambda.into()).inv();
+            let root: Complex64 = lambda.root().into();
+            let zeta = if m < layout.rigid { 0.0 } else { zetas[m - layout.rigid] };
+            let gain = (s2 + 2.0 * zeta * root * s + lambda.into()).inv();
             self.gains.push(gain);
+            self.roots.push(root);
             let shape = &numbers[layout.shape(m)..layout.shape(m) + n];
             for (a, &first) in shape.iter().enumerate() {
                 let scaled = first * gain;
@@ -158,53 +172,47 @@ impl Coupling {
                 shapes.push(shape.iter().zip(loads).map(|(&value, &load)| value * load).sum());
             }
         }
+        let [forced, seen] = &self.shapes;
+        self.weights.clear();
+        self.weights.extend(self.gains.iter().zip(forced).zip(seen).map(|((gain, f), r)| gain * gain * f * r));
     }
 
-    /// Derivatives by the damping ratios; returns that by $s$ through modes and series.
-    fn by_modes<T: Number>(
-        &self,
-        layout: &Layout,
-        numbers: &[T],
-        zetas: &[f64],
-        columns: &Columns,
-        s: Complex64,
-        out: &mut [Complex64],
-    ) -> Complex64 {
-        let mut by_s = Complex64::ZERO;
-        for m in 0..layout.modes {
-            let product = self.gains[m] * self.gains[m] * self.shapes[0][m] * self.shapes[1][m];
-            let flexible = m.checked_sub(layout.rigid);
-            let loss = flexible.map_or(Complex64::ZERO, |i| numbers[m].root() * Complex64::from(2.0 * zetas[i]));
-            by_s -= product * (2.0 * s + loss);
-            if let Some(i) = flexible.filter(|&i| i < columns.zetas.1) {
-                out[columns.zetas.0 + i] -= product * loss * s;
-            }
+    /// Derivatives by the damping ratios.
+    fn by_damping(&self, layout: &Layout, zetas: &[f64], columns: &Columns, s: Complex64, out: &mut [Complex64]) {
+        for (i, zeta) in zetas.iter().enumerate().take(columns.zetas.1) {
+            let m = layout.rigid + i;
+            out[columns.zetas.0 + i] -= self.weights[m] * (2.0 * zeta * self.roots[m] * s);
         }
+    }
+
+    /// The derivative by $s$.
+    fn by_frequency<T: Number>(
+        &self,
+        (layout, numbers): (&Layout, &[T]),
+        zetas: &[f64],
+        elements: &[ElementLine],
+        s: Complex64,
+    ) -> Complex64 {
+        let flexible = zetas.iter().zip(&self.roots[layout.rigid..]).zip(&self.weights[layout.rigid..]);
+        let losses: Complex64 = flexible.map(|((zeta, root), weight)| 2.0 * zeta * root * weight).sum();
+        let mut sum = -2.0 * s * self.weights.iter().sum::<Complex64>() - losses;
         let mut power = -2.0 * s;
         for k in 1..SERIES_TERMS {
-            let form = self.form(&numbers[layout.series(k)..], layout.active);
-            by_s += k as f64 * power * form;
+            sum += k as f64 * power * self.form(&numbers[layout.series(k)..], layout.active);
             power *= -s * s;
         }
-        by_s
+        sum + elements.iter().enumerate().map(|(p, element)| self.change(elements, p, element.by_s)).sum::<Complex64>()
     }
 
-    fn by_elements(&self, elements: &[ElementLine], columns: &Columns, out: &mut [Complex64]) -> Complex64 {
-        let [forced, seen] = &self.states;
-        let change = |p: usize, by: [Complex64; 2]| {
-            let [a, b] = elements[p].pair;
-            -forced[p] * seen[p] * (b * by[0] - a * by[1])
-        };
-        for &(p, number, column, factor) in &columns.elements {
-            out[column] += factor * change(p, elements[p].by_numbers[number]);
-        }
-        (0..elements.len()).map(|p| change(p, elements[p].by_s)).sum()
+    /// $-\mu_r(B\,dA - A\,dB)\mu_f$ of element `p`.
+    fn change(&self, elements: &[ElementLine], p: usize, by: [Complex64; 2]) -> Complex64 {
+        let [a, b] = elements[p].pair;
+        -self.states[0][p] * self.states[1][p] * (b * by[0] - a * by[1])
     }
 
     fn by_structure<T: Number>(
         &self,
-        layout: &Layout,
-        numbers: &[T],
+        (layout, numbers): (&Layout, &[T]),
         zetas: &[f64],
         columns: &Columns,
         s: Complex64,
@@ -221,9 +229,8 @@ impl Coupling {
                 };
                 sum += gain * (turned(0) * self.shapes[1][m] + self.shapes[0][m] * turned(1));
                 if m >= layout.rigid {
-                    let root: Complex64 = numbers[m].root().into();
-                    let stiffer = numbers[layout.by(p) + m] * (1.0 + zetas[m - layout.rigid] * s / root);
-                    sum -= gain * gain * stiffer * self.shapes[0][m] * self.shapes[1][m];
+                    let stiffer = numbers[layout.by(p) + m] * (1.0 + zetas[m - layout.rigid] * s / self.roots[m]);
+                    sum -= stiffer * self.weights[m];
                 }
             }
             let mut power = Complex64::ONE;
@@ -237,8 +244,7 @@ impl Coupling {
 
     fn by_places<T: Number>(
         &self,
-        layout: &Layout,
-        numbers: &[T],
+        (layout, numbers): (&Layout, &[T]),
         columns: &Columns,
         s: Complex64,
         out: &mut [Complex64],

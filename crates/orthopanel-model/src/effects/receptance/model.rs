@@ -134,6 +134,9 @@ impl LineEvaluator<'_> {
 impl RecordModel {
     /// Applies factors and windows to an accelerance and its derivatives.
     fn through_channel(&self, s: Complex64, value: Complex64, by_s: Complex64, out: &mut [Complex64]) -> Complex64 {
+        if self.factors.is_empty() && self.windows.is_empty() {
+            return value;
+        }
         let lines: Vec<_> = self.factors.iter().map(|(factor, columns)| (factor.line(s), columns)).collect();
         let gain: f64 = self.windows.iter().map(|(tau, _)| (-self.hit_time / tau).exp()).product();
         let product = lines.iter().map(|(line, _)| line.value).product::<Complex64>() * gain;

@@ -59,6 +59,7 @@ impl RecordPlan {
                 }
             }
         }
+        plan.columns.frequency = !plan.windows.is_empty();
         for place in places {
             setting.piece.contains(place)?;
             plan.active.push((Motion::Deflection, place));
