@@ -11,8 +11,11 @@ use orthopanel_model::{Boundary, Damping, Estimate, MODEL_SCHEMA, PanelModel, Pi
 pub struct Identification {
     /// What vibrates.
     pub structure: StructureKind,
-    /// Every constant of the structure, in its order.
+    /// Every constant of the structure, in its order; one that pieces have of their own stands once a piece, behind the
+    /// shared one.
     pub constants: Vec<IdentifiedConstant>,
+    /// Constants that the data do not show, the least seen first; in `constants` they stand as held.
+    pub not_identified: Vec<NotIdentified>,
     /// Correlation of each pair of identified constants.
     pub correlations: Vec<Correlation>,
     /// How the model meets each piece.
@@ -34,7 +37,7 @@ pub struct Identification {
 }
 
 /// One constant.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct IdentifiedConstant {
     /// Name, such as `e_x`.
     pub name: &'static str,
@@ -45,8 +48,37 @@ pub struct IdentifiedConstant {
     /// Standard deviation; `None` where the constant was held, or where the data cannot tell (as many frequencies as
     /// constants, and no resolution stated).
     pub std: Option<f64>,
-    /// Whether the test file held it at this value.
+    /// Whether it was held at this value: by the test file, or since the data do not show it.
     pub held: bool,
+    /// Name of the piece that has it of its own; `None` where pieces share it.
+    pub piece: Option<String>,
+}
+
+/// A constant that the data do not show.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NotIdentified {
+    /// Name.
+    pub name: &'static str,
+    /// Unit.
+    pub unit: &'static str,
+    /// The value at which it was held.
+    pub held_at: f64,
+    /// What the data leave open: the 95 % interval, cut at the bounds.
+    pub interval: [f64; 2],
+    /// The direction in the space of constants along which the data are blindest: components of a unit vector by name,
+    /// the largest first, in logarithms of the moduli and in Poisson's ratio itself.
+    pub direction: Vec<(&'static str, f64)>,
+}
+
+impl NotIdentified {
+    /// The direction as text, such as `ln g_yz +0.98, nu_xy -0.17`.
+    pub fn direction_text(&self) -> String {
+        let component = |(name, value): &(&str, f64)| {
+            let logarithm = if *name == "nu_xy" { "" } else { "ln " };
+            format!("{logarithm}{name} {value:+.2}")
+        };
+        self.direction.iter().map(component).collect::<Vec<_>>().join(", ")
+    }
 }
 
 /// Correlation coefficient of two identified constants.
@@ -93,8 +125,10 @@ pub struct AcceleranceFit {
 /// One measured mode and the model's.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ModeFit {
-    /// Flexible mode, from 1.
+    /// Flexible mode, from 1: its place among all flexible modes of the structure.
     pub mode: usize,
+    /// Nodal lines across x and across y.
+    pub nodes: [usize; 2],
     /// Measured natural frequency \[Hz\].
     pub measured: f64,
     /// The model's \[Hz\].
@@ -115,7 +149,7 @@ impl Identification {
     pub(crate) fn determined(self) -> Result<Self, IdentifyError> {
         let open = self.constants.iter().find_map(|constant| {
             let std = constant.std.filter(|std| *std > constant.value || std.is_nan())?;
-            let IdentifiedConstant { name, unit, value, .. } = *constant;
+            let &IdentifiedConstant { name, unit, value, .. } = constant;
             Some(IdentifyError::NotDetermined { name, value, std, unit })
         });
         open.map_or(Ok(self), Err)
@@ -126,13 +160,20 @@ impl Identification {
     /// Damping holds the ratios that were measured; `beyond` is left at zero for the caller to state.
     pub fn panel_model(&self, fit: &PieceFit, boundary: Boundary, ports: Ports) -> PanelModel {
         let estimate = |constant: &IdentifiedConstant| Estimate { value: constant.value, std: constant.std };
+        // A piece's own constant stands behind the shared one, and so replaces it.
+        let of_piece = |constant: &&IdentifiedConstant| constant.piece.as_ref().is_none_or(|name| *name == fit.name);
         let ratios = fit.damping.iter().map(|ratio| ratio.value).collect();
         PanelModel {
             schema: MODEL_SCHEMA.to_owned(),
             piece: fit.piece,
             boundary,
             structure: self.structure,
-            constants: self.constants.iter().map(|constant| (constant.name.to_owned(), estimate(constant))).collect(),
+            constants: self
+                .constants
+                .iter()
+                .filter(of_piece)
+                .map(|constant| (constant.name.to_owned(), estimate(constant)))
+                .collect(),
             damping: Damping { ratios, beyond: 0.0 },
             effects: Vec::new(),
             ports,

@@ -82,7 +82,7 @@ fn val_intervals_hold_the_truth_as_often_as_they_say() {
         let found = identify(&ImpactTest::from_toml(text, &path).unwrap(), Settings::default()).unwrap();
         let inside = |value: f64, std: Option<f64>, truth: f64| (value - truth).abs() < 1.96 * std.unwrap();
         for (index, truth) in [E_X, G_ZX].into_iter().enumerate() {
-            let constant = found.constants[index];
+            let constant = found.constants[index].clone();
             constants_held[index] += usize::from(inside(constant.value, constant.std, truth));
         }
         let zetas = found.pieces[0].damping.iter().zip(ZETAS);

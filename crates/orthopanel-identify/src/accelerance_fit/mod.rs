@@ -5,53 +5,50 @@ mod line_noise;
 mod matching;
 mod outcome;
 mod paper_error;
-mod pole_constants;
 mod poles;
 mod problem;
 mod records;
 mod resonance_point;
 mod smooth_part;
+mod structures;
 mod synthesis;
 
 use orthopanel_data::ImpactTest;
-use orthopanel_model::{BeamConstants, ExactBeam, Piece};
+use orthopanel_model::{Boundary, Piece, StructureKind};
 use rayon::prelude::*;
 
-use crate::elastic_constants::held_constants;
-use crate::least_squares::{Minimum, Stuck, levenberg_marquardt};
+use crate::free_constants::FreeConstants;
+use crate::frequency_fit::{PoleFit, PoleSet, constants, fit_poles};
+use crate::least_squares::{Minimum, levenberg_marquardt};
 use crate::{Identification, IdentifyError, Search, Settings};
 use matching::{Matching, PiecePoles, match_at, match_poles};
 use poles::{Pole, poles};
 use problem::{AcceleranceProblem, PieceProblem};
 use records::PlaceRecord;
+use structures::SeenMode;
 
 pub use synthesis::DampingLaw;
 
 /// What stands before the fit: records, their poles, and which modes these are.
 struct Start {
+    structure: StructureKind,
     pieces: Vec<StartPiece>,
     poles: Vec<PiecePoles>,
     matching: Matching,
-    held: [Option<f64>; 2],
+    /// Constants that meet the poles best, and which of them the poles show.
+    fit: PoleFit,
     notes: Vec<String>,
 }
 
 impl Start {
     /// Whether the starting model's resonances overlap those of the records, so that a fit line by line can pull them
     /// together. Where one lies wholly beside its peak, the misfit has no slope towards it: damping would grow instead.
-    fn resonances_meet(&self) -> Result<bool, IdentifyError> {
-        let [e_x, g_zx] = self.matching.constants;
-        for ((piece, own), matched) in self.poles.iter().zip(&self.pieces).zip(&self.matching.modes) {
-            let beam = ExactBeam::new(&piece.sizes, piece.boundary, BeamConstants { e_x, g_zx })?;
-            let modes = beam.natural_frequencies(matched.iter().flatten().max().map_or(0, |mode| mode + 1));
-            for (pole, mode) in own.poles.iter().zip(matched) {
-                let Some(mode) = mode.and_then(|mode| modes.get(mode)) else { continue };
-                if (mode - pole.frequency).abs() > OVERLAP * pole.zeta * pole.frequency {
-                    return Ok(false);
-                }
-            }
-        }
-        Ok(true)
+    fn resonances_meet(&self) -> bool {
+        let pieces = self.pieces.iter().zip(&self.matching.modes).zip(&self.matching.seen);
+        let mut matched = pieces.flat_map(|((own, modes), seen)| {
+            own.poles.iter().zip(modes).filter_map(|(pole, mode)| Some((pole, seen.get((*mode)?)?)))
+        });
+        matched.all(|(pole, mode)| (mode.frequency - pole.frequency).abs() <= OVERLAP * pole.zeta * pole.frequency)
     }
 }
 
@@ -78,10 +75,10 @@ struct StartPiece {
 /// frequency; then the constants come from the poles' frequencies, the damping from the poles, and a note says so.
 pub(crate) fn identify_records(test: &ImpactTest, settings: Settings) -> Result<Identification, IdentifyError> {
     let start = start(test, settings)?;
-    let problem = assemble(test, &start, settings)?;
+    let problem = assemble(&start, settings)?;
     let parameters = starting_parameters(&problem, &start);
     let minimum = match settings.search {
-        Search::LeastSquares if !start.resonances_meet()? => {
+        Search::LeastSquares if !start.resonances_meet() => {
             return outcome::from_poles(test, start, &problem, &parameters);
         }
         Search::LeastSquares => {
@@ -92,8 +89,13 @@ pub(crate) fn identify_records(test: &ImpactTest, settings: Settings) -> Result<
                 Err(_) => return outcome::from_poles(test, start, &problem, &parameters),
             }
         }
+        Search::Simplex if start.structure != StructureKind::TimoshenkoBeam => {
+            let message = "the paper's search on records is for beams: leave out --search simplex";
+            return Err(IdentifyError::Unsupported(message.to_owned()));
+        }
         Search::Simplex => {
-            let parameters = paper_error::minimise(&problem, &start, &parameters, settings.paper_weights)?;
+            let parameters =
+                paper_error::minimise(&problem, &start, test.boundary, &parameters, settings.paper_weights)?;
             Minimum { at: problem.linearise(&parameters)?, parameters }
         }
     };
@@ -101,7 +103,8 @@ pub(crate) fn identify_records(test: &ImpactTest, settings: Settings) -> Result<
 }
 
 fn start(test: &ImpactTest, settings: Settings) -> Result<Start, IdentifyError> {
-    let held = held_constants(test)?;
+    let structure = test.structure.unwrap_or(StructureKind::TimoshenkoBeam);
+    let constants = FreeConstants::of(test, constants(structure))?;
     let mut pieces: Vec<StartPiece> = Vec::new();
     let mut notes = Vec::new();
     let accelerances = test.accelerances(settings.estimation)?;
@@ -122,59 +125,79 @@ fn start(test: &ImpactTest, settings: Settings) -> Result<Start, IdentifyError> 
     for piece in &mut pieces {
         piece.poles = poles(&piece.records);
     }
-    let poles: Vec<PiecePoles> = pieces
-        .iter()
-        .map(|piece| PiecePoles {
-            sizes: piece.sizes,
-            boundary: test.boundary,
-            frequencies: piece.poles.iter().map(|pole| pole.frequency).collect(),
-            band: piece.records.iter().map(PlaceRecord::band_end).fold(0.0, f64::max),
-        })
-        .collect();
-    let free = held.iter().filter(|held| held.is_none()).count();
+    let poles: Vec<PiecePoles> = pieces.iter().map(|piece| piece_poles(piece, structure, test.boundary)).collect();
+    let needed = match structure {
+        StructureKind::TimoshenkoBeam => constants.count().max(1),
+        StructureKind::MindlinPlate => constants.count().clamp(1, 2),
+    };
     let found: usize = poles.iter().map(|piece| piece.frequencies.len()).sum();
-    let too_few = || IdentifyError::TooFewResonances { found, needed: free.max(1) };
-    if found < free {
+    let too_few = || IdentifyError::TooFewResonances { found, needed };
+    if found < needed {
         return Err(too_few());
     }
-    let mut matching = match_poles(&poles, held)?.ok_or_else(too_few)?;
+    let mut matching = match_poles(&poles, structure, &constants)?.ok_or_else(too_few)?;
+    let mut fit = None;
     // Twice: better constants may find modes for more poles.
     for _ in 0..2 {
-        let matched: usize = matching.modes.iter().flatten().flatten().count();
-        if matched < free.max(1) {
+        if matching.count() < needed {
             return Err(too_few());
         }
-        let minimum = pole_constants::fit_constants(&poles, &matching, held).map_err(|stuck| match stuck {
-            Stuck::Refused(error) => IdentifyError::from(error),
-            Stuck::Iterations { count, cost } => {
-                IdentifyError::NotConverged { iterations: count, error_percent: 100.0 * (cost / matched as f64).sqrt() }
-            }
-        })?;
-        let mut logs = minimum.parameters.iter();
-        let constants = held.map(|held| held.unwrap_or_else(|| logs.next().map_or(f64::NAN, |log| log.exp())));
-        matching = match_at(&poles, constants)?;
+        let values = matching.values.first().cloned().unwrap_or_default();
+        let found = fit_poles(structure, &constants, &values, pole_sets(&pieces, &matching, test.boundary))?;
+        let values = pieces.iter().map(|piece| found.constants.values(&found.parameters, piece.index)).collect();
+        matching = match_at(&poles, values)?;
+        fit = Some(found);
     }
-    Ok(Start { pieces, poles, matching, held, notes })
+    let fit = fit.ok_or_else(too_few)?;
+    Ok(Start { structure, pieces, poles, matching, fit, notes })
 }
 
-fn assemble(test: &ImpactTest, start: &Start, settings: Settings) -> Result<AcceleranceProblem, IdentifyError> {
-    let [e_x, g_zx] = start.matching.constants;
-    let pieces = start.pieces.iter().zip(&start.poles).map(|(piece, poles)| {
-        let beam = ExactBeam::new(&piece.sizes, test.boundary, BeamConstants { e_x, g_zx })?;
-        let reach = 2.5 * poles.band;
-        let frequencies: Vec<f64> =
-            beam.flexible_modes().take(400).map(|mode| mode.frequency()).take_while(|&f| f < reach).collect();
-        Ok(PieceProblem::new(piece.index, piece.sizes, test.boundary, piece.records.clone(), &frequencies)?)
+fn piece_poles(piece: &StartPiece, structure: StructureKind, boundary: Boundary) -> PiecePoles {
+    // At a resonance H = jP/2ζ: the imaginary part has the sign and the size of P.
+    let amplitude = |record: &PlaceRecord, pole: &Pole| {
+        let line = record.frequency.partition_point(|&frequency| frequency < pole.frequency);
+        record.value.get(line).map_or(0.0, |value| value.im)
+    };
+    PiecePoles {
+        structure: structures::of(structure, &piece.sizes, boundary),
+        pairs: piece.records.iter().map(|record| (record.force_at, record.response_at)).collect(),
+        frequencies: piece.poles.iter().map(|pole| pole.frequency).collect(),
+        amplitudes: piece
+            .poles
+            .iter()
+            .map(|pole| piece.records.iter().map(|record| amplitude(record, pole)).collect())
+            .collect(),
+        band: piece.records.iter().map(PlaceRecord::band_end).fold(0.0, f64::max),
+    }
+}
+
+/// The matched poles of every piece with their modes' nodal lines.
+fn pole_sets(pieces: &[StartPiece], matching: &Matching, boundary: Boundary) -> Vec<PoleSet> {
+    let of_piece = |((piece, modes), seen): ((&StartPiece, &Vec<Option<usize>>), &Vec<SeenMode>)| {
+        let matched = piece.poles.iter().zip(modes).filter_map(|(pole, mode)| Some((pole, seen.get((*mode)?)?)));
+        let (nodes, frequencies) = matched.map(|(pole, mode)| (mode.nodes, pole.frequency)).unzip();
+        PoleSet { piece: piece.index, sizes: piece.sizes, boundary, nodes, frequencies }
+    };
+    pieces.iter().zip(&matching.modes).zip(&matching.seen).map(of_piece).collect()
+}
+
+fn assemble(start: &Start, settings: Settings) -> Result<AcceleranceProblem, IdentifyError> {
+    let pieces = start.pieces.iter().zip(&start.poles).zip(&start.matching.values).map(|((piece, poles), values)| {
+        let reach = poles.structure.reach() * poles.band;
+        let modes = poles.structure.modes_below(values, reach, &[])?;
+        let frequencies: Vec<f64> = modes.iter().map(|mode| mode.frequency).collect();
+        let synthesis = poles.structure.synthesis(values, frequencies.len().max(1))?;
+        Ok(PieceProblem::new(piece.index, piece.sizes, synthesis, piece.records.clone(), &frequencies))
     });
     let pieces = pieces.collect::<Result<Vec<_>, IdentifyError>>()?;
     let logs: Vec<f64> = start.pieces.iter().flat_map(|piece| &piece.poles).map(|pole| pole.zeta.ln()).collect();
     let usual = logs.iter().sum::<f64>() / logs.len().max(1) as f64;
-    Ok(AcceleranceProblem::new(start.held, settings.damping_law, pieces, usual))
+    Ok(AcceleranceProblem::new(start.fit.constants.clone(), settings.damping_law, pieces, usual))
 }
 
-/// Logarithms of the free constants and of each damping ratio, from the poles.
+/// The free constants and the logarithm of each damping ratio, from the poles.
 fn starting_parameters(problem: &AcceleranceProblem, start: &Start) -> Vec<f64> {
-    let mut parameters: Vec<f64> = problem.free.iter().map(|&index| start.matching.constants[index].ln()).collect();
+    let mut parameters = start.fit.parameters.clone();
     for ((piece, own), matched) in problem.pieces.iter().zip(&start.pieces).zip(&start.matching.modes) {
         let mut zetas = vec![problem.usual_log_zeta; piece.free_zetas];
         for (pole, mode) in own.poles.iter().zip(matched) {

@@ -1,15 +1,14 @@
 //! From the minimum to what is reported.
 
+use faer::Mat;
 use orthopanel_data::ImpactTest;
-use orthopanel_model::{Estimate, StructureKind};
+use orthopanel_model::Estimate;
 
 use super::problem::AcceleranceProblem;
-use super::{Start, StartPiece, pole_constants};
-use crate::elastic_constants::refuse_bounds;
+use super::{Start, StartPiece};
+use crate::frequency_fit::identified_constants;
 use crate::least_squares::Minimum;
-use crate::{
-    AcceleranceFit, Correlation, Identification, IdentifiedConstant, IdentifyError, ModeFit, PieceFit, Search, Settings,
-};
+use crate::{AcceleranceFit, Correlation, Identification, IdentifyError, ModeFit, PieceFit, Search, Settings};
 
 /// A misfit per datum above this is the model's, not the noise's, and line by line damping is not to be trusted.
 const FAR_FROM_NOISE: f64 = 25.0;
@@ -39,14 +38,13 @@ pub(super) fn outcome(
     // Eq. 23 is no likelihood: its minimum has no standard deviation that follows from the noise.
     let likelihood = settings.search == Search::LeastSquares;
     let log_std: Vec<Option<f64>> = (0..problem.size()).map(|i| std(i).filter(|_| likelihood)).collect();
-    let correlation = covariance.as_ref().and_then(|matrix| {
-        (likelihood && problem.free.len() == 2).then(|| matrix[(0, 1)] / (matrix[(0, 0)] * matrix[(1, 1)]).sqrt())
-    });
+    let correlations =
+        covariance.filter(|_| likelihood).map(|matrix| correlations(problem, &matrix)).unwrap_or_default();
     report(
         test,
         &start,
         problem,
-        Found { parameters, log_std, correlation, chi_square: noise_known.then_some(chi_square) },
+        Found { parameters, log_std, correlations, chi_square: noise_known.then_some(chi_square) },
     )
 }
 
@@ -54,7 +52,7 @@ pub(super) fn outcome(
 struct Found {
     parameters: Vec<f64>,
     log_std: Vec<Option<f64>>,
-    correlation: Option<f64>,
+    correlations: Vec<Correlation>,
     chi_square: Option<f64>,
 }
 
@@ -74,10 +72,10 @@ pub(super) fn from_poles(
     let mut found = Found {
         parameters: parameters.to_vec(),
         log_std: vec![None; problem.size()],
-        correlation: None,
+        correlations: Vec::new(),
         chi_square: None,
     };
-    found.correlation = take_from_poles(&start, problem, &mut found.parameters, &mut found.log_std);
+    found.correlations = take_from_poles(&start, problem, &mut found.parameters, &mut found.log_std);
     let at = problem.linearise(&found.parameters)?;
     if problem.noise_is_known() {
         found.chi_square = Some(at.cost / problem.data() as f64);
@@ -91,20 +89,8 @@ fn report(
     problem: &AcceleranceProblem,
     found: Found,
 ) -> Result<Identification, IdentifyError> {
-    let Found { parameters, log_std, correlation, chi_square } = found;
-    let values = problem.values(&parameters);
-    let constants = problem.constants.iter().enumerate().map(|(index, constant)| {
-        let free = problem.free.iter().position(|&at| at == index);
-        let relative = free.and_then(|at| log_std[at]);
-        IdentifiedConstant {
-            name: constant.name,
-            unit: constant.unit,
-            value: values[index],
-            std: relative.map(|std| std * values[index]),
-            held: free.is_none(),
-        }
-    });
-    refuse_bounds(&problem.constants, &problem.free, &parameters)?;
+    let Found { parameters, log_std, correlations, chi_square } = found;
+    problem.constants.refuse_bounds(&parameters)?;
     let (fits, accelerance_rms_percent) = accelerance_fits(problem, &parameters)?;
     let percent = median_misfit_percent(&fits);
     if percent > CONTRADICTION {
@@ -114,12 +100,10 @@ fn report(
     let errors = pieces.iter().flat_map(|piece| &piece.modes).map(|mode| mode.error_percent().powi(2));
     let count = pieces.iter().map(|piece| piece.modes.len()).sum::<usize>().max(1);
     Ok(Identification {
-        structure: StructureKind::TimoshenkoBeam,
-        constants: constants.collect(),
-        correlations: correlation
-            .map(|value| Correlation { first: problem.constants[0].name, second: problem.constants[1].name, value })
-            .into_iter()
-            .collect(),
+        structure: start.structure,
+        constants: identified_constants(test, &problem.constants, &parameters, &log_std),
+        not_identified: start.fit.not_identified.clone(),
+        correlations,
         frequency_rms_percent: (errors.sum::<f64>() / count as f64).sqrt(),
         left_one_out_percent: None,
         accelerance_rms_percent: Some(accelerance_rms_percent),
@@ -130,21 +114,29 @@ fn report(
     })
 }
 
-/// Puts the constants of the poles' frequencies, and the poles' damping, in place of the fit's; the correlation of the
-/// two constants.
+/// Correlation coefficient of each pair of free constants.
+fn correlations(problem: &AcceleranceProblem, covariance: &Mat<f64>) -> Vec<Correlation> {
+    let free = problem.constants.count();
+    let name = |i: usize| problem.constants.constant(i).name;
+    let value = |i: usize, j: usize| covariance[(i, j)] / (covariance[(i, i)] * covariance[(j, j)]).sqrt();
+    let pairs = (0..free).flat_map(|i| (i + 1..free).map(move |j| (i, j)));
+    pairs.map(|(i, j)| Correlation { first: name(i), second: name(j), value: value(i, j) }).collect()
+}
+
+/// Puts the constants of the poles' frequencies, and the poles' damping, in place of the fit's; the correlations of the
+/// constants.
 fn take_from_poles(
     start: &Start,
     problem: &AcceleranceProblem,
     parameters: &mut [f64],
     log_std: &mut [Option<f64>],
-) -> Option<f64> {
-    let minimum = pole_constants::fit_constants(&start.poles, &start.matching, start.held).ok()?;
-    let free = minimum.parameters.len();
-    parameters[..free].copy_from_slice(&minimum.parameters);
-    let covariance = minimum.at.covariance();
-    let matched = start.matching.modes.iter().flatten().flatten().count();
-    let beyond = matched.saturating_sub(free);
-    let scatter = (beyond > 0).then(|| minimum.at.cost / beyond as f64);
+) -> Vec<Correlation> {
+    let fit = &start.fit;
+    let free = fit.parameters.len();
+    parameters[..free].copy_from_slice(&fit.parameters);
+    let covariance = fit.at.covariance();
+    let beyond = start.matching.count().saturating_sub(free);
+    let scatter = (beyond > 0).then(|| fit.at.cost / beyond as f64);
     for (index, std) in log_std.iter_mut().enumerate().take(free) {
         *std = covariance.as_ref().zip(scatter).map(|(matrix, scatter)| (scatter * matrix[(index, index)]).sqrt());
     }
@@ -157,8 +149,7 @@ fn take_from_poles(
             }
         }
     }
-    let matrix = covariance.filter(|_| free == 2)?;
-    Some(matrix[(0, 1)] / (matrix[(0, 0)] * matrix[(1, 1)]).sqrt())
+    covariance.map(|matrix| correlations(problem, &matrix)).unwrap_or_default()
 }
 
 /// Measured and calculated accelerance of every record, and the rms of their difference \[% of the rms measured\].
@@ -213,16 +204,16 @@ fn piece_fits(
                 Estimate { value, std: log_std[offset + mode].map(|std| std * value) }
             };
             fit.damping = (0..piece.in_band).map(estimate).collect();
-            let [e_x, g_zx] = problem.values(parameters);
-            let constants = orthopanel_model::BeamConstants { e_x, g_zx };
-            let beam = orthopanel_model::ExactBeam::new(&piece.sizes, test.boundary, constants)?;
-            let frequencies = beam.natural_frequencies(piece.in_band);
+            let structure = &start.poles[own].structure;
+            let limit = 1.3 * start.poles[own].band;
+            let seen = structure.modes_below(&problem.values(parameters, own), limit, &[])?;
             let StartPiece { poles, .. } = &start.pieces[own];
             for (pole, mode) in poles.iter().zip(&start.matching.modes[own]) {
-                let Some((mode, &model)) = mode.and_then(|mode| Some((mode, frequencies.get(mode)?))) else { continue };
-                let seen = log_std[offset + mode].is_none_or(|std| std < DAMPING_UNSEEN);
-                let damping = seen.then(|| estimate(mode));
-                fit.modes.push(ModeFit { mode: mode + 1, measured: pole.frequency, model, damping });
+                let Some((mode, found)) = mode.and_then(|mode| Some((mode, seen.get(mode)?))) else { continue };
+                let told = mode < piece.free_zetas && log_std[offset + mode].is_none_or(|std| std < DAMPING_UNSEEN);
+                let damping = told.then(|| estimate(mode));
+                let (nodes, model) = (found.nodes, found.frequency);
+                fit.modes.push(ModeFit { mode: mode + 1, nodes, measured: pole.frequency, model, damping });
             }
         }
         fits.push(fit);

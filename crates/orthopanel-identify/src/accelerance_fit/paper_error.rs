@@ -1,7 +1,7 @@
 //! The paper's second problem: eq. 23 under eq. 25, by downhill simplex with a penalty.
 
 use num_complex::Complex64;
-use orthopanel_model::{BeamConstants, ExactBeam, ModelError};
+use orthopanel_model::{BeamConstants, Boundary, ExactBeam, ModelError, StaticFlexibility};
 use rayon::prelude::*;
 
 use super::problem::{AcceleranceProblem, PieceProblem, log_zeta_bounds};
@@ -21,7 +21,7 @@ type PiecePoints = Vec<Vec<MeasuredPoint>>;
 /// where $G$ is the magnitude at the measured and at the calculated resonance.
 struct PaperError<'a> {
     problem: &'a AcceleranceProblem,
-    start: &'a Start,
+    boundary: Boundary,
     /// The start of the damping ratios, as logarithms.
     parameters: &'a [f64],
     weights: PaperWeights,
@@ -35,13 +35,14 @@ struct PaperError<'a> {
 pub(super) fn minimise(
     problem: &AcceleranceProblem,
     start: &Start,
+    boundary: Boundary,
     parameters: &[f64],
     weights: PaperWeights,
 ) -> Result<Vec<f64>, IdentifyError> {
     let pieces = problem.pieces.iter().zip(&start.pieces).zip(&start.matching.modes);
     let points = pieces.map(|((piece, own), modes)| piece_points(&piece.records, &own.poles, modes)).collect();
-    let error = PaperError { problem, start, parameters, weights, points };
-    let free = problem.free.len();
+    let error = PaperError { problem, boundary, parameters, weights, points };
+    let free = problem.constants.count();
     let mut found = parameters.to_vec();
     if free > 0 {
         let bounds: Vec<(f64, f64)> = problem.bounds().into_iter().take(free).collect();
@@ -116,10 +117,10 @@ const SMALL_DAMPING_STEP: f64 = 1e-11;
 impl PaperError<'_> {
     /// The error at logarithms of the free constants, with the logarithms of the best damping ratios.
     fn at(&self, logs: &[f64]) -> Result<(f64, Vec<f64>), ModelError> {
-        let [e_x, g_zx] = self.problem.values(logs);
         let (mut sum, mut all) = (0.0, Vec::new());
         for (index, piece) in self.problem.pieces.iter().enumerate() {
-            let models = self.place_models(index, piece, BeamConstants { e_x, g_zx })?;
+            let values = self.problem.values(logs, index);
+            let models = self.place_models(piece, BeamConstants { e_x: values[0], g_zx: values[1] })?;
             let offset = self.problem.zeta_offset(index);
             let start = &self.parameters[offset..offset + piece.free_zetas];
             let (error, log_zetas) = self.best_damping(piece, &models, &self.points[index], start);
@@ -129,13 +130,9 @@ impl PaperError<'_> {
         Ok((sum, all))
     }
 
-    fn place_models(
-        &self,
-        index: usize,
-        piece: &PieceProblem,
-        constants: BeamConstants,
-    ) -> Result<Vec<PlaceModel>, ModelError> {
-        let beam = ExactBeam::new(&piece.sizes, self.start.poles[index].boundary, constants)?;
+    fn place_models(&self, piece: &PieceProblem, constants: BeamConstants) -> Result<Vec<PlaceModel>, ModelError> {
+        let beam = ExactBeam::new(&piece.sizes, self.boundary, constants)?;
+        let flexibility = StaticFlexibility::new(&piece.sizes, self.boundary)?;
         let rigid = beam.rigid_modes();
         let flexible: Vec<_> = beam.flexible_modes().take(piece.summed).collect();
         let model = |record: &PlaceRecord| {
@@ -143,10 +140,10 @@ impl PaperError<'_> {
             let product = |mode: &orthopanel_model::BeamMode| mode.deflection(force) * mode.deflection(response);
             let modes: Vec<(f64, f64)> =
                 flexible.iter().map(|mode| (mode.angular_frequency(), product(mode))).collect();
-            let (flexibility, _) = piece.flexibility.between(force, response, constants.e_x, constants.g_zx);
+            let (static_part, _) = flexibility.between(force, response, constants.e_x, constants.g_zx);
             let summed: f64 = modes.iter().map(|(omega, product)| product / (omega * omega)).sum();
             let rigid = rigid.iter().map(product).sum();
-            PlaceModel { rigid, modes, rest: flexibility - summed, decay_rate: record.decay_rate }
+            PlaceModel { rigid, modes, rest: static_part - summed, decay_rate: record.decay_rate }
         };
         Ok(piece.records.iter().map(model).collect())
     }

@@ -3,15 +3,14 @@
 use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, Par};
 use num_complex::Complex64;
-use orthopanel_model::{
-    BEAM_CONSTANTS, Boundary, Constant, ModelError, Piece, Place, StaticFlexibility, Structure, TimoshenkoBeam,
-    sensitive_modes,
-};
+use orthopanel_model::{ModelError, Piece, Place};
 use rayon::prelude::*;
 
 use super::line_block::{BLOCK, LineBlock};
 use super::records::PlaceRecord;
+use super::structures::ModeSynthesis;
 use super::synthesis::{DampingLaw, PairModel};
+use crate::free_constants::FreeConstants;
 use crate::least_squares::Quadratic;
 
 /// Records of one piece and what carries its model.
@@ -24,26 +23,24 @@ pub(super) struct PieceProblem {
     pub in_band: usize,
     /// Modes whose damping is free: those below 1.3 times the band, whose flanks reach into it.
     pub free_zetas: usize,
-    /// Modes summed one by one: those below 2.5 times the band.
+    /// Modes summed one by one: those within the structure's reach.
     pub summed: usize,
-    beam: TimoshenkoBeam,
-    pub flexibility: StaticFlexibility,
+    synthesis: Box<dyn ModeSynthesis>,
     places: Vec<Place>,
     pairs: Vec<(usize, usize)>,
 }
 
 impl PieceProblem {
-    /// `frequencies` are those of the starting model, enough to pass 2.5 times the band.
+    /// `frequencies` are those of the starting model's modes that are summed.
     pub(super) fn new(
         piece: usize,
         sizes: Piece,
-        boundary: Boundary,
+        synthesis: Box<dyn ModeSynthesis>,
         records: Vec<PlaceRecord>,
         frequencies: &[f64],
-    ) -> Result<Self, ModelError> {
+    ) -> Self {
         let band = records.iter().map(PlaceRecord::band_end).fold(0.0, f64::max);
         let below = |limit: f64| frequencies.iter().filter(|&&frequency| frequency < limit).count();
-        let summed = below(2.5 * band).max(1);
         let mut places: Vec<Place> = Vec::new();
         let mut number = |place: Place| {
             places.iter().position(|known| *known == place).unwrap_or_else(|| {
@@ -52,28 +49,25 @@ impl PieceProblem {
             })
         };
         let pairs = records.iter().map(|record| (number(record.force_at), number(record.response_at))).collect();
-        Ok(Self {
+        Self {
             piece,
             sizes,
             in_band: below(band),
             free_zetas: below(1.3 * band),
-            summed,
-            // Twice as many terms as modes, and some: the sum's modes then stand to rounding.
-            beam: TimoshenkoBeam::new(&sizes, boundary, 2 * summed + 24)?,
-            flexibility: StaticFlexibility::new(&sizes, boundary)?,
+            summed: frequencies.len().max(1),
+            synthesis,
             records,
             places,
             pairs,
-        })
+        }
     }
 
     /// The model of every record at these constants and logarithms of the free damping ratios.
-    fn pair_models(&self, values: &[f64; 2], log_zetas: &[f64], law: DampingLaw) -> Result<Vec<PairModel>, ModelError> {
-        let modes = sensitive_modes(&self.beam, values, self.summed, &self.places)?;
+    fn pair_models(&self, values: &[f64], log_zetas: &[f64], law: DampingLaw) -> Result<Vec<PairModel>, ModelError> {
+        let modes = self.synthesis.modes(values, self.summed, &self.places)?;
         let zetas = self.zetas(log_zetas);
         let between = |(pair, record): (&(usize, usize), &PlaceRecord)| {
-            let [first, second] = [pair.0, pair.1].map(|number| self.places[number].x);
-            let flexibility = self.flexibility.between(first, second, values[0], values[1]);
+            let flexibility = self.synthesis.flexibility(&modes, &self.places, *pair, values);
             let lines = (record.decay_rate, record.band_end());
             PairModel::new(&modes, *pair, flexibility, law, (&zetas, self.free_zetas), lines)
         };
@@ -87,11 +81,9 @@ impl PieceProblem {
     }
 }
 
-/// All pieces of a test; they share the constants.
+/// All pieces of a test; they share the constants that are not a piece's own.
 pub(super) struct AcceleranceProblem {
-    pub constants: [Constant; 2],
-    pub held: [Option<f64>; 2],
-    pub free: Vec<usize>,
+    pub constants: FreeConstants,
     pub law: DampingLaw,
     pub pieces: Vec<PieceProblem>,
     /// Where the damping of a mode that the records do not show is kept, as a logarithm.
@@ -103,14 +95,18 @@ pub(super) struct AcceleranceProblem {
 const PRIOR_LOG_ZETA_STD: f64 = 2.0;
 
 impl AcceleranceProblem {
-    pub(super) fn new(held: [Option<f64>; 2], law: DampingLaw, pieces: Vec<PieceProblem>, usual_log_zeta: f64) -> Self {
-        let free = (0..2).filter(|&index| held[index].is_none()).collect();
-        Self { constants: BEAM_CONSTANTS, held, free, law, pieces, usual_log_zeta }
+    pub(super) fn new(
+        constants: FreeConstants,
+        law: DampingLaw,
+        pieces: Vec<PieceProblem>,
+        usual_log_zeta: f64,
+    ) -> Self {
+        Self { constants, law, pieces, usual_log_zeta }
     }
 
     /// Number of parameters.
     pub(super) fn size(&self) -> usize {
-        self.free.len() + self.pieces.iter().map(|piece| piece.free_zetas).sum::<usize>()
+        self.constants.count() + self.pieces.iter().map(|piece| piece.free_zetas).sum::<usize>()
     }
 
     /// Number of real data: two a line.
@@ -125,20 +121,16 @@ impl AcceleranceProblem {
 
     /// Where the damping of a piece begins in the parameters.
     pub(super) fn zeta_offset(&self, piece: usize) -> usize {
-        self.free.len() + self.pieces[..piece].iter().map(|piece| piece.free_zetas).sum::<usize>()
+        self.constants.count() + self.pieces[..piece].iter().map(|piece| piece.free_zetas).sum::<usize>()
     }
 
-    pub(super) fn values(&self, parameters: &[f64]) -> [f64; 2] {
-        let mut values = self.held.map(|held| held.unwrap_or(f64::NAN));
-        for (&index, log) in self.free.iter().zip(parameters) {
-            values[index] = log.exp().clamp(self.constants[index].low, self.constants[index].high);
-        }
-        values
+    /// The constants of piece number `piece` of this problem.
+    pub(super) fn values(&self, parameters: &[f64], piece: usize) -> Vec<f64> {
+        self.constants.values(parameters, self.pieces[piece].piece)
     }
 
     pub(super) fn bounds(&self) -> Vec<(f64, f64)> {
-        let constants =
-            self.free.iter().map(|&index| (self.constants[index].low.ln(), self.constants[index].high.ln()));
+        let constants = self.constants.bounds().into_iter();
         constants.chain(std::iter::repeat(log_zeta_bounds())).take(self.size()).collect()
     }
 
@@ -162,24 +154,28 @@ impl AcceleranceProblem {
 
     fn pair_models(&self, piece: usize, parameters: &[f64]) -> Result<Vec<PairModel>, ModelError> {
         let (own, offset) = (&self.pieces[piece], self.zeta_offset(piece));
-        own.pair_models(&self.values(parameters), &parameters[offset..offset + own.free_zetas], self.law)
+        own.pair_models(&self.values(parameters, piece), &parameters[offset..offset + own.free_zetas], self.law)
     }
 
     /// Half the curvature of $\sum 2|H_{cal}-H_{exp}|^2/\mathrm{var}$ and of the damping priors, with gradient and value.
     pub(super) fn linearise(&self, parameters: &[f64]) -> Result<Quadratic, ModelError> {
-        let values = self.values(parameters);
         let mut sum = Quadratic::zero(self.size());
         for (index, piece) in self.pieces.iter().enumerate() {
             let models = self.pair_models(index, parameters)?;
-            let by_constants = piece.beam.coefficient_derivatives(&values)?;
-            // ∂c_i/∂ln p_j of the free constants.
-            let chain: Vec<Vec<f64>> = self
-                .free
-                .iter()
-                .map(|&j| (0..by_constants.nrows()).map(|i| by_constants[(i, j)] * values[j]).collect())
+            let values = self.values(parameters, index);
+            let by_constants = piece.synthesis.coefficient_derivatives(&values)?;
+            let of_constant = self.constants.parameters_of(piece.piece);
+            // ∂c_i/∂p_j of the parameters; several constants may follow one.
+            let mut chain = vec![vec![0.0; by_constants.nrows()]; self.constants.count()];
+            for (constant, parameter) in of_constant.iter().enumerate() {
+                if let Some(shares) = parameter.and_then(|parameter| chain.get_mut(parameter)) {
+                    let slope = self.constants.slope(constant, values[constant]);
+                    shares.iter_mut().enumerate().for_each(|(i, share)| *share += by_constants[(i, constant)] * slope);
+                }
+            }
+            let columns: Vec<usize> = (0..self.constants.count())
+                .chain((0..piece.free_zetas).map(|mode| self.zeta_offset(index) + mode))
                 .collect();
-            let columns: Vec<usize> =
-                (0..self.free.len()).chain((0..piece.free_zetas).map(|mode| self.zeta_offset(index) + mode)).collect();
             let run = |record: &PlaceRecord| (0..record.value.len()).step_by(RUN);
             let jobs: Vec<(&PlaceRecord, &PairModel, usize)> = piece
                 .records
@@ -191,7 +187,7 @@ impl AcceleranceProblem {
                 jobs.into_par_iter().map(|(record, model, from)| run_products(record, model, &chain, from)).collect();
             parts.iter().for_each(|part| sum.add_products(part, &columns));
         }
-        for (column, log_zeta) in parameters.iter().enumerate().skip(self.free.len()) {
+        for (column, log_zeta) in parameters.iter().enumerate().skip(self.constants.count()) {
             sum.add_row((log_zeta - self.usual_log_zeta) / PRIOR_LOG_ZETA_STD, &[(column, 1.0 / PRIOR_LOG_ZETA_STD)]);
         }
         sum.mirror();

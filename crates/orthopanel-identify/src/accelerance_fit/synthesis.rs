@@ -75,7 +75,7 @@ impl PairModel {
     pub(super) fn new(
         modes: &SensitiveModes,
         (force, response): (usize, usize),
-        flexibility: (f64, [f64; 2]),
+        flexibility: (f64, Vec<f64>),
         law: DampingLaw,
         (zetas, near): (&[f64], usize),
         (decay_rate, band): (f64, f64),
@@ -107,7 +107,7 @@ impl PairModel {
             }
         }
         // Derivatives of C1 and beyond are left out: too small to steer a search, and the value itself is whole.
-        let static_by: Vec<f64> = (0..2)
+        let static_by: Vec<f64> = (0..flexibility.1.len())
             .map(|i| {
                 let of_mode = |mode: &NearMode| {
                     (mode.product_by[i] - mode.product * mode.omega2_by[i] / mode.omega2) / mode.omega2

@@ -1,43 +1,32 @@
 //! Starting values, from the data alone.
 
-use orthopanel_model::SHEAR_COEFFICIENT;
-
 use super::problem::FrequencyProblem;
 use crate::IdentifyError;
+use crate::starting_constants::guess;
 
 /// $E_x/(k'G_{zx})$ tried: from solid metal to the softest core.
 const SOFTNESS: [f64; 4] = [2.0, 16.0, 128.0, 1024.0];
 
-/// Logarithms of the free constants from which a search converges.
+/// Parameters from which a search converges.
 ///
-/// At a fixed ratio of the constants every frequency goes with $\sqrt{E_x}$, so the best $E_x$ follows in closed form;
-/// what remains is a look at a few ratios.
+/// At fixed ratios of the moduli every frequency goes with their root, so the best size follows in closed form; what
+/// remains is a look at a few ratios.
 pub(super) fn starting_values(problem: &FrequencyProblem) -> Result<Vec<f64>, IdentifyError> {
+    let constants = &problem.constants;
+    let scalable = constants.moduli_are_free();
     let mut best: Option<(f64, Vec<f64>)> = None;
     for softness in SOFTNESS {
-        let shear_ratio = softness * SHEAR_COEFFICIENT;
-        let constants = match problem.held {
-            [Some(e_x), Some(g_zx)] => [e_x, g_zx],
-            [Some(e_x), None] => [e_x, e_x / shear_ratio],
-            [None, Some(g_zx)] => [g_zx * shear_ratio, g_zx],
-            [None, None] => [GUESS, GUESS / shear_ratio],
-        };
-        let scaling = Scaling::of(problem, constants)?;
-        let both_free = problem.free.len() == 2;
-        let (factor, error) = if both_free { (scaling.factor(), scaling.best_error()) } else { (1.0, scaling.error()) };
+        let guess = guess(problem.structure, constants, softness);
+        let scaling = Scaling::of(problem, &guess)?;
+        let (factor, error) = if scalable { (scaling.factor(), scaling.best_error()) } else { (1.0, scaling.error()) };
         if best.as_ref().is_none_or(|(least, _)| error < *least) {
-            let value = |&index: &usize| {
-                let constant = problem.constants[index];
-                (factor * constants[index]).clamp(constant.low, constant.high).ln()
-            };
-            best = Some((error, problem.free.iter().map(value).collect()));
+            let scaled = constants.scaled(&guess, factor);
+            let parameter = |index: usize| constants.parameter(index, scaled[constants.free[index].constant]);
+            best = Some((error, (0..constants.count()).map(parameter).collect()));
         }
     }
-    Ok(best.map(|(_, logs)| logs).unwrap_or_default())
+    Ok(best.map(|(_, parameters)| parameters).unwrap_or_default())
 }
-
-/// Any value will do: the factor puts it right.
-const GUESS: f64 = 1e9;
 
 /// Sums over $q = f_{cal}/f_{exp}$ at some constants.
 struct Scaling {
@@ -47,10 +36,10 @@ struct Scaling {
 }
 
 impl Scaling {
-    fn of(problem: &FrequencyProblem, constants: [f64; 2]) -> Result<Self, IdentifyError> {
+    fn of(problem: &FrequencyProblem, constants: &[f64]) -> Result<Self, IdentifyError> {
         let mut scaling = Self { count: 0.0, sum: 0.0, squares: 0.0 };
         for set in &problem.sets {
-            for (calculated, measured) in set.frequencies(&constants)?.iter().zip(&set.measured) {
+            for (calculated, measured) in set.modes.frequencies(constants)?.iter().zip(&set.measured) {
                 let quotient = calculated / measured;
                 scaling.count += 1.0;
                 scaling.sum += quotient;
@@ -60,7 +49,7 @@ impl Scaling {
         Ok(scaling)
     }
 
-    /// The factor on both constants that fits best, $(\sum q/\sum q^2)^2$.
+    /// The factor on all moduli that fits best, $(\sum q/\sum q^2)^2$.
     fn factor(&self) -> f64 {
         (self.sum / self.squares).powi(2)
     }

@@ -4,7 +4,6 @@ use super::minimise;
 use super::problem::FrequencyProblem;
 use crate::IdentifyError;
 use crate::Search;
-use crate::elastic_constants::refuse_bounds;
 use orthopanel_data::ImpactTest;
 
 fn piece_1() -> FrequencyProblem {
@@ -22,7 +21,8 @@ fn piece_1() -> FrequencyProblem {
 }
 
 fn minimum(problem: &FrequencyProblem, start: [f64; 2], search: Search) -> [f64; 2] {
-    problem.values(&minimise(problem, &start.map(f64::ln), search).unwrap_or_else(|error| panic!("{error}")))
+    let found = minimise(problem, &start.map(f64::ln), search).unwrap_or_else(|error| panic!("{error}"));
+    [0, 1].map(|parameter| problem.constants.value(parameter, found[parameter]))
 }
 
 fn assert_close(found: [f64; 2], expected: [f64; 2]) {
@@ -45,8 +45,8 @@ fn a_simplex_that_starts_outside_its_bounds_comes_in() {
 fn a_bound_close_to_the_minimum_does_not_flatten_the_simplex() {
     let mut problem = piece_1();
     let expected = minimum(&problem, [1e10, 5e8], Search::LeastSquares);
-    problem.constants[0].high = expected[0] * 1.001;
-    problem.constants[1].low = expected[1] * 0.999;
+    problem.constants.constants[0].high = expected[0] * 1.001;
+    problem.constants.constants[1].low = expected[1] * 0.999;
     assert_close(minimum(&problem, [expected[0] * 0.8, expected[1]], Search::Simplex), expected);
 }
 
@@ -55,8 +55,8 @@ fn a_bound_close_to_the_minimum_does_not_flatten_the_simplex() {
 fn a_start_on_a_bound_is_left() {
     let mut problem = piece_1();
     let expected = minimum(&problem, [1e10, 5e8], Search::LeastSquares);
-    problem.constants[0].low = 5e9;
-    problem.constants[1].low = 1e8;
+    problem.constants.constants[0].low = 5e9;
+    problem.constants.constants[1].low = 1e8;
     for search in [Search::Simplex, Search::LeastSquares] {
         assert_close(minimum(&problem, [5e9, 1e8], search), expected);
     }
@@ -66,10 +66,10 @@ fn a_start_on_a_bound_is_left() {
 #[test]
 fn a_minimum_on_a_bound_is_refused() {
     let mut problem = piece_1();
-    problem.constants[0].high = 8e9;
+    problem.constants.constants[0].high = 8e9;
     for search in [Search::Simplex, Search::LeastSquares] {
         let Ok(found) = minimise(&problem, &[7e9_f64.ln(), 5e8_f64.ln()], search) else { panic!("no minimum") };
-        let refused = refuse_bounds(&problem.constants, &problem.free, &found);
+        let refused = problem.constants.refuse_bounds(&found);
         assert!(matches!(refused, Err(IdentifyError::OnBound { name: "e_x", .. })), "{search:?}: {refused:?}");
     }
 }

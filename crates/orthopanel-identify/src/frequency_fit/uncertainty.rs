@@ -6,11 +6,11 @@ use super::problem::FrequencyProblem;
 use crate::Correlation;
 use crate::least_squares::Linearised;
 
-/// Of the logarithms of the free constants.
+/// Of the parameters.
 #[derive(Default)]
 pub(super) struct Uncertainty {
     /// Standard deviation of each; empty where the data cannot tell.
-    pub log_std: Vec<f64>,
+    pub std: Vec<f64>,
     pub correlations: Vec<Correlation>,
     /// Rms error \[%\] of each frequency predicted from the others.
     pub left_one_out_percent: Option<f64>,
@@ -19,22 +19,27 @@ pub(super) struct Uncertainty {
 pub(super) fn uncertainty(problem: &FrequencyProblem, at: &Linearised) -> Uncertainty {
     let quadratic = at.quadratic();
     let Some(covariance) = quadratic.covariance() else { return Uncertainty::default() };
-    let free = problem.free.len();
-    let beyond = problem.count() - free;
-    let scatter = if beyond > 0 { quadratic.cost / beyond as f64 } else { 0.0 };
-    let variance = scatter.max(rounding_variance(problem));
-    let std = |i: usize| covariance[(i, i)].sqrt();
-    let name = |i: usize| problem.constants[problem.free[i]].name;
+    let free = problem.constants.count();
+    let variance = residual_variance(problem, at);
+    let root = |i: usize| covariance[(i, i)].sqrt();
+    let name = |i: usize| problem.constants.constant(i).name;
     let pairs = (0..free).flat_map(|i| (i + 1..free).map(move |j| (i, j)));
     let correlations = pairs
-        .map(|(i, j)| Correlation { first: name(i), second: name(j), value: covariance[(i, j)] / (std(i) * std(j)) })
+        .map(|(i, j)| Correlation { first: name(i), second: name(j), value: covariance[(i, j)] / (root(i) * root(j)) })
         .collect();
-    let log_std = if variance > 0.0 { (0..free).map(|i| variance.sqrt() * std(i)).collect() } else { Vec::new() };
-    Uncertainty { log_std, correlations, left_one_out_percent: left_one_out_percent(at, &covariance) }
+    let std = if variance > 0.0 { (0..free).map(|i| variance.sqrt() * root(i)).collect() } else { Vec::new() };
+    Uncertainty { std, correlations, left_one_out_percent: left_one_out_percent(at, &covariance) }
+}
+
+/// Variance of the relative residuals: their scatter, or the rounding to the analyser's bins, whichever is larger.
+pub(super) fn residual_variance(problem: &FrequencyProblem, at: &Linearised) -> f64 {
+    let beyond = problem.count().saturating_sub(problem.constants.count());
+    let scatter = if beyond > 0 { at.quadratic().cost / beyond as f64 } else { 0.0 };
+    scatter.max(rounding_variance(problem))
 }
 
 /// Mean relative variance by rounding to the analyser's bins, where these are stated.
-fn rounding_variance(problem: &FrequencyProblem) -> f64 {
+pub(super) fn rounding_variance(problem: &FrequencyProblem) -> f64 {
     let relative: Vec<f64> = problem
         .sets
         .iter()
@@ -48,7 +53,7 @@ fn rounding_variance(problem: &FrequencyProblem) -> f64 {
 ///
 /// A fit without datum $i$ misses it by $r_i/(1-h_i)$ with $h = J(J^TJ)^{-1}J^T$ (Allen's PRESS). That is exact where
 /// the frequencies are linear in the logarithms of the constants; here it is within 1 % of the refits (tested).
-fn left_one_out_percent(at: &Linearised, covariance: &Mat<f64>) -> Option<f64> {
+pub(super) fn left_one_out_percent(at: &Linearised, covariance: &Mat<f64>) -> Option<f64> {
     let count = at.residuals.len();
     let free = covariance.nrows();
     if count < free + 1 {

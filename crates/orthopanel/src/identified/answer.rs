@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use orthopanel_identify::{Identification, IdentifiedConstant, ModeFit, PieceFit};
+use orthopanel_identify::{Identification, IdentifiedConstant, ModeFit, NotIdentified, PieceFit};
 use orthopanel_model::StructureKind;
 use serde::Serialize;
 
@@ -12,6 +12,11 @@ pub struct Answer {
     schema: &'static str,
     structure: StructureKind,
     constants: BTreeMap<&'static str, ConstantEntry>,
+    /// Constants that a piece has of its own, by the piece's name.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    own_constants: BTreeMap<String, BTreeMap<&'static str, ConstantEntry>>,
+    /// Constants that the data do not show, the least seen first.
+    not_identified: Vec<NotIdentifiedEntry>,
     correlations: Vec<CorrelationEntry>,
     modes: Vec<ModeEntry>,
     error: ErrorEntry,
@@ -29,6 +34,17 @@ struct ConstantEntry {
 }
 
 #[derive(Serialize)]
+struct NotIdentifiedEntry {
+    name: &'static str,
+    held_at: f64,
+    unit: &'static str,
+    /// What the data leave open: the 95 % interval, cut at the bounds.
+    interval: [f64; 2],
+    /// The direction along which the data are blindest, such as `ln g_yz +0.98, nu_xy -0.17`.
+    direction: String,
+}
+
+#[derive(Serialize)]
 struct CorrelationEntry {
     first: &'static str,
     second: &'static str,
@@ -39,6 +55,8 @@ struct CorrelationEntry {
 struct ModeEntry {
     piece: String,
     mode: usize,
+    /// Nodal lines crossed along x and along y.
+    nodes: [usize; 2],
     measured_hz: f64,
     model_hz: f64,
     error_percent: f64,
@@ -59,12 +77,26 @@ struct ErrorEntry {
 impl Answer {
     pub(super) fn of(found: &Identification) -> Self {
         let constant = |constant: &IdentifiedConstant| {
-            let &IdentifiedConstant { name, unit, value, std, held } = constant;
+            let &IdentifiedConstant { name, unit, value, std, held, .. } = constant;
             (name, ConstantEntry { value, std, unit, held })
+        };
+        let mut own_constants: BTreeMap<String, BTreeMap<&'static str, ConstantEntry>> = BTreeMap::new();
+        for own in &found.constants {
+            if let Some(piece) = &own.piece {
+                own_constants.entry(piece.clone()).or_default().extend([constant(own)]);
+            }
+        }
+        let unseen = |unseen: &NotIdentified| NotIdentifiedEntry {
+            name: unseen.name,
+            held_at: unseen.held_at,
+            unit: unseen.unit,
+            interval: unseen.interval,
+            direction: unseen.direction_text(),
         };
         let mode = |fit: &PieceFit, mode: &ModeFit| ModeEntry {
             piece: fit.name.clone(),
             mode: mode.mode,
+            nodes: mode.nodes,
             measured_hz: mode.measured,
             model_hz: mode.model,
             error_percent: mode.error_percent(),
@@ -75,7 +107,9 @@ impl Answer {
         Self {
             schema: "orthopanel.identified/1",
             structure: found.structure,
-            constants: found.constants.iter().map(constant).collect(),
+            constants: found.constants.iter().filter(|shared| shared.piece.is_none()).map(constant).collect(),
+            own_constants,
+            not_identified: found.not_identified.iter().map(unseen).collect(),
             correlations: correlations
                 .map(|pair| CorrelationEntry { first: pair.first, second: pair.second, value: pair.value })
                 .collect(),

@@ -1,6 +1,6 @@
 //! What an identification found, as tables for people.
 
-use orthopanel_identify::{IdentifiedConstant, ModeFit, PieceFit};
+use orthopanel_identify::{IdentifiedConstant, ModeFit, NotIdentified, PieceFit};
 use orthopanel_model::Piece;
 
 use super::Identified;
@@ -21,10 +21,22 @@ impl Identified {
                 None if constant.held => "held".into(),
                 None => "unknown".into(),
             };
-            vec![constant.name.into(), format!("{:.3e}", constant.value), std, constant.unit.into()]
+            let name = match &constant.piece {
+                Some(piece) => format!("{} of {piece}", constant.name),
+                None => constant.name.into(),
+            };
+            vec![name, format!("{:.3e}", constant.value), std, constant.unit.into()]
         };
         let rows: Vec<_> = self.found.constants.iter().map(row).collect();
         text += &tables::aligned(&["constant", "value", "std", "unit"], &rows);
+        for unseen in &self.found.not_identified {
+            let NotIdentified { name, unit, held_at, .. } = unseen;
+            let unit = if *unit == "1" { "" } else { unit };
+            let direction = unseen.direction_text();
+            text += &format!(
+                "{name} is not identified, held at {held_at:.3e} {unit}: the data are blindest along {direction}\n"
+            );
+        }
         for pair in &self.found.correlations {
             text += &format!("correlation of {} and {}: {:+.3}\n", pair.first, pair.second, pair.value);
         }

@@ -1,0 +1,98 @@
+//! A recorded plate: modes told by their shape, and summed on the plate's own basis.
+
+use faer::Mat;
+use orthopanel_model::{
+    Boundary, MindlinPlate, ModelError, Piece, Place, SensitiveModes, Structure, ritz_modes, sensitive_modes,
+};
+
+use super::{ModeSynthesis, RecordedStructure, SeenMode};
+
+pub(super) struct RecordedPlate {
+    pub piece: Piece,
+    pub boundary: Boundary,
+}
+
+/// Fewest modes asked for, and most: more of a plate's modes than these overlap, and no record parts them.
+const MODES: (usize, usize) = (24, 150);
+
+impl RecordedPlate {
+    /// All modes of the smallest basis that reaches `limit` \[Hz\].
+    fn plate(&self, values: &[f64], limit: f64) -> Result<(MindlinPlate, usize), ModelError> {
+        let mut count = MODES.0;
+        loop {
+            let plate = MindlinPlate::with_basis_for(&self.piece, self.boundary, values, count)?;
+            let highest =
+                ritz_modes(&plate, values, count)?.last().map_or(f64::INFINITY, |mode| mode.angular_frequency);
+            if highest > limit * std::f64::consts::TAU || count >= MODES.1 {
+                return Ok((plate, count));
+            }
+            count = (count + count / 2).min(MODES.1);
+        }
+    }
+}
+
+impl RecordedStructure for RecordedPlate {
+    fn modes_below(&self, values: &[f64], limit: f64, pairs: &[(Place, Place)]) -> Result<Vec<SeenMode>, ModelError> {
+        let (plate, count) = self.plate(values, limit)?;
+        let modes = ritz_modes(&plate, values, count)?;
+        let flexible = modes.iter().filter(|mode| mode.angular_frequency > 0.0);
+        let seen = flexible.map(|mode| SeenMode {
+            frequency: mode.angular_frequency / std::f64::consts::TAU,
+            nodes: plate.mode_name(mode).nodes,
+            products: pairs
+                .iter()
+                .map(|&(force, response)| mode.deflection(&plate, force) * mode.deflection(&plate, response))
+                .collect(),
+        });
+        Ok(seen.take_while(|mode| mode.frequency < limit).collect())
+    }
+
+    // The density of a plate's modes does not fall with frequency, so a sum as far as a beam's would hold hundreds.
+    fn reach(&self) -> f64 {
+        1.6
+    }
+
+    fn synthesis(&self, values: &[f64], count: usize) -> Result<Box<dyn ModeSynthesis>, ModelError> {
+        // A basis for more modes than are summed: those beyond it stand for the static part of the rest.
+        let plate = MindlinPlate::with_basis_for(&self.piece, self.boundary, values, (count + count / 2).max(MODES.0))?;
+        Ok(Box::new(PlateSynthesis { plate }))
+    }
+}
+
+struct PlateSynthesis {
+    plate: MindlinPlate,
+}
+
+impl ModeSynthesis for PlateSynthesis {
+    fn modes(&self, values: &[f64], count: usize, places: &[Place]) -> Result<SensitiveModes, ModelError> {
+        sensitive_modes(&self.plate, values, count, places)
+    }
+
+    /// Over all modes of the basis. A plate that shears is infinitely soft under a point force, so no basis holds the
+    /// driving point's; derivatives are those of the modes in the sum, which hold nearly all of it.
+    fn flexibility(
+        &self,
+        modes: &SensitiveModes,
+        _: &[Place],
+        (first, second): (usize, usize),
+        _: &[f64],
+    ) -> (f64, Vec<f64>) {
+        let summed = modes.flexible.iter().map(|mode| mode.shape[first] * mode.shape[second] / mode.omega2);
+        let higher = modes.higher.iter().map(|(omega2, shape)| shape[first] * shape[second] / omega2);
+        let coefficients = modes.flexible.first().map_or(0, |mode| mode.omega2_by.len());
+        let by = (0..coefficients).map(|i| {
+            let of_mode = |mode: &orthopanel_model::ModeSensitivity| {
+                let by_product =
+                    mode.shape_by[i][first] * mode.shape[second] + mode.shape[first] * mode.shape_by[i][second];
+                let product = mode.shape[first] * mode.shape[second];
+                (by_product - product * mode.omega2_by[i] / mode.omega2) / mode.omega2
+            };
+            modes.flexible.iter().map(of_mode).sum()
+        });
+        (summed.chain(higher).sum(), by.collect())
+    }
+
+    fn coefficient_derivatives(&self, values: &[f64]) -> Result<Mat<f64>, ModelError> {
+        self.plate.coefficient_derivatives(values)
+    }
+}

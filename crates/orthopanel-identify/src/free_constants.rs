@@ -1,0 +1,192 @@
+//! Which constants a test holds, which it leaves free, and which each piece has of its own.
+
+use orthopanel_data::ImpactTest;
+use orthopanel_model::Constant;
+
+use crate::IdentifyError;
+
+/// A constant to find.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct FreeConstant {
+    /// Its position in the structure's list.
+    pub constant: usize,
+    /// The piece that has it of its own; `None` where pieces share it.
+    pub piece: Option<usize>,
+}
+
+/// What a constant does that is no parameter.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Rest {
+    /// Held at a value.
+    Held(f64),
+    /// A fixed multiple of another constant.
+    Follows {
+        /// The other constant.
+        leader: usize,
+        /// The factor.
+        ratio: f64,
+    },
+}
+
+/// The constants of a structure, and which of them are parameters of a search.
+///
+/// A parameter is the logarithm of a constant where its bounds are positive (the moduli), and the constant itself where
+/// they are not (Poisson's ratio).
+#[derive(Debug, Clone)]
+pub(crate) struct FreeConstants {
+    pub constants: Vec<Constant>,
+    /// Values of the constants that are held; free ones are `None`.
+    pub held: Vec<Option<f64>>,
+    /// Constants that neither the test file holds nor a parameter moves, with what they do meanwhile.
+    pub resting: Vec<(usize, Rest)>,
+    /// One a parameter.
+    pub free: Vec<FreeConstant>,
+}
+
+impl FreeConstants {
+    /// What the test file says of the constants of a structure.
+    ///
+    /// # Errors
+    /// [`IdentifyError::UnknownConstant`], and a held value out of its bounds.
+    pub fn of(test: &ImpactTest, constants: &[Constant]) -> Result<Self, IdentifyError> {
+        let own_names = test.pieces.iter().flat_map(|piece| &piece.own_constants);
+        for name in test.constants.keys().chain(own_names) {
+            if constants.iter().all(|constant| constant.name != name) {
+                let known = constants.iter().map(|constant| constant.name).collect::<Vec<_>>().join(", ");
+                return Err(IdentifyError::UnknownConstant { name: name.clone(), known });
+            }
+        }
+        let held: Vec<Option<f64>> =
+            constants.iter().map(|constant| test.constants.get(constant.name).copied()).collect();
+        for (constant, value) in constants.iter().zip(&held) {
+            value.map_or(Ok(()), |value| constant.check(value))?;
+        }
+        let mut free = Vec::new();
+        for (index, constant) in constants.iter().enumerate().filter(|(index, _)| held[*index].is_none()) {
+            let is_own = |piece: &usize| test.pieces[*piece].own_constants.iter().any(|name| name == constant.name);
+            let (own, sharing): (Vec<usize>, Vec<usize>) = (0..test.pieces.len()).partition(is_own);
+            if !sharing.is_empty() {
+                free.push(FreeConstant { constant: index, piece: None });
+            }
+            free.extend(own.into_iter().map(|piece| FreeConstant { constant: index, piece: Some(piece) }));
+        }
+        Ok(Self { constants: constants.to_vec(), held, resting: Vec::new(), free })
+    }
+
+    /// Takes a constant out of the parameters; it rests.
+    pub fn rest(&mut self, constant: usize, rest: Rest) {
+        self.free.retain(|free| free.constant != constant);
+        self.resting.push((constant, rest));
+    }
+
+    /// What a constant rests on, if it does.
+    fn resting(&self, constant: usize) -> Option<Rest> {
+        self.resting.iter().find(|(resting, _)| *resting == constant).map(|(_, rest)| *rest)
+    }
+
+    /// Whether no modulus is held: all frequencies then go with the root of a factor on all moduli.
+    pub fn moduli_are_free(&self) -> bool {
+        self.constants.iter().zip(&self.held).all(|(constant, held)| !is_logarithmic(constant) || held.is_none())
+    }
+
+    /// Values with a factor on every modulus.
+    pub fn scaled(&self, values: &[f64], factor: f64) -> Vec<f64> {
+        let scaled =
+            |(constant, value): (&Constant, &f64)| if is_logarithmic(constant) { factor * value } else { *value };
+        self.constants.iter().zip(values).map(scaled).collect()
+    }
+
+    /// Number of parameters.
+    pub fn count(&self) -> usize {
+        self.free.len()
+    }
+
+    /// The parameter of each constant of a piece, or the one of the constant that it follows; `None` where it is held.
+    pub fn parameters_of(&self, piece: usize) -> Vec<Option<usize>> {
+        let of = |constant: usize| {
+            let matches = |owner: Option<usize>| {
+                self.free.iter().position(|free| free.constant == constant && free.piece == owner)
+            };
+            matches(Some(piece)).or_else(|| matches(None))
+        };
+        let own_or_leader = |constant: usize| match self.resting(constant) {
+            Some(Rest::Follows { leader, .. }) => of(leader),
+            _ => of(constant),
+        };
+        (0..self.constants.len()).map(own_or_leader).collect()
+    }
+
+    /// All constants of a piece at these parameters.
+    pub fn values(&self, parameters: &[f64], piece: usize) -> Vec<f64> {
+        let of_constant = self.parameters_of(piece);
+        let own = |constant: usize| match of_constant[constant] {
+            Some(parameter) => self.value(parameter, parameters[parameter]),
+            None => self.held[constant].unwrap_or(f64::NAN),
+        };
+        let value = |constant: usize| match self.resting(constant) {
+            Some(Rest::Held(value)) => value,
+            Some(Rest::Follows { leader, ratio }) => {
+                let Constant { low, high, .. } = self.constants[constant];
+                (ratio * own(leader)).clamp(low, high)
+            }
+            None => own(constant),
+        };
+        (0..self.constants.len()).map(value).collect()
+    }
+
+    /// The constant of one parameter.
+    pub fn value(&self, parameter: usize, at: f64) -> f64 {
+        let constant = self.constant(parameter);
+        let value = if is_logarithmic(constant) { at.exp() } else { at };
+        // exp(ln x) may pass a bound by rounding.
+        value.clamp(constant.low, constant.high)
+    }
+
+    /// The parameter at a value of its constant, within the bounds.
+    pub fn parameter(&self, parameter: usize, value: f64) -> f64 {
+        to_scale(self.constant(parameter), value.clamp(self.constant(parameter).low, self.constant(parameter).high))
+    }
+
+    /// $\partial c/\partial p$ of a constant at a value: the value itself for a logarithm.
+    pub fn slope(&self, constant: usize, value: f64) -> f64 {
+        if is_logarithmic(&self.constants[constant]) { value } else { 1.0 }
+    }
+
+    /// Bounds of the parameters.
+    pub fn bounds(&self) -> Vec<(f64, f64)> {
+        let bounds = |free: &FreeConstant| {
+            let constant = &self.constants[free.constant];
+            (to_scale(constant, constant.low), to_scale(constant, constant.high))
+        };
+        self.free.iter().map(bounds).collect()
+    }
+
+    /// Name, unit and bounds of a parameter's constant.
+    pub fn constant(&self, parameter: usize) -> &Constant {
+        &self.constants[self.free[parameter].constant]
+    }
+
+    /// Whether a parameter lies on a bound: such a value is the bound's, not the data's.
+    pub fn on_bound(&self, parameter: usize, at: f64) -> bool {
+        let constant = self.constant(parameter);
+        let (low, high) = (to_scale(constant, constant.low), to_scale(constant, constant.high));
+        at - low < 1e-6 || high - at < 1e-6
+    }
+
+    /// Refuses a minimum that lies on a bound.
+    pub fn refuse_bounds(&self, parameters: &[f64]) -> Result<(), IdentifyError> {
+        let on_bound = |&index: &usize| self.on_bound(index, parameters[index]);
+        (0..self.count()).find(on_bound).map_or(Ok(()), |index| {
+            let Constant { name, unit, .. } = *self.constant(index);
+            Err(IdentifyError::OnBound { name, value: self.value(index, parameters[index]), unit })
+        })
+    }
+}
+
+fn is_logarithmic(constant: &Constant) -> bool {
+    constant.unit == "Pa"
+}
+
+fn to_scale(constant: &Constant, value: f64) -> f64 {
+    if is_logarithmic(constant) { value.ln() } else { value }
+}

@@ -1,0 +1,63 @@
+//! Constants from the poles of records: eq. 22 over the modes that they show.
+
+use orthopanel_model::{Boundary, Piece, StructureKind};
+
+use super::problem::{FrequencyProblem, FrequencySet};
+use super::{least_squares, seen_constants, structures};
+use crate::free_constants::FreeConstants;
+use crate::least_squares::Quadratic;
+use crate::{IdentifyError, NotIdentified};
+
+/// Poles of one piece that are known modes.
+pub(crate) struct PoleSet {
+    /// Index of the piece in the test.
+    pub piece: usize,
+    pub sizes: Piece,
+    pub boundary: Boundary,
+    /// Nodal lines of each.
+    pub nodes: Vec<[usize; 2]>,
+    /// \[Hz\].
+    pub frequencies: Vec<f64>,
+}
+
+/// What poles tell.
+pub(crate) struct PoleFit {
+    /// The constants that they show are free, the others rest.
+    pub constants: FreeConstants,
+    pub parameters: Vec<f64>,
+    /// Eq. 22 times its number of modes near the minimum.
+    pub at: Quadratic,
+    pub not_identified: Vec<NotIdentified>,
+}
+
+/// The constants that meet the poles best, from these values for all pieces.
+pub(crate) fn fit_poles(
+    structure: StructureKind,
+    constants: &FreeConstants,
+    start: &[f64],
+    sets: Vec<PoleSet>,
+) -> Result<PoleFit, IdentifyError> {
+    let sets = sets.into_iter().map(|set| {
+        Ok(FrequencySet {
+            piece: set.piece,
+            modes: structures::of(structure, &set.sizes, set.boundary, set.nodes)?,
+            measured: set.frequencies,
+            rounding: Vec::new(),
+        })
+    });
+    let sets = sets.collect::<Result<Vec<_>, IdentifyError>>()?;
+    let mut problem = FrequencyProblem { structure, constants: constants.clone(), sets };
+    let start: Vec<f64> = constants
+        .free
+        .iter()
+        .enumerate()
+        .map(|(index, free)| constants.parameter(index, start[free.constant]))
+        .collect();
+    let (parameters, not_identified) = match structure {
+        StructureKind::TimoshenkoBeam if start.is_empty() => (start, Vec::new()),
+        StructureKind::TimoshenkoBeam => (least_squares(&problem, &start)?, Vec::new()),
+        StructureKind::MindlinPlate => seen_constants::minimise_what_is_seen(&mut problem, &start)?,
+    };
+    let at = problem.linearise(&parameters)?.quadratic();
+    Ok(PoleFit { constants: problem.constants, parameters, at, not_identified })
+}

@@ -1,0 +1,84 @@
+//! From the minimum to what is reported.
+
+use orthopanel_data::ImpactTest;
+
+use super::problem::FrequencyProblem;
+use super::structures::Prediction;
+use super::uncertainty::uncertainty;
+use crate::free_constants::FreeConstants;
+use crate::{Identification, IdentifiedConstant, IdentifyError, ModeFit, NotIdentified, PieceFit};
+
+pub(super) fn report(
+    test: &ImpactTest,
+    problem: &FrequencyProblem,
+    found: &[f64],
+    not_identified: Vec<NotIdentified>,
+) -> Result<Identification, IdentifyError> {
+    let at = problem.linearise(found)?;
+    let uncertainty = uncertainty(problem, &at);
+    Ok(Identification {
+        structure: problem.structure,
+        constants: identified_constants(
+            test,
+            &problem.constants,
+            found,
+            &uncertainty.std.iter().copied().map(Some).collect::<Vec<_>>(),
+        ),
+        not_identified,
+        correlations: uncertainty.correlations,
+        pieces: piece_fits(test, problem, &problem.predictions(found)?),
+        frequency_rms_percent: 100.0 * (at.quadratic().cost / problem.count() as f64).sqrt(),
+        left_one_out_percent: uncertainty.left_one_out_percent,
+        accelerance_rms_percent: None,
+        chi_square: None,
+        accelerances: Vec::new(),
+        notes: Vec::new(),
+    })
+}
+
+/// Every constant in the structure's order, those of single pieces behind the shared one.
+///
+/// `std` has the standard deviation of each parameter, as far as the data tell it.
+pub(crate) fn identified_constants(
+    test: &ImpactTest,
+    constants: &FreeConstants,
+    found: &[f64],
+    std: &[Option<f64>],
+) -> Vec<IdentifiedConstant> {
+    let mut list = Vec::new();
+    for (index, constant) in constants.constants.iter().enumerate() {
+        let entry = |piece: Option<usize>, value: f64, std: Option<f64>, held: bool| IdentifiedConstant {
+            name: constant.name,
+            unit: constant.unit,
+            value,
+            std,
+            held,
+            piece: piece.map(|piece| test.pieces[piece].name.clone()),
+        };
+        let free = constants.free.iter().enumerate().filter(|(_, free)| free.constant == index);
+        let before = list.len();
+        for (parameter, free) in free {
+            let value = constants.value(parameter, found[parameter]);
+            let std = std.get(parameter).copied().flatten().map(|std| std * constants.slope(index, value));
+            list.push(entry(free.piece, value, std, false));
+        }
+        if list.len() == before {
+            list.push(entry(None, constants.values(found, 0)[index], None, true));
+        }
+    }
+    list
+}
+
+fn piece_fits(test: &ImpactTest, problem: &FrequencyProblem, predictions: &[Vec<Prediction>]) -> Vec<PieceFit> {
+    let named = test.pieces.iter();
+    let mut fits: Vec<PieceFit> = named
+        .map(|named| PieceFit { name: named.name.clone(), piece: named.piece, modes: vec![], damping: vec![] })
+        .collect();
+    for (set, predicted) in problem.sets.iter().zip(predictions) {
+        for ((&measured, prediction), &nodes) in set.measured.iter().zip(predicted).zip(set.modes.nodes()) {
+            let Prediction { mode, frequency, .. } = *prediction;
+            fits[set.piece].modes.push(ModeFit { mode, nodes, measured, model: frequency, damping: None });
+        }
+    }
+    fits
+}

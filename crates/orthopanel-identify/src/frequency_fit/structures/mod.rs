@@ -1,0 +1,61 @@
+//! The measured modes of a piece, as each structure predicts them. A new structure is one file and one line in [`of`].
+
+mod mindlin_plate;
+mod timoshenko_beam;
+
+use orthopanel_model::{BEAM_CONSTANTS, Boundary, Constant, ModelError, PLATE_CONSTANTS, Piece, StructureKind};
+
+use crate::IdentifyError;
+use mindlin_plate::PlateModes;
+use timoshenko_beam::BeamModes;
+
+/// One measured mode at given constants.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Prediction {
+    /// Its number among all flexible modes of the structure, from 1.
+    pub mode: usize,
+    /// Natural frequency \[Hz\].
+    pub frequency: f64,
+    /// $\partial\ln f/\partial c_j$ for each constant.
+    pub by_constant: Vec<f64>,
+}
+
+/// Predicts the modes of one piece that a test measures, in the test's order.
+pub(super) trait MeasuredModes: std::fmt::Debug + Send + Sync {
+    /// Natural frequencies \[Hz\] alone.
+    fn frequencies(&self, values: &[f64]) -> Result<Vec<f64>, ModelError> {
+        Ok(self.predict(values)?.into_iter().map(|prediction| prediction.frequency).collect())
+    }
+
+    /// Frequencies with derivatives by every constant.
+    fn predict(&self, values: &[f64]) -> Result<Vec<Prediction>, ModelError>;
+
+    /// Nodal lines across x and across y of each measured mode.
+    fn nodes(&self) -> &[[usize; 2]];
+}
+
+/// The constants of a structure.
+pub(crate) fn constants(kind: StructureKind) -> &'static [Constant] {
+    match kind {
+        StructureKind::TimoshenkoBeam => &BEAM_CONSTANTS,
+        StructureKind::MindlinPlate => &PLATE_CONSTANTS,
+    }
+}
+
+/// The measured modes of a piece, told by their nodal lines.
+pub(super) fn of(
+    kind: StructureKind,
+    piece: &Piece,
+    boundary: Boundary,
+    nodes: Vec<[usize; 2]>,
+) -> Result<Box<dyn MeasuredModes>, IdentifyError> {
+    Ok(match kind {
+        StructureKind::TimoshenkoBeam => Box::new(BeamModes::new(piece, boundary, nodes)?),
+        StructureKind::MindlinPlate => Box::new(PlateModes::new(piece, boundary, nodes)?),
+    })
+}
+
+/// Nodal lines of bending modes 1 to `count`: what a list of frequencies without shapes holds.
+pub(super) fn bending_nodes(boundary: Boundary, count: usize) -> Vec<[usize; 2]> {
+    (0..count).map(|index| [index + boundary.rigid_modes(), 0]).collect()
+}
