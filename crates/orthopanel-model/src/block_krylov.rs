@@ -32,7 +32,7 @@ pub(crate) fn lowest_modes(pencil: &BlockPencil<'_>, wanted: usize) -> Option<Ve
         images = beside(&images, &image);
         let found = images.ncols();
         // The projection costs more than a step: look only where convergence is likely, and then every other step.
-        let enough = found >= 4 * wanted && (found / WIDTH) % 2 == 0;
+        let enough = found >= 4 * wanted && (found / WIDTH).is_multiple_of(2);
         if enough && let Some(modes) = converged(pencil, &basis, rigid.ncols(), &images, wanted) {
             return Some(modes);
         }

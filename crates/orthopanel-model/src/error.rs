@@ -55,6 +55,21 @@ pub enum ModelError {
         /// $\sqrt{E_x/E_y}$.
         limit: f64,
     },
+    /// A plate too thin for its basis to keep the digits of its shear strain.
+    #[error(
+        "thickness = {thickness} m: shear stiffness is {ratio:.1e} times bending stiffness, the plate's basis takes up to \
+         {limit:.0e}: from {least:.2e} m on it holds these constants"
+    )]
+    TooThin {
+        /// Thickness \[m\].
+        thickness: f64,
+        /// $k'Gta^2/D$ at these constants.
+        ratio: f64,
+        /// Greatest ratio taken.
+        limit: f64,
+        /// Thickness \[m\] at which the ratio is met.
+        least: f64,
+    },
     /// A number of basis functions along one direction that the plate does not take.
     #[error("{found} terms along one direction of the plate: take {least} to {most}")]
     TermCount {

@@ -24,7 +24,7 @@ pub fn ritz_modes(structure: &dyn Structure, values: &[f64], count: usize) -> Re
     let coefficients = checked_coefficients(structure, values)?;
     let blocks = structure.blocks();
     // Blocks share the modes evenly but for a few.
-    let wanted = count / blocks.len().max(1) + 3;
+    let wanted = count / blocks.len().max(1) + 2;
     let mut solved: Vec<SolvedBlock> = blocks
         .par_iter()
         .map(|block| SolvedBlock::new(BlockPencil::new(block, &coefficients)?, wanted))

@@ -7,6 +7,9 @@ use crate::{Boundary, End, ModelError, Piece};
 /// Most entries of one matrix of all blocks together: 1.8 million keep a plate below 100 MB.
 const MOST_ENTRIES: usize = 1_800_000;
 
+/// Isotropic, with bending stiffness one and as good as no shear strain.
+const EQUAL_STIFFNESSES: [f64; 6] = [1.0, 1.0, 0.3, 0.35, 1e30, 1e30];
+
 impl MindlinPlate {
     /// A plate whose basis holds its first `count` flexible modes to about 1e-4 of their frequencies, chosen for equal
     /// stiffness along x and y.
@@ -14,7 +17,7 @@ impl MindlinPlate {
     /// # Errors
     /// As [`MindlinPlate::with_basis_for`].
     pub fn with_default_basis(piece: &Piece, boundary: Boundary, count: usize) -> Result<Self, ModelError> {
-        let terms = Reach::new(piece, boundary, [1.0, 1.0, 0.3, 0.35, f64::INFINITY, f64::INFINITY])?.terms(count)?;
+        let terms = Reach::new(piece, boundary, EQUAL_STIFFNESSES)?.terms(count)?;
         Self::resolving(piece, boundary, terms, count)
     }
 
@@ -89,7 +92,7 @@ impl Reach {
     /// Terms along x and y for `count` modes.
     fn terms(&self, count: usize) -> Result<[usize; 2], ModelError> {
         // The order of the estimates is rough, so look a little further.
-        let margin = |count: usize| count + count / 6 + 2;
+        let margin = |count: usize| count + count / 10 + 1;
         let mut most_nodes = [0; 2];
         let mut terms = [0; 2];
         for (index, (_, nodes)) in self.modes.iter().take(margin(count)).enumerate() {
