@@ -20,33 +20,31 @@ FORCES = [-0.3, -0.25, -0.15, -0.05, 0.0, 0.05, 0.15, 0.25, 0.4]
 RESPONSES = [0.3, -0.3]
 
 
+def model_file(beam):
+    """Text of the model file of a beam."""
+    sizes = ("length", "width", "thickness", "mass_per_area")
+    content = {
+        "schema": "orthopanel.model/1",
+        "piece": {name: getattr(beam, name) for name in sizes},
+        "structure": "timoshenko-beam",
+        "constants": {"e_x": beam.e_x, "g_zx": beam.g_zx},
+        "damping": {"ratios": ZETAS, "beyond": 0.003},
+    }
+    return json.dumps(content)
+
+
 @pytest.fixture(scope="session")
 def export(tmp_path_factory):
-    """Exports the panel to a file of this name; returns its path."""
+    """Exports a panel to a file of this name; returns its path."""
     folder = tmp_path_factory.mktemp("fmu")
-    model = folder / "panel.json"
-    model.write_text(
-        json.dumps(
-            {
-                "schema": "orthopanel.model/1",
-                "piece": {
-                    "length": BEAM.length,
-                    "width": BEAM.width,
-                    "thickness": BEAM.thickness,
-                    "mass_per_area": BEAM.mass_per_area,
-                },
-                "structure": "timoshenko-beam",
-                "constants": {"e_x": BEAM.e_x, "g_zx": BEAM.g_zx},
-                "damping": {"ratios": ZETAS, "beyond": 0.003},
-            }
-        )
-    )
     command = os.environ.get("ORTHOPANEL", str(ROOT / "target/release/orthopanel"))
 
-    def export(name, *options):
+    def export(name, *options, beam=BEAM, modes=len(ZETAS), forces=FORCES):
         path = folder / name
-        words = [command, "export", str(model), "-o", str(path), "--modes", str(len(ZETAS)), *options]
-        words += [f"--force={x}" for x in FORCES] + [f"--response={x}" for x in RESPONSES]
+        model = path.with_suffix(".json")
+        model.write_text(model_file(beam))
+        words = [command, "export", str(model), "-o", str(path), "--modes", str(modes), *options]
+        words += [f"--force={x}" for x in forces] + [f"--response={x}" for x in RESPONSES]
         done = subprocess.run(words, capture_output=True, text=True, cwd=ROOT)
         assert done.returncode == 0, done.stderr
         return path

@@ -66,6 +66,11 @@ class Panel:
         getter = self.fmu.getReal if self.version == 2 else self.fmu.getFloat64
         return list(getter([self.references[name] for name in names]))
 
+    def flexibility(self, response, force):
+        """Displacement per force without any motion of the modes [m/N]: what the modes left out add at rest."""
+        unknown, known = self.references[f"displacement_{response}"], self.references[f"force_{force}"]
+        return self.fmu.getDirectionalDerivative([unknown], [known], [1.0])[0]
+
     def call(self, names, *arguments):
         """Status of a C function, called past FMPy's checks; `names` are those of FMI 2.0 and 3.0."""
         name = names[self.version - 2]

@@ -33,9 +33,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     if ports.responses.is_empty() {
         ports.responses.clone_from(&panel.ports.responses);
     }
-    let model = panel.modal_model(range, &ports.forces, &ports.responses)?;
     let output = output.ok_or("-o X.fmu is missing")?;
-    Fmu::new(model, ports, &options)?.write(Path::new(&output))?;
+    Fmu::of_panel(&panel, range, ports, &options)?.write(Path::new(&output))?;
     eprintln!("wrote {output}");
     Ok(())
 }

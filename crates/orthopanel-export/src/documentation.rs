@@ -1,8 +1,10 @@
 //! `documentation/index.html`: what the FMU holds, for the one who is handed it.
 
+use std::f64::consts::TAU;
 use std::fmt::Write as _;
 
 use orthopanel_fmu::{GENERATOR, Resource};
+use orthopanel_model::ModalModel;
 
 use crate::{FmiVersion, FmuOptions};
 
@@ -16,13 +18,15 @@ pub(crate) fn write(resource: &Resource, options: &FmuOptions) -> String {
     page += &escaped(&options.description);
     page += "</p>\n<h2>Variables</h2>\n<table>\n<tr><th>name</th><th>unit</th><th>kind</th><th>what</th></tr>\n";
     for variable in resource.variables().variables() {
-        let unit = variable.quantity.unit().unwrap_or("");
+        let unit = variable.unit.unwrap_or("");
         let (name, kind) = (&variable.name, variable.quantity.causality());
         let what = escaped(&variable.description);
         // Writing to a String has nothing to fail on, here and below.
         let _ = writeln!(page, "<tr><td>{name}</td><td>{unit}</td><td>{kind}</td><td>{what}</td></tr>");
     }
-    page += "</table>\n<h2>Force over a step</h2>\n<p>";
+    page += "</table>\n<p>";
+    page += PARAMETERS;
+    page += "</p>\n<h2>Force over a step</h2>\n<p>";
     page += HELD;
     if options.version == FmiVersion::Fmi2 {
         page += BY_DERIVATIVES;
@@ -30,6 +34,7 @@ pub(crate) fn write(resource: &Resource, options: &FmuOptions) -> String {
     page += LINEAR;
     page += "</p>\n<h2>Modes</h2>\n<p>";
     page += MODES;
+    page += &left_out(resource);
     page += "</p>\n<table>\n<tr><th>frequency [Hz]</th><th>damping ratio</th></tr>\n";
     for mode in resource.model().modes() {
         let frequency = mode.angular_frequency / std::f64::consts::TAU;
@@ -39,6 +44,9 @@ pub(crate) fn write(resource: &Resource, options: &FmuOptions) -> String {
     page
 }
 
+const PARAMETERS: &str = "Parameters are fixed: they are set before or in initialization mode, and stay for the run. Where \
+     one of the panel's is set, the modes are solved anew, which takes milliseconds. The number of modes is that of the \
+     export. None is tunable.";
 const HELD: &str = "The force is held at the value set before the step, over the whole step.";
 const BY_DERIVATIVES: &str = " If the importer gives the first derivative of a force \
      (fmi2SetRealInputDerivatives), the force of the next step runs at that rate from the value set.";
@@ -46,6 +54,46 @@ const LINEAR: &str = " If the parameter force_linear is true, the force of a ste
      end of the last step to the value now set: set the value of the step's end before the step. Each mode is then \
      advanced exactly, whatever the step.";
 const MODES: &str = "Rigid modes have the frequency 0. Outputs are sums over these modes.";
+
+/// What the modes left out add, and up to where an acceleration can do without them.
+fn left_out(resource: &Resource) -> String {
+    let mut text = String::new();
+    for (r, row) in resource.static_remainder().iter().enumerate() {
+        for (f, &remainder) in row.iter().enumerate().filter(|(_, remainder)| **remainder != 0.0) {
+            let band = match accelerance_band(resource.model(), r, f, remainder) {
+                Some(band) => format!("holds within 1 % up to {band:.0} Hz"),
+                None => "is never within 1 %".into(),
+            };
+            let (response, force) = (r + 1, f + 1);
+            let _ = writeln!(
+                text,
+                "</p>\n<p>displacement_{response} has {remainder:.3e} m/N times force_{force} added: the modes left out, at \
+                 rest. acceleration_{response} under force_{force} {band} (the share of the modes left out in the root mean \
+                 square over an octave)."
+            );
+        }
+    }
+    text
+}
+
+/// Highest frequency \[Hz\], of a grid up to the highest mode, below which what the modes left out add to the
+/// accelerance, $\omega^2R$, stays within 1 % of its root mean square over the octave around; `None` where none is.
+fn accelerance_band(model: &ModalModel, response: usize, force: usize, remainder: f64) -> Option<f64> {
+    const POINTS_AN_OCTAVE: i32 = 48;
+    let highest = model.modes().last()?.angular_frequency / TAU;
+    let squares: Vec<(f64, f64)> = (-10 * POINTS_AN_OCTAVE..=POINTS_AN_OCTAVE / 2)
+        .map(|point| highest * 2.0_f64.powf(f64::from(point) / f64::from(POINTS_AN_OCTAVE)))
+        .map(|frequency| (frequency, model.accelerance(response, force, frequency).norm_sqr()))
+        .collect();
+    let octaves = squares.windows(POINTS_AN_OCTAVE as usize + 1);
+    let held = octaves.map_while(|octave| {
+        let frequency = octave.get(octave.len() / 2)?.0;
+        let mean = octave.iter().map(|(_, square)| square).sum::<f64>() / octave.len() as f64;
+        let missing = (TAU * frequency).powi(2) * remainder;
+        (missing * missing <= 1e-4 * mean).then_some(frequency)
+    });
+    held.last()
+}
 
 fn escaped(text: &str) -> String {
     quick_xml::escape::escape(text).into_owned()

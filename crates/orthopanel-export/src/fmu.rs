@@ -4,7 +4,7 @@ use std::io::Write;
 use std::path::Path;
 
 use orthopanel_fmu::{RESOURCE_FILE, Resource, content_token};
-use orthopanel_model::{ModalModel, Ports};
+use orthopanel_model::{ModalModel, ModeRange, PanelModel, Ports};
 
 use crate::archive::{Entry, pack};
 use crate::{ExportError, documentation, library, model_description};
@@ -64,27 +64,39 @@ pub struct Fmu {
 }
 
 impl Fmu {
-    /// Puts the parts together; nothing is written yet.
+    /// Puts the parts together; nothing is written yet. In the FMU nothing of the panel can be set.
     ///
     /// # Errors
     /// [`ExportError::NoPort`], [`ExportError::Name`], and [`ExportError::Resource`] where `ports` has other numbers
     /// of places than `model` has ports.
     pub fn new(model: ModalModel, ports: Ports, options: &FmuOptions) -> Result<Self, ExportError> {
-        for (kind, places) in [("force", &ports.forces), ("response", &ports.responses)] {
-            if places.is_empty() {
-                return Err(ExportError::NoPort { ports: kind });
-            }
-        }
-        if options.name.trim().is_empty() || options.name.chars().any(char::is_control) {
-            return Err(ExportError::Name { name: options.name.clone() });
-        }
-        let resource = Resource::new(model, ports)?;
+        check(&ports, options)?;
+        Self::of_resource(&Resource::new(model, ports)?, options)
+    }
+
+    /// Puts together the FMU of a panel with the modes of `range`: their number is fixed, all else (sizes, mass,
+    /// constants, damping ratios, places of the ports) can be set in the FMU, which then solves its modes anew.
+    /// The static part of the modes left out is added to displacements.
+    ///
+    /// # Errors
+    /// As [`Fmu::new`], and [`ExportError::Resource`] where the panel cannot be solved.
+    pub fn of_panel(
+        panel: &PanelModel,
+        range: ModeRange,
+        ports: Ports,
+        options: &FmuOptions,
+    ) -> Result<Self, ExportError> {
+        check(&ports, options)?;
+        Self::of_resource(&Resource::of_panel(panel, range, ports)?, options)
+    }
+
+    fn of_resource(resource: &Resource, options: &FmuOptions) -> Result<Self, ExportError> {
         let text = resource.to_json();
         let token = content_token(text.as_bytes());
         Ok(Self {
             version: options.version,
-            model_description: model_description::write(&resource, options, &token)?,
-            documentation: documentation::write(&resource, options),
+            model_description: model_description::write(resource, options, &token)?,
+            documentation: documentation::write(resource, options),
             resource: text,
         })
     }
@@ -130,4 +142,16 @@ impl Fmu {
         file.persist(path).map_err(|error| fail(error.error))?;
         Ok(())
     }
+}
+
+fn check(ports: &Ports, options: &FmuOptions) -> Result<(), ExportError> {
+    for (kind, places) in [("force", &ports.forces), ("response", &ports.responses)] {
+        if places.is_empty() {
+            return Err(ExportError::NoPort { ports: kind });
+        }
+    }
+    if options.name.trim().is_empty() || options.name.chars().any(char::is_control) {
+        return Err(ExportError::Name { name: options.name.clone() });
+    }
+    Ok(())
 }

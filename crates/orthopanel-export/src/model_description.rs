@@ -111,11 +111,10 @@ fn common_attributes(variable: &Variable) -> Vec<(&'static str, String)> {
 
 /// Unit, nominal and start value of a variable, and of which state it is the derivative (`state` names that).
 fn value_attributes(variable: &Variable, state: Option<String>) -> Vec<(&'static str, String)> {
-    let quantity = variable.quantity;
     let texts = [
-        ("unit", quantity.unit().map(String::from)),
+        ("unit", variable.unit.map(String::from)),
         ("nominal", variable.nominal.map(|nominal| format!("{nominal:e}"))),
-        ("start", quantity.start().map(String::from)),
+        ("start", variable.start.clone()),
         ("derivative", state),
     ];
     texts.into_iter().filter_map(|(name, value)| Some((name, value?))).collect()

@@ -2,6 +2,7 @@
 
 mod continuous;
 mod fmu_states;
+mod parameters;
 mod phase;
 mod sensitivities;
 mod situation;
@@ -12,6 +13,7 @@ use crate::wide_stepper::WideStepper;
 use crate::{FmuError, Quantity, Resource, VariableTable};
 
 use fmu_states::FmuStates;
+use parameters::Solved;
 pub(crate) use phase::{Interface, Phase};
 use situation::Situation;
 
@@ -21,8 +23,16 @@ pub(crate) struct Component {
     variables: VariableTable,
     stepper: WideStepper,
     now: Situation,
+    /// Where [`Component::reset`] goes back to.
+    start: Situation,
+    /// The panel, where its modes may be solved again.
+    solved: Option<Solved>,
+    /// Static part of the modes left out \[m/N\]: a row a response.
+    static_remainder: Vec<Vec<f64>>,
     /// Has the stepper yet to be told the forces?
     forces_changed: bool,
+    /// Were parameters set for which the modes have yet to be solved?
+    parameters_changed: bool,
     /// Force at the end of a step at given rates, while it is computed.
     forces_after: Vec<f64>,
     /// A panel of the same modes that derivatives are asked of.
@@ -43,12 +53,19 @@ impl Component {
         let model = resource.model();
         let stepper = WideStepper::new(model);
         let forces = vec![0.0; model.force_count()];
+        let solved = resource.panel().map(Solved::new);
+        let parameters = solved.as_ref().map(|solved| solved.values.clone()).unwrap_or_default();
+        let start = Situation::new(interface, forces.len(), parameters);
         Self {
             variables: resource.variables(),
             probe: Probe { stepper: stepper.clone(), forces: forces.clone() },
             stepper,
-            now: Situation::new(interface, forces.len()),
+            now: start.clone(),
+            start,
+            solved,
+            static_remainder: resource.static_remainder().to_vec(),
             forces_changed: false,
+            parameters_changed: false,
             forces_after: forces,
             nominals: crate::nominals::of(model),
             states: FmuStates::new(token),
@@ -86,6 +103,10 @@ impl Component {
     }
 
     fn tell_forces(&mut self) -> Result<(), FmuError> {
+        if self.parameters_changed {
+            self.solve_for(&self.now.parameters.clone())?;
+            self.parameters_changed = false;
+        }
         self.stepper.set_forces(&self.now.forces)?;
         self.forces_changed = false;
         Ok(())
@@ -96,10 +117,17 @@ impl Component {
     fn panel_value(&self, quantity: Quantity, stepper: &WideStepper, forces: &[f64]) -> Option<f64> {
         match quantity {
             Quantity::Time | Quantity::ForceLinear => None,
+            Quantity::Parameter(index) => self.now.parameters.get(index).copied(),
             Quantity::Force(port) => forces.get(port).copied(),
             Quantity::Acceleration(port) => stepper.acceleration(port),
             Quantity::Velocity(port) => stepper.velocity(port),
-            Quantity::Displacement(port) => stepper.displacement(port),
+            Quantity::Displacement(port) => {
+                let mut displacement = stepper.displacement(port)?;
+                for (remainder, force) in self.static_remainder.get(port)?.iter().zip(forces) {
+                    displacement += remainder * force;
+                }
+                Some(displacement)
+            }
             Quantity::ModalPosition(mode) => stepper.mode_state(mode).map(|[position, _]| position),
             Quantity::ModalVelocity(mode) => stepper.mode_state(mode).map(|[_, velocity]| velocity),
             Quantity::ModalPositionRate(mode) => stepper.mode_rate(mode).map(|[velocity, _]| velocity),

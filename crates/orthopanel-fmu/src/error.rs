@@ -141,6 +141,14 @@ pub enum FmuError {
         /// Number expected.
         expected: usize,
     },
+    /// A panel that, with the parameters set, has another number of modes.
+    #[error("with these parameters the panel has {found} modes, not {expected}: its ends must hold it as exported")]
+    ModeCount {
+        /// Number found.
+        found: usize,
+        /// Number of the FMU.
+        expected: usize,
+    },
     /// An FMU state that cannot be used.
     #[error("FMU state: {0}")]
     State(&'static str),

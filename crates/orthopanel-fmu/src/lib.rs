@@ -8,6 +8,7 @@ mod fmi2;
 mod fmi3;
 mod logging;
 mod nominals;
+mod panel;
 mod resource;
 mod resource_location;
 mod variables;

@@ -3,16 +3,17 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use orthopanel_model::{ModalModel, Ports};
+use orthopanel_model::{ModalModel, ModeRange, PanelModel, Ports};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
+use crate::panel::{Panel, Solution};
 use crate::{FmuError, VariableTable};
 
 /// The file's name in `resources/`.
 pub const RESOURCE_FILE: &str = "panel.json";
 
-const RESOURCE_SCHEMA: &str = "orthopanel.fmu/1";
+const RESOURCE_SCHEMA: &str = "orthopanel.fmu/2";
 
 /// Program and version, as FMUs name the tool that made them.
 pub const GENERATOR: &str = concat!("orthopanel ", env!("CARGO_PKG_VERSION"));
@@ -26,15 +27,33 @@ pub struct Resource {
     generator: String,
     ports: Ports,
     model: ModalModel,
+    /// Static part of the modes left out \[m/N\]: a row a response, a column a force.
+    static_remainder: Vec<Vec<f64>>,
+    /// The panel itself, where modes may be solved again.
+    panel: Option<Panel>,
 }
 
 impl Resource {
-    /// Joins a model with the places of its ports.
+    /// Joins modes with the places of their ports. Nothing of the panel can be set, and no static part is added.
     ///
     /// # Errors
     /// [`FmuError::ResourceText`] where the numbers of places and ports differ.
     pub fn new(model: ModalModel, ports: Ports) -> Result<Self, FmuError> {
-        Self { schema: RESOURCE_SCHEMA.into(), generator: GENERATOR.into(), ports, model }.checked()
+        let static_remainder = vec![vec![0.0; ports.forces.len()]; ports.responses.len()];
+        let (schema, generator) = (RESOURCE_SCHEMA.into(), GENERATOR.into());
+        Self { schema, generator, ports, model, static_remainder, panel: None }.checked()
+    }
+
+    /// The modes of `range` of a panel, with the static part of all others in displacement. Sizes, mass, constants,
+    /// damping ratios and places can be set in the FMU.
+    ///
+    /// # Errors
+    /// [`FmuError::Model`] where the panel has no physical meaning or cannot be solved.
+    pub fn of_panel(panel: &PanelModel, range: ModeRange, ports: Ports) -> Result<Self, FmuError> {
+        let (panel, solution) = Panel::new(panel, range, ports.clone())?;
+        let Solution { modes: model, static_remainder } = solution;
+        let (schema, generator) = (RESOURCE_SCHEMA.into(), GENERATOR.into());
+        Self { schema, generator, ports, model, static_remainder, panel: Some(panel) }.checked()
     }
 
     /// The modes.
@@ -47,9 +66,19 @@ impl Resource {
         &self.ports
     }
 
+    /// Static part of the modes left out $\sum W_rW_f/\omega^2$ \[m/N\]: a row a response, a column a force.
+    pub fn static_remainder(&self) -> &[Vec<f64>] {
+        &self.static_remainder
+    }
+
+    /// The panel, where its modes may be solved again.
+    pub(crate) fn panel(&self) -> Option<&Panel> {
+        self.panel.as_ref()
+    }
+
     /// The variables of this FMU.
     pub fn variables(&self) -> VariableTable {
-        VariableTable::new(&self.model, &self.ports)
+        VariableTable::new(self)
     }
 
     /// Text of the file; the same content gives the same text.
@@ -90,6 +119,14 @@ impl Resource {
                 "places of {} forces and {} responses for a model of {} and {}",
                 places.0, places.1, counts.0, counts.1
             )));
+        }
+        let fits = self.static_remainder.len() == counts.1
+            && self
+                .static_remainder
+                .iter()
+                .all(|row| row.len() == counts.0 && row.iter().all(|value| value.is_finite()));
+        if !fits {
+            return Err(FmuError::ResourceText("static_remainder: needs a number for each response and force".into()));
         }
         Ok(Self { model, ..self })
     }

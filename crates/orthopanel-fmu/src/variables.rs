@@ -7,7 +7,8 @@ use std::f64::consts::TAU;
 
 use orthopanel_model::{ModalModel, Place, Ports};
 
-use crate::nominals;
+use crate::panel::Panel;
+use crate::{Resource, nominals};
 
 pub use units::{UNITS, Unit};
 
@@ -34,14 +35,16 @@ pub enum Quantity {
     ModalPositionRate(usize),
     /// Derivative of [`Quantity::ModalVelocity`] by time.
     ModalVelocityRate(usize),
+    /// Parameter: a size, constant, damping ratio or place of the panel, counted from 0 as in the table.
+    Parameter(usize),
 }
 
 impl Quantity {
-    /// Name of the unit; `None` for a Boolean.
-    pub fn unit(self) -> Option<&'static str> {
+    /// Name of the unit; `None` for a Boolean, and for a parameter, whose unit is its own.
+    fn unit(self) -> Option<&'static str> {
         match self {
             Self::Time => Some("s"),
-            Self::ForceLinear => None,
+            Self::ForceLinear | Self::Parameter(_) => None,
             Self::Force(_) => Some("N"),
             Self::Acceleration(_) => Some("m/s2"),
             Self::Velocity(_) => Some("m/s"),
@@ -56,7 +59,7 @@ impl Quantity {
     pub fn causality(self) -> &'static str {
         match self {
             Self::Time => "independent",
-            Self::ForceLinear => "parameter",
+            Self::ForceLinear | Self::Parameter(_) => "parameter",
             Self::Force(_) => "input",
             Self::Acceleration(_) | Self::Velocity(_) | Self::Displacement(_) => "output",
             Self::ModalPosition(_)
@@ -68,20 +71,20 @@ impl Quantity {
 
     /// FMI variability.
     pub fn variability(self) -> &'static str {
-        if self == Self::ForceLinear { "fixed" } else { "continuous" }
+        if matches!(self, Self::ForceLinear | Self::Parameter(_)) { "fixed" } else { "continuous" }
     }
 
     /// FMI attribute `initial`; `None` where the standard has none.
     pub fn initial(self) -> Option<&'static str> {
         match self {
             Self::Time | Self::Force(_) => None,
-            Self::ForceLinear | Self::ModalPosition(_) | Self::ModalVelocity(_) => Some("exact"),
+            Self::ForceLinear | Self::Parameter(_) | Self::ModalPosition(_) | Self::ModalVelocity(_) => Some("exact"),
             _ => Some("calculated"),
         }
     }
 
-    /// Start value as the XML says it; `None` for what is calculated.
-    pub fn start(self) -> Option<&'static str> {
+    /// Start value as the XML says it; `None` for what is calculated, and for a parameter, whose start is its own.
+    fn start(self) -> Option<&'static str> {
         match self {
             Self::ForceLinear => Some("false"),
             Self::Force(_) | Self::ModalPosition(_) | Self::ModalVelocity(_) => Some("0"),
@@ -101,9 +104,15 @@ pub struct Variable {
     pub description: String,
     /// What it stands for.
     pub quantity: Quantity,
+    /// Name of the unit; `None` for a Boolean.
+    pub unit: Option<&'static str>,
+    /// Start value as the XML says it; `None` for what is calculated.
+    pub start: Option<String>,
     /// References of the inputs and continuous states on which an output or a derivative depends directly (without an
     /// integration between); empty for what is neither.
     pub dependencies: Vec<u32>,
+    /// The same while the FMU is initialized, when parameters count too.
+    pub initial_dependencies: Vec<u32>,
     /// Of a derivative: reference of the continuous state.
     pub derivative_of: Option<u32>,
     /// Of a continuous state: the size to be expected.
@@ -113,13 +122,14 @@ pub struct Variable {
 /// The variables of a panel; a variable's reference is its index.
 ///
 /// Order: `time`, `force_linear`, then `force_1`.., `acceleration_1`.., `velocity_1`.., `displacement_1`.., then of each
-/// mode `modal_position_1`, `modal_velocity_1` and the derivatives of both; ports and modes are counted from 1 in names.
+/// mode `modal_position_1`, `modal_velocity_1` and the derivatives of both, then the parameters of the panel; ports and modes are counted from 1 in names.
 #[derive(Debug, Clone, PartialEq)]
 pub struct VariableTable(Vec<Variable>);
 
 impl VariableTable {
-    /// The table for a model and the places of its ports.
-    pub fn new(model: &ModalModel, ports: &Ports) -> Self {
+    /// The table of an FMU with this resource.
+    pub(crate) fn new(resource: &Resource) -> Self {
+        let (model, ports) = (resource.model(), resource.ports());
         let mut table = Self(Vec::new());
         table.push(Quantity::Time, "time".into(), "Time".into());
         table.push(Quantity::ForceLinear, "force_linear".into(), FORCE_LINEAR.into());
@@ -130,7 +140,13 @@ impl VariableTable {
         table.push_outputs("velocity", Quantity::Velocity, ports);
         table.push_outputs("displacement", Quantity::Displacement, ports);
         table.push_modes(model);
-        dependencies::fill(&mut table.0, model);
+        for (index, parameter) in resource.panel().into_iter().flat_map(Panel::parameters).enumerate() {
+            table.push(Quantity::Parameter(index), parameter.name, parameter.description);
+            if let Some(variable) = table.0.last_mut() {
+                (variable.unit, variable.start) = (Some(parameter.unit), Some(parameter.start.to_string()));
+            }
+        }
+        dependencies::fill(&mut table.0, resource);
         table
     }
 
@@ -154,8 +170,18 @@ impl VariableTable {
     fn push(&mut self, quantity: Quantity, name: String, description: String) -> u32 {
         // A table of 2^32 variables cannot be built in memory, so the index always fits.
         let reference = u32::try_from(self.0.len()).unwrap_or(u32::MAX);
-        let (dependencies, derivative_of, nominal) = (Vec::new(), None, None);
-        self.0.push(Variable { reference, name, description, quantity, dependencies, derivative_of, nominal });
+        self.0.push(Variable {
+            reference,
+            name,
+            description,
+            quantity,
+            unit: quantity.unit(),
+            start: quantity.start().map(String::from),
+            dependencies: Vec::new(),
+            initial_dependencies: Vec::new(),
+            derivative_of: None,
+            nominal: None,
+        });
         reference
     }
 

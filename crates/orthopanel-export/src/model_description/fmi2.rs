@@ -13,7 +13,7 @@ pub(super) fn variable(xml: &mut Xml, variable: &Variable) -> io::Result<()> {
     let attributes = common_attributes(variable);
     let attributes = attributes.iter().map(|(name, value)| (*name, value.as_str()));
     xml.create_element("ScalarVariable").with_attributes(attributes).write_inner_content(|xml| {
-        let kind = if variable.quantity.unit().is_some() { "Real" } else { "Boolean" };
+        let kind = if variable.unit.is_some() { "Real" } else { "Boolean" };
         empty(xml, kind, &value_attributes(variable, variable.derivative_of.map(index)))
     })?;
     Ok(())
@@ -34,8 +34,10 @@ pub(super) fn structure(xml: &mut Xml, description: &Description) -> io::Result<
         }
         xml.create_element(list).write_inner_content(|xml| {
             for variable in variables {
-                let names: Vec<String> = variable.dependencies.iter().map(|&reference| index(reference)).collect();
-                unknown(xml, "Unknown", ("index", index(variable.reference)), &names, only.is_none())?;
+                let initial = only.is_none();
+                let on = if initial { &variable.initial_dependencies } else { &variable.dependencies };
+                let names: Vec<String> = on.iter().map(|&reference| index(reference)).collect();
+                unknown(xml, "Unknown", ("index", index(variable.reference)), &names, initial)?;
             }
             Ok(())
         })?;

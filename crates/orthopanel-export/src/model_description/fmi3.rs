@@ -12,12 +12,13 @@ pub(super) const INTERFACES: [(&str, &[(&str, &str)]); 2] =
 pub(super) fn variable(xml: &mut Xml, variable: &Variable) -> io::Result<()> {
     let mut attributes = common_attributes(variable);
     attributes.extend(value_attributes(variable, variable.derivative_of.map(|state| state.to_string())));
-    empty(xml, if variable.quantity.unit().is_some() { "Float64" } else { "Boolean" }, &attributes)
+    empty(xml, if variable.unit.is_some() { "Float64" } else { "Boolean" }, &attributes)
 }
 
 pub(super) fn structure(xml: &mut Xml, description: &Description) -> io::Result<()> {
     let mut element = |element: &str, variable: &Variable, initial| {
-        let names: Vec<String> = variable.dependencies.iter().map(u32::to_string).collect();
+        let on = if initial { &variable.initial_dependencies } else { &variable.dependencies };
+        let names: Vec<String> = on.iter().map(u32::to_string).collect();
         unknown(xml, element, ("valueReference", variable.reference.to_string()), &names, initial)
     };
     for (kind, variable) in description.unknowns() {

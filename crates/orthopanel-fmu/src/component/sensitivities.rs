@@ -19,6 +19,7 @@ impl Component {
         super::values::same_count(seed.len(), knowns.len())?;
         super::values::same_count(sensitivity.len(), unknowns.len())?;
         self.check_unknowns(unknowns)?;
+        self.apply()?;
         for (&known, &value) in knowns.iter().zip(seed) {
             self.check_known(known)?;
             finite("seed", value)?;
@@ -46,6 +47,7 @@ impl Component {
         super::values::same_count(seed.len(), unknowns.len())?;
         super::values::same_count(sensitivity.len(), knowns.len())?;
         self.check_unknowns(unknowns)?;
+        self.apply()?;
         for &value in seed {
             finite("seed", value)?;
         }
@@ -103,10 +105,12 @@ impl Component {
     fn check_unknowns(&self, unknowns: &[u32]) -> Result<(), FmuError> {
         for &unknown in unknowns {
             match self.quantity(unknown)? {
-                Quantity::Time | Quantity::ForceLinear | Quantity::Force(_) => {
-                    return Err(self.not_differentiable(unknown, "unknowns are outputs and derivatives of states"));
-                }
-                _ => {}
+                Quantity::Acceleration(_)
+                | Quantity::Velocity(_)
+                | Quantity::Displacement(_)
+                | Quantity::ModalPositionRate(_)
+                | Quantity::ModalVelocityRate(_) => {}
+                _ => return Err(self.not_differentiable(unknown, "unknowns are outputs and derivatives of states")),
             }
         }
         Ok(())

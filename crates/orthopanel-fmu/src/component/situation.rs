@@ -24,10 +24,12 @@ pub(crate) struct Situation {
     /// Rate of each force over the last step \[N/s\], for the derivatives of outputs; zero where none was given.
     pub(super) slopes: Vec<f64>,
     pub(super) slopes_given: bool,
+    /// Parameters of the panel as set.
+    pub(super) parameters: Vec<f64>,
 }
 
 impl Situation {
-    pub(super) fn new(interface: Interface, force_count: usize) -> Self {
+    pub(super) fn new(interface: Interface, force_count: usize, parameters: Vec<f64>) -> Self {
         let forces = vec![0.0; force_count];
         Self {
             interface,
@@ -40,20 +42,22 @@ impl Situation {
             rates_given: false,
             slopes: forces.clone(),
             slopes_given: false,
+            parameters,
             forces,
         }
     }
 
-    /// Does it fit an instance of this interface with so many forces, and is every number one?
-    fn check(&self, interface: Interface, force_count: usize) -> Result<(), FmuError> {
-        if self.interface != interface {
+    /// Does it fit an instance that now stands in `other`, and is every number one?
+    fn check(&self, other: &Self) -> Result<(), FmuError> {
+        if self.interface != other.interface {
             return Err(FmuError::State("it was taken from an instance of the other interface"));
         }
         let lists = [&self.forces, &self.forces_before, &self.force_rates, &self.slopes];
-        if lists.iter().any(|list| list.len() != force_count) {
-            return Err(FmuError::State("it holds another number of forces"));
+        if lists.iter().any(|list| list.len() != other.forces.len()) || self.parameters.len() != other.parameters.len()
+        {
+            return Err(FmuError::State("it holds another number of forces or parameters"));
         }
-        let numbers = lists.into_iter().flatten().chain(&self.stop_time).chain([&self.time]);
+        let numbers = lists.into_iter().flatten().chain(&self.parameters).chain(&self.stop_time).chain([&self.time]);
         if numbers.into_iter().any(|number| !number.is_finite()) {
             return Err(FmuError::State("it holds a number that is not finite"));
         }
@@ -77,7 +81,7 @@ impl Component {
 
     /// Does a snapshot fit this instance?
     pub(super) fn check_snapshot(&self, snapshot: &Snapshot) -> Result<(), FmuError> {
-        snapshot.situation.check(self.now.interface, self.now.forces.len())?;
+        snapshot.situation.check(&self.now)?;
         if snapshot.motion.len() != self.mode_count() {
             return Err(FmuError::State("it holds another number of modes"));
         }
@@ -90,6 +94,8 @@ impl Component {
     /// Goes back to where a snapshot was taken; one that does not fit changes nothing.
     pub(crate) fn restore(&mut self, snapshot: &Snapshot) -> Result<(), FmuError> {
         self.check_snapshot(snapshot)?;
+        // Parameters that were set and never solved for may be wrong together: that is then told when they are used.
+        self.parameters_changed = self.solve_for(&snapshot.situation.parameters).is_err();
         self.stepper.set_state(&snapshot.motion)?;
         self.now.clone_from(&snapshot.situation);
         self.forces_changed = true;
@@ -98,10 +104,11 @@ impl Component {
 
     /// Back to where instantiation left it.
     pub(crate) fn reset(&mut self) -> Result<(), FmuError> {
+        self.solve_for(&self.start.parameters.clone())?;
         let at_rest = vec![[0.0; 2]; self.mode_count()];
         self.stepper.set_state(&at_rest)?;
-        self.now = Situation::new(self.now.interface, self.now.forces.len());
-        self.forces_changed = true;
+        self.now.clone_from(&self.start);
+        (self.forces_changed, self.parameters_changed) = (true, false);
         Ok(())
     }
 }

@@ -20,7 +20,7 @@ impl Component {
         Ok(())
     }
 
-    /// Sets forces \[N\], and before the start the initial state of the modes.
+    /// Sets forces \[N\], and before the start parameters and the initial state of the modes.
     pub(crate) fn set_reals(&mut self, references: &[u32], values: &[f64]) -> Result<(), FmuError> {
         self.require(Phase::SETTABLE)?;
         same_count(values.len(), references.len())?;
@@ -44,9 +44,16 @@ impl Component {
         Ok(())
     }
 
-    /// Sets one number of the initial state; other quantities were refused before.
+    /// Sets a parameter or one number of the initial state; other quantities were refused before.
     #[cold]
     fn set_initial(&mut self, quantity: Option<Quantity>, value: f64) -> Result<(), FmuError> {
+        if let Some(Quantity::Parameter(index)) = quantity {
+            if let Some(parameter) = self.now.parameters.get_mut(index) {
+                *parameter = value;
+                self.parameters_changed = true;
+            }
+            return Ok(());
+        }
         let (Some(Quantity::ModalPosition(mode)) | Some(Quantity::ModalVelocity(mode))) = quantity else {
             return Ok(());
         };
@@ -188,6 +195,12 @@ impl Component {
                     return finite(&self.variable(reference)?.name, value);
                 }
                 "the initial state is set before or in initialization mode (model exchange: set continuous states)"
+            }
+            Quantity::Parameter(index) => {
+                if Phase::BEFORE_START.contain(self.now.phase) {
+                    return self.check_parameter(index, &self.variable(reference)?.name, value);
+                }
+                "a fixed parameter is set before or in initialization mode"
             }
             Quantity::Time => "time follows the steps",
             Quantity::ModalPositionRate(_) | Quantity::ModalVelocityRate(_) => "it is the derivative of a state",

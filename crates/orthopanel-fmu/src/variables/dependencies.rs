@@ -3,42 +3,61 @@
 
 use std::collections::HashMap;
 
-use orthopanel_model::{ModalModel, Mode};
+use orthopanel_model::Mode;
 
 use super::{Quantity, Variable};
+use crate::Resource;
 
 /// Fills in the dependencies of every variable, in rising order.
-pub(super) fn fill(variables: &mut [Variable], model: &ModalModel) {
+pub(super) fn fill(variables: &mut [Variable], resource: &Resource) {
     let references: HashMap<_, _> = variables.iter().map(|variable| (variable.quantity, variable.reference)).collect();
+    let parameter = |variable: &Variable| matches!(variable.quantity, Quantity::Parameter(_));
+    let parameters: Vec<u32> = variables.iter().filter(|v| parameter(v)).map(|v| v.reference).collect();
     for variable in variables {
-        let knowns = knowns(variable.quantity, model);
+        let knowns = knowns(variable.quantity, resource);
         variable.dependencies = knowns.iter().filter_map(|known| references.get(known).copied()).collect();
         variable.dependencies.sort_unstable();
         variable.dependencies.dedup();
+        variable.initial_dependencies.clone_from(&variable.dependencies);
+        // The rate of a modal coordinate is the modal velocity, whatever the panel.
+        if !knowns.is_empty() && !matches!(variable.quantity, Quantity::ModalPositionRate(_)) {
+            variable.initial_dependencies.extend(&parameters);
+        }
     }
 }
 
 /// Inputs and states, some perhaps more than once.
-fn knowns(quantity: Quantity, model: &ModalModel) -> Vec<Quantity> {
+///
+/// Where the modes may be solved again, a port that now lies on a node may move away from it: then all count.
+fn knowns(quantity: Quantity, resource: &Resource) -> Vec<Quantity> {
+    let any = resource.panel().is_some();
+    let model = resource.model();
     let modes = model.modes().iter().enumerate();
-    let seen = |response: usize| modes.filter(move |(_, mode)| is_set(&mode.at_responses, response));
+    let seen = |response: usize| modes.filter(move |(_, mode)| any || is_set(&mode.at_responses, response));
     match quantity {
-        Quantity::Displacement(port) => seen(port).map(|(mode, _)| Quantity::ModalPosition(mode)).collect(),
+        Quantity::Displacement(port) => {
+            let direct = resource.static_remainder().get(port).into_iter().flatten().enumerate();
+            let direct = direct.filter(|&(_, &value)| value != 0.0).map(|(force, _)| Quantity::Force(force));
+            seen(port).map(|(mode, _)| Quantity::ModalPosition(mode)).chain(direct).collect()
+        }
         Quantity::Velocity(port) => seen(port).map(|(mode, _)| Quantity::ModalVelocity(mode)).collect(),
-        Quantity::Acceleration(port) => seen(port).flat_map(|(index, mode)| of_acceleration(index, mode)).collect(),
+        Quantity::Acceleration(port) => {
+            seen(port).flat_map(|(index, mode)| of_acceleration(index, mode, any)).collect()
+        }
         Quantity::ModalPositionRate(mode) => vec![Quantity::ModalVelocity(mode)],
         Quantity::ModalVelocityRate(index) => {
-            model.modes().get(index).map(|mode| of_acceleration(index, mode)).unwrap_or_default()
+            model.modes().get(index).map(|mode| of_acceleration(index, mode, any)).unwrap_or_default()
         }
         _ => Vec::new(),
     }
 }
 
-/// $\ddot a = \sum_k W(x_k)f_k - 2\zeta\omega\dot a - \omega^2a$: the terms that are there.
-fn of_acceleration(index: usize, mode: &Mode) -> Vec<Quantity> {
-    let forces = (0..mode.at_forces.len()).filter(|&port| is_set(&mode.at_forces, port)).map(Quantity::Force);
-    let elastic = (mode.angular_frequency > 0.0).then_some(Quantity::ModalPosition(index));
-    let damping = (mode.angular_frequency * mode.damping_ratio > 0.0).then_some(Quantity::ModalVelocity(index));
+/// $\ddot a = \sum_k W(x_k)f_k - 2\zeta\omega\dot a - \omega^2a$: the terms that are there, or may come to be.
+fn of_acceleration(index: usize, mode: &Mode, any: bool) -> Vec<Quantity> {
+    let forces = (0..mode.at_forces.len()).filter(|&port| any || is_set(&mode.at_forces, port)).map(Quantity::Force);
+    let flexible = mode.angular_frequency > 0.0;
+    let elastic = flexible.then_some(Quantity::ModalPosition(index));
+    let damping = (flexible && (any || mode.damping_ratio > 0.0)).then_some(Quantity::ModalVelocity(index));
     forces.chain(elastic).chain(damping).collect()
 }
 

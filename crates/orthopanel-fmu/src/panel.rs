@@ -1,0 +1,202 @@
+//! The panel behind the modes: what of it may be set before a simulation starts, and its modes solved again.
+
+use orthopanel_model::{
+    Estimate, ModalModel, ModeRange, ModelError, PanelModel, Ports, StaticFlexibility, StructureKind,
+};
+use serde::{Deserialize, Serialize};
+
+/// A panel as identified, with the number of flexible modes that its FMU keeps.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Panel {
+    model: PanelModel,
+    flexible_modes: usize,
+}
+
+/// What a parameter of the FMU is of the panel; ports and modes are counted from 0.
+#[derive(Debug, Clone, PartialEq)]
+enum Part {
+    Length,
+    Width,
+    Thickness,
+    MassPerArea,
+    Constant(String),
+    Damping(usize),
+    ForceX(usize),
+    ForceY(usize),
+    ResponseX(usize),
+    ResponseY(usize),
+}
+
+/// A parameter of the FMU, as its table of variables shows it.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct PanelParameter {
+    pub name: String,
+    pub unit: &'static str,
+    pub description: String,
+    pub start: f64,
+}
+
+/// What a stepper needs.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Solution {
+    pub modes: ModalModel,
+    /// $\sum W_rW_f/\omega^2$ \[m/N\] over the modes left out: a row a response, a column a force.
+    pub static_remainder: Vec<Vec<f64>>,
+}
+
+impl Panel {
+    /// A panel of which the modes of `range` are kept, and these modes.
+    pub(crate) fn new(model: &PanelModel, range: ModeRange, ports: Ports) -> Result<(Self, Solution), ModelError> {
+        let mut model = model.clone();
+        model.ports = ports;
+        model.provenance.clear();
+        let solution = solve(&model, range)?;
+        let flexible_modes = solution.modes.modes().iter().filter(|mode| mode.angular_frequency > 0.0).count();
+        model.damping.ratios = (1..=flexible_modes).map(|mode| model.damping.ratio(mode)).collect();
+        Ok((Self { model, flexible_modes }, solution))
+    }
+
+    /// Everything that may be set, with the values it was exported with.
+    pub(crate) fn parameters(&self) -> Vec<PanelParameter> {
+        let named = self.parts().into_iter().map(|part| {
+            let (name, unit, description) = describe(&part);
+            PanelParameter { name, unit, description, start: self.value(&part) }
+        });
+        named.collect()
+    }
+
+    /// Refuses a value that has no physical meaning by itself, whatever the others are.
+    pub(crate) fn check(&self, index: usize, value: f64) -> Result<(), ModelError> {
+        match self.parts().get(index) {
+            Some(Part::Length) => positive("length", value, "m"),
+            Some(Part::Width) => positive("width", value, "m"),
+            Some(Part::Thickness) => positive("thickness", value, "m"),
+            Some(Part::MassPerArea) => positive("mass_per_area", value, "kg/m2"),
+            Some(Part::Damping(mode)) if !(0.0..std::f64::consts::FRAC_1_SQRT_2).contains(&value) => {
+                Err(ModelError::Damping { mode: mode + 1, value })
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// The modes with these values of the parameters.
+    pub(crate) fn solve(&self, values: &[f64]) -> Result<Solution, ModelError> {
+        let mut model = self.model.clone();
+        for (part, &value) in self.parts().into_iter().zip(values) {
+            set(&mut model, &part, value);
+        }
+        model.check()?;
+        solve(&model, ModeRange::Count(self.flexible_modes))
+    }
+
+    fn parts(&self) -> Vec<Part> {
+        let mut parts = vec![Part::Length, Part::Width, Part::Thickness, Part::MassPerArea];
+        parts.extend(self.model.constants.keys().cloned().map(Part::Constant));
+        parts.extend((0..self.flexible_modes).map(Part::Damping));
+        parts.extend((0..self.model.ports.forces.len()).flat_map(|port| [Part::ForceX(port), Part::ForceY(port)]));
+        let responses = 0..self.model.ports.responses.len();
+        parts.extend(responses.flat_map(|port| [Part::ResponseX(port), Part::ResponseY(port)]));
+        parts
+    }
+
+    fn value(&self, part: &Part) -> f64 {
+        let (piece, ports) = (&self.model.piece, &self.model.ports);
+        let value = match part {
+            Part::Length => Some(piece.length),
+            Part::Width => Some(piece.width),
+            Part::Thickness => Some(piece.thickness),
+            Part::MassPerArea => Some(piece.mass_per_area),
+            Part::Constant(name) => self.model.constants.get(name).map(|estimate| estimate.value),
+            Part::Damping(mode) => Some(self.model.damping.ratio(mode + 1)),
+            Part::ForceX(port) => ports.forces.get(*port).map(|place| place.x),
+            Part::ForceY(port) => ports.forces.get(*port).map(|place| place.y),
+            Part::ResponseX(port) => ports.responses.get(*port).map(|place| place.x),
+            Part::ResponseY(port) => ports.responses.get(*port).map(|place| place.y),
+        };
+        // The parts are those of this panel: none is ever missing.
+        value.unwrap_or(f64::NAN)
+    }
+}
+
+fn set(model: &mut PanelModel, part: &Part, value: f64) {
+    let (piece, ports) = (&mut model.piece, &mut model.ports);
+    let place = match part {
+        Part::Length => Some(&mut piece.length),
+        Part::Width => Some(&mut piece.width),
+        Part::Thickness => Some(&mut piece.thickness),
+        Part::MassPerArea => Some(&mut piece.mass_per_area),
+        Part::Constant(name) => {
+            model.constants.insert(name.clone(), Estimate { value, std: None });
+            None
+        }
+        Part::Damping(mode) => model.damping.ratios.get_mut(*mode),
+        Part::ForceX(port) => ports.forces.get_mut(*port).map(|place| &mut place.x),
+        Part::ForceY(port) => ports.forces.get_mut(*port).map(|place| &mut place.y),
+        Part::ResponseX(port) => ports.responses.get_mut(*port).map(|place| &mut place.x),
+        Part::ResponseY(port) => ports.responses.get_mut(*port).map(|place| &mut place.y),
+    };
+    if let Some(place) = place {
+        *place = value;
+    }
+}
+
+fn describe(part: &Part) -> (String, &'static str, String) {
+    let place = |what: &str, port: &usize, axis: &str| {
+        let text = format!("Place of {what} {} along {axis}, from the centre", port + 1);
+        (format!("{what}_{}_{axis}", port + 1), "m", text)
+    };
+    match part {
+        Part::Length => ("length".into(), "m", "Length of the piece, along x".into()),
+        Part::Width => ("width".into(), "m", "Width of the piece, along y".into()),
+        Part::Thickness => ("thickness".into(), "m", "Thickness of the piece".into()),
+        Part::MassPerArea => ("mass_per_area".into(), "kg/m2", "Mass per area of the piece".into()),
+        Part::Constant(name) => {
+            let unit = if name.starts_with("nu") { "1" } else { "Pa" };
+            (name.clone(), unit, format!("Elastic constant {name}"))
+        }
+        Part::Damping(mode) => {
+            let text = format!("Modal damping ratio of flexible mode {}", mode + 1);
+            (format!("damping_ratio_{}", mode + 1), "1", text)
+        }
+        Part::ForceX(port) => place("force", port, "x"),
+        Part::ForceY(port) => place("force", port, "y"),
+        Part::ResponseX(port) => place("response", port, "x"),
+        Part::ResponseY(port) => place("response", port, "y"),
+    }
+}
+
+fn positive(name: &'static str, value: f64, unit: &'static str) -> Result<(), ModelError> {
+    if value > 0.0 { Ok(()) } else { Err(ModelError::Size { name, value, unit }) }
+}
+
+fn solve(model: &PanelModel, range: ModeRange) -> Result<Solution, ModelError> {
+    let modes = model.modal_model(range, &model.ports.forces, &model.ports.responses)?;
+    let static_remainder = static_remainder(model, &modes)?;
+    Ok(Solution { modes, static_remainder })
+}
+
+/// What the flexible modes left out add at rest, by the closed form of all of them; zero where there is none, which is
+/// for a plate and for a beam with effects.
+fn static_remainder(model: &PanelModel, modes: &ModalModel) -> Result<Vec<Vec<f64>>, ModelError> {
+    let Ports { forces, responses } = &model.ports;
+    if model.structure != StructureKind::TimoshenkoBeam || !model.effects.is_empty() {
+        return Ok(vec![vec![0.0; forces.len()]; responses.len()]);
+    }
+    let all = StaticFlexibility::new(&model.piece, model.boundary)?;
+    let (e_x, g_zx) = (model.constant("e_x")?, model.constant("g_zx")?);
+    let between = |(r, response): (usize, &orthopanel_model::Place)| {
+        let remainder = forces.iter().enumerate().map(|(f, force)| {
+            let kept = modes.modes().iter().filter(|mode| mode.angular_frequency > 0.0).filter_map(|mode| {
+                Some(mode.at_responses.get(r)? * mode.at_forces.get(f)? / mode.angular_frequency.powi(2))
+            });
+            all.between(force.x, response.x, e_x, g_zx).0 - kept.sum::<f64>()
+        });
+        remainder.collect()
+    };
+    let remainder: Vec<Vec<f64>> = responses.iter().enumerate().map(between).collect();
+    match remainder.iter().flatten().find(|value| !value.is_finite()) {
+        Some(&value) => Err(ModelError::NotFinite { what: "static flexibility", value }),
+        None => Ok(remainder),
+    }
+}

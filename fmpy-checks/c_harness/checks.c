@@ -1,0 +1,131 @@
+/* What an importer in C sees: numbers, reset, state round trips, derivatives against differences, many instances.
+ *
+ *     checks LIBRARY GUID RESOURCES-URI FORCE ACCELERATION DISPLACEMENT INSTANCES
+ *
+ * The three are value references. Prints what failed, and returns how many checks did.
+ */
+#include <dlfcn.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "fmi2Functions.h"
+
+#define LOAD(name) name##TYPE *name##_ = (name##TYPE *)symbol(library, #name)
+#define CHECK(condition) ((condition) ? 0 : (failed++, printf("failed: %s (line %d)\n", #condition, __LINE__)))
+
+enum { STEPS = 50 };
+static const double STEP = 1e-4;
+static int failed = 0;
+
+static void logger(fmi2ComponentEnvironment e, fmi2String n, fmi2Status s, fmi2String c, fmi2String message, ...) {
+    (void)e, (void)n, (void)s, (void)c, (void)message;
+}
+
+static void *symbol(void *library, const char *name) {
+    void *found = dlsym(library, name);
+    if (!found) {
+        printf("%s\n", dlerror());
+        exit(100);
+    }
+    return found;
+}
+
+/* Resident pages of this process. */
+static long resident(void) {
+    long all = 0, pages = 0;
+    FILE *file = fopen("/proc/self/statm", "r");
+    if (!file) return 0;
+    if (fscanf(file, "%ld %ld", &all, &pages) != 2) pages = 0;
+    fclose(file);
+    return pages;
+}
+
+int main(int argc, char **argv) {
+    if (argc != 8) return 101;
+    void *library = dlopen(argv[1], RTLD_NOW | RTLD_LOCAL);
+    if (!library) {
+        printf("%s\n", dlerror());
+        return 100;
+    }
+    LOAD(fmi2Instantiate);
+    LOAD(fmi2FreeInstance);
+    LOAD(fmi2EnterInitializationMode);
+    LOAD(fmi2ExitInitializationMode);
+    LOAD(fmi2Reset);
+    LOAD(fmi2SetReal);
+    LOAD(fmi2GetReal);
+    LOAD(fmi2DoStep);
+    LOAD(fmi2GetFMUstate);
+    LOAD(fmi2SetFMUstate);
+    LOAD(fmi2FreeFMUstate);
+    LOAD(fmi2SerializedFMUstateSize);
+    LOAD(fmi2SerializeFMUstate);
+    LOAD(fmi2DeSerializeFMUstate);
+    LOAD(fmi2GetDirectionalDerivative);
+    const fmi2ValueReference force = (fmi2ValueReference)atoi(argv[4]);
+    const fmi2ValueReference outputs[2] = {(fmi2ValueReference)atoi(argv[5]), (fmi2ValueReference)atoi(argv[6])};
+    const fmi2CallbackFunctions callbacks = {logger, calloc, free, NULL, NULL};
+
+    fmi2Component c = fmi2Instantiate_("one", fmi2CoSimulation, argv[2], argv[3], &callbacks, fmi2False, fmi2False);
+    if (!c) return 102;
+
+    /* The same run three times: first, after a reset, and from a state that went through bytes. */
+    double runs[3][STEPS][2];
+    fmi2FMUstate half = NULL;
+    for (int run = 0; run < 3; run++) {
+        int first = 0;
+        if (run < 2) {
+            if (run) CHECK(fmi2Reset_(c) == fmi2OK);
+            CHECK(fmi2EnterInitializationMode_(c) == fmi2OK && fmi2ExitInitializationMode_(c) == fmi2OK);
+        } else {
+            size_t size = 0;
+            CHECK(fmi2SerializedFMUstateSize_(c, half, &size) == fmi2OK && size > 0);
+            char *bytes = malloc(size);
+            CHECK(fmi2SerializeFMUstate_(c, half, bytes, size) == fmi2OK);
+            CHECK(fmi2SerializeFMUstate_(c, half, bytes, size - 1) == fmi2Error);
+            CHECK(fmi2FreeFMUstate_(c, &half) == fmi2OK && half == NULL);
+            CHECK(fmi2DeSerializeFMUstate_(c, bytes, size, &half) == fmi2OK);
+            CHECK(fmi2SetFMUstate_(c, half) == fmi2OK);
+            free(bytes);
+            memcpy(runs[2], runs[0], sizeof runs[2]);
+            first = STEPS / 2;
+        }
+        for (int n = first; n < STEPS; n++) {
+            if (run == 1 && n == STEPS / 2) CHECK(fmi2GetFMUstate_(c, &half) == fmi2OK && half != NULL);
+            double value = cos(0.3 * n);
+            CHECK(fmi2SetReal_(c, &force, 1, &value) == fmi2OK);
+            CHECK(fmi2DoStep_(c, n * STEP, STEP, fmi2False) == fmi2OK);
+            CHECK(fmi2GetReal_(c, outputs, 2, runs[run][n]) == fmi2OK);
+        }
+        CHECK(memcmp(runs[run], runs[0], sizeof runs[0]) == 0);
+        CHECK(isfinite(runs[run][STEPS - 1][0]) && runs[run][STEPS - 1][0] != 0.0);
+    }
+    CHECK(fmi2FreeFMUstate_(c, &half) == fmi2OK);
+
+    /* Derivatives by the force against differences, which for a linear panel are exact at any size. */
+    double one = 1.0, slope[2], low[2], high[2], values[2] = {-1.0, 1.0};
+    CHECK(fmi2GetDirectionalDerivative_(c, outputs, 2, &force, 1, &one, slope) == fmi2OK);
+    CHECK(fmi2SetReal_(c, &force, 1, &values[0]) == fmi2OK && fmi2GetReal_(c, outputs, 2, low) == fmi2OK);
+    CHECK(fmi2SetReal_(c, &force, 1, &values[1]) == fmi2OK && fmi2GetReal_(c, outputs, 2, high) == fmi2OK);
+    for (int i = 0; i < 2; i++) {
+        double scale = fabs(high[i]) + fabs(low[i]);
+        CHECK(fabs((high[i] - low[i]) / 2.0 - slope[i]) <= 1e-14 * scale);
+    }
+    fmi2FreeInstance_(c);
+
+    /* Many instances, one after the other, each with a state that is never freed: no growth once the heap has settled. */
+    long instances = atol(argv[7]), settled = 0;
+    for (long n = 0; n < instances; n++) {
+        c = fmi2Instantiate_("many", fmi2CoSimulation, argv[2], argv[3], &callbacks, fmi2False, fmi2False);
+        fmi2FMUstate left = NULL;
+        CHECK(c && fmi2EnterInitializationMode_(c) == fmi2OK && fmi2ExitInitializationMode_(c) == fmi2OK);
+        CHECK(fmi2DoStep_(c, 0.0, STEP, fmi2True) == fmi2OK && fmi2GetFMUstate_(c, &left) == fmi2OK);
+        fmi2FreeInstance_(c);
+        if (n == instances / 4) settled = resident();
+    }
+    CHECK(resident() <= settled + 8);
+    dlclose(library);
+    return failed > 100 ? 100 : failed;
+}
