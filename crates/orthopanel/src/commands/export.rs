@@ -10,10 +10,11 @@ use crate::arguments::{ModeArguments, PortArguments};
 use crate::error::{CommandError, InFile as _};
 use crate::{model_file, output};
 
-/// Write a model as an FMU for co-simulation: force in; acceleration, velocity and displacement out
+/// Write a model as an FMU for co-simulation and model exchange: force in; acceleration, velocity and displacement out
 ///
 /// No compiler is needed. Inputs are force_1, force_2, ... in N, outputs acceleration_1, velocity_1,
-/// displacement_1, ... in SI units, numbered in the order of the places given.
+/// displacement_1, ... in SI units, numbered in the order of the places given. Sizes, mass, constants, damping ratios
+/// and places are parameters of the FMU, which solves its modes anew where one is set.
 ///
 /// Example: orthopanel export out/model.json -o panel.fmu --fmi 3 --modes 6 --force -0.3 --response 0.3 --response 0,0.02
 #[derive(clap::Args)]
@@ -55,7 +56,7 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
     let frequencies: Vec<f64> =
         seen.modes().iter().map(|mode| mode.angular_frequency / std::f64::consts::TAU).collect();
     let rigid_modes = model.boundary.rigid_modes();
-    let fmu = Fmu::new(seen, ports.clone(), &options(arguments.fmi))?;
+    let fmu = Fmu::of_panel(&model, arguments.modes.range(), ports.clone(), &options(arguments.fmi))?;
     output::write(&arguments.output, fmu.to_bytes()?)?;
     let answer = Answer {
         schema: "orthopanel.export/1",

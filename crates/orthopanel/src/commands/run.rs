@@ -99,7 +99,7 @@ fn add_piece(
     let seen = model.modal_model(USUAL_MODES, &ports.forces, &ports.responses).in_file(&arguments.test)?;
     for (version, ending) in [(FmiVersion::Fmi2, ""), (FmiVersion::Fmi3, "-fmi3")] {
         let options = FmuOptions { version, ..FmuOptions::default() };
-        let fmu = Fmu::new(seen.clone(), ports.clone(), &options)?;
+        let fmu = Fmu::of_panel(model, USUAL_MODES, ports.clone(), &options)?;
         files.add(format!("panel{suffix}{ending}.fmu"), fmu.to_bytes()?);
     }
     let hit = DrivingForce::new(ForceHistory::half_sine(ports.forces.len()), Hold::Linear, &arguments.test)?;
