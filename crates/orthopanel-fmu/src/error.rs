@@ -141,6 +141,18 @@ pub enum FmuError {
         /// Number expected.
         expected: usize,
     },
+    /// Parameters that together are those of no panel.
+    #[error("{what} = {value}: must lie between {low} and {high}; set the parameters it is made of")]
+    OutOfRange {
+        /// The ratio.
+        what: &'static str,
+        /// Its value.
+        value: f64,
+        /// Least value allowed.
+        low: f64,
+        /// Greatest value allowed.
+        high: f64,
+    },
     /// A panel that, with the parameters set, has another number of modes.
     #[error("with these parameters the panel has {found} modes, not {expected}: its ends must hold it as exported")]
     ModeCount {

@@ -5,6 +5,8 @@ use orthopanel_model::{
 };
 use serde::{Deserialize, Serialize};
 
+use crate::FmuError;
+
 /// A panel as identified, with the number of flexible modes that its FMU keeps.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -81,13 +83,22 @@ impl Panel {
     }
 
     /// The modes with these values of the parameters.
-    pub(crate) fn solve(&self, values: &[f64]) -> Result<Solution, ModelError> {
+    ///
+    /// # Errors
+    /// [`FmuError::OutOfRange`] for a piece that is no panel: its modes could take any time to find.
+    pub(crate) fn solve(&self, values: &[f64]) -> Result<Solution, FmuError> {
         let mut model = self.model.clone();
         for (part, &value) in self.parts().into_iter().zip(values) {
             set(&mut model, &part, value);
         }
         model.check()?;
-        solve(&model, ModeRange::Count(self.flexible_modes))
+        let piece = model.piece;
+        in_range("length over thickness", piece.length / piece.thickness, 1.0, 1e4)?;
+        in_range("length over width", piece.length / piece.width, 1e-3, 1e4)?;
+        if let (Some(e_x), Some(g_zx)) = (model.constants.get("e_x"), model.constants.get("g_zx")) {
+            in_range("e_x over g_zx", e_x.value / g_zx.value, 1e-2, 1e4)?;
+        }
+        Ok(solve(&model, ModeRange::Count(self.flexible_modes))?)
     }
 
     fn parts(&self) -> Vec<Part> {
@@ -168,6 +179,10 @@ fn describe(part: &Part) -> (String, &'static str, String) {
 
 fn positive(name: &'static str, value: f64, unit: &'static str) -> Result<(), ModelError> {
     if value > 0.0 { Ok(()) } else { Err(ModelError::Size { name, value, unit }) }
+}
+
+fn in_range(what: &'static str, value: f64, low: f64, high: f64) -> Result<(), FmuError> {
+    if (low..=high).contains(&value) { Ok(()) } else { Err(FmuError::OutOfRange { what, value, low, high }) }
 }
 
 fn solve(model: &PanelModel, range: ModeRange) -> Result<Solution, ModelError> {
