@@ -122,7 +122,10 @@ fn an_fmu_moves_as_its_model() {
                 let tolerance = if column < 7 { 1e-9 } else { 1e-4 };
                 for (found, expected) in found.iter().zip(&expected) {
                     let difference = (found[column] - expected[column]).abs();
-                    assert!(difference <= tolerance * peak, "FMI {fmi}, {hold}, column {column}: {difference} of {peak}");
+                    assert!(
+                        difference <= tolerance * peak,
+                        "FMI {fmi}, {hold}, column {column}: {difference} of {peak}"
+                    );
                 }
             }
         }
