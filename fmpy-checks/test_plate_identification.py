@@ -10,7 +10,8 @@ from conftest import ROOT
 from plate_by_scikit_fem import nodal_lines
 
 TRUTH = {"e_x": 1.07e10, "e_y": 8.6e9, "nu_xy": 0.34, "g_xy": 3.2e9, "g_yz": 2.6e8, "g_zx": 5.363e8}
-WIDTHS = [0.1, 0.2]
+WIDTHS = [0.2, 0.4]
+COUNT = 20
 NOISE = 5e-4
 SEEDS = range(60)
 
@@ -21,11 +22,13 @@ def piece(width):
 
 @pytest.fixture(scope="module")
 def modes():
-    """Frequencies and nodal lines of the first eighteen modes at each width."""
-    return [nodal_lines({"piece": piece(width), "constants": TRUTH}, (14, 4), 18) for width in WIDTHS]
+    """Frequencies and nodal lines of the lowest modes at each width, but for those that veer: their lines tell no name."""
+    found = [nodal_lines({"piece": piece(width), "constants": TRUTH}, (14, 6), COUNT) for width in WIDTHS]
+    named = [[nodes for _, nodes in listed] for listed in found]
+    return [[mode for mode in listed if names.count(mode[1]) == 1] for listed, names in zip(found, named)]
 
 
-def test_file(modes, seed, keep=lambda nodes: True):
+def written(modes, seed, keep=lambda nodes: True):
     random = np.random.default_rng(seed)
     lines = ['structure = "mindlin-plate"']
     for number, width in enumerate(WIDTHS):
@@ -51,7 +54,7 @@ def identify(text, folder):
 def test_all_six_constants_come_back_and_their_intervals_hold_them(modes, tmp_path):
     held = []
     for seed in SEEDS:
-        found = identify(test_file(modes, seed), tmp_path)
+        found = identify(written(modes, seed), tmp_path)
         assert not found["not_identified"], found["not_identified"]
         for name, truth in TRUTH.items():
             constant = found["constants"][name]
@@ -62,7 +65,7 @@ def test_all_six_constants_come_back_and_their_intervals_hold_them(modes, tmp_pa
 
 
 def test_bending_modes_alone_do_not_show_every_constant(modes, tmp_path):
-    found = identify(test_file(modes, 1, keep=lambda nodes: nodes[1] == 0), tmp_path)
+    found = identify(written(modes, 1, keep=lambda nodes: nodes[1] == 0), tmp_path)
     unseen = {entry["name"] for entry in found["not_identified"]}
     assert "g_xy" in unseen, unseen
     for entry in found["not_identified"]:

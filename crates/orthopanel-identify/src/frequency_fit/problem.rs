@@ -2,7 +2,7 @@
 
 use faer::Mat;
 use orthopanel_data::{ImpactTest, MeasurementData};
-use orthopanel_model::{ModelError, StructureKind};
+use orthopanel_model::StructureKind;
 
 use super::structures::{self, MeasuredModes, Prediction, bending_nodes};
 use crate::IdentifyError;
@@ -20,6 +20,14 @@ pub(super) struct FrequencySet {
     pub measured: Vec<f64>,
     /// Standard deviation of each by rounding to a bin \[Hz\], where the bin is stated.
     pub rounding: Vec<f64>,
+}
+
+/// One set's modes at some constants.
+pub(super) struct SetPrediction {
+    /// The constants of its piece.
+    pub values: Vec<f64>,
+    /// The measured modes, in the test's order.
+    pub modes: Vec<Prediction>,
 }
 
 /// The measurements, and which constants are free.
@@ -55,27 +63,26 @@ impl FrequencyProblem {
     }
 
     /// The modes of every set at these parameters.
-    pub(super) fn predictions(&self, parameters: &[f64]) -> Result<Vec<Vec<Prediction>>, ModelError> {
-        self.sets.iter().map(|set| set.modes.predict(&self.constants.values(parameters, set.piece))).collect()
+    pub(super) fn predictions(&self, parameters: &[f64]) -> Result<Vec<SetPrediction>, IdentifyError> {
+        let predict = |set: &FrequencySet| {
+            let values = self.constants.values(parameters, set.piece);
+            Ok(SetPrediction { modes: set.modes.predict(&values)?, values })
+        };
+        self.sets.iter().map(predict).collect()
     }
 
     /// Relative residuals $(f_{cal}-f_{exp})/f_{exp}$ and their derivatives by the parameters.
     pub(super) fn linearise(&self, parameters: &[f64]) -> Result<Linearised, IdentifyError> {
-        self.linearise_over(&self.constants, parameters)
+        Ok(self.linearised(&self.predictions(parameters)?, &self.constants))
     }
 
-    /// The same with other constants free.
-    pub(super) fn linearise_over(
-        &self,
-        constants: &FreeConstants,
-        parameters: &[f64],
-    ) -> Result<Linearised, IdentifyError> {
+    /// The same from modes that stand already, with any constants free.
+    pub(super) fn linearised(&self, predictions: &[SetPrediction], constants: &FreeConstants) -> Linearised {
         let mut residuals = Vec::with_capacity(self.count());
         let mut rows = Vec::with_capacity(self.count());
-        for set in &self.sets {
-            let values = constants.values(parameters, set.piece);
+        for (set, SetPrediction { values, modes }) in self.sets.iter().zip(predictions) {
             let of_constant = constants.parameters_of(set.piece);
-            for (prediction, measured) in set.modes.predict(&values)?.iter().zip(&set.measured) {
+            for (prediction, measured) in modes.iter().zip(&set.measured) {
                 let ratio = prediction.frequency / measured;
                 residuals.push(ratio - 1.0);
                 let mut row = vec![0.0; constants.count()];
@@ -89,7 +96,7 @@ impl FrequencyProblem {
             }
         }
         let jacobian = Mat::from_fn(rows.len(), constants.count(), |i, j| rows[i][j]);
-        Ok(Linearised { residuals, jacobian })
+        Linearised { residuals, jacobian }
     }
 
     /// Eq. 22.

@@ -2,7 +2,7 @@
 
 use orthopanel_data::ImpactTest;
 
-use super::problem::FrequencyProblem;
+use super::problem::{FrequencyProblem, SetPrediction};
 use super::structures::Prediction;
 use super::uncertainty::uncertainty;
 use crate::free_constants::FreeConstants;
@@ -14,7 +14,8 @@ pub(super) fn report(
     found: &[f64],
     not_identified: Vec<NotIdentified>,
 ) -> Result<Identification, IdentifyError> {
-    let at = problem.linearise(found)?;
+    let predictions = problem.predictions(found)?;
+    let at = problem.linearised(&predictions, &problem.constants);
     let uncertainty = uncertainty(problem, &at);
     Ok(Identification {
         structure: problem.structure,
@@ -26,7 +27,7 @@ pub(super) fn report(
         ),
         not_identified,
         correlations: uncertainty.correlations,
-        pieces: piece_fits(test, problem, &problem.predictions(found)?),
+        pieces: piece_fits(test, problem, &predictions),
         frequency_rms_percent: 100.0 * (at.quadratic().cost / problem.count() as f64).sqrt(),
         left_one_out_percent: uncertainty.left_one_out_percent,
         accelerance_rms_percent: None,
@@ -69,13 +70,13 @@ pub(crate) fn identified_constants(
     list
 }
 
-fn piece_fits(test: &ImpactTest, problem: &FrequencyProblem, predictions: &[Vec<Prediction>]) -> Vec<PieceFit> {
+fn piece_fits(test: &ImpactTest, problem: &FrequencyProblem, predictions: &[SetPrediction]) -> Vec<PieceFit> {
     let named = test.pieces.iter();
     let mut fits: Vec<PieceFit> = named
         .map(|named| PieceFit { name: named.name.clone(), piece: named.piece, modes: vec![], damping: vec![] })
         .collect();
     for (set, predicted) in problem.sets.iter().zip(predictions) {
-        for ((&measured, prediction), &nodes) in set.measured.iter().zip(predicted).zip(set.modes.nodes()) {
+        for ((&measured, prediction), &nodes) in set.measured.iter().zip(&predicted.modes).zip(set.modes.nodes()) {
             let Prediction { mode, frequency, .. } = *prediction;
             fits[set.piece].modes.push(ModeFit { mode, nodes, measured, model: frequency, damping: None });
         }

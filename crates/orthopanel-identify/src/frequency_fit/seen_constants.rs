@@ -4,7 +4,7 @@ use faer::{Mat, Side};
 use orthopanel_model::Constant;
 
 use super::least_squares;
-use super::problem::FrequencyProblem;
+use super::problem::{FrequencyProblem, SetPrediction};
 use super::uncertainty::{left_one_out_percent, residual_variance};
 use crate::free_constants::{FreeConstant, FreeConstants};
 use crate::least_squares::Linearised;
@@ -43,56 +43,60 @@ pub(super) fn minimise_what_is_seen(
         }
     }
     let mut parameters = least_squares(problem, &carried(&all, start, &problem.constants))?;
-    while let Some(next) = best_seen(problem, &all, &parameters, &waiting)? {
+    let mut predictions = problem.predictions(&parameters)?;
+    while let Some(next) = best_seen(problem, &all, &predictions, &parameters, &waiting) {
         waiting.retain(|constant| *constant != next);
         let before = problem.constants.clone();
-        let predicted = prediction_error(problem, &parameters)?;
+        let predicted = prediction_error(&problem.linearised(&predictions, &before));
         problem.constants = with_freed(&before, &all, next);
         let trial = least_squares(problem, &freed_parameters(&before, &parameters, &problem.constants));
+        let trial = trial.and_then(|trial| Ok((problem.predictions(&trial)?, trial)));
         match trial {
-            Ok(trial) if pays(problem, &trial, next, predicted)? => parameters = trial,
+            Ok((modes, trial)) if pays(problem, &modes, &trial, next, predicted) => {
+                (parameters, predictions) = (trial, modes);
+            }
             _ => problem.constants = before,
         }
     }
-    let not_identified = reports(problem, &all, &parameters)?;
+    let not_identified = reports(problem, &all, &predictions, &parameters);
     Ok((parameters, not_identified))
 }
 
 /// Whether a constant just freed is seen, lies inside its bounds, and does not worsen the prediction.
-fn pays(problem: &FrequencyProblem, trial: &[f64], freed: usize, before: f64) -> Result<bool, IdentifyError> {
-    let at = problem.linearise(trial)?;
+fn pays(problem: &FrequencyProblem, modes: &[SetPrediction], trial: &[f64], freed: usize, before: f64) -> bool {
     let constants = &problem.constants;
+    let at = problem.linearised(modes, constants);
     let stds = standard_deviations(&at, residual_variance(problem, &at));
-    let own = || (0..constants.count()).filter(|&index| constants.free[index].constant == freed);
-    let seen = own().all(|index| stds[index] <= widest(constants, index) && !constants.on_bound(index, trial[index]));
-    Ok(seen && prediction_error(problem, trial)? <= WORSE_PREDICTION * before)
+    let mut own = (0..constants.count()).filter(|&index| constants.free[index].constant == freed);
+    let seen = own.all(|index| stds[index] <= widest(constants, index) && !constants.on_bound(index, trial[index]));
+    seen && prediction_error(&at) <= WORSE_PREDICTION * before
 }
 
 /// Rms error \[%\] of frequencies left out; without enough of them it is unbounded.
-fn prediction_error(problem: &FrequencyProblem, parameters: &[f64]) -> Result<f64, IdentifyError> {
-    let at = problem.linearise(parameters)?;
+fn prediction_error(at: &Linearised) -> f64 {
     let covariance = at.quadratic().covariance();
-    Ok(covariance.and_then(|matrix| left_one_out_percent(&at, &matrix)).unwrap_or(f64::INFINITY))
+    covariance.and_then(|matrix| left_one_out_percent(at, &matrix)).unwrap_or(f64::INFINITY)
 }
 
 /// The waiting constant that the data would show best, if they would show it.
 fn best_seen(
     problem: &FrequencyProblem,
     all: &FreeConstants,
+    predictions: &[SetPrediction],
     parameters: &[f64],
     waiting: &[usize],
-) -> Result<Option<usize>, IdentifyError> {
+) -> Option<usize> {
     let mut best: Option<(usize, f64)> = None;
     for &constant in waiting {
-        let (constants, at) = as_if_freed(problem, all, parameters, &[constant])?;
-        let stds = standard_deviations(&at, residual_variance_stated(problem));
+        let (constants, _) = as_if_freed(problem, all, parameters, &[constant]);
+        let stds = standard_deviations(&problem.linearised(predictions, &constants), residual_variance_stated(problem));
         let own = (0..constants.count()).filter(|&index| constants.free[index].constant == constant);
         let ratio = own.map(|index| stds[index] / widest(&constants, index)).fold(0.0, f64::max);
         if ratio <= 1.0 && best.is_none_or(|(_, least)| ratio < least) {
             best = Some((constant, ratio));
         }
     }
-    Ok(best.map(|(constant, _)| constant))
+    best.map(|(constant, _)| constant)
 }
 
 /// Variance of the relative residuals before a fit has told it.
@@ -101,13 +105,13 @@ fn residual_variance_stated(problem: &FrequencyProblem) -> f64 {
     if rounding > 0.0 { rounding } else { USUAL_SCATTER.powi(2) }
 }
 
-/// The problem's derivatives at `parameters`, with more constants free.
+/// The constants with more of them free, and the parameters at the values that all have.
 fn as_if_freed(
     problem: &FrequencyProblem,
     all: &FreeConstants,
     parameters: &[f64],
     freed: &[usize],
-) -> Result<(FreeConstants, Linearised), IdentifyError> {
+) -> (FreeConstants, Vec<f64>) {
     let mut constants = problem.constants.clone();
     let mut at = parameters.to_vec();
     for &constant in freed {
@@ -115,8 +119,7 @@ fn as_if_freed(
         at = freed_parameters(&constants, &at, &more);
         constants = more;
     }
-    let linearised = problem.linearise_over(&constants, &at)?;
-    Ok((constants, linearised))
+    (constants, at)
 }
 
 /// The constants with one more free, in the order of `all`.
@@ -164,12 +167,14 @@ fn widest(constants: &FreeConstants, index: usize) -> f64 {
 fn reports(
     problem: &FrequencyProblem,
     all: &FreeConstants,
+    predictions: &[SetPrediction],
     parameters: &[f64],
-) -> Result<Vec<NotIdentified>, IdentifyError> {
+) -> Vec<NotIdentified> {
     let resting: Vec<usize> = problem.constants.resting.iter().map(|(constant, _)| *constant).collect();
-    let (constants, at) = as_if_freed(problem, all, parameters, &resting)?;
-    let values = freed_parameters(&problem.constants, parameters, &constants);
-    let stds = standard_deviations(&at, residual_variance(problem, &problem.linearise(parameters)?));
+    let (constants, values) = as_if_freed(problem, all, parameters, &resting);
+    let at = problem.linearised(predictions, &constants);
+    let variance = residual_variance(problem, &problem.linearised(predictions, &problem.constants));
+    let stds = standard_deviations(&at, variance);
     let direction = blind_direction(&constants, &at.quadratic().normal);
     let report = |&constant: &usize| {
         let index = constants.free.iter().position(|free| free.constant == constant).unwrap_or(0);
@@ -183,7 +188,7 @@ fn reports(
             direction: direction.clone(),
         }
     };
-    Ok(resting.iter().map(report).collect())
+    resting.iter().map(report).collect()
 }
 
 /// The direction of the least eigenvalue, largest component first and positive.
