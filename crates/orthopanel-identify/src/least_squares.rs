@@ -89,11 +89,27 @@ pub(crate) enum Stuck<E> {
     Iterations { count: usize, cost: f64 },
 }
 
-const MOST_ITERATIONS: usize = 100;
-/// A step this small in logarithms ends a search: the next would be a thousand times smaller still.
-const SMALL_STEP: f64 = 1e-8;
-/// Part of the sum of squares that is not worth another step: it moves a parameter by 1e-5 of its standard deviation.
-const SMALL_GAIN: f64 = 1e-10;
+/// When a search ends.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Ending {
+    /// More iterations than these are none.
+    pub most_iterations: usize,
+    /// A step this small in logarithms ends a search.
+    pub small_step: f64,
+    /// Part of the sum of squares that is not worth another step.
+    pub small_gain: f64,
+    /// Damping of the first step, as a part of the curvature.
+    pub first_damping: f64,
+}
+
+impl Ending {
+    /// For smooth residuals: after a step of 1e-8 the next would be a thousand times smaller still, and 1e-10 of the sum
+    /// of squares moves a parameter by 1e-5 of its standard deviation.
+    pub const SMOOTH: Self = Self { most_iterations: 100, small_step: 1e-8, small_gain: 1e-10, first_damping: 1e-6 };
+    /// For residuals that jump where two modes change places: 1e-6 of the sum of squares moves a parameter by 1e-3 of its
+    /// standard deviation, and at a jump steps shrink without end.
+    pub const WITH_JUMPS: Self = Self { most_iterations: 40, small_step: 1e-5, small_gain: 1e-6, first_damping: 1e-4 };
+}
 
 /// Minimises $\sum r_i^2$ from `start`; each parameter stays within its `(low, high)`.
 ///
@@ -104,10 +120,20 @@ pub(crate) fn levenberg_marquardt<E>(
     start: &[f64],
     bounds: &[(f64, f64)],
 ) -> Result<Minimum, Stuck<E>> {
+    levenberg_marquardt_until(linearise, start, bounds, Ending::SMOOTH)
+}
+
+/// The same with an ending of one's own.
+pub(crate) fn levenberg_marquardt_until<E>(
+    linearise: impl Fn(&[f64]) -> Result<Quadratic, E>,
+    start: &[f64],
+    bounds: &[(f64, f64)],
+    ending: Ending,
+) -> Result<Minimum, Stuck<E>> {
     let mut parameters = start.to_vec();
     let mut at = linearise(&parameters).map_err(Stuck::Refused)?;
-    let (mut damping, mut growth) = (1e-6, 2.0);
-    for _ in 0..MOST_ITERATIONS {
+    let (mut damping, mut growth) = (ending.first_damping, 2.0);
+    for _ in 0..ending.most_iterations {
         let mut normal = at.normal.clone();
         let mut gradient = Mat::from_fn(parameters.len(), 1, |i, _| at.gradient[i]);
         for (i, (&parameter, &(low, high))) in parameters.iter().zip(bounds).enumerate() {
@@ -143,7 +169,7 @@ pub(crate) fn levenberg_marquardt<E>(
             let (before, after) = (at.cost, next.cost);
             // At the bottom both are equal but for rounding, and either is the minimum.
             if after <= before {
-                let settled = moved < SMALL_STEP || promised <= SMALL_GAIN * before;
+                let settled = moved < ending.small_step || promised <= ending.small_gain * before;
                 (parameters, at) = (trial, next);
                 (damping, growth) = (damping * 0.1, 2.0);
                 if settled {
@@ -152,13 +178,13 @@ pub(crate) fn levenberg_marquardt<E>(
                 continue;
             }
         }
-        if moved < SMALL_STEP || promised <= SMALL_GAIN * at.cost {
+        if moved < ending.small_step || promised <= ending.small_gain * at.cost {
             return Ok(Minimum { parameters, at });
         }
         damping *= growth;
         growth *= 2.0;
     }
-    Err(Stuck::Iterations { count: MOST_ITERATIONS, cost: at.cost })
+    Err(Stuck::Iterations { count: ending.most_iterations, cost: at.cost })
 }
 
 #[cfg(test)]

@@ -15,7 +15,7 @@ use orthopanel_data::ImpactTest;
 use orthopanel_model::StructureKind;
 
 use crate::downhill_simplex::{Penalised, downhill_simplex};
-use crate::least_squares::{Stuck, levenberg_marquardt};
+use crate::least_squares::{Ending, Stuck, levenberg_marquardt_until};
 use crate::{Identification, IdentifyError, Search};
 use problem::FrequencyProblem;
 
@@ -68,7 +68,12 @@ fn minimise(problem: &FrequencyProblem, start: &[f64], search: Search) -> Result
 
 fn least_squares(problem: &FrequencyProblem, start: &[f64]) -> Result<Vec<f64>, IdentifyError> {
     let quadratic = |parameters: &[f64]| problem.linearise(parameters).map(|at| at.quadratic());
-    let minimum = levenberg_marquardt(quadratic, start, &problem.constants.bounds()).map_err(|stuck| match stuck {
+    let ending = match problem.structure {
+        StructureKind::TimoshenkoBeam => Ending::SMOOTH,
+        StructureKind::MindlinPlate => Ending::WITH_JUMPS,
+    };
+    let bounds = problem.constants.bounds();
+    let minimum = levenberg_marquardt_until(quadratic, start, &bounds, ending).map_err(|stuck| match stuck {
         Stuck::Refused(error) => error,
         Stuck::Iterations { count, cost } => IdentifyError::NotConverged {
             iterations: count,
