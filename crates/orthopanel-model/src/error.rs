@@ -268,6 +268,22 @@ pub enum ModelError {
         /// What it needs.
         what: &'static str,
     },
+    /// An effect of a model file that cannot be read.
+    #[error("effect {effect}: {what}")]
+    EffectText {
+        /// Its id.
+        effect: &'static str,
+        /// What is wrong with it.
+        what: String,
+    },
+    /// An effect in a model file that is none of the panel's.
+    #[error("effect {effect} belongs to the {owner}, not to the panel: leave it out of the model file")]
+    EffectOwner {
+        /// Its id.
+        effect: &'static str,
+        /// `rig` or `channel`.
+        owner: &'static str,
+    },
     /// What this version cannot solve.
     #[error("{0} is not supported by this version of orthopanel")]
     Unsupported(String),

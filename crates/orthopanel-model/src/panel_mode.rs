@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use crate::effects::DressedMode;
 use crate::structure_modes::NaturalMode;
 use crate::{BeamMode, MindlinPlate, ModeName, Place, RitzMode};
 
@@ -15,6 +16,7 @@ pub struct PanelMode {
 #[derive(Debug, Clone)]
 enum Shape {
     Beam(BeamMode),
+    Dressed(DressedMode),
     Plate { plate: Arc<MindlinPlate>, mode: RitzMode, name: ModeName },
 }
 
@@ -23,6 +25,7 @@ impl PanelMode {
     pub fn angular_frequency(&self) -> f64 {
         match &self.shape {
             Shape::Beam(mode) => mode.angular_frequency(),
+            Shape::Dressed(mode) => mode.angular_frequency,
             Shape::Plate { mode, .. } => mode.angular_frequency,
         }
     }
@@ -45,7 +48,7 @@ impl PanelMode {
     /// The name of a plate's mode; a beam's modes need none beside their nodes.
     pub fn name(&self) -> Option<ModeName> {
         match &self.shape {
-            Shape::Beam(_) => None,
+            Shape::Beam(_) | Shape::Dressed(_) => None,
             Shape::Plate { name, .. } => Some(*name),
         }
     }
@@ -54,6 +57,7 @@ impl PanelMode {
     pub fn deflection(&self, place: Place) -> f64 {
         match &self.shape {
             Shape::Beam(mode) => mode.deflection(place.x),
+            Shape::Dressed(mode) => mode.deflection(place),
             Shape::Plate { plate, mode, .. } => mode.deflection(plate.as_ref(), place),
         }
     }
@@ -64,14 +68,24 @@ impl PanelMode {
         let points = 8 * (number + 2);
         let place = |index: usize| length * ((index as f64 + 0.5) / points as f64 - 0.5);
         let deflections: Vec<f64> = (0..points).map(|index| mode.deflection(place(index))).collect();
-        let crosses = |pair: &&[f64]| matches!(pair, [left, right] if (*left < 0.0) != (*right < 0.0));
-        Self { nodes: [deflections.windows(2).filter(crosses).count(), 0], shape: Shape::Beam(mode) }
+        Self { nodes: [crossings(&deflections), 0], shape: Shape::Beam(mode) }
+    }
+
+    /// A mode of a beam with effects.
+    pub(crate) fn of_dressed(mode: DressedMode) -> Self {
+        Self { nodes: [mode.nodes, 0], shape: Shape::Dressed(mode) }
     }
 
     pub(crate) fn of_plate(plate: &Arc<MindlinPlate>, mode: RitzMode) -> Self {
         let name = plate.mode_name(&mode);
         Self { nodes: name.nodes, shape: Shape::Plate { plate: Arc::clone(plate), mode, name } }
     }
+}
+
+/// How often a row of deflections changes its sign.
+pub(crate) fn crossings(deflections: &[f64]) -> usize {
+    let crosses = |pair: &&[f64]| matches!(pair, [left, right] if (*left < 0.0) != (*right < 0.0));
+    deflections.windows(2).filter(crosses).count()
 }
 
 impl NaturalMode for PanelMode {
@@ -81,5 +95,12 @@ impl NaturalMode for PanelMode {
 
     fn deflection_at(&self, place: Place) -> f64 {
         self.deflection(place)
+    }
+
+    fn own_damping(&self) -> Option<f64> {
+        match &self.shape {
+            Shape::Dressed(mode) => Some(mode.damping_ratio),
+            Shape::Beam(_) | Shape::Plate { .. } => None,
+        }
     }
 }

@@ -2,9 +2,10 @@
 
 use std::sync::Arc;
 
+use crate::effects::DressedPanel;
 use crate::{
-    BeamConstants, BeamMode, ExactBeam, MindlinPlate, ModalModel, ModelError, PLATE_CONSTANTS, PanelMode, PanelModel,
-    Place, RitzMode, Structure, StructureKind, TimoshenkoBeam, ritz_modes,
+    BeamConstants, BeamMode, EffectState, ExactBeam, MindlinPlate, ModalModel, ModelError, Owner, PLATE_CONSTANTS,
+    PanelMode, PanelModel, Place, RitzMode, Structure, StructureKind, TimoshenkoBeam, ritz_modes,
 };
 
 /// Which modes to keep beside the rigid ones.
@@ -44,6 +45,7 @@ impl PanelModel {
     /// version cannot solve.
     pub fn modes(&self, range: ModeRange) -> Result<Vec<PanelMode>, ModelError> {
         match self.structure {
+            StructureKind::TimoshenkoBeam if !self.effects.is_empty() => self.dressed_modes(range.checked()?),
             StructureKind::TimoshenkoBeam => {
                 let modes = self.beam_modes(range)?;
                 let rigid = self.boundary.rigid_modes();
@@ -80,6 +82,38 @@ impl PanelModel {
                 (Box::new(MindlinPlate::with_basis_for(&self.piece, self.boundary, &values, count)?), values.to_vec())
             }
         })
+    }
+
+    /// Modes of a beam with effects. Those of the bare modes' damping ratios that they hold mix in each.
+    fn dressed_modes(&self, range: ModeRange) -> Result<Vec<PanelMode>, ModelError> {
+        self.check()?;
+        let effects = self.effects.iter().map(EffectState::from_entry).collect::<Result<Vec<_>, _>>()?;
+        if let Some(state) = effects.iter().find(|state| state.effect.owner() != Owner::Panel) {
+            let (effect, owner) = (state.effect.id(), state.effect.owner().name());
+            return Err(ModelError::EffectOwner { effect, owner });
+        }
+        let constants = BeamConstants { e_x: self.constant("e_x")?, g_zx: self.constant("g_zx")? }.checked()?;
+        let first = |count: usize| {
+            let values = [constants.e_x, constants.g_zx];
+            DressedPanel::modes((&self.piece, self.boundary), &values, &effects, &self.damping, count)
+        };
+        let modes = match range {
+            ModeRange::Count(count) => first(count)?,
+            ModeRange::UpTo(frequency) => {
+                let limit = frequency * std::f64::consts::TAU;
+                // As many as the bare beam has there, and what resonators and masses may bring down.
+                let bare = ExactBeam::new(&self.piece, self.boundary, constants)?.count_below(frequency);
+                let mut count = bare + effects.len() + 4;
+                loop {
+                    let modes = first(count.min(MOST_MODES))?;
+                    if count >= MOST_MODES || modes.last().is_some_and(|mode| mode.angular_frequency > limit) {
+                        break modes.into_iter().filter(|mode| mode.angular_frequency <= limit).collect();
+                    }
+                    count *= 2;
+                }
+            }
+        };
+        Ok(modes.into_iter().map(PanelMode::of_dressed).collect())
     }
 
     fn plate_constants(&self) -> Result<[f64; 6], ModelError> {

@@ -8,6 +8,10 @@ pub(crate) trait NaturalMode {
     fn angular_frequency(&self) -> f64;
     /// Mass-normalised deflection $W$ \[kg^-1/2\] at a place.
     fn deflection_at(&self, place: Place) -> f64;
+    /// Its damping ratio, where that is no matter of its number in the list.
+    fn own_damping(&self) -> Option<f64> {
+        None
+    }
 }
 
 impl NaturalMode for BeamMode {
@@ -74,7 +78,11 @@ impl ModalModel {
             let at = |places: &[Place]| places.iter().map(|&place| mode.deflection_at(place)).collect();
             Mode {
                 angular_frequency: mode.angular_frequency(),
-                damping_ratio: if index < rigid { 0.0 } else { damping.ratio(index + 1 - rigid) },
+                damping_ratio: if index < rigid {
+                    0.0
+                } else {
+                    mode.own_damping().unwrap_or_else(|| damping.ratio(index + 1 - rigid))
+                },
                 at_forces: at(forces),
                 at_responses: at(responses),
             }

@@ -7,10 +7,13 @@ mod action;
 mod catalogue;
 mod channel_factor;
 mod core_modulus;
+mod dressed_modes;
+mod dressing;
 mod parameter;
 mod point_element;
 mod receptance;
 mod setting;
+mod state;
 
 mod channel_delay;
 mod cubic_stiffness;
@@ -36,10 +39,12 @@ pub use action::{Action, FieldTerm, Shift};
 pub use catalogue::{catalogue, effect};
 pub use channel_factor::{ChannelFactor, FactorLine};
 pub use core_modulus::{CoreLine, CoreModulus};
+pub(crate) use dressed_modes::{DressedMode, DressedPanel};
 pub use parameter::{EffectParameter, Reference, Scale};
 pub use point_element::{ElementLaw, ElementLine, PointElement, Seat, Share};
-pub use receptance::{EffectState, LineEvaluator, ReceptanceModel, ReceptanceSetup};
+pub use receptance::{LineEvaluator, ReceptanceModel, ReceptanceSetup};
 pub use setting::{EffectSetting, RecordSetting};
+pub use state::EffectState;
 
 use crate::{ModelError, Piece};
 

@@ -5,12 +5,12 @@
 //! ([`coupling`]), for each record its own.
 
 mod coupling;
-mod modal_base;
+pub(super) mod modal_base;
 mod model;
 mod modulus_path;
 mod record;
 mod setup;
-mod view;
+pub(super) mod view;
 
 pub use model::{LineEvaluator, ReceptanceModel};
-pub use setup::{EffectState, ReceptanceSetup};
+pub use setup::ReceptanceSetup;

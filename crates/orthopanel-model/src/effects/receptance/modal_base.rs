@@ -7,11 +7,11 @@ use crate::structure::{Motion, Structure};
 use crate::{ModelError, Place};
 
 /// What moves, and where.
-pub(super) type Row = (Motion, Place);
+pub(in crate::effects) type Row = (Motion, Place);
 
 /// Modes of one block, rigid ones first, and $\kappa = \Phi^T\partial K\,\Phi$, $\mu = \Phi^T\partial M\,\Phi$ for each
 /// parameter of the structure.
-pub(super) struct BlockModes {
+pub(in crate::effects) struct BlockModes {
     /// $\omega^2$, zero for the rigid modes.
     pub lambda: Vec<f64>,
     /// Coordinates, a column a mode.
@@ -21,7 +21,7 @@ pub(super) struct BlockModes {
 }
 
 /// The modes of a structure at some values of its constants.
-pub(super) struct ModalBase<'a> {
+pub(in crate::effects) struct ModalBase<'a> {
     pub structure: &'a dyn Structure,
     pub values: Vec<f64>,
     pub blocks: Vec<BlockModes>,
@@ -38,7 +38,7 @@ pub(super) struct ModalBase<'a> {
 impl<'a> ModalBase<'a> {
     /// With the rigid modes and `near` flexible ones to be summed, and the structure's own terms of these numbers among
     /// the parameters.
-    pub(super) fn new(
+    pub(in crate::effects) fn new(
         structure: &'a dyn Structure,
         values: &[f64],
         near: usize,
@@ -81,7 +81,7 @@ impl<'a> ModalBase<'a> {
     }
 
     /// The same selection of modes as another base of this structure, with the same signs.
-    pub(super) fn aligned_with(mut self, other: &Self) -> Self {
+    pub(in crate::effects) fn aligned_with(mut self, other: &Self) -> Self {
         self.near.clone_from(&other.near);
         for (index, block) in self.blocks.iter_mut().enumerate() {
             let (Some(own), Some(with)) = (self.structure.blocks().get(index), other.blocks.get(index)) else {
@@ -105,7 +105,7 @@ impl<'a> ModalBase<'a> {
     }
 
     /// Values of the modes of a block in some rows: a row each, a column a mode.
-    pub(super) fn rows(&self, block: usize, rows: &[Row]) -> Result<Mat<f64>, ModelError> {
+    pub(in crate::effects) fn rows(&self, block: usize, rows: &[Row]) -> Result<Mat<f64>, ModelError> {
         let Some(modes) = self.blocks.get(block) else { return Ok(Mat::new()) };
         let mut matrix = Mat::zeros(rows.len(), modes.vectors.nrows());
         for (i, &(motion, place)) in rows.iter().enumerate() {

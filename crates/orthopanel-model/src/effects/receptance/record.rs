@@ -2,8 +2,7 @@
 
 use super::coupling::Columns;
 use super::modal_base::Row;
-use super::setup::EffectState;
-use crate::effects::{Action, ChannelFactor, EffectSetting, PointElement, Seat};
+use crate::effects::{Action, ChannelFactor, EffectSetting, EffectState, PointElement, Seat};
 use crate::{ModelError, Motion, Place};
 
 /// What one record is made of, before any modes are known.

@@ -5,61 +5,9 @@ use super::model::{ReceptanceModel, RecordModel};
 use super::modulus_path::NodeBases;
 use super::record::RecordPlan;
 use super::view::View;
-use crate::effects::{Action, CoreModulus, Effect, EffectSetting, FieldTerm, RecordSetting};
-use crate::{BEAM_CONSTANTS, BeamTerms, Boundary, Damping, ModelError, Piece, Place, Structure, TimoshenkoBeam};
-
-/// An effect that is switched on, at some values of its parameters.
-#[derive(Clone)]
-pub struct EffectState {
-    /// The effect.
-    pub effect: &'static dyn Effect,
-    /// One value a parameter, in order; where a parameter has a value in each record, one a record in its place.
-    pub values: Vec<f64>,
-    records: usize,
-}
-
-impl EffectState {
-    /// An effect in a test of so many records.
-    ///
-    /// # Errors
-    /// [`ModelError::EffectValues`] for another number of values than the parameters want.
-    pub fn new(effect: &'static dyn Effect, values: Vec<f64>, records: usize) -> Result<Self, ModelError> {
-        let each = effect.parameters().iter().map(|parameter| if parameter.each_record { records } else { 1 });
-        let expected = each.sum();
-        if values.len() != expected {
-            return Err(ModelError::EffectValues { effect: effect.id(), found: values.len(), expected });
-        }
-        Ok(Self { effect, values, records })
-    }
-
-    /// Where in the values a parameter of a record stands.
-    pub(super) fn position(&self, parameter: usize, record: usize) -> usize {
-        let before = self.effect.parameters().iter().take(parameter);
-        let start: usize = before.map(|parameter| if parameter.each_record { self.records } else { 1 }).sum();
-        let each = self.effect.parameters().get(parameter).is_some_and(|parameter| parameter.each_record);
-        if each { start + record.saturating_sub(1) } else { start }
-    }
-
-    /// The values as one record sees them.
-    pub(super) fn values_in(&self, record: usize) -> Result<Vec<f64>, ModelError> {
-        let at = |parameter: usize| self.values.get(self.position(parameter, record)).copied();
-        let expected = self.effect.parameters().len();
-        let found: Vec<f64> = (0..expected).map_while(at).collect();
-        if found.len() == expected {
-            return Ok(found);
-        }
-        Err(ModelError::EffectValues { effect: self.effect.id(), found: found.len(), expected })
-    }
-
-    /// The column of each effect's first value.
-    pub(super) fn starts(effects: &[Self], first: usize) -> impl Iterator<Item = usize> {
-        effects.iter().scan(first, |next, effect| {
-            let start = *next;
-            *next += effect.values.len();
-            Some(start)
-        })
-    }
-}
+use crate::effects::dressing::Dressing;
+use crate::effects::{EffectSetting, EffectState, RecordSetting};
+use crate::{BEAM_CONSTANTS, Boundary, Damping, ModelError, Piece, Place, Structure, TimoshenkoBeam};
 
 /// What stays the same while a search moves constants, damping and the parameters of effects.
 pub struct ReceptanceSetup {
@@ -125,7 +73,8 @@ impl ReceptanceSetup {
         let free = damping.ratios.len().min(self.summed);
         let constants = BEAM_CONSTANTS.len();
         let first_effect = constants + free;
-        let dressed = self.dress(effects, first_effect)?;
+        let setting = self.setting_of(self.records.first().cloned().unwrap_or_default());
+        let dressed = Dressing::of(effects, &setting, first_effect)?;
         let uneven;
         let structure: &dyn Structure = match dressed.terms {
             Some(terms) => {
@@ -160,50 +109,6 @@ impl ReceptanceSetup {
         let columns = first_effect + effects.iter().map(|effect| effect.values.len()).sum::<usize>();
         Ok(ReceptanceModel::new(records, zetas, columns))
     }
-
-    /// What the effects do to the structure itself.
-    fn dress(&self, effects: &[EffectState], first: usize) -> Result<Dressed, ModelError> {
-        let setting = self.setting_of(self.records.first().cloned().unwrap_or_default());
-        let mut dressed = Dressed::default();
-        let mut terms = BeamTerms::default();
-        let (mut rotary, mut losses, mut support) = (vec![], vec![], vec![]);
-        for (effect, start) in effects.iter().zip(EffectState::starts(effects, first)) {
-            for action in effect.effect.act(&effect.values_in(setting.record.number)?, &setting)? {
-                match action {
-                    Action::Field(FieldTerm::RotaryFactor(factor), numbers) => {
-                        terms.rotary_factor *= factor;
-                        rotary.extend(numbers.iter().map(|number| start + number));
-                    }
-                    Action::Field(FieldTerm::ShearLoss(loss), numbers) => {
-                        terms.losses.push(loss);
-                        losses.extend(numbers.iter().map(|number| start + number));
-                    }
-                    Action::Field(FieldTerm::Support(springs), numbers) => {
-                        terms.support = Some(springs);
-                        support = numbers.iter().map(|number| start + number).collect();
-                    }
-                    Action::Core(core) => dressed.core = Some((core, start)),
-                    Action::Plate(_) => {
-                        return Err(ModelError::Unsupported("width-coupling in a beam's receptances".into()));
-                    }
-                    _ => {}
-                }
-            }
-        }
-        // In the order of the beam's own terms: the rotary factor is there always.
-        let later = losses.into_iter().chain(support).enumerate().map(|(i, column)| (i + 1, column));
-        dressed.parameters = rotary.into_iter().map(|column| (0, column)).chain(later).collect();
-        dressed.terms = (!dressed.parameters.is_empty()).then_some(terms);
-        Ok(dressed)
-    }
-}
-
-#[derive(Default)]
-struct Dressed {
-    terms: Option<BeamTerms>,
-    /// Position among the beam's terms, and column.
-    parameters: Vec<(usize, usize)>,
-    core: Option<(CoreModulus, usize)>,
 }
 
 enum Bases<'a> {

@@ -7,11 +7,11 @@ use crate::ModelError;
 
 /// Terms of the series in $s^2$ that stands for the modes above the sum. Where these begin at 2.5 times the band, six
 /// leave 2e-5 of a part that is small itself.
-pub(super) const SERIES_TERMS: usize = 6;
+pub(in crate::effects) const SERIES_TERMS: usize = 6;
 
 /// Where what stands in a [`View`].
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Layout {
+pub(in crate::effects) struct Layout {
     /// Modes that are summed, rigid ones first.
     pub modes: usize,
     /// Rigid ones.
@@ -26,37 +26,37 @@ pub(super) struct Layout {
 
 /// $\lambda_m$, shapes, the series of the modes above, and derivatives of all.
 #[derive(Debug, Clone)]
-pub(super) struct View {
+pub(in crate::effects) struct View {
     pub layout: Layout,
     pub numbers: Vec<f64>,
 }
 
 impl Layout {
-    pub(super) fn rows(&self) -> usize {
+    pub(in crate::effects) fn rows(&self) -> usize {
         self.active + self.slopes
     }
 
     /// Start of the shape of mode `m` in all rows.
-    pub(super) fn shape(&self, m: usize) -> usize {
+    pub(in crate::effects) fn shape(&self, m: usize) -> usize {
         self.modes + m * self.rows()
     }
 
     /// Start of $C_k$: a line of the active rows for each of all rows.
-    pub(super) fn series(&self, k: usize) -> usize {
+    pub(in crate::effects) fn series(&self, k: usize) -> usize {
         self.shape(self.modes) + k * self.rows() * self.active
     }
 
     /// Start of what parameter `p` changes: $\lambda$, active shapes mode by mode, active $C_k$.
-    pub(super) fn by(&self, p: usize) -> usize {
+    pub(in crate::effects) fn by(&self, p: usize) -> usize {
         let each = self.modes * (1 + self.active) + SERIES_TERMS * self.active * self.active;
         self.series(SERIES_TERMS) + p * each
     }
 
-    pub(super) fn shape_by(&self, p: usize, m: usize) -> usize {
+    pub(in crate::effects) fn shape_by(&self, p: usize, m: usize) -> usize {
         self.by(p) + self.modes + m * self.active
     }
 
-    pub(super) fn series_by(&self, p: usize, k: usize) -> usize {
+    pub(in crate::effects) fn series_by(&self, p: usize, k: usize) -> usize {
         self.shape_by(p, self.modes) + k * self.active * self.active
     }
 
@@ -66,7 +66,7 @@ impl Layout {
 }
 
 impl View {
-    pub(super) fn new(base: &ModalBase, active: &[Row], slopes: &[Row]) -> Result<Self, ModelError> {
+    pub(in crate::effects) fn new(base: &ModalBase, active: &[Row], slopes: &[Row]) -> Result<Self, ModelError> {
         let layout = Layout {
             modes: base.near.len(),
             rigid: base.rigid,

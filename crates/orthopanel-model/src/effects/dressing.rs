@@ -1,0 +1,54 @@
+//! What the effects of a test do to the structure itself, the same in every record.
+
+use super::{Action, CoreModulus, EffectSetting, EffectState, FieldTerm};
+use crate::{BeamTerms, ModelError};
+
+/// Terms spread over the beam, and a core that depends on frequency.
+#[derive(Default)]
+pub(super) struct Dressing {
+    /// None where the beam is even.
+    pub terms: Option<BeamTerms>,
+    /// Position among [`crate::Structure::term_derivatives`], and column.
+    pub parameters: Vec<(usize, usize)>,
+    /// With the column of its first parameter.
+    pub core: Option<(CoreModulus, usize)>,
+}
+
+impl Dressing {
+    /// Of these effects; `first` is the column of the first effect's first value.
+    pub(super) fn of(effects: &[EffectState], setting: &EffectSetting, first: usize) -> Result<Self, ModelError> {
+        let mut dressing = Self::default();
+        let mut terms = BeamTerms::default();
+        let (mut rotary, mut losses, mut support) = (vec![], vec![], vec![]);
+        for (effect, start) in effects.iter().zip(EffectState::starts(effects, first)) {
+            for action in effect.effect.act(&effect.values_in(setting.record.number)?, setting)? {
+                match action {
+                    Action::Field(FieldTerm::RotaryFactor(factor), numbers) => {
+                        terms.rotary_factor = factor;
+                        rotary = numbers.iter().map(|number| start + number).collect();
+                    }
+                    Action::Field(FieldTerm::ShearLoss(loss), numbers) => {
+                        terms.losses.push(loss);
+                        losses.extend(numbers.iter().map(|number| start + number));
+                    }
+                    Action::Field(FieldTerm::Support(springs), numbers) => {
+                        terms.support = Some(springs);
+                        support = numbers.iter().map(|number| start + number).collect();
+                    }
+                    Action::Core(core) => dressing.core = Some((core, start)),
+                    Action::Plate(_) => {
+                        return Err(ModelError::Unsupported(
+                            "width-coupling as a change of the beam: take the plate".into(),
+                        ));
+                    }
+                    Action::Element(_) | Action::Channel(..) | Action::Place(_) | Action::Window { .. } => {}
+                }
+            }
+        }
+        // In the order of the beam's own terms: the rotary factor is there always.
+        let later = losses.into_iter().chain(support).enumerate().map(|(i, column)| (i + 1, column));
+        dressing.parameters = rotary.into_iter().map(|column| (0, column)).chain(later).collect();
+        dressing.terms = (!dressing.parameters.is_empty()).then_some(terms);
+        Ok(dressing)
+    }
+}

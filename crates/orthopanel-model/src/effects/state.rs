@@ -1,0 +1,82 @@
+//! Effects that are switched on, with the values of their parameters.
+
+use super::{Effect, effect};
+use crate::{EffectEntry, ModelError};
+
+/// An effect that is switched on, at some values of its parameters.
+#[derive(Clone)]
+pub struct EffectState {
+    /// The effect.
+    pub effect: &'static dyn Effect,
+    /// One value a parameter, in order; where a parameter has a value in each record, one a record in its place.
+    pub values: Vec<f64>,
+    records: usize,
+}
+
+impl EffectState {
+    /// An effect in a test of so many records.
+    ///
+    /// # Errors
+    /// [`ModelError::EffectValues`] for another number of values than the parameters want.
+    pub fn new(effect: &'static dyn Effect, values: Vec<f64>, records: usize) -> Result<Self, ModelError> {
+        let each = effect.parameters().iter().map(|parameter| if parameter.each_record { records } else { 1 });
+        let expected = each.sum();
+        if values.len() != expected {
+            return Err(ModelError::EffectValues { effect: effect.id(), found: values.len(), expected });
+        }
+        Ok(Self { effect, values, records })
+    }
+
+    /// Where in the values a parameter of a record stands.
+    pub(super) fn position(&self, parameter: usize, record: usize) -> usize {
+        let before = self.effect.parameters().iter().take(parameter);
+        let start: usize = before.map(|parameter| if parameter.each_record { self.records } else { 1 }).sum();
+        let each = self.effect.parameters().get(parameter).is_some_and(|parameter| parameter.each_record);
+        if each { start + record.saturating_sub(1) } else { start }
+    }
+
+    /// The values as one record sees them.
+    pub(super) fn values_in(&self, record: usize) -> Result<Vec<f64>, ModelError> {
+        let at = |parameter: usize| self.values.get(self.position(parameter, record)).copied();
+        let expected = self.effect.parameters().len();
+        let found: Vec<f64> = (0..expected).map_while(at).collect();
+        if found.len() == expected {
+            return Ok(found);
+        }
+        Err(ModelError::EffectValues { effect: self.effect.id(), found: found.len(), expected })
+    }
+
+    /// The column of each effect's first value.
+    pub(super) fn starts(effects: &[Self], first: usize) -> impl Iterator<Item = usize> {
+        effects.iter().scan(first, |next, effect| {
+            let start = *next;
+            *next += effect.values.len();
+            Some(start)
+        })
+    }
+
+    /// From an entry of a model file; a parameter that the file leaves out keeps the value it is held at.
+    ///
+    /// # Errors
+    /// [`ModelError::UnknownEffect`], [`ModelError::EffectText`] for a wrong owner or a parameter that is missing or unknown.
+    pub fn from_entry(entry: &EffectEntry) -> Result<Self, ModelError> {
+        let effect = effect(&entry.id)?;
+        let wrong = |what: String| Err(ModelError::EffectText { effect: effect.id(), what });
+        if entry.owner != effect.owner().name() {
+            return wrong(format!("owner = {:?}, it belongs to the {}", entry.owner, effect.owner().name()));
+        }
+        let known = effect.parameters();
+        if let Some(name) = entry.parameters.keys().find(|name| !known.iter().any(|known| known.name == **name)) {
+            let names: Vec<_> = known.iter().map(|parameter| parameter.name).collect();
+            return wrong(format!("{name} is no parameter of it: it has {}", names.join(", ")));
+        }
+        let mut values = Vec::new();
+        for parameter in known {
+            match entry.parameters.get(parameter.name).map(|estimate| estimate.value).or(parameter.held_at) {
+                Some(value) => values.push(value),
+                None => return wrong(format!("{} is missing", parameter.name)),
+            }
+        }
+        Self::new(effect, values, 1)
+    }
+}

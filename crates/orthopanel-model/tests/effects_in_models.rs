@@ -1,0 +1,123 @@
+//! Model files with effects: modes and accelerance against the line-by-line receptances, and what is refused.
+
+use std::f64::consts::TAU;
+
+use num_complex::Complex64;
+use orthopanel_model::{
+    Boundary, Damping, EffectState, ModeRange, PanelModel, Piece, Place, ReceptanceSetup, RecordSetting, effect,
+};
+
+const PIECE: Piece = Piece { length: 0.8, width: 0.1, thickness: 0.03, mass_per_area: 6.88 };
+const CONSTANTS: [f64; 2] = [1.07e10, 5.363e8];
+
+fn text(effects: &str) -> String {
+    format!(
+        r#"{{"schema":"orthopanel.model/1","structure":"timoshenko-beam",
+        "piece":{{"length":0.8,"width":0.1,"thickness":0.03,"mass_per_area":6.88}},
+        "constants":{{"e_x":1.07e10,"g_zx":5.363e8}},"damping":{{"ratios":[],"beyond":0.004}},"effects":[{effects}]}}"#
+    )
+}
+
+fn at(x: f64) -> Place {
+    Place { x, y: 0.0 }
+}
+
+/// The receptances that know no modal coordinates of the dressed panel.
+fn line(effects: &[(&str, &[f64])], zeta: f64, s: Complex64) -> Complex64 {
+    let record = RecordSetting { force_at: Some(at(-0.31)), response_at: Some(at(0.27)), ..RecordSetting::default() };
+    let setup = ReceptanceSetup::new(&PIECE, Boundary::FREE, &[], &[record], 16).unwrap();
+    let state = |(id, values): &(&str, &[f64])| EffectState::new(effect(id).unwrap(), values.to_vec(), 1).unwrap();
+    let states: Vec<EffectState> = effects.iter().map(state).collect();
+    let model = setup.model(&CONSTANTS, &Damping { ratios: vec![], beyond: zeta }, &states).unwrap();
+    let mut by = vec![Complex64::ZERO; model.columns()];
+    model.evaluator(0).unwrap().line(s, &mut by)
+}
+
+const DRESSED: &str = r#"{"id":"local-mass","owner":"panel","mass":0.03,"x":0.11},
+    {"id":"local-mass","owner":"panel","mass":-0.01,"x":-0.2},
+    {"id":"resonator","owner":"panel","mass":0.02,"frequency":1200,"zeta":0.004,"x":-0.33},
+    {"id":"stiffness-loss","owner":"panel","loss":0.4,"span":0.1,"x":0.2},
+    {"id":"rotary-inertia","owner":"panel","factor":2.2}"#;
+
+const SAME: &[(&str, &[f64])] = &[
+    ("local-mass", &[0.03, 0.11]),
+    ("local-mass", &[-0.01, -0.2]),
+    ("resonator", &[0.02, 1200.0, 0.004, -0.33]),
+    ("stiffness-loss", &[0.4, 0.1, 0.2]),
+    ("rotary-inertia", &[2.2]),
+];
+
+/// Every natural frequency is a pole of the undamped receptance.
+#[test]
+fn val_modes_are_the_poles_of_the_receptance() {
+    let model = PanelModel::from_json(&text(DRESSED)).unwrap();
+    let modes = model.modes(ModeRange::Count(8)).unwrap();
+    assert_eq!(modes.iter().filter(|mode| mode.is_rigid()).count(), 2);
+    // The resonator's damping at its least leaves its own pole a hundredth of a percent beside.
+    let undamped: Vec<(&str, Vec<f64>)> = SAME
+        .iter()
+        .map(|(id, values)| (*id, if *id == "resonator" { vec![0.02, 1200.0, 1e-4, -0.33] } else { values.to_vec() }))
+        .collect();
+    let undamped: Vec<(&str, &[f64])> = undamped.iter().map(|(id, values)| (*id, values.as_slice())).collect();
+    for mode in modes.iter().filter(|mode| !mode.is_rigid()) {
+        let dynamic = |f: f64| line(&undamped, 0.0, Complex64::new(0.0, TAU * f)).inv().re;
+        let f = mode.frequency();
+        let (low, high) = (dynamic(f * (1.0 - 1e-6)), dynamic(f * (1.0 + 1e-6)));
+        assert!(low * high < 0.0, "no pole at {f} Hz: {low:e} {high:e}");
+    }
+}
+
+/// With one damping ratio everywhere the modes of the dressed panel hold nearly all of its accelerance.
+#[test]
+fn val_accelerance_of_the_modes_is_the_receptance() {
+    let model = PanelModel::from_json(&text(DRESSED)).unwrap();
+    let modal = model.modal_model(ModeRange::Count(60), &[at(-0.31)], &[at(0.27)]).unwrap();
+    for frequency in [30.0, 321.0, 700.0, 1190.0, 2000.0] {
+        let found = modal.accelerance(0, 0, frequency);
+        let expected = line(SAME, 0.004, Complex64::new(0.0, TAU * frequency));
+        // What couples the modes through the resonator's dashpot, of the size of zeta, and the modes left out.
+        assert!((found - expected).norm() < 5e-3 * expected.norm().max(0.3), "{frequency} Hz: {found} {expected}");
+    }
+}
+
+#[test]
+fn val_an_effect_of_no_size_changes_nothing() {
+    let bare = PanelModel::from_json(&text("")).unwrap().modes(ModeRange::Count(10)).unwrap();
+    let none = r#"{"id":"edge-mass","owner":"panel","mass":0},{"id":"rotary-inertia","owner":"panel","factor":1}"#;
+    let dressed = PanelModel::from_json(&text(none)).unwrap().modes(ModeRange::Count(10)).unwrap();
+    assert_eq!(bare.len(), dressed.len());
+    for (bare, dressed) in bare.iter().zip(&dressed) {
+        assert!((bare.frequency() - dressed.frequency()).abs() <= 1e-8 * bare.frequency());
+        assert_eq!(bare.nodes(), dressed.nodes());
+    }
+    let in_band = PanelModel::from_json(&text(none)).unwrap().modes(ModeRange::UpTo(3500.0)).unwrap();
+    assert_eq!(in_band.len(), 2 + 5);
+}
+
+#[test]
+fn what_is_no_effect_of_the_panel_is_refused_with_its_reason() {
+    let said = |effects: &str| {
+        PanelModel::from_json(&text(effects)).unwrap().modes(ModeRange::Count(3)).expect_err("refused").to_string()
+    };
+    let cases = [
+        (
+            r#"{"id":"sensor-mass","owner":"rig","mass":0.01}"#,
+            "effect sensor-mass belongs to the rig, not to the panel",
+        ),
+        (r#"{"id":"gain","owner":"channel","gain":0.9}"#, "effect gain belongs to the channel, not to the panel"),
+        (r#"{"id":"local-mass","owner":"rig","mass":0.01,"x":0}"#, "effect local-mass: owner = \"rig\""),
+        (r#"{"id":"local-mass","owner":"panel","mass":0.01}"#, "effect local-mass: x is missing"),
+        (
+            r#"{"id":"local-mass","owner":"panel","mass":0.01,"x":0,"y":0}"#,
+            "effect local-mass: y is no parameter of it",
+        ),
+        (
+            r#"{"id":"local-mass","owner":"panel","mass":-0.2,"x":0}"#,
+            "effect local-mass: mass = -2e-1 kg: must lie between",
+        ),
+        (r#"{"id":"glue","owner":"panel"}"#, "effect \"glue\" is not in the catalogue"),
+    ];
+    for (effects, start) in cases {
+        assert!(said(effects).starts_with(start), "{}", said(effects));
+    }
+}
