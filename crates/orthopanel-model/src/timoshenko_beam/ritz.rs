@@ -2,19 +2,19 @@
 
 use faer::Mat;
 
-use super::beam_terms::BeamTerms;
-use super::strain_basis::{Parity, StrainFunction, end_motions, strain_functions};
-use super::term_matrices::{mass_by_rotary_factor, span_edge, span_stiffness, support_stiffness};
+use super::beam_terms::{BeamTerms, ShearLoss};
+use super::strain_basis::{Parity, StrainFunction, end_motions, steps, strain_functions};
+use super::term_matrices::{Field, Quadrature, support_stiffness};
 use super::{BEAM_CONSTANTS, Section, StaticFlexibility};
 use crate::legendre::{legendre, norm};
-use crate::structure::{Block, Flexibility, Motion, Structure, TermDerivative};
+use crate::structure::{Block, EdgeForce, Flexibility, Motion, Structure, TermDerivative};
 use crate::{Boundary, Constant, ModelError, Piece, Place};
 
 /// The beam of eq. 5 as a [`Structure`]: coefficients are $E_x$ and $G_{zx}$ themselves, with
 /// $K_E = I\int\psi_i'\psi_j'dx$ and $K_G = k'A\int(w'+\psi)_i(w'+\psi)_jdx$.
 ///
 /// Converges as fast as any power of the number of terms: with 60, the first 20 modes agree with [`crate::ExactBeam`]
-/// to 1e-9. Where shear stiffness is lost over a span, the strain jumps and the error falls with one over the terms.
+/// to 1e-9. Where shear stiffness is lost over a span, functions that begin at its edges carry the strain's jumps.
 #[derive(Debug, Clone)]
 pub struct TimoshenkoBeam {
     half_length: f64,
@@ -54,6 +54,8 @@ impl TimoshenkoBeam {
         if terms.support.is_some() {
             functions.extend(end_motions(half_length, boundary));
         }
+        functions
+            .extend(terms.losses.iter().flat_map(|loss| steps(half_length, loss.edges(half_length), order.max(4))));
         let uneven = !terms.losses.is_empty() || terms.support.is_some();
         let (mut even, mut odd, mut all) = (vec![], vec![], vec![]);
         for function in functions {
@@ -79,18 +81,26 @@ fn assemble(functions: &[StrainFunction], section: Section, half_length: f64, te
     let Section { second_moment, shear_area, mass, rotary_inertia } = section;
     let bending = matrix(&|f, g| second_moment * product(&f.curvature, &g.curvature));
     let mut shear = matrix(&|f, g| shear_area * product(&f.shear, &g.shear));
-    for loss in &terms.losses {
-        shear -= faer::Scale(loss.loss * shear_area) * span_stiffness(functions, half_length, loss);
-    }
-    let mass = matrix(&|f, g| {
+    let mut inertia = matrix(&|f, g| {
         mass * product(&f.deflection, &g.deflection) + rotary_inertia * product(&f.rotation, &g.rotation)
     });
+    if !terms.losses.is_empty() {
+        let quadrature = Quadrature::new(functions, half_length, &terms.losses);
+        shear = faer::Scale(shear_area) * quadrature.product(Field::Shear, |_| 1.0);
+        for loss in &terms.losses {
+            shear -= faer::Scale(loss.loss * shear_area) * quadrature.span(loss);
+        }
+        inertia = faer::Scale(mass) * quadrature.product(Field::Deflection, |_| 1.0)
+            + faer::Scale(rotary_inertia) * quadrature.product(Field::Rotation, |_| 1.0);
+    }
+    let mass = inertia;
     let mut stiffness = vec![bending, shear];
     if let Some(support) = terms.support {
         stiffness.push(support_stiffness(functions, [support.translation, support.rotation]));
     }
-    let strainless =
-        |f: &StrainFunction| terms.support.is_none() && f.curvature.iter().chain(&f.shear).all(|&value| value == 0.0);
+    let strainless = |f: &StrainFunction| {
+        f.step.is_none() && terms.support.is_none() && f.curvature.iter().chain(&f.shear).all(|&value| value == 0.0)
+    };
     let rigid = (0..size)
         .filter(|&i| strainless(&functions[i]))
         .map(|i| {
@@ -104,6 +114,29 @@ fn assemble(functions: &[StrainFunction], section: Section, half_length: f64, te
 /// $\int_{-1}^1 fg\,dt$ of two Legendre series.
 pub(super) fn product(f: &[f64], g: &[f64]) -> f64 {
     f.iter().zip(g).enumerate().map(|(n, (a, b))| a * b * norm(n)).sum()
+}
+
+impl TimoshenkoBeam {
+    /// An edge of a loss that moves outward by `share` of a parameter: the same shear force then bends a softer stretch.
+    fn edge_force(
+        &self,
+        quadratures: &[Quadrature],
+        loss: &ShearLoss,
+        edge: f64,
+        share: f64,
+        stiffness: f64,
+    ) -> EdgeForce {
+        let left = |x: f64| {
+            let lost = self.terms.losses.iter().filter(|loss| {
+                let [low, high] = loss.edges(self.half_length);
+                x > low && x < high
+            });
+            stiffness * (1.0 - lost.map(|loss| loss.loss).sum::<f64>())
+        };
+        let rows = quadratures.iter().map(|quadrature| quadrature.shear_force(edge, left, self.section.mass));
+        let (at_rest, by_omega2) = rows.map(|[at_rest, by_omega2]| (at_rest, by_omega2)).unzip();
+        EdgeForce { factor: -share * loss.loss / ((1.0 - loss.loss) * stiffness), at_rest, by_omega2 }
+    }
 }
 
 impl Structure for TimoshenkoBeam {
@@ -132,13 +165,16 @@ impl Structure for TimoshenkoBeam {
     fn motion_row(&self, block: usize, motion: Motion, place: Place) -> Option<Vec<f64>> {
         let functions = self.functions.get(block)?;
         let terms = functions.iter().map(|f| f.deflection.len()).max().unwrap_or(0);
-        let values = legendre(terms, place.x / self.half_length);
-        let sum = |series: &[f64]| -> f64 { series.iter().zip(&values).map(|(c, p)| c * p).sum() };
-        let of = |f: &StrainFunction| match motion {
-            Motion::Deflection => sum(&f.deflection),
-            Motion::Slope => sum(&f.shear) - sum(&f.rotation),
-            Motion::Rotation => sum(&f.rotation),
-            Motion::Curvature => sum(&f.curvature),
+        let t = place.x / self.half_length;
+        let polynomials = legendre(terms, t);
+        let of = |f: &StrainFunction| {
+            let [curvature, shear, rotation, deflection] = f.at(t, &polynomials, self.half_length);
+            match motion {
+                Motion::Deflection => deflection,
+                Motion::Slope => shear - rotation,
+                Motion::Rotation => rotation,
+                Motion::Curvature => curvature,
+            }
         };
         Some(functions.iter().map(of).collect())
     }
@@ -158,26 +194,36 @@ impl Structure for TimoshenkoBeam {
 
     fn term_derivatives(&self, values: &[f64]) -> Vec<TermDerivative> {
         let shear = values.get(1).copied().unwrap_or_default() * self.section.shear_area;
-        let of_stiffness = |matrix: &dyn Fn(&[StrainFunction]) -> Mat<f64>| TermDerivative {
-            stiffness: self.functions.iter().map(|functions| matrix(functions)).collect(),
-            mass: vec![],
-        };
+        let of_stiffness =
+            |matrices: Vec<Mat<f64>>| TermDerivative { stiffness: matrices, mass: vec![], forces: vec![] };
         let even_inertia = self.section.rotary_inertia / self.terms.rotary_factor;
         let by_rotary = |functions: &Vec<StrainFunction>| {
-            faer::Scale(even_inertia * self.half_length) * mass_by_rotary_factor(functions)
+            let entry = |i: usize, j: usize| product(&functions[i].rotation, &functions[j].rotation);
+            faer::Scale(even_inertia * self.half_length) * Mat::from_fn(functions.len(), functions.len(), entry)
         };
-        let mut list = vec![TermDerivative { stiffness: vec![], mass: self.functions.iter().map(by_rotary).collect() }];
+        let mut list = vec![TermDerivative {
+            stiffness: vec![],
+            mass: self.functions.iter().map(by_rotary).collect(),
+            forces: vec![],
+        }];
         for loss in &self.terms.losses {
-            let edge = |functions: &[StrainFunction], side: usize| {
-                span_edge(functions, loss.edges(self.half_length)[side], self.half_length)
+            let quadratures: Vec<_> =
+                self.functions.iter().map(|f| Quadrature::new(f, self.half_length, &self.terms.losses)).collect();
+            let by_span = |quadrature: &Quadrature| faer::Scale(-shear) * quadrature.span(loss);
+            list.push(of_stiffness(quadratures.iter().map(by_span).collect()));
+            let moved = |shares: [f64; 2]| {
+                let edges = loss.edges(self.half_length).into_iter().zip(shares);
+                let forces = edges.filter(|(edge, _)| edge.abs() < self.half_length);
+                let forces = forces.map(|(edge, share)| self.edge_force(&quadratures, loss, edge, share, shear));
+                TermDerivative { stiffness: vec![], mass: vec![], forces: forces.collect() }
             };
-            list.push(of_stiffness(&|f| faer::Scale(-shear) * span_stiffness(f, self.half_length, loss)));
-            list.push(of_stiffness(&|f| faer::Scale(-0.5 * shear * loss.loss) * (edge(f, 0) + edge(f, 1))));
-            list.push(of_stiffness(&|f| faer::Scale(-shear * loss.loss) * (edge(f, 1) - edge(f, 0))));
+            list.extend([moved([0.5, 0.5]), moved([-1.0, 1.0])]);
         }
         if self.terms.support.is_some() {
-            list.push(of_stiffness(&|f| support_stiffness(f, [1.0, 0.0])));
-            list.push(of_stiffness(&|f| support_stiffness(f, [0.0, 1.0])));
+            for springs in [[1.0, 0.0], [0.0, 1.0]] {
+                let matrices = self.functions.iter().map(|functions| support_stiffness(functions, springs));
+                list.push(of_stiffness(matrices.collect()));
+            }
         }
         list
     }

@@ -8,7 +8,7 @@
 //! so the conditions of held ends touch the five coordinates $(w_0, \psi_0, k_0, k_1, g_0)$ alone. [`low_functions`]
 //! lists what remains of these for each pair of ends, chosen so that both stiffnesses stay diagonal.
 
-use crate::legendre::antiderivative;
+use crate::legendre::{antiderivative, gauss_legendre, legendre, norm};
 use crate::{Boundary, End};
 
 /// One basis function by its Legendre coefficients in $t$.
@@ -26,6 +26,29 @@ pub(super) struct StrainFunction {
     pub parity: Parity,
     /// 1 where this function alone deflects a yielding end, and 1 where it alone rotates one.
     pub moves_end: [f64; 2],
+    /// Shear strain that begins at an edge of a span; the series above hold the rest.
+    pub step: Option<Step>,
+}
+
+/// Shear strain $((t-e)/(1-e))^n$ beyond an edge $e$, nothing before.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Step {
+    pub edge: f64,
+    pub degree: i32,
+}
+
+impl StrainFunction {
+    /// $\psi'$, $w'+\psi$, $\psi$ and $w$ at $t$, given the Legendre polynomials there.
+    pub(super) fn at(&self, t: f64, polynomials: &[f64], half_length: f64) -> [f64; 4] {
+        let sum = |series: &[f64]| -> f64 { series.iter().zip(polynomials).map(|(c, p)| c * p).sum() };
+        let mut values = [sum(&self.curvature), sum(&self.shear), sum(&self.rotation), sum(&self.deflection)];
+        if let Some(step) = self.step.filter(|step| t > step.edge) {
+            let along = (t - step.edge) / (1.0 - step.edge);
+            values[1] += along.powi(step.degree);
+            values[3] += half_length * (1.0 - step.edge) * along.powi(step.degree + 1) / f64::from(step.degree + 1);
+        }
+        values
+    }
 }
 
 /// Symmetry of a deflection.
@@ -63,7 +86,34 @@ fn integrated(h: f64, [w0, psi0]: [f64; 2], curvature: Vec<f64>, shear: Vec<f64>
     let mut deflection: Vec<f64> = antiderivative(&slope).iter().map(|value| h * value).collect();
     deflection[0] += w0;
     // ∫P_1 leaves P_2/3 − P_0/3, which vanishes at the ends as the module's formulas want.
-    StrainFunction { curvature, shear, rotation, deflection, parity, moves_end: [0.0; 2] }
+    StrainFunction { curvature, shear, rotation, deflection, parity, moves_end: [0.0; 2], step: None }
+}
+
+/// Derivatives of the shear strain that may jump at an edge, the strain itself among them.
+const JUMPS: i32 = 3;
+
+/// Strains that begin at the edges of a span, where shear stiffness changes: the shear force goes on smoothly there, so
+/// the strain must jump, which no few polynomials can. An edge at the beam's end is none.
+///
+/// Each is taken less its share of the `terms` polynomials of the basis, lest it nearly repeat them. What is left has no
+/// mean, so $w$ vanishes at both ends whatever holds them.
+pub(super) fn steps(half_length: f64, edges: [f64; 2], terms: usize) -> impl Iterator<Item = StrainFunction> {
+    let inside = edges.into_iter().map(move |x| x / half_length).filter(|t| t.abs() < 1.0 - 1e-4);
+    inside.flat_map(move |edge| (0..JUMPS).map(move |degree| step(half_length, Step { edge, degree }, terms)))
+}
+
+fn step(half_length: f64, step: Step, terms: usize) -> StrainFunction {
+    let (middle, half) = (0.5 * (step.edge + 1.0), 0.5 * (1.0 - step.edge));
+    let mut shear = vec![0.0; terms];
+    for (t, weight) in gauss_legendre(terms + 2) {
+        let along = (0.5 * (t + 1.0)).powi(step.degree);
+        for ((n, total), value) in shear.iter_mut().enumerate().zip(legendre(terms, middle + half * t)) {
+            *total -= half * weight * along * value / norm(n);
+        }
+    }
+    let mean = shear.first().copied().unwrap_or_default();
+    let balance = integrated(half_length, [half_length * mean, 0.0], vec![], shear, Parity::Neither);
+    StrainFunction { step: Some(step), ..balance }
 }
 
 /// Motions of clamped ends that yield: one function deflects an end by one, one rotates it by one, and every other

@@ -1,41 +1,87 @@
-//! Matrices of the terms that make a beam uneven, in the coordinates of its strain functions.
+//! Matrices of an uneven beam, in the coordinates of its strain functions, by quadrature between the edges of its spans.
 
 use faer::Mat;
 
 use super::beam_terms::ShearLoss;
-use super::ritz::product;
 use super::strain_basis::StrainFunction;
-use crate::legendre::legendre;
+use crate::legendre::{gauss_legendre, legendre};
 
-/// $\int(w'+\psi)_i(w'+\psi)_j\,dx$ over the span of a loss.
-pub(super) fn span_stiffness(functions: &[StrainFunction], half_length: f64, loss: &ShearLoss) -> Mat<f64> {
-    let [low, high] = loss.edges(half_length);
-    let terms = functions.iter().map(|f| f.shear.len()).max().unwrap_or(0);
-    let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
-    let points = gauss_legendre(terms + 1);
-    let mut strain = Mat::<f64>::zeros(points.len(), functions.len());
-    for (row, (t, weight)) in points.iter().enumerate() {
-        let values = legendre(terms, (middle + half * t) / half_length);
-        for (column, function) in functions.iter().enumerate() {
-            strain[(row, column)] = (half * weight).sqrt() * sum(&function.shear, &values);
+/// Values of all functions at Gauss points that no edge lies between.
+#[derive(Debug, Clone)]
+pub(super) struct Quadrature {
+    half_length: f64,
+    /// $t$ and weight in $x$ of each point.
+    points: Vec<(f64, f64)>,
+    /// $\psi'$, $w'+\psi$, $\psi$, $w$: a row a point, a column a function.
+    values: [Mat<f64>; 4],
+}
+
+/// A field of [`Quadrature`]; none asks for the curvature, whose matrix is diagonal.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Field {
+    Shear = 1,
+    Rotation,
+    Deflection,
+}
+
+impl Quadrature {
+    pub(super) fn new(functions: &[StrainFunction], half_length: f64, losses: &[ShearLoss]) -> Self {
+        let terms = functions.iter().map(|f| f.deflection.len()).max().unwrap_or(0);
+        let mut edges: Vec<f64> =
+            losses.iter().flat_map(|loss| loss.edges(half_length)).map(|x| x / half_length).collect();
+        edges.extend([-1.0, 1.0]);
+        edges.sort_by(f64::total_cmp);
+        let rule = gauss_legendre(terms + 2);
+        let stretches = edges.windows(2).filter_map(|pair| match pair {
+            [low, high] if high > low => Some((0.5 * (low + high), 0.5 * (high - low))),
+            _ => None,
+        });
+        let points: Vec<(f64, f64)> = stretches
+            .flat_map(|(middle, half)| {
+                rule.iter().map(move |(t, weight)| (middle + half * t, half_length * half * weight))
+            })
+            .collect();
+        let mut values = [0; 4].map(|_| Mat::zeros(points.len(), functions.len()));
+        for (row, &(t, _)) in points.iter().enumerate() {
+            let polynomials = legendre(terms, t);
+            for (column, function) in functions.iter().enumerate() {
+                for (matrix, value) in values.iter_mut().zip(function.at(t, &polynomials, half_length)) {
+                    matrix[(row, column)] = value;
+                }
+            }
         }
+        Self { half_length, points, values }
     }
-    strain.transpose() * &strain
-}
 
-/// $(w'+\psi)_i(w'+\psi)_j$ at one end of the span; nothing where that is the beam's own end, which does not move.
-pub(super) fn span_edge(functions: &[StrainFunction], edge: f64, half_length: f64) -> Mat<f64> {
-    let terms = functions.iter().map(|f| f.shear.len()).max().unwrap_or(0);
-    let values = legendre(terms, edge / half_length);
-    let on_beam = if edge.abs() < half_length { 1.0 } else { 0.0 };
-    let strain: Vec<f64> = functions.iter().map(|f| on_beam * sum(&f.shear, &values)).collect();
-    Mat::from_fn(strain.len(), strain.len(), |i, j| strain[i] * strain[j])
-}
+    /// $\int f_if_jg\,dx$ of a field with a weight $g(x)$.
+    pub(super) fn product(&self, field: Field, weight: impl Fn(f64) -> f64) -> Mat<f64> {
+        let values = &self.values[field as usize];
+        let scale: Vec<f64> = self.points.iter().map(|(t, w)| w * weight(self.half_length * t)).collect();
+        let weighted = Mat::from_fn(values.nrows(), values.ncols(), |i, j| scale[i] * values[(i, j)]);
+        values.transpose() * weighted
+    }
 
-/// $\int\psi_i\psi_j\,dt$ over $[-1, 1]$.
-pub(super) fn mass_by_rotary_factor(functions: &[StrainFunction]) -> Mat<f64> {
-    let size = functions.len();
-    Mat::from_fn(size, size, |i, j| product(&functions[i].rotation, &functions[j].rotation))
+    /// $\int(w'+\psi)_i(w'+\psi)_j\,dx$ over the span of a loss.
+    pub(super) fn span(&self, loss: &ShearLoss) -> Mat<f64> {
+        let [low, high] = loss.edges(self.half_length);
+        self.product(Field::Shear, |x| if x > low && x < high { 1.0 } else { 0.0 })
+    }
+
+    /// Rows that give a mode's shear force at an edge: at rest, and times $\omega^2$.
+    ///
+    /// The strain on either side of an edge is what a basis knows worst, so the force comes from integrals: its mean is that
+    /// of $k'GA(w'+\psi)$, and $V' = -\omega^2\rho Aw$.
+    pub(super) fn shear_force(&self, edge: f64, stiffness: impl Fn(f64) -> f64, mass: f64) -> [Vec<f64>; 2] {
+        let h = self.half_length;
+        let integral = |field: Field, weight: &dyn Fn(f64) -> f64| -> Vec<f64> {
+            let values = &self.values[field as usize];
+            let scale: Vec<f64> = self.points.iter().map(|(t, w)| w * weight(h * t)).collect();
+            (0..values.ncols()).map(|j| scale.iter().enumerate().map(|(i, w)| w * values[(i, j)]).sum()).collect()
+        };
+        let before = |x: f64| if x < edge { 1.0 } else { 0.0 };
+        let at_rest = integral(Field::Shear, &|x| stiffness(x) / (2.0 * h));
+        [at_rest, integral(Field::Deflection, &|x| mass * ((h - x) / (2.0 * h) - before(x)))]
+    }
 }
 
 /// Springs against the end motions, which have a coordinate each.
@@ -46,41 +92,4 @@ pub(super) fn support_stiffness(functions: &[StrainFunction], [translation, rota
         matrix[(i, i)] = translation * deflects + rotation * rotates;
     }
     matrix
-}
-
-fn sum(series: &[f64], values: &[f64]) -> f64 {
-    series.iter().zip(values).map(|(c, p)| c * p).sum()
-}
-
-/// Points and weights of Gauss and Legendre on $[-1, 1]$: exact for polynomials of degree $2\,\text{count}-1$.
-fn gauss_legendre(count: usize) -> Vec<(f64, f64)> {
-    let n = count as f64;
-    let point = |i: usize| {
-        let mut t = (std::f64::consts::PI * (i as f64 + 0.75) / (n + 0.5)).cos();
-        let mut slope = 1.0;
-        // Newton's steps double the digits: five pass any count.
-        for _ in 0..8 {
-            let values = legendre(count + 1, t);
-            let [Some(before), Some(value)] = [values.get(count - 1), values.get(count)] else { break };
-            slope = n * (before - t * value) / (1.0 - t * t);
-            t -= value / slope;
-        }
-        (t, 2.0 / ((1.0 - t * t) * slope * slope))
-    };
-    (0..count).map(point).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn val_gauss_legendre_integrates_powers() {
-        for count in [1, 2, 5, 61] {
-            for power in (0..2 * count).step_by(2) {
-                let sum: f64 = gauss_legendre(count).iter().map(|(t, weight)| weight * t.powi(power as i32)).sum();
-                assert!((sum - 2.0 / (power as f64 + 1.0)).abs() < 1e-13, "{count} points, power {power}: {sum}");
-            }
-        }
-    }
 }

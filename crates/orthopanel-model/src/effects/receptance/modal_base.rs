@@ -46,11 +46,12 @@ impl<'a> ModalBase<'a> {
     ) -> Result<Self, ModelError> {
         let modes = all_ritz_modes(structure, values)?;
         let by_constants = structure.coefficient_derivatives(values)?;
-        let mut derivatives = structure.term_derivatives(values);
+        let derivatives = if terms.is_empty() { vec![] } else { structure.term_derivatives(values) };
         let mut blocks = Vec::new();
         let mut order = Vec::new();
         for (index, block) in structure.blocks().iter().enumerate() {
             let own: Vec<_> = modes.iter().filter(|mode| mode.block == index).collect();
+            let lambda: Vec<f64> = own.iter().map(|mode| mode.angular_frequency.powi(2)).collect();
             let vectors = Mat::from_fn(block.size(), own.len(), |i, m| own[m].coordinates[i]);
             let in_modes = |matrix: &Mat<f64>| vectors.transpose() * (matrix * &vectors);
             let stiffness: Vec<Mat<f64>> = block.stiffness.iter().map(in_modes).collect();
@@ -63,10 +64,24 @@ impl<'a> ModalBase<'a> {
             };
             let mut couplings: Vec<[Mat<f64>; 2]> = (0..values.len()).map(of_constant).collect();
             for &term in terms {
-                let Some(by) = derivatives.get_mut(term) else { continue };
-                couplings.push([&by.stiffness, &by.mass].map(|list| list.get(index).map_or(Mat::new(), in_modes)));
+                let Some(by) = derivatives.get(term) else { continue };
+                let [mut stiffness, mass] =
+                    [&by.stiffness, &by.mass].map(|list| list.get(index).map_or(Mat::new(), in_modes));
+                for force in &by.forces {
+                    let [Some(at_rest), Some(by_omega2)] = [force.at_rest.get(index), force.by_omega2.get(index)]
+                    else {
+                        continue;
+                    };
+                    let of = |m: usize| -> f64 {
+                        let rows = at_rest.iter().zip(by_omega2).enumerate();
+                        rows.map(|(i, (a, b))| (a + lambda[m] * b) * vectors[(i, m)]).sum()
+                    };
+                    let forces: Vec<f64> = (0..own.len()).map(of).collect();
+                    let pairs = Mat::from_fn(own.len(), own.len(), |m, n| force.factor * forces[m] * forces[n]);
+                    stiffness = if stiffness.nrows() > 0 { stiffness + pairs } else { pairs };
+                }
+                couplings.push([stiffness, mass]);
             }
-            let lambda: Vec<f64> = own.iter().map(|mode| mode.angular_frequency.powi(2)).collect();
             order.extend(lambda.iter().enumerate().map(|(number, &lambda)| (lambda, index, number)));
             blocks.push(BlockModes { lambda, vectors, couplings });
         }

@@ -78,10 +78,7 @@ impl ReceptanceSetup {
         let uneven;
         let structure: &dyn Structure = match dressed.terms {
             Some(terms) => {
-                // A jump of the shear strain wants a finer basis than smooth modes do.
-                let fine = if terms.losses.is_empty() { 0 } else { 24 };
-                uneven =
-                    TimoshenkoBeam::with_terms(&self.piece, self.boundary, basis_terms(self.summed) + fine, terms)?;
+                uneven = TimoshenkoBeam::with_terms(&self.piece, self.boundary, basis_terms(self.summed), terms)?;
                 &uneven
             }
             None => &self.beam,
