@@ -40,7 +40,7 @@ pub use panel_modes::ModeRange;
 pub use piece::{Piece, Place};
 pub use response::{ForceRecord, ModalStepper};
 pub use ritz_modes::ritz_modes;
-pub use structure::{Block, EdgeForce, Flexibility, Motion, RitzMode, Structure, TermDerivative};
+pub use structure::{Block, Flexibility, Motion, RitzMode, Structure, TermDerivative};
 pub use timoshenko_beam::{
     BEAM_CONSTANTS, BeamConstants, BeamElements, BeamMode, BeamTerms, ExactBeam, SHEAR_COEFFICIENT, ShearLoss,
     StaticFlexibility, Support, TimoshenkoBeam,

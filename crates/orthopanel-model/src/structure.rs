@@ -91,27 +91,14 @@ pub struct Flexibility {
     pub by_terms: Vec<Option<f64>>,
 }
 
-/// $\partial K/\partial p$ and $\partial M/\partial p$ by one parameter, a matrix a block; empty where it does not enter.
+/// $\partial K/\partial p$ and $\partial M/\partial p$ by one parameter, a matrix a block; empty where it does not enter, or
+/// where the coordinates themselves move with it, so that only differences tell.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TermDerivative {
     /// Of the stiffness.
     pub stiffness: Vec<Mat<f64>>,
     /// Of the mass.
     pub mass: Vec<Mat<f64>>,
-    /// What else changes the stiffness, known mode by mode.
-    pub forces: Vec<EdgeForce>,
-}
-
-/// A change of stiffness $\phi_m^T\partial K\phi_n = f\,V_mV_n$ by the forces $V_m = (a + \omega_m^2b)\cdot\phi_m$ of two modes at
-/// one place, as where an edge of a softer span moves.
-#[derive(Debug, Clone, PartialEq)]
-pub struct EdgeForce {
-    /// $f$.
-    pub factor: f64,
-    /// $a$, a row a block.
-    pub at_rest: Vec<Vec<f64>>,
-    /// $b$, a row a block.
-    pub by_omega2: Vec<Vec<f64>>,
 }
 
 /// Coordinates that only couple among themselves.

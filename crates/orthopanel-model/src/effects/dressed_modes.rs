@@ -77,7 +77,7 @@ impl DressedPanel {
                 }
             }
         }
-        let base = ModalBase::new(&beam, values, summed, &[])?;
+        let base = ModalBase::new(&beam, values, summed, &[], &[])?;
         let rows: Vec<Row> = elements.iter().filter_map(|element| Some((element.motion, place(element)?))).collect();
         let view = View::new(&base, &rows, &[])?;
         let bare: Vec<_> = base

@@ -6,8 +6,7 @@ use crate::{ModelError, ShearLoss};
 /// A face come off the core: shear stiffness $k'G_{zx}A\,(1-\text{loss})$ for $|x-x_0| < \text{span}/2$.
 ///
 /// Source: a disbond leaves the faces' bending and takes shear stiffness over its span. The faces' own sliding
-/// modes inside a long disbond are not in it. Derivatives by span and place come from the modes of the basis, good to
-/// a percent: they steer a search, and do not move its end.
+/// modes inside a long disbond are not in it.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct StiffnessLoss;
 

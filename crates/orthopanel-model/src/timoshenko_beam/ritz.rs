@@ -2,12 +2,12 @@
 
 use faer::Mat;
 
-use super::beam_terms::{BeamTerms, ShearLoss};
+use super::beam_terms::BeamTerms;
 use super::strain_basis::{Parity, StrainFunction, end_motions, steps, strain_functions};
 use super::term_matrices::{Field, Quadrature, support_stiffness};
 use super::{BEAM_CONSTANTS, Section, StaticFlexibility};
 use crate::legendre::{legendre, norm};
-use crate::structure::{Block, EdgeForce, Flexibility, Motion, Structure, TermDerivative};
+use crate::structure::{Block, Flexibility, Motion, Structure, TermDerivative};
 use crate::{Boundary, Constant, ModelError, Piece, Place};
 
 /// The beam of eq. 5 as a [`Structure`]: coefficients are $E_x$ and $G_{zx}$ themselves, with
@@ -38,7 +38,7 @@ impl TimoshenkoBeam {
     ///
     /// Where supports yield, the springs add a third coefficient of fixed value 1. The parameters of
     /// [`Structure::term_derivatives`] stand in this order: the rotary factor; loss, span and place of each shear loss;
-    /// translation and rotation stiffness of the supports.
+    /// translation and rotation stiffness of the supports. Span and place have no matrices: see [`TermDerivative`].
     ///
     /// # Errors
     /// [`ModelError::Size`] where a size, factor or stiffness has no physical meaning, [`ModelError::HeldSide`]
@@ -116,29 +116,6 @@ pub(super) fn product(f: &[f64], g: &[f64]) -> f64 {
     f.iter().zip(g).enumerate().map(|(n, (a, b))| a * b * norm(n)).sum()
 }
 
-impl TimoshenkoBeam {
-    /// An edge of a loss that moves outward by `share` of a parameter: the same shear force then bends a softer stretch.
-    fn edge_force(
-        &self,
-        quadratures: &[Quadrature],
-        loss: &ShearLoss,
-        edge: f64,
-        share: f64,
-        stiffness: f64,
-    ) -> EdgeForce {
-        let left = |x: f64| {
-            let lost = self.terms.losses.iter().filter(|loss| {
-                let [low, high] = loss.edges(self.half_length);
-                x > low && x < high
-            });
-            stiffness * (1.0 - lost.map(|loss| loss.loss).sum::<f64>())
-        };
-        let rows = quadratures.iter().map(|quadrature| quadrature.shear_force(edge, left, self.section.mass));
-        let (at_rest, by_omega2) = rows.map(|[at_rest, by_omega2]| (at_rest, by_omega2)).unzip();
-        EdgeForce { factor: -share * loss.loss / ((1.0 - loss.loss) * stiffness), at_rest, by_omega2 }
-    }
-}
-
 impl Structure for TimoshenkoBeam {
     fn constants(&self) -> &'static [Constant] {
         &BEAM_CONSTANTS
@@ -182,42 +159,32 @@ impl Structure for TimoshenkoBeam {
     fn static_flexibility(&self, values: &[f64], motions: [(Motion, Place); 2]) -> Option<Flexibility> {
         let [&e_x, &g_zx] = [values.first()?, values.get(1)?];
         let parts = self.flexibility.between_motions(motions.map(|(motion, place)| (motion, place.x)), [e_x, g_zx]);
-        let known = parts.by_losses.into_iter().flatten();
+        let known = parts.by_losses.into_iter().flat_map(|by| [Some(by), None, None]);
         let support = self.terms.support.map(|_| parts.by_support).into_iter().flatten();
         Some(Flexibility {
             value: parts.value,
             by_constants: parts.by_constants.to_vec(),
             // Rotary inertia alters the field that a free beam's own inertia balances.
-            by_terms: std::iter::once(None).chain(known.chain(support).map(Some)).collect(),
+            by_terms: std::iter::once(None).chain(known).chain(support.map(Some)).collect(),
         })
     }
 
     fn term_derivatives(&self, values: &[f64]) -> Vec<TermDerivative> {
         let shear = values.get(1).copied().unwrap_or_default() * self.section.shear_area;
-        let of_stiffness =
-            |matrices: Vec<Mat<f64>>| TermDerivative { stiffness: matrices, mass: vec![], forces: vec![] };
+        let of_stiffness = |matrices: Vec<Mat<f64>>| TermDerivative { stiffness: matrices, mass: vec![] };
         let even_inertia = self.section.rotary_inertia / self.terms.rotary_factor;
         let by_rotary = |functions: &Vec<StrainFunction>| {
             let entry = |i: usize, j: usize| product(&functions[i].rotation, &functions[j].rotation);
             faer::Scale(even_inertia * self.half_length) * Mat::from_fn(functions.len(), functions.len(), entry)
         };
-        let mut list = vec![TermDerivative {
-            stiffness: vec![],
-            mass: self.functions.iter().map(by_rotary).collect(),
-            forces: vec![],
-        }];
+        let mut list = vec![TermDerivative { stiffness: vec![], mass: self.functions.iter().map(by_rotary).collect() }];
         for loss in &self.terms.losses {
-            let quadratures: Vec<_> =
-                self.functions.iter().map(|f| Quadrature::new(f, self.half_length, &self.terms.losses)).collect();
-            let by_span = |quadrature: &Quadrature| faer::Scale(-shear) * quadrature.span(loss);
-            list.push(of_stiffness(quadratures.iter().map(by_span).collect()));
-            let moved = |shares: [f64; 2]| {
-                let edges = loss.edges(self.half_length).into_iter().zip(shares);
-                let forces = edges.filter(|(edge, _)| edge.abs() < self.half_length);
-                let forces = forces.map(|(edge, share)| self.edge_force(&quadratures, loss, edge, share, shear));
-                TermDerivative { stiffness: vec![], mass: vec![], forces: forces.collect() }
+            let by_loss = |functions: &Vec<StrainFunction>| {
+                faer::Scale(-shear) * Quadrature::new(functions, self.half_length, &self.terms.losses).span(loss)
             };
-            list.extend([moved([0.5, 0.5]), moved([-1.0, 1.0])]);
+            list.push(of_stiffness(self.functions.iter().map(by_loss).collect()));
+            // With span and place the edges move, and with them the functions that begin there.
+            list.extend([of_stiffness(vec![]), of_stiffness(vec![])]);
         }
         if self.terms.support.is_some() {
             for springs in [[1.0, 0.0], [0.0, 1.0]] {

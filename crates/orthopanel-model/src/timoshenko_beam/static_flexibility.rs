@@ -30,8 +30,8 @@ pub(crate) struct FlexibilityParts {
     pub value: f64,
     /// Its derivatives by $E_x$ and $G_{zx}$.
     pub by_constants: [f64; 2],
-    /// Its derivatives by loss, span and place of each shear loss.
-    pub by_losses: Vec<[f64; 3]>,
+    /// Its derivative by each shear loss.
+    pub by_losses: Vec<f64>,
     /// Its derivatives by the translation and rotation stiffness of the supports.
     pub by_support: [f64; 2],
 }
@@ -72,7 +72,7 @@ impl StaticFlexibility {
         let [bending, shear, support] = self.energies(&a, &b);
         let (by_bending, by_shear) = (bending / stiffness[0], shear / stiffness[1]);
         // Least energy: moving the redundants changes nothing to first order, so only the stiffnesses count.
-        let by_losses = self.losses.iter().map(|loss| self.by_loss(loss, &a, &b).map(|v| v / stiffness[1])).collect();
+        let by_losses = self.losses.iter().map(|loss| self.by_loss(loss, &a, &b) / stiffness[1]).collect();
         let ends = self.end_products(&a, &b);
         FlexibilityParts {
             value: by_bending + by_shear + support,
@@ -82,17 +82,10 @@ impl StaticFlexibility {
         }
     }
 
-    /// Derivatives of $\int V_1V_2/(1-\text{loss})\,dx$ by loss, span and place.
-    fn by_loss(&self, loss: &ShearLoss, a: &StaticField, b: &StaticField) -> [f64; 3] {
+    /// Derivative of $\int V_1V_2/(1-\text{loss})\,dx$ by the loss.
+    fn by_loss(&self, loss: &ShearLoss, a: &StaticField, b: &StaticField) -> f64 {
         let [low, high] = loss.edges(self.half_length);
-        let inside: f64 = self.shear_between(a, b, low, high);
-        let gain = 1.0 / (1.0 - loss.loss) - 1.0;
-        // An edge beyond the beam's end does not move.
-        let at_edge = |x: f64| {
-            if x.abs() < self.half_length { gain * a.at(x)[1] * b.at(x)[1] } else { 0.0 }
-        };
-        let (left, right) = (at_edge(low), at_edge(high));
-        [inside / (1.0 - loss.loss).powi(2), 0.5 * (left + right), right - left]
+        self.shear_between(a, b, low, high) / (1.0 - loss.loss).powi(2)
     }
 
     /// `field` less its share of each of `states`.

@@ -66,22 +66,6 @@ impl Quadrature {
         let [low, high] = loss.edges(self.half_length);
         self.product(Field::Shear, |x| if x > low && x < high { 1.0 } else { 0.0 })
     }
-
-    /// Rows that give a mode's shear force at an edge: at rest, and times $\omega^2$.
-    ///
-    /// The strain on either side of an edge is what a basis knows worst, so the force comes from integrals: its mean is that
-    /// of $k'GA(w'+\psi)$, and $V' = -\omega^2\rho Aw$.
-    pub(super) fn shear_force(&self, edge: f64, stiffness: impl Fn(f64) -> f64, mass: f64) -> [Vec<f64>; 2] {
-        let h = self.half_length;
-        let integral = |field: Field, weight: &dyn Fn(f64) -> f64| -> Vec<f64> {
-            let values = &self.values[field as usize];
-            let scale: Vec<f64> = self.points.iter().map(|(t, w)| w * weight(h * t)).collect();
-            (0..values.ncols()).map(|j| scale.iter().enumerate().map(|(i, w)| w * values[(i, j)]).sum()).collect()
-        };
-        let before = |x: f64| if x < edge { 1.0 } else { 0.0 };
-        let at_rest = integral(Field::Shear, &|x| stiffness(x) / (2.0 * h));
-        [at_rest, integral(Field::Deflection, &|x| mass * ((h - x) / (2.0 * h) - before(x)))]
-    }
 }
 
 /// Springs against the end motions, which have a coordinate each.

@@ -4,7 +4,7 @@ use faer::Mat;
 
 use crate::ritz_modes::all_ritz_modes;
 use crate::structure::{Motion, Structure};
-use crate::{ModelError, Place};
+use crate::{ModelError, Place, TimoshenkoBeam};
 
 /// What moves, and where.
 pub(in crate::effects) type Row = (Motion, Place);
@@ -33,16 +33,35 @@ pub(in crate::effects) struct ModalBase<'a> {
     pub parameters: usize,
     /// Positions in [`Structure::term_derivatives`] of those terms.
     pub terms: Vec<usize>,
+    /// Parameters that only differences tell.
+    pub differences: Vec<Difference<'a>>,
+}
+
+/// The structure with one parameter moved back and forth.
+#[derive(Debug)]
+pub(in crate::effects) struct Moved {
+    /// Position of the parameter in [`Structure::term_derivatives`].
+    pub term: usize,
+    pub step: f64,
+    pub sides: [TimoshenkoBeam; 2],
+}
+
+/// Modes on both sides of a parameter.
+pub(in crate::effects) struct Difference<'a> {
+    pub parameter: usize,
+    pub step: f64,
+    pub sides: [Box<ModalBase<'a>>; 2],
 }
 
 impl<'a> ModalBase<'a> {
-    /// With the rigid modes and `near` flexible ones to be summed, and the structure's own terms of these numbers among
+    /// With the rigid modes and `summed` flexible ones to be summed, and the structure's own terms of these numbers among
     /// the parameters.
     pub(in crate::effects) fn new(
         structure: &'a dyn Structure,
         values: &[f64],
-        near: usize,
+        summed: usize,
         terms: &[usize],
+        moved: &'a [Moved],
     ) -> Result<Self, ModelError> {
         let modes = all_ritz_modes(structure, values)?;
         let by_constants = structure.coefficient_derivatives(values)?;
@@ -65,34 +84,37 @@ impl<'a> ModalBase<'a> {
             let mut couplings: Vec<[Mat<f64>; 2]> = (0..values.len()).map(of_constant).collect();
             for &term in terms {
                 let Some(by) = derivatives.get(term) else { continue };
-                let [mut stiffness, mass] =
-                    [&by.stiffness, &by.mass].map(|list| list.get(index).map_or(Mat::new(), in_modes));
-                for force in &by.forces {
-                    let [Some(at_rest), Some(by_omega2)] = [force.at_rest.get(index), force.by_omega2.get(index)]
-                    else {
-                        continue;
-                    };
-                    let of = |m: usize| -> f64 {
-                        let rows = at_rest.iter().zip(by_omega2).enumerate();
-                        rows.map(|(i, (a, b))| (a + lambda[m] * b) * vectors[(i, m)]).sum()
-                    };
-                    let forces: Vec<f64> = (0..own.len()).map(of).collect();
-                    let pairs = Mat::from_fn(own.len(), own.len(), |m, n| force.factor * forces[m] * forces[n]);
-                    stiffness = if stiffness.nrows() > 0 { stiffness + pairs } else { pairs };
-                }
-                couplings.push([stiffness, mass]);
+                couplings.push([&by.stiffness, &by.mass].map(|list| list.get(index).map_or(Mat::new(), in_modes)));
             }
             order.extend(lambda.iter().enumerate().map(|(number, &lambda)| (lambda, index, number)));
             blocks.push(BlockModes { lambda, vectors, couplings });
         }
         let rigid = order.iter().filter(|(lambda, ..)| *lambda == 0.0).count();
         order.sort_by(|a, b| a.0.total_cmp(&b.0));
-        if rigid + near >= order.len() {
-            return Err(ModelError::BasisTooSmall { asked: near, available: (order.len() - rigid) / 2 });
+        if rigid + summed >= order.len() {
+            return Err(ModelError::BasisTooSmall { asked: summed, available: (order.len() - rigid) / 2 });
         }
-        let near = order.iter().take(rigid + near).map(|&(_, block, number)| (block, number)).collect();
+        let near = order.iter().take(rigid + summed).map(|&(_, block, number)| (block, number)).collect();
         let parameters = values.len() + terms.len();
-        Ok(Self { structure, values: values.to_vec(), blocks, near, rigid, parameters, terms: terms.to_vec() })
+        let mut differences = Vec::new();
+        for change in moved {
+            let Some(position) = terms.iter().position(|term| *term == change.term) else { continue };
+            let side =
+                |beam: &'a TimoshenkoBeam| Ok::<_, ModelError>(Box::new(Self::new(beam, values, summed, &[], &[])?));
+            let [back, forth] = &change.sides;
+            let (parameter, step) = (values.len() + position, change.step);
+            differences.push(Difference { parameter, step, sides: [side(back)?, side(forth)?] });
+        }
+        Ok(Self {
+            structure,
+            values: values.to_vec(),
+            blocks,
+            near,
+            rigid,
+            parameters,
+            terms: terms.to_vec(),
+            differences,
+        })
     }
 
     /// The same selection of modes as another base of this structure, with the same signs.

@@ -2,7 +2,7 @@
 
 use num_complex::Complex64;
 
-use super::modal_base::{ModalBase, Row};
+use super::modal_base::{ModalBase, Moved, Row};
 use super::view::{Layout, View};
 use crate::effects::CoreModulus;
 use crate::{ModelError, Structure};
@@ -37,6 +37,7 @@ impl<'a> NodeBases<'a> {
         core: &CoreModulus,
         near: usize,
         terms: &[usize],
+        moved: &'a [Moved],
     ) -> Result<Self, ModelError> {
         // A stretch of some width, so that the modes at its nodes differ by more than their rounding.
         let half = 0.5 * core.strength.max(0.05);
@@ -48,7 +49,7 @@ impl<'a> NodeBases<'a> {
             if let Some(modulus) = at.get_mut(SHEAR_MODULUS) {
                 *modulus *= node;
             }
-            let base = ModalBase::new(structure, &at, near, terms)?;
+            let base = ModalBase::new(structure, &at, near, terms, moved)?;
             bases.push(match bases.first() {
                 Some(first) => base.aligned_with(first),
                 None => base,

@@ -1,6 +1,6 @@
 //! A test as its receptances need it: piece, records, and the effects that are switched on.
 
-use super::modal_base::ModalBase;
+use super::modal_base::{ModalBase, Moved};
 use super::model::{ReceptanceModel, RecordModel};
 use super::modulus_path::NodeBases;
 use super::record::RecordPlan;
@@ -75,6 +75,7 @@ impl ReceptanceSetup {
         let first_effect = constants + free;
         let setting = self.setting_of(self.records.first().cloned().unwrap_or_default());
         let dressed = Dressing::of(effects, &setting, first_effect)?;
+        let moved = self.moved(&dressed)?;
         let uneven;
         let structure: &dyn Structure = match dressed.terms {
             Some(terms) => {
@@ -86,8 +87,8 @@ impl ReceptanceSetup {
         let (numbers, columns): (Vec<usize>, Vec<usize>) = dressed.parameters.into_iter().unzip();
         let structural: Vec<usize> = (0..constants).chain(columns).collect();
         let bases = match dressed.core {
-            Some((core, _)) => Bases::Complex(NodeBases::new(structure, values, &core, self.summed, &numbers)?),
-            None => Bases::Real(ModalBase::new(structure, values, self.summed, &numbers)?),
+            Some((core, _)) => Bases::Complex(NodeBases::new(structure, values, &core, self.summed, &numbers, &moved)?),
+            None => Bases::Real(ModalBase::new(structure, values, self.summed, &numbers, &moved)?),
         };
         let shear_modulus = values.get(1).copied().unwrap_or_default();
         let records = self.records.iter().map(|record| {
@@ -105,6 +106,31 @@ impl ReceptanceSetup {
         let records = records.collect::<Result<Vec<_>, ModelError>>()?;
         let columns = first_effect + effects.iter().map(|effect| effect.values.len()).sum::<usize>();
         Ok(ReceptanceModel::new(records, zetas, columns))
+    }
+
+    /// The beam with span and place of each shear loss moved.
+    fn moved(&self, dressing: &Dressing) -> Result<Vec<Moved>, ModelError> {
+        let Some(terms) = &dressing.terms else { return Ok(vec![]) };
+        // Shapes bend over a tenth of the length: 1e-5 of it leaves 1e-7 of rounding and of curvature.
+        let step = 1e-5 * self.piece.length;
+        let side = |index: usize, span: f64, at: f64| {
+            let mut terms = terms.clone();
+            if let Some(loss) = terms.losses.get_mut(index) {
+                loss.span += span;
+                loss.at += at;
+            }
+            TimoshenkoBeam::with_terms(&self.piece, self.boundary, basis_terms(self.summed), terms)
+        };
+        let mut moved = Vec::new();
+        for index in 0..terms.losses.len() {
+            // The rotary factor stands first; loss, span and place follow for each.
+            let first = 1 + 3 * index;
+            let spans = [side(index, -step, 0.0)?, side(index, step, 0.0)?];
+            moved.push(Moved { term: first + 1, step, sides: spans });
+            let places = [side(index, 0.0, -step)?, side(index, 0.0, step)?];
+            moved.push(Moved { term: first + 2, step, sides: places });
+        }
+        Ok(moved)
     }
 }
 

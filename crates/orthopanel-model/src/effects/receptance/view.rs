@@ -85,7 +85,42 @@ impl View {
             view.add_far(&part);
         }
         view.close(base, &rows);
+        for difference in &base.differences {
+            let [back, forth] = &difference.sides;
+            let [back, forth] = [Self::new(back, active, &[])?, Self::new(forth, active, &[])?];
+            view.set_difference(difference.parameter, [back, forth], difference.step);
+        }
         Ok(view)
+    }
+
+    /// Writes derivatives by parameter `p` from views that lie two steps apart.
+    fn set_difference(&mut self, p: usize, mut sides: [Self; 2], step: f64) {
+        let Layout { modes, active, .. } = self.layout;
+        for side in &mut sides {
+            (0..modes).for_each(|m| side.turn_like(self, m));
+        }
+        let [back, forth] = &sides;
+        let slope = |at: usize| (forth.numbers[at] - back.numbers[at]) / (2.0 * step);
+        let layout = back.layout;
+        for m in 0..modes {
+            self.numbers[self.layout.by(p) + m] = slope(m);
+            let to = self.layout.shape_by(p, m);
+            (0..active).for_each(|row| self.numbers[to + row] = slope(layout.shape(m) + row));
+        }
+        for k in 0..SERIES_TERMS {
+            let to = self.layout.series_by(p, k);
+            (0..active * active).for_each(|i| self.numbers[to + i] = slope(layout.series(k) + i));
+        }
+    }
+
+    /// Gives mode `m` the sign that it has in another view.
+    fn turn_like(&mut self, other: &Self, m: usize) {
+        let (here, there) = (self.layout.shape(m), other.layout.shape(m));
+        let overlap: f64 =
+            (0..self.layout.active).map(|row| self.numbers[here + row] * other.numbers[there + row]).sum();
+        if overlap < 0.0 {
+            (0..self.layout.active).for_each(|row| self.numbers[here + row] *= -1.0);
+        }
     }
 
     fn add_near(&mut self, part: &BlockPart) {
