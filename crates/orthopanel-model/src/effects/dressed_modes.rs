@@ -173,11 +173,11 @@ impl System {
             panel,
             shift: numbers.get(layout.rigid).copied().unwrap_or(1.0),
         };
-        for m in 0..modes {
-            system.stiffness[(m, m)] = numbers[m];
+        for (m, &lambda) in numbers.iter().enumerate().take(modes) {
+            system.stiffness[(m, m)] = lambda;
             system.mass[(m, m)] = 1.0;
             let zeta = if m < layout.rigid { 0.0 } else { damping.ratio(m + 1 - layout.rigid) };
-            system.damping[(m, m)] = 2.0 * zeta * numbers[m].sqrt();
+            system.damping[(m, m)] = 2.0 * zeta * lambda.sqrt();
         }
         for (a, b) in (0..count).flat_map(|a| (0..count).map(move |b| (a, b))) {
             system.stiffness[(modes + a, modes + b)] = series(0, a, b);
