@@ -4,6 +4,8 @@ use orthopanel_data::DataError;
 use orthopanel_model::ModelError;
 use thiserror::Error;
 
+use crate::least_squares::Stuck;
+
 /// Errors of this crate.
 #[derive(Debug, Error)]
 #[non_exhaustive]
@@ -140,6 +142,16 @@ pub enum IdentifyError {
 }
 
 impl IdentifyError {
+    /// A search whose start was refused, or that found no end.
+    pub(crate) fn refused<E: Into<Self>>(stuck: Stuck<E>) -> Self {
+        match stuck {
+            Stuck::Refused(error) => error.into(),
+            Stuck::Iterations { count, cost } => {
+                Self::NotConverged { iterations: count, error_percent: 100.0 * cost.sqrt() }
+            }
+        }
+    }
+
     /// Whether the test itself must be mended, rather than that its data or the model say no.
     pub fn is_bad_input(&self) -> bool {
         !matches!(

@@ -5,6 +5,7 @@ use faer::prelude::Solve;
 use faer::{Mat, Side};
 
 /// $\sum r_i^2$ near some parameters: its value, $J^Tr$ and $J^TJ$.
+#[derive(Clone)]
 pub(crate) struct Quadratic {
     /// $\sum r_i^2$.
     pub cost: f64,
@@ -98,6 +99,8 @@ pub(crate) struct Ending {
     pub small_step: f64,
     /// Part of the sum of squares that is not worth another step.
     pub small_gain: f64,
+    /// Size of the sum of squares that is not, however small the rest.
+    pub little: f64,
     /// Damping of the first step, as a part of the curvature.
     pub first_damping: f64,
 }
@@ -105,10 +108,21 @@ pub(crate) struct Ending {
 impl Ending {
     /// For smooth residuals: after a step of 1e-8 the next would be a thousand times smaller still, and 1e-10 of the sum
     /// of squares moves a parameter by 1e-5 of its standard deviation.
-    pub const SMOOTH: Self = Self { most_iterations: 100, small_step: 1e-8, small_gain: 1e-10, first_damping: 1e-6 };
+    pub const SMOOTH: Self =
+        Self { most_iterations: 100, small_step: 1e-8, small_gain: 1e-10, little: 0.0, first_damping: 1e-6 };
     /// For residuals that jump where two modes change places: 1e-6 of the sum of squares moves a parameter by 1e-3 of its
     /// standard deviation, and at a jump steps shrink without end.
-    pub const WITH_JUMPS: Self = Self { most_iterations: 40, small_step: 1e-5, small_gain: 1e-6, first_damping: 1e-4 };
+    pub const WITH_JUMPS: Self =
+        Self { most_iterations: 40, small_step: 1e-5, small_gain: 1e-6, little: 0.0, first_damping: 1e-4 };
+
+    /// A search that is cut short: after so many iterations, or where a step promises `little`.
+    pub const fn short(most_iterations: usize, little: f64) -> Self {
+        Self { most_iterations, little, ..Self::SMOOTH }
+    }
+
+    fn is_little(&self, promised: f64, cost: f64) -> bool {
+        promised <= self.little.max(self.small_gain * cost)
+    }
 }
 
 /// Minimises $\sum r_i^2$ from `start`; each parameter stays within its `(low, high)`.
@@ -130,6 +144,21 @@ pub(crate) fn levenberg_marquardt_until<E>(
     bounds: &[(f64, f64)],
     ending: Ending,
 ) -> Result<Minimum, Stuck<E>> {
+    let (minimum, settled) = descend(linearise, start, bounds, ending)?;
+    let (count, cost) = (ending.most_iterations, minimum.at.cost);
+    if settled { Ok(minimum) } else { Err(Stuck::Iterations { count, cost }) }
+}
+
+/// Goes down $\sum r_i^2$ as far as the ending lets it, and says whether it came to a minimum.
+///
+/// # Errors
+/// [`Stuck::Refused`] where the start is refused.
+pub(crate) fn descend<E>(
+    linearise: impl Fn(&[f64]) -> Result<Quadratic, E>,
+    start: &[f64],
+    bounds: &[(f64, f64)],
+    ending: Ending,
+) -> Result<(Minimum, bool), Stuck<E>> {
     let mut parameters = start.to_vec();
     let mut at = linearise(&parameters).map_err(Stuck::Refused)?;
     let (mut damping, mut growth) = (ending.first_damping, 2.0);
@@ -169,22 +198,22 @@ pub(crate) fn levenberg_marquardt_until<E>(
             let (before, after) = (at.cost, next.cost);
             // At the bottom both are equal but for rounding, and either is the minimum.
             if after <= before {
-                let settled = moved < ending.small_step || promised <= ending.small_gain * before;
+                let settled = moved < ending.small_step || ending.is_little(promised, before);
                 (parameters, at) = (trial, next);
                 (damping, growth) = (damping * 0.1, 2.0);
                 if settled {
-                    return Ok(Minimum { parameters, at });
+                    return Ok((Minimum { parameters, at }, true));
                 }
                 continue;
             }
         }
-        if moved < ending.small_step || promised <= ending.small_gain * at.cost {
-            return Ok(Minimum { parameters, at });
+        if moved < ending.small_step || ending.is_little(promised, at.cost) {
+            return Ok((Minimum { parameters, at }, true));
         }
         damping *= growth;
         growth *= 2.0;
     }
-    Err(Stuck::Iterations { count: ending.most_iterations, cost: at.cost })
+    Ok((Minimum { parameters, at }, false))
 }
 
 #[cfg(test)]

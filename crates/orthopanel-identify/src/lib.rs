@@ -11,6 +11,7 @@ mod least_squares;
 mod settings;
 mod starting_constants;
 mod time_history;
+mod tracing;
 mod usual_plate;
 
 pub use accelerance_fit::DampingLaw;
@@ -22,4 +23,8 @@ pub use identification::{
 pub use settings::{PaperWeights, Search, Settings};
 pub use time_history::{
     ComparedSignals, ForceBetweenSamples, HistorySettings, HitComparison, Misfit, compare_time_history,
+};
+pub use tracing::{
+    Candidate, FittedError, NotTested, Progress, Removed, TRACE_SCHEMA, TracedEffect, TracedError, TracedParameter,
+    Tracing, Verdict, trace, trace_with,
 };

@@ -9,6 +9,7 @@ mod poles;
 mod problem;
 mod records;
 mod resonance_point;
+mod resonance_start;
 mod smooth_part;
 mod structures;
 mod synthesis;
@@ -27,6 +28,7 @@ use problem::{AcceleranceProblem, PieceProblem};
 use records::PlaceRecord;
 use structures::SeenMode;
 
+pub(crate) use resonance_start::{ResonanceStart, resonance_starts};
 pub use synthesis::DampingLaw;
 
 /// What stands before the fit: records, their poles, and which modes these are.

@@ -1,0 +1,101 @@
+//! One hypothesis fitted to the records, from the widest peaks to the narrowest.
+
+use faer::Side;
+use faer::prelude::Solve;
+
+use super::record_problem::{Grouping, State, total};
+use super::records_of_test::TestRecords;
+use super::widened_lines::WIDENINGS;
+use crate::IdentifyError;
+use crate::least_squares::{Ending, Quadratic, descend};
+
+/// A hypothesis with its sums of squares on the narrowest lines.
+#[derive(Clone)]
+pub(super) struct Fit {
+    pub state: State,
+    /// What a search moved.
+    pub parameters: Vec<f64>,
+    /// Sums of squares by place, the last being what is known of damping beforehand.
+    pub places: Vec<Quadratic>,
+    /// Sum of squares at the minimum.
+    pub cost: f64,
+    /// Number of free parameters.
+    pub size: usize,
+}
+
+impl Fit {
+    /// Misfit per datum, in units of the records' noise.
+    pub(super) fn chi_square(&self, records: &TestRecords) -> f64 {
+        self.cost / records.problem(LAST).data().max(1) as f64
+    }
+}
+
+/// The narrowest lines.
+pub(super) const LAST: usize = WIDENINGS.len() - 1;
+
+/// Evaluations at each widening: the first finds the place, the others polish it.
+const PATIENCE: [Ending; WIDENINGS.len()] =
+    [Ending::short(12, 1.0), Ending::short(6, 1.0), Ending::short(4, 1.0), Ending::short(14, 0.2)];
+
+/// Fits from `state`, beginning at the widening of this number.
+///
+/// # Errors
+/// What the model refuses, as where a place comes to lie off the piece.
+pub(super) fn fit(records: &TestRecords, state: State, from: usize) -> Result<Fit, IdentifyError> {
+    let mut state = state;
+    for (stage, &patience) in PATIENCE.iter().enumerate().skip(from) {
+        state = polish(records, &state, stage, patience)?.0;
+    }
+    settle(records, state, false)
+}
+
+/// A hypothesis as it stands; where the search was given up, with the sum of squares that one more step promises.
+///
+/// # Errors
+/// What the model refuses.
+pub(super) fn settle(records: &TestRecords, state: State, given_up: bool) -> Result<Fit, IdentifyError> {
+    let problem = records.problem(LAST);
+    let parameters = problem.parameters(&state);
+    let places = problem.by_group(&parameters, &state, Grouping::Places)?;
+    let whole = total(&places);
+    let cost = if given_up { promise(&whole).max(0.0) } else { whole.cost };
+    Ok(Fit { size: parameters.len(), parameters, places, cost, state })
+}
+
+/// The state at the minimum of one widening, and its sum of squares.
+pub(super) fn polish(
+    records: &TestRecords,
+    state: &State,
+    stage: usize,
+    patience: Ending,
+) -> Result<(State, f64), IdentifyError> {
+    let problem = records.problem(stage);
+    let (start, bounds) = (problem.parameters(state), problem.bounds(state));
+    let searched = descend(|p| problem.linearise(p, state), &start, &bounds, patience);
+    let (minimum, _) = searched.map_err(IdentifyError::refused)?;
+    Ok((problem.state(&minimum.parameters, state), minimum.at.cost))
+}
+
+/// What is left of a sum of squares after one step, to first order: how good a start is.
+///
+/// The step is damped a little, so that a direction without slope promises nothing.
+pub(super) fn promise(at: &Quadratic) -> f64 {
+    let mut normal = at.normal.clone();
+    for i in 0..normal.nrows() {
+        normal[(i, i)] = normal[(i, i)] * (1.0 + DAMPED) + f64::MIN_POSITIVE;
+    }
+    let gradient = faer::Mat::from_fn(at.gradient.len(), 1, |i, _| at.gradient[i]);
+    let Ok(factor) = normal.llt(Side::Lower) else { return at.cost };
+    let step = factor.solve(&gradient);
+    at.cost - (gradient.transpose() * step)[(0, 0)]
+}
+
+const DAMPED: f64 = 1e-3;
+
+/// Sums of squares at a fit, hit by hit where places are not what is left out, the last being what is known of damping beforehand.
+pub(super) fn by_group(records: &TestRecords, fit: &Fit, grouping: Grouping) -> Result<Vec<Quadratic>, IdentifyError> {
+    if grouping == Grouping::Places {
+        return Ok(fit.places.clone());
+    }
+    Ok(records.problem(LAST).by_group(&fit.parameters, &fit.state, grouping)?)
+}

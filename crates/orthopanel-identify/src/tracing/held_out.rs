@@ -1,0 +1,89 @@
+//! What a fit says of data that it has not seen.
+
+use faer::prelude::Solve;
+use faer::{Mat, Side};
+
+use super::fit::{Fit, by_group};
+use super::record_problem::{Grouping, total};
+use super::records_of_test::TestRecords;
+use crate::IdentifyError;
+use crate::least_squares::Quadratic;
+
+/// Places from which leaving one out still leaves a test.
+const LEAST_PLACES: usize = 3;
+
+/// What is left out of a test to judge its fits: a pair of places where there are several, else a hit.
+pub(super) fn grouping(records: &TestRecords) -> Grouping {
+    if records.problem(0).records.len() >= LEAST_PLACES { Grouping::Places } else { Grouping::Hits }
+}
+
+/// Misfit of each group predicted from all others, squared, per datum, in units of the noise.
+///
+/// Without the group $k$ the minimum moves by $(N-N_k)^{-1}g_k$, and $c_k$ becomes $c_k + 2g_k\delta + \delta^TN_k\delta$: exact
+/// for what is linear, and fits near their minimum are. A parameter that only the group itself tells, as a
+/// record's own gain, goes back to where it has no effect.
+///
+/// # Errors
+/// What the model refuses.
+pub(super) fn held_out(records: &TestRecords, fit: &Fit, grouping: Grouping) -> Result<f64, IdentifyError> {
+    let sums = by_group(records, fit, grouping)?;
+    let whole = total(&sums);
+    let Some((_, groups)) = sums.split_last() else { return Ok(f64::NAN) };
+    let neutral = neutral_steps(fit);
+    let missed: f64 = groups.iter().map(|group| predicted(&whole, group, &neutral)).sum();
+    let problem = records.problem(usize::MAX);
+    let hits = |hits: usize| if grouping == Grouping::Hits { hits } else { 1 };
+    let data: usize = problem.records.iter().map(|record| 2 * record.s.len() * hits(record.hits.len())).sum();
+    Ok(missed / data.max(1) as f64)
+}
+
+/// From each parameter to where its effect vanishes; none for constants and damping.
+fn neutral_steps(fit: &Fit) -> Vec<f64> {
+    let effects: Vec<f64> = fit
+        .state
+        .hypothesis
+        .each_free()
+        .map(|(switched, free)| {
+            let value = switched.values[free.at];
+            let name = switched.effect.parameters()[free.parameter].name;
+            let none = if name == "gain" { 1.0 } else { 0.0 };
+            let by = if free.record.is_some() || name == "gain" {
+                free.coordinate(none) - free.coordinate(value)
+            } else {
+                0.0
+            };
+            if by.is_finite() { by } else { 0.0 }
+        })
+        .collect();
+    let mut steps = vec![0.0; fit.parameters.len().saturating_sub(effects.len())];
+    steps.extend(effects);
+    steps
+}
+
+/// A parameter of which the other groups hold less than this part is the group's own.
+const OWN: f64 = 1e-6;
+
+fn predicted(whole: &Quadratic, group: &Quadratic, neutral: &[f64]) -> f64 {
+    let size = neutral.len();
+    let mut normal = &whole.normal - &group.normal;
+    let mut gradient = Mat::from_fn(size, 1, |i, _| whole.gradient[i] - group.gradient[i]);
+    for i in 0..size {
+        if normal[(i, i)] < OWN * whole.normal[(i, i)] {
+            for j in 0..size {
+                normal[(i, j)] = 0.0;
+                normal[(j, i)] = 0.0;
+            }
+            normal[(i, i)] = 1.0;
+            gradient[(i, 0)] = -neutral[i];
+        } else {
+            // Directions that only the group tells stay where they are.
+            normal[(i, i)] *= 1.0 + OWN;
+        }
+    }
+    let Ok(factor) = normal.llt(Side::Lower) else { return f64::INFINITY };
+    let step = factor.solve(&gradient);
+    let step: Vec<f64> = (0..size).map(|i| -step[(i, 0)]).collect();
+    let slope: f64 = step.iter().zip(&group.gradient).map(|(a, b)| a * b).sum();
+    let bend: f64 = (0..size).map(|i| (0..size).map(|j| step[i] * group.normal[(i, j)] * step[j]).sum::<f64>()).sum();
+    (group.cost + 2.0 * slope + bend).max(0.0)
+}

@@ -1,0 +1,151 @@
+//! Effects that are switched on, and which of their parameters a search moves.
+
+use orthopanel_model::{Effect, EffectState, ModelError, Piece, Scale};
+
+/// An effect with values for all its parameters.
+#[derive(Clone)]
+pub(super) struct Switched {
+    pub effect: &'static dyn Effect,
+    /// One a parameter; where each record has its own, one a record in its place.
+    pub values: Vec<f64>,
+    /// Those that a search moves.
+    pub free: Vec<FreeParameter>,
+}
+
+/// A parameter that a search moves.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct FreeParameter {
+    /// Position in [`Switched::values`].
+    pub at: usize,
+    /// Position in the effect's parameters.
+    pub parameter: usize,
+    /// The record it belongs to, where each has its own.
+    pub record: Option<usize>,
+    scale: Scale,
+    range: (f64, f64),
+}
+
+impl FreeParameter {
+    /// From a value to what the search moves: its logarithm where it spans decades.
+    pub(super) fn coordinate(&self, value: f64) -> f64 {
+        if self.scale == Scale::Log { value.ln() } else { value }
+    }
+
+    /// From what the search moves to the value.
+    pub(super) fn value(&self, coordinate: f64) -> f64 {
+        let value = if self.scale == Scale::Log { coordinate.exp() } else { coordinate };
+        // exp(ln x) may pass a bound by rounding.
+        value.clamp(self.range.0, self.range.1)
+    }
+
+    /// Derivative of the value by the coordinate.
+    pub(super) fn slope(&self, value: f64) -> f64 {
+        if self.scale == Scale::Log { value } else { 1.0 }
+    }
+
+    /// Bounds of the coordinate.
+    pub(super) fn bounds(&self) -> (f64, f64) {
+        (self.coordinate(self.range.0), self.coordinate(self.range.1))
+    }
+
+    /// Whether a value lies on a bound, to a part in a thousand of the range that the search moves through.
+    pub(super) fn on_bound(&self, value: f64) -> bool {
+        let ((low, high), at) = (self.bounds(), self.coordinate(value));
+        let margin = 1e-3 * (high - low);
+        at - low < margin || high - at < margin
+    }
+}
+
+impl Switched {
+    /// An effect at some values, `fixed` ones by their parameter's name; the others are free unless the catalogue keeps
+    /// them.
+    pub(super) fn new(
+        effect: &'static dyn Effect,
+        piece: &Piece,
+        records: usize,
+        start: impl Fn(&str) -> Option<f64>,
+        fixed: impl Fn(&str) -> bool,
+    ) -> Self {
+        let mut switched = Self { effect, values: vec![], free: vec![] };
+        for (index, parameter) in effect.parameters().iter().enumerate() {
+            let range = parameter.range(piece);
+            let usual = || parameter.held_at.or_else(|| parameter.starts(piece).first().copied()).unwrap_or(0.0);
+            let value = start(parameter.name).unwrap_or_else(usual).clamp(range.0, range.1);
+            let held = fixed(parameter.name) || parameter.held_at.is_some() || parameter.scale == Scale::Index;
+            let copies = if parameter.each_record { records } else { 1 };
+            for copy in 0..copies {
+                if !held {
+                    let at = switched.values.len();
+                    let record = parameter.each_record.then_some(copy);
+                    let scale = parameter.scale;
+                    switched.free.push(FreeParameter { at, parameter: index, record, scale, range });
+                }
+                switched.values.push(value);
+            }
+        }
+        switched
+    }
+
+    /// What the model takes.
+    pub(super) fn state(&self, records: usize) -> Result<EffectState, ModelError> {
+        EffectState::new(self.effect, self.values.clone(), records)
+    }
+}
+
+/// All effects that are switched on.
+#[derive(Clone, Default)]
+pub(super) struct Hypothesis {
+    pub effects: Vec<Switched>,
+}
+
+impl Hypothesis {
+    /// The ids, joined; the base's is empty.
+    pub(super) fn name(&self) -> String {
+        self.effects.iter().map(|switched| switched.effect.id()).collect::<Vec<_>>().join(" + ")
+    }
+
+    /// With one more effect.
+    pub(super) fn and(&self, switched: Switched) -> Self {
+        let mut more = self.clone();
+        more.effects.push(switched);
+        more
+    }
+
+    /// Number of free parameters.
+    pub(super) fn size(&self) -> usize {
+        self.effects.iter().map(|switched| switched.free.len()).sum()
+    }
+
+    /// What a search moves, effect by effect.
+    pub(super) fn coordinates(&self) -> Vec<f64> {
+        self.each_free().map(|(switched, free)| free.coordinate(switched.values[free.at])).collect()
+    }
+
+    /// Bounds of the same.
+    pub(super) fn bounds(&self) -> Vec<(f64, f64)> {
+        self.each_free().map(|(_, free)| free.bounds()).collect()
+    }
+
+    /// The same effects at other coordinates.
+    pub(super) fn at(&self, coordinates: &[f64]) -> Self {
+        let mut moved = self.clone();
+        let mut coordinates = coordinates.iter();
+        for switched in &mut moved.effects {
+            for free in &switched.free {
+                if let Some(&coordinate) = coordinates.next() {
+                    switched.values[free.at] = free.value(coordinate);
+                }
+            }
+        }
+        moved
+    }
+
+    /// Every free parameter with its effect.
+    pub(super) fn each_free(&self) -> impl Iterator<Item = (&Switched, &FreeParameter)> {
+        self.effects.iter().flat_map(|switched| switched.free.iter().map(move |free| (switched, free)))
+    }
+
+    pub(super) fn states(&self, records: usize) -> Result<Vec<EffectState>, ModelError> {
+        self.effects.iter().map(|switched| switched.state(records)).collect()
+    }
+}

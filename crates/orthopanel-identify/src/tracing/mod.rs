@@ -1,0 +1,68 @@
+//! Closing the loop: the effect that the base model lacks, by name.
+//!
+//! 1. The base model is fitted to the records; the residual is the misfit over the noise of the hits.
+//! 2. Every effect of the catalogue is fitted with it, alone, then one more as long as it pays.
+//! 3. The hypotheses are judged by what was held out, by a criterion scaled to the whiteness of the residual, and by what
+//!    is left of it beside the scatter of the hits.
+//!
+//! Both channels are multiplied by $e^{-\sigma t}$, and the model is evaluated on $s = \sigma + j\omega$: exact for every linear
+//! effect, free of leakage, and with peaks as wide as a search needs ([`widened_lines`]).
+
+mod fit;
+mod held_out;
+mod hit_noise;
+mod hypothesis;
+mod information;
+mod next_experiment;
+mod outcome;
+mod ranking;
+mod record_problem;
+mod records_of_test;
+mod report;
+mod rows;
+mod starts;
+mod verdict;
+mod whiteness;
+mod widened_lines;
+
+use orthopanel_data::{ImpactTest, MeasurementData, TimeHistory};
+
+pub use outcome::{
+    Candidate, FittedError, NotTested, Progress, Removed, TracedEffect, TracedError, TracedParameter, Tracing, Verdict,
+};
+
+pub use rows::TRACE_SCHEMA;
+
+use crate::IdentifyError;
+use ranking::Search;
+use records_of_test::TestRecords;
+
+/// Names the effect that the base model of a test lacks, from its records.
+///
+/// # Errors
+/// [`IdentifyError`]: records that cannot be read or show too few resonances, and tests that this version cannot trace.
+pub fn trace(test: &ImpactTest) -> Result<Tracing, IdentifyError> {
+    trace_with(test, &|_| {})
+}
+
+/// [`trace`], telling how far it is. The callback is called from several threads.
+///
+/// # Errors
+/// As [`trace`].
+pub fn trace_with(test: &ImpactTest, progress: &(dyn Fn(Progress) + Sync)) -> Result<Tracing, IdentifyError> {
+    let [named] = &test.pieces[..] else {
+        let message =
+            format!("a trace of {} pieces in one test: give each piece a test file of its own", test.pieces.len());
+        return Err(IdentifyError::Unsupported(message));
+    };
+    let of_time = |data: &MeasurementData| matches!(data, MeasurementData::TimeHistory(_));
+    if !test.measurements.iter().all(|measurement| of_time(&measurement.data)) {
+        let message = "a trace needs records of force and acceleration against time (kind = \"time-history\")";
+        return Err(IdentifyError::Unsupported(message.to_owned()));
+    }
+    let histories: Vec<TimeHistory> = test.time_histories()?.into_iter().map(|(_, history)| history).collect();
+    let records = TestRecords::new(test, &histories)?;
+    let search = Search { records: &records, piece: named.piece, progress };
+    let ranking = search.run()?;
+    report::report(test, &search, &ranking)
+}

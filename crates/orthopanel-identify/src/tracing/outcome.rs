@@ -1,0 +1,143 @@
+//! What a trace found.
+
+use orthopanel_model::{Estimate, Owner, PanelModel};
+
+/// What can be said of the physics that the base model lacks.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Verdict {
+    /// The base model meets the data: no effect pays for its parameters.
+    NothingMissing,
+    /// One effect, or several, clearly ahead of all others.
+    Explained,
+    /// Several effects fit alike: see [`Tracing::alternatives`] and [`Tracing::next_experiment`].
+    Ambiguous,
+    /// Structure remains in the residual, and no effect of the catalogue takes it away.
+    Unexplained,
+}
+
+impl Verdict {
+    /// The word in files: `nothing-missing`, `explained`, `ambiguous` or `unexplained`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::NothingMissing => "nothing-missing",
+            Self::Explained => "explained",
+            Self::Ambiguous => "ambiguous",
+            Self::Unexplained => "unexplained",
+        }
+    }
+}
+
+/// What a trace found: the verdict, the effects with their parameters, and the model with them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Tracing {
+    /// The verdict.
+    pub verdict: Verdict,
+    /// The effects that explain the data best; what the file declares is not among them.
+    pub effects: Vec<TracedEffect>,
+    /// Effects that explain the data about as well: ids, several joined by ` + `.
+    pub alternatives: Vec<String>,
+    /// Error of the base and of the model with the effects.
+    pub error: TracedError,
+    /// Every hypothesis that was fitted, the likeliest first.
+    pub candidates: Vec<Candidate>,
+    /// Effects that these data cannot show, with the reason.
+    pub not_tested: Vec<NotTested>,
+    /// The measurement that would part the alternatives best, with what it is expected to show.
+    pub next_experiment: String,
+    /// Misfit per datum of the model with the effects, in units of the noise: near 1 where nothing is left.
+    pub chi_square: f64,
+    /// Each piece with the effects that belong to it, without those of rig and measuring chain.
+    pub panels: Vec<PanelModel>,
+    /// Effects that are in the data and not in [`Tracing::panels`].
+    pub removed: Vec<Removed>,
+    /// What was assumed or left out, a sentence each.
+    pub notes: Vec<String>,
+}
+
+/// An effect with what was found of it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TracedEffect {
+    /// Its id in the catalogue.
+    pub id: &'static str,
+    /// Who it belongs to.
+    pub owner: Owner,
+    /// Its parameters, in the catalogue's order.
+    pub parameters: Vec<TracedParameter>,
+}
+
+/// A parameter of an effect.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TracedParameter {
+    /// Its name.
+    pub name: &'static str,
+    /// SI unit.
+    pub unit: &'static str,
+    /// Its value; one a record, in order, where each record has its own.
+    pub values: Vec<Estimate>,
+}
+
+/// Error before and after, on what was fitted and on what was held out.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TracedError {
+    /// What the numbers are, in words.
+    pub measure: String,
+    /// The base model's.
+    pub before: FittedError,
+    /// The error with the effects.
+    pub after: FittedError,
+    /// The error that noise alone makes.
+    pub noise_floor: f64,
+}
+
+/// An error on what was fitted and on what was held out.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FittedError {
+    /// On the data of the fit.
+    pub fitted: f64,
+    /// On each part of the data, predicted from the others.
+    pub held_out: f64,
+}
+
+/// One hypothesis of the ranking.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Candidate {
+    /// Its effects' ids joined by ` + `; `base` for none.
+    pub id: String,
+    /// Bayes' information criterion, scaled by the whiteness of the residuals: less is better.
+    pub bic: f64,
+    /// Error on what was held out, as in [`TracedError`].
+    pub held_out: f64,
+    /// What was found of the effects.
+    pub effects: Vec<TracedEffect>,
+}
+
+/// An effect that was not tested.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct NotTested {
+    /// Its id.
+    pub id: &'static str,
+    /// Why these data cannot show it.
+    pub reason: String,
+}
+
+/// An effect that is in the data and not of the panel.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Removed {
+    /// Its id.
+    pub id: &'static str,
+    /// Whose it is.
+    pub owner: Owner,
+    /// Why it is not in the panel's model, a sentence.
+    pub why: String,
+}
+
+/// How far a trace is: one effect of the catalogue after the other.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Progress {
+    /// The effect that was fitted last.
+    pub effect: &'static str,
+    /// How many are done.
+    pub done: usize,
+    /// of how many.
+    pub of: usize,
+}

@@ -1,0 +1,189 @@
+//! The records at one widening as a sum of squares, for any effects that are switched on.
+
+use faer::Mat;
+use num_complex::Complex64;
+use orthopanel_model::{BEAM_CONSTANTS, Damping, ModelError, ReceptanceSetup};
+
+use super::hypothesis::Hypothesis;
+use super::widened_lines::WidenedLines;
+use crate::least_squares::Quadratic;
+
+/// What stays the same whichever effects are on.
+#[derive(Clone, Copy)]
+pub(super) struct RecordProblem<'a> {
+    pub setup: &'a ReceptanceSetup,
+    pub records: &'a [WidenedLines],
+    /// Constants that are held; free ones are `None`.
+    pub held: [Option<f64>; 2],
+    /// Modes whose damping ratio is free.
+    pub modes: usize,
+    /// Where the damping of a mode that no record shows is kept.
+    pub usual_log_zeta: f64,
+}
+
+/// Constants, damping and effects at some values.
+#[derive(Clone)]
+pub(super) struct State {
+    /// Logarithms of all constants.
+    pub constants: [f64; 2],
+    /// Logarithms of the damping ratios.
+    pub zetas: Vec<f64>,
+    pub hypothesis: Hypothesis,
+}
+
+/// What is left out together when a fit is judged.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Grouping {
+    /// All hits of one pair of places.
+    Places,
+    /// One hit of each pair of places.
+    Hits,
+}
+
+/// Standard deviation of a mode's $\ln\zeta$ before the records speak: as in the fit of records without effects.
+const PRIOR_LOG_ZETA_STD: f64 = 2.0;
+
+impl RecordProblem<'_> {
+    /// Positions of the free constants.
+    fn free_constants(&self) -> impl Iterator<Item = usize> + '_ {
+        (0..self.held.len()).filter(|&index| self.held[index].is_none())
+    }
+
+    /// Number of real data: two a line.
+    pub(super) fn data(&self) -> usize {
+        self.records.iter().map(|record| 2 * record.s.len()).sum()
+    }
+
+    /// What a search moves.
+    pub(super) fn parameters(&self, state: &State) -> Vec<f64> {
+        let constants = self.free_constants().map(|index| state.constants[index]);
+        constants.chain(state.zetas.iter().copied()).chain(state.hypothesis.coordinates()).collect()
+    }
+
+    /// The state that parameters stand for, of the same effects as `like`.
+    pub(super) fn state(&self, parameters: &[f64], like: &State) -> State {
+        let mut constants = like.constants;
+        let mut rest = parameters.iter().copied();
+        for index in self.free_constants() {
+            constants[index] = rest.next().unwrap_or(constants[index]);
+        }
+        let zetas = rest.by_ref().take(self.modes).collect();
+        let coordinates: Vec<f64> = rest.collect();
+        State { constants, zetas, hypothesis: like.hypothesis.at(&coordinates) }
+    }
+
+    /// Bounds of the parameters.
+    pub(super) fn bounds(&self, state: &State) -> Vec<(f64, f64)> {
+        let constants = self.free_constants().map(|index| {
+            let constant = BEAM_CONSTANTS[index];
+            (constant.low.ln(), constant.high.ln())
+        });
+        let zetas = (0..self.modes).map(|_| (1e-6_f64.ln(), 0.9_f64.ln()));
+        constants.chain(zetas).chain(state.hypothesis.bounds()).collect()
+    }
+
+    /// The sum of squares of each group of data at these parameters, and last that of what is known of damping beforehand.
+    pub(super) fn by_group(
+        &self,
+        parameters: &[f64],
+        like: &State,
+        grouping: Grouping,
+    ) -> Result<Vec<Quadratic>, ModelError> {
+        let state = self.state(parameters, like);
+        let size = parameters.len();
+        let model = self.model(&state)?;
+        let plan = self.columns(&state);
+        let all: Vec<usize> = (0..size).collect();
+        let mut by = vec![Complex64::ZERO; model.columns()];
+        let mut sums: Vec<Quadratic> = Vec::new();
+        for (index, record) in self.records.iter().enumerate() {
+            let Some(mut evaluator) = model.evaluator(index) else { continue };
+            let targets: Vec<(&[Complex64], &[f64])> = match grouping {
+                Grouping::Places => vec![(&record.value, &record.variance)],
+                Grouping::Hits => record.hits.iter().map(|hit| (&hit.value[..], &hit.variance[..])).collect(),
+            };
+            let mut rows: Vec<Mat<f64>> = targets.iter().map(|_| Mat::zeros(2 * record.s.len(), size + 1)).collect();
+            for (line, &s) in record.s.iter().enumerate() {
+                let value = evaluator.line(s, &mut by);
+                for ((measured, variance), rows) in targets.iter().zip(&mut rows) {
+                    // The variance counts real and imaginary part together.
+                    let weight = (2.0 / variance[line]).sqrt();
+                    for (column, &(of_model, factor)) in plan.iter().enumerate() {
+                        let entry = weight * factor * by[of_model];
+                        (rows[(2 * line, column)], rows[(2 * line + 1, column)]) = (entry.re, entry.im);
+                    }
+                    let missed = weight * (value - measured[line]);
+                    (rows[(2 * line, size)], rows[(2 * line + 1, size)]) = (missed.re, missed.im);
+                }
+            }
+            for (target, rows) in rows.iter().enumerate() {
+                let group = if grouping == Grouping::Hits { target } else { index };
+                if sums.len() <= group {
+                    sums.resize_with(group + 1, || Quadratic::zero(size));
+                }
+                sums[group].add_products(&(rows.transpose() * rows), &all);
+            }
+        }
+        sums.push(self.prior(&state, size));
+        sums.iter_mut().for_each(Quadratic::mirror);
+        Ok(sums)
+    }
+
+    /// The sum over all records.
+    pub(super) fn linearise(&self, parameters: &[f64], like: &State) -> Result<Quadratic, ModelError> {
+        Ok(total(&self.by_group(parameters, like, Grouping::Places)?))
+    }
+
+    /// The accelerance of every record at a state.
+    pub(super) fn lines(&self, state: &State) -> Result<Vec<Vec<Complex64>>, ModelError> {
+        let model = self.model(state)?;
+        let mut by = vec![Complex64::ZERO; model.columns()];
+        let records = self.records.iter().enumerate().map(|(index, record)| {
+            let Some(mut evaluator) = model.evaluator(index) else { return vec![] };
+            record.s.iter().map(|&s| evaluator.line(s, &mut by)).collect()
+        });
+        Ok(records.collect())
+    }
+
+    fn model(&self, state: &State) -> Result<orthopanel_model::ReceptanceModel, ModelError> {
+        let ratios = state.zetas.iter().map(|log| log.exp()).collect();
+        let damping = Damping { ratios, beyond: self.usual_log_zeta.exp() };
+        let effects = state.hypothesis.states(self.records.len())?;
+        self.setup.model(&state.constants.map(f64::exp), &damping, &effects)
+    }
+
+    /// Column of the model and factor of each parameter.
+    fn columns(&self, state: &State) -> Vec<(usize, f64)> {
+        let first_zeta = state.constants.len();
+        let constants = self.free_constants().map(|index| (index, state.constants[index].exp()));
+        let zetas = (0..self.modes).map(|mode| (first_zeta + mode, 1.0));
+        let mut columns: Vec<(usize, f64)> = constants.chain(zetas).collect();
+        let mut start = first_zeta + self.modes;
+        for switched in &state.hypothesis.effects {
+            columns.extend(switched.free.iter().map(|free| (start + free.at, free.slope(switched.values[free.at]))));
+            start += switched.values.len();
+        }
+        columns
+    }
+
+    fn prior(&self, state: &State, size: usize) -> Quadratic {
+        let mut prior = Quadratic::zero(size);
+        let first = self.free_constants().count();
+        for (mode, log) in state.zetas.iter().enumerate() {
+            let residual = (log - self.usual_log_zeta) / PRIOR_LOG_ZETA_STD;
+            prior.add_row(residual, &[(first + mode, 1.0 / PRIOR_LOG_ZETA_STD)]);
+        }
+        prior
+    }
+}
+
+/// The sum of several sums of squares.
+pub(super) fn total(sums: &[Quadratic]) -> Quadratic {
+    let mut total = Quadratic::zero(sums.first().map_or(0, |sum| sum.gradient.len()));
+    for sum in sums {
+        total.cost += sum.cost;
+        total.gradient.iter_mut().zip(&sum.gradient).for_each(|(total, own)| *total += own);
+        total.normal += &sum.normal;
+    }
+    total
+}

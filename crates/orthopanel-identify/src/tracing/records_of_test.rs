@@ -1,0 +1,133 @@
+//! The records of a test, widened, with the model that they are to meet.
+
+use orthopanel_data::{Estimation, ImpactTest, TimeHistory};
+use orthopanel_model::{BEAM_CONSTANTS, BeamConstants, ExactBeam, ReceptanceSetup, RecordSetting};
+use rayon::prelude::*;
+
+use super::hypothesis::Hypothesis;
+use super::record_problem::{RecordProblem, State};
+use super::widened_lines::{WIDENINGS, WidenedLines, widened_lines};
+use crate::IdentifyError;
+use crate::accelerance_fit::{ResonanceStart, resonance_starts};
+use crate::free_constants::FreeConstants;
+use crate::least_squares::{Ending, descend};
+
+/// Everything that a trace of one piece's records needs.
+pub(super) struct TestRecords {
+    pub setup: ReceptanceSetup,
+    /// The records at each of [`WIDENINGS`].
+    pub widened: Vec<Vec<WidenedLines>>,
+    pub held: [Option<f64>; 2],
+    /// Modes whose damping ratio is free.
+    pub modes: usize,
+    pub usual_log_zeta: f64,
+    /// Highest line \[Hz\].
+    pub band: f64,
+    /// Flexible modes below it, and those that every line sums.
+    pub in_band: usize,
+    pub summed: usize,
+    /// Where a search without effects begins.
+    pub start: State,
+}
+
+/// The band ends where the force has fallen by this much \[dB\].
+const FORCE_DROP: f64 = 20.0;
+/// and below this part of the rate: analysers' filters are flat up to there.
+const FLAT: f64 = 1.0 / 2.56;
+/// and above so many modes: more of them tell little that these do not, and every line pays for each.
+const MOST_MODES: usize = 10;
+/// Damping is free of every mode up to this part of the band, and lines sum modes up to [`SUMMED`] times it.
+const FREE_DAMPING: f64 = 1.6;
+const SUMMED: f64 = 2.5;
+/// Starts that are followed a little way, and the evaluations spent on each before the best is taken.
+const TRIED: usize = 4;
+const TRIAL: Ending = Ending::short(12, 1.0);
+
+impl TestRecords {
+    /// Widens the hits of a test and reads where to start off its resonances.
+    ///
+    /// # Errors
+    /// [`IdentifyError`] where records do not show enough resonances, and what the model refuses.
+    pub(super) fn new(test: &ImpactTest, histories: &[TimeHistory]) -> Result<Self, IdentifyError> {
+        let estimation = Estimation { force_drop: FORCE_DROP, ..Estimation::default() };
+        let accelerances = histories.par_iter().map(|history| Ok(history.accelerance(estimation)?));
+        let accelerances = accelerances.collect::<Result<Vec<_>, IdentifyError>>()?;
+        let tops = accelerances.iter().filter_map(|accelerance| accelerance.frequency.last().copied());
+        let hit = tops.fold(f64::INFINITY, f64::min);
+        let flat = histories.iter().map(|history| FLAT * history.rate).fold(f64::INFINITY, f64::min);
+        let constants = FreeConstants::of(test, &BEAM_CONSTANTS)?.held;
+        let held = [0, 1].map(|index| constants.get(index).copied().flatten());
+        let starts = resonance_starts(&test.pieces[0].piece, test.boundary, held, &accelerances)?;
+        let tried: Vec<(f64, Self)> = starts
+            .par_iter()
+            .take(TRIED)
+            .filter_map(|start| Self::from_start(test, histories, start, held, hit.min(flat)).ok())
+            .collect();
+        let best = tried.into_iter().min_by(|a, b| a.0.total_cmp(&b.0));
+        let Some((_, mut records)) = best else {
+            return Err(IdentifyError::TooFewResonances { found: 0, needed: 1 });
+        };
+        let finer = WIDENINGS.iter().skip(1).map(|&widening| widened_lines(histories, widening, records.band));
+        records.widened.extend(finer);
+        Ok(records)
+    }
+
+    /// With the widest lines only, and the misfit per datum that a short search from there leaves.
+    fn from_start(
+        test: &ImpactTest,
+        histories: &[TimeHistory],
+        start: &ResonanceStart,
+        held: [Option<f64>; 2],
+        highest: f64,
+    ) -> Result<(f64, Self), IdentifyError> {
+        let piece = test.pieces[0].piece;
+        let [e_x, g_zx] = start.constants;
+        let beam = ExactBeam::new(&piece, test.boundary, BeamConstants { e_x, g_zx })?;
+        let frequencies: Vec<f64> = beam.flexible_modes().take(4 * MOST_MODES).map(|mode| mode.frequency()).collect();
+        let wanted = frequencies.get(MOST_MODES).zip(frequencies.get(MOST_MODES - 1)).map(|(a, b)| 0.5 * (a + b));
+        let band = highest.min(wanted.unwrap_or(f64::INFINITY));
+        let below = |limit: f64| frequencies.iter().filter(|frequency| **frequency < limit).count();
+        let modes = below(FREE_DAMPING * band).max(1);
+        let settings: Vec<RecordSetting> = histories
+            .iter()
+            .map(|history| RecordSetting {
+                force_at: Some(history.force_at),
+                response_at: Some(history.response_at),
+                ..RecordSetting::default()
+            })
+            .collect();
+        let (in_band, summed) = (below(band), below(SUMMED * band));
+        let setup = ReceptanceSetup::new(&piece, test.boundary, &test.suspension, &settings, summed)?;
+        let usual_log_zeta = start.usual_zeta.ln();
+        let zeta = |mode: usize| start.modes.get(mode).copied().flatten().map_or(usual_log_zeta, |(_, zeta)| zeta.ln());
+        let start = State {
+            constants: start.constants.map(f64::ln),
+            zetas: (0..modes).map(zeta).collect(),
+            hypothesis: Hypothesis::default(),
+        };
+        let widened = vec![widened_lines(histories, WIDENINGS[0], band)];
+        let mut records = Self { setup, widened, held, modes, usual_log_zeta, band, in_band, summed, start };
+        let problem = records.problem(0);
+        let from = problem.parameters(&records.start);
+        let bounds = problem.bounds(&records.start);
+        let searched = descend(|p| problem.linearise(p, &records.start), &from, &bounds, TRIAL);
+        let (minimum, _) = searched.map_err(IdentifyError::refused)?;
+        let misfit = minimum.at.cost / problem.data() as f64;
+        records.start = problem.state(&minimum.parameters, &records.start);
+        Ok((misfit, records))
+    }
+
+    /// Scatter of the hits about their mean per datum, over the noise as it is modelled; 1 where a single hit tells none.
+    pub(super) fn noise_floor(&self) -> f64 {
+        let last = self.widened.last().map_or(&[][..], Vec::as_slice);
+        let told: Vec<f64> = last.iter().filter_map(|record| record.scatter).collect();
+        if told.is_empty() { 1.0 } else { told.iter().sum::<f64>() / told.len() as f64 }
+    }
+
+    /// The problem at one widening, counted from the widest.
+    pub(super) fn problem(&self, stage: usize) -> RecordProblem<'_> {
+        let records = self.widened.get(stage).or(self.widened.last()).map_or(&[][..], Vec::as_slice);
+        let Self { setup, held, modes, usual_log_zeta, .. } = self;
+        RecordProblem { setup, records, held: *held, modes: *modes, usual_log_zeta: *usual_log_zeta }
+    }
+}

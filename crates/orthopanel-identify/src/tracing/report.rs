@@ -1,0 +1,175 @@
+//! From the ranking to what is said.
+
+use std::collections::BTreeMap;
+
+use faer::Side;
+use faer::linalg::solvers::DenseSolveCore;
+use orthopanel_data::ImpactTest;
+use orthopanel_model::{
+    BEAM_CONSTANTS, Damping, EffectEntry, Estimate, MODEL_SCHEMA, Owner, PanelModel, Ports, StructureKind,
+};
+
+use super::fit::{Fit, by_group};
+use super::held_out::held_out;
+use super::hypothesis::Switched;
+use super::next_experiment::next_experiment;
+use super::outcome::{Candidate, FittedError, Removed, TracedEffect, TracedError, TracedParameter, Tracing};
+use super::ranking::{Ranking, Search};
+use super::record_problem::{Grouping, total};
+use super::verdict::verdict;
+use crate::IdentifyError;
+
+const MEASURE: &str = "misfit of the accelerances over the noise of the hits, rms over all lines (1: noise alone)";
+
+/// Says what a ranking of hypotheses over records means.
+///
+/// # Errors
+/// What the model refuses.
+pub(super) fn report(test: &ImpactTest, search: &Search, ranking: &Ranking) -> Result<Tracing, IdentifyError> {
+    let records = search.records;
+    let (verdict, rivals) = verdict(records, ranking);
+    let chosen = &ranking.fits[ranking.chosen];
+    let grouping = ranking.grouping(records, ranking.chosen);
+    let error = |fit: &Fit, grouping: Grouping| -> Result<FittedError, IdentifyError> {
+        Ok(FittedError { fitted: fit.chi_square(records).sqrt(), held_out: held_out(records, fit, grouping)?.sqrt() })
+    };
+    let mut order: Vec<usize> = (0..ranking.fits.len()).collect();
+    order.sort_by(|&a, &b| ranking.bic(a).total_cmp(&ranking.bic(b)));
+    let candidates = order.iter().map(|&index| {
+        let fit = &ranking.fits[index];
+        let std = deviations(search, ranking, fit)?;
+        Ok(Candidate {
+            id: name(fit, search.declared()),
+            bic: ranking.bic(index),
+            held_out: held_out(records, fit, ranking.grouping(records, index))?.sqrt(),
+            effects: traced(fit, &std, search.declared()),
+        })
+    });
+    let candidates = candidates.collect::<Result<Vec<_>, IdentifyError>>()?;
+    let std = deviations(search, ranking, chosen)?;
+    let mut panel = panel(test, search, chosen, &std);
+    let removed = take_out(chosen, &std, search.declared(), &mut panel);
+    Ok(Tracing {
+        verdict,
+        effects: traced(chosen, &std, search.declared()),
+        alternatives: rivals.iter().map(|&index| name(&ranking.fits[index], search.declared())).collect(),
+        error: TracedError {
+            measure: MEASURE.to_owned(),
+            before: error(&ranking.fits[0], grouping)?,
+            after: error(chosen, grouping)?,
+            noise_floor: records.noise_floor().sqrt(),
+        },
+        candidates,
+        not_tested: ranking.not_tested.clone(),
+        next_experiment: next_experiment(test, search, ranking, verdict, &rivals),
+        chi_square: chosen.chi_square(records),
+        panels: vec![panel],
+        removed,
+        notes: vec![],
+    })
+}
+
+/// The ids of the effects that the file does not declare.
+pub(super) fn name(fit: &Fit, declared: usize) -> String {
+    let ids: Vec<&str> = fit.state.hypothesis.effects.iter().skip(declared).map(|on| on.effect.id()).collect();
+    if ids.is_empty() { "base".to_owned() } else { ids.join(" + ") }
+}
+
+/// Standard deviation of everything that a search moved: $(J^TJ)^{-1}$, widened as the likelihood is.
+fn deviations(search: &Search, ranking: &Ranking, fit: &Fit) -> Result<Vec<Option<f64>>, IdentifyError> {
+    let normal = total(&by_group(search.records, fit, Grouping::Places)?).normal;
+    let covariance = normal.llt(Side::Lower).ok().map(|factor| factor.inverse());
+    let unit = ranking.scale.independent.recip() * fit.chi_square(search.records).max(1.0);
+    Ok((0..fit.size)
+        .map(|i| covariance.as_ref().map(|matrix| (unit * matrix[(i, i)]).sqrt()).filter(|std| std.is_finite()))
+        .collect())
+}
+
+/// The effects beyond the declared ones, with the standard deviations of their parameters.
+fn traced(fit: &Fit, std: &[Option<f64>], declared: usize) -> Vec<TracedEffect> {
+    let mut at = fit.size - fit.state.hypothesis.size();
+    let mut effects = Vec::new();
+    for on in &fit.state.hypothesis.effects {
+        let own = std.get(at..at + on.free.len()).unwrap_or_default();
+        at += on.free.len();
+        effects.push(TracedEffect { id: on.effect.id(), owner: on.effect.owner(), parameters: parameters(on, own) });
+    }
+    effects.split_off(declared.min(effects.len()))
+}
+
+fn parameters(on: &Switched, std: &[Option<f64>]) -> Vec<TracedParameter> {
+    let mut values = on.values.iter().enumerate();
+    let copies = |each: bool| if each { on.values.len() + 1 - on.effect.parameters().len() } else { 1 };
+    let estimate = |(at, &value): (usize, &f64)| {
+        let free = on.free.iter().position(|free| free.at == at);
+        let std = free.and_then(|i| Some(std.get(i).copied().flatten()? * on.free[i].slope(value)));
+        Estimate { value, std }
+    };
+    let parameters = on.effect.parameters().iter().map(|parameter| TracedParameter {
+        name: parameter.name,
+        unit: parameter.unit,
+        values: values.by_ref().take(copies(parameter.each_record)).map(estimate).collect(),
+    });
+    parameters.collect()
+}
+
+/// The panel at a fit, without any effect.
+fn panel(test: &ImpactTest, search: &Search, fit: &Fit, std: &[Option<f64>]) -> PanelModel {
+    let mut std = std.iter().copied();
+    let mut constants = BTreeMap::new();
+    for (index, constant) in BEAM_CONSTANTS.iter().enumerate() {
+        let value = fit.state.constants[index].exp();
+        let held = search.records.held[index].is_some();
+        let std = if held { None } else { std.next().flatten().map(|std| std * value) };
+        constants.insert(constant.name.to_owned(), Estimate { value, std });
+    }
+    let lines = search.records.problem(0).records;
+    let mut ports = Ports { forces: vec![], responses: vec![] };
+    for record in lines {
+        if !ports.forces.contains(&record.force_at) {
+            ports.forces.push(record.force_at);
+        }
+        if !ports.responses.contains(&record.response_at) {
+            ports.responses.push(record.response_at);
+        }
+    }
+    let in_band = search.records.in_band.min(fit.state.zetas.len());
+    PanelModel {
+        schema: MODEL_SCHEMA.to_owned(),
+        piece: search.piece,
+        boundary: test.boundary,
+        structure: StructureKind::TimoshenkoBeam,
+        constants,
+        damping: Damping {
+            ratios: fit.state.zetas.iter().take(in_band).map(|log| log.exp()).collect(),
+            beyond: search.records.usual_log_zeta.exp(),
+        },
+        effects: vec![],
+        ports,
+        provenance: BTreeMap::new(),
+    }
+}
+
+/// Puts the panel's own effects into its model, and says which of the others are taken out and why.
+fn take_out(fit: &Fit, std: &[Option<f64>], declared: usize, panel: &mut PanelModel) -> Vec<Removed> {
+    let mut removed = Vec::new();
+    let all = traced(fit, std, 0);
+    for (index, effect) in all.into_iter().enumerate() {
+        if effect.owner == Owner::Panel {
+            let first = |parameter: &TracedParameter| Some((parameter.name.to_owned(), *parameter.values.first()?));
+            panel.effects.push(EffectEntry {
+                id: effect.id.to_owned(),
+                owner: effect.owner.name().to_owned(),
+                parameters: effect.parameters.iter().filter_map(first).collect(),
+            });
+            continue;
+        }
+        let told = if index < declared { "declared in the test file" } else { "found in the records" };
+        let why = match effect.owner {
+            Owner::Rig => "it belongs to the rig: the panel in service carries neither sensor nor suspension",
+            _ => "it belongs to the measuring chain: the panel itself does not have it",
+        };
+        removed.push(Removed { id: effect.id, owner: effect.owner, why: format!("{told}; {why}") });
+    }
+    removed
+}

@@ -1,0 +1,93 @@
+//! Where the search for one more effect begins: a grid of starts, scored with everything else free to give way.
+
+use orthopanel_model::{Effect, Piece, Scale};
+use rayon::prelude::*;
+
+use super::fit::{polish, promise};
+use super::hypothesis::Switched;
+use super::record_problem::State;
+use super::records_of_test::TestRecords;
+use crate::IdentifyError;
+use crate::least_squares::Ending;
+
+/// Starts that are followed for some steps before the best is taken.
+const FOLLOWED: usize = 2;
+const FOLLOW: Ending = Ending::short(5, 1.0);
+
+/// `base` with one more effect, at the best of its starts on the widest lines, and what that leaves of the sum of squares.
+///
+/// Each start is scored by $c - g^TN^{-1}g$, the sum of squares that one step in all parameters promises to leave: the
+/// constants, the damping and the effects that are on already answer for what they can.
+///
+/// # Errors
+/// Where no start can be evaluated: the first one's reason, as that the test lacks what the effect needs.
+pub(super) fn best_start(
+    records: &TestRecords,
+    base: &State,
+    effect: &'static dyn Effect,
+    piece: &Piece,
+) -> Result<(State, f64), IdentifyError> {
+    let problem = records.problem(0);
+    let scored: Vec<Result<(f64, State), IdentifyError>> = grid(effect, piece, records)
+        .into_par_iter()
+        .map(|start| {
+            let at = |name: &str| {
+                effect.parameters().iter().position(|parameter| parameter.name == name).map(|index| start[index])
+            };
+            let switched = Switched::new(effect, piece, problem.records.len(), at, |_| false);
+            let state = State { hypothesis: base.hypothesis.and(switched), ..base.clone() };
+            let at = problem.linearise(&problem.parameters(&state), &state)?;
+            Ok((promise(&at), state))
+        })
+        .collect();
+    let mut reason = None;
+    let mut starts = Vec::new();
+    for start in scored {
+        match start {
+            Ok(start) => starts.push(start),
+            Err(error) => reason = reason.or(Some(error)),
+        }
+    }
+    starts.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let followed: Vec<(State, f64)> =
+        starts.par_iter().take(FOLLOWED).filter_map(|(_, state)| polish(records, state, 0, FOLLOW).ok()).collect();
+    let best = followed.into_iter().min_by(|a, b| a.1.total_cmp(&b.1));
+    best.ok_or_else(|| reason.unwrap_or_else(|| IdentifyError::Unsupported(format!("{}: no start", effect.id()))))
+}
+
+/// Most combinations of starts, beyond which only the first of each but the place, the frequency and the record is taken.
+const MOST_STARTS: usize = 12;
+
+/// Values of all parameters, one list a start.
+fn grid(effect: &'static dyn Effect, piece: &Piece, records: &TestRecords) -> Vec<Vec<f64>> {
+    let lists: Vec<(Vec<f64>, bool)> = effect
+        .parameters()
+        .iter()
+        .map(|parameter| {
+            let mut list = match (parameter.scale, parameter.held_at) {
+                (Scale::Index, _) => (1..=records.problem(0).records.len()).map(|record| record as f64).collect(),
+                (_, Some(held)) => vec![held],
+                _ => parameter.starts(piece),
+            };
+            if parameter.unit == "Hz" && list.len() > 3 {
+                list.retain(|frequency| *frequency < records.band);
+            }
+            // Where something is matters more for a search than how much of it there is.
+            (list, parameter.scale == Scale::Index || parameter.name == "x" || parameter.unit == "Hz")
+        })
+        .collect();
+    let whole: usize = lists.iter().map(|(list, _)| list.len()).product();
+    let lists = lists.into_iter().map(|(mut list, where_it_is)| {
+        if whole > MOST_STARTS && !where_it_is {
+            list.truncate(1);
+        }
+        list
+    });
+    lists.fold(vec![vec![]], |starts, list| {
+        let longer = |start: &Vec<f64>| {
+            let start = start.clone();
+            list.iter().map(move |&value| start.iter().copied().chain([value]).collect()).collect::<Vec<Vec<f64>>>()
+        };
+        starts.iter().flat_map(longer).collect()
+    })
+}

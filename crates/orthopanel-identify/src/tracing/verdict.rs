@@ -1,0 +1,58 @@
+//! Which word the ranking deserves, and which effects fit about as well as the chosen ones.
+
+use super::outcome::Verdict;
+use super::ranking::Ranking;
+use super::records_of_test::TestRecords;
+
+/// A rival must stay behind by this much of the scaled criterion to be out of the question.
+const CLEAR: f64 = 100.0;
+/// Misfit per datum, over that of the hits' scatter, up to which nothing need be missing.
+const MET: f64 = 1.25;
+/// and up to which an effect may still be said to explain the data.
+const EXPLAINED: f64 = 2.0;
+
+/// The verdict, and the positions of the hypotheses that fit about as well as the chosen one.
+pub(super) fn verdict(records: &TestRecords, ranking: &Ranking) -> (Verdict, Vec<usize>) {
+    let chosen = &ranking.fits[ranking.chosen];
+    let left = chosen.chi_square(records) / records.noise_floor().max(1.0);
+    if ranking.chosen == 0 {
+        return (if left <= MET { Verdict::NothingMissing } else { Verdict::Unexplained }, vec![]);
+    }
+    let rivals = rivals(ranking);
+    let verdict = if left > EXPLAINED || on_bound(ranking) {
+        Verdict::Unexplained
+    } else if rivals.is_empty() {
+        Verdict::Explained
+    } else {
+        Verdict::Ambiguous
+    };
+    (verdict, rivals)
+}
+
+/// Hypotheses within [`CLEAR`] of the chosen one that are not the chosen one with more effects; the likeliest first.
+///
+/// A `local-mass` at the sensor is a `sensor-mass`: it counts as a rival, since only its place tells them apart.
+fn rivals(ranking: &Ranking) -> Vec<usize> {
+    let ids = |index: usize| -> Vec<&'static str> {
+        ranking.fits[index].state.hypothesis.effects.iter().map(|on| on.effect.id()).collect()
+    };
+    let chosen = ids(ranking.chosen);
+    let limit = ranking.bic(ranking.chosen) + CLEAR;
+    let contains = |index: usize| chosen.iter().all(|id| ids(index).contains(id));
+    let mut rivals: Vec<usize> = (1..ranking.fits.len())
+        .filter(|&index| index != ranking.chosen && !contains(index) && ranking.bic(index) < limit)
+        // A part of the chosen hypothesis is no rival to it: it has been found wanting.
+        .filter(|&index| ids(index).iter().any(|id| !chosen.contains(id)))
+        .collect();
+    rivals.sort_by(|&a, &b| ranking.bic(a).total_cmp(&ranking.bic(b)));
+    rivals
+}
+
+/// Whether a parameter of the chosen hypothesis lies on its bound: then it is the bound's, not the data's.
+fn on_bound(ranking: &Ranking) -> bool {
+    ranking.fits[ranking.chosen]
+        .state
+        .hypothesis
+        .each_free()
+        .any(|(switched, free)| free.on_bound(switched.values[free.at]))
+}

@@ -1,0 +1,148 @@
+//! Accelerances on $s = \sigma + j\omega$: peaks widened as far as a search needs, without leakage.
+
+use std::f64::consts::TAU;
+
+use num_complex::Complex64;
+use orthopanel_data::{Hit, TimeHistory};
+use orthopanel_model::Place;
+use rayon::prelude::*;
+use realfft::RealFftPlanner;
+
+use super::hit_noise::HitNoise;
+
+/// How far the peaks are widened, and how far the lines stand apart.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Widening {
+    /// $\sigma$ \[1/s\].
+    pub decay_rate: f64,
+    /// Distance of the lines \[Hz\].
+    pub step: f64,
+}
+
+/// From peaks so wide that a search cannot lock between two, to those that show all there is.
+pub(super) const WIDENINGS: [Widening; 4] = [
+    Widening { decay_rate: 200.0, step: 48.0 },
+    Widening { decay_rate: 50.0, step: 16.0 },
+    Widening { decay_rate: 15.0, step: 6.0 },
+    Widening { decay_rate: 6.0, step: 3.0 },
+];
+
+/// Half the width of the window over the force \[s\]: the hammer has left the piece, its channel's noise stays out.
+const FORCE_HALF_WIDTH: f64 = 4e-3;
+
+/// Half-widths of that window on either side from which its channel's noise is read.
+const BESIDE: usize = 25;
+/// Median of a normal deviate's size over its standard deviation.
+const MEDIAN_OF_NORMAL: f64 = 0.6745;
+
+/// Accelerance of one pair of places at one widening.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct WidenedLines {
+    pub force_at: Place,
+    pub response_at: Place,
+    /// $s = \sigma + j\omega$ of each line.
+    pub s: Vec<Complex64>,
+    /// Accelerance \[(m/s²)/N\].
+    pub value: Vec<Complex64>,
+    /// $E|\hat H - H|^2$ of each line.
+    pub variance: Vec<f64>,
+    /// Scatter of the hits about their mean over what noise alone makes; `None` for a single hit.
+    pub scatter: Option<f64>,
+    /// Each hit by itself, with the size of its impulse \[N s\].
+    pub hits: Vec<HitLines>,
+}
+
+/// One hit's own accelerance on the same lines.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct HitLines {
+    pub value: Vec<Complex64>,
+    pub variance: Vec<f64>,
+    /// $\int f\,dt$ \[N s\].
+    pub impulse: f64,
+}
+
+/// The lines of every record at one widening, up to `band` \[Hz\].
+pub(super) fn widened_lines(histories: &[TimeHistory], widening: Widening, band: f64) -> Vec<WidenedLines> {
+    histories.par_iter().map(|history| of_record(history, widening, band)).collect()
+}
+
+/// Both channels' transforms of one hit.
+pub(super) struct HitSpectra {
+    pub force: Vec<Complex64>,
+    pub motion: Vec<Complex64>,
+    pub impulse: f64,
+    /// Variance of a line of the force by its channel's noise.
+    pub force_noise: f64,
+}
+
+fn of_record(history: &TimeHistory, widening: Widening, band: f64) -> WidenedLines {
+    let spectra: Vec<HitSpectra> =
+        history.hits.iter().map(|hit| spectra(hit, history.rate, widening.decay_rate)).collect();
+    let samples = history.hits.first().map_or(0, |hit| hit.force.len()).max(1);
+    let resolution = history.rate / samples as f64;
+    let end = ((band / resolution) as usize).min(samples / 2);
+    let noise = HitNoise::of(&spectra, end);
+    let stride = (widening.step / resolution).round().max(1.0) as usize;
+    let lines: Vec<usize> = (stride.max(1)..=end).step_by(stride).collect();
+    let mut record = WidenedLines {
+        force_at: history.force_at,
+        response_at: history.response_at,
+        s: lines.iter().map(|&line| Complex64::new(widening.decay_rate, TAU * resolution * line as f64)).collect(),
+        value: Vec::with_capacity(lines.len()),
+        variance: Vec::with_capacity(lines.len()),
+        scatter: noise.scatter(&spectra, &lines),
+        hits: spectra.iter().map(|hit| HitLines { value: vec![], variance: vec![], impulse: hit.impulse }).collect(),
+    };
+    for &line in &lines {
+        let (mut cross, mut power) = (Complex64::ZERO, 0.0);
+        for (hit, own) in spectra.iter().zip(&mut record.hits) {
+            let (force, motion) = (hit.force[line], hit.motion[line]);
+            let variance = noise.at(force, motion);
+            let weight = force.norm_sqr() / variance;
+            cross += weight * motion / force;
+            power += weight;
+            own.value.push(motion / force);
+            own.variance.push(1.0 / weight);
+        }
+        record.value.push(cross / power);
+        record.variance.push(1.0 / power);
+    }
+    record
+}
+
+/// Transforms of one hit, each channel times $e^{-\sigma(t-t_0)}$ with $t_0$ the hit.
+fn spectra(hit: &Hit, rate: f64, decay_rate: f64) -> HitSpectra {
+    let samples = hit.force.len();
+    let offset = median(&hit.force);
+    let peak = (0..samples)
+        .max_by(|&a, &b| (hit.force[a] - offset).abs().total_cmp(&(hit.force[b] - offset).abs()))
+        .unwrap_or(0);
+    let reach = (FORCE_HALF_WIDTH * rate) as usize;
+    let fading = |n: usize| (-decay_rate * (n as f64 - peak as f64) / rate).exp();
+    let near = |n: usize| n.abs_diff(peak) <= reach;
+    let mut force: Vec<f64> =
+        hit.force.iter().enumerate().map(|(n, f)| if near(n) { (f - offset) * fading(n) } else { 0.0 }).collect();
+    let mut motion: Vec<f64> = hit.acceleration.iter().enumerate().map(|(n, a)| a * fading(n)).collect();
+    let impulse = hit.force.iter().enumerate().filter(|(n, _)| near(*n)).map(|(_, f)| f - offset).sum::<f64>() / rate;
+    // Read beside the hit: a window over the record would have faded it later.
+    let beside = peak.saturating_sub(BESIDE * reach)..(peak + BESIDE * reach).min(samples);
+    let quiet: Vec<f64> = beside.filter(|&n| !near(n)).map(|n| (hit.force[n] - offset).abs()).collect();
+    let deviation = median(&quiet) / MEDIAN_OF_NORMAL;
+    let windowed: f64 = (0..samples).filter(|&n| near(n)).map(|n| fading(n).powi(2)).sum();
+    let force_noise = deviation * deviation * windowed;
+    let transform = RealFftPlanner::<f64>::new().plan_fft_forward(samples);
+    let (mut f, mut a) = (transform.make_output_vec(), transform.make_output_vec());
+    // Lengths are the plan's own, so neither can fail; were it to, the lines would be zero and weigh nothing.
+    let done = transform.process(&mut force, &mut f).and_then(|()| transform.process(&mut motion, &mut a));
+    debug_assert!(done.is_ok());
+    HitSpectra { force: f, motion: a, impulse, force_noise }
+}
+
+pub(super) fn median(values: &[f64]) -> f64 {
+    let mut sorted = values.to_vec();
+    let middle = sorted.len() / 2;
+    if sorted.is_empty() {
+        return 0.0;
+    }
+    *sorted.select_nth_unstable_by(middle, f64::total_cmp).1
+}
