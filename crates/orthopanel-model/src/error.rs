@@ -143,12 +143,12 @@ pub enum ModelError {
         expected: &'static str,
     },
     /// A constant that the structure does not have.
-    #[error("constants.{name} is unknown: the structure has {}", .known.join(", "))]
+    #[error("constants.{name} is unknown: the structure has {known}")]
     UnknownConstant {
         /// Name in the file.
         name: String,
         /// Names that the structure has.
-        known: &'static [&'static str],
+        known: String,
     },
     /// A constant that the structure needs and the file lacks.
     #[error("constants.{name} is missing: the structure needs it")]

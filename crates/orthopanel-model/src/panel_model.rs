@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use crate::{Boundary, ModelError, Piece, Place};
+use crate::{BEAM_CONSTANTS, Boundary, Constant, ModelError, PLATE_CONSTANTS, Piece, Place};
 
 /// The schema that this version reads and writes.
 pub const MODEL_SCHEMA: &str = "orthopanel.model/1";
@@ -49,11 +49,11 @@ pub enum StructureKind {
 }
 
 impl StructureKind {
-    /// Names of the constants that the structure has.
-    fn constant_names(self) -> &'static [&'static str] {
+    /// The constants that the structure has, in the order of all its lists of values.
+    pub fn constants(self) -> &'static [Constant] {
         match self {
-            Self::TimoshenkoBeam => &["e_x", "g_zx"],
-            Self::MindlinPlate => &["e_x", "e_y", "nu_xy", "g_xy", "g_yz", "g_zx"],
+            Self::TimoshenkoBeam => &BEAM_CONSTANTS,
+            Self::MindlinPlate => &PLATE_CONSTANTS,
         }
     }
 }
@@ -147,8 +147,9 @@ impl PanelModel {
     pub fn check(&self) -> Result<(), ModelError> {
         self.piece.checked()?;
         self.damping.check()?;
-        let known = self.structure.constant_names();
-        if let Some(name) = self.constants.keys().find(|name| !known.contains(&name.as_str())) {
+        let known = self.structure.constants();
+        if let Some(name) = self.constants.keys().find(|name| known.iter().all(|constant| constant.name != **name)) {
+            let known = known.iter().map(|constant| constant.name).collect::<Vec<_>>().join(", ");
             return Err(ModelError::UnknownConstant { name: name.clone(), known });
         }
         for &place in self.ports.forces.iter().chain(&self.ports.responses) {

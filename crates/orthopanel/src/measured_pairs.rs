@@ -7,10 +7,10 @@ use orthopanel_data::TimeHistory;
 use orthopanel_identify::{
     ForceBetweenSamples, HistorySettings, HitComparison, IdentifyError, Misfit, compare_time_history,
 };
-use orthopanel_model::{ModeRange, PanelModel, Place};
+use orthopanel_model::{PanelModel, Place};
 use serde::Serialize;
 
-use crate::whole_accelerance::static_flexibility;
+use crate::whole_accelerance::{modes_up_to, static_flexibility};
 use crate::{output, tables};
 
 /// Whether a file is a test file, by its name: a test is TOML, a model JSON, an FMU an archive.
@@ -63,7 +63,7 @@ impl ComparedPair {
         band: Option<RangeInclusive<f64>>,
     ) -> Result<Self, IdentifyError> {
         let (force, response) = (history.force_at, history.response_at);
-        let seen = model.modal_model(ModeRange::UpTo(history.rate), &[force], &[response])?;
+        let seen = modes_up_to(model, history.rate, force, response)?;
         let static_flexibility = static_flexibility(model, force, response)?;
         let settings = HistorySettings { between_samples, static_flexibility, band };
         let hits = compare_time_history(&seen, &history, &settings)?;

@@ -9,6 +9,9 @@ const SUMMED: usize = 300;
 /// Least ratio of the highest summed natural frequency to the highest line.
 const MARGIN: f64 = 20.0;
 
+/// Most rigid modes that a plate has.
+const PLATE_RIGID: usize = 3;
+
 /// $\sum_m W_m(l_1)W_m(l_x)/\omega_m^2$ over all flexible modes \[m/N\], where a closed form of it is known: for a beam.
 pub fn static_flexibility(model: &PanelModel, force: Place, response: Place) -> Result<Option<f64>, ModelError> {
     match model.structure {
@@ -21,6 +24,16 @@ pub fn static_flexibility(model: &PanelModel, force: Place, response: Place) -> 
     }
 }
 
+/// The modes up to `highest` \[Hz\] as seen from two places; of a plate those that its largest basis resolves, where that
+/// does not reach so far.
+pub fn modes_up_to(model: &PanelModel, highest: f64, force: Place, response: Place) -> Result<ModalModel, ModelError> {
+    let of = |range| model.modal_model(range, &[force], &[response]);
+    match of(ModeRange::UpTo(highest)) {
+        Err(ModelError::BeyondBasis { available, .. }) => of(ModeRange::Count(available.saturating_sub(PLATE_RIGID))),
+        modes => modes,
+    }
+}
+
 /// The accelerance of a model from one place to another.
 pub struct WholeAccelerance {
     modes: ModalModel,
@@ -29,10 +42,21 @@ pub struct WholeAccelerance {
 }
 
 impl WholeAccelerance {
-    /// With modes enough for lines up to `highest` \[Hz\].
+    /// With modes enough for lines up to `highest` \[Hz\]; of a plate those that its largest basis resolves, and
+    /// [`ModelError::BeyondBasis`] where they end below.
     pub fn up_to(model: &PanelModel, highest: f64, force: Place, response: Place) -> Result<Self, ModelError> {
-        let usual = Self::of(model, ModeRange::Count(SUMMED), force, response)?;
-        if usual.modes.modes().last().is_some_and(|mode| mode.angular_frequency >= MARGIN * TAU * highest) {
+        let usual = match Self::of(model, ModeRange::Count(SUMMED), force, response) {
+            Err(ModelError::BasisTooSmall { available, .. }) => {
+                let all = Self::of(model, ModeRange::Count(available), force, response)?;
+                let reached = all.natural_frequencies().last().unwrap_or(0.0);
+                let beyond = ModelError::BeyondBasis { frequency: highest, available, reached };
+                return if reached < highest { Err(beyond) } else { Ok(all) };
+            }
+            usual => usual?,
+        };
+        if model.structure == StructureKind::MindlinPlate
+            || usual.natural_frequencies().last().is_some_and(|last| last >= MARGIN * highest)
+        {
             return Ok(usual);
         }
         Self::of(model, ModeRange::UpTo(MARGIN * highest), force, response)

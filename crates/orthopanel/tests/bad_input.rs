@@ -2,7 +2,7 @@
 
 mod support;
 
-use support::{Bench, FORCE, MODEL, TEST, changed, refused};
+use support::{Bench, FORCE, MODEL, PLATE, TEST, changed, refused};
 
 /// Every command that reads a test refuses this one.
 fn test_refused(from: &str, to: &str, said: &[&str]) {
@@ -163,9 +163,28 @@ fn an_fmu_that_is_none_of_ours() {
 #[test]
 fn what_this_version_cannot_solve_is_no_bad_input() {
     let bench = Bench::new();
-    let plate = changed(MODEL, "timoshenko-beam", "mindlin-plate");
-    std::fs::write(bench.path("model.json"), plate).expect("a file is written");
-    refused(&bench, "modes model.json", 1, &["model.json", "mindlin-plate", "not supported"]);
+    let held =
+        changed(MODEL, "\"structure\"", "\"effects\": [{\"id\": \"flux\", \"owner\": \"panel\"}], \"structure\"");
+    std::fs::write(bench.path("model.json"), held).expect("a file is written");
+    refused(&bench, "modes model.json", 1, &["model.json", "flux", "not supported"]);
+}
+
+#[test]
+fn a_plate_that_cannot_be() {
+    let bench = Bench::new();
+    for (from, to, said) in [
+        ("\"e_y\": 1.07e10, ", "", &["constants.e_y is missing"][..]),
+        ("1.07e10, \"nu_xy\": 0.3", "1.07e12, \"nu_xy\": 0.3", &["nu_xy", "e_y"]),
+        ("[[-0.3, -0.05]]", "[[-0.3, -0.11]]", &["-0.11", "off the piece", "0.1"]),
+    ] {
+        std::fs::write(bench.path("plate.json"), changed(PLATE, from, to)).expect("a file is written");
+        refused(&bench, "modes plate.json", 2, &[&["plate.json"], said].concat());
+        refused(&bench, "export plate.json -o out.fmu", 2, &[&["plate.json"], said].concat());
+    }
+    std::fs::write(bench.path("plate.json"), PLATE).expect("a file is written");
+    refused(&bench, "modes plate.json --count 900", 2, &["900 modes asked", "resolves"]);
+    let grid = "accelerance plate.json --force 0,0.05 --response 0,0.05 --from 1 --lines 3";
+    refused(&bench, &format!("{grid} --to 1e6"), 2, &["1000000 Hz", "resolves"]);
 }
 
 #[test]

@@ -55,7 +55,7 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
     let seen = model.modal_model(arguments.modes.range(), &ports.forces, &ports.responses).in_file(path)?;
     let frequencies: Vec<f64> =
         seen.modes().iter().map(|mode| mode.angular_frequency / std::f64::consts::TAU).collect();
-    let rigid_modes = model.boundary.rigid_modes();
+    let rigid_modes = frequencies.iter().filter(|frequency| **frequency == 0.0).count();
     let fmu = Fmu::of_panel(&model, arguments.modes.range(), ports.clone(), &options(arguments.fmi))?;
     output::write(&arguments.output, fmu.to_bytes()?)?;
     let answer = Answer {

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use orthopanel_model::{BeamMode, ModeRange};
+use orthopanel_model::{ModeKind, ModeRange, PanelMode, StructureKind};
 use serde::Serialize;
 
 use crate::arguments::count;
@@ -11,6 +11,9 @@ use crate::pictures::{self, ModeShape};
 use crate::{model_file, output, tables};
 
 /// List the natural frequencies of a model, flexible modes from 1
+///
+/// A plate's modes are told by their nodal lines across x and across y, and by their kind: bending (none across the
+/// width), torsion (one), transverse (two and more), or mixed where two such shapes share a mode.
 ///
 /// Examples: orthopanel modes out/model.json --count 6
 ///           orthopanel modes out/model.json --picture out/modes.svg
@@ -22,7 +25,7 @@ pub struct Arguments {
     /// Number of flexible modes
     #[arg(long, value_name = "N", value_parser = count, allow_negative_numbers = true, default_value_t = 10)]
     count: usize,
-    /// Picture of the mode shapes to write
+    /// Picture of the mode shapes to write: lines for a beam, contours for a plate
     #[arg(long, value_name = "X.svg")]
     picture: Option<PathBuf>,
     /// Print one JSON object (orthopanel.modes/1) on standard output
@@ -42,54 +45,76 @@ struct ModeEntry {
     frequency_hz: f64,
     /// Nodal lines crossed along x and along y; a beam has none along y.
     nodes: [usize; 2],
+    /// Of a plate's mode.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    kind: Option<ModeKind>,
     zeta: f64,
 }
 
 pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
     let model = model_file::read(&arguments.model)?;
-    let modes = model.beam_modes(ModeRange::Count(arguments.count)).in_file(&arguments.model)?;
-    let entry = |(index, mode): (usize, &BeamMode)| ModeEntry {
-        mode: index + 1,
-        frequency_hz: mode.frequency(),
-        nodes: [nodes_along_x(mode, model.piece.length, index + 1), 0],
-        zeta: model.damping.ratio(index + 1),
+    let modes = model.modes(ModeRange::Count(arguments.count)).in_file(&arguments.model)?;
+    let flexible: Vec<&PanelMode> = modes.iter().filter(|mode| !mode.is_rigid()).collect();
+    let entry = |(mode, of): (usize, &&PanelMode)| ModeEntry {
+        mode,
+        frequency_hz: of.frequency(),
+        nodes: of.nodes(),
+        kind: of.name().map(|name| name.kind),
+        zeta: model.damping.ratio(mode),
     };
-    let flexible = || modes.iter().skip(model.boundary.rigid_modes());
-    let answer = Answer { schema: "orthopanel.modes/1", modes: flexible().enumerate().map(entry).collect() };
+    let answer = Answer { schema: "orthopanel.modes/1", modes: (1..).zip(&flexible).map(entry).collect() };
     if let Some(path) = &arguments.picture {
-        let shape = |(mode, entry): (_, &ModeEntry)| shape(mode, entry);
-        let shapes: Vec<ModeShape> = flexible().zip(&answer.modes).map(shape).collect();
-        output::write(path, pictures::mode_shapes(&model.piece, &shapes)?)?;
+        let shape = |(mode, entry)| shape(mode, entry);
+        let shapes: Vec<ModeShape> = flexible.iter().copied().zip(&answer.modes).map(shape).collect();
+        let picture = match model.structure {
+            StructureKind::TimoshenkoBeam => pictures::beam_mode_shapes(&model.piece, &shapes)?,
+            StructureKind::MindlinPlate => pictures::plate_mode_shapes(&model.piece, &shapes)?,
+        };
+        output::write(path, picture)?;
         eprintln!("wrote {}", path.display());
     }
     if arguments.json {
         output::print_json(&answer);
     } else {
-        let row = |entry: &ModeEntry| {
-            vec![
-                entry.mode.to_string(),
-                format!("{:.2}", entry.frequency_hz),
-                entry.nodes[0].to_string(),
-                format!("{:.3e}", entry.zeta),
-            ]
-        };
-        let rows: Vec<_> = answer.modes.iter().map(row).collect();
-        output::print(&tables::aligned(&["mode", "frequency [Hz]", "nodes along x", "zeta"], &rows));
+        output::print(&table(&answer.modes, model.structure));
     }
     Ok(())
 }
 
-fn shape<'a>(mode: &'a BeamMode, entry: &ModeEntry) -> ModeShape<'a> {
-    let ModeEntry { mode: number, frequency_hz, nodes: [nodes, _], .. } = entry;
-    let name = format!("mode {number}: {frequency_hz:.1} Hz, {nodes} node{}", if *nodes == 1 { "" } else { "s" });
-    ModeShape { name, deflection: Box::new(|x| mode.deflection(x)) }
+fn table(modes: &[ModeEntry], structure: StructureKind) -> String {
+    let row = |entry: &ModeEntry| {
+        let mut row = vec![entry.mode.to_string(), format!("{:.2}", entry.frequency_hz), entry.nodes[0].to_string()];
+        if structure == StructureKind::MindlinPlate {
+            row.push(entry.nodes[1].to_string());
+            row.push(entry.kind.map_or("", kind_text).into());
+        }
+        row.push(format!("{:.3e}", entry.zeta));
+        row
+    };
+    let heading: &[&str] = match structure {
+        StructureKind::TimoshenkoBeam => &["mode", "frequency [Hz]", "nodes along x", "zeta"],
+        StructureKind::MindlinPlate => &["mode", "frequency [Hz]", "nodes along x", "along y", "kind", "zeta"],
+    };
+    tables::aligned(heading, &modes.iter().map(row).collect::<Vec<_>>())
 }
 
-/// Sign changes of the deflection between the ends.
-fn nodes_along_x(mode: &BeamMode, length: f64, number: usize) -> usize {
-    // Flexible mode m has at most m + 1 nodes; eight points between two of them part every pair.
-    let points = 8 * (number + 2);
-    let place = |index: usize| length * ((index as f64 + 0.5) / points as f64 - 0.5);
-    let deflections: Vec<f64> = (0..points).map(|index| mode.deflection(place(index))).collect();
-    deflections.windows(2).filter(|pair| matches!(pair, [left, right] if (*left < 0.0) != (*right < 0.0))).count()
+fn kind_text(kind: ModeKind) -> &'static str {
+    match kind {
+        ModeKind::Bending => "bending",
+        ModeKind::Torsion => "torsion",
+        ModeKind::Transverse => "transverse",
+        ModeKind::Mixed => "mixed",
+    }
+}
+
+fn shape<'a>(mode: &'a PanelMode, entry: &ModeEntry) -> ModeShape<'a> {
+    let ModeEntry { mode: number, frequency_hz, nodes: [along_x, along_y], kind, .. } = entry;
+    let looks = match kind {
+        None => format!("{along_x} node{}", if *along_x == 1 { "" } else { "s" }),
+        Some(kind) => format!("{} ({along_x}, {along_y})", kind_text(*kind)),
+    };
+    ModeShape {
+        name: format!("mode {number}: {frequency_hz:.1} Hz, {looks}"),
+        deflection: Box::new(|place| mode.deflection(place)),
+    }
 }

@@ -2,7 +2,7 @@
 
 use orthopanel_data::{ImpactTest, MeasurementData};
 use orthopanel_identify::{DampingLaw, Identification, PieceFit};
-use orthopanel_model::{PanelModel, Piece, Place, Ports};
+use orthopanel_model::{PanelModel, Piece, Place, Ports, StructureKind};
 
 /// Modal damping ratio assumed where a test measures none: typical of the paper's table 9.
 pub(super) const ASSUMED_DAMPING: f64 = 0.003;
@@ -14,7 +14,7 @@ pub(super) fn model(
     fit: &PieceFit,
     damping_law: DampingLaw,
 ) -> PanelModel {
-    let mut model = found.panel_model(fit, test.boundary, ports(test, index, &fit.piece));
+    let mut model = found.panel_model(fit, test.boundary, ports(test, index, &fit.piece, found.structure));
     let (beyond, origin) = match usual_damping(fit) {
         None => (ASSUMED_DAMPING, "assumed, not measured".to_owned()),
         Some(usual) => (usual, "measured inside the band; beyond it assumed, the median of the measured".to_owned()),
@@ -40,8 +40,9 @@ fn usual_damping(fit: &PieceFit) -> Option<f64> {
     ratios.get(ratios.len() / 2).copied()
 }
 
-/// The places of the piece's records; without records the paper's, -3/8 and 3/8 of the length.
-fn ports(test: &ImpactTest, index: usize, piece: &Piece) -> Ports {
+/// The places of the piece's records; without records the paper's, -3/8 and 3/8 of the length, and for a plate as far
+/// off the centre line, where it does not twist.
+fn ports(test: &ImpactTest, index: usize, piece: &Piece, structure: StructureKind) -> Ports {
     let mut ports = Ports::default();
     for measurement in test.measurements.iter().filter(|measurement| measurement.piece == index) {
         if let MeasurementData::TimeHistory(record) | MeasurementData::Accelerance(record) = &measurement.data {
@@ -54,9 +55,14 @@ fn ports(test: &ImpactTest, index: usize, piece: &Piece) -> Ports {
     }
     if ports.forces.is_empty() {
         // To the micrometre, so that it reads as a round number in the files.
-        let place = (375e3 * piece.length).round() / 1e6;
-        ports.forces.push(Place { x: -place, y: 0.0 });
-        ports.responses.push(Place { x: place, y: 0.0 });
+        let part_of = |side: f64| (375e3 * side).round() / 1e6;
+        let (x, y) = match structure {
+            StructureKind::TimoshenkoBeam => (part_of(piece.length), 0.0),
+            StructureKind::MindlinPlate => (part_of(piece.length), part_of(piece.width)),
+        };
+        // Zero takes the sign off a negative one.
+        ports.forces.push(Place { x: -x, y: 0.0 - y });
+        ports.responses.push(Place { x, y });
     }
     ports
 }

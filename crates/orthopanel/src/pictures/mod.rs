@@ -1,18 +1,20 @@
 //! Pictures as SVG: what was measured in orange, what the model says in blue.
 
 mod accelerance;
+mod beam_mode_shapes;
 mod envelope;
 mod frequencies;
 mod frequency_axes;
 mod measured_accelerance;
-mod mode_shapes;
+mod plate_mode_shapes;
 mod response;
 mod time_history;
 
 pub use accelerance::accelerance;
+pub use beam_mode_shapes::{ModeShape, beam_mode_shapes};
 pub use frequencies::frequencies;
 pub use measured_accelerance::measured_accelerance;
-pub use mode_shapes::{ModeShape, mode_shapes};
+pub use plate_mode_shapes::plate_mode_shapes;
 pub use response::response;
 pub use time_history::time_history;
 

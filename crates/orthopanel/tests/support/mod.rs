@@ -16,6 +16,13 @@ pub const MODEL: &str = r#"{"schema": "orthopanel.model/1",
  "structure": "timoshenko-beam", "constants": {"e_x": 1.07e10, "g_zx": 5.363e8}, "damping": {"beyond": 0.003},
  "ports": {"forces": [[-0.3, 0]], "responses": [[0.3, 0]]}}"#;
 
+/// A plate of the size of the paper's piece 2, with constants of the order of its faces and core.
+pub const PLATE: &str = r#"{"schema": "orthopanel.model/1",
+ "piece": {"length": 0.8, "width": 0.2, "thickness": 0.03, "mass_per_area": 6.88},
+ "structure": "mindlin-plate", "constants":
+  {"e_x": 1.07e10, "e_y": 1.07e10, "nu_xy": 0.3, "g_xy": 4.1e9, "g_yz": 3e8, "g_zx": 5.363e8},
+ "damping": {"beyond": 0.003}, "ports": {"forces": [[-0.3, -0.05]], "responses": [[0.3, 0.05]]}}"#;
+
 /// A test of the paper's piece 1 (table 5).
 pub const TEST: &str = "[piece]\nlength = 0.8\nwidth = 0.1\nthickness = 0.03\nmass_per_area = 6.88\n[[measurement]]\n\
                         kind = \"natural-frequencies\"\nvalues = [321.3, 837.5, 1520.0, 2312.5, 3150.0, 3987.5]\n";
@@ -30,7 +37,7 @@ pub struct Bench {
 impl Bench {
     pub fn new() -> Self {
         let folder = tempfile::tempdir().expect("a temporary folder");
-        for (name, text) in [("model.json", MODEL), ("test.toml", TEST), ("force.csv", FORCE)] {
+        for (name, text) in [("model.json", MODEL), ("plate.json", PLATE), ("test.toml", TEST), ("force.csv", FORCE)] {
             std::fs::write(folder.path().join(name), text).expect("a file is written");
         }
         copy(&Path::new(ROOT).join("examples"), &folder.path().join("examples"));

@@ -29,7 +29,8 @@ pub struct Grid {
     /// Number of lines
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000_000), allow_negative_numbers = true)]
     lines: Option<u32>,
-    /// Number of flexible modes in the sum [default: 300, or all up to 20 times --to where that is more]
+    /// Number of flexible modes in the sum [default: 300, or all up to 20 times --to where that is more; of a
+    /// plate 300, or as many as its basis resolves]
     #[arg(long, value_name = "N", value_parser = count, allow_negative_numbers = true)]
     modes: Option<usize>,
 }

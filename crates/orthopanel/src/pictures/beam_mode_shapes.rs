@@ -1,6 +1,6 @@
-//! Shapes of the modes, a small chart each: the deflection along the piece.
+//! Shapes of the modes of a beam, a small chart each: the deflection along the piece.
 
-use orthopanel_model::Piece;
+use orthopanel_model::{Piece, Place};
 use plotters::prelude::*;
 
 use super::{Area, Drawn, FONT, GRID, MODEL, titled};
@@ -20,11 +20,11 @@ const POINTS: u32 = 300;
 pub struct ModeShape<'a> {
     /// Such as `mode 1: 321.4 Hz, 2 nodes`.
     pub name: String,
-    /// Deflection at x \[m\] from the centre, to any scale.
-    pub deflection: Box<dyn Fn(f64) -> f64 + 'a>,
+    /// Deflection at a place, to any scale.
+    pub deflection: Box<dyn Fn(Place) -> f64 + 'a>,
 }
 
-pub fn mode_shapes(piece: &Piece, shapes: &[ModeShape]) -> Result<String, CommandError> {
+pub fn beam_mode_shapes(piece: &Piece, shapes: &[ModeShape]) -> Result<String, CommandError> {
     let rows = shapes.len().div_ceil(ACROSS);
     let Piece { length, width, thickness, .. } = piece;
     let title = format!("Modes of the piece of {length} x {width} x {thickness} m");
@@ -40,7 +40,8 @@ pub fn mode_shapes(piece: &Piece, shapes: &[ModeShape]) -> Result<String, Comman
 fn line(area: &Area, piece: &Piece, shape: &ModeShape) -> Drawn {
     let half = 0.5 * piece.length;
     let place = |point: u32| half * (2.0 * f64::from(point) / f64::from(POINTS) - 1.0);
-    let points: Vec<(f64, f64)> = (0..=POINTS).map(place).map(|x| (x, (shape.deflection)(x))).collect();
+    let points: Vec<(f64, f64)> =
+        (0..=POINTS).map(place).map(|x| (x, (shape.deflection)(Place { x, y: 0.0 }))).collect();
     let greatest = points.iter().fold(0.0_f64, |greatest, (_, w)| greatest.max(w.abs()));
     let scale = if greatest > 0.0 { greatest.recip() } else { 1.0 };
     let mut chart = ChartBuilder::on(area)

@@ -1,0 +1,79 @@
+//! The commands on a plate model.
+
+mod support;
+
+use support::{Bench, PLATE, number};
+
+/// Mass, and moments of inertia about the axes across and along, of [`PLATE`]'s piece (rotary inertia is in the law).
+fn inertia() -> (f64, f64, f64) {
+    let (length, width, thickness): (f64, f64, f64) = (0.8, 0.2, 0.03);
+    let mass = 6.88 * length * width;
+    let about = |side: f64| mass * (side.powi(2) + thickness.powi(2)) / 12.0;
+    (mass, about(length), about(width))
+}
+
+#[test]
+fn val_modes_tell_bending_from_torsion() {
+    let bench = Bench::new();
+    let answer = bench.json("modes plate.json --count 6");
+    let told: Vec<_> = answer["modes"].as_array().expect("modes").iter().map(|mode| mode["kind"].clone()).collect();
+    assert_eq!(told, ["bending", "torsion", "bending", "torsion", "bending", "torsion"]);
+    assert_eq!(answer["modes"][3]["nodes"], serde_json::json!([2, 1]));
+    // A narrow piece whose material does not contract sideways bends as the beam: its modes 1 and 2 to a ten-thousandth.
+    let narrow = PLATE.replace("0.2,", "0.02,").replace("\"nu_xy\": 0.3", "\"nu_xy\": 0.0").replace("0.05]", "0.005]");
+    std::fs::write(bench.path("narrow.json"), narrow).expect("a file is written");
+    let plate = bench.json("modes narrow.json --count 4");
+    let beam = bench.json("modes model.json --count 2");
+    let bending: Vec<_> =
+        plate["modes"].as_array().expect("modes").iter().filter(|mode| mode["kind"] == "bending").collect();
+    for (index, mode) in bending.iter().take(2).enumerate() {
+        let (found, expected) = (number(mode, "/frequency_hz"), number(&beam, &format!("/modes/{index}/frequency_hz")));
+        assert!((found / expected - 1.0).abs() < 1e-4, "mode {}: {found}, beam {expected}", index + 1);
+    }
+}
+
+#[test]
+fn val_a_picture_names_every_mode() {
+    let bench = Bench::new();
+    bench.done("modes plate.json --count 4 --picture modes.svg");
+    let text = std::fs::read_to_string(bench.path("modes.svg")).expect("a picture");
+    for name in ["bending (2, 0)", "torsion (1, 1)", "bending (3, 0)", "torsion (2, 1)"] {
+        assert!(text.contains(name), "{name}");
+    }
+    // Nodal lines: 2 + 2 + 3 + 3 at least, each drawn as one line or several.
+    assert!(text.matches("<polyline").count() >= 10);
+    bench.done("modes plate.json --count 0 --picture modes.svg");
+}
+
+#[test]
+fn val_accelerance_off_the_centre_line_turns_the_rigid_plate_two_ways() {
+    let bench = Bench::new();
+    let line = "accelerance plate.json --force=-0.3,0.06 --response=0.2,0.08 --from 0 --to 4000 --lines 801";
+    let answer = bench.json(line);
+    let (mass, across, along) = inertia();
+    let rigid = 1.0 / mass - 0.3 * 0.2 / across + 0.06 * 0.08 / along;
+    assert!((number(&answer, "/real/0") / rigid - 1.0).abs() < 1e-6, "{}, rigid {rigid}", number(&answer, "/real/0"));
+    // On the centre line no torsion answers: mode 2 stands out off it only.
+    let torsion = number(&bench.json("modes plate.json --count 2"), "/modes/1/frequency_hz");
+    let at = |places: &str| {
+        let line = format!("accelerance plate.json {places} --from {torsion} --to {torsion} --lines 1");
+        number(&bench.json(&line), "/imag/0").abs()
+    };
+    let (off, on) = (at("--force=-0.3,0.06 --response=0.2,0.08"), at("--force=-0.3 --response=0.2"));
+    assert!(off > 100.0 * on, "off the centre line {off}, on it {on}");
+}
+
+#[test]
+fn an_fmu_moves_as_its_plate() {
+    let bench = Bench::new();
+    for fmi in ["2", "3"] {
+        let answer = bench.json(&format!("export plate.json --fmi {fmi} --modes 12 -o plate.fmu"));
+        assert_eq!((number(&answer, "/rigid_modes"), number(&answer, "/flexible_modes")), (3.0, 12.0));
+        bench.done("simulate plate.json --modes 12 --force-file force.csv -o model.csv");
+        bench.done("simulate plate.fmu --force-file force.csv -o fmu.csv");
+        let (model, fmu) = (bench.rows("model.csv"), bench.rows("fmu.csv"));
+        let peak = model.iter().map(|row| row[2].abs()).fold(0.0, f64::max);
+        assert!(peak > 1.0 && model.len() == fmu.len());
+        assert!(model.iter().zip(&fmu).all(|(model, fmu)| (model[2] - fmu[2]).abs() <= 1e-9 * peak), "FMI {fmi}");
+    }
+}
