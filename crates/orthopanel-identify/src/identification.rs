@@ -120,6 +120,9 @@ pub struct AcceleranceFit {
     pub measured: Vec<Complex64>,
     /// Calculated \[(m/s²)/N\].
     pub model: Vec<Complex64>,
+    /// Variance $E|\hat H-H|^2$ of each measured line, smooth over frequency, as the fit weighs it \[((m/s²)/N)²\];
+    /// `None` where the records do not tell it.
+    pub variance: Option<Vec<f64>>,
 }
 
 /// One measured mode and the model's.

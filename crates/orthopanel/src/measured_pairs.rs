@@ -3,7 +3,7 @@
 use std::ops::RangeInclusive;
 use std::path::Path;
 
-use orthopanel_data::TimeHistory;
+use orthopanel_data::{Hit, TimeHistory};
 use orthopanel_identify::{
     ForceBetweenSamples, HistorySettings, HitComparison, IdentifyError, Misfit, compare_time_history,
 };
@@ -30,6 +30,14 @@ pub struct HitVerdict {
     hit: usize,
     pub kept: bool,
     faults: Vec<String>,
+}
+
+impl HitVerdict {
+    /// Faults and what became of the hit; `None` for one without fault.
+    pub fn said(&self) -> Option<String> {
+        let verdict = if self.kept { "kept" } else { "left out" };
+        (!self.faults.is_empty()).then(|| format!("hit {} {verdict}: {}", self.hit, self.faults.join("; ")))
+    }
 }
 
 pub fn verdicts(history: &TimeHistory) -> Vec<HitVerdict> {
@@ -77,14 +85,17 @@ impl ComparedPair {
 
     pub fn misfits(&self) -> Vec<HitMisfit> {
         let hits = self.hits.iter().zip(verdicts(&self.history));
-        hits.map(|(compared, verdict)| HitMisfit {
-            force: self.history.force_at,
-            response: self.history.response_at,
-            verdict,
-            whole: compared.whole.misfit.into(),
-            in_band: compared.in_band.as_ref().map(|signals| signals.misfit.into()),
-        })
-        .collect()
+        let peak = |hit: &Hit| hit.force.iter().fold(0.0_f64, |peak, force| peak.max(force.abs()));
+        hits.zip(&self.history.hits)
+            .map(|((compared, verdict), hit)| HitMisfit {
+                force: self.history.force_at,
+                response: self.history.response_at,
+                verdict,
+                peak_force_n: peak(hit),
+                whole: compared.whole.misfit.into(),
+                in_band: compared.in_band.as_ref().map(|signals| signals.misfit.into()),
+            })
+            .collect()
     }
 }
 
@@ -95,9 +106,17 @@ pub struct HitMisfit {
     response: Place,
     #[serde(flatten)]
     verdict: HitVerdict,
+    pub peak_force_n: f64,
     whole: MisfitEntry,
     /// With every line outside the band of the identification taken out; `null` where there was none.
     in_band: Option<MisfitEntry>,
+}
+
+impl HitMisfit {
+    /// Of the calculated acceleration from the measured one, in the band where there is one \[% of its peak\].
+    pub fn rms_percent(&self) -> f64 {
+        self.in_band.as_ref().unwrap_or(&self.whole).rms_percent_of_peak
+    }
 }
 
 #[derive(Serialize)]
@@ -120,9 +139,9 @@ impl From<Misfit> for MisfitEntry {
 }
 
 /// A row a hit.
-pub fn misfit_table(misfits: &[HitMisfit]) -> String {
+pub fn misfit_table(misfits: &[&HitMisfit]) -> String {
     let with_band = misfits.iter().any(|misfit| misfit.in_band.is_some());
-    let row = |misfit: &HitMisfit| {
+    let row = |misfit: &&HitMisfit| {
         let mut row = vec![
             place_text(misfit.force),
             place_text(misfit.response),

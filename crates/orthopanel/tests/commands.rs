@@ -199,7 +199,7 @@ fn run_leaves_models_fmus_response_and_pictures() {
     let answer = bench.json("run examples/pieces-3-4/test.toml -o out/deep");
     assert_eq!(answer["schema"], "orthopanel.run/1");
     let files = answer["files"].as_array().expect("a list of files");
-    assert_eq!(files.len(), 15);
+    assert_eq!(files.len(), 16);
     for file in files {
         let path = bench.path(file.as_str().expect("a path"));
         assert!(std::fs::metadata(&path).is_ok_and(|found| found.len() > 100), "{}", path.display());
@@ -212,7 +212,7 @@ fn run_leaves_models_fmus_response_and_pictures() {
 #[test]
 fn help_shows_an_example_of_every_command() {
     let bench = Bench::new();
-    for command in ["run", "identify", "modes", "accelerance", "export", "simulate"] {
+    for command in ["run", "identify", "modes", "accelerance", "export", "simulate", "report"] {
         let text = bench.done(&format!("{command} --help"));
         let example = ["Example: ", "Examples: "].map(|word| format!("{word}orthopanel {command} "));
         assert!(example.iter().any(|example| text.contains(example)), "{text}");

@@ -38,7 +38,7 @@ fn every_command_runs_and_its_number_holds() {
     let e_x = number(&answer, "/constants/e_x/value");
     assert!((1.070e10..1.095e10).contains(&e_x), "{e_x}");
 
-    let table = run(&bench, &mut commands, "modes ");
+    let table = run(&bench, &mut commands, "modes out/model.json ");
     let row = table.lines().nth(3).expect("mode 3");
     let frequency: f64 = row.split_whitespace().nth(1).and_then(|cell| cell.parse().ok()).expect("a number");
     // The paper's table 5 prints 1522.5 Hz; its own rounded constants give it within 0.06 Hz.
@@ -50,7 +50,7 @@ fn every_command_runs_and_its_number_holds() {
     let first = &bench.rows("out/accelerance.csv")[0];
     assert!((first[1] - rigid).abs() < 1e-9 * rigid.abs(), "{}, rigid {rigid}", first[1]);
 
-    run(&bench, &mut commands, "export ");
+    run(&bench, &mut commands, "export out/model.json ");
     // Two response places: time, one force, and three quantities at each place.
     bench.done("simulate out/two-places.fmu --force-file examples/half-sine.csv -o out/two.csv");
     assert_eq!(bench.rows("out/two.csv")[0].len(), 2 + 3 * 2);
@@ -63,6 +63,7 @@ fn every_command_runs_and_its_number_holds() {
     assert!(fmu.iter().zip(&model).all(|(fmu, model)| (fmu[2] - model[2]).abs() <= 1e-9 * peak));
 
     records_hold(&bench, &mut commands, &text);
+    plate_holds(&bench, &mut commands);
 
     assert!(commands.is_empty(), "commands of the README that no test runs: {commands:?}");
 }
@@ -104,6 +105,25 @@ fn records_hold(bench: &Bench, commands: &mut Vec<String>, text: &str) {
         table.lines().skip(1).filter_map(|line| line.split_whitespace().nth(6)?.parse().ok()).collect();
     // Noise is 0.3 % of either channel's rms, 1e-5 of the variance.
     assert!(explained.len() == 3 && explained.iter().all(|part| *part > 0.9999), "{explained:?}");
+
+    run(bench, commands, "report examples/made-hits");
+    let page = std::fs::read_to_string(bench.path("out-hits/report.html")).expect("a page");
+    let [e_x] = ["e_x"].map(|name| number(&identified, &format!("/constants/{name}/value")));
+    assert!(page.contains(&format!("<td>e_x</td><td>{e_x:.4e}</td>")), "the page does not hold e_x = {e_x}");
+}
+
+/// The plate model that the README shows.
+fn plate_holds(bench: &Bench, commands: &mut Vec<String>) {
+    let table = run(bench, commands, "modes examples/plate.json");
+    // A free-free piece twice as long as wide twists lowest: mode 1 or 2 is the torsion with one node each way.
+    let torsion = table.lines().find(|line| line.contains("torsion")).expect("a torsion mode");
+    assert!(torsion.split_whitespace().skip(2).take(2).eq(["1", "1"]), "{torsion}");
+    let drawn = std::fs::read_to_string(bench.path("out/plate-modes.svg")).expect("a picture");
+    let kept = std::fs::read_to_string(format!("{ROOT}/docs/plate-modes.svg")).expect("the README's picture");
+    assert!(alike(&drawn, &kept), "docs/plate-modes.svg is not what `modes` draws: copy out/plate-modes.svg");
+    run(bench, commands, "export examples/plate.json");
+    let answer = bench.json("simulate out/plate.fmu --force-file examples/half-sine.csv");
+    assert!(answer.is_object());
 }
 
 /// The same picture but for two pixels: the last digits of a fit differ from processor to processor.

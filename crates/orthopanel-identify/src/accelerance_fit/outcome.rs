@@ -168,6 +168,7 @@ fn accelerance_fits(
                 frequency: record.frequency.clone(),
                 measured: record.value.clone(),
                 model,
+                variance: record.variance_known.then(|| record.variance.clone()),
             });
         }
     }

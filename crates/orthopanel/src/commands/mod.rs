@@ -4,6 +4,7 @@ pub mod accelerance;
 pub mod export;
 pub mod identify;
 pub mod modes;
+pub mod report;
 pub mod run;
 pub mod simulate;
 
@@ -30,6 +31,7 @@ enum Command {
     Accelerance(accelerance::Arguments),
     Export(export::Arguments),
     Simulate(simulate::Arguments),
+    Report(report::Arguments),
 }
 
 pub fn execute(arguments: Arguments) -> Result<(), CommandError> {
@@ -40,6 +42,7 @@ pub fn execute(arguments: Arguments) -> Result<(), CommandError> {
         Command::Accelerance(arguments) => accelerance::execute(&arguments),
         Command::Export(arguments) => export::execute(&arguments),
         Command::Simulate(arguments) => simulate::execute(&arguments),
+        Command::Report(arguments) => report::execute(&arguments),
     }
 }
 

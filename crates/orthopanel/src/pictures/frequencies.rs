@@ -44,6 +44,9 @@ pub fn frequencies(fit: &PieceFit) -> Result<String, CommandError> {
             .draw()?;
 
         let errors = fit.modes.iter().map(|mode| mode.error_percent());
+        let greatest = errors.clone().fold(0.0_f64, |greatest, error| greatest.max(error.abs()));
+        // Two digits, and more where the greatest error needs them.
+        let digits = if greatest > 0.0 { (1.0 - greatest.log10()).ceil().clamp(2.0, 9.0) as usize } else { 2 };
         let mut chart = ChartBuilder::on(lower)
             .margin(12)
             .x_label_area_size(45)
@@ -55,7 +58,10 @@ pub fn frequencies(fit: &PieceFit) -> Result<String, CommandError> {
             .bold_line_style(GRID)
             .x_labels(last + 1)
             .x_label_formatter(&|mode| format!("{mode:.0}"))
-            .y_label_formatter(&|error| if error.abs() < 5e-3 { "0".into() } else { format!("{error:+.2}") })
+            .y_label_formatter(&|error| match format!("{error:+.digits$}") {
+                text if text.bytes().any(|byte| (b'1'..=b'9').contains(&byte)) => text,
+                _ => "0".into(),
+            })
             .x_desc("flexible mode")
             .y_desc("(model - measured) / measured [%]")
             .label_style((FONT, 15))

@@ -2,19 +2,23 @@
 
 mod accelerance;
 mod beam_mode_shapes;
+mod coherence;
 mod envelope;
 mod frequencies;
 mod frequency_axes;
 mod measured_accelerance;
 mod plate_mode_shapes;
+mod residual;
 mod response;
 mod time_history;
 
 pub use accelerance::accelerance;
 pub use beam_mode_shapes::{ModeShape, beam_mode_shapes};
+pub use coherence::coherence;
 pub use frequencies::frequencies;
 pub use measured_accelerance::measured_accelerance;
 pub use plate_mode_shapes::plate_mode_shapes;
+pub use residual::{residual_by_frequency, residual_by_level, residual_by_place};
 pub use response::response;
 pub use time_history::time_history;
 
@@ -25,6 +29,7 @@ use crate::error::CommandError;
 
 const MEASURED: RGBColor = RGBColor(213, 94, 0);
 const MODEL: RGBColor = RGBColor(0, 90, 170);
+const ERROR: RGBColor = RGBColor(90, 90, 90);
 const GRID: RGBColor = RGBColor(225, 225, 225);
 const FONT: &str = "sans-serif";
 

@@ -4,7 +4,7 @@ use orthopanel_data::Hit;
 use plotters::prelude::*;
 
 use super::envelope::envelope;
-use super::{Area, Drawn, FONT, GRID, MEASURED, MODEL, spaced, stacked};
+use super::{Area, Drawn, ERROR, FONT, GRID, MEASURED, MODEL, spaced, stacked};
 use crate::error::CommandError;
 use crate::measured_pairs::{ComparedPair, place_text};
 
@@ -12,8 +12,6 @@ use crate::measured_pairs::{ComparedPair, place_text};
 const SHOWN: f64 = 0.02;
 /// Of that, before the force is greatest \[s\].
 const BEFORE: f64 = 0.001;
-
-const ERROR: RGBColor = RGBColor(90, 90, 90);
 
 struct Curve<'a> {
     label: &'static str,

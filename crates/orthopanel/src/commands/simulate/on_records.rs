@@ -74,7 +74,7 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
     if arguments.json {
         output::print_json(&Answer { schema: "orthopanel.simulated-hits/1", hits });
     } else {
-        output::print(&misfit_table(&hits));
+        output::print(&misfit_table(&hits.iter().collect::<Vec<_>>()));
     }
     Ok(())
 }

@@ -1,0 +1,134 @@
+//! What a test shows for the models identified from it, gathered once: `run` writes it into its folder, `report` onto a
+//! page.
+
+mod records;
+mod residual;
+
+use std::path::Path;
+
+use orthopanel_data::{Accelerance, Estimation, MeasurementData};
+use orthopanel_identify::{AcceleranceFit, ForceBetweenSamples, PieceFit};
+use orthopanel_model::{PanelModel, Place};
+
+use crate::error::{CommandError, InFile as _};
+use crate::identified::Identified;
+use crate::measured_pairs::{ComparedPair, HitMisfit};
+use crate::whole_accelerance::WholeAccelerance;
+use crate::{pictures, progress};
+pub use records::RecordRow;
+pub use residual::{PairResidual, ResidualUnit, banded};
+
+/// Pictures are SVG.
+pub struct Evidence {
+    /// In the order of the identified pieces.
+    pub pieces: Vec<PieceEvidence>,
+}
+
+#[derive(Default)]
+pub struct PieceEvidence {
+    pub records: Vec<RecordRow>,
+    /// Coherence of all records that tell it.
+    pub coherence: Option<String>,
+    /// Natural frequencies, measured and calculated.
+    pub frequencies: Option<String>,
+    /// Measured and calculated, one a pair of places; without records that of the model alone.
+    pub accelerances: Vec<String>,
+    /// A hit of each pair with the accelerations measured and calculated under it.
+    pub time_histories: Vec<String>,
+    /// One a measured accelerance.
+    pub residuals: Vec<PairResidual>,
+    /// How far the model is from each measured hit.
+    pub hits: Vec<HitMisfit>,
+}
+
+impl Evidence {
+    /// `path` names the test in messages.
+    pub fn of(identified: &Identified, estimation: Estimation, path: &Path) -> Result<Self, CommandError> {
+        let Identified { test, found, models, .. } = identified;
+        let mut pieces = Vec::with_capacity(found.pieces.len());
+        for (index, (fit, model)) in found.pieces.iter().zip(models).enumerate() {
+            let own: Vec<_> = found.accelerances.iter().filter(|pair| pair.piece == index).collect();
+            pieces.push(PieceEvidence::of_fit(fit, model, &own, estimation, path)?);
+        }
+        let mut accelerances: Vec<(usize, Accelerance)> = Vec::new();
+        let histories = test.time_histories()?;
+        let shown = progress::bar("driving the model", histories.len());
+        for (piece, history) in histories {
+            let (Some(fit), Some(model), Some(evidence)) =
+                (found.pieces.get(piece), models.get(piece), pieces.get_mut(piece))
+            else {
+                continue;
+            };
+            let accelerance = history.accelerance(estimation)?;
+            evidence.records.push(RecordRow::of_hits(&history, &accelerance));
+            let places = (history.force_at, history.response_at);
+            let mut own = found.accelerances.iter().filter(|pair| pair.piece == piece);
+            let pair = own.find(|pair| (pair.force_at, pair.response_at) == places);
+            let band = pair.and_then(|pair| Some(*pair.frequency.first()?..=*pair.frequency.last()?));
+            let compared = ComparedPair::of(model, history, ForceBetweenSamples::BandLimited, band)
+                .map_err(|source| CommandError::Identify { path: path.into(), source })?;
+            evidence.time_histories.push(pictures::time_history(&fit.name, &compared)?);
+            evidence.hits.extend(compared.misfits());
+            accelerances.push((piece, accelerance));
+            shown.step();
+        }
+        for measurement in &test.measurements {
+            if let (MeasurementData::Accelerance(recorded), Some(evidence)) =
+                (&measurement.data, pieces.get_mut(measurement.piece))
+            {
+                let accelerance = Accelerance::read(recorded)?;
+                evidence.records.push(RecordRow::of_accelerance(&accelerance));
+                accelerances.push((measurement.piece, accelerance));
+            }
+        }
+        for (index, (evidence, fit)) in pieces.iter_mut().zip(&found.pieces).enumerate() {
+            let own: Vec<&Accelerance> =
+                accelerances.iter().filter(|(piece, _)| *piece == index).map(|(_, accelerance)| accelerance).collect();
+            evidence.coherence = pictures::coherence(&fit.name, &own)?;
+        }
+        Ok(Self { pieces })
+    }
+
+    /// The measured hits of all pieces.
+    pub fn hits(&self) -> Vec<&HitMisfit> {
+        self.pieces.iter().flat_map(|piece| &piece.hits).collect()
+    }
+}
+
+impl PieceEvidence {
+    fn of_fit(
+        fit: &PieceFit,
+        model: &PanelModel,
+        pairs: &[&AcceleranceFit],
+        estimation: Estimation,
+        path: &Path,
+    ) -> Result<Self, CommandError> {
+        let mut evidence = Self::default();
+        if !fit.modes.is_empty() {
+            evidence.frequencies = Some(pictures::frequencies(fit)?);
+        }
+        let decay_rate = estimation.window.decay_rate();
+        for pair in pairs {
+            evidence.accelerances.push(pictures::measured_accelerance(&fit.name, pair, decay_rate)?);
+            evidence.residuals.push(PairResidual::of(pair));
+        }
+        if let (true, Some(&force), Some(&response)) =
+            (pairs.is_empty(), model.ports.forces.first(), model.ports.responses.first())
+        {
+            evidence.accelerances.push(calculated(fit, model, [force, response], path)?);
+        }
+        Ok(evidence)
+    }
+}
+
+/// Accelerance of the model alone, over the measured natural frequencies.
+fn calculated(
+    fit: &PieceFit,
+    model: &PanelModel,
+    [force, response]: [Place; 2],
+    path: &Path,
+) -> Result<String, CommandError> {
+    let highest = fit.modes.iter().map(|mode| mode.measured).fold(0.0, f64::max);
+    let seen = WholeAccelerance::up_to(model, highest, force, response).in_file(path)?;
+    pictures::accelerance(fit, [force, response], &seen)
+}

@@ -1,0 +1,137 @@
+//! What the model leaves unexplained: against frequency, against the place, against the level of the hit.
+
+use plotters::coord::ranged1d::SegmentedCoord;
+use plotters::prelude::*;
+
+use super::{ERROR, FONT, GRID, MEASURED, MODEL, spaced, titled};
+use crate::error::CommandError;
+use crate::evidence::{PairResidual, ResidualUnit, banded};
+use crate::measured_pairs::{HitMisfit, place_text};
+
+const WIDTH: u32 = 900;
+/// Bands of frequency over which residuals are averaged.
+const BANDS: usize = 80;
+/// Height of a row of the places \[pixels\].
+const ROW: u32 = 24;
+
+fn unit_text(residuals: &[PairResidual]) -> &'static str {
+    match residuals.first().map(|pair| pair.unit) {
+        Some(ResidualUnit::Noise) => "residual over noise, rms",
+        _ => "residual [% of measured rms]",
+    }
+}
+
+/// A thin line a pair of places, a thick one for all of them.
+pub fn residual_by_frequency(residuals: &[PairResidual]) -> Result<String, CommandError> {
+    let lines = || residuals.iter().flat_map(|pair| &pair.lines);
+    let highest = lines().map(|(frequency, _)| *frequency).fold(1.0, f64::max);
+    let pairs: Vec<_> = residuals.iter().map(|pair| banded(pair.lines.iter(), highest, BANDS)).collect();
+    let all = banded(lines(), highest, BANDS);
+    let sizes = || pairs.iter().flatten().map(|(_, size)| *size).filter(|size| *size > 0.0);
+    let noise = residuals.iter().all(|pair| pair.unit == ResidualUnit::Noise);
+    let low = sizes().fold(if noise { 0.5 } else { f64::INFINITY }, f64::min);
+    let high = sizes().fold(if noise { 2.0 } else { 0.0 }, f64::max);
+    let (low, high) = if low < high { (0.8 * low, 1.25 * high) } else { (0.1, 10.0) };
+    titled("residual by frequency", "Residual against frequency", (WIDTH, 340), |area| {
+        let mut chart = ChartBuilder::on(&area)
+            .margin(12)
+            .x_label_area_size(45)
+            .y_label_area_size(70)
+            .build_cartesian_2d(0.0..highest, (low..high).log_scale())?;
+        chart
+            .configure_mesh()
+            .light_line_style(TRANSPARENT)
+            .bold_line_style(GRID)
+            .x_label_formatter(&|frequency| format!("{frequency:.0}"))
+            .y_label_formatter(&|size| format!("{size}"))
+            .x_desc("frequency [Hz]")
+            .y_desc(unit_text(residuals))
+            .label_style((FONT, 15))
+            .draw()?;
+        if noise {
+            chart.draw_series(LineSeries::new([(0.0, 1.0), (highest, 1.0)], BLACK.mix(0.6)))?;
+        }
+        if pairs.len() > 1 {
+            for pair in pairs {
+                chart.draw_series(LineSeries::new(pair, MODEL.mix(0.35)))?;
+            }
+        }
+        chart.draw_series(LineSeries::new(all, MODEL.stroke_width(3)))?;
+        Ok(())
+    })
+}
+
+/// A bar a pair of places.
+pub fn residual_by_place(residuals: &[PairResidual]) -> Result<String, CommandError> {
+    let count = residuals.len();
+    let highest = residuals.iter().map(PairResidual::rms).fold(0.0, f64::max);
+    let noise = residuals.iter().all(|pair| pair.unit == ResidualUnit::Noise);
+    let highest = if highest > 0.0 { highest.max(if noise { 1.2 } else { 0.0 }) } else { 1.0 };
+    let height = 105 + ROW * count.max(1) as u32;
+    titled("residual by place", "Residual of each pair of places", (WIDTH, height), |area| {
+        // The first pair on top.
+        let row = |position: &SegmentValue<usize>| match position {
+            SegmentValue::Exact(row) | SegmentValue::CenterOf(row) => {
+                let pair = count.checked_sub(row + 1).and_then(|index| residuals.get(index));
+                pair.map_or(String::new(), |pair| {
+                    format!("{} to {}", place_text(pair.force), place_text(pair.response))
+                })
+            }
+            SegmentValue::Last => String::new(),
+        };
+        let rows: SegmentedCoord<_> = (0..count.saturating_sub(1)).into_segmented();
+        let mut chart = ChartBuilder::on(&area)
+            .margin(12)
+            .x_label_area_size(45)
+            .y_label_area_size(170)
+            .build_cartesian_2d(0.0..1.05 * highest, rows)?;
+        chart
+            .configure_mesh()
+            .disable_y_mesh()
+            .light_line_style(TRANSPARENT)
+            .bold_line_style(GRID)
+            .y_labels(count)
+            .y_label_formatter(&row)
+            .x_desc(unit_text(residuals))
+            .y_desc("force to response [m]")
+            .label_style((FONT, 15))
+            .draw()?;
+        for (index, pair) in residuals.iter().enumerate() {
+            let row = count - 1 - index;
+            let corners = [(0.0, SegmentValue::Exact(row)), (pair.rms(), SegmentValue::Exact(row + 1))];
+            let mut bar = Rectangle::new(corners, MODEL.filled());
+            bar.set_margin(4, 4, 0, 0);
+            chart.draw_series([bar])?;
+        }
+        if noise {
+            let ends = [(1.0, SegmentValue::Exact(0)), (1.0, SegmentValue::Exact(count))];
+            chart.draw_series(LineSeries::new(ends, ERROR.stroke_width(2)))?;
+        }
+        Ok(())
+    })
+}
+
+/// A dot a hit: how far the calculated acceleration is from the measured one.
+pub fn residual_by_level(hits: &[HitMisfit]) -> Result<String, CommandError> {
+    let points: Vec<(f64, f64)> = hits.iter().map(|hit| (hit.peak_force_n, hit.rms_percent())).collect();
+    let highest = |of: fn(&(f64, f64)) -> f64| 1.1 * points.iter().map(of).fold(f64::MIN_POSITIVE, f64::max);
+    let across = spaced(points.iter().map(|point| point.0));
+    titled("residual by level", "Misfit of each hit against its level", (WIDTH, 300), |area| {
+        let mut chart = ChartBuilder::on(&area)
+            .margin(12)
+            .x_label_area_size(45)
+            .y_label_area_size(70)
+            .build_cartesian_2d(across, 0.0..highest(|point| point.1))?;
+        chart
+            .configure_mesh()
+            .light_line_style(TRANSPARENT)
+            .bold_line_style(GRID)
+            .x_label_formatter(&|force| format!("{force:.0}"))
+            .x_desc("greatest force of the hit [N]")
+            .y_desc("misfit [% of peak]")
+            .label_style((FONT, 15))
+            .draw()?;
+        chart.draw_series(points.iter().map(|&point| Circle::new(point, 5, MEASURED.filled())))?;
+        Ok(())
+    })
+}

@@ -1,0 +1,57 @@
+//! The report: one HTML page that needs nothing beside it, no network and no script.
+
+mod constants;
+mod pieces;
+mod table;
+
+use std::path::Path;
+
+use askama::Template;
+
+use crate::error::CommandError;
+use crate::evidence::Evidence;
+use crate::identified::Identified;
+use crate::notes;
+use pieces::PieceSection;
+use table::Table;
+
+/// The page; askama escapes every text that is put into it, but for the pictures.
+#[derive(Template)]
+#[template(path = "report.html")]
+struct Page {
+    title: String,
+    made_by: String,
+    lead: Vec<String>,
+    constants: Table,
+    about_constants: Vec<String>,
+    pieces: Vec<PieceSection>,
+    notes: Vec<String>,
+}
+
+/// A picture with what it shows.
+struct Figure {
+    svg: String,
+    caption: String,
+}
+
+impl Figure {
+    fn new(svg: &str, caption: impl Into<String>) -> Self {
+        Self { svg: svg.to_owned(), caption: caption.into() }
+    }
+}
+
+/// The page of a test at `path`.
+pub fn page(path: &Path, identified: &Identified, evidence: &Evidence) -> Result<String, CommandError> {
+    let found = &identified.found;
+    let pieces = found.pieces.iter().zip(&evidence.pieces);
+    let page = Page {
+        title: format!("Hammer test {}", path.display()),
+        made_by: concat!("Written by orthopanel ", env!("CARGO_PKG_VERSION")).to_owned(),
+        lead: constants::lead(found),
+        constants: constants::table(found),
+        about_constants: constants::remarks(found),
+        pieces: pieces.map(|(fit, shown)| PieceSection::of(fit, shown)).collect::<Result<_, _>>()?,
+        notes: notes::counted(&found.notes).collect(),
+    };
+    page.render().map_err(|error| CommandError::Picture { name: "report", problem: error.to_string() })
+}

@@ -1,0 +1,134 @@
+//! One piece of the test: its records, the fit, and what the model leaves.
+
+use orthopanel_identify::{ModeFit, PieceFit};
+
+use super::Figure;
+use super::table::Table;
+use crate::error::CommandError;
+use crate::evidence::{PairResidual, PieceEvidence, RecordRow, ResidualUnit};
+use crate::measured_pairs::{HitMisfit, place_text};
+use crate::pictures;
+
+pub struct PieceSection {
+    pub name: String,
+    pub sizes: String,
+    pub records: Option<Table>,
+    pub coherence: Option<Figure>,
+    pub modes: Option<Table>,
+    pub frequencies: Option<Figure>,
+    pub galleries: Vec<Gallery>,
+    pub residual: Vec<Figure>,
+}
+
+/// Pictures of one kind, of which the first are shown and the others folded away.
+pub struct Gallery {
+    pub heading: &'static str,
+    pub shown: Vec<Figure>,
+    pub folded: Vec<Figure>,
+}
+
+/// Pictures of a gallery that are shown at once.
+const SHOWN: usize = 2;
+
+impl Gallery {
+    fn new(heading: &'static str, caption: &str, pictures: &[String]) -> Option<Self> {
+        let mut shown: Vec<Figure> = pictures.iter().map(|picture| Figure::new(picture, caption)).collect();
+        let folded = shown.split_off(SHOWN.min(shown.len()));
+        (!shown.is_empty()).then_some(Self { heading, shown, folded })
+    }
+}
+
+impl PieceSection {
+    pub fn of(fit: &PieceFit, shown: &PieceEvidence) -> Result<Self, CommandError> {
+        let piece = fit.piece;
+        let accelerance_caption = match shown.residuals.is_empty() {
+            true => "Accelerance of the model; the vertical lines are the measured natural frequencies.",
+            false => "Measured in orange, calculated in blue.",
+        };
+        let galleries = [
+            Gallery::new("Accelerances", accelerance_caption, &shown.accelerances),
+            Gallery::new("Time histories", HIT_CAPTION, &shown.time_histories),
+        ];
+        Ok(Self {
+            name: fit.name.clone(),
+            sizes: format!(
+                "{} x {} x {} m, {:.4} kg/m².",
+                piece.length, piece.width, piece.thickness, piece.mass_per_area
+            ),
+            records: (!shown.records.is_empty()).then(|| records(&shown.records)),
+            coherence: shown.coherence.as_ref().map(|picture| Figure::new(picture, COHERENCE_CAPTION)),
+            modes: (!fit.modes.is_empty()).then(|| modes(&fit.modes)),
+            frequencies: shown.frequencies.as_ref().map(|picture| Figure::new(picture, FREQUENCIES_CAPTION)),
+            galleries: galleries.into_iter().flatten().collect(),
+            residual: residual(&shown.residuals, &shown.hits)?,
+        })
+    }
+}
+
+const HIT_CAPTION: &str =
+    "A measured hit, the accelerations measured and calculated under it, and their difference over the whole record.";
+const COHERENCE_CAPTION: &str = "How much of the acceleration answers the force: 1 where all of it does; it falls at valleys and where the hammer has no force.";
+const FREQUENCIES_CAPTION: &str = "Natural frequencies, measured and calculated, and the error of each.";
+
+fn records(rows: &[RecordRow]) -> Table {
+    let row = |record: &RecordRow| {
+        let faults = if record.faults.is_empty() { "none".into() } else { record.faults.join("; ") };
+        vec![
+            format!("{} to {}", place_text(record.force), place_text(record.response)),
+            record.holds.clone(),
+            record.band.clone(),
+            record.kept.map_or("not told".into(), |kept| kept.to_string()),
+            faults,
+        ]
+    };
+    let headings = ["force to response [m]", "record", "band", "hits kept", "\"faults"];
+    Table::new(&headings, rows.iter().map(row).collect())
+}
+
+fn modes(modes: &[ModeFit]) -> Table {
+    let with_damping = modes.iter().any(|mode| mode.damping.is_some());
+    let row = |mode: &ModeFit| {
+        let mut row = vec![
+            mode.mode.to_string(),
+            format!("{}, {}", mode.nodes[0], mode.nodes[1]),
+            format!("{:.2}", mode.measured),
+            format!("{:.2}", mode.model),
+            format!("{:+.4}", mode.error_percent()),
+        ];
+        if with_damping {
+            let std = mode.damping.and_then(|zeta| zeta.std);
+            row.push(mode.damping.map_or("not seen".into(), |zeta| format!("{:.3e}", zeta.value)));
+            row.push(std.map_or("unknown".into(), |std| format!("{std:.1e}")));
+        }
+        row
+    };
+    let headings = ["mode", "nodes along x, y", "measured [Hz]", "model [Hz]", "error [%]", "zeta", "std of zeta"];
+    let columns = if with_damping { headings.len() } else { headings.len() - 2 };
+    Table::new(&headings[..columns], modes.iter().map(row).collect())
+}
+
+fn residual(residuals: &[PairResidual], hits: &[HitMisfit]) -> Result<Vec<Figure>, CommandError> {
+    let mut figures = Vec::new();
+    if !residuals.is_empty() {
+        let unit = match residuals.iter().all(|pair| pair.unit == ResidualUnit::Noise) {
+            true => {
+                "Root mean square of measured less calculated, over the noise of each line: 1, the grey line, where only noise is left."
+            }
+            false => {
+                "Root mean square of measured less calculated, in percent of the rms measured: these records do not tell their noise."
+            }
+        };
+        figures.push(Figure::new(&pictures::residual_by_frequency(residuals)?, unit));
+        figures.push(Figure::new(
+            &pictures::residual_by_place(residuals)?,
+            "A place that stands out points to something at that place, or to its record.",
+        ));
+    }
+    if hits.len() > 1 {
+        figures.push(Figure::new(
+            &pictures::residual_by_level(hits)?,
+            "A misfit that grows with the force points to something that is not linear.",
+        ));
+    }
+    Ok(figures)
+}

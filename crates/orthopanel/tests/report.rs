@@ -1,0 +1,80 @@
+//! The HTML page: whole, by itself, and safe against what a test file says.
+
+mod support;
+
+use support::{Bench, TEST, changed, refused};
+
+fn page(bench: &Bench, line: &str) -> String {
+    bench.done(&format!("{line} -o page.html"));
+    std::fs::read_to_string(bench.path("page.html")).expect("a page")
+}
+
+/// Every tag that is opened is closed, in order; `br` and their like are not used, and pictures close their own.
+fn assert_nested(text: &str) {
+    let mut open: Vec<&str> = Vec::new();
+    for part in text.split('<').skip(1) {
+        let (tag, _) = part.split_once('>').expect("a tag ends");
+        let name = tag.split([' ', '/', '\n']).find(|word| !word.is_empty()).unwrap_or_default();
+        let is_void = tag.starts_with('!') || tag.ends_with('/') || name == "meta";
+        if tag.starts_with('/') {
+            assert_eq!(open.pop(), Some(name), "<{tag}> closes another");
+        } else if !is_void {
+            open.push(name);
+        }
+    }
+    assert!(open.is_empty(), "left open: {open:?}");
+}
+
+#[test]
+fn a_page_of_records_holds_all_of_it_and_needs_nothing_else() {
+    let bench = Bench::new();
+    let text = page(&bench, "report examples/made-hits/test.toml");
+    assert_nested(&text);
+    for reference in ["src=", "href=", "url(", "@import", "<script", "<link", "<iframe"] {
+        assert!(!text.contains(reference), "{reference} leads out of the page");
+    }
+    // The only addresses are the names of the SVG vocabulary.
+    assert_eq!(text.matches("http").count(), text.matches("xmlns=\"http://www.w3.org/2000/svg\"").count());
+    for said in
+        ["What was found", "Records", "3 hits", "coherence", "Accelerances", "Time histories", "What the model leaves"]
+    {
+        assert!(text.contains(said), "the page does not say {said:?}");
+    }
+    // Its numbers are those of `identify`, to the digits shown.
+    let answer = bench.json("identify examples/made-hits/test.toml");
+    for name in ["e_x", "g_zx"] {
+        let value = support::number(&answer, &format!("/constants/{name}/value"));
+        assert!(text.contains(&format!("<td>{name}</td><td>{value:.4e}</td>")), "{name} = {value}");
+    }
+}
+
+#[test]
+fn run_leaves_the_same_page() {
+    let bench = Bench::new();
+    let text = page(&bench, "report examples/pieces-1-2/test.toml");
+    assert_nested(&text);
+    bench.done("run examples/pieces-1-2/test.toml -o out");
+    assert_eq!(std::fs::read_to_string(bench.path("out/report.html")).expect("a page"), text);
+}
+
+#[test]
+fn names_in_a_test_file_stay_text() {
+    let bench = Bench::new();
+    let name = r#"name = "<script>alert(1)</script> & 'co'"
+length"#;
+    std::fs::write(bench.path("test.toml"), changed(TEST, "length", name)).expect("a file is written");
+    let text = page(&bench, "report test.toml");
+    assert!(!text.contains("<script") && !text.contains("& '"), "a name was taken for markup");
+    assert_nested(&text);
+}
+
+#[test]
+fn a_page_that_cannot_be_written() {
+    let bench = Bench::new();
+    bench.done("identify test.toml");
+    let output = bench.run("report test.toml -o nowhere/page.html");
+    assert_eq!(output.status.code(), Some(2));
+    let message = String::from_utf8_lossy(&output.stderr);
+    assert!(message.contains("nowhere/page.html: cannot be written"), "{message}");
+    refused(&bench, "report nowhere.toml -o page.html", 2, &["nowhere.toml", "cannot be read"]);
+}
