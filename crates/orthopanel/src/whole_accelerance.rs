@@ -15,12 +15,13 @@ const PLATE_RIGID: usize = 3;
 /// $\sum_m W_m(l_1)W_m(l_x)/\omega_m^2$ over all flexible modes \[m/N\], where a closed form of it is known: for a beam.
 pub fn static_flexibility(model: &PanelModel, force: Place, response: Place) -> Result<Option<f64>, ModelError> {
     match model.structure {
-        StructureKind::TimoshenkoBeam => {
+        // The closed form is that of the bare beam.
+        StructureKind::TimoshenkoBeam if model.effects.is_empty() => {
             let all = StaticFlexibility::new(&model.piece, model.boundary)?;
             let (e_x, g_zx) = (model.constant("e_x")?, model.constant("g_zx")?);
             Ok(Some(all.between(force.x, response.x, e_x, g_zx).0))
         }
-        StructureKind::MindlinPlate => Ok(None),
+        _ => Ok(None),
     }
 }
 
