@@ -61,7 +61,9 @@ fn map(area: &Area, piece: &Piece, shape: &ModeShape) -> Drawn {
         .map(|(row, column)| at(row, column))
         .collect();
     let greatest = deflections.iter().fold(0.0_f64, |greatest, w| greatest.max(w.abs()));
-    let scale = if greatest > 0.0 { greatest.recip() } else { 1.0 };
+    // A mode has no sign of its own: up is the first place from the lower left corner that moves by half the greatest.
+    let moving = deflections.iter().find(|w| w.abs() > 0.5 * greatest);
+    let scale = moving.map_or(1.0, |w| w.signum() / greatest);
     let scaled: Vec<f64> = deflections.iter().map(|w| scale * w).collect();
 
     let contours =
