@@ -18,6 +18,7 @@ mod record_options;
 mod report;
 mod tables;
 mod time_response;
+mod traced;
 mod whole_accelerance;
 
 use std::process::ExitCode;

@@ -17,10 +17,24 @@ pub fn bar(message: &'static str, steps: usize) -> Shown {
     Shown(ProgressBar::new(steps as u64).with_message(message).with_style(style))
 }
 
+/// A bar over work whose steps are counted elsewhere, and named.
+pub fn counted(message: &'static str) -> Shown {
+    let style = ProgressStyle::with_template("{prefix} [{bar:30}] {pos}/{len} {msg}");
+    let bar = ProgressBar::new(1).with_prefix(message).with_style(style.unwrap_or(ProgressStyle::default_bar()));
+    Shown(bar)
+}
+
 /// Work that is being shown; dropping it clears the line.
 pub struct Shown(ProgressBar);
 
 impl Shown {
+    /// `done` of `of` steps are done, `step` the last.
+    pub fn at(&self, done: usize, of: usize, step: &'static str) {
+        self.0.set_length(of as u64);
+        self.0.set_position(done as u64);
+        self.0.set_message(step);
+    }
+
     /// One step is done.
     pub fn step(&self) {
         self.0.inc(1);

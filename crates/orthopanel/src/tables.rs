@@ -2,6 +2,15 @@
 
 /// Text rows under a heading; columns are set right-aligned, two blanks apart, the first left-aligned.
 pub fn aligned(heading: &[&str], rows: &[Vec<String>]) -> String {
+    set(heading, rows, |column| column == 0)
+}
+
+/// As [`aligned`], with words in the last column, left-aligned too.
+pub fn ending_in_words(heading: &[&str], rows: &[Vec<String>]) -> String {
+    set(heading, rows, |column| column == 0 || column + 1 == heading.len())
+}
+
+fn set(heading: &[&str], rows: &[Vec<String>], is_left: impl Fn(usize) -> bool) -> String {
     let width = |column: usize| {
         let cells = rows.iter().filter_map(|row| row.get(column).map(|cell| cell.chars().count()));
         cells.chain(heading.get(column).map(|cell| cell.chars().count())).max().unwrap_or(0)
@@ -9,7 +18,7 @@ pub fn aligned(heading: &[&str], rows: &[Vec<String>]) -> String {
     let widths: Vec<usize> = (0..heading.len()).map(width).collect();
     let line = |cells: Vec<&str>| {
         let padded = cells.iter().zip(&widths).enumerate().map(|(column, (cell, &width))| {
-            if column == 0 { format!("{cell:<width$}") } else { format!("{cell:>width$}") }
+            if is_left(column) { format!("{cell:<width$}") } else { format!("{cell:>width$}") }
         });
         padded.collect::<Vec<_>>().join("  ").trim_end().to_owned() + "\n"
     };
@@ -25,5 +34,7 @@ mod tests {
     fn columns_line_up() {
         let table = aligned(&["mode", "Hz"], &[vec!["1".into(), "321.4".into()], vec!["10".into(), "9.0".into()]]);
         assert_eq!(table, "mode     Hz\n1     321.4\n10      9.0\n");
+        let table = ending_in_words(&["id", "Hz", "what"], &[vec!["a".into(), "1".into(), "so it is".into()]]);
+        assert_eq!(table, "id  Hz  what\na    1  so it is\n");
     }
 }

@@ -161,12 +161,22 @@ fn an_fmu_that_is_none_of_ours() {
 }
 
 #[test]
-fn what_this_version_cannot_solve_is_no_bad_input() {
+fn effects_of_a_model() {
     let bench = Bench::new();
-    let held =
-        changed(MODEL, "\"structure\"", "\"effects\": [{\"id\": \"flux\", \"owner\": \"panel\"}], \"structure\"");
-    std::fs::write(bench.path("model.json"), held).expect("a file is written");
-    refused(&bench, "modes model.json", 1, &["model.json", "flux", "not supported"]);
+    for (effect, code, said) in [
+        (r#"{"id": "flux", "owner": "panel"}"#, 2, &["\"flux\"", "catalogue", "local-mass"][..]),
+        (r#"{"id": "sensor-mass", "owner": "rig", "mass": 0.005}"#, 2, &["sensor-mass", "rig", "not to the panel"]),
+        // Not bad input: this version cannot solve it.
+        (
+            r#"{"id": "viscoelastic-core", "owner": "panel", "strength": 0.1, "tau": 1e-4, "alpha": 0.5}"#,
+            1,
+            &["viscoelastic-core", "not supported"],
+        ),
+    ] {
+        let with = changed(MODEL, "\"structure\"", &format!("\"effects\": [{effect}], \"structure\""));
+        std::fs::write(bench.path("model.json"), with).expect("a file is written");
+        refused(&bench, "modes model.json", code, &[&["model.json"], said].concat());
+    }
 }
 
 #[test]

@@ -213,7 +213,7 @@ fn run_leaves_models_fmus_response_and_pictures() {
 #[test]
 fn help_shows_an_example_of_every_command() {
     let bench = Bench::new();
-    for command in ["run", "identify", "modes", "accelerance", "export", "simulate", "report"] {
+    for command in ["run", "identify", "modes", "accelerance", "export", "simulate", "report", "trace"] {
         let text = bench.done(&format!("{command} --help"));
         let example = ["Example: ", "Examples: "].map(|word| format!("{word}orthopanel {command} "));
         assert!(example.iter().any(|example| text.contains(example)), "{text}");

@@ -106,6 +106,12 @@ fn records_hold(bench: &Bench, commands: &mut Vec<String>, text: &str) {
     // Noise is 0.3 % of either channel's rms, 1e-5 of the variance.
     assert!(explained.len() == 3 && explained.iter().all(|part| *part > 0.9999), "{explained:?}");
 
+    let traced: serde_json::Value =
+        serde_json::from_str(&run(bench, commands, "trace examples/misplaced-hit")).expect("one JSON object");
+    assert_eq!((&traced["verdict"], &traced["effects"][0]["id"]), (&"explained".into(), &"hammer-offset".into()));
+    let offset = format!("{:.2} mm", 1e3 * number(&traced, "/effects/0/parameters/offset/value"));
+    assert!(text.contains(&offset), "the README does not show {offset}");
+
     run(bench, commands, "report examples/made-hits");
     let page = std::fs::read_to_string(bench.path("out-hits/report.html")).expect("a page");
     let [e_x] = ["e_x"].map(|name| number(&identified, &format!("/constants/{name}/value")));

@@ -7,6 +7,7 @@ pub mod modes;
 pub mod report;
 pub mod run;
 pub mod simulate;
+pub mod trace;
 
 use clap::{Parser, Subcommand};
 
@@ -27,6 +28,7 @@ pub struct Arguments {
 enum Command {
     Run(run::Arguments),
     Identify(identify::Arguments),
+    Trace(trace::Arguments),
     Modes(modes::Arguments),
     Accelerance(accelerance::Arguments),
     Export(export::Arguments),
@@ -38,6 +40,7 @@ pub fn execute(arguments: Arguments) -> Result<(), CommandError> {
     match arguments.command {
         Command::Run(arguments) => run::execute(&arguments),
         Command::Identify(arguments) => identify::execute(&arguments),
+        Command::Trace(arguments) => trace::execute(&arguments),
         Command::Modes(arguments) => modes::execute(&arguments),
         Command::Accelerance(arguments) => accelerance::execute(&arguments),
         Command::Export(arguments) => export::execute(&arguments),

@@ -3,7 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use orthopanel_export::{FmiVersion, Fmu, FmuOptions};
-use orthopanel_model::PanelModel;
+use orthopanel_identify::Tracing;
+use orthopanel_model::{ModelError, PanelModel};
 use serde::Serialize;
 
 use crate::arguments::USUAL_MODES;
@@ -15,13 +16,17 @@ use crate::identified::{Answer, Identified};
 use crate::measured_pairs::{HitMisfit, misfit_table};
 use crate::record_options::IdentifyOptions;
 use crate::time_response::Hold;
+use crate::traced::Traced;
 use crate::{output, pictures, report, time_response};
 
-/// Do all of it: identify the panel of a test, export its FMUs, simulate a hit, draw the result
+/// Do all of it: identify the panel of a test, trace what its model lacks, export its FMUs, simulate a hit, draw the result
 ///
 /// Into DIR go model.json, panel.fmu (FMI 2.0), panel-fmi3.fmu (FMI 3.0), identified.json, response.csv (a half-sine
 /// hit of 100 N and 0.5 ms at the first force place), report.html (all of it on one page) and pictures as SVG. With several pieces in the test, each has
 /// its own: model-NAME.json and so on.
+///
+/// Where the test can be traced, model and FMUs are those after tracing: effects of the panel stay in them, effects of
+/// rig and measuring chain are taken out, and trace.json tells which (see `orthopanel trace --help`).
 ///
 /// Of records, each pair of places gets a picture of the accelerance, measured and calculated, and one of a hit with
 /// the accelerations measured and calculated under it; time-histories.json tells how far the model is from every hit.
@@ -47,6 +52,8 @@ pub struct Arguments {
 struct RunAnswer<'a> {
     schema: &'static str,
     identified: &'a Answer,
+    /// `null` where the test cannot be traced.
+    trace: Option<&'a Tracing>,
     /// One entry a measured hit.
     hits: &'a [&'a HitMisfit],
     files: &'a [PathBuf],
@@ -61,14 +68,20 @@ struct HitsAnswer<'a> {
 pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
     let Arguments { test, output, options, json } = arguments;
     let identified = Identified::from_test(test, options)?;
+    let traced = Traced::where_possible(&identified.test, test);
+    let models =
+        traced.as_ref().map_or_else(|| identified.models.clone(), |traced| traced.applied_to(&identified.models));
     let evidence = Evidence::of(&identified, options.settings()?.estimation, test)?;
     let mut files = output::Files::default();
     files.add("identified.json", output::json(&identified.answer));
-    files.add("report.html", report::page(test, &identified, &evidence)?);
-    for ((fit, model), shown) in identified.found.pieces.iter().zip(&identified.models).zip(&evidence.pieces) {
+    files.add("report.html", report::page(test, &identified, traced.as_ref(), &evidence)?);
+    for ((fit, model), shown) in identified.found.pieces.iter().zip(&models).zip(&evidence.pieces) {
         let suffix = identified.suffix(fit);
         add_model(&mut files, test, &suffix, model)?;
         add_pictures(&mut files, &suffix, shown);
+    }
+    if let Some(traced) = &traced {
+        files.add("trace.json", output::json(&traced.tracing));
     }
     let hits = &evidence.hits()[..];
     if !hits.is_empty() {
@@ -80,14 +93,14 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
         eprintln!("wrote {}", path.display());
     }
     if *json {
-        output::print_json(&RunAnswer {
-            schema: "orthopanel.run/1",
-            identified: &identified.answer,
-            hits,
-            files: &files,
-        });
+        let trace = traced.as_ref().map(|traced| &traced.tracing);
+        let identified = &identified.answer;
+        output::print_json(&RunAnswer { schema: "orthopanel.run/1", identified, trace, hits, files: &files });
     } else {
         output::print(&identified.tables());
+        if let Some(traced) = &traced {
+            output::print(&format!("\n{}", traced.text()));
+        }
         if !hits.is_empty() {
             output::print(&format!("\nmeasured hits, and the model driven by their forces\n{}", misfit_table(hits)));
         }
@@ -99,7 +112,16 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
 fn add_model(files: &mut output::Files, test: &Path, suffix: &str, model: &PanelModel) -> Result<(), CommandError> {
     files.add(format!("model{suffix}.json"), model.to_json());
     let ports = &model.ports;
-    let seen = model.modal_model(USUAL_MODES, &ports.forces, &ports.responses).in_file(test)?;
+    let seen = match model.modal_model(USUAL_MODES, &ports.forces, &ports.responses) {
+        // The trace may find what has no modes; the model file holds it all the same.
+        Err(ModelError::Unsupported(what)) if !model.effects.is_empty() => {
+            eprintln!(
+                "no FMU and no simulated hit: {what} is not supported by this version; model{suffix}.json holds it"
+            );
+            return Ok(());
+        }
+        seen => seen.in_file(test)?,
+    };
     for (version, ending) in [(FmiVersion::Fmi2, ""), (FmiVersion::Fmi3, "-fmi3")] {
         let options = FmuOptions { version, ..FmuOptions::default() };
         let fmu = Fmu::of_panel(model, USUAL_MODES, ports.clone(), &options)?;

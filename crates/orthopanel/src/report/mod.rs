@@ -3,6 +3,7 @@
 mod constants;
 mod pieces;
 mod table;
+mod trace;
 
 use std::path::Path;
 
@@ -12,8 +13,10 @@ use crate::error::CommandError;
 use crate::evidence::Evidence;
 use crate::identified::Identified;
 use crate::notes;
+use crate::traced::Traced;
 use pieces::PieceSection;
 use table::Table;
+use trace::TraceSection;
 
 /// The page; askama escapes every text that is put into it, but for the pictures.
 #[derive(Template)]
@@ -24,6 +27,7 @@ struct Page {
     lead: Vec<String>,
     constants: Table,
     about_constants: Vec<String>,
+    trace: Option<TraceSection>,
     pieces: Vec<PieceSection>,
     notes: Vec<String>,
 }
@@ -41,7 +45,12 @@ impl Figure {
 }
 
 /// The page of a test at `path`.
-pub fn page(path: &Path, identified: &Identified, evidence: &Evidence) -> Result<String, CommandError> {
+pub fn page(
+    path: &Path,
+    identified: &Identified,
+    traced: Option<&Traced>,
+    evidence: &Evidence,
+) -> Result<String, CommandError> {
     let found = &identified.found;
     let pieces = found.pieces.iter().zip(&evidence.pieces);
     let page = Page {
@@ -50,6 +59,7 @@ pub fn page(path: &Path, identified: &Identified, evidence: &Evidence) -> Result
         lead: constants::lead(found),
         constants: constants::table(found),
         about_constants: constants::remarks(found),
+        trace: traced.map(TraceSection::of),
         pieces: pieces.map(|(fit, shown)| PieceSection::of(fit, shown)).collect::<Result<_, _>>()?,
         notes: notes::counted(&found.notes).collect(),
     };

@@ -1,0 +1,55 @@
+//! `trace`: the effect that the model lacks.
+
+use std::path::PathBuf;
+
+use orthopanel_data::ImpactTest;
+
+use crate::error::CommandError;
+use crate::output;
+use crate::traced::Traced;
+
+/// Name the physical effect that the model of a test lacks
+///
+/// The base model, with every effect that the test file declares under [[effect]], is fitted to the data; then every
+/// effect of the catalogue with it, alone and together, and each is judged by what was held out. The verdict is one of
+/// nothing-missing, explained, ambiguous (with the effects that fit alike, and the measurement that would part them) and
+/// unexplained.
+///
+/// -o writes the panel's model: effects of the panel stay in it, those of the rig and of the measuring chain are taken out.
+///
+/// Example: orthopanel trace examples/misplaced-hit/test.toml -o traced.json
+#[derive(clap::Args)]
+#[command(verbatim_doc_comment)]
+pub struct Arguments {
+    /// Test file (test.toml)
+    test: PathBuf,
+    /// Model file to write (orthopanel.model/1, JSON)
+    #[arg(short, long, value_name = "MODEL.json")]
+    output: Option<PathBuf>,
+    /// Print one JSON object (orthopanel.trace/1) on standard output
+    #[arg(long)]
+    json: bool,
+}
+
+pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
+    let path = &arguments.test;
+    let test = ImpactTest::read(path)?;
+    let traced = Traced::from_test(&test).map_err(|source| CommandError::Identify { path: path.clone(), source })?;
+    if let Some(output) = &arguments.output {
+        let panels = &traced.tracing.panels;
+        let mut files = output::Files::default();
+        for (index, panel) in panels.iter().enumerate() {
+            let suffix = if panels.len() == 1 { String::new() } else { format!("-{}", index + 1) };
+            files.add(output::with_suffix(output, &suffix), panel.to_json());
+        }
+        for path in files.write()? {
+            eprintln!("wrote {}", path.display());
+        }
+    }
+    if arguments.json {
+        output::print_json(&traced.tracing);
+    } else {
+        output::print(&traced.text());
+    }
+    Ok(())
+}

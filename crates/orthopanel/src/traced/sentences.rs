@@ -1,0 +1,47 @@
+//! What a trace found, in sentences.
+
+use orthopanel_identify::{TracedEffect, Verdict};
+
+use super::Traced;
+
+impl Traced {
+    /// The verdict in one plain sentence.
+    pub fn verdict(&self) -> String {
+        let tracing = &self.tracing;
+        let named = names(&tracing.effects);
+        match tracing.verdict {
+            Verdict::NothingMissing => {
+                "Nothing is missing: no effect of the catalogue makes up for the parameters it brings.".into()
+            }
+            Verdict::Explained => format!("The model lacked {named}, clearly ahead of every other effect."),
+            Verdict::Ambiguous if tracing.effects.is_empty() => {
+                format!("These data cannot tell whether something is missing; possible are {}.", self.alternatives())
+            }
+            Verdict::Ambiguous => {
+                format!("The model lacked something: {named}, but these fit alike: {}.", self.alternatives())
+            }
+            Verdict::Unexplained if tracing.effects.is_empty() => {
+                "Something is missing that no effect of the catalogue explains.".into()
+            }
+            Verdict::Unexplained => {
+                format!("Something is missing that no effect of the catalogue explains; the nearest is {named}.")
+            }
+        }
+    }
+
+    fn alternatives(&self) -> String {
+        if self.tracing.alternatives.is_empty() { "none".into() } else { self.tracing.alternatives.join(", ") }
+    }
+
+    /// What the panel's model keeps of the effects found, and what was taken out and why.
+    pub fn ownership(&self) -> Vec<String> {
+        let kept = self.panels().unwrap_or_default().iter().flat_map(|panel| &panel.effects);
+        let kept = kept.map(|effect| format!("{} stays in the model: it belongs to the panel.", effect.id));
+        let removed = self.tracing.removed.iter();
+        kept.chain(removed.map(|of| format!("{} is taken out of the model: {}.", of.id, of.why))).collect()
+    }
+}
+
+fn names(effects: &[TracedEffect]) -> String {
+    effects.iter().map(|effect| effect.id).collect::<Vec<_>>().join(" and ")
+}

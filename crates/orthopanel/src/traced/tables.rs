@@ -1,0 +1,94 @@
+//! What a trace found, as tables: the effects, the errors, the ranking.
+
+use orthopanel_identify::{Candidate, FittedError, TracedEffect, TracedParameter, Tracing};
+
+use super::Traced;
+use crate::tables::{aligned, ending_in_words};
+
+/// Effect, owner, parameter, value, standard deviation and unit; a row a number.
+pub fn effect_rows(effects: &[TracedEffect]) -> Vec<Vec<String>> {
+    effects.iter().flat_map(|effect| effect.parameters.iter().flat_map(|of| parameter_rows(effect, of))).collect()
+}
+
+fn parameter_rows(effect: &TracedEffect, parameter: &TracedParameter) -> Vec<Vec<String>> {
+    let several = parameter.values.len() > 1;
+    let row = |(record, estimate): (usize, &orthopanel_model::Estimate)| {
+        let name = if several { format!("{} of record {record}", parameter.name) } else { parameter.name.to_owned() };
+        let std = estimate.std.map_or("held".into(), |std| format!("{std:.1e}"));
+        let unit = if parameter.unit == "1" { "" } else { parameter.unit };
+        let value = format!("{:.4e}", estimate.value);
+        vec![effect.id.to_owned(), effect.owner.name().to_owned(), name, value, std, unit.to_owned()]
+    };
+    (1..).zip(&parameter.values).map(row).collect()
+}
+
+/// The base, the model with the effects, and the noise: error on what was fitted and on what was held out.
+pub fn comparison_rows(tracing: &Tracing) -> Vec<Vec<String>> {
+    let row = |name: &str, error: FittedError| vec![name.into(), number(error.fitted), number(error.held_out)];
+    let floor = tracing.error.noise_floor;
+    vec![
+        row("before", tracing.error.before),
+        row("after", tracing.error.after),
+        vec!["noise floor".into(), number(floor), number(floor)],
+    ]
+}
+
+/// Candidate, how much worse its information criterion is than the best, error held out and parameters.
+pub fn ranking_rows(tracing: &Tracing, most: usize) -> Vec<Vec<String>> {
+    let best = tracing.candidates.iter().map(|candidate| candidate.bic).fold(f64::INFINITY, f64::min);
+    let row = |candidate: &Candidate| {
+        let margin = candidate.bic - best;
+        vec![candidate.id.clone(), format!("{margin:.1}"), number(candidate.held_out), parameters_text(candidate)]
+    };
+    tracing.candidates.iter().take(most).map(row).collect()
+}
+
+/// Such as `mass 5.02e-3 +- 1.1e-5 kg`.
+fn parameters_text(candidate: &Candidate) -> String {
+    let text = |parameter: &TracedParameter| {
+        let unit = if parameter.unit == "1" { "" } else { parameter.unit };
+        match &parameter.values[..] {
+            [one] => {
+                let std = one.std.map_or(String::new(), |std| format!(" +- {std:.1e}"));
+                format!("{} {:.3e}{std} {unit}", parameter.name, one.value).trim_end().to_owned()
+            }
+            many => format!("{} of {} records", parameter.name, many.len()),
+        }
+    };
+    let all = candidate.effects.iter().flat_map(|effect| &effect.parameters);
+    all.map(text).collect::<Vec<_>>().join(", ")
+}
+
+fn number(value: f64) -> String {
+    if (0.01..1e4).contains(&value) { format!("{value:.3}") } else { format!("{value:.2e}") }
+}
+
+/// Hypotheses listed for people; JSON holds all.
+const LISTED: usize = 10;
+
+impl Traced {
+    /// Verdict, effects, errors, ranking, ownership and the next experiment.
+    pub fn text(&self) -> String {
+        let tracing = &self.tracing;
+        let mut text = self.verdict() + "\n";
+        if !tracing.effects.is_empty() {
+            let headings = ["effect", "owner", "parameter", "value", "std", "unit"];
+            text += &format!("\n{}", aligned(&headings, &effect_rows(&tracing.effects)));
+        }
+        text += &format!("\n{}\n", tracing.error.measure);
+        text += &aligned(&["", "fitted", "held out"], &comparison_rows(tracing));
+        let headings = ["hypothesis", "BIC above best", "held out", "parameters"];
+        text += &format!("\n{}", ending_in_words(&headings, &ranking_rows(tracing, LISTED)));
+        for of in &tracing.not_tested {
+            text += &format!("not tested: {}: {}\n", of.id, of.reason);
+        }
+        text += "\n";
+        for sentence in self.ownership() {
+            text += &(sentence + "\n");
+        }
+        if !tracing.next_experiment.is_empty() {
+            text += &format!("next experiment: {}\n", tracing.next_experiment);
+        }
+        text
+    }
+}

@@ -1,0 +1,65 @@
+//! `trace`, and tracing inside `run` and `report`.
+
+mod support;
+
+use support::{Bench, number, refused};
+
+/// The hammer hit 10 mm beside the place that the test file gives.
+const MISPLACED: &str = "examples/misplaced-hit/test.toml";
+
+#[test]
+fn val_a_misplaced_hammer_is_named_and_its_way_found() {
+    let bench = Bench::new();
+    let answer = bench.json(&format!("trace {MISPLACED} -o model.json"));
+    assert_eq!(answer["schema"], "orthopanel.trace/1");
+    assert_eq!(answer["verdict"], "explained");
+    assert_eq!(answer["effects"][0]["id"], "hammer-offset");
+    assert_eq!(answer["effects"][0]["owner"], "channel");
+    // Noise of 0.3 % in 3 hits leaves some micrometres.
+    let offset = number(&answer, "/effects/0/parameters/offset/value");
+    assert!((offset + 0.01).abs() < 3e-5, "offset {offset} m, put in -0.01 m");
+    assert!(number(&answer, "/effects/0/parameters/offset/std") > 0.0);
+    let error = |path: &str| number(&answer, &format!("/error/{path}"));
+    assert!(error("after/held_out") < 0.1 * error("before/held_out"));
+    assert!(error("after/held_out") < 1.2 * error("noise_floor"));
+    assert!(answer["candidates"].as_array().is_some_and(|candidates| candidates.len() > 5));
+    assert!(answer["next_experiment"].is_string());
+    // It belongs to the measuring chain, so the panel's model does not have it, and its constants are right again.
+    let model = bench.read_json("model.json");
+    assert!(model.get("effects").is_none(), "{model}");
+    assert_eq!(answer["removed"][0]["id"], "hammer-offset");
+    let truth = bench.read_json("examples/made-hits/truth.json");
+    for name in ["e_x", "g_zx"] {
+        let found = number(&model, &format!("/constants/{name}/value"));
+        let error = found / number(&truth, &format!("/constants/{name}")) - 1.0;
+        assert!(error.abs() < 1e-3, "{name}: {found:e}, {error:e} from the truth");
+    }
+}
+
+#[test]
+fn run_writes_the_panel_without_rig_and_channel_and_says_so() {
+    let bench = Bench::new();
+    let answer = bench.json(&format!("run {MISPLACED} -o out"));
+    assert_eq!(answer["trace"]["verdict"], "explained");
+    assert_eq!(bench.read_json("out/trace.json"), answer["trace"]);
+    let model = bench.read_json("out/model.json");
+    assert_eq!(model["provenance"]["removed"], serde_json::json!(["hammer-offset"]));
+    assert_eq!(model["provenance"]["trace"], "explained");
+    let page = std::fs::read_to_string(bench.path("out/report.html")).expect("a page");
+    for said in ["What the model lacks", "hammer-offset", "taken out of the model", "Error before and after", "Ranking"]
+    {
+        assert!(page.contains(said), "the page does not say {said:?}");
+    }
+}
+
+#[test]
+fn a_test_that_cannot_be_traced_still_runs_and_says_why() {
+    let bench = Bench::new();
+    let output = bench.run("run examples/pieces-1-2/test.toml -o out --json");
+    let message = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success() && message.contains("not traced: "), "{message}");
+    let answer: serde_json::Value = serde_json::from_slice(&output.stdout).expect("one JSON object");
+    assert!(answer["trace"].is_null());
+    refused(&bench, "trace examples/pieces-1-2/test.toml -o traced.json", 2, &["examples/pieces-1-2/test.toml"]);
+    refused(&bench, "trace nowhere.toml", 2, &["nowhere.toml", "cannot be read"]);
+}
