@@ -46,8 +46,14 @@ fn run_writes_the_panel_without_rig_and_channel_and_says_so() {
     assert_eq!(model["provenance"]["removed"], serde_json::json!(["hammer-offset"]));
     assert_eq!(model["provenance"]["trace"], "explained");
     let page = std::fs::read_to_string(bench.path("out/report.html")).expect("a page");
-    for said in ["What the model lacks", "hammer-offset", "taken out of the model", "Error before and after", "Ranking"]
-    {
+    for said in [
+        "What the model lacks",
+        "constant with it",
+        "hammer-offset",
+        "taken out of the model",
+        "Error before and after",
+        "Ranking",
+    ] {
         assert!(page.contains(said), "the page does not say {said:?}");
     }
 }

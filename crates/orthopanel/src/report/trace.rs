@@ -6,6 +6,8 @@ use crate::traced::{Traced, comparison_rows, effect_rows, ranking_rows};
 pub struct TraceSection {
     pub verdict: String,
     pub effects: Option<Table>,
+    /// Those of the panel beside the effects.
+    pub constants: Option<Table>,
     pub measure: String,
     pub comparison: Table,
     pub ranking: Table,
@@ -19,11 +21,14 @@ pub struct TraceSection {
 impl TraceSection {
     pub fn of(traced: &Traced) -> Self {
         let tracing = &traced.tracing;
+        let constants = traced.constant_rows();
         let effects = ["effect", "owner", "parameter", "value", "std", "unit"];
         let ranking = ["hypothesis", "BIC above best", "error held out", "\"parameters"];
         Self {
             verdict: traced.verdict(),
             effects: (!tracing.effects.is_empty()).then(|| Table::new(&effects, effect_rows(&tracing.effects))),
+            constants: (!constants.is_empty())
+                .then(|| Table::new(&["constant with it", "value", "std", "unit"], constants)),
             measure: tracing.error.measure.clone(),
             comparison: Table::new(&["", "fitted", "held out"], comparison_rows(tracing)),
             ranking: Table::new(&ranking, ranking_rows(tracing, usize::MAX)),

@@ -1,6 +1,7 @@
 //! What a trace found, as tables: the effects, the errors, the ranking.
 
 use orthopanel_identify::{Candidate, FittedError, TracedEffect, TracedParameter, Tracing};
+use orthopanel_model::Estimate;
 
 use super::Traced;
 use crate::tables::{aligned, ending_in_words};
@@ -12,7 +13,7 @@ pub fn effect_rows(effects: &[TracedEffect]) -> Vec<Vec<String>> {
 
 fn parameter_rows(effect: &TracedEffect, parameter: &TracedParameter) -> Vec<Vec<String>> {
     let several = parameter.values.len() > 1;
-    let row = |(record, estimate): (usize, &orthopanel_model::Estimate)| {
+    let row = |(record, estimate): (usize, &Estimate)| {
         let name = if several { format!("{} of record {record}", parameter.name) } else { parameter.name.to_owned() };
         let std = estimate.std.map_or("held".into(), |std| format!("{std:.1e}"));
         let unit = if parameter.unit == "1" { "" } else { parameter.unit };
@@ -45,17 +46,20 @@ pub fn ranking_rows(tracing: &Tracing, most: usize) -> Vec<Vec<String>> {
 
 /// Such as `mass 5.02e-3 +- 1.1e-5 kg`.
 fn parameters_text(candidate: &Candidate) -> String {
-    let text = |parameter: &TracedParameter| {
+    let several = candidate.effects.len() > 1;
+    let text = |(id, parameter): (&str, &TracedParameter)| {
+        let name = if several { format!("{id}.{}", parameter.name) } else { parameter.name.to_owned() };
         let unit = if parameter.unit == "1" { "" } else { parameter.unit };
         match &parameter.values[..] {
             [one] => {
                 let std = one.std.map_or(String::new(), |std| format!(" +- {std:.1e}"));
-                format!("{} {:.3e}{std} {unit}", parameter.name, one.value).trim_end().to_owned()
+                format!("{name} {:.3e}{std} {unit}", one.value).trim_end().to_owned()
             }
-            many => format!("{} of {} records", parameter.name, many.len()),
+            many => format!("{name} of {} records", many.len()),
         }
     };
-    let all = candidate.effects.iter().flat_map(|effect| &effect.parameters);
+    let all = candidate.effects.iter();
+    let all = all.flat_map(|effect| effect.parameters.iter().map(move |parameter| (effect.id, parameter)));
     all.map(text).collect::<Vec<_>>().join(", ")
 }
 
@@ -67,6 +71,18 @@ fn number(value: f64) -> String {
 const LISTED: usize = 10;
 
 impl Traced {
+    /// Constants of the panel beside the effects that were found: those of the model that is written; none where no
+    /// effect was found.
+    pub fn constant_rows(&self) -> Vec<Vec<String>> {
+        let panel = self.panels().and_then(|panels| panels.first());
+        let row = |(name, of): (&String, &Estimate)| {
+            let std = of.std.map_or("held".into(), |std| format!("{std:.1e}"));
+            let unit = if name == "nu_xy" { "" } else { "Pa" };
+            vec![name.clone(), format!("{:.4e}", of.value), std, unit.to_owned()]
+        };
+        panel.into_iter().flat_map(|panel| &panel.constants).map(row).collect()
+    }
+
     /// Verdict, effects, errors, ranking, ownership and the next experiment.
     pub fn text(&self) -> String {
         let tracing = &self.tracing;
@@ -74,6 +90,10 @@ impl Traced {
         if !tracing.effects.is_empty() {
             let headings = ["effect", "owner", "parameter", "value", "std", "unit"];
             text += &format!("\n{}", aligned(&headings, &effect_rows(&tracing.effects)));
+        }
+        let constants = self.constant_rows();
+        if !constants.is_empty() {
+            text += &format!("\n{}", aligned(&["constant with it", "value", "std", "unit"], &constants));
         }
         text += &format!("\n{}\n", tracing.error.measure);
         text += &aligned(&["", "fitted", "held out"], &comparison_rows(tracing));
