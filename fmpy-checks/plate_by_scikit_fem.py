@@ -87,26 +87,39 @@ def frequencies(stiffness, mass, free, count):
     return found[found > 1e-2 * found[-1] / count][:count]
 
 
+def solve(model, cells, count):
+    """Frequencies [Hz] and mass-normalised vectors of the lowest modes of a free plate, three rigid ones first; the basis."""
+    stiffness, mass, free = matrices(model, cells)
+    k, m = stiffness[free][:, free].tocsc(), mass[free][:, free].tocsc()
+    values, vectors = eigsh(k, count + 3, m, sigma=-1e4, which="LM")
+    order = np.argsort(values)
+    found = np.sqrt(np.clip(values[order], 0.0, None)) / (2.0 * np.pi)
+    found[:3] = 0.0
+    half = 0.5 * model["piece"]["length"], 0.5 * model["piece"]["width"]
+    mesh = MeshQuad.init_tensor(np.linspace(-half[0], half[0], cells[0] + 1), np.linspace(-half[1], half[1], cells[1] + 1))
+    return found, vectors[:, order], Basis(mesh, ElementComposite(*(ElementQuadP(ORDER) for _ in range(3))))
+
+
+def shapes_at(model, cells, count, places):
+    """Frequencies [Hz] and deflections at places (x, y) of a free plate's modes, three rigid ones first."""
+    found, vectors, basis = solve(model, cells, count)
+    rows = basis.split_indices()[0]
+    return found, basis.split_bases()[0].probes(np.array(places).T) @ vectors[rows]
+
+
 def nodal_lines(model, cells, count):
     """Frequencies [Hz] and nodal lines [across x, across y] of the lowest flexible modes of a free plate.
 
     Lines are counted as changes of sign of the deflection along the line of cells' corners where it is greatest, in both
     directions: no projection, so it shares nothing with how orthopanel names a mode.
     """
-    stiffness, mass, free = matrices(model, cells)
-    k, m = stiffness[free][:, free].tocsc(), mass[free][:, free].tocsc()
-    values, vectors = eigsh(k, count + 3, m, sigma=-1e4, which="LM")
-    order = np.argsort(values)[3:]
     half = 0.5 * model["piece"]["length"], 0.5 * model["piece"]["width"]
-    mesh = MeshQuad.init_tensor(np.linspace(-half[0], half[0], cells[0] + 1), np.linspace(-half[1], half[1], cells[1] + 1))
-    basis = Basis(mesh, ElementComposite(*(ElementQuadP(ORDER) for _ in range(3))))
     x, y = np.linspace(-half[0], half[0], 61), np.linspace(-half[1], half[1], 25)
     grid = np.array(np.meshgrid(x, y, indexing="ij")).reshape(2, -1)
-    part = basis.split_bases()[0].probes(grid)
-    rows = basis.split_indices()[0]
+    frequencies, shapes = shapes_at(model, cells, count, grid.T)
     found = []
-    for column in order:
-        deflection = (part @ vectors[rows, column]).reshape(len(x), len(y))
+    for frequency, shape in list(zip(frequencies, shapes.T))[3:]:
+        deflection = shape.reshape(len(x), len(y))
         changes = [0, 0]
         for axis in (0, 1):
             amplitude = np.abs(deflection).max(axis=axis)
@@ -114,7 +127,7 @@ def nodal_lines(model, cells, count):
             # Values near zero have no sure sign.
             line = line[np.abs(line) > 1e-3 * np.abs(line).max()]
             changes[axis] = int(np.sum(np.sign(line[1:]) != np.sign(line[:-1])))
-        found.append((float(np.sqrt(values[column]) / (2.0 * np.pi)), changes))
+        found.append((float(frequency), changes))
     return found
 
 

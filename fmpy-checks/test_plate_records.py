@@ -1,0 +1,63 @@
+"""A plate from accelerances at places off its centre line: scikit-fem's modes, damped and noisy, in; constants out."""
+
+import json
+import os
+import subprocess
+
+import numpy as np
+import pytest
+from conftest import ROOT
+from plate_by_scikit_fem import shapes_at
+
+TRUTH = {"e_x": 1.07e10, "e_y": 8.6e9, "nu_xy": 0.34, "g_xy": 3.2e9, "g_yz": 2.6e8, "g_zx": 5.363e8}
+PIECE = {"length": 0.8, "width": 0.2, "thickness": 0.03, "mass_per_area": 6.880}
+RESPONSE = (0.31, 0.07)
+FORCES = [(-0.37, -0.08), (-0.21, 0.09), (0.02, -0.05), (0.17, 0.06), (-0.30, 0.0)]
+LINES = np.arange(40.0, 2700.0, 1.25)
+NOISE = 2e-3  # of each record's rms
+
+
+@pytest.fixture(scope="module")
+def test_folder(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("plate-records")
+    random = np.random.default_rng(7)
+    # Modes far above the band, so that the sum's end does not show at these distances between force and response.
+    frequencies, shapes = shapes_at({"piece": PIECE, "constants": TRUTH}, (16, 5), 90, [RESPONSE, *FORCES])
+    zetas = 2e-3 * np.exp(0.3 * random.standard_normal(len(frequencies)))
+    omega, natural = 2.0 * np.pi * LINES[:, None], 2.0 * np.pi * frequencies
+    gain = -(omega**2) / (natural**2 - omega**2 + 2j * zetas * natural * omega)
+    # Rigid modes come first, at zero frequency.
+    gain[:, :3] = 1.0
+    lines = ['structure = "mindlin-plate"', "[piece]"] + [f"{key} = {value}" for key, value in PIECE.items()]
+    for number, force in enumerate(FORCES):
+        value = gain @ (shapes[0] * shapes[1 + number])
+        std = NOISE * np.sqrt(np.mean(np.abs(value) ** 2))
+        value = value + std * np.sqrt(0.5) * (random.standard_normal(len(LINES)) + 1j * random.standard_normal(len(LINES)))
+        table = np.column_stack([LINES, value.real, value.imag, np.full(len(LINES), std**2)])
+        name = f"place-{number}.csv"
+        np.savetxt(folder / name, table, delimiter=",", header="frequency_hz,real,imag,variance", comments="")
+        lines += ["[[measurement]]", 'kind = "accelerance"', f'file = "{name}"']
+        lines += [f"force_at = {list(force)}", f"response_at = {list(RESPONSE)}"]
+    (folder / "test.toml").write_text("\n".join(lines) + "\n")
+    inside = (frequencies > 1.0) & (frequencies < LINES[-1])
+    return folder, zetas[inside], frequencies[inside]
+
+
+def test_constants_and_damping_of_a_plate_come_from_its_accelerances(test_folder):
+    folder, zetas, frequencies = test_folder
+    command = os.environ.get("ORTHOPANEL", str(ROOT / "target/release/orthopanel"))
+    done = subprocess.run([command, "identify", str(folder / "test.toml"), "--json"], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    found = json.loads(done.stdout)
+    for name in ("e_x", "g_xy", "g_zx"):
+        assert found["constants"][name]["value"] == pytest.approx(TRUTH[name], rel=0.005), found["constants"]
+    for name, constant in found["constants"].items():
+        if not constant["held"]:
+            assert abs(constant["value"] - TRUTH[name]) < 4.0 * constant["std"], (name, constant)
+    modes = found["modes"]
+    assert [mode["nodes"] for mode in modes] == [[2, 0], [1, 1], [3, 0], [2, 1], [4, 0], [3, 1], [5, 0], [4, 1]][: len(modes)]
+    assert len(modes) >= 7
+    for mode in modes:
+        index = mode["mode"] - 1
+        assert mode["measured_hz"] == pytest.approx(frequencies[index], rel=2e-4)
+        assert mode["zeta"] == pytest.approx(zetas[index], rel=0.05), mode
