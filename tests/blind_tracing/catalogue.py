@@ -145,7 +145,8 @@ def record_gain(bench, draw):
     """One record's gain: an oblique hit, a range switched."""
     record = int(draw.random.integers(len(bench.forces)))
     bench.record_gain[record] = (1.0 + draw.rising(0.03, 0.2)) ** draw.sign()
-    return {"gain": float(bench.record_gain[record]), "record": record}
+    # Records count from 1, as "the fourth place" does.
+    return {"gain": float(bench.record_gain[record]), "record": record + 1}
 
 
 def hammer_offset(bench, draw):

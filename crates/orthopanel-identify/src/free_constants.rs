@@ -84,6 +84,22 @@ impl FreeConstants {
         self.resting.iter().find(|(resting, _)| *resting == constant).map(|(_, rest)| *rest)
     }
 
+    /// The same with every resting constant free too, behind the others, and the parameters of both at the same values.
+    pub fn with_resting_freed(&self, parameters: &[f64]) -> (Self, Vec<f64>) {
+        let values = self.values(parameters, 0);
+        let (mut more, mut at) = (self.clone(), parameters.to_vec());
+        for (constant, _) in more.resting.drain(..) {
+            more.free.push(FreeConstant { constant, piece: None });
+            at.push(to_scale(&more.constants[constant], values[constant]));
+        }
+        (more, at)
+    }
+
+    /// Standard deviation of a parameter that nothing but what is usual for panels tells.
+    pub fn usual_std(&self, parameter: usize) -> f64 {
+        if is_logarithmic(self.constant(parameter)) { USUAL_LOG_STD } else { USUAL_POISSON_STD }
+    }
+
     /// Whether no modulus is held: all frequencies then go with the root of a factor on all moduli.
     pub fn moduli_are_free(&self) -> bool {
         self.constants.iter().zip(&self.held).all(|(constant, held)| !is_logarithmic(constant) || held.is_none())
@@ -182,6 +198,11 @@ impl FreeConstants {
         })
     }
 }
+
+/// Moduli of panels lie within some 30 % of what is usual beside the others,
+const USUAL_LOG_STD: f64 = 0.3;
+/// and Poisson's ratios within 0.1.
+const USUAL_POISSON_STD: f64 = 0.1;
 
 fn is_logarithmic(constant: &Constant) -> bool {
     constant.unit == "Pa"

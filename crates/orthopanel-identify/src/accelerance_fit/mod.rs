@@ -77,7 +77,7 @@ struct StartPiece {
 /// frequency; then the constants come from the poles' frequencies, the damping from the poles, and a note says so.
 pub(crate) fn identify_records(test: &ImpactTest, settings: Settings) -> Result<Identification, IdentifyError> {
     let start = start(test, settings)?;
-    let problem = assemble(&start, settings)?;
+    let mut problem = assemble(&start, settings)?;
     let parameters = starting_parameters(&problem, &start);
     let minimum = match settings.search {
         Search::LeastSquares if !start.resonances_meet() => {
@@ -101,7 +101,7 @@ pub(crate) fn identify_records(test: &ImpactTest, settings: Settings) -> Result<
             Minimum { at: problem.linearise(&parameters)?, parameters }
         }
     };
-    outcome::outcome(test, settings, start, &problem, minimum)
+    outcome::outcome(test, settings, start, &mut problem, minimum)
 }
 
 fn start(test: &ImpactTest, settings: Settings) -> Result<Start, IdentifyError> {

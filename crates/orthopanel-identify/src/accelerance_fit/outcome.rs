@@ -22,14 +22,18 @@ pub(super) fn outcome(
     test: &ImpactTest,
     settings: Settings,
     start: Start,
-    problem: &AcceleranceProblem,
+    problem: &mut AcceleranceProblem,
     minimum: Minimum,
 ) -> Result<Identification, IdentifyError> {
     let Minimum { parameters, at } = minimum;
     let freedom = problem.data().saturating_sub(problem.size()).max(1) as f64;
     let chi_square = at.cost / freedom;
     let noise_known = problem.noise_is_known();
-    let covariance = at.covariance();
+    let covariance = if problem.constants.resting.is_empty() {
+        at.covariance()
+    } else {
+        with_unseen(problem, &parameters, chi_square.max(1.0))?
+    };
     let std_factor = if noise_known { chi_square.max(1.0).sqrt() } else { chi_square.sqrt() };
     let std = |i: usize| covariance.as_ref().map(|matrix| std_factor * matrix[(i, i)].sqrt());
     if settings.search == Search::LeastSquares && noise_known && chi_square > FAR_FROM_NOISE {
@@ -46,6 +50,28 @@ pub(super) fn outcome(
         problem,
         Found { parameters, log_std, correlations, chi_square: noise_known.then_some(chi_square) },
     )
+}
+
+/// Covariance of the parameters over `chi_square`, with what is not known of the resting constants in it.
+fn with_unseen(
+    problem: &mut AcceleranceProblem,
+    parameters: &[f64],
+    chi_square: f64,
+) -> Result<Option<Mat<f64>>, IdentifyError> {
+    let free = problem.constants.count();
+    let (constants, mut at) = problem.constants.with_resting_freed(&parameters[..free]);
+    let all = constants.count();
+    at.extend(&parameters[free..]);
+    let seen = std::mem::replace(&mut problem.constants, constants);
+    let quadratic = problem.linearise(&at);
+    let constants = std::mem::replace(&mut problem.constants, seen);
+    let mut quadratic = quadratic?;
+    for index in free..all {
+        quadratic.normal[(index, index)] += chi_square * constants.usual_std(index).powi(-2);
+    }
+    let Some(covariance) = quadratic.covariance() else { return Ok(None) };
+    let kept = |index: usize| if index < free { index } else { index + all - free };
+    Ok(Some(Mat::from_fn(parameters.len(), parameters.len(), |i, j| covariance[(kept(i), kept(j))])))
 }
 
 /// Parameters and what is known of them.

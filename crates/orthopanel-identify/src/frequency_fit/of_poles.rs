@@ -20,6 +20,9 @@ pub(crate) struct PoleSet {
     pub frequencies: Vec<f64>,
 }
 
+/// Relative error of a plate's frequency on the basis chosen for it: poles are read far more finely.
+const BASIS_ERROR: f64 = 1e-4;
+
 /// What poles tell.
 pub(crate) struct PoleFit {
     /// The constants that they show are free, the others rest.
@@ -41,8 +44,11 @@ pub(crate) fn fit_poles(
         Ok(FrequencySet {
             piece: set.piece,
             modes: structures::of(structure, &set.sizes, set.boundary, set.nodes)?,
+            rounding: match structure {
+                StructureKind::TimoshenkoBeam => Vec::new(),
+                StructureKind::MindlinPlate => set.frequencies.iter().map(|pole| BASIS_ERROR * pole).collect(),
+            },
             measured: set.frequencies,
-            rounding: Vec::new(),
         })
     });
     let sets = sets.collect::<Result<Vec<_>, IdentifyError>>()?;

@@ -16,7 +16,7 @@ pub(super) fn report(
 ) -> Result<Identification, IdentifyError> {
     let predictions = problem.predictions(found)?;
     let at = problem.linearised(&predictions, &problem.constants);
-    let uncertainty = uncertainty(problem, &at);
+    let uncertainty = uncertainty(problem, &predictions, found, &at);
     Ok(Identification {
         structure: problem.structure,
         constants: identified_constants(

@@ -1,8 +1,9 @@
 //! Standard deviations, correlations and the left-one-out error.
 
-use faer::Mat;
+use faer::linalg::solvers::DenseSolveCore;
+use faer::{Mat, Side};
 
-use super::problem::FrequencyProblem;
+use super::problem::{FrequencyProblem, SetPrediction};
 use crate::Correlation;
 use crate::least_squares::Linearised;
 
@@ -16,7 +17,13 @@ pub(super) struct Uncertainty {
     pub left_one_out_percent: Option<f64>,
 }
 
-pub(super) fn uncertainty(problem: &FrequencyProblem, at: &Linearised) -> Uncertainty {
+/// `predictions` are the modes at `parameters`, and `at` what follows from them.
+pub(super) fn uncertainty(
+    problem: &FrequencyProblem,
+    predictions: &[SetPrediction],
+    parameters: &[f64],
+    at: &Linearised,
+) -> Uncertainty {
     let quadratic = at.quadratic();
     let Some(covariance) = quadratic.covariance() else { return Uncertainty::default() };
     let free = problem.constants.count();
@@ -27,8 +34,36 @@ pub(super) fn uncertainty(problem: &FrequencyProblem, at: &Linearised) -> Uncert
     let correlations = pairs
         .map(|(i, j)| Correlation { first: name(i), second: name(j), value: covariance[(i, j)] / (root(i) * root(j)) })
         .collect();
-    let std = if variance > 0.0 { (0..free).map(|i| variance.sqrt() * root(i)).collect() } else { Vec::new() };
+    let std = if variance > 0.0 {
+        let stated = with_unseen(problem, predictions, parameters, variance);
+        let covariance = stated.unwrap_or_else(|| faer::Scale(variance) * &covariance);
+        (0..free).map(|i| covariance[(i, i)].sqrt()).collect()
+    } else {
+        Vec::new()
+    };
     Uncertainty { std, correlations, left_one_out_percent: left_one_out_percent(at, &covariance) }
+}
+
+/// Covariance of the parameters, then of the constants that rest, each of which may lie beside what is usual: what is not
+/// known of them is not known of the others either. `None` where none rests.
+fn with_unseen(
+    problem: &FrequencyProblem,
+    predictions: &[SetPrediction],
+    parameters: &[f64],
+    variance: f64,
+) -> Option<Mat<f64>> {
+    if problem.constants.resting.is_empty() {
+        return None;
+    }
+    let (constants, _) = problem.constants.with_resting_freed(parameters);
+    let mut normal = problem.linearised(predictions, &constants).quadratic().normal;
+    for i in 0..constants.count() {
+        (0..constants.count()).for_each(|j| normal[(i, j)] /= variance);
+    }
+    for index in parameters.len()..constants.count() {
+        normal[(index, index)] += constants.usual_std(index).powi(-2);
+    }
+    Some(normal.llt(Side::Lower).ok()?.inverse())
 }
 
 /// Variance of the relative residuals: their scatter, or the rounding to the analyser's bins, whichever is larger.
