@@ -84,11 +84,22 @@ pub(crate) fn identify_records(test: &ImpactTest, settings: Settings) -> Result<
             return outcome::from_poles(test, start, &problem, &parameters);
         }
         Search::LeastSquares => {
-            let fitted = levenberg_marquardt(|p| problem.linearise(p), &parameters, &problem.bounds());
+            // Lines tell far more than poles: what these do not show, lines may.
+            let seen = problem.constants.clone();
+            let all = problem.free_resting(&parameters);
+            let fitted = levenberg_marquardt(|p| problem.linearise(p), &all, &problem.bounds());
             match fitted {
-                Ok(minimum) => minimum,
+                Ok(minimum) if !outcome::is_far_from_noise(&problem, &minimum) => minimum,
                 // What cannot be fitted line by line is judged by its resonances, and refused there if need be.
-                Err(_) => return outcome::from_poles(test, start, &problem, &parameters),
+                fitted => {
+                    let own = |minimum: Minimum| {
+                        let zetas = minimum.parameters.into_iter().skip(all.len() - parameters.len() + seen.count());
+                        parameters[..seen.count()].iter().copied().chain(zetas).collect()
+                    };
+                    let parameters = fitted.map_or_else(|_| parameters.clone(), own);
+                    (problem.constants, problem.usual) = (seen, Vec::new());
+                    return outcome::from_poles(test, start, &problem, &parameters);
+                }
             }
         }
         Search::Simplex if start.structure != StructureKind::TimoshenkoBeam => {

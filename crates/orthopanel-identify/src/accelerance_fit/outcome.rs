@@ -1,27 +1,32 @@
 //! From the minimum to what is reported.
 
-use faer::Mat;
+use faer::{Mat, Side};
 use orthopanel_data::ImpactTest;
-use orthopanel_model::Estimate;
+use orthopanel_model::{Constant, Estimate};
 
 use super::problem::AcceleranceProblem;
 use super::{Start, StartPiece};
+use crate::free_constants::{FreeConstants, Rest};
 use crate::frequency_fit::identified_constants;
 use crate::least_squares::Minimum;
-use crate::{AcceleranceFit, Correlation, Identification, IdentifyError, ModeFit, PieceFit, Search, Settings};
+use crate::{
+    AcceleranceFit, Correlation, Identification, IdentifyError, ModeFit, NotIdentified, PieceFit, Search, Settings,
+};
 
 /// A misfit per datum above this is the model's, not the noise's, and line by line damping is not to be trusted.
 const FAR_FROM_NOISE: f64 = 25.0;
 /// Median misfit of a line \[%\] above which records and test file speak of different things. The median leaves out the
 /// peaks, where a right model with a wrong digit misses wholly, and the valleys, where noise does.
 const CONTRADICTION: f64 = 40.0;
+/// A constant is seen where its standard deviation is below this part of what is usual.
+const SEEN: f64 = 0.5;
 /// A damping ratio known no better than to this factor's logarithm is the prior's, and is not reported.
 const DAMPING_UNSEEN: f64 = 0.5;
 
 pub(super) fn outcome(
     test: &ImpactTest,
     settings: Settings,
-    start: Start,
+    mut start: Start,
     problem: &mut AcceleranceProblem,
     minimum: Minimum,
 ) -> Result<Identification, IdentifyError> {
@@ -29,49 +34,70 @@ pub(super) fn outcome(
     let freedom = problem.data().saturating_sub(problem.size()).max(1) as f64;
     let chi_square = at.cost / freedom;
     let noise_known = problem.noise_is_known();
-    let covariance = if problem.constants.resting.is_empty() {
-        at.covariance()
-    } else {
-        with_unseen(problem, &parameters, chi_square.max(1.0))?
-    };
+    let covariance = at.covariance();
     let std_factor = if noise_known { chi_square.max(1.0).sqrt() } else { chi_square.sqrt() };
     let std = |i: usize| covariance.as_ref().map(|matrix| std_factor * matrix[(i, i)].sqrt());
-    if settings.search == Search::LeastSquares && noise_known && chi_square > FAR_FROM_NOISE {
-        return from_poles(test, start, problem, &parameters);
-    }
     // Eq. 23 is no likelihood: its minimum has no standard deviation that follows from the noise.
     let likelihood = settings.search == Search::LeastSquares;
     let log_std: Vec<Option<f64>> = (0..problem.size()).map(|i| std(i).filter(|_| likelihood)).collect();
-    let correlations =
-        covariance.filter(|_| likelihood).map(|matrix| correlations(problem, &matrix)).unwrap_or_default();
-    report(
-        test,
-        &start,
-        problem,
-        Found { parameters, log_std, correlations, chi_square: noise_known.then_some(chi_square) },
-    )
+    let covariance = covariance.filter(|_| likelihood);
+    let correlations = covariance.as_ref().map(|matrix| correlations(problem, matrix)).unwrap_or_default();
+    let mut found = Found { parameters, log_std, correlations, chi_square: noise_known.then_some(chi_square) };
+    if !problem.usual.is_empty() {
+        start.fit.not_identified = rest_unseen(problem, &mut found, covariance.as_ref());
+    }
+    report(test, &start, problem, found)
 }
 
-/// Covariance of the parameters over `chi_square`, with what is not known of the resting constants in it.
-fn with_unseen(
+/// Whether the misfit is the model's, and not the noise's.
+pub(super) fn is_far_from_noise(problem: &AcceleranceProblem, minimum: &Minimum) -> bool {
+    let freedom = problem.data().saturating_sub(problem.size()).max(1) as f64;
+    problem.noise_is_known() && minimum.at.cost / freedom > FAR_FROM_NOISE
+}
+
+/// Lets those constants rest of which the records tell no more than what is usual, at the values found.
+fn rest_unseen(
     problem: &mut AcceleranceProblem,
-    parameters: &[f64],
-    chi_square: f64,
-) -> Result<Option<Mat<f64>>, IdentifyError> {
-    let free = problem.constants.count();
-    let (constants, mut at) = problem.constants.with_resting_freed(&parameters[..free]);
-    let all = constants.count();
-    at.extend(&parameters[free..]);
-    let seen = std::mem::replace(&mut problem.constants, constants);
-    let quadratic = problem.linearise(&at);
-    let constants = std::mem::replace(&mut problem.constants, seen);
-    let mut quadratic = quadratic?;
-    for index in free..all {
-        quadratic.normal[(index, index)] += chi_square * constants.usual_std(index).powi(-2);
+    found: &mut Found,
+    covariance: Option<&Mat<f64>>,
+) -> Vec<NotIdentified> {
+    let constants = problem.constants.clone();
+    let direction = covariance.map(|matrix| blind_direction(&constants, matrix)).unwrap_or_default();
+    let mut reports = Vec::new();
+    // From the last, so that the places of those before stay.
+    for usual in problem.usual.drain(..).rev() {
+        let std = found.log_std[usual.parameter].unwrap_or(f64::INFINITY);
+        if std < SEEN * usual.std {
+            continue;
+        }
+        let at = found.parameters[usual.parameter];
+        let end = |sign: f64| constants.value(usual.parameter, at + sign * 1.96 * std.min(usual.std));
+        let value = constants.value(usual.parameter, at);
+        let Constant { name, unit, .. } = *constants.constant(usual.parameter);
+        let interval = [end(-1.0), end(1.0)];
+        reports.push(NotIdentified { name, unit, held_at: value, interval, direction: direction.clone() });
+        problem.constants.rest(constants.free[usual.parameter].constant, Rest::Held(value));
+        found.parameters.remove(usual.parameter);
+        found.log_std.remove(usual.parameter);
     }
-    let Some(covariance) = quadratic.covariance() else { return Ok(None) };
-    let kept = |index: usize| if index < free { index } else { index + all - free };
-    Ok(Some(Mat::from_fn(parameters.len(), parameters.len(), |i, j| covariance[(kept(i), kept(j))])))
+    let resting: Vec<&str> = reports.iter().map(|unseen| unseen.name).collect();
+    found.correlations.retain(|pair| !resting.contains(&pair.first) && !resting.contains(&pair.second));
+    reports
+}
+
+/// The direction of the largest variance of the constants, largest component first and positive.
+fn blind_direction(constants: &FreeConstants, covariance: &Mat<f64>) -> Vec<(&'static str, f64)> {
+    let count = constants.count();
+    let own = Mat::from_fn(count, count, |i, j| covariance[(i, j)]);
+    let Ok(decomposition) = own.self_adjoint_eigen(Side::Lower) else { return Vec::new() };
+    let vectors = decomposition.U();
+    // Eigenvalues rise: the last is the greatest.
+    let mut components: Vec<(&'static str, f64)> =
+        (0..count).map(|i| (constants.constant(i).name, vectors[(i, count - 1)])).collect();
+    components.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
+    let sign = components.first().map_or(1.0, |(_, component)| component.signum());
+    components.retain(|(_, component)| component.abs() > 0.1);
+    components.into_iter().map(|(name, component)| (name, sign * component)).collect()
 }
 
 /// Parameters and what is known of them.

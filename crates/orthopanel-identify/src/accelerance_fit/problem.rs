@@ -88,6 +88,16 @@ pub(super) struct AcceleranceProblem {
     pub pieces: Vec<PieceProblem>,
     /// Where the damping of a mode that the records do not show is kept, as a logarithm.
     pub usual_log_zeta: f64,
+    /// Constants that poles alone do not show, kept near what is usual.
+    pub usual: Vec<Usual>,
+}
+
+/// A parameter that is kept near what is usual for panels, and yields to any record that shows it.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Usual {
+    pub parameter: usize,
+    pub centre: f64,
+    pub std: f64,
 }
 
 /// Standard deviation of a mode's $\ln\zeta$ before the records speak: a factor of seven. It keeps a mode that no record
@@ -101,7 +111,18 @@ impl AcceleranceProblem {
         pieces: Vec<PieceProblem>,
         usual_log_zeta: f64,
     ) -> Self {
-        Self { constants, law, pieces, usual_log_zeta }
+        Self { constants, law, pieces, usual_log_zeta, usual: Vec::new() }
+    }
+
+    /// Frees the constants that rest, each near its usual value; the parameters of all.
+    pub(super) fn free_resting(&mut self, parameters: &[f64]) -> Vec<f64> {
+        let seen = self.constants.count();
+        let (constants, mut at) = self.constants.with_resting_freed(&parameters[..seen]);
+        let usual = |parameter: usize| Usual { parameter, centre: at[parameter], std: constants.usual_std(parameter) };
+        self.usual = (seen..constants.count()).map(usual).collect();
+        self.constants = constants;
+        at.extend(&parameters[seen..]);
+        at
     }
 
     /// Number of parameters.
@@ -189,6 +210,9 @@ impl AcceleranceProblem {
         }
         for (column, log_zeta) in parameters.iter().enumerate().skip(self.constants.count()) {
             sum.add_row((log_zeta - self.usual_log_zeta) / PRIOR_LOG_ZETA_STD, &[(column, 1.0 / PRIOR_LOG_ZETA_STD)]);
+        }
+        for &Usual { parameter, centre, std } in &self.usual {
+            sum.add_row((parameters[parameter] - centre) / std, &[(parameter, 1.0 / std)]);
         }
         sum.mirror();
         Ok(sum)
