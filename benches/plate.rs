@@ -1,9 +1,14 @@
 //! Twenty modes of the paper's two widths as orthotropic Mindlin plates, to 1e-4 of their frequencies.
 //!
 //! `cargo bench -p orthopanel-model --bench plate` prints criterion's figures: with the basis built (a step of an
-//! identification), with the derivatives by all six stiffnesses, and cold (basis, matrices and modes).
+//! identification), with the derivatives by all six stiffnesses, and cold (basis, matrices and modes). Then it runs
+//! `fmpy-checks/plate_by_scikit_fem.py` on the same plates, in the Python named by `ORTHOPANEL_PYTHON` (default:
+//! `.venv/bin/python`, else `python3`), and prints both times and their ratio; its mesh is the coarsest that holds 1e-4.
 
 use std::hint::black_box;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::time::Instant;
 
 use criterion::{BenchmarkId, Criterion};
 use orthopanel_model::{Boundary, MindlinPlate, Piece, RitzMode, ritz_modes};
@@ -34,4 +39,59 @@ fn main() {
     }
     group.finish();
     criterion.final_summary();
+    println!("\n{:<26}{:>12}{:>14}{:>10}", "20 plate modes", "ours", "scikit-fem", "ratio");
+    for width in [0.1, 0.3] {
+        let built = plate(width);
+        let peer = scikit_fem(width);
+        beside(&format!("{width} m wide, built"), median(|| modes(&built)), peer.as_ref().map(|peer| peer.0));
+        beside(&format!("{width} m wide, cold"), median(|| modes(&plate(width))), peer.as_ref().map(|peer| peer.1));
+    }
+}
+
+/// Median seconds of 51 calls.
+fn median<T>(call: impl Fn() -> T) -> f64 {
+    let timed = |_| {
+        let before = Instant::now();
+        black_box(call());
+        before.elapsed().as_secs_f64()
+    };
+    let mut times: Vec<f64> = (0..51).map(timed).collect();
+    times.sort_by(f64::total_cmp);
+    times[times.len() / 2]
+}
+
+fn beside(label: &str, ours: f64, peer: Result<f64, &String>) {
+    match peer {
+        Ok(peer) => println!("{label:<26}{:>9.2} ms{:>11.1} ms{:>10.0}", ours * 1e3, peer * 1e3, peer / ours),
+        Err(reason) => println!("{label:<26}{:>9.2} ms   scikit-fem not run: {reason}", ours * 1e3),
+    }
+}
+
+/// Seconds that scikit-fem takes with the matrices built, and cold.
+fn scikit_fem(width: f64) -> Result<(f64, f64), String> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let [e_x, e_y, nu_xy, g_xy, g_yz, g_zx] = CONSTANTS;
+    let model = serde_json::json!({
+        "piece": {"length": 0.8, "width": width, "thickness": 0.03, "mass_per_area": 6.880},
+        "constants": {"e_x": e_x, "e_y": e_y, "nu_xy": nu_xy, "g_xy": g_xy, "g_yz": g_yz, "g_zx": g_zx},
+    });
+    let file = std::env::temp_dir().join(format!("orthopanel-plate-{}-{width}.json", std::process::id()));
+    std::fs::write(&file, model.to_string()).map_err(|error| error.to_string())?;
+    let own = root.join(".venv/bin/python");
+    let python = std::env::var_os("ORTHOPANEL_PYTHON").map(PathBuf::from);
+    let python = python.unwrap_or_else(|| if own.exists() { own } else { "python3".into() });
+    let done = Command::new(python)
+        .arg(root.join("fmpy-checks/plate_by_scikit_fem.py"))
+        .arg(&file)
+        .args(["--cells", "10", "3", "--repeat", "9"])
+        .output()
+        .map_err(|error| error.to_string());
+    let _ = std::fs::remove_file(&file);
+    let done = done?;
+    if !done.status.success() {
+        return Err(String::from_utf8_lossy(&done.stderr).lines().last().unwrap_or("it failed").to_owned());
+    }
+    let answer: serde_json::Value = serde_json::from_slice(&done.stdout).map_err(|error| error.to_string())?;
+    let seconds = |key: &str| answer[key].as_f64().ok_or_else(|| format!("no {key} in its answer"));
+    Ok((seconds("built_s")?, seconds("cold_s")?))
 }
