@@ -14,7 +14,7 @@ PIECE = {"length": 0.8, "width": 0.2, "thickness": 0.03, "mass_per_area": 6.880}
 RESPONSE = (0.31, 0.07)
 FORCES = [(-0.37, -0.08), (-0.21, 0.09), (0.02, -0.05), (0.17, 0.06), (-0.30, 0.0)]
 LINES = np.arange(40.0, 2700.0, 1.25)
-NOISE = 2e-3  # of each record's rms
+NOISE = 1e-2  # of each record's rms: well above what either basis leaves, 1e-4 of a frequency
 
 
 @pytest.fixture(scope="module")
@@ -49,11 +49,10 @@ def test_constants_and_damping_of_a_plate_come_from_its_accelerances(test_folder
     done = subprocess.run([command, "identify", str(folder / "test.toml"), "--json"], capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     found = json.loads(done.stdout)
-    for name in ("e_x", "g_xy", "g_zx"):
-        assert found["constants"][name]["value"] == pytest.approx(TRUTH[name], rel=0.005), found["constants"]
-    for name, constant in found["constants"].items():
-        if not constant["held"]:
-            assert abs(constant["value"] - TRUTH[name]) < 4.0 * constant["std"], (name, constant)
+    for name, truth in TRUTH.items():
+        constant = found["constants"][name]
+        assert constant["value"] == pytest.approx(truth, rel=0.01), (name, constant)
+        assert abs(constant["value"] - truth) < 5.0 * constant["std"], (name, constant)
     modes = found["modes"]
     assert [mode["nodes"] for mode in modes] == [[2, 0], [1, 1], [3, 0], [2, 1], [4, 0], [3, 1], [5, 0], [4, 1]][: len(modes)]
     assert len(modes) >= 7

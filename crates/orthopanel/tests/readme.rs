@@ -33,10 +33,15 @@ fn every_command_runs_and_its_number_holds() {
     assert!(drawn == kept, "docs/piece-1-frequencies.svg is not what `run` draws: copy out/frequencies.svg there");
 
     let answer: serde_json::Value =
-        serde_json::from_str(&run(&bench, &mut commands, "identify ")).expect("one JSON object");
+        serde_json::from_str(&run(&bench, &mut commands, "identify examples/pieces-1-2/")).expect("one JSON object");
     // The two pieces share E_x, so it lies between their own (the paper's table 4).
     let e_x = number(&answer, "/constants/e_x/value");
     assert!((1.070e10..1.095e10).contains(&e_x), "{e_x}");
+
+    let table = run(&bench, &mut commands, "identify examples/pieces-1-2-plate/");
+    // The figures that the README gives, found by an independent prototype of the plate too.
+    assert!(table.contains("0.362 % rms") && table.contains("0.483 % rms"), "{table}");
+    assert!(table.contains("g_xy is not identified"), "{table}");
 
     let table = run(&bench, &mut commands, "modes out/model.json ");
     let row = table.lines().nth(3).expect("mode 3");

@@ -126,7 +126,7 @@ fn half_waves(nodes: usize, ends: [End; 2]) -> f64 {
 
 /// Polynomials that hold so many half-waves to 1e-4 of their frequency, as tests/mindlin_plate_modes.rs finds.
 fn terms_for(half_waves: f64) -> usize {
-    (1.6 * half_waves.max(0.0) + 6.0).ceil() as usize
+    (1.7 * half_waves.max(0.0) + 6.0).ceil() as usize
 }
 
 /// Mean squares of slope and curvature over the mean square of the beam function with `nodes` between these ends.
