@@ -1,6 +1,9 @@
 //! Effects that are switched on, and which of their parameters a search moves.
 
-use orthopanel_model::{Effect, EffectState, ModelError, Piece, Scale};
+use orthopanel_data::ImpactTest;
+use orthopanel_model::{Effect, EffectState, ModelError, Piece, Scale, effect};
+
+use crate::IdentifyError;
 
 /// An effect with values for all its parameters.
 #[derive(Clone)]
@@ -86,6 +89,11 @@ impl Switched {
         switched
     }
 
+    /// How many parameters the effect has but for those that it keeps unless asked.
+    pub(super) fn held_or_free(&self) -> usize {
+        self.effect.parameters().iter().filter(|parameter| parameter.held_at.is_none()).count()
+    }
+
     /// What the model takes.
     pub(super) fn state(&self, records: usize) -> Result<EffectState, ModelError> {
         EffectState::new(self.effect, self.values.clone(), records)
@@ -138,6 +146,45 @@ impl Hypothesis {
             }
         }
         moved
+    }
+
+    /// Leaves parameters that lie on a bound there: whether there were any.
+    pub(super) fn rest_on_bounds(&mut self) -> bool {
+        let before = self.size();
+        for on in &mut self.effects {
+            let values = &on.values;
+            on.free.retain(|free| !free.on_bound(values[free.at]));
+        }
+        self.size() < before
+    }
+
+    /// The effects that a test file declares: what it tells of them is held, the rest is free.
+    ///
+    /// # Errors
+    /// [`ModelError::UnknownEffect`] for an id that the catalogue does not have, [`ModelError::EffectParameter`] for a
+    /// parameter that the effect does not have or may not be.
+    pub(super) fn declared(test: &ImpactTest, piece: &Piece, records: usize) -> Result<Self, IdentifyError> {
+        let mut hypothesis = Self::default();
+        for told in &test.effects {
+            let effect = effect(&told.id)?;
+            let known = |name: &String| effect.parameters().iter().any(|parameter| parameter.name == name);
+            if let Some(name) = told.parameters.keys().find(|name| !known(name)) {
+                let names: Vec<&str> = effect.parameters().iter().map(|parameter| parameter.name).collect();
+                let message = format!("effect {:?}: no parameter {name:?}, it has {}", told.id, names.join(", "));
+                return Err(IdentifyError::Unsupported(message));
+            }
+            let value = |name: &str| told.parameters.get(name).copied();
+            let switched = Switched::new(effect, piece, records, value, |name| value(name).is_some());
+            for (parameter, value) in effect.parameters().iter().filter_map(|p| Some((p, value(p.name)?))) {
+                let (low, high) = parameter.range(piece);
+                if !(low..=high).contains(&value) {
+                    let (effect, name, unit) = (effect.id(), parameter.name, parameter.unit);
+                    return Err(ModelError::EffectParameter { effect, name, value, unit, low, high }.into());
+                }
+            }
+            hypothesis.effects.push(switched);
+        }
+        Ok(hypothesis)
     }
 
     /// Every free parameter with its effect.

@@ -9,6 +9,7 @@
 //! effect, free of leakage, and with peaks as wide as a search needs ([`widened_lines`]).
 
 mod fit;
+mod frequencies;
 mod held_out;
 mod hit_noise;
 mod hypothesis;
@@ -34,10 +35,12 @@ pub use outcome::{
 pub use rows::TRACE_SCHEMA;
 
 use crate::IdentifyError;
+use hypothesis::Hypothesis;
 use ranking::Search;
 use records_of_test::TestRecords;
 
-/// Names the effect that the base model of a test lacks, from its records.
+/// Names the effect that the base model of a test lacks, from its records or its natural frequencies. Effects that the test
+/// file declares are part of the base model.
 ///
 /// # Errors
 /// [`IdentifyError`]: records that cannot be read or show too few resonances, and tests that this version cannot trace.
@@ -50,6 +53,14 @@ pub fn trace(test: &ImpactTest) -> Result<Tracing, IdentifyError> {
 /// # Errors
 /// As [`trace`].
 pub fn trace_with(test: &ImpactTest, progress: &(dyn Fn(Progress) + Sync)) -> Result<Tracing, IdentifyError> {
+    let lists = |data: &MeasurementData| matches!(data, MeasurementData::NaturalFrequencies(_));
+    if test.measurements.iter().all(|measurement| lists(&measurement.data)) {
+        let piece = test.pieces.iter().map(|named| named.piece).max_by(|a, b| a.mass().total_cmp(&b.mass()));
+        let Some(piece) = piece else {
+            return Err(IdentifyError::Unsupported("a test without a piece".to_owned()));
+        };
+        return frequencies::trace_frequencies(test, &Hypothesis::declared(test, &piece, 1)?);
+    }
     let [named] = &test.pieces[..] else {
         let message =
             format!("a trace of {} pieces in one test: give each piece a test file of its own", test.pieces.len());

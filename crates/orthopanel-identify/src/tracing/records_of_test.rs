@@ -103,7 +103,7 @@ impl TestRecords {
         let start = State {
             constants: start.constants.map(f64::ln),
             zetas: (0..modes).map(zeta).collect(),
-            hypothesis: Hypothesis::default(),
+            hypothesis: Hypothesis::declared(test, &piece, histories.len())?,
         };
         let widened = vec![widened_lines(histories, WIDENINGS[0], band)];
         let mut records = Self { setup, widened, held, modes, usual_log_zeta, band, in_band, summed, start };

@@ -11,7 +11,7 @@ use orthopanel_model::{
 
 use super::fit::{Fit, by_group};
 use super::held_out::held_out;
-use super::hypothesis::Switched;
+use super::hypothesis::{Hypothesis, Switched};
 use super::next_experiment::next_experiment;
 use super::outcome::{Candidate, FittedError, Removed, TracedEffect, TracedError, TracedParameter, Tracing};
 use super::ranking::{Ranking, Search};
@@ -87,14 +87,21 @@ fn deviations(search: &Search, ranking: &Ranking, fit: &Fit) -> Result<Vec<Optio
 
 /// The effects beyond the declared ones, with the standard deviations of their parameters.
 fn traced(fit: &Fit, std: &[Option<f64>], declared: usize) -> Vec<TracedEffect> {
-    let mut at = fit.size - fit.state.hypothesis.size();
+    let at = fit.size - fit.state.hypothesis.size();
+    let mut effects = effects_of(&fit.state.hypothesis, std.get(at..).unwrap_or_default());
+    effects.split_off(declared.min(effects.len()))
+}
+
+/// All effects of a hypothesis; `std` are those of its coordinates.
+pub(super) fn effects_of(hypothesis: &Hypothesis, std: &[Option<f64>]) -> Vec<TracedEffect> {
+    let mut rest = std;
     let mut effects = Vec::new();
-    for on in &fit.state.hypothesis.effects {
-        let own = std.get(at..at + on.free.len()).unwrap_or_default();
-        at += on.free.len();
+    for on in &hypothesis.effects {
+        let (own, later) = rest.split_at(on.free.len().min(rest.len()));
+        rest = later;
         effects.push(TracedEffect { id: on.effect.id(), owner: on.effect.owner(), parameters: parameters(on, own) });
     }
-    effects.split_off(declared.min(effects.len()))
+    effects
 }
 
 fn parameters(on: &Switched, std: &[Option<f64>]) -> Vec<TracedParameter> {
@@ -164,12 +171,17 @@ fn take_out(fit: &Fit, std: &[Option<f64>], declared: usize, panel: &mut PanelMo
             });
             continue;
         }
-        let told = if index < declared { "declared in the test file" } else { "found in the records" };
-        let why = match effect.owner {
-            Owner::Rig => "it belongs to the rig: the panel in service carries neither sensor nor suspension",
-            _ => "it belongs to the measuring chain: the panel itself does not have it",
-        };
-        removed.push(Removed { id: effect.id, owner: effect.owner, why: format!("{told}; {why}") });
+        removed.push(removal(&effect, index < declared));
     }
     removed
+}
+
+/// Why an effect is not in the panel's model.
+pub(super) fn removal(effect: &TracedEffect, is_declared: bool) -> Removed {
+    let told = if is_declared { "declared in the test file" } else { "found in the data" };
+    let why = match effect.owner {
+        Owner::Rig => "it belongs to the rig: the panel in service carries neither sensor nor suspension",
+        _ => "it belongs to the measuring chain: the panel itself does not have it",
+    };
+    Removed { id: effect.id, owner: effect.owner, why: format!("{told}; {why}") }
 }

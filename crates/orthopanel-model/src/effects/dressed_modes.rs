@@ -63,7 +63,19 @@ impl DressedPanel {
         count: usize,
     ) -> Result<Vec<DressedMode>, ModelError> {
         let setting = EffectSetting { piece: *piece, boundary, suspension: vec![], record: RecordSetting::default() };
-        let dressing = Dressing::of(effects, &setting, 0)?;
+        Self::modes_in(&setting, values, effects, damping, count)
+    }
+
+    /// The same where suspension and sensor may be told.
+    fn modes_in(
+        setting: &EffectSetting,
+        values: &[f64],
+        effects: &[EffectState],
+        damping: &Damping,
+        count: usize,
+    ) -> Result<Vec<DressedMode>, ModelError> {
+        let (piece, boundary) = (&setting.piece, setting.boundary);
+        let dressing = Dressing::of(effects, setting, 0)?;
         if dressing.core.is_some() {
             return Err(ModelError::Unsupported("viscoelastic-core in a model of modes".into()));
         }
@@ -71,14 +83,15 @@ impl DressedPanel {
         let beam = TimoshenkoBeam::with_terms(piece, boundary, 2 * summed + 24, dressing.terms.unwrap_or_default())?;
         let mut elements: Vec<PointElement> = Vec::new();
         for state in effects {
-            for action in state.effect.act(&state.values_in(1)?, &setting)? {
+            for action in state.effect.act(&state.values_in(1)?, setting)? {
                 if let Action::Element(element) = action {
                     elements.push(element);
                 }
             }
         }
         let base = ModalBase::new(&beam, values, summed, &[], &[])?;
-        let rows: Vec<Row> = elements.iter().filter_map(|element| Some((element.motion, place(element)?))).collect();
+        let rows: Vec<Row> =
+            elements.iter().filter_map(|element| Some((element.motion, place(element, setting)?))).collect();
         let view = View::new(&base, &rows, &[])?;
         let bare: Vec<_> = base
             .near
@@ -110,12 +123,34 @@ impl DressedPanel {
     }
 }
 
-fn place(element: &PointElement) -> Option<Place> {
+fn place(element: &PointElement, setting: &EffectSetting) -> Option<Place> {
     match element.seat {
         Seat::At(place) | Seat::Free(place, _) => Some(place),
-        // A model file has no sensor.
-        Seat::AtResponse => None,
+        Seat::AtResponse => setting.record.response_at,
     }
+}
+
+/// The first `count` natural frequencies \[Hz\] of a beam's flexible modes with effects of panel and rig, rising, at the
+/// constants $E_x$, $G_{zx}$.
+///
+/// What the effects ask of a test, they find in `setting`: the places of suspension and sensor. Modes are undamped, and
+/// those that a suspension makes of rigid motions are left out. What acts on an accelerance alone changes nothing.
+///
+/// # Errors
+/// [`ModelError::EffectNeeds`] and [`ModelError::EffectParameter`] where an effect cannot act, [`ModelError::Unsupported`] for a
+/// core that depends on frequency and for a plate, and as [`crate::ritz_modes()`].
+pub fn natural_frequencies(
+    setting: &EffectSetting,
+    values: &[f64],
+    effects: &[EffectState],
+    count: usize,
+) -> Result<Vec<f64>, ModelError> {
+    let rigid = setting.boundary.rigid_modes();
+    let damping = Damping { ratios: vec![], beyond: 0.0 };
+    let modes = DressedPanel::modes_in(setting, values, effects, &damping, count + rigid)?;
+    // A free beam's rigid motions have no node and one; held, they cross zero no more often.
+    let flexible = modes.iter().filter(|mode| mode.angular_frequency > 0.0 && mode.nodes >= rigid);
+    Ok(flexible.take(count).map(|mode| mode.angular_frequency / std::f64::consts::TAU).collect())
 }
 
 impl DressedPanel {

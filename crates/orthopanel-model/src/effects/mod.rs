@@ -39,6 +39,7 @@ pub use action::{Action, FieldTerm, Shift};
 pub use catalogue::{catalogue, effect};
 pub use channel_factor::{ChannelFactor, FactorLine};
 pub use core_modulus::{CoreLine, CoreModulus};
+pub use dressed_modes::natural_frequencies;
 pub(crate) use dressed_modes::{DressedMode, DressedPanel};
 pub use parameter::{EffectParameter, Reference, Scale};
 pub use point_element::{ElementLaw, ElementLine, PointElement, Seat, Share};

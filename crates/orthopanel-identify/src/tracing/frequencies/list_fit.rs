@@ -1,0 +1,122 @@
+//! One hypothesis fitted to the lists.
+
+use faer::Mat;
+
+use super::list_problem::ListProblem;
+use crate::IdentifyError;
+use crate::least_squares::{Ending, Linearised, descend};
+use crate::tracing::hypothesis::Hypothesis;
+use orthopanel_model::ModelError;
+
+/// A hypothesis at its minimum.
+#[derive(Clone)]
+pub(super) struct ListFit {
+    pub hypothesis: Hypothesis,
+    /// Constants that are free, then the effects' coordinates.
+    pub parameters: Vec<f64>,
+    /// Relative error of each frequency.
+    pub residuals: Vec<f64>,
+    /// The same, each predicted from all others.
+    pub left_out: Vec<f64>,
+    /// Standard deviations of the parameters; empty where as many are free as frequencies were measured.
+    pub std: Vec<f64>,
+    /// Number of free parameters.
+    pub size: usize,
+    /// The plate in place of the beam, where that is the hypothesis.
+    pub plate: Option<crate::Identification>,
+}
+
+/// Step of the differences in logarithms, or in parts of a linear parameter's range.
+const STEP: f64 = 1e-5;
+const ENDING: Ending =
+    Ending { most_iterations: 40, small_step: 1e-7, small_gain: 1e-8, little: 0.0, first_damping: 1e-4 };
+/// Fits constants and effects from parameters of the constants and from where the effects stand.
+///
+/// # Errors
+/// [`IdentifyError::TooFewFrequencies`] where fewer were measured than are free, and what the model refuses.
+pub(super) fn fit(problem: &ListProblem, from: &Hypothesis, constants_from: &[f64]) -> Result<ListFit, IdentifyError> {
+    let constants = &problem.constants;
+    let names = || {
+        let constants = (0..constants.count()).map(|i| constants.constant(i).name);
+        constants.chain(from.each_free().map(|(on, _)| on.effect.id())).collect::<Vec<_>>().join(", ")
+    };
+    let needed = constants.count() + from.size();
+    if problem.count() <= needed {
+        return Err(IdentifyError::TooFewFrequencies { found: problem.count(), needed: needed + 1, names: names() });
+    }
+    let start: Vec<f64> = constants_from.iter().copied().chain(from.coordinates()).collect();
+    let bounds: Vec<(f64, f64)> = constants.bounds().into_iter().chain(from.bounds()).collect();
+    let linearise = |parameters: &[f64]| linearise(problem, parameters, from, &bounds);
+    let searched = descend(|p: &[f64]| Ok::<_, ModelError>(linearise(p)?.quadratic()), &start, &bounds, ENDING);
+    let (minimum, _) = searched.map_err(IdentifyError::refused)?;
+    let parameters = minimum.parameters;
+    let at = linearise(&parameters)?;
+    let size = parameters.len();
+    let variance = at.residuals.iter().map(|r| r * r).sum::<f64>() / (problem.count() - size) as f64;
+    let covariance = if size > 0 { at.quadratic().covariance() } else { None };
+    let std = covariance
+        .as_ref()
+        .map_or(vec![f64::INFINITY; size], |matrix| (0..size).map(|i| (variance * matrix[(i, i)]).sqrt()).collect());
+    let left_out = at.residuals.iter().enumerate().map(|(row, residual)| {
+        let leverage: f64 = covariance.as_ref().map_or(0.0, |matrix| {
+            let entry = |i: usize, j: usize| at.jacobian[(row, i)] * matrix[(i, j)] * at.jacobian[(row, j)];
+            (0..size).map(|i| (0..size).map(|j| entry(i, j)).sum::<f64>()).sum()
+        });
+        residual / (1.0 - leverage).max(1e-6)
+    });
+    let left_out = left_out.collect();
+    let (_, coordinates) = parameters.split_at(constants.count());
+    let hypothesis = from.at(coordinates);
+    Ok(ListFit { hypothesis, residuals: at.residuals, left_out, std, size, parameters, plate: None })
+}
+
+fn linearise(
+    problem: &ListProblem,
+    parameters: &[f64],
+    like: &Hypothesis,
+    bounds: &[(f64, f64)],
+) -> Result<Linearised, ModelError> {
+    let residuals = problem.residuals(parameters, like)?;
+    let mut jacobian = Mat::zeros(residuals.len(), parameters.len());
+    for (column, &(low, high)) in bounds.iter().enumerate() {
+        let step = STEP * (high - low).min(1.0);
+        let moved = |by: f64| {
+            let mut at = parameters.to_vec();
+            at[column] = (at[column] + by).clamp(low, high);
+            (problem.residuals(&at, like), at[column])
+        };
+        let ((above, right), (below, left)) = (moved(step), moved(-step));
+        for (row, (above, below)) in above?.iter().zip(&below?).enumerate() {
+            jacobian[(row, column)] = (above - below) / (right - left);
+        }
+    }
+    Ok(Linearised { residuals, jacobian })
+}
+
+impl ListFit {
+    fn square(&self) -> f64 {
+        self.residuals.iter().map(|r| r * r).sum()
+    }
+
+    /// $n\ln(R/n) + k\ln n$.
+    pub(super) fn bic(&self) -> f64 {
+        let count = self.residuals.len().max(1) as f64;
+        count * (self.square() / count).max(f64::MIN_POSITIVE).ln() + self.size as f64 * count.ln()
+    }
+
+    /// Rms error \[%\].
+    pub(super) fn percent(&self) -> f64 {
+        100.0 * (self.square() / self.residuals.len().max(1) as f64).sqrt()
+    }
+
+    /// Rms error \[%\] of each frequency predicted from all others.
+    pub(super) fn left_out_percent(&self) -> f64 {
+        let square: f64 = self.left_out.iter().map(|r| r * r).sum();
+        100.0 * (square / self.left_out.len().max(1) as f64).sqrt()
+    }
+
+    /// Scatter of the residuals, with the free parameters counted.
+    pub(super) fn scatter(&self) -> f64 {
+        (self.square() / self.residuals.len().saturating_sub(self.size).max(1) as f64).sqrt()
+    }
+}

@@ -1,0 +1,94 @@
+//! The lists of a test, and their relative errors at some constants and effects.
+
+use orthopanel_data::{ImpactTest, MeasurementData};
+use orthopanel_model::{BEAM_CONSTANTS, EffectSetting, ModelError, Piece, RecordSetting, natural_frequencies};
+
+use crate::IdentifyError;
+use crate::free_constants::FreeConstants;
+use crate::tracing::hypothesis::Hypothesis;
+
+/// One list of one piece.
+#[derive(Debug, Clone)]
+pub(super) struct FrequencyList {
+    pub piece: usize,
+    pub setting: EffectSetting,
+    /// Flexible modes 1, 2, ... \[Hz\].
+    pub measured: Vec<f64>,
+    /// Relative standard deviation of each by rounding to a bin; empty where the bin is not told.
+    pub rounding: Vec<f64>,
+}
+
+/// $E_x$ and $G_{zx}$ from which a search begins \[Pa\].
+const USUAL: [f64; 2] = [1e10, 5e8];
+
+/// All lists.
+pub(super) struct ListProblem {
+    pub lists: Vec<FrequencyList>,
+    pub constants: FreeConstants,
+}
+
+impl ListProblem {
+    pub(super) fn of(test: &ImpactTest) -> Result<Self, IdentifyError> {
+        let constants = FreeConstants::of(test, &BEAM_CONSTANTS)?;
+        let lists = test.measurements.iter().filter_map(|measurement| {
+            let MeasurementData::NaturalFrequencies(data) = &measurement.data else { return None };
+            let setting = EffectSetting {
+                piece: test.pieces[measurement.piece].piece,
+                boundary: test.boundary,
+                suspension: test.suspension.clone(),
+                record: RecordSetting { number: 1, response_at: data.response_at, ..RecordSetting::default() },
+            };
+            let rounding = data.resolution.iter().zip(&data.values).map(|(bin, f)| bin / 12.0_f64.sqrt() / f).collect();
+            Some(FrequencyList { piece: measurement.piece, setting, measured: data.values.clone(), rounding })
+        });
+        Ok(Self { lists: lists.collect(), constants })
+    }
+
+    /// Number of frequencies.
+    pub(super) fn count(&self) -> usize {
+        self.lists.iter().map(|list| list.measured.len()).sum()
+    }
+
+    /// Parameters of the constants where nothing else is known.
+    pub(super) fn usual(&self) -> Vec<f64> {
+        let usual = |i: usize| USUAL.get(self.constants.free[i].constant).copied().unwrap_or(USUAL[0]);
+        (0..self.constants.count()).map(|i| self.constants.parameter(i, usual(i))).collect()
+    }
+
+    /// Number of pieces that have a list.
+    pub(super) fn pieces(&self) -> usize {
+        let mut pieces: Vec<usize> = self.lists.iter().map(|list| list.piece).collect();
+        pieces.sort_unstable();
+        pieces.dedup();
+        pieces.len()
+    }
+
+    /// The piece that bounds are counted in.
+    pub(super) fn largest_piece(&self) -> Piece {
+        let largest = self.lists.iter().max_by(|a, b| a.setting.piece.mass().total_cmp(&b.setting.piece.mass()));
+        largest.map_or(Piece { length: 1.0, width: 1.0, thickness: 1.0, mass_per_area: 1.0 }, |list| list.setting.piece)
+    }
+
+    /// $(f_{cal}-f_{exp})/f_{exp}$ of every frequency.
+    pub(super) fn residuals(&self, parameters: &[f64], like: &Hypothesis) -> Result<Vec<f64>, ModelError> {
+        let (constants, coordinates) = parameters.split_at(self.constants.count().min(parameters.len()));
+        let states = like.at(coordinates).states(1)?;
+        let mut residuals = Vec::with_capacity(self.count());
+        for list in &self.lists {
+            let values = self.constants.values(constants, list.piece);
+            let found = natural_frequencies(&list.setting, &values, &states, list.measured.len())?;
+            if found.len() < list.measured.len() {
+                return Err(ModelError::Eigenproblem);
+            }
+            residuals.extend(found.iter().zip(&list.measured).map(|(f, measured)| f / measured - 1.0));
+        }
+        Ok(residuals)
+    }
+
+    /// Rms that rounding to the bins alone makes, where every list tells its bins.
+    pub(super) fn rounding(&self) -> Option<f64> {
+        let told: Vec<f64> = self.lists.iter().flat_map(|list| list.rounding.iter().copied()).collect();
+        let square: f64 = told.iter().map(|part| part * part).sum();
+        (told.len() == self.count()).then(|| (square / self.count().max(1) as f64).sqrt())
+    }
+}

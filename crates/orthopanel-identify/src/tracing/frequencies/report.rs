@@ -1,0 +1,171 @@
+//! What the fits of the lists mean.
+
+use std::collections::BTreeMap;
+
+use orthopanel_data::ImpactTest;
+use orthopanel_model::{Damping, EffectEntry, Estimate, MODEL_SCHEMA, Owner, PanelModel, Ports, StructureKind, effect};
+
+use super::list_fit::ListFit;
+use super::list_problem::ListProblem;
+use super::parting::next_experiment;
+use super::width;
+use crate::IdentifyError;
+use crate::tracing::outcome::{
+    Candidate, FittedError, NotTested, Removed, TracedEffect, TracedError, TracedParameter, Tracing, Verdict,
+};
+use crate::tracing::report::{effects_of, removal};
+
+/// By so much the criterion must fall for an effect, and so far behind a rival must stay: odds of a hundred and fifty to one.
+const CLEAR: f64 = 10.0;
+/// An effect that leaves more than this of the error explains little.
+const LEFT: f64 = 0.6;
+
+pub(super) fn report(
+    test: &ImpactTest,
+    problem: &ListProblem,
+    fits: Vec<ListFit>,
+    not_tested: Vec<NotTested>,
+    declared: usize,
+) -> Result<Tracing, IdentifyError> {
+    let mut order: Vec<usize> = (0..fits.len()).collect();
+    // Where two fit alike to a unit of the criterion, the effect of fewer parameters comes first.
+    let parameters = |index: usize| fits[index].hypothesis.effects.iter().map(|on| on.held_or_free()).sum::<usize>();
+    order.sort_by(|&a, &b| {
+        let alike = |index: usize| (fits[index].bic().round(), parameters(index), index);
+        let ((bic_a, size_a, at_a), (bic_b, size_b, at_b)) = (alike(a), alike(b));
+        bic_a.total_cmp(&bic_b).then(size_a.cmp(&size_b)).then(at_a.cmp(&at_b))
+    });
+    let best = order.first().copied().unwrap_or(0);
+    let pays = fits[0].bic() - fits[best].bic() > CLEAR && fits[best].left_out_percent() < fits[0].left_out_percent();
+    let chosen = if pays { best } else { 0 };
+    let rivals: Vec<usize> = order
+        .iter()
+        .copied()
+        .filter(|&index| index != 0 && index != chosen && chosen != 0 && fits[index].bic() < fits[chosen].bic() + CLEAR)
+        .collect();
+    let verdict = if chosen == 0 {
+        Verdict::NothingMissing
+    } else if !rivals.is_empty() {
+        Verdict::Ambiguous
+    } else if fits[chosen].percent() > LEFT * fits[0].percent() {
+        Verdict::Unexplained
+    } else {
+        Verdict::Explained
+    };
+    let error = |fit: &ListFit| FittedError { fitted: fit.percent(), held_out: fit.left_out_percent() };
+    let candidate = |&index: &usize| Candidate {
+        id: name(&fits[index], index == 0, declared),
+        bic: fits[index].bic(),
+        held_out: fits[index].left_out_percent(),
+        effects: traced(problem, &fits[index], declared),
+    };
+    let mut panels = panels(test, problem, &fits[chosen]);
+    let removed = take_out(problem, &fits[chosen], declared, &mut panels);
+    Ok(Tracing {
+        verdict,
+        effects: if chosen == 0 { vec![] } else { traced(problem, &fits[chosen], declared) },
+        alternatives: rivals.iter().map(|&index| name(&fits[index], false, declared)).collect(),
+        error: TracedError {
+            measure: "natural frequencies, % rms; held out: each predicted from the others".to_owned(),
+            before: error(&fits[0]),
+            after: error(&fits[chosen]),
+            noise_floor: 100.0 * problem.rounding().unwrap_or_else(|| fits[chosen].scatter()),
+        },
+        candidates: order.iter().map(candidate).collect(),
+        not_tested,
+        next_experiment: next_experiment(problem, &fits, chosen, &rivals, &order),
+        chi_square: problem.rounding().map_or(1.0, |rounding| (fits[chosen].percent() / 100.0 / rounding).powi(2)),
+        panels,
+        removed,
+        notes: vec![
+            "noise is not told by a list: the criterion takes it from the residuals themselves, and a margin of 10 is clear"
+                .to_owned(),
+        ],
+    })
+}
+
+pub(super) fn name(fit: &ListFit, is_base: bool, declared: usize) -> String {
+    let ids: Vec<&str> = fit.hypothesis.effects.iter().skip(declared).map(|on| on.effect.id()).collect();
+    match (is_base, fit.plate.is_some()) {
+        (true, _) => "base".to_owned(),
+        (_, true) => width::ID.to_owned(),
+        _ => ids.join(" + "),
+    }
+}
+
+fn traced(problem: &ListProblem, fit: &ListFit, declared: usize) -> Vec<TracedEffect> {
+    let Some(plate) = &fit.plate else {
+        let std: Vec<Option<f64>> =
+            fit.std.iter().skip(problem.constants.count()).map(|std| std.is_finite().then_some(*std)).collect();
+        let mut effects = effects_of(&fit.hypothesis, &std);
+        return effects.split_off(declared.min(effects.len()));
+    };
+    let value =
+        |name: &str| plate.constants.iter().find(|constant| constant.name == name).map(|constant| constant.value);
+    let ratio = |above: &str, below: &str| value(above).zip(value(below)).map(|(above, below)| above / below);
+    let found = [
+        ("e_y_ratio", ratio("e_y", "e_x")),
+        ("nu_xy", value("nu_xy")),
+        ("g_xy_ratio", ratio("g_xy", "e_x")),
+        ("g_yz_ratio", ratio("g_yz", "g_zx")),
+    ];
+    let std = plate.constants.iter().find(|constant| constant.name == "nu_xy").and_then(|constant| constant.std);
+    let parameters = found.into_iter().filter_map(|(name, value)| {
+        let std = if name == "nu_xy" { std } else { None };
+        Some(TracedParameter { name, unit: "1", values: vec![Estimate { value: value?, std }] })
+    });
+    vec![TracedEffect { id: width::ID, owner: Owner::Panel, parameters: parameters.collect() }]
+}
+
+/// A model of each piece, without effects; damping is not told by frequencies.
+fn panels(test: &ImpactTest, problem: &ListProblem, fit: &ListFit) -> Vec<PanelModel> {
+    let ports = || Ports { forces: vec![], responses: vec![] };
+    if let Some(plate) = &fit.plate {
+        return plate.pieces.iter().map(|piece| plate.panel_model(piece, test.boundary, ports())).collect();
+    }
+    let free = problem.constants.count();
+    let of_piece = |(index, named): (usize, &orthopanel_data::NamedPiece)| {
+        let values = problem.constants.values(fit.parameters.get(..free).unwrap_or_default(), index);
+        let parameters = problem.constants.parameters_of(index);
+        let mut constants = BTreeMap::new();
+        for (at, constant) in problem.constants.constants.iter().enumerate() {
+            let log = parameters.get(at).copied().flatten().and_then(|parameter| fit.std.get(parameter));
+            let std = log.filter(|std| std.is_finite()).map(|std| std * problem.constants.slope(at, values[at]));
+            constants.insert(constant.name.to_owned(), Estimate { value: values[at], std });
+        }
+        PanelModel {
+            schema: MODEL_SCHEMA.to_owned(),
+            piece: named.piece,
+            boundary: test.boundary,
+            structure: StructureKind::TimoshenkoBeam,
+            constants,
+            damping: Damping { ratios: vec![], beyond: 0.0 },
+            effects: vec![],
+            ports: ports(),
+            provenance: BTreeMap::new(),
+        }
+    };
+    test.pieces.iter().enumerate().map(of_piece).collect()
+}
+
+fn take_out(problem: &ListProblem, fit: &ListFit, declared: usize, panels: &mut [PanelModel]) -> Vec<Removed> {
+    if fit.plate.is_some() {
+        return vec![];
+    }
+    let mut removed = Vec::new();
+    for (index, found) in traced(problem, fit, 0).into_iter().enumerate() {
+        if effect(found.id).is_ok_and(|effect| effect.owner() != Owner::Panel) {
+            removed.push(removal(&found, index < declared));
+            continue;
+        }
+        for panel in &mut *panels {
+            let first = |parameter: &TracedParameter| Some((parameter.name.to_owned(), *parameter.values.first()?));
+            panel.effects.push(EffectEntry {
+                id: found.id.to_owned(),
+                owner: found.owner.name().to_owned(),
+                parameters: found.parameters.iter().filter_map(first).collect(),
+            });
+        }
+    }
+    removed
+}

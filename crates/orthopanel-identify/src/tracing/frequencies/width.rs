@@ -1,0 +1,39 @@
+//! The plate in place of the beam.
+
+use orthopanel_data::ImpactTest;
+use orthopanel_model::StructureKind;
+
+use super::list_fit::ListFit;
+use super::list_problem::ListProblem;
+use crate::tracing::hypothesis::Hypothesis;
+use crate::{IdentifyError, Settings, identify};
+
+/// Its id in the catalogue.
+pub(super) const ID: &str = "width-coupling";
+
+/// Identifies the plate from the same lists; constants that these do not show rest at their usual values.
+///
+/// # Errors
+/// As [`identify`].
+pub(super) fn fit_plate(test: &ImpactTest, problem: &ListProblem) -> Result<ListFit, IdentifyError> {
+    let mut as_plate = test.clone();
+    as_plate.structure = Some(StructureKind::MindlinPlate);
+    as_plate.effects.clear();
+    let found = identify(&as_plate, Settings::default())?;
+    let residuals: Vec<f64> =
+        found.pieces.iter().flat_map(|piece| &piece.modes).map(|mode| mode.error_percent() / 100.0).collect();
+    let size = found.constants.iter().filter(|constant| constant.std.is_some()).count();
+    let left_out = found.left_one_out_percent.map_or(f64::INFINITY, |percent| percent / 100.0);
+    if residuals.len() != problem.count() {
+        return Err(IdentifyError::Unsupported("the plate's modes are not those of the list".to_owned()));
+    }
+    Ok(ListFit {
+        hypothesis: Hypothesis::default(),
+        parameters: vec![],
+        left_out: vec![left_out; residuals.len()],
+        residuals,
+        std: vec![],
+        size,
+        plate: Some(found),
+    })
+}
