@@ -12,7 +12,7 @@ use crate::least_squares::Ending;
 
 /// Starts that are followed for some steps before the best is taken.
 const FOLLOWED: usize = 2;
-const FOLLOW: Ending = Ending::short(5, 1.0);
+const FOLLOW: Ending = Ending::short(10, 1.0);
 
 /// `base` with one more effect, at the best of its starts on the widest lines, and what that leaves of the sum of squares.
 ///

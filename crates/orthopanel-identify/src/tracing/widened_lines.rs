@@ -17,14 +17,17 @@ pub(super) struct Widening {
     pub decay_rate: f64,
     /// Distance of the lines \[Hz\].
     pub step: f64,
+    /// Part of every line that a hypothesis may miss beside the noise: a search that is far from its minimum would else
+    /// follow the strongest line of all alone.
+    pub tolerance: f64,
 }
 
 /// From peaks so wide that a search cannot lock between two, to those that show all there is.
 pub(super) const WIDENINGS: [Widening; 4] = [
-    Widening { decay_rate: 200.0, step: 48.0 },
-    Widening { decay_rate: 50.0, step: 16.0 },
-    Widening { decay_rate: 15.0, step: 6.0 },
-    Widening { decay_rate: 6.0, step: 3.0 },
+    Widening { decay_rate: 200.0, step: 48.0, tolerance: 0.03 },
+    Widening { decay_rate: 50.0, step: 16.0, tolerance: 0.003 },
+    Widening { decay_rate: 15.0, step: 6.0, tolerance: 0.0 },
+    Widening { decay_rate: 6.0, step: 3.0, tolerance: 0.0 },
 ];
 
 /// Half the width of the window over the force \[s\]: the hammer has left the piece, its channel's noise stays out.
@@ -104,8 +107,9 @@ fn of_record(history: &TimeHistory, widening: Widening, band: f64) -> WidenedLin
             own.value.push(motion / force);
             own.variance.push(1.0 / weight);
         }
-        record.value.push(cross / power);
-        record.variance.push(1.0 / power);
+        let value = cross / power;
+        record.value.push(value);
+        record.variance.push(1.0 / power + widening.tolerance.powi(2) * value.norm_sqr());
     }
     record
 }
