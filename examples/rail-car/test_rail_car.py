@@ -1,0 +1,51 @@
+"""The coupled vehicle against the closed form, and W_k against the standard's table."""
+
+import json
+
+import pytest
+from compare import coupling_error
+from comfort import w_k
+from coupled_runs import in_ecos, in_fmpy
+from monolith import Monolith
+from vehicle import MODEL, build_fmus, resonator, write_ssp
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("rail-car")
+    build_fmus(folder)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def bracket():
+    return resonator(json.loads(MODEL.read_text()))
+
+
+def test_val_coupling_error_falls_with_the_square_of_the_step(folder, bracket):
+    ssp, monolith = write_ssp(folder / "predicted.ssp", folder, bracket), Monolith(folder / "floor.fmu", bracket)
+    coarse, fine = (
+        coupling_error(in_fmpy(ssp, step, round(2.0 / step)), monolith, step, 1.0) for step in (1e-3, 5e-4)
+    )
+    assert coarse < 0.01
+    # Second order: 4, and a little more where the third order still shows.
+    assert 3.5 < coarse / fine < 5.5
+
+
+def test_val_ecospy_nears_the_closed_form(folder):
+    try:
+        import ecospy  # noqa: F401
+    except (ImportError, OSError) as reason:
+        pytest.skip(f"ecospy does not load: {reason}")
+    monolith = Monolith(folder / "floor.fmu")
+    # First order here, where FMPy shows the second: why is not known yet, see README.
+    coarse, fine = (
+        coupling_error(in_ecos(folder, None, step, round(2.0 / step)), monolith, step, 1.0) for step in (1e-3, 5e-4)
+    )
+    assert coarse < 0.05 and coarse / fine > 1.6
+
+
+@pytest.mark.parametrize("hertz, factor", [(1.0, 0.482), (4.0, 0.967), (6.3, 1.054), (16.0, 0.768), (31.5, 0.405)])
+def test_val_w_k_is_that_of_table_3(hertz, factor):
+    # Three digits, at the nominal frequencies of third octaves.
+    assert abs(w_k(hertz)) == pytest.approx(factor, rel=2e-3)
