@@ -10,7 +10,7 @@ use crate::traced::Traced;
 
 /// Name the physical effect that the model of a test lacks
 ///
-/// The base model, with every effect that the test file declares under [[effect]], is fitted to the data; then every
+/// The base model, with every effect that the test file declares, is fitted to the data; then every
 /// effect of the catalogue with it, alone and together, and each is judged by what was held out. The verdict is one of
 /// nothing-missing, explained, ambiguous (with the effects that fit alike, and the measurement that would part them) and
 /// unexplained.
