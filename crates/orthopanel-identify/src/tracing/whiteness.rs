@@ -47,11 +47,12 @@ pub(super) fn independent_part(residuals: &[Vec<Complex64>]) -> f64 {
 mod tests {
     use super::*;
 
-    /// A number between -1 and 1 that no other index shares.
+    /// A number between -1 and 1, as good as drawn: the generator splitmix64 at this index.
     fn draw(index: usize) -> f64 {
-        let turned =
-            (index as u64).wrapping_mul(0x9E37_79B9_7F4A_7C15).rotate_left(23).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        (turned >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+        let mut z = (index as u64 + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15);
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 52) as f64 - 1.0
     }
 
     #[test]
