@@ -58,14 +58,15 @@ fn run_writes_the_panel_without_rig_and_channel_and_says_so() {
     }
 }
 
+/// Two widths that one beam cannot follow: the model that is written is the plate.
 #[test]
-fn a_test_that_cannot_be_traced_still_runs_and_says_why() {
+fn a_width_that_the_beam_lacks_makes_the_model_a_plate() {
     let bench = Bench::new();
-    let output = bench.run("run examples/pieces-1-2/test.toml -o out --json");
-    let message = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success() && message.contains("not traced: "), "{message}");
-    let answer: serde_json::Value = serde_json::from_slice(&output.stdout).expect("one JSON object");
-    assert!(answer["trace"].is_null());
-    refused(&bench, "trace examples/pieces-1-2/test.toml -o traced.json", 2, &["examples/pieces-1-2/test.toml"]);
+    let answer = bench.json("run examples/pieces-1-2/test.toml -o out");
+    assert_eq!(answer["trace"]["verdict"], "explained");
+    assert_eq!(answer["trace"]["effects"][0]["id"], "width-coupling");
+    let model = bench.read_json("out/model-1.json");
+    assert_eq!(model["structure"], "mindlin-plate");
+    assert!(model["constants"]["nu_xy"]["std"].is_number());
     refused(&bench, "trace nowhere.toml", 2, &["nowhere.toml", "cannot be read"]);
 }

@@ -47,6 +47,7 @@ impl Traced {
     pub fn applied_to(&self, models: &[PanelModel]) -> Vec<PanelModel> {
         let mut models = models.to_vec();
         for (model, panel) in models.iter_mut().zip(self.panels().unwrap_or_default()) {
+            model.structure = panel.structure;
             model.constants.clone_from(&panel.constants);
             model.damping.clone_from(&panel.damping);
             model.effects.clone_from(&panel.effects);

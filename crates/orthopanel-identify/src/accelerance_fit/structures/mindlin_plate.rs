@@ -16,17 +16,23 @@ pub(super) struct RecordedPlate {
 const MODES: (usize, usize) = (24, 150);
 
 impl RecordedPlate {
-    /// All modes of the smallest basis that reaches `limit` \[Hz\].
+    /// The smallest basis that reaches `limit` \[Hz\], and how many of its modes are asked for; the largest one where none
+    /// reaches so far.
     fn plate(&self, values: &[f64], limit: f64) -> Result<(MindlinPlate, usize), ModelError> {
         let mut count = MODES.0;
+        let mut plate = MindlinPlate::with_basis_for(&self.piece, self.boundary, values, count)?;
         loop {
-            let plate = MindlinPlate::with_basis_for(&self.piece, self.boundary, values, count)?;
             let highest =
                 ritz_modes(&plate, values, count)?.last().map_or(f64::INFINITY, |mode| mode.angular_frequency);
             if highest > limit * std::f64::consts::TAU || count >= MODES.1 {
                 return Ok((plate, count));
             }
-            count = (count + count / 2).min(MODES.1);
+            let more = (count + count / 2).min(MODES.1);
+            match MindlinPlate::with_basis_for(&self.piece, self.boundary, values, more) {
+                Ok(larger) => (plate, count) = (larger, more),
+                Err(ModelError::BasisTooSmall { .. }) => return Ok((plate, count)),
+                Err(error) => return Err(error),
+            }
         }
     }
 }
@@ -54,7 +60,7 @@ impl RecordedStructure for RecordedPlate {
 
     fn synthesis(&self, values: &[f64], count: usize) -> Result<Box<dyn ModeSynthesis>, ModelError> {
         // A basis for more modes than are summed: those beyond it stand for the static part of the rest.
-        let plate = MindlinPlate::with_basis_for(&self.piece, self.boundary, values, (count + count / 2).max(MODES.0))?;
+        let plate = MindlinPlate::with_basis_for(&self.piece, self.boundary, values, (count + count / 4).max(MODES.0))?;
         Ok(Box::new(PlateSynthesis { plate }))
     }
 }

@@ -9,7 +9,7 @@ mod parting;
 mod report;
 mod width;
 
-use orthopanel_data::ImpactTest;
+use orthopanel_data::{ImpactTest, Measurement, MeasurementData};
 use orthopanel_model::{Effect, Owner, catalogue};
 use rayon::prelude::*;
 
@@ -27,6 +27,7 @@ pub(super) fn trace_frequencies(test: &ImpactTest, declared: &Hypothesis) -> Res
     let problem = ListProblem::of(test)?;
     let base = fit(&problem, declared, &problem.usual())?;
     let constants = base.parameters[..problem.constants.count()].to_vec();
+    let count: usize = test.measurements.iter().map(frequencies).sum();
     let mut fits = vec![base];
     let mut not_tested = Vec::new();
     for &effect in catalogue() {
@@ -44,6 +45,13 @@ pub(super) fn trace_frequencies(test: &ImpactTest, declared: &Hypothesis) -> Res
             not_tested.push(refused("each piece would have a place of its own: trace one piece in a test file"));
             continue;
         }
+        let unknowns = problem.constants.count() + free_parameters(effect);
+        if count < DATA_FOR_EACH * unknowns {
+            let reason =
+                format!("{count} frequencies for {unknowns} unknowns: measure {DATA_FOR_EACH} or more for each");
+            not_tested.push(NotTested { id, reason });
+            continue;
+        }
         if id == width::ID {
             match width::fit_plate(test, &problem) {
                 Ok(found) => fits.push(found),
@@ -57,6 +65,24 @@ pub(super) fn trace_frequencies(test: &ImpactTest, declared: &Hypothesis) -> Res
         }
     }
     report::report(test, &problem, fits, not_tested, declared.effects.len())
+}
+
+/// Frequencies for each unknown: with fewer an effect with a place or two parameters fits by chance.
+const DATA_FOR_EACH: usize = 2;
+
+fn free_parameters(effect: &dyn Effect) -> usize {
+    match effect.id() {
+        // The plate frees Poisson's ratio first; its other constants answer for themselves.
+        width::ID => 1,
+        _ => effect.parameters().iter().filter(|parameter| parameter.held_at.is_none()).count(),
+    }
+}
+
+fn frequencies(measurement: &Measurement) -> usize {
+    match &measurement.data {
+        MeasurementData::NaturalFrequencies(data) => data.values.len(),
+        _ => 0,
+    }
 }
 
 /// Starts that are followed to their minimum.
