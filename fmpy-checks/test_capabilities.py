@@ -96,7 +96,7 @@ def test_damaged_or_foreign_bytes_are_refused(running, export):
             running.fmu.deserializeFMUState(wrong)
         assert "FMU state: the bytes are" in running.messages[-1]
     assert running.get(*OUTPUTS) == before
-    with panel(export("other.fmu", "--fmi", str(running.version), "--modes", "2")) as other:
+    with panel(export("other.fmu", "--fmi", str(running.version), modes=2)) as other:
         with pytest.raises(REFUSED):
             other.fmu.deserializeFMUState(content)
         assert "another panel" in other.messages[-1]
