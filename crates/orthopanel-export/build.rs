@@ -45,7 +45,7 @@ fn build(manifest: &Path) -> Result<PathBuf, Box<dyn Error>> {
             cargo.env_remove(&name);
         }
     }
-    cargo.args(["build", "--quiet", "--lib", "--profile", "fmu"]);
+    cargo.args(["build", "--quiet", "--lib", "--profile", "fmu", "--features", "compact"]);
     cargo.arg("--manifest-path").arg(manifest).arg("--target-dir").arg(&target_folder);
     let mut folder = target_folder;
     if target != host {

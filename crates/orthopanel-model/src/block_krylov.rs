@@ -3,11 +3,11 @@
 //! Reference: G. H. Golub and R. Underwood, The block Lanczos method for computing eigenvalues, in Mathematical Software
 //! III (1977) 361. All vectors are kept and orthogonalised twice, so no eigenvalue returns as a ghost.
 
-use faer::prelude::ReborrowMut;
+use faer::prelude::{Reborrow, ReborrowMut};
 use faer::{Mat, MatMut, MatRef};
 
 use crate::block_pencil::{BlockPencil, Eigenpair};
-use crate::symmetric_eigen::symmetric_eigen;
+use crate::dense::{norm, product, symmetric_eigen};
 
 /// Vectors a step; modes that coincide in this number are found together.
 const WIDTH: usize = 2;
@@ -27,7 +27,7 @@ pub(crate) fn lowest_modes(pencil: &BlockPencil<'_>, wanted: usize) -> Option<Ve
     let mut images = Mat::<f64>::zeros(size, 0);
     let mut next = orthonormal(&basis, start(size))?;
     while 2 * images.ncols() < capacity {
-        let image = pencil.apply(next.as_ref());
+        let image = pencil.apply(&next);
         basis = beside(&basis, &next);
         images = beside(&images, &image);
         let found = images.ncols();
@@ -51,18 +51,18 @@ fn converged(
 ) -> Option<Vec<Eigenpair>> {
     let found = images.ncols();
     let space = basis.subcols(rigid, found);
-    let projection = space.transpose() * images;
+    let projection = product(space.transpose(), images.as_ref());
     let (thetas, vectors) = symmetric_eigen(&projection)?;
     let highest = |column: usize| found - 1 - column;
     let thetas: Vec<f64> = (0..wanted).map(|column| thetas[highest(column)]).collect();
     let vectors = Mat::from_fn(found, wanted, |i, j| vectors[(i, highest(j))]);
-    let mut shapes = space * &vectors;
-    let mut residual = images * &vectors;
+    let shapes = product(space, vectors.as_ref());
+    let mut residual = product(images.as_ref(), vectors.as_ref());
     let along_rigid = basis.subcols(0, rigid);
-    residual -= along_rigid * (along_rigid.transpose() * &residual);
+    residual -= along(along_rigid, residual.as_ref());
     residual -= Mat::from_fn(shapes.nrows(), wanted, |i, j| thetas[j] * shapes[(i, j)]);
-    let mut norms = residual.col_iter().map(|column| column.norm_l2()).zip(&thetas);
-    norms.all(|(norm, theta)| norm <= CONVERGED * theta).then(|| pencil.modes(&thetas, shapes.as_mut()))
+    let mut norms = residual.col_iter().map(norm).zip(&thetas);
+    norms.all(|(norm, theta)| norm <= CONVERGED * theta).then(|| pencil.modes(&thetas, shapes))
 }
 
 /// Columns without preference for any coordinate, the same in every run.
@@ -75,7 +75,7 @@ fn start(size: usize) -> Mat<f64> {
 /// `block` made orthogonal to `basis`, and its columns to each other; `None` where a column vanishes.
 fn orthonormal(basis: &Mat<f64>, mut block: Mat<f64>) -> Option<Mat<f64>> {
     for _ in 0..2 {
-        block -= basis * (basis.transpose() * &block);
+        block -= along(basis.as_ref(), block.as_ref());
         for column in 0..block.ncols() {
             let (done, mut rest) = block.as_mut().split_at_col_mut(column);
             orthogonalise(done.as_ref(), rest.rb_mut().subcols_mut(0, 1))?;
@@ -85,15 +85,20 @@ fn orthonormal(basis: &Mat<f64>, mut block: Mat<f64>) -> Option<Mat<f64>> {
 }
 
 fn orthogonalise(done: MatRef<'_, f64>, mut column: MatMut<'_, f64>) -> Option<()> {
-    let before = column.norm_l2();
-    let shares = done.transpose() * &column;
-    column -= done * shares;
-    let norm = column.norm_l2();
-    if norm.is_nan() || norm <= 1e-12 * before {
+    let before = norm(column.rb().col(0));
+    let within = along(done, column.rb());
+    column -= within;
+    let after = norm(column.rb().col(0));
+    if after.is_nan() || after <= 1e-12 * before {
         return None;
     }
-    column /= faer::Scale(norm);
+    column /= faer::Scale(after);
     Some(())
+}
+
+/// What of `columns` lies in the space of orthonormal `directions`.
+fn along(directions: MatRef<'_, f64>, columns: MatRef<'_, f64>) -> Mat<f64> {
+    product(directions, product(directions.transpose(), columns).as_ref())
 }
 
 fn beside(left: &Mat<f64>, right: &Mat<f64>) -> Mat<f64> {

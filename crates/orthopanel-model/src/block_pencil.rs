@@ -1,13 +1,10 @@
 //! Stiffness and mass of one block at given coefficients, ready to be solved.
 
-use faer::linalg::solvers::Llt;
-use faer::linalg::triangular_solve::{solve_lower_triangular_in_place, solve_upper_triangular_in_place};
-use faer::prelude::ReborrowMut;
-use faer::{Mat, MatMut, MatRef, Par, Side};
+use faer::Mat;
 
 use crate::ModelError;
+use crate::dense::{Cholesky, negative_pivots, norm, product, symmetric_eigen};
 use crate::structure::Block;
-use crate::symmetric_eigen::symmetric_eigen;
 
 /// $K$ and $M$ of a block, and the operator whose largest eigenvalues are its lowest modes.
 ///
@@ -19,7 +16,7 @@ pub(crate) struct BlockPencil<'a> {
     stiffness: Mat<f64>,
     sigma: f64,
     scale: Vec<f64>,
-    factor: Llt<f64>,
+    factor: Cholesky,
     mass: Mat<f64>,
 }
 
@@ -45,7 +42,7 @@ impl<'a> BlockPencil<'a> {
         let mass = scaled(&block.mass, &scale);
         let mut shifted = scaled(&stiffness, &scale);
         add_scaled(&mut shifted, sigma, &mass);
-        let factor = shifted.llt(Side::Lower).map_err(|_| ModelError::Eigenproblem)?;
+        let factor = Cholesky::new(&shifted).ok_or(ModelError::Eigenproblem)?;
         Ok(Self { block, stiffness, sigma, scale, factor, mass })
     }
 
@@ -60,21 +57,20 @@ impl<'a> BlockPencil<'a> {
     /// The rigid modes as unit vectors of $A$, a column each.
     pub(crate) fn rigid_vectors(&self) -> Mat<f64> {
         let coordinates = Mat::from_fn(self.size(), self.rigid_count(), |i, n| self.block.rigid[n][i] / self.scale[i]);
-        let mut vectors = self.factor.L().transpose() * coordinates;
+        let mut vectors = self.factor.upper_times(&coordinates);
         for mut column in vectors.col_iter_mut() {
-            let norm = column.norm_l2();
+            let norm = norm(column.as_ref());
             column /= faer::Scale(norm);
         }
         vectors
     }
 
     /// $AV$.
-    pub(crate) fn apply(&self, vectors: MatRef<'_, f64>) -> Mat<f64> {
-        let lower = self.factor.L();
-        let mut half = vectors.to_owned();
-        solve_upper_triangular_in_place(lower.transpose(), half.as_mut(), Par::Seq);
-        let mut image = &self.mass * half;
-        solve_lower_triangular_in_place(lower, image.as_mut(), Par::Seq);
+    pub(crate) fn apply(&self, vectors: &Mat<f64>) -> Mat<f64> {
+        let mut half = vectors.clone();
+        self.factor.solve_upper(&mut half);
+        let mut image = product(self.mass.as_ref(), half.as_ref());
+        self.factor.solve_lower(&mut image);
         image
     }
 
@@ -84,8 +80,8 @@ impl<'a> BlockPencil<'a> {
     }
 
     /// Modes of unit eigenvectors of $A$, given as columns, with their eigenvalues.
-    pub(crate) fn modes(&self, thetas: &[f64], mut vectors: MatMut<'_, f64>) -> Vec<Eigenpair> {
-        solve_upper_triangular_in_place(self.factor.L().transpose(), vectors.rb_mut(), Par::Seq);
+    pub(crate) fn modes(&self, thetas: &[f64], mut vectors: Mat<f64>) -> Vec<Eigenpair> {
+        self.factor.solve_upper(&mut vectors);
         let mode = |(column, &theta): (usize, &f64)| {
             let norm = theta.sqrt().recip();
             let coordinates = self.scale.iter().enumerate().map(|(row, s)| norm * s * vectors[(row, column)]).collect();
@@ -100,15 +96,15 @@ impl<'a> BlockPencil<'a> {
     /// [`ModelError::Eigenproblem`] where the eigenvalues are not found.
     pub(crate) fn all_modes(&self) -> Result<Vec<Eigenpair>, ModelError> {
         let size = self.size();
-        let image = self.apply(Mat::identity(size, size).as_ref());
+        let image = self.apply(&Mat::identity(size, size));
         let symmetric = Mat::from_fn(size, size, |i, j| 0.5 * (image[(i, j)] + image[(j, i)]));
         let (mut thetas, vectors) = symmetric_eigen(&symmetric).ok_or(ModelError::Eigenproblem)?;
         // Largest θ first; the rigid modes are the very largest and are replaced by their exact shapes.
         let flexible = size - self.rigid_count();
         thetas.truncate(flexible);
         thetas.reverse();
-        let mut vectors = Mat::from_fn(size, flexible, |i, j| vectors[(i, flexible - 1 - j)]);
-        let modes = self.modes(&thetas, vectors.as_mut());
+        let vectors = Mat::from_fn(size, flexible, |i, j| vectors[(i, flexible - 1 - j)]);
+        let modes = self.modes(&thetas, vectors);
         Ok(modes.into_iter().filter(|(omega2, _)| omega2.is_finite()).collect())
     }
 
@@ -117,9 +113,7 @@ impl<'a> BlockPencil<'a> {
     pub(crate) fn count_below(&self, limit: f64) -> Option<usize> {
         let mut shifted = scaled(&self.stiffness, &self.scale);
         add_scaled(&mut shifted, -limit, &self.mass);
-        let factor = shifted.ldlt(Side::Lower).ok()?;
-        let pivots = factor.D().column_vector();
-        pivots.iter().all(|pivot| pivot.is_finite()).then(|| pivots.iter().filter(|pivot| **pivot < 0.0).count())
+        negative_pivots(&shifted)
     }
 }
 

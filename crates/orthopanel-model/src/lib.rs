@@ -5,6 +5,7 @@ mod block_krylov;
 mod block_pencil;
 mod boundary;
 mod constant;
+mod dense;
 mod effects;
 mod error;
 mod legendre;
@@ -18,9 +19,9 @@ mod panel_modes;
 mod piece;
 mod response;
 mod ritz_modes;
+mod side_by_side;
 mod structure;
 mod structure_modes;
-mod symmetric_eigen;
 mod timoshenko_beam;
 
 pub use boundary::{Boundary, End};

@@ -1,11 +1,9 @@
 //! Modes of any [`Structure`]: one symmetric eigenproblem a block, the blocks side by side.
 
-use rayon::prelude::*;
-
 use crate::block_krylov::lowest_modes;
 use crate::block_pencil::{BlockPencil, Eigenpair};
 use crate::structure::{Block, RitzMode, Structure};
-use crate::{Constant, ModelError};
+use crate::{Constant, ModelError, side_by_side};
 
 /// The rigid modes, then the first `count` flexible ones in rising order, at these values of the constants.
 ///
@@ -25,19 +23,17 @@ pub fn ritz_modes(structure: &dyn Structure, values: &[f64], count: usize) -> Re
     let blocks = structure.blocks();
     // Blocks share the modes evenly but for a few.
     let wanted = count / blocks.len().max(1) + 2;
-    let mut solved: Vec<SolvedBlock> = blocks
-        .par_iter()
-        .map(|block| SolvedBlock::new(BlockPencil::new(block, &coefficients)?, wanted))
-        .collect::<Result<_, _>>()?;
+    let solve = |block| SolvedBlock::new(BlockPencil::new(block, &coefficients)?, wanted);
+    let mut solved: Vec<SolvedBlock> = side_by_side::map(blocks, solve).into_iter().collect::<Result<_, _>>()?;
     let limit = loop {
         let limit = limit_above(&solved, count);
         let short = |block: &SolvedBlock| !block.whole && block.modes.last().is_none_or(|last| last.0 < limit);
         if !solved.iter().any(short) {
             break limit;
         }
-        solved.par_iter_mut().filter(|block| short(block)).try_for_each(SolvedBlock::solve_more)?;
+        side_by_side::try_each(&mut solved, |block| if short(block) { block.solve_more() } else { Ok(()) })?;
     };
-    solved.par_iter_mut().filter(|block| !block.whole).try_for_each(|block| block.prove_below(limit))?;
+    side_by_side::try_each(&mut solved, |block| if block.whole { Ok(()) } else { block.prove_below(limit) })?;
 
     let mut modes = flexible(solved.into_iter().map(|block| block.modes));
     modes.truncate(count);
@@ -48,10 +44,9 @@ pub fn ritz_modes(structure: &dyn Structure, values: &[f64], count: usize) -> Re
 pub(crate) fn all_ritz_modes(structure: &dyn Structure, values: &[f64]) -> Result<Vec<RitzMode>, ModelError> {
     let coefficients = checked_coefficients(structure, values)?;
     let blocks = structure.blocks();
-    let solved: Vec<Vec<Eigenpair>> = blocks
-        .par_iter()
-        .map(|block| BlockPencil::new(block, &coefficients)?.all_modes())
-        .collect::<Result<_, ModelError>>()?;
+    let solve = |block| BlockPencil::new(block, &coefficients)?.all_modes();
+    let solved: Vec<Vec<Eigenpair>> =
+        side_by_side::map(blocks, solve).into_iter().collect::<Result<_, ModelError>>()?;
     Ok(rigid(blocks).chain(flexible(solved.into_iter())).collect())
 }
 

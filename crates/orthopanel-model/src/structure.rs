@@ -1,6 +1,6 @@
 //! What can vibrate: the layer on which beams, plates and every later structure stand.
 
-use faer::{ColRef, Mat};
+use faer::Mat;
 
 use crate::{Constant, ModelError, Place};
 
@@ -146,6 +146,8 @@ impl RitzMode {
 
 /// $v^TAv$.
 pub(crate) fn quadratic_form(matrix: &Mat<f64>, vector: &[f64]) -> f64 {
-    let vector = ColRef::from_slice(vector);
-    vector.transpose() * (matrix * vector)
+    let row = |(column, share): (usize, &f64)| {
+        share * matrix.col_as_slice(column).iter().zip(vector).map(|(entry, value)| entry * value).sum::<f64>()
+    };
+    vector.iter().enumerate().map(row).sum()
 }

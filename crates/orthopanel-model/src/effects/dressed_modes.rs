@@ -2,16 +2,15 @@
 
 use std::sync::Arc;
 
-use faer::linalg::triangular_solve::{solve_lower_triangular_in_place, solve_upper_triangular_in_place};
-use faer::{Mat, Par, Side};
+use faer::Mat;
 
 use super::dressing::Dressing;
 use super::receptance::modal_base::{ModalBase, Row};
 use super::receptance::view::View;
 use super::{Action, EffectSetting, EffectState, ElementLaw, PointElement, RecordSetting, Seat};
+use crate::dense::{Cholesky, symmetric_eigen};
 use crate::panel_mode::crossings;
 use crate::structure::Motion;
-use crate::symmetric_eigen::symmetric_eigen;
 use crate::{Boundary, Damping, ModelError, Piece, Place, Structure, TimoshenkoBeam};
 
 /// Modes of the bare structure beyond those asked for.
@@ -254,15 +253,14 @@ impl System {
             return Err(ModelError::Eigenproblem);
         }
         let scaled = |matrix: Mat<f64>| Mat::from_fn(size, size, |i, j| scale[i] * matrix[(i, j)] * scale[j]);
-        let factor = scaled(shifted).llt(Side::Lower).map_err(|_| ModelError::Eigenproblem)?;
-        let lower = factor.L();
+        let factor = Cholesky::new(&scaled(shifted)).ok_or(ModelError::Eigenproblem)?;
         let mut flexibility = scaled(part(&self.mass));
-        solve_lower_triangular_in_place(lower, flexibility.as_mut(), Par::Seq);
+        factor.solve_lower(&mut flexibility);
         let mut flexibility = flexibility.transpose().to_owned();
-        solve_lower_triangular_in_place(lower, flexibility.as_mut(), Par::Seq);
+        factor.solve_lower(&mut flexibility);
         let symmetric = Mat::from_fn(size, size, |i, j| 0.5 * (flexibility[(i, j)] + flexibility[(j, i)]));
         let (thetas, mut vectors) = symmetric_eigen(&symmetric).ok_or(ModelError::Eigenproblem)?;
-        solve_upper_triangular_in_place(lower.transpose(), vectors.as_mut(), Par::Seq);
+        factor.solve_upper(&mut vectors);
         let positive = (0..size).rev().filter(|&column| thetas[column] > 0.0);
         let modes = positive.map(|column| {
             let norm = thetas[column].sqrt().recip();

@@ -1,12 +1,11 @@
 //! Stiffness and mass matrices of the plate, block by block: sums of products of integrals along x and along y.
 
 use faer::Mat;
-use rayon::prelude::*;
 
 use super::Field;
 use super::edge_basis::EdgeBasis;
-use crate::Piece;
 use crate::structure::{Block, quadratic_form};
+use crate::{Piece, side_by_side};
 
 /// One product of a function along x and a function along y, of one field.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -37,7 +36,7 @@ pub(super) fn assemble(piece: &Piece, along: &[EdgeBasis; 2]) -> (Vec<Vec<Coordi
             coordinates.push(block_coordinates(along, [odd_x, odd_y]));
         }
     }
-    let blocks = coordinates.par_iter().map(|list| block(piece, along, list)).collect();
+    let blocks = side_by_side::map(&coordinates, |list| block(piece, along, list));
     (coordinates, blocks)
 }
 

@@ -5,6 +5,7 @@ use serde::Serialize;
 
 use super::edge_basis::EdgeBasis;
 use super::{Field, MindlinPlate};
+use crate::dense::product;
 use crate::structure::RitzMode;
 use crate::timoshenko_beam::gauss_points;
 use crate::{BeamConstants, Boundary, End, ExactBeam, ModelError, Piece};
@@ -86,11 +87,15 @@ impl MindlinPlate {
             shape[(coordinate.x, coordinate.y)] = *value;
         }
         let [along_x, along_y] = &self.beam_functions;
-        let square = (x.integrals((w, 0), (w, 0)) * &shape).transpose() * (&shape * y.integrals((w, 0), (w, 0)));
+        let [left, right] = [
+            product(x.integrals((w, 0), (w, 0)), shape.as_ref()),
+            product(shape.as_ref(), y.integrals((w, 0), (w, 0))),
+        ];
+        let square = product(left.transpose(), right.as_ref());
         let size = (0..square.nrows()).map(|i| square[(i, i)]).sum::<f64>().sqrt();
         // Where all motion is rotation, what is left of w is rounding and has no shape.
         let moving = size * self.piece.mass_per_area.sqrt() > 1e-9;
-        let products = along_x * shape * along_y.transpose();
+        let products = product(product(along_x.as_ref(), shape.as_ref()).as_ref(), along_y.transpose());
         Mat::from_fn(
             products.nrows(),
             products.ncols(),

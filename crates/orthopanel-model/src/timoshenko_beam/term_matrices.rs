@@ -4,6 +4,7 @@ use faer::Mat;
 
 use super::beam_terms::ShearLoss;
 use super::strain_basis::StrainFunction;
+use crate::dense::product;
 use crate::legendre::{gauss_legendre, legendre};
 
 /// Values of all functions at Gauss points that no edge lies between.
@@ -58,7 +59,7 @@ impl Quadrature {
         let values = &self.values[field as usize];
         let scale: Vec<f64> = self.points.iter().map(|(t, w)| w * weight(self.half_length * t)).collect();
         let weighted = Mat::from_fn(values.nrows(), values.ncols(), |i, j| scale[i] * values[(i, j)]);
-        values.transpose() * weighted
+        product(values.transpose(), weighted.as_ref())
     }
 
     /// $\int(w'+\psi)_i(w'+\psi)_j\,dx$ over the span of a loss.

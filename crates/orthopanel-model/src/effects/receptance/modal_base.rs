@@ -2,6 +2,7 @@
 
 use faer::Mat;
 
+use crate::dense::product;
 use crate::ritz_modes::all_ritz_modes;
 use crate::structure::{Motion, Structure};
 use crate::{ModelError, Place, TimoshenkoBeam};
@@ -72,7 +73,8 @@ impl<'a> ModalBase<'a> {
             let own: Vec<_> = modes.iter().filter(|mode| mode.block == index).collect();
             let lambda: Vec<f64> = own.iter().map(|mode| mode.angular_frequency.powi(2)).collect();
             let vectors = Mat::from_fn(block.size(), own.len(), |i, m| own[m].coordinates[i]);
-            let in_modes = |matrix: &Mat<f64>| vectors.transpose() * (matrix * &vectors);
+            let in_modes =
+                |matrix: &Mat<f64>| product(vectors.transpose(), product(matrix.as_ref(), vectors.as_ref()).as_ref());
             let stiffness: Vec<Mat<f64>> = block.stiffness.iter().map(in_modes).collect();
             let of_constant = |j: usize| {
                 let mut sum = Mat::zeros(own.len(), own.len());
@@ -124,7 +126,8 @@ impl<'a> ModalBase<'a> {
             let (Some(own), Some(with)) = (self.structure.blocks().get(index), other.blocks.get(index)) else {
                 continue;
             };
-            let overlap = with.vectors.transpose() * (&own.mass * &block.vectors);
+            let overlap =
+                product(with.vectors.transpose(), product(own.mass.as_ref(), block.vectors.as_ref()).as_ref());
             for m in 0..block.vectors.ncols().min(with.vectors.ncols()) {
                 if overlap[(m, m)] >= 0.0 {
                     continue;
@@ -151,6 +154,6 @@ impl<'a> ModalBase<'a> {
             })?;
             row.iter().enumerate().for_each(|(j, &value)| matrix[(i, j)] = value);
         }
-        Ok(matrix * &modes.vectors)
+        Ok(product(matrix.as_ref(), modes.vectors.as_ref()))
     }
 }

@@ -4,6 +4,7 @@ use faer::Mat;
 
 use super::modal_base::{BlockModes, ModalBase, Row};
 use crate::ModelError;
+use crate::dense::product;
 
 /// Terms of the series in $s^2$ that stands for the modes above the sum. Where these begin at 2.5 times the band, six
 /// leave 2e-5 of a part that is small itself.
@@ -148,8 +149,11 @@ impl View {
             .map(|k| Mat::from_fn(rows, part.far.len(), |row, i| far[(row, i)] * part.power(i, k)))
             .collect();
         let heads: Vec<_> = weighted.iter().map(|matrix| matrix.subrows(0, active)).collect();
+        let between = |j: usize, matrix: &Mat<f64>, k: usize| {
+            product(product(heads[j], matrix.as_ref()).as_ref(), heads[k].transpose())
+        };
         for (k, matrix) in weighted.iter().enumerate() {
-            let series = matrix * far.subrows(0, active).transpose();
+            let series = product(matrix.as_ref(), far.subrows(0, active).transpose());
             let at = self.layout.series(k);
             add(&mut self.numbers[at..], &series);
         }
@@ -159,10 +163,10 @@ impl View {
                 let mut by = part.towards_near(p, k, active);
                 // Divided differences of λ^-(k+1), and of λ^-k for the mass.
                 if stiffness.nrows() > 0 {
-                    (0..=k).for_each(|j| by -= heads[j] * &stiffness * heads[k - j].transpose());
+                    (0..=k).for_each(|j| by -= between(j, &stiffness, k - j));
                 }
                 if mass.nrows() > 0 {
-                    (0..k).for_each(|j| by += heads[j] * &mass * heads[k - 1 - j].transpose());
+                    (0..k).for_each(|j| by += between(j, &mass, k - 1 - j));
                 }
                 let at = self.layout.series_by(p, k);
                 add(&mut self.numbers[at..], &by);

@@ -1,0 +1,139 @@
+//! Dense matrices in small code: plain loops down the columns, and nalgebra's symmetric eigenproblem.
+
+use faer::{Mat, MatRef};
+use nalgebra::{DMatrix, SymmetricEigen};
+
+/// $AB$.
+pub(crate) fn product(left: MatRef<'_, f64>, right: MatRef<'_, f64>) -> Mat<f64> {
+    let Some(columns) = right.try_as_col_major() else { return product(left, copied(right).as_ref()) };
+    let mut product = Mat::zeros(left.nrows(), right.ncols());
+    for (j, factors) in columns.col_iter().enumerate() {
+        let (sums, factors) = (product.col_as_slice_mut(j), factors.as_slice());
+        // Of A^T, as it mostly comes, the rows lie as columns in memory.
+        if let Some(rows) = left.transpose().try_as_col_major() {
+            sums.iter_mut().zip(rows.col_iter()).for_each(|(sum, row)| *sum = dot(row.as_slice(), factors));
+        } else if let Some(columns) = left.try_as_col_major() {
+            columns.col_iter().zip(factors).for_each(|(column, &factor)| add(sums, factor, column.as_slice()));
+        } else {
+            return self::product(copied(left).as_ref(), right);
+        }
+    }
+    product
+}
+
+/// $LL^T$ of a symmetric positive definite matrix.
+pub(crate) struct Cholesky(Mat<f64>);
+
+impl Cholesky {
+    /// `None` where the matrix is not positive definite.
+    pub(crate) fn new(matrix: &Mat<f64>) -> Option<Self> {
+        let mut lower = matrix.clone();
+        let (size, pivots) = (lower.nrows(), eliminate(&mut lower)?);
+        for (j, pivot) in pivots.into_iter().enumerate() {
+            if pivot <= 0.0 {
+                return None;
+            }
+            let root = pivot.sqrt();
+            let column = lower.col_as_slice_mut(j);
+            (0..j).for_each(|i| column[i] = 0.0);
+            (j..size).for_each(|i| column[i] *= root);
+        }
+        Some(Self(lower))
+    }
+
+    /// $L^{-1}B$ in the place of $B$.
+    pub(crate) fn solve_lower(&self, columns: &mut Mat<f64>) {
+        for j in 0..columns.ncols() {
+            let solved = columns.col_as_slice_mut(j);
+            for k in 0..solved.len() {
+                let (done, rest) = solved.split_at_mut(k + 1);
+                let factors = &self.0.col_as_slice(k)[k..];
+                done[k] /= factors[0];
+                add(rest, -done[k], &factors[1..]);
+            }
+        }
+    }
+
+    /// $L^{-T}B$ in the place of $B$.
+    pub(crate) fn solve_upper(&self, columns: &mut Mat<f64>) {
+        for j in 0..columns.ncols() {
+            let solved = columns.col_as_slice_mut(j);
+            for k in (0..solved.len()).rev() {
+                let factors = &self.0.col_as_slice(k)[k..];
+                solved[k] = (solved[k] - dot(&factors[1..], &solved[k + 1..])) / factors[0];
+            }
+        }
+    }
+
+    /// $L^TB$.
+    pub(crate) fn upper_times(&self, columns: &Mat<f64>) -> Mat<f64> {
+        product(self.0.transpose(), columns.as_ref())
+    }
+}
+
+/// Number of negative eigenvalues of a symmetric matrix: the negative pivots of $LDL^T$ (Sylvester's law of inertia).
+/// `None` where a pivot vanishes.
+pub(crate) fn negative_pivots(matrix: &Mat<f64>) -> Option<usize> {
+    let pivots = eliminate(&mut matrix.clone())?;
+    Some(pivots.iter().filter(|pivot| **pivot < 0.0).count())
+}
+
+/// $LDL^T$ of a symmetric matrix: returns $D$, and leaves $L$, whose diagonal is one, in the lower triangle. `None` where
+/// a pivot vanishes or is no number.
+fn eliminate(matrix: &mut Mat<f64>) -> Option<Vec<f64>> {
+    let size = matrix.nrows();
+    let mut pivots = Vec::with_capacity(size);
+    for k in 0..size {
+        let column = &mut matrix.col_as_slice_mut(k)[k..];
+        let pivot = column[0];
+        if pivot == 0.0 || !pivot.is_finite() {
+            return None;
+        }
+        pivots.push(pivot);
+        let before = column[1..].to_vec();
+        column.iter_mut().for_each(|value| *value /= pivot);
+        let factors = column[1..].to_vec();
+        for (below, &value) in before.iter().enumerate() {
+            add(&mut matrix.col_as_slice_mut(k + 1 + below)[k + 1 + below..], -value, &factors[below..]);
+        }
+    }
+    Some(pivots)
+}
+
+/// Rising eigenvalues and their vectors as columns; `None` where the search does not converge.
+pub(crate) fn symmetric_eigen(matrix: &Mat<f64>) -> Option<(Vec<f64>, Mat<f64>)> {
+    // nalgebra's own default for the first number; QR iterations need two or three a row.
+    let found = SymmetricEigen::try_new(
+        DMatrix::from_fn(matrix.nrows(), matrix.ncols(), |i, j| matrix[(i, j)]),
+        f64::EPSILON,
+        100 * (matrix.nrows() + 1),
+    )?;
+    let mut order: Vec<usize> = (0..matrix.nrows()).collect();
+    order.sort_by(|&a, &b| found.eigenvalues[a].total_cmp(&found.eigenvalues[b]));
+    let values = order.iter().map(|&index| found.eigenvalues[index]).collect();
+    let vectors = Mat::from_fn(matrix.nrows(), order.len(), |i, j| found.eigenvectors[(i, order[j])]);
+    Some((values, vectors))
+}
+
+/// The same matrix, its columns one after the other in memory.
+fn copied(matrix: MatRef<'_, f64>) -> Mat<f64> {
+    Mat::from_fn(matrix.nrows(), matrix.ncols(), |i, j| matrix[(i, j)])
+}
+
+fn add(sum: &mut [f64], factor: f64, values: &[f64]) {
+    sum.iter_mut().zip(values).for_each(|(sum, value)| *sum += factor * value);
+}
+
+/// In four sums, which the compiler may keep side by side.
+fn dot(left: &[f64], right: &[f64]) -> f64 {
+    let (left, left_rest) = left.as_chunks::<4>();
+    let (right, right_rest) = right.as_chunks::<4>();
+    let mut sums = [0.0; 4];
+    for (a, b) in left.iter().zip(right) {
+        for i in 0..4 {
+            sums[i] += a[i] * b[i];
+        }
+    }
+    let rest: f64 = left_rest.iter().zip(right_rest).map(|(a, b)| a * b).sum();
+    sums.iter().sum::<f64>() + rest
+}
