@@ -4,12 +4,12 @@ use std::f64::consts::TAU;
 use std::fmt::Write as _;
 
 use orthopanel_fmu::{GENERATOR, Resource};
-use orthopanel_model::ModalModel;
+use orthopanel_model::{Estimate, ModalModel, PanelModel};
 
 use crate::{FmiVersion, FmuOptions};
 
-/// The page: variables with their places, modes, and how the force is held.
-pub(crate) fn write(resource: &Resource, options: &FmuOptions) -> String {
+/// The page: variables with their places, modes, how the force is held, and where the panel comes from.
+pub(crate) fn write(resource: &Resource, panel: Option<&PanelModel>, options: &FmuOptions) -> String {
     let mut page = String::from("<!DOCTYPE html>\n<html lang=\"en\">\n<head><meta charset=\"utf-8\"><title>");
     page += &escaped(&options.name);
     page += "</title></head>\n<body>\n<h1>";
@@ -40,8 +40,33 @@ pub(crate) fn write(resource: &Resource, options: &FmuOptions) -> String {
         let frequency = mode.angular_frequency / std::f64::consts::TAU;
         let _ = writeln!(page, "<tr><td>{frequency:.3}</td><td>{}</td></tr>", mode.damping_ratio);
     }
-    let _ = write!(page, "</table>\n<p>Written by {GENERATOR}.</p>\n</body>\n</html>\n");
+    page += "</table>\n";
+    page += &panel.map(origin).unwrap_or_default();
+    let _ = write!(page, "<p>Written by {GENERATOR}.</p>\n</body>\n</html>\n");
     page
+}
+
+/// The constants with their standard deviations, the effects, and what is told of the identification behind them.
+fn origin(panel: &PanelModel) -> String {
+    let mut text = String::from("<h2>Where the panel comes from</h2>\n<table>\n");
+    let mut row = |name: &str, value: &str| {
+        let _ = writeln!(text, "<tr><td>{}</td><td>{}</td></tr>", escaped(name), escaped(value));
+    };
+    let told = |estimate: &Estimate| match estimate.std {
+        Some(std) => format!("{:.4e}, standard deviation {std:.1e}", estimate.value),
+        None => format!("{:.4e}", estimate.value),
+    };
+    for (name, estimate) in &panel.constants {
+        row(&format!("{name} [{}]", if name.starts_with("nu") { "1" } else { "Pa" }), &told(estimate));
+    }
+    for effect in &panel.effects {
+        let parameters = effect.parameters.iter().map(|(name, value)| format!("{name} {}", told(value)));
+        row(&format!("effect {}", effect.id), &parameters.collect::<Vec<_>>().join("; "));
+    }
+    for (name, value) in &panel.provenance {
+        row(&name.replace('_', " "), &value.as_str().map_or_else(|| value.to_string(), String::from));
+    }
+    text + "</table>\n"
 }
 
 const PARAMETERS: &str = "Parameters are fixed: they are set before or in initialization mode, and stay for the run. Where \
@@ -51,7 +76,8 @@ const HELD: &str = "The force is held at the value set before the step, over the
 const BY_DERIVATIVES: &str = " If the importer gives the first derivative of a force \
      (fmi2SetRealInputDerivatives), the force of the next step runs at that rate from the value set.";
 const LINEAR: &str = " If the parameter force_linear is true, the force of a step runs linearly from its value at the \
-     end of the last step to the value now set: set the value of the step's end before the step. Each mode is then \
+     end of the last step to the value now set: set the value of the step's end before the step; until it is done, \
+     outputs are those of the old value. Each mode is then \
      advanced exactly, whatever the step.";
 const MODES: &str = "Rigid modes have the frequency 0. Outputs are sums over these modes.";
 

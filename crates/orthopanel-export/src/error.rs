@@ -21,6 +21,25 @@ pub enum ExportError {
         /// The name.
         name: String,
     },
+    /// Arrays in a version that has none.
+    #[error("arrays: FMI 2.0 has none: export for FMI 3.0, or leave them out")]
+    Arrays,
+    /// A platform that FMI has no name for.
+    #[error("platform {given:?}: must be one of {known}")]
+    Platform {
+        /// What was given.
+        given: String,
+        /// Those that are known.
+        known: String,
+    },
+    /// A library that cannot be that of the platform.
+    #[error("library for {platform}: {reason}")]
+    Library {
+        /// The platform.
+        platform: String,
+        /// Why not.
+        reason: String,
+    },
     /// Model and ports that do not fit.
     #[error(transparent)]
     Resource(#[from] FmuError),

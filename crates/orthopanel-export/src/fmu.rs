@@ -7,7 +7,7 @@ use orthopanel_fmu::{RESOURCE_FILE, Resource, content_token};
 use orthopanel_model::{ModalModel, ModeRange, PanelModel, Ports};
 
 use crate::archive::{Entry, pack};
-use crate::{ExportError, documentation, library, model_description};
+use crate::{ExportError, Library, documentation, library, model_description, terminals};
 
 /// Version of the FMI standard.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -28,6 +28,10 @@ pub struct FmuOptions {
     pub description: String,
     /// Version of the standard.
     pub version: FmiVersion,
+    /// All forces as one array and each kind of output as another, not a variable each; FMI 3.0 alone has arrays.
+    pub arrays: bool,
+    /// Libraries of other platforms, or one in place of this platform's own.
+    pub libraries: Vec<Library>,
 }
 
 impl Default for FmuOptions {
@@ -36,11 +40,16 @@ impl Default for FmuOptions {
             name: "panel".into(),
             description: "Panel: force in, acceleration, velocity and displacement out".into(),
             version: FmiVersion::Fmi2,
+            arrays: false,
+            libraries: Vec::new(),
         }
     }
 }
 
-/// A co-simulation FMU of a modal model.
+const ICON_PNG: &[u8] = include_bytes!("../icons/panel.png");
+const ICON_SVG: &[u8] = include_bytes!("../icons/panel.svg");
+
+/// An FMU of a modal model, for co-simulation and model exchange.
 ///
 /// The same model, ports and options give the same bytes, token included.
 ///
@@ -61,6 +70,9 @@ pub struct Fmu {
     model_description: String,
     resource: String,
     documentation: String,
+    /// None with arrays: a terminal cannot name one element.
+    terminals: Option<String>,
+    libraries: Vec<(String, Vec<u8>)>,
 }
 
 impl Fmu {
@@ -71,7 +83,7 @@ impl Fmu {
     /// of places than `model` has ports.
     pub fn new(model: ModalModel, ports: Ports, options: &FmuOptions) -> Result<Self, ExportError> {
         check(&ports, options)?;
-        Self::of_resource(&Resource::new(model, ports)?, options)
+        Self::of_resource(Resource::new(model, ports)?, None, options)
     }
 
     /// Puts together the FMU of a panel with the modes of `range`: their number is fixed, all else (sizes, mass,
@@ -87,16 +99,19 @@ impl Fmu {
         options: &FmuOptions,
     ) -> Result<Self, ExportError> {
         check(&ports, options)?;
-        Self::of_resource(&Resource::of_panel(panel, range, ports)?, options)
+        Self::of_resource(Resource::of_panel(panel, range, ports)?, Some(panel), options)
     }
 
-    fn of_resource(resource: &Resource, options: &FmuOptions) -> Result<Self, ExportError> {
+    fn of_resource(resource: Resource, panel: Option<&PanelModel>, options: &FmuOptions) -> Result<Self, ExportError> {
+        let resource = &if options.arrays { resource.in_arrays() } else { resource };
         let text = resource.to_json();
         let token = content_token(text.as_bytes());
         Ok(Self {
             version: options.version,
             model_description: model_description::write(resource, options, &token)?,
-            documentation: documentation::write(resource, options),
+            documentation: documentation::write(resource, panel, options),
+            terminals: if options.arrays { None } else { Some(terminals::write(resource)?) },
+            libraries: library::all(options.version, &options.libraries)?,
             resource: text,
         })
     }
@@ -112,12 +127,26 @@ impl Fmu {
     /// [`ExportError::Assemble`], should the archive not take an entry.
     pub fn to_bytes(&self) -> Result<Vec<u8>, ExportError> {
         let text = |path: &str, content| Entry { path: path.into(), content, executable: false };
-        pack(&[
+        let mut entries = vec![
             text("modelDescription.xml", self.model_description.as_bytes()),
             text(&format!("resources/{RESOURCE_FILE}"), self.resource.as_bytes()),
             text("documentation/index.html", self.documentation.as_bytes()),
-            Entry { path: library::path(self.version), content: library::LIBRARY, executable: true },
-        ])
+        ];
+        entries.extend(match self.version {
+            FmiVersion::Fmi2 => vec![text("model.png", ICON_PNG)],
+            FmiVersion::Fmi3 => {
+                vec![text("terminalsAndIcons/icon.png", ICON_PNG), text("terminalsAndIcons/icon.svg", ICON_SVG)]
+            }
+        });
+        if let (FmiVersion::Fmi3, Some(terminals)) = (self.version, &self.terminals) {
+            entries.push(text("terminalsAndIcons/terminalsAndIcons.xml", terminals.as_bytes()));
+        }
+        entries.extend(self.libraries.iter().map(|(path, content)| Entry {
+            path: path.clone(),
+            content,
+            executable: true,
+        }));
+        pack(&entries)
     }
 
     /// Writes the archive to `path`: first beside it, then renamed, so that a failure leaves nothing behind and an
@@ -149,6 +178,9 @@ fn check(ports: &Ports, options: &FmuOptions) -> Result<(), ExportError> {
         if places.is_empty() {
             return Err(ExportError::NoPort { ports: kind });
         }
+    }
+    if options.arrays && options.version == FmiVersion::Fmi2 {
+        return Err(ExportError::Arrays);
     }
     if options.name.trim().is_empty() || options.name.chars().any(char::is_control) {
         return Err(ExportError::Name { name: options.name.clone() });

@@ -6,6 +6,8 @@ mod error;
 mod fmu;
 mod library;
 mod model_description;
+mod terminals;
 
 pub use error::ExportError;
 pub use fmu::{FmiVersion, Fmu, FmuOptions};
+pub use library::{Library, Platform};

@@ -1,26 +1,126 @@
-//! The runtime that every FMU carries, and the folder in which importers of this platform look for it.
+//! The runtime that every FMU carries, for the platform of this program and for others.
 
-use orthopanel_fmu::MODEL_IDENTIFIER;
+use std::fmt;
+use std::str::FromStr;
 
-use crate::FmiVersion;
+use orthopanel_fmu::{MODEL_IDENTIFIER, RESOURCE_SCHEMA};
+
+use crate::{ExportError, FmiVersion};
 
 /// The library, built with this crate.
-pub(crate) const LIBRARY: &[u8] = include_bytes!(env!("ORTHOPANEL_FMU_LIBRARY"));
+pub(crate) const EMBEDDED: &[u8] = include_bytes!(env!("ORTHOPANEL_FMU_LIBRARY"));
 
-/// Place of the library inside the archive.
-pub(crate) fn path(version: FmiVersion) -> String {
-    let extension = std::env::consts::DLL_EXTENSION;
-    format!("binaries/{}/{MODEL_IDENTIFIER}.{extension}", platform(version))
+/// Operating system and processor that a library is for; as text FMI 3.0's `x86_64-linux`, or FMI 2.0's `linux64`,
+/// `win64` and `darwin64`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct Platform {
+    architecture: &'static str,
+    system: System,
 }
 
-/// Folder of the platform: FMI 2.0 names five by system and word length, FMI 3.0 all by architecture and system.
-fn platform(version: FmiVersion) -> String {
-    let (system, architecture) = (std::env::consts::OS, std::env::consts::ARCH);
-    let system = if system == "macos" { "darwin" } else { system };
-    match (version, system, architecture) {
-        (FmiVersion::Fmi2, "linux", "x86_64") => "linux64".into(),
-        (FmiVersion::Fmi2, "windows", "x86_64") => "win64".into(),
-        (FmiVersion::Fmi2, "darwin", "x86_64") => "darwin64".into(),
-        _ => format!("{architecture}-{system}"),
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+enum System {
+    Linux,
+    Windows,
+    Darwin,
+}
+
+/// Every platform: its name in FMI 3.0, and the one of its own that FMI 2.0 may have for it.
+const PLATFORMS: [(&str, &str, System, Option<&str>); 6] = [
+    ("x86_64-linux", "x86_64", System::Linux, Some("linux64")),
+    ("aarch64-linux", "aarch64", System::Linux, None),
+    ("x86_64-windows", "x86_64", System::Windows, Some("win64")),
+    ("aarch64-windows", "aarch64", System::Windows, None),
+    ("x86_64-darwin", "x86_64", System::Darwin, Some("darwin64")),
+    ("aarch64-darwin", "aarch64", System::Darwin, None),
+];
+
+impl Platform {
+    /// The one that this program runs on; `None` where FMI has no name for it.
+    pub(crate) fn here() -> Option<Self> {
+        let system = if std::env::consts::OS == "macos" { "darwin" } else { std::env::consts::OS };
+        format!("{}-{system}", std::env::consts::ARCH).parse().ok()
     }
+
+    /// Place of its library inside the archive.
+    pub(crate) fn path(self, version: FmiVersion) -> String {
+        let own = PLATFORMS.iter().find(|(name, ..)| *name == self.to_string()).and_then(|(.., own)| *own);
+        let folder = own.filter(|_| version == FmiVersion::Fmi2).map_or_else(|| self.to_string(), String::from);
+        let extension = match self.system {
+            System::Linux => "so",
+            System::Windows => "dll",
+            System::Darwin => "dylib",
+        };
+        format!("binaries/{folder}/{MODEL_IDENTIFIER}.{extension}")
+    }
+}
+
+impl fmt::Display for Platform {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let system = match self.system {
+            System::Linux => "linux",
+            System::Windows => "windows",
+            System::Darwin => "darwin",
+        };
+        write!(f, "{}-{system}", self.architecture)
+    }
+}
+
+impl FromStr for Platform {
+    type Err = ExportError;
+
+    fn from_str(text: &str) -> Result<Self, ExportError> {
+        let found = PLATFORMS.iter().find(|(name, _, _, own)| *name == text || *own == Some(text));
+        found.map(|&(_, architecture, system, _)| Self { architecture, system }).ok_or_else(|| ExportError::Platform {
+            given: text.into(),
+            known: PLATFORMS.map(|(name, ..)| name).join(", "),
+        })
+    }
+}
+
+/// The runtime of a platform, as built there from this version of `orthopanel-fmu`.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Library {
+    platform: Platform,
+    content: Vec<u8>,
+}
+
+impl Library {
+    /// # Errors
+    /// [`ExportError::Library`] where `content` is no shared library of that system, or none of this version's runtime.
+    pub fn new(platform: Platform, content: Vec<u8>) -> Result<Self, ExportError> {
+        let (start, kind): (&[u8], _) = match platform.system {
+            System::Linux => (b"\x7fELF", "an ELF shared object"),
+            System::Windows => (b"MZ", "a DLL"),
+            System::Darwin => (b"\xcf\xfa\xed\xfe", "a Mach-O library of one architecture"),
+        };
+        let refuse = |reason| Err(ExportError::Library { platform: platform.to_string(), reason });
+        if !content.starts_with(start) {
+            return refuse(format!("it is not {kind}"));
+        }
+        // What it reads is named in it: a runtime of another version would refuse this FMU's resource.
+        for needed in ["fmi2Instantiate", "fmi3InstantiateCoSimulation", RESOURCE_SCHEMA] {
+            if !content.windows(needed.len()).any(|window| window == needed.as_bytes()) {
+                return refuse(format!("{needed:?} is not in it, so it is no orthopanel-fmu of this version"));
+            }
+        }
+        Ok(Self { platform, content })
+    }
+}
+
+/// Path and content of every library of an FMU: those given, and the one of this platform where none is given for it.
+///
+/// # Errors
+/// [`ExportError::Library`] where two are for one platform.
+pub(crate) fn all(version: FmiVersion, given: &[Library]) -> Result<Vec<(String, Vec<u8>)>, ExportError> {
+    for (index, library) in given.iter().enumerate() {
+        if given.iter().take(index).any(|before| before.platform == library.platform) {
+            let reason = "it is given twice".into();
+            return Err(ExportError::Library { platform: library.platform.to_string(), reason });
+        }
+    }
+    let here = Platform::here().filter(|here| given.iter().all(|library| library.platform != *here));
+    let embedded = here.map(|here| (here.path(version), EMBEDDED.to_vec()));
+    let given = given.iter().map(|library| (library.platform.path(version), library.content.clone()));
+    Ok(embedded.into_iter().chain(given).collect())
 }

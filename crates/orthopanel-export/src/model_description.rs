@@ -74,9 +74,9 @@ fn root(xml: &mut Xml, description: &Description) -> io::Result<()> {
             units(xml)?;
             log_categories(xml)?;
             default_experiment(xml, description.experiment)?;
-            let variables = description.variables.variables();
             match description.options.version {
                 FmiVersion::Fmi2 => {
+                    let variables = description.variables.variables();
                     xml.create_element("ModelVariables")
                         .write_inner_content(|xml| variables.iter().try_for_each(|v| fmi2::variable(xml, v)))?;
                     xml.create_element("ModelStructure")
@@ -84,7 +84,7 @@ fn root(xml: &mut Xml, description: &Description) -> io::Result<()> {
                 }
                 FmiVersion::Fmi3 => {
                     xml.create_element("ModelVariables")
-                        .write_inner_content(|xml| variables.iter().try_for_each(|v| fmi3::variable(xml, v)))?;
+                        .write_inner_content(|xml| fmi3::variables(xml, &description.variables))?;
                     xml.create_element("ModelStructure")
                         .write_inner_content(|xml| fmi3::structure(xml, description))?;
                 }
@@ -113,11 +113,16 @@ fn common_attributes(variable: &Variable) -> Vec<(&'static str, String)> {
 fn value_attributes(variable: &Variable, state: Option<String>) -> Vec<(&'static str, String)> {
     let texts = [
         ("unit", variable.unit.map(String::from)),
+        ("displayUnit", variable.unit.and_then(display_unit)),
         ("nominal", variable.nominal.map(|nominal| format!("{nominal:e}"))),
         ("start", variable.start.clone()),
         ("derivative", state),
     ];
     texts.into_iter().filter_map(|(name, value)| Some((name, value?))).collect()
+}
+
+fn display_unit(name: &str) -> Option<String> {
+    UNITS.iter().find(|unit| unit.name == name)?.display.map(|(shown, _)| shown.into())
 }
 
 /// An element without content.
@@ -165,11 +170,10 @@ fn units(xml: &mut Xml) -> io::Result<()> {
             }
             element.write_inner_content(|xml| {
                 let exponents = unit.exponents.iter().map(|&(base, power)| (base, power.to_string()));
-                let mut element = xml.create_element("BaseUnit");
-                for (base, power) in exponents {
-                    element = element.with_attribute((base, power.as_str()));
-                }
-                element.write_empty().map(drop)
+                empty(xml, "BaseUnit", &exponents.collect::<Vec<_>>())?;
+                unit.display.map_or(Ok(()), |(name, factor)| {
+                    empty(xml, "DisplayUnit", &[("name", name.into()), ("factor", format!("{factor:e}"))])
+                })
             })?;
         }
         Ok(())

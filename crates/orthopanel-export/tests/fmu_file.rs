@@ -2,7 +2,8 @@
 
 use std::io::Read as _;
 
-use orthopanel_export::{ExportError, FmiVersion, Fmu, FmuOptions};
+use orthopanel_export::{ExportError, FmiVersion, Fmu, FmuOptions, Library, Platform};
+use orthopanel_fmu::RESOURCE_SCHEMA;
 use orthopanel_model::{ModalModel, Mode, Place, Ports};
 
 fn ports(forces: usize, responses: usize) -> Ports {
@@ -36,6 +37,10 @@ fn the_archive_holds_each_part_where_the_standard_wants_it() {
         assert_eq!(text, fmu.model_description());
         archive.by_name("resources/panel.json").expect("resource");
         archive.by_name("documentation/index.html").expect("documentation");
+        let icon = if version == FmiVersion::Fmi2 { "model.png" } else { "terminalsAndIcons/icon.png" };
+        let mut start = [0; 8];
+        archive.by_name(icon).expect("icon").read_exact(&mut start).expect("bytes");
+        assert_eq!(&start, b"\x89PNG\r\n\x1a\n");
         if cfg!(all(target_os = "linux", target_arch = "x86_64")) {
             let mut library = archive.by_name(&format!("binaries/{folder}/orthopanel.so")).expect("library");
             assert_eq!(library.unix_mode().map(|mode| mode & 0o111), Some(0o111), "executable");
@@ -68,6 +73,80 @@ fn models_without_ports_or_name_are_refused() {
         let options = FmuOptions { name: name.into(), ..FmuOptions::default() };
         assert!(matches!(Fmu::new(model(1, 1), ports(1, 1), &options), Err(ExportError::Name { .. })), "{name:?}");
     }
+}
+
+/// Bytes that pass for the runtime of a system: its first bytes, and the names that it would hold.
+fn made_library(start: &[u8]) -> Vec<u8> {
+    [start, b"..fmi2Instantiate..fmi3InstantiateCoSimulation..", RESOURCE_SCHEMA.as_bytes(), b".."].concat()
+}
+
+fn platform(name: &str) -> Platform {
+    name.parse().expect("a platform")
+}
+
+#[test]
+fn libraries_of_several_platforms_lie_side_by_side() {
+    let mac = b"\xcf\xfa\xed\xfe".as_slice();
+    let given = [("win64", b"MZ".as_slice()), ("aarch64-darwin", mac), ("x86_64-linux", b"\x7fELF")];
+    let libraries: Result<Vec<_>, _> =
+        given.iter().map(|(name, start)| Library::new(platform(name), made_library(start))).collect();
+    let options = FmuOptions { libraries: libraries.expect("sound libraries"), ..FmuOptions::default() };
+    for (version, paths) in [
+        (FmiVersion::Fmi2, ["win64/orthopanel.dll", "aarch64-darwin/orthopanel.dylib", "linux64/orthopanel.so"]),
+        (
+            FmiVersion::Fmi3,
+            ["x86_64-windows/orthopanel.dll", "aarch64-darwin/orthopanel.dylib", "x86_64-linux/orthopanel.so"],
+        ),
+    ] {
+        let options = FmuOptions { version, ..options.clone() };
+        let bytes = Fmu::new(model(1, 1), ports(1, 1), &options).and_then(|fmu| fmu.to_bytes()).expect("an archive");
+        let mut archive = zip::ZipArchive::new(std::io::Cursor::new(bytes)).expect("a zip");
+        for (path, (_, start)) in paths.iter().zip(given) {
+            let mut content = Vec::new();
+            let mut entry = archive.by_name(&format!("binaries/{path}")).expect(path);
+            entry.read_to_end(&mut content).expect("bytes");
+            // The one given for this platform stands in place of the embedded one.
+            assert_eq!(content, made_library(start), "{path}");
+        }
+    }
+}
+
+#[test]
+fn libraries_that_cannot_be_the_runtime_are_refused() {
+    assert!(
+        matches!("solaris".parse::<Platform>(), Err(ExportError::Platform { known, .. }) if known.contains("linux"))
+    );
+    for (content, reason) in [
+        (made_library(b"MZ"), "not an ELF"),
+        (b"\x7fELF of something else".to_vec(), "no orthopanel-fmu of this version"),
+        (made_library(b"\x7fELF").iter().map(|&byte| if byte == b'2' { b'1' } else { byte }).collect(), "this version"),
+        (Vec::new(), "not an ELF"),
+    ] {
+        let refused = Library::new(platform("linux64"), content);
+        assert!(
+            matches!(&refused, Err(ExportError::Library { reason: said, .. }) if said.contains(reason)),
+            "{refused:?}"
+        );
+    }
+    let twice =
+        ["win64", "x86_64-windows"].map(|name| Library::new(platform(name), made_library(b"MZ")).expect("sound"));
+    let options = FmuOptions { libraries: twice.to_vec(), ..FmuOptions::default() };
+    let refused = Fmu::new(model(1, 1), ports(1, 1), &options);
+    assert!(matches!(refused, Err(ExportError::Library { reason, .. }) if reason.contains("twice")));
+}
+
+/// The embedded runtime is small enough to lie in every FMU, and passes for what it is.
+#[test]
+fn the_runtime_is_below_its_limit() {
+    if !cfg!(all(target_os = "linux", target_arch = "x86_64")) {
+        return;
+    }
+    let bytes = Fmu::new(model(1, 1), ports(1, 1), &FmuOptions::default()).and_then(|fmu| fmu.to_bytes());
+    let mut archive = zip::ZipArchive::new(std::io::Cursor::new(bytes.expect("an archive"))).expect("a zip");
+    let mut content = Vec::new();
+    archive.by_name("binaries/linux64/orthopanel.so").expect("library").read_to_end(&mut content).expect("bytes");
+    assert!(content.len() < 1_500_000, "{} bytes", content.len());
+    Library::new(platform("linux64"), content).expect("what is embedded may be given too");
 }
 
 #[test]

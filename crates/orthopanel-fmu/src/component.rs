@@ -1,6 +1,7 @@
 //! One instance without any C: the state of the FMI life cycle, the values set, and the stepper.
 
 mod continuous;
+mod elements;
 mod fmu_states;
 mod parameters;
 mod phase;

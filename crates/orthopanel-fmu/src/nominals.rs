@@ -19,7 +19,8 @@ pub(crate) fn of(model: &ModalModel) -> Vec<[f64; 2]> {
     sizes.collect()
 }
 
-/// Nominals must be above zero, whatever the frequency.
+/// Nominals must be above zero, whatever the frequency. Two digits are plenty for a size, and the same on every machine.
 fn positive(size: f64) -> f64 {
-    size.clamp(f64::MIN_POSITIVE, f64::MAX)
+    let rounded = format!("{size:.1e}").parse().unwrap_or(size);
+    rounded.clamp(f64::MIN_POSITIVE, f64::MAX)
 }

@@ -13,7 +13,8 @@ use crate::{FmuError, VariableTable};
 /// The file's name in `resources/`.
 pub const RESOURCE_FILE: &str = "panel.json";
 
-const RESOURCE_SCHEMA: &str = "orthopanel.fmu/2";
+/// What the file says it is; a library reads one schema alone.
+pub const RESOURCE_SCHEMA: &str = "orthopanel.fmu/3";
 
 /// Program and version, as FMUs name the tool that made them.
 pub const GENERATOR: &str = concat!("orthopanel ", env!("CARGO_PKG_VERSION"));
@@ -31,6 +32,8 @@ pub struct Resource {
     static_remainder: Vec<Vec<f64>>,
     /// The panel itself, where modes may be solved again.
     panel: Option<Panel>,
+    /// Whether importers see all forces as one array, and likewise each kind of output (FMI 3.0).
+    arrays: bool,
 }
 
 impl Resource {
@@ -41,7 +44,7 @@ impl Resource {
     pub fn new(model: ModalModel, ports: Ports) -> Result<Self, FmuError> {
         let static_remainder = vec![vec![0.0; ports.forces.len()]; ports.responses.len()];
         let (schema, generator) = (RESOURCE_SCHEMA.into(), GENERATOR.into());
-        Self { schema, generator, ports, model, static_remainder, panel: None }.checked()
+        Self { schema, generator, ports, model, static_remainder, panel: None, arrays: false }.checked()
     }
 
     /// The modes of `range` of a panel, with the static part of all others in displacement. Sizes, mass, constants,
@@ -53,7 +56,17 @@ impl Resource {
         let (panel, solution) = Panel::new(panel, range, ports.clone())?;
         let Solution { modes: model, static_remainder } = solution;
         let (schema, generator) = (RESOURCE_SCHEMA.into(), GENERATOR.into());
-        Self { schema, generator, ports, model, static_remainder, panel: Some(panel) }.checked()
+        Self { schema, generator, ports, model, static_remainder, panel: Some(panel), arrays: false }.checked()
+    }
+
+    /// The same with all forces as one array and each kind of output as another, which FMI 3.0 alone has.
+    #[must_use]
+    pub fn in_arrays(self) -> Self {
+        Self { arrays: true, ..self }
+    }
+
+    pub(crate) fn arrays(&self) -> bool {
+        self.arrays
     }
 
     /// The modes.

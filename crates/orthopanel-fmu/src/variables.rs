@@ -1,5 +1,6 @@
 //! The variables of an FMU: one table for the XML and for the calls at run time.
 
+mod arrays;
 mod dependencies;
 mod units;
 
@@ -10,6 +11,7 @@ use orthopanel_model::{ModalModel, Place, Ports};
 use crate::panel::Panel;
 use crate::{Resource, nominals};
 
+pub use arrays::Array;
 pub use units::{UNITS, Unit};
 
 /// What a variable stands for; ports are counted from 0.
@@ -122,15 +124,22 @@ pub struct Variable {
 /// The variables of a panel; a variable's reference is its index.
 ///
 /// Order: `time`, `force_linear`, then `force_1`.., `acceleration_1`.., `velocity_1`.., `displacement_1`.., then of each
-/// mode `modal_position_1`, `modal_velocity_1` and the derivatives of both, then the parameters of the panel; ports and modes are counted from 1 in names.
+/// mode `modal_position_1`, `modal_velocity_1` and the derivatives of both, then the parameters of the panel; ports and
+/// modes are counted from 1 in names. Where the resource asks for arrays, an importer sees [`VariableTable::arrays`] in the
+/// place of the variables that these hold.
 #[derive(Debug, Clone, PartialEq)]
-pub struct VariableTable(Vec<Variable>);
+pub struct VariableTable {
+    variables: Vec<Variable>,
+    /// What each stands for, close together: asked at every call.
+    quantities: Vec<Quantity>,
+    arrays: Vec<Array>,
+}
 
 impl VariableTable {
     /// The table of an FMU with this resource.
     pub(crate) fn new(resource: &Resource) -> Self {
         let (model, ports) = (resource.model(), resource.ports());
-        let mut table = Self(Vec::new());
+        let mut table = Self { variables: Vec::new(), quantities: Vec::new(), arrays: Vec::new() };
         table.push(Quantity::Time, "time".into(), "Time".into());
         table.push(Quantity::ForceLinear, "force_linear".into(), FORCE_LINEAR.into());
         for (port, place) in ports.forces.iter().enumerate() {
@@ -142,35 +151,49 @@ impl VariableTable {
         table.push_modes(model);
         for (index, parameter) in resource.panel().into_iter().flat_map(Panel::parameters).enumerate() {
             table.push(Quantity::Parameter(index), parameter.name, parameter.description);
-            if let Some(variable) = table.0.last_mut() {
+            if let Some(variable) = table.variables.last_mut() {
                 (variable.unit, variable.start) = (Some(parameter.unit), Some(parameter.start.to_string()));
             }
         }
-        dependencies::fill(&mut table.0, resource);
+        dependencies::fill(&mut table.variables, resource);
+        if resource.arrays() {
+            table.arrays = arrays::of(ports);
+        }
         table
     }
 
     /// All variables, in the order of their references.
     pub fn variables(&self) -> &[Variable] {
-        &self.0
+        &self.variables
     }
 
     /// The variable of a reference.
     pub fn get(&self, reference: u32) -> Option<&Variable> {
-        self.0.get(usize::try_from(reference).ok()?)
+        self.variables.get(usize::try_from(reference).ok()?)
+    }
+
+    /// Arrays in place of the variables that they hold; none unless asked for.
+    pub fn arrays(&self) -> &[Array] {
+        &self.arrays
+    }
+
+    /// The array that holds the variable of a reference.
+    pub fn array_of(&self, reference: u32) -> Option<&Array> {
+        self.arrays.iter().find(|array| array.references.contains(&reference))
     }
 
     /// What the variable of a reference stands for.
     #[inline]
     pub fn quantity(&self, reference: u32) -> Option<Quantity> {
-        self.get(reference).map(|variable| variable.quantity)
+        self.quantities.get(usize::try_from(reference).ok()?).copied()
     }
 
     /// Adds a variable that so far depends on nothing; returns its reference.
     fn push(&mut self, quantity: Quantity, name: String, description: String) -> u32 {
         // A table of 2^32 variables cannot be built in memory, so the index always fits.
-        let reference = u32::try_from(self.0.len()).unwrap_or(u32::MAX);
-        self.0.push(Variable {
+        let reference = u32::try_from(self.variables.len()).unwrap_or(u32::MAX);
+        self.quantities.push(quantity);
+        self.variables.push(Variable {
             reference,
             name,
             description,
@@ -189,7 +212,7 @@ impl VariableTable {
     fn push_state(&mut self, state: Quantity, rate: Quantity, name: &str, description: String, nominal: f64) {
         let of = self.push(state, name.into(), description);
         self.push(rate, format!("der({name})"), format!("Time derivative of {name}"));
-        if let [.., state, rate] = self.0.as_mut_slice() {
+        if let [.., state, rate] = self.variables.as_mut_slice() {
             (state.nominal, rate.derivative_of) = (Some(nominal), Some(of));
         }
     }

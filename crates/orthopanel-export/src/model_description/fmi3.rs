@@ -2,31 +2,72 @@
 
 use std::io;
 
-use orthopanel_fmu::{FMI3_CO_SIMULATION, FMI3_MODEL_EXCHANGE, Variable};
+use orthopanel_fmu::{Array, FMI3_CO_SIMULATION, FMI3_MODEL_EXCHANGE, Variable, VariableTable};
 
 use super::{Description, Unknown, Xml, common_attributes, empty, unknown, value_attributes};
 
 pub(super) const INTERFACES: [(&str, &[(&str, &str)]); 2] =
     [("ModelExchange", FMI3_MODEL_EXCHANGE), ("CoSimulation", FMI3_CO_SIMULATION)];
 
-pub(super) fn variable(xml: &mut Xml, variable: &Variable) -> io::Result<()> {
+fn variable(xml: &mut Xml, variable: &Variable) -> io::Result<()> {
     let mut attributes = common_attributes(variable);
     attributes.extend(value_attributes(variable, variable.derivative_of.map(|state| state.to_string())));
     empty(xml, if variable.unit.is_some() { "Float64" } else { "Boolean" }, &attributes)
 }
 
+/// An array in place of the variables that it holds, which are alike but for their place.
+fn array(xml: &mut Xml, array: &Array, first: &Variable) -> io::Result<()> {
+    let mut attributes = common_attributes(first);
+    attributes.extend(value_attributes(first, None));
+    let size = array.references.len();
+    for (name, value) in &mut attributes {
+        match *name {
+            "name" => *value = array.name.into(),
+            "description" => value.clone_from(&array.description),
+            "start" => *value = vec![value.as_str(); size].join(" "),
+            _ => {}
+        }
+    }
+    let attributes = attributes.iter().map(|(name, value)| (*name, value.as_str()));
+    xml.create_element("Float64")
+        .with_attributes(attributes)
+        .write_inner_content(|xml| empty(xml, "Dimension", &[("start", size.to_string())]))?;
+    Ok(())
+}
+
+pub(super) fn variables(xml: &mut Xml, table: &VariableTable) -> io::Result<()> {
+    table.variables().iter().try_for_each(|one| match table.array_of(one.reference) {
+        None => variable(xml, one),
+        Some(whole) if whole.references.start == one.reference => array(xml, whole, one),
+        Some(_) => Ok(()),
+    })
+}
+
 pub(super) fn structure(xml: &mut Xml, description: &Description) -> io::Result<()> {
+    let table = &description.variables;
+    // An array depends on what any of its elements does, and is named by the reference of the first.
+    let seen_as = |reference: u32| table.array_of(reference).map_or(reference, |array| array.references.start);
     let mut element = |element: &str, variable: &Variable, initial| {
-        let on = if initial { &variable.initial_dependencies } else { &variable.dependencies };
+        let elements = table
+            .array_of(variable.reference)
+            .map_or(variable.reference..variable.reference + 1, |array| array.references.clone());
+        let all = elements.filter_map(|reference| table.get(reference));
+        let mut on: Vec<u32> = all
+            .flat_map(|one| if initial { &one.initial_dependencies } else { &one.dependencies })
+            .map(|&reference| seen_as(reference))
+            .collect();
+        on.sort_unstable();
+        on.dedup();
         let names: Vec<String> = on.iter().map(u32::to_string).collect();
         unknown(xml, element, ("valueReference", variable.reference.to_string()), &names, initial)
     };
-    for (kind, variable) in description.unknowns() {
+    let unknowns: Vec<_> = description.unknowns().filter(|(_, one)| seen_as(one.reference) == one.reference).collect();
+    for &(kind, variable) in &unknowns {
         match kind {
             Unknown::Output => element("Output", variable, false)?,
             Unknown::Derivative => element("ContinuousStateDerivative", variable, false)?,
         }
     }
     // All of them are calculated from forces and states, at the start as later.
-    description.unknowns().try_for_each(|(_, variable)| element("InitialUnknown", variable, true))
+    unknowns.iter().try_for_each(|(_, variable)| element("InitialUnknown", variable, true))
 }

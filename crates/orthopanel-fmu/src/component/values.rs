@@ -4,28 +4,55 @@ use super::{Component, Interface, Phase, finite};
 use crate::{FmuError, Quantity, Variable};
 
 impl Component {
-    /// Reads real variables; accelerations answer to the force now set (direct feedthrough).
+    /// Reads real variables; accelerations answer at once to the force in effect (direct feedthrough).
     pub(crate) fn get_reals(&mut self, references: &[u32], values: &mut [f64]) -> Result<(), FmuError> {
         self.require(Phase::READABLE)?;
         same_count(values.len(), references.len())?;
         self.apply()?;
         for (&reference, value) in references.iter().zip(values) {
-            // The table has the ports and modes of the stepper: none of these is ever missing.
             *value = match self.variables.quantity(reference) {
-                Some(Quantity::Time) => self.now.time,
-                None | Some(Quantity::ForceLinear) => return Err(self.no_real(reference)),
-                Some(quantity) => self.panel_value(quantity, &self.stepper, &self.now.forces).unwrap_or(f64::NAN),
+                // What is read at every step is asked for nothing more.
+                Some(Quantity::Acceleration(port)) => self.stepper.acceleration(port).unwrap_or(f64::NAN),
+                quantity => self.other_real(reference, quantity)?,
             };
         }
         Ok(())
+    }
+
+    #[inline(never)]
+    fn other_real(&self, reference: u32, quantity: Option<Quantity>) -> Result<f64, FmuError> {
+        match quantity {
+            Some(Quantity::Time) => Ok(self.now.time),
+            None | Some(Quantity::ForceLinear) => Err(self.no_real(reference)),
+            // The table has the ports and modes of the stepper: none of these is ever missing.
+            Some(Quantity::Force(port)) => Ok(self.now.forces.get(port).copied().unwrap_or(f64::NAN)),
+            Some(quantity) => {
+                Ok(self.panel_value(quantity, &self.stepper, &self.now.forces).unwrap_or(f64::NAN))
+            }
+        }
     }
 
     /// Sets forces \[N\], and before the start parameters and the initial state of the modes.
     pub(crate) fn set_reals(&mut self, references: &[u32], values: &[f64]) -> Result<(), FmuError> {
         self.require(Phase::SETTABLE)?;
         same_count(values.len(), references.len())?;
+        // One force, which is what is set at every step, needs no second look.
+        if let ([reference], [value]) = (references, values)
+            && let Some(Quantity::Force(port)) = self.variables.quantity(*reference)
+            && value.is_finite()
+            && let Some(force) = self.now.forces.get_mut(port)
+        {
+            *force = *value;
+            self.forces_changed = true;
+            return Ok(());
+        }
+        self.set_several(references, values)
+    }
+
+    #[inline(never)]
+    fn set_several(&mut self, references: &[u32], values: &[f64]) -> Result<(), FmuError> {
         for (&reference, &value) in references.iter().zip(values) {
-            // A force, which is what is set at every step, is asked for nothing more.
+            // A force is asked for nothing more.
             if !(matches!(self.variables.quantity(reference), Some(Quantity::Force(_))) && value.is_finite()) {
                 self.check_settable(reference, value)?;
             }
@@ -145,10 +172,12 @@ impl Component {
     }
 
     fn variable(&self, reference: u32) -> Result<&Variable, FmuError> {
-        self.variables.get(reference).ok_or_else(|| {
-            let last = u32::try_from(self.variables.variables().len()).unwrap_or(u32::MAX).saturating_sub(1);
-            FmuError::UnknownReference { reference, last }
-        })
+        self.variables.get(reference).ok_or_else(|| self.unknown_reference(reference))
+    }
+
+    pub(super) fn unknown_reference(&self, reference: u32) -> FmuError {
+        let last = u32::try_from(self.variables.variables().len()).unwrap_or(u32::MAX).saturating_sub(1);
+        FmuError::UnknownReference { reference, last }
     }
 
     pub(super) fn quantity(&self, reference: u32) -> Result<Quantity, FmuError> {

@@ -8,9 +8,11 @@ entries! {
         unknowns: *const Reference, unknown_count: usize, knowns: *const Reference, known_count: usize,
         seed: *const f64, seed_count: usize, sensitivity: *mut f64, sensitivity_count: usize
     ) |instance| {
+        let unknowns = instance.component.elements(array(unknowns, unknown_count, "unknowns")?)?;
+        let knowns = instance.component.elements(array(knowns, known_count, "knowns")?)?;
         instance.component.directional_derivative(
-            array(unknowns, unknown_count, "unknowns")?,
-            array(knowns, known_count, "knowns")?,
+            &unknowns,
+            &knowns,
             array(seed, seed_count, "seed")?,
             array_mut(sensitivity, sensitivity_count, "sensitivity")?,
         )
@@ -20,9 +22,11 @@ entries! {
         unknowns: *const Reference, unknown_count: usize, knowns: *const Reference, known_count: usize,
         seed: *const f64, seed_count: usize, sensitivity: *mut f64, sensitivity_count: usize
     ) |instance| {
+        let unknowns = instance.component.elements(array(unknowns, unknown_count, "unknowns")?)?;
+        let knowns = instance.component.elements(array(knowns, known_count, "knowns")?)?;
         instance.component.adjoint_derivative(
-            array(unknowns, unknown_count, "unknowns")?,
-            array(knowns, known_count, "knowns")?,
+            &unknowns,
+            &knowns,
             array(seed, seed_count, "seed")?,
             array_mut(sensitivity, sensitivity_count, "sensitivity")?,
         )
@@ -31,10 +35,9 @@ entries! {
     fmi3GetOutputDerivatives(
         references: *const Reference, count: usize, orders: *const i32, values: *mut f64, value_count: usize
     ) |instance| {
-        instance.component.output_derivatives(
-            array(references, count, "valueReferences")?,
-            array(orders, count, "orders")?,
-            array_mut(values, value_count, "values")?,
-        )
+        let references = array(references, count, "valueReferences")?;
+        let orders = instance.component.for_elements(references, array(orders, count, "orders")?)?;
+        let elements = instance.component.elements(references)?;
+        instance.component.output_derivatives(&elements, &orders, array_mut(values, value_count, "values")?)
     };
 }

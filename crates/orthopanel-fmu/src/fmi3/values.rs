@@ -1,16 +1,16 @@
-//! FMI 3.0, 2.2.7: getting and setting variables; all are scalars.
+//! FMI 3.0, 2.2.7: getting and setting variables.
 
 use super::{Boolean, Reference, Text};
 use crate::boundary::{absent_types, array, array_mut, entries};
 
 entries! {
     fmi3GetFloat64(references: *const Reference, count: usize, values: *mut f64, value_count: usize) |instance| {
-        let references = array(references, count, "valueReferences")?;
-        instance.component.get_reals(references, array_mut(values, value_count, "values")?)
+        let references = instance.component.elements(array(references, count, "valueReferences")?)?;
+        instance.component.get_reals(&references, array_mut(values, value_count, "values")?)
     };
     fmi3SetFloat64(references: *const Reference, count: usize, values: *const f64, value_count: usize) |instance| {
-        let references = array(references, count, "valueReferences")?;
-        instance.component.set_reals(references, array(values, value_count, "values")?)
+        let references = instance.component.elements(array(references, count, "valueReferences")?)?;
+        instance.component.set_reals(&references, array(values, value_count, "values")?)
     };
     fmi3GetBoolean(references: *const Reference, count: usize, values: *mut Boolean, value_count: usize) |instance| {
         let references = array(references, count, "valueReferences")?;

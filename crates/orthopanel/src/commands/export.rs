@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use orthopanel_export::{FmiVersion, Fmu, FmuOptions};
+use orthopanel_export::{FmiVersion, Fmu, FmuOptions, Library, Platform};
 use orthopanel_model::Ports;
 use serde::Serialize;
 
@@ -32,6 +32,12 @@ pub struct Arguments {
     modes: ModeArguments,
     #[command(flatten)]
     ports: PortArguments,
+    /// One array for all forces and one for each kind of output (FMI 3 alone) in place of a variable each
+    #[arg(long)]
+    arrays: bool,
+    /// The runtime of another platform, to lie beside this one's; may be repeated. Built there from the crate orthopanel-fmu
+    #[arg(long = "library", value_name = "PLATFORM=FILE", value_parser = platform_and_file)]
+    libraries: Vec<(Platform, PathBuf)>,
     /// Print one JSON object (orthopanel.export/1) on standard output
     #[arg(long)]
     json: bool,
@@ -56,7 +62,7 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
     let frequencies: Vec<f64> =
         seen.modes().iter().map(|mode| mode.angular_frequency / std::f64::consts::TAU).collect();
     let rigid_modes = frequencies.iter().filter(|frequency| **frequency == 0.0).count();
-    let fmu = Fmu::of_panel(&model, arguments.modes.range(), ports.clone(), &options(arguments.fmi))?;
+    let fmu = Fmu::of_panel(&model, arguments.modes.range(), ports.clone(), &options(arguments)?)?;
     output::write(&arguments.output, fmu.to_bytes()?)?;
     let answer = Answer {
         schema: "orthopanel.export/1",
@@ -80,8 +86,18 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
     Ok(())
 }
 
-fn options(version: FmiVersion) -> FmuOptions {
-    FmuOptions { version, ..FmuOptions::default() }
+fn options(arguments: &Arguments) -> Result<FmuOptions, CommandError> {
+    let library = |(platform, path): &(Platform, PathBuf)| {
+        let content = std::fs::read(path).map_err(|source| CommandError::Unreadable { path: path.into(), source })?;
+        Ok(Library::new(*platform, content)?)
+    };
+    let libraries = arguments.libraries.iter().map(library).collect::<Result<_, CommandError>>()?;
+    Ok(FmuOptions { version: arguments.fmi, arrays: arguments.arrays, libraries, ..FmuOptions::default() })
+}
+
+fn platform_and_file(text: &str) -> Result<(Platform, PathBuf), String> {
+    let (platform, file) = text.split_once('=').ok_or("must be PLATFORM=FILE, as x86_64-windows=orthopanel_fmu.dll")?;
+    Ok((platform.parse().map_err(|error: orthopanel_export::ExportError| error.to_string())?, file.into()))
 }
 
 fn version(text: &str) -> Result<FmiVersion, String> {

@@ -26,6 +26,12 @@ pub(super) fn model(
         model.provenance.insert("damping_law".into(), text.into());
     }
     model.provenance.insert("piece".into(), fit.name.clone().into());
+    // Two digits say how good an error is.
+    let rounded = |value: f64| format!("{value:.1e}").parse::<f64>().unwrap_or(value);
+    model.provenance.insert("frequency_rms_percent".into(), rounded(found.frequency_rms_percent).into());
+    if let Some(error) = found.accelerance_rms_percent {
+        model.provenance.insert("accelerance_rms_percent".into(), rounded(error).into());
+    }
     model.provenance.insert("program".into(), concat!("orthopanel ", env!("CARGO_PKG_VERSION")).into());
     model
 }

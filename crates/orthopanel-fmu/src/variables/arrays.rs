@@ -1,0 +1,37 @@
+//! Arrays of FMI 3.0: all forces as one variable, and each kind of output as another.
+
+use std::ops::Range;
+
+use orthopanel_model::{Place, Ports};
+
+/// Variables of one kind as one array; its reference is that of the first.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Array {
+    /// Name, without a number.
+    pub name: &'static str,
+    /// Description, with the places in the order of the elements.
+    pub description: String,
+    /// References of the elements.
+    pub references: Range<u32>,
+}
+
+/// The arrays of a panel with these ports, in the order of the table.
+pub(super) fn of(ports: &Ports) -> Vec<Array> {
+    // `time` and `force_linear` come first.
+    let mut next = 2;
+    let kinds: [(&str, &str, &[Place]); 4] = [
+        ("force", "Forces", &ports.forces),
+        ("acceleration", "The panel's accelerations", &ports.responses),
+        ("velocity", "The panel's velocities", &ports.responses),
+        ("displacement", "The panel's displacements", &ports.responses),
+    ];
+    let array = |(name, words, places): (&'static str, &str, &[Place])| {
+        let at: Vec<String> = places.iter().map(|place| format!("({}, {})", place.x, place.y)).collect();
+        let first = next;
+        // As many places fit into memory: the number never reaches 2^32.
+        next += u32::try_from(places.len()).unwrap_or(u32::MAX);
+        let description = format!("{words} at (x, y) = {} m from the centre, positive along +z", at.join(", "));
+        Array { name, description, references: first..next }
+    };
+    kinds.into_iter().map(array).collect()
+}

@@ -1,0 +1,104 @@
+"""What lies in the archive beside the XML: icon, terminals, documentation, libraries of several platforms."""
+
+import json
+import os
+import subprocess
+import zipfile
+from pathlib import Path
+
+import fmpy
+import pytest
+from conftest import BEAM, FORCES, RESPONSES, ROOT, model_file
+from lxml import etree
+from masters import panel
+
+SCHEMAS = Path(fmpy.__file__).parent / "schema" / "fmi3"
+
+
+def export_words(model, path, *options):
+    command = os.environ.get("ORTHOPANEL", str(ROOT / "target/release/orthopanel"))
+    return [command, "export", str(model), "-o", str(path), *options]
+
+
+def test_an_icon_lies_where_the_version_wants_it(fmu):
+    with zipfile.ZipFile(fmu) as archive:
+        names = archive.namelist()
+        icon = "model.png" if "model.png" in names else "terminalsAndIcons/icon.png"
+        assert archive.read(icon).startswith(b"\x89PNG")
+        if icon != "model.png":
+            assert etree.fromstring(archive.read("terminalsAndIcons/icon.svg")).tag.endswith("svg")
+
+
+def test_terminals_follow_the_schema_and_join_what_lies_at_one_place(export):
+    with zipfile.ZipFile(export("terminals.fmu", "--fmi", "3")) as archive:
+        text = archive.read("terminalsAndIcons/terminalsAndIcons.xml")
+    document = etree.fromstring(text)
+    etree.XMLSchema(file=str(SCHEMAS / "fmi3TerminalsAndIcons.xsd")).assertValid(document)
+    found = [
+        {member.get("memberName"): member.get("variableName") for member in terminal}
+        for terminal in document.iter("Terminal")
+    ]
+    motions = ("acceleration", "velocity", "displacement")
+    expected = [{"force": f"force_{n + 1}"} for n in range(len(FORCES))]
+    for number, place in enumerate(RESPONSES):
+        members = {motion: f"{motion}_{number + 1}" for motion in motions}
+        if place in FORCES:
+            expected[FORCES.index(place)] |= members
+        else:
+            expected.append(members)
+    assert found == expected
+
+
+def test_the_documentation_tells_the_identification_and_the_band(tmp_path):
+    model = json.loads(model_file(BEAM))
+    model["constants"]["e_x"] = {"value": BEAM.e_x, "std": 4.5e7}
+    model["provenance"] = {"piece": "piece <1>", "frequency_rms_percent": 0.21}
+    path = tmp_path / "told.json"
+    path.write_text(json.dumps(model))
+    words = export_words(path, tmp_path / "told.fmu", "--force=-0.3", "--response=-0.3")
+    subprocess.run(words, check=True, capture_output=True)
+    with zipfile.ZipFile(tmp_path / "told.fmu") as archive:
+        page = archive.read("documentation/index.html").decode()
+    etree.fromstring(page.split("\n", 1)[1], etree.HTMLParser())
+    for text in ("standard deviation 4.5e7", "piece &lt;1&gt;", "frequency rms percent", "0.21", "None is tunable"):
+        assert text in page, text
+    assert "acceleration_1 under force_1 holds within 1 % up to" in page
+
+
+def test_a_library_given_for_this_platform_takes_the_place_of_the_embedded_one(fmu2, tmp_path):
+    with zipfile.ZipFile(fmu2) as archive:
+        name = next(name for name in archive.namelist() if name.startswith("binaries/"))
+        (tmp_path / "own.so").write_bytes(archive.read(name) + b"and a mark of ours")
+    model = tmp_path / "model.json"
+    model.write_text(model_file(BEAM))
+    ports = ("--force=-0.3", "--response=0.3")
+    merged = tmp_path / "merged.fmu"
+    subprocess.run(export_words(model, merged, "--library", f"linux64={tmp_path / 'own.so'}", *ports), check=True)
+    with zipfile.ZipFile(merged) as archive:
+        assert archive.read(name).endswith(b"and a mark of ours")
+    with panel(merged) as instance:
+        assert instance.initialize().run([1.0, 0.0], 1e-4).any()
+
+
+@pytest.mark.parametrize(
+    "option, message",
+    [
+        ("linux64=nowhere.so", "nowhere.so: cannot be read"),
+        ("amiga=model.json", 'platform "amiga": must be one of x86_64-linux'),
+        ("win64=model.json", "library for x86_64-windows: it is not a DLL"),
+        ("linux64", "must be PLATFORM=FILE"),
+    ],
+)
+def test_libraries_that_are_none_are_refused(tmp_path, option, message):
+    (tmp_path / "model.json").write_text(model_file(BEAM))
+    words = export_words("model.json", "x.fmu", "--library", option, "--force=-0.3", "--response=0.3")
+    done = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True)
+    assert done.returncode == 2 and message in done.stderr, done.stderr
+    assert not (tmp_path / "x.fmu").exists()
+
+
+def test_arrays_are_refused_for_fmi_2(tmp_path):
+    (tmp_path / "model.json").write_text(model_file(BEAM))
+    words = export_words("model.json", "x.fmu", "--arrays", "--force=-0.3", "--response=0.3")
+    done = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True)
+    assert done.returncode == 2 and "FMI 2.0 has none" in done.stderr, done.stderr
