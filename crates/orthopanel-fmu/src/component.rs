@@ -108,7 +108,7 @@ impl Component {
             self.solve_for(&self.now.parameters.clone())?;
             self.parameters_changed = false;
         }
-        self.stepper.set_forces(&self.now.forces)?;
+        self.stepper.set_forces(self.now.forces_in_effect())?;
         self.forces_changed = false;
         Ok(())
     }

@@ -47,6 +47,14 @@ impl Situation {
         }
     }
 
+    /// The forces that act now: those set, but with `force_linear` between steps those at the end of the last step, for
+    /// what was set since is reached at the end of the next one only. Masters that hand over values before they read
+    /// outputs would else see accelerations a step ahead of the motion.
+    pub(super) fn forces_in_effect(&self) -> &[f64] {
+        let between_steps = self.force_linear && matches!(self.phase, Phase::Step | Phase::Terminated);
+        if between_steps && self.interface == Interface::CoSimulation { &self.forces_before } else { &self.forces }
+    }
+
     /// Does it fit an instance that now stands in `other`, and is every number one?
     fn check(&self, other: &Self) -> Result<(), FmuError> {
         if self.interface != other.interface {

@@ -82,6 +82,24 @@ fn val_an_acceleration_answers_at_once_to_a_force() {
     assert!((acceleration - expected).abs() < 1e-14, "{acceleration}");
 }
 
+/// The value set is that of the end of the step to come: until then the old one acts.
+#[test]
+fn val_a_linear_force_acts_when_its_step_is_done() {
+    let mut component = initialized(true);
+    component.set_reals(&[FORCE], &[3.0]).expect("set");
+    component.do_step(0.0, 1e-3).expect("step");
+    let there = outputs(&mut component);
+    component.set_reals(&[FORCE], &[-8.0]).expect("set");
+    assert_eq!(outputs(&mut component), there);
+    let mut force = [0.0];
+    component.get_reals(&[FORCE], &mut force).expect("input");
+    assert_eq!(force, [-8.0]);
+    component.do_step(1e-3, 1e-3).expect("step");
+    let mut stepper = ModalStepper::new(resource().model());
+    stepper.advance_linear(1e-3, &[3.0]).and_then(|()| stepper.advance_linear(1e-3, &[-8.0])).expect("steps");
+    assert_eq!(outputs(&mut component), stepper_outputs(&stepper));
+}
+
 #[test]
 fn refused_calls_change_nothing() {
     let mut component = initialized(false);
