@@ -2,6 +2,8 @@
  *
  *     bench c MODES-TEXT STEPS                              the C propagator and RK4
  *     bench LIBRARY GUID RESOURCES-URI STEPS INPUT,OUTPUT   an FMI 2.0 co-simulation FMU, by value references
+ *     bench start LIBRARY GUID RESOURCES-URI REFERENCE VALUE   one from its making to its first step, modes solved anew
+ *                                                              for a parameter of this value
  */
 #define _POSIX_C_SOURCE 199309L
 #include <dlfcn.h>
@@ -48,44 +50,76 @@ static void *symbol(void *library, const char *name) {
     return found;
 }
 
-static int bench_fmu(const char *path, const char *guid, const char *resources, long steps, const char *references) {
+typedef struct {
+    fmi2InstantiateTYPE *instantiate;
+    fmi2SetupExperimentTYPE *setup;
+    fmi2EnterInitializationModeTYPE *enter;
+    fmi2ExitInitializationModeTYPE *leave;
+    fmi2SetRealTYPE *set;
+    fmi2DoStepTYPE *step;
+    fmi2GetRealTYPE *get;
+    fmi2FreeInstanceTYPE *release;
+} functions;
+
+static int load(functions *f, const char *path) {
     void *library = dlopen(path, RTLD_NOW | RTLD_GLOBAL);
     if (!library) {
         fprintf(stderr, "%s\n", dlerror());
         return 1;
     }
-    fmi2InstantiateTYPE *instantiate = (fmi2InstantiateTYPE *)symbol(library, "fmi2Instantiate");
-    fmi2SetupExperimentTYPE *setup = (fmi2SetupExperimentTYPE *)symbol(library, "fmi2SetupExperiment");
-    fmi2EnterInitializationModeTYPE *enter =
-        (fmi2EnterInitializationModeTYPE *)symbol(library, "fmi2EnterInitializationMode");
-    fmi2ExitInitializationModeTYPE *leave =
-        (fmi2ExitInitializationModeTYPE *)symbol(library, "fmi2ExitInitializationMode");
-    fmi2SetRealTYPE *set = (fmi2SetRealTYPE *)symbol(library, "fmi2SetReal");
-    fmi2DoStepTYPE *step = (fmi2DoStepTYPE *)symbol(library, "fmi2DoStep");
-    fmi2GetRealTYPE *get = (fmi2GetRealTYPE *)symbol(library, "fmi2GetReal");
-    fmi2FreeInstanceTYPE *release = (fmi2FreeInstanceTYPE *)symbol(library, "fmi2FreeInstance");
+    f->instantiate = (fmi2InstantiateTYPE *)symbol(library, "fmi2Instantiate");
+    f->setup = (fmi2SetupExperimentTYPE *)symbol(library, "fmi2SetupExperiment");
+    f->enter = (fmi2EnterInitializationModeTYPE *)symbol(library, "fmi2EnterInitializationMode");
+    f->leave = (fmi2ExitInitializationModeTYPE *)symbol(library, "fmi2ExitInitializationMode");
+    f->set = (fmi2SetRealTYPE *)symbol(library, "fmi2SetReal");
+    f->step = (fmi2DoStepTYPE *)symbol(library, "fmi2DoStep");
+    f->get = (fmi2GetRealTYPE *)symbol(library, "fmi2GetReal");
+    f->release = (fmi2FreeInstanceTYPE *)symbol(library, "fmi2FreeInstance");
+    return 0;
+}
 
+static const fmi2CallbackFunctions CALLBACKS = {logger, calloc, free, NULL, NULL};
+
+static int bench_fmu(const char *path, const char *guid, const char *resources, long steps, const char *references) {
+    functions f;
+    if (load(&f, path)) return 1;
     fmi2ValueReference input, output;
     if (sscanf(references, "%u,%u", &input, &output) != 2) return 2;
-    fmi2CallbackFunctions callbacks = {logger, calloc, free, NULL, NULL};
-    fmi2Component c = instantiate("bench", fmi2CoSimulation, guid, resources, &callbacks, fmi2False, fmi2False);
+    fmi2Component c = f.instantiate("bench", fmi2CoSimulation, guid, resources, &CALLBACKS, fmi2False, fmi2False);
     if (!c) return 1;
-    int failed = setup(c, fmi2False, 0.0, 0.0, fmi2False, 0.0) | enter(c) | leave(c);
+    int failed = f.setup(c, fmi2False, 0.0, 0.0, fmi2False, 0.0) | f.enter(c) | f.leave(c);
     double rounds[ROUNDS], acceleration = 0.0;
     long n = 0;
     for (int round = 0; round < ROUNDS; round++) {
         double start = now();
         for (long i = 0; i < steps; i++, n++) {
             double force = force_at(n);
-            failed |= set(c, &input, 1, &force);
-            failed |= step(c, (double)n * STEP, STEP, fmi2True);
-            failed |= get(c, &output, 1, &acceleration);
+            failed |= f.set(c, &input, 1, &force);
+            failed |= f.step(c, (double)n * STEP, STEP, fmi2True);
+            failed |= f.get(c, &output, 1, &acceleration);
         }
         rounds[round] = (now() - start) / (double)steps;
     }
-    release(c);
+    f.release(c);
     if (failed) return 1;
     report("fmu", rounds, acceleration);
+    return 0;
+}
+
+static int bench_start(const char *path, const char *guid, const char *resources, fmi2ValueReference parameter,
+                       double value) {
+    functions f;
+    if (load(&f, path)) return 1;
+    double rounds[ROUNDS];
+    for (int round = 0; round < ROUNDS; round++) {
+        double start = now(), set = value * (1.0 + 1e-4 * round);
+        fmi2Component c = f.instantiate("bench", fmi2CoSimulation, guid, resources, &CALLBACKS, fmi2False, fmi2False);
+        if (!c) return 1;
+        if (f.set(c, &parameter, 1, &set) | f.enter(c) | f.leave(c)) return 1;
+        rounds[round] = now() - start;
+        f.release(c);
+    }
+    report("start", rounds, 0.0);
     return 0;
 }
 
@@ -121,7 +155,10 @@ static int bench_c(const char *path, long steps) {
 
 int main(int argc, char **argv) {
     if (argc == 4 && strcmp(argv[1], "c") == 0) return bench_c(argv[2], atol(argv[3]));
+    if (argc == 7 && strcmp(argv[1], "start") == 0)
+        return bench_start(argv[2], argv[3], argv[4], (fmi2ValueReference)atoi(argv[5]), atof(argv[6]));
     if (argc == 6) return bench_fmu(argv[1], argv[2], argv[3], atol(argv[4]), argv[5]);
-    fprintf(stderr, "usage: bench c MODES-TEXT STEPS | bench LIBRARY GUID RESOURCES-URI STEPS INPUT,OUTPUT\n");
+    fprintf(stderr, "usage: bench c MODES-TEXT STEPS | bench LIBRARY GUID RESOURCES-URI STEPS INPUT,OUTPUT\n"
+                    "     | bench start LIBRARY GUID RESOURCES-URI REFERENCE VALUE\n");
     return 2;
 }

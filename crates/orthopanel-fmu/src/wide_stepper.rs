@@ -68,6 +68,7 @@ impl WideStepper {
     both_versions! {
         [mut] set_forces(forces: &[f64]) -> Result<(), ModelError>;
         [mut] advance_held(step: f64) -> Result<(), ModelError>;
+        [mut] advance_under(forces: &[f64], step: f64) -> Result<(), ModelError>;
         [mut] advance_linear(step: f64, forces: &[f64]) -> Result<(), ModelError>;
         [] displacement(response: usize) -> Option<f64>;
         [] velocity(response: usize) -> Option<f64>;

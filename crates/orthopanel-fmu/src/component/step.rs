@@ -29,8 +29,15 @@ impl Component {
         } else if self.now.rates_given {
             self.step_at_rates(step)?;
         } else {
-            self.apply()?;
-            self.stepper.advance_held(step)?;
+            if self.parameters_changed {
+                self.apply()?;
+            }
+            // Forces are told with the step, in one pass over the modes.
+            if std::mem::take(&mut self.forces_changed) {
+                self.stepper.advance_under(&self.now.forces, step).inspect_err(|_| self.forces_changed = true)?;
+            } else {
+                self.stepper.advance_held(step)?;
+            }
             self.now.slopes_given = false;
         }
         self.now.time = end;

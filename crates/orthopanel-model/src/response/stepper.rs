@@ -110,6 +110,16 @@ impl ModalStepper {
         self.advance_prepared::<false>()
     }
 
+    /// [`ModalStepper::set_forces`] and [`ModalStepper::advance_held`] in one pass over the modes.
+    ///
+    /// # Errors
+    /// As these two; where a force is refused nothing has changed, where the step is, the forces are set.
+    #[inline(always)]
+    pub fn advance_under(&mut self, forces: &[f64], step: f64) -> Result<(), ModelError> {
+        self.set_forces(forces)?;
+        self.advance_held(step)
+    }
+
     /// Advances by `step` \[s\] under a force that runs linearly from the force now to `forces` \[N\], which is then
     /// the force now.
     ///
@@ -262,9 +272,8 @@ impl ModalStepper {
             zero = zero + Lane::all(0.0) * (position + velocity);
             *after = State { position, velocity };
         }
-        let zero = zero.sum();
-        if zero != 0.0 || zero.is_nan() {
-            return Err(ModelError::NotFinite { what: "modal state after the step", value: zero });
+        if !zero.is_zero() {
+            return Err(ModelError::NotFinite { what: "modal state after the step", value: zero.sum() });
         }
         std::mem::swap(&mut self.state, &mut self.state_after);
         Ok(())
