@@ -32,14 +32,16 @@ static void *symbol(void *library, const char *name) {
     return found;
 }
 
-/* Resident pages of this process. */
+/* Memory of this process that no file backs, in kB. Counted page by page: `statm` is off by some dozen pages. */
 static long resident(void) {
-    long all = 0, pages = 0;
-    FILE *file = fopen("/proc/self/statm", "r");
+    long kilobytes = 0;
+    char line[256];
+    FILE *file = fopen("/proc/self/smaps_rollup", "r");
     if (!file) return 0;
-    if (fscanf(file, "%ld %ld", &all, &pages) != 2) pages = 0;
+    while (fgets(line, sizeof line, file))
+        if (sscanf(line, "Anonymous: %ld kB", &kilobytes) == 1) break;
     fclose(file);
-    return pages;
+    return kilobytes;
 }
 
 int main(int argc, char **argv) {
@@ -125,7 +127,8 @@ int main(int argc, char **argv) {
         fmi2FreeInstance_(c);
         if (n == instances / 4) settled = resident();
     }
-    CHECK(resident() <= settled + 8);
+    /* Of 1,500 instances: the heap's own wandering; 22 bytes an instance would show. */
+    CHECK(settled > 0 && resident() <= settled + 32);
     dlclose(library);
     return failed > 100 ? 100 : failed;
 }
