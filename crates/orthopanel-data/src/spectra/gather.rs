@@ -2,8 +2,9 @@
 
 use rayon::prelude::*;
 
+use super::node_numbers::{self, NumberedPlace};
 use super::{Accelerance, Estimation, TimeHistory};
-use crate::{DataError, ImpactTest, Measurement, MeasurementData};
+use crate::{DataError, ImpactTest, Measurement, MeasurementData, RecordFile};
 
 impl TimeHistory {
     /// Adds the hits of `other`, as where each hit has a file of its own.
@@ -38,15 +39,30 @@ enum Gathered {
     Line(Accelerance),
 }
 
-impl Gathered {
-    /// Reads the file of a measurement, with its piece's index; `None` for one that has no file.
-    fn read(measurement: &Measurement) -> Option<Result<(usize, Self), DataError>> {
-        let read = match &measurement.data {
-            MeasurementData::NaturalFrequencies(_) => return None,
-            MeasurementData::Accelerance(recorded) => Accelerance::read(recorded).map(Self::Line),
-            MeasurementData::TimeHistory(recorded) => TimeHistory::read(recorded).map(Self::Hits),
+/// What a measurement's file holds.
+struct GatheredFile {
+    piece: usize,
+    numbered: Vec<NumberedPlace>,
+    content: Gathered,
+}
+
+impl GatheredFile {
+    /// Reads the file of a measurement; `None` for one that has no file.
+    fn read(measurement: &Measurement) -> Option<Result<Self, DataError>> {
+        let (MeasurementData::Accelerance(recorded) | MeasurementData::TimeHistory(recorded)) = &measurement.data
+        else {
+            return None;
         };
-        Some(read.map(|read| (measurement.piece, read)))
+        let read = || {
+            let file = RecordFile::read(&recorded.file)?;
+            let numbered = NumberedPlace::of(&file, recorded)?;
+            let content = match &measurement.data {
+                MeasurementData::Accelerance(_) => Gathered::Line(Accelerance::from_records(file, recorded)?),
+                _ => Gathered::Hits(TimeHistory::from_records(file, recorded)?),
+            };
+            Ok(Self { piece: measurement.piece, numbered, content })
+        };
+        Some(read())
     }
 }
 
@@ -56,7 +72,8 @@ impl ImpactTest {
     /// Files of one piece with the same places are joined, as in [`ImpactTest::accelerances`].
     ///
     /// # Errors
-    /// As [`TimeHistory::read`] and [`TimeHistory::join`].
+    /// As [`TimeHistory::read`] and [`TimeHistory::join`]; [`DataError::Contradiction`] where the files' node numbers
+    /// contradict the places: one node at two places, or several nodes in the hits of one place.
     pub fn time_histories(&self) -> Result<Vec<(usize, TimeHistory)>, DataError> {
         let hits = self.gathered(|data| matches!(data, MeasurementData::TimeHistory(_)))?.into_iter();
         let hits = hits.filter_map(|(piece, gathered)| match gathered {
@@ -72,7 +89,7 @@ impl ImpactTest {
     /// them does.
     ///
     /// # Errors
-    /// As [`TimeHistory::read`], [`TimeHistory::join`], [`TimeHistory::accelerance`] and [`Accelerance::read`].
+    /// As [`ImpactTest::time_histories`], [`TimeHistory::accelerance`] and [`Accelerance::read`].
     pub fn accelerances(&self, estimation: Estimation) -> Result<Vec<(usize, Accelerance)>, DataError> {
         let estimated = self.gathered(|_| true)?.into_par_iter().map(|(piece, gathered)| match gathered {
             Gathered::Hits(history) => Ok((piece, history.accelerance(estimation)?)),
@@ -84,11 +101,15 @@ impl ImpactTest {
 
     fn gathered(&self, wanted: impl Fn(&MeasurementData) -> bool) -> Result<Vec<(usize, Gathered)>, DataError> {
         let measurements: Vec<_> = self.measurements.iter().filter(|measurement| wanted(&measurement.data)).collect();
-        let read: Vec<_> = measurements.into_par_iter().filter_map(Gathered::read).collect();
+        let read: Vec<_> = measurements.into_par_iter().filter_map(GatheredFile::read).collect();
+        let read = read.into_iter().collect::<Result<Vec<_>, DataError>>()?;
+        for piece in 0..self.pieces.len() {
+            node_numbers::check(read.iter().filter(|file| file.piece == piece).flat_map(|file| &file.numbered))?;
+        }
         let mut gathered: Vec<(usize, Gathered)> = Vec::new();
-        for of_file in read {
-            match of_file? {
-                (piece, Gathered::Hits(history)) => {
+        for GatheredFile { piece, content, .. } in read {
+            match content {
+                Gathered::Hits(history) => {
                     let same = gathered.iter_mut().find_map(|(of, earlier)| match earlier {
                         Gathered::Hits(earlier)
                             if *of == piece
@@ -104,7 +125,7 @@ impl ImpactTest {
                         None => gathered.push((piece, Gathered::Hits(history))),
                     }
                 }
-                line => gathered.push(line),
+                line => gathered.push((piece, line)),
             }
         }
         Ok(gathered)

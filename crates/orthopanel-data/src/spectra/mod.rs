@@ -6,6 +6,7 @@ mod estimate;
 mod extremes;
 mod gather;
 mod hit_faults;
+mod node_numbers;
 mod overload;
 mod spectrum;
 mod time_history;

@@ -10,6 +10,8 @@ use std::{fmt::Write, path::PathBuf, process::Command};
 pub struct Dataset {
     pub title: String,
     pub function: i64,
+    pub response_node: i64,
+    pub reference_node: i64,
     pub response_direction: i64,
     pub reference_direction: i64,
     pub complex: bool,
@@ -27,6 +29,8 @@ impl Dataset {
         Self {
             title: "a record".into(),
             function: 1,
+            response_node: 7,
+            reference_node: 8,
             response_direction: 3,
             reference_direction: 3,
             complex: false,
@@ -47,7 +51,7 @@ impl Dataset {
         writeln!(
             text,
             "{function:5}{:10}{:5}{:10} {:>10}{:10}{response:4} {:>10}{:10}{reference:4}",
-            0, 0, 0, "NONE", 7, "NONE", 8
+            0, 0, 0, "NONE", self.response_node, "NONE", self.reference_node
         )
         .unwrap();
         let data_type = 2 + 2 * i64::from(self.double) + if self.complex { 3 - i64::from(self.double) } else { 0 };
