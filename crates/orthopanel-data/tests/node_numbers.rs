@@ -36,8 +36,7 @@ fn hit([hammer, sensor]: [i64; 2]) -> Vec<u8> {
 fn test_of(name: &str, kind: &str, files: &[(Vec<u8>, [f64; 2])]) -> ImpactTest {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
     fs::create_dir_all(&folder).unwrap();
-    let mut text =
-        "[piece]\nlength = 0.8\nwidth = 0.1\nthickness = 0.03\nmass_per_area = 6.88\n".to_owned();
+    let mut text = "[piece]\nlength = 0.8\nwidth = 0.1\nthickness = 0.03\nmass_per_area = 6.88\n".to_owned();
     for (index, (bytes, [force, response])) in files.iter().enumerate() {
         fs::write(folder.join(format!("point-{index}.uff")), bytes).unwrap();
         text += &format!(

@@ -5,7 +5,7 @@ use orthopanel_data::ImpactTest;
 use orthopanel_model::{Constant, Estimate};
 
 use super::problem::AcceleranceProblem;
-use super::{Start, StartPiece};
+use super::start::{Start, StartPiece};
 use crate::free_constants::{FreeConstants, Rest};
 use crate::frequency_fit::identified_constants;
 use crate::least_squares::Minimum;

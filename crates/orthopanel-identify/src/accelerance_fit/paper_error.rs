@@ -4,11 +4,12 @@ use num_complex::Complex64;
 use orthopanel_model::{BeamConstants, Boundary, ExactBeam, ModelError, StaticFlexibility};
 use rayon::prelude::*;
 
+use super::poles::Pole;
 use super::problem::{AcceleranceProblem, PieceProblem, log_zeta_bounds};
 use super::records::PlaceRecord;
 use super::resonance_point::{MeasuredPoint, greatest, half_width, measured_point};
+use super::start::Start;
 use super::synthesis::DampingLaw;
-use super::{Pole, Start};
 use crate::IdentifyError;
 use crate::downhill_simplex::{Penalised, downhill_simplex};
 use crate::settings::PaperWeights;

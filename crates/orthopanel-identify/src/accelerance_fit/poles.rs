@@ -7,6 +7,7 @@ use num_complex::Complex64;
 use rayon::prelude::*;
 
 use super::records::PlaceRecord;
+use super::structures::SeenMode;
 use crate::least_squares::{Linearised, Quadratic, levenberg_marquardt};
 
 /// One resonance.
@@ -26,16 +27,46 @@ const SIGNAL_TO_NOISE: f64 = 30.0;
 /// A resonance has less damping than this.
 const MOST_DAMPING: f64 = 0.2;
 
+/// The noise of all records of a piece that stand at the same lines, in power.
+pub(super) struct NoisePower {
+    /// \[Hz\].
+    frequency: Vec<f64>,
+    power: Vec<f64>,
+    /// Whether the records tell it.
+    is_known: bool,
+}
+
+impl NoisePower {
+    pub(super) fn of(records: &[&PlaceRecord]) -> Self {
+        let frequency = records.first().map_or(Vec::new(), |record| record.frequency.clone());
+        let of_line = |line: usize| records.iter().map(|record| record.variance[line]).sum();
+        let power = (0..frequency.len()).map(of_line).collect();
+        Self { frequency, power, is_known: records.iter().all(|record| record.variance_known) }
+    }
+
+    /// Whether a mode of this damping would stand out: at its resonance $|H| = |W(l_1)W(l_x)|/2\zeta$.
+    pub(super) fn is_heard(&self, mode: &SeenMode, zeta: f64) -> bool {
+        let power: f64 = mode.products.iter().map(|product| (product / (2.0 * zeta)).powi(2)).sum();
+        let line = self.frequency.partition_point(|&frequency| frequency < mode.frequency);
+        !self.is_known || self.power.get(line).is_some_and(|noise| power > SIGNAL_TO_NOISE * noise)
+    }
+}
+
+/// The records at the lines of the first.
+pub(super) fn alike(records: &[PlaceRecord]) -> Vec<&PlaceRecord> {
+    // Places with other lines (another rate or length) take part through their own peaks only where lines agree.
+    records.iter().filter(|record| records.first().is_some_and(|first| record.frequency == first.frequency)).collect()
+}
+
 /// The poles of one piece's records, rising.
 pub(super) fn poles(records: &[PlaceRecord]) -> Vec<Pole> {
     let Some(first) = records.first() else { return Vec::new() };
-    // Places with other lines (another rate or length) take part through their own peaks only where lines agree.
-    let alike: Vec<&PlaceRecord> = records.iter().filter(|record| record.frequency == first.frequency).collect();
+    let alike = alike(records);
     let power: Vec<f64> =
         (0..first.frequency.len()).map(|line| alike.iter().map(|record| record.value[line].norm_sqr()).sum()).collect();
-    let noise = |line: usize| alike.iter().map(|record| record.variance[line]).sum::<f64>();
+    let noise = NoisePower::of(&alike);
     let mut heard = peaks(&power);
-    heard.retain(|&line| power[line] > SIGNAL_TO_NOISE * noise(line));
+    heard.retain(|&line| power[line] > SIGNAL_TO_NOISE * noise.power[line]);
     let mut found: Vec<Pole> = heard.par_iter().filter_map(|&line| common_pole(&alike, &power, line)).collect();
     found.sort_by(|a, b| a.frequency.total_cmp(&b.frequency));
     // Two peaks of one resonance, split by noise, lead to one pole.

@@ -16,7 +16,7 @@ pub(super) struct SeenMode {
     pub frequency: f64,
     /// Nodal lines across x and across y.
     pub nodes: [usize; 2],
-    /// $W(l_1)W(l_x)$ of each record; empty where modes are told by their order alone.
+    /// $W(l_1)W(l_x)$ of each record.
     pub products: Vec<f64>,
 }
 

@@ -2,8 +2,8 @@
 
 use faer::Mat;
 use orthopanel_model::{
-    BeamConstants, Boundary, ExactBeam, ModelError, Piece, Place, SensitiveModes, StaticFlexibility, Structure,
-    TimoshenkoBeam, sensitive_modes,
+    BeamConstants, BeamMode, Boundary, ExactBeam, ModelError, Piece, Place, SensitiveModes, StaticFlexibility,
+    Structure, TimoshenkoBeam, sensitive_modes,
 };
 
 use super::{ModeSynthesis, RecordedStructure, SeenMode};
@@ -17,15 +17,22 @@ pub(super) struct RecordedBeam {
 const MOST_MODES: usize = 400;
 
 impl RecordedStructure for RecordedBeam {
-    fn modes_below(&self, values: &[f64], limit: f64, _: &[(Place, Place)]) -> Result<Vec<SeenMode>, ModelError> {
+    fn modes_below(&self, values: &[f64], limit: f64, pairs: &[(Place, Place)]) -> Result<Vec<SeenMode>, ModelError> {
         let &[e_x, g_zx] = values else {
             return Err(ModelError::ConstantCount { found: values.len(), expected: 2 });
         };
         let beam = ExactBeam::new(&self.piece, self.boundary, BeamConstants { e_x, g_zx })?;
         let rigid = self.boundary.rigid_modes();
-        let frequencies = beam.flexible_modes().take(MOST_MODES).map(|mode| mode.frequency());
-        let seen = |(index, frequency)| SeenMode { frequency, nodes: [index + rigid, 0], products: Vec::new() };
-        Ok(frequencies.take_while(|&frequency| frequency < limit).enumerate().map(seen).collect())
+        let modes = beam.flexible_modes().take(MOST_MODES).take_while(|mode| mode.frequency() < limit);
+        let seen = |(index, mode): (usize, BeamMode)| SeenMode {
+            frequency: mode.frequency(),
+            nodes: [index + rigid, 0],
+            products: pairs
+                .iter()
+                .map(|(force, response)| mode.deflection(force.x) * mode.deflection(response.x))
+                .collect(),
+        };
+        Ok(modes.enumerate().map(seen).collect())
     }
 
     fn reach(&self) -> f64 {

@@ -1,0 +1,169 @@
+//! Before the fit: poles of the records, which modes they are, and the constants that meet them.
+
+use orthopanel_data::ImpactTest;
+use orthopanel_model::{Boundary, Piece, StructureKind};
+use rayon::prelude::*;
+
+use super::matching::{Matching, PiecePoles, candidates, match_at};
+use super::poles::{NoisePower, Pole, alike, poles};
+use super::records::PlaceRecord;
+use super::structures::{self, SeenMode};
+use crate::free_constants::FreeConstants;
+use crate::frequency_fit::{PoleFit, PoleSet, constants, fit_poles};
+use crate::{IdentifyError, Settings};
+
+/// What stands before the fit: records, their poles, and which modes these are.
+pub(super) struct Start {
+    pub structure: StructureKind,
+    pub pieces: Vec<StartPiece>,
+    pub poles: Vec<PiecePoles>,
+    pub matching: Matching,
+    /// Constants that meet the poles best, and which of them the poles show.
+    pub fit: PoleFit,
+    pub notes: Vec<String>,
+}
+
+impl Start {
+    /// Whether the starting model's resonances overlap those of the records, so that a fit line by line can pull them
+    /// together. Where one lies wholly beside its peak, the misfit has no slope towards it: damping would grow instead.
+    pub fn resonances_meet(&self) -> bool {
+        let pieces = self.pieces.iter().zip(&self.matching.modes).zip(&self.matching.seen);
+        let mut matched = pieces.flat_map(|((own, modes), seen)| {
+            own.poles.iter().zip(modes).filter_map(|(pole, mode)| Some((pole, seen.get((*mode)?)?)))
+        });
+        matched.all(|(pole, mode)| (mode.frequency - pole.frequency).abs() <= OVERLAP * pole.zeta * pole.frequency)
+    }
+}
+
+/// Resonances overlap well within this part of half a half-power width.
+const OVERLAP: f64 = 0.5;
+
+pub(super) struct StartPiece {
+    pub index: usize,
+    pub sizes: Piece,
+    pub records: Vec<PlaceRecord>,
+    pub poles: Vec<Pole>,
+}
+
+pub(super) fn start(test: &ImpactTest, settings: Settings) -> Result<Start, IdentifyError> {
+    let structure = test.structure.unwrap_or(StructureKind::TimoshenkoBeam);
+    let constants = FreeConstants::of(test, constants(structure))?;
+    let mut pieces: Vec<StartPiece> = Vec::new();
+    let mut notes = Vec::new();
+    let accelerances = test.accelerances(settings.estimation)?;
+    let records: Vec<PlaceRecord> =
+        accelerances.par_iter().map(|(_, accelerance)| PlaceRecord::of(accelerance)).collect();
+    for ((index, accelerance), record) in accelerances.into_iter().zip(records) {
+        let (force, response) = (accelerance.force_at, accelerance.response_at);
+        let pair = format!("force at ({}, {}), response at ({}, {})", force.x, force.y, response.x, response.y);
+        notes.extend(accelerance.notes.iter().map(|note| format!("{pair}: {note}")));
+        match pieces.iter_mut().find(|piece| piece.index == index) {
+            Some(piece) => piece.records.push(record),
+            None => {
+                let sizes = test.pieces[index].piece;
+                pieces.push(StartPiece { index, sizes, records: vec![record], poles: Vec::new() });
+            }
+        }
+    }
+    for piece in &mut pieces {
+        piece.poles = poles(&piece.records);
+    }
+    let poles: Vec<PiecePoles> = pieces.iter().map(|piece| piece_poles(piece, structure, test.boundary)).collect();
+    let needed = match structure {
+        StructureKind::TimoshenkoBeam => constants.count().max(1),
+        StructureKind::MindlinPlate => constants.count().clamp(1, 2),
+    };
+    let found: usize = poles.iter().map(|piece| piece.frequencies.len()).sum();
+    let too_few = || IdentifyError::TooFewResonances { found, needed };
+    if found < needed {
+        return Err(too_few());
+    }
+    let candidates = candidates(&poles, structure, &constants, tried(structure))?;
+    let fitted = candidates.into_iter().map(|candidate| {
+        let sets = |matching: &Matching| pole_sets(&pieces, matching, test.boundary);
+        fit_candidate(&poles, structure, &constants, needed, sets, candidate)
+    });
+    let mut best: Option<(Matching, PoleFit)> = None;
+    let mut first_refusal = None;
+    for fitted in fitted {
+        match fitted {
+            Ok(Some(fitted)) if best.as_ref().is_none_or(|(least, _)| fitted.0.charge < least.charge) => {
+                best = Some(fitted);
+            }
+            Ok(_) => {}
+            Err(error) => first_refusal = first_refusal.or(Some(error)),
+        }
+    }
+    let (matching, fit) = best.ok_or_else(|| first_refusal.unwrap_or_else(too_few))?;
+    Ok(Start { structure, pieces, poles, matching, fit, notes })
+}
+
+/// Candidates that are fitted to their poles: those of a plate cost far more, and its modes are told by their shapes.
+fn tried(structure: StructureKind) -> usize {
+    match structure {
+        StructureKind::TimoshenkoBeam => 12,
+        StructureKind::MindlinPlate => 1,
+    }
+}
+
+/// A candidate with the constants that meet its poles best; `None` where too few poles meet a mode.
+fn fit_candidate(
+    poles: &[PiecePoles],
+    structure: StructureKind,
+    constants: &FreeConstants,
+    needed: usize,
+    sets: impl Fn(&Matching) -> Vec<PoleSet>,
+    mut matching: Matching,
+) -> Result<Option<(Matching, PoleFit)>, IdentifyError> {
+    let mut fit = None;
+    // Twice: better constants may find modes for more poles.
+    for _ in 0..2 {
+        if matching.count() < needed {
+            return Ok(None);
+        }
+        let values = matching.values.first().cloned().unwrap_or_default();
+        let found = fit_poles(structure, constants, &values, sets(&matching))?;
+        let values = poles.iter().map(|own| found.constants.values(&found.parameters, own.piece)).collect();
+        matching = match_at(poles, values)?;
+        fit = Some(found);
+    }
+    Ok(fit.map(|fit| (matching, fit)))
+}
+
+fn piece_poles(piece: &StartPiece, structure: StructureKind, boundary: Boundary) -> PiecePoles {
+    // At a resonance H = jP/2ζ: the imaginary part has the sign and the size of P.
+    let amplitude = |record: &PlaceRecord, pole: &Pole| {
+        let line = record.frequency.partition_point(|&frequency| frequency < pole.frequency);
+        record.value.get(line).map_or(0.0, |value| value.im)
+    };
+    PiecePoles {
+        piece: piece.index,
+        structure: structures::of(structure, &piece.sizes, boundary),
+        pairs: piece.records.iter().map(|record| (record.force_at, record.response_at)).collect(),
+        frequencies: piece.poles.iter().map(|pole| pole.frequency).collect(),
+        amplitudes: piece
+            .poles
+            .iter()
+            .map(|pole| piece.records.iter().map(|record| amplitude(record, pole)).collect())
+            .collect(),
+        usual_zeta: usual_log_zeta(&piece.poles).exp(),
+        noise: NoisePower::of(&alike(&piece.records)),
+        band: piece.records.iter().map(PlaceRecord::band_end).fold(0.0, f64::max),
+    }
+}
+
+/// The matched poles of every piece with their modes' nodal lines.
+fn pole_sets(pieces: &[StartPiece], matching: &Matching, boundary: Boundary) -> Vec<PoleSet> {
+    let of_piece = |((piece, modes), seen): ((&StartPiece, &Vec<Option<usize>>), &Vec<SeenMode>)| {
+        let matched = piece.poles.iter().zip(modes).filter_map(|(pole, mode)| Some((pole, seen.get((*mode)?)?)));
+        let (nodes, frequencies) = matched.map(|(pole, mode)| (mode.nodes, pole.frequency)).unzip();
+        PoleSet { piece: piece.index, sizes: piece.sizes, boundary, nodes, frequencies }
+    };
+    pieces.iter().zip(&matching.modes).zip(&matching.seen).map(of_piece).collect()
+}
+
+/// Mean of the logarithms of the damping ratios.
+pub(super) fn usual_log_zeta<'a>(poles: impl IntoIterator<Item = &'a Pole>) -> f64 {
+    let logs: Vec<f64> = poles.into_iter().map(|pole| pole.zeta.ln()).collect();
+    logs.iter().sum::<f64>() / logs.len().max(1) as f64
+}
