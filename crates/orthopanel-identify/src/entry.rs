@@ -15,6 +15,7 @@ use crate::{Identification, IdentifyError, Settings, accelerance_fit, frequency_
 /// read, or a test that this version cannot evaluate.
 pub fn identify(test: &ImpactTest, settings: impl Into<Settings>) -> Result<Identification, IdentifyError> {
     let settings = settings.into();
+    settings.paper_weights.check()?;
     if let Some(effect) = test.effects.first() {
         let message = format!("effect {:?}: declared effects are not supported by this version", effect.id);
         return Err(IdentifyError::Unsupported(message));

@@ -130,6 +130,16 @@ pub enum IdentifyError {
         /// Median of $|H_{cal}-H_{exp}|/|H_{exp}|$ \[%\].
         percent: f64,
     },
+    /// Weights under which eq. 23 measures nothing.
+    #[error(
+        "weights of eq. 23: W_f = {frequency}, W_G = {magnitude}: both must be finite, zero or above, and one above zero"
+    )]
+    PaperWeights {
+        /// $W_f$.
+        frequency: f64,
+        /// $W_G$.
+        magnitude: f64,
+    },
     /// A test that this version cannot evaluate.
     #[error("{0}")]
     Unsupported(String),

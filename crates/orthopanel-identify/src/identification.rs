@@ -114,6 +114,8 @@ pub struct AcceleranceFit {
     pub force_at: Place,
     /// Where the acceleration is measured.
     pub response_at: Place,
+    /// $\sigma$ \[1/s\] of $s = \sigma + j\omega$ at which both stand, as the window over the records has it; else zero.
+    pub decay_rate: f64,
     /// Lines \[Hz\].
     pub frequency: Vec<f64>,
     /// Measured \[(m/s²)/N\].

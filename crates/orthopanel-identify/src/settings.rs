@@ -1,8 +1,8 @@
 //! How an identification is to be done.
 
-use orthopanel_data::Estimation;
+use orthopanel_data::{Estimation, Window};
 
-use crate::DampingLaw;
+use crate::{DampingLaw, IdentifyError};
 
 /// How to search for the minimum.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -18,11 +18,12 @@ pub enum Search {
 }
 
 /// All choices of an identification; the default is what we recommend.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings {
     /// The search.
     pub search: Search,
-    /// How records become accelerances.
+    /// How records become accelerances; by default with [`Window::AsNeeded`], since the model is evaluated at the
+    /// window's own $s$ and nothing is lost by it.
     pub estimation: Estimation,
     /// How modes lose energy.
     pub damping_law: DampingLaw,
@@ -42,9 +43,33 @@ pub struct PaperWeights {
     pub magnitude: f64,
 }
 
+impl PaperWeights {
+    /// # Errors
+    /// [`IdentifyError::PaperWeights`] for a weight that is negative or not finite, and where both are zero.
+    pub(crate) fn check(self) -> Result<(), IdentifyError> {
+        let Self { frequency, magnitude } = self;
+        let sound = [frequency, magnitude].iter().all(|weight| weight.is_finite() && *weight >= 0.0);
+        if sound && frequency + magnitude > 0.0 {
+            return Ok(());
+        }
+        Err(IdentifyError::PaperWeights { frequency, magnitude })
+    }
+}
+
 impl Default for PaperWeights {
     fn default() -> Self {
         Self { frequency: 0.1, magnitude: 1e4 }
+    }
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            search: Search::default(),
+            estimation: Estimation { window: Window::AsNeeded, ..Estimation::default() },
+            damping_law: DampingLaw::default(),
+            paper_weights: PaperWeights::default(),
+        }
     }
 }
 

@@ -2,18 +2,15 @@
 
 use clap::{Args, ValueEnum};
 use orthopanel_data::{Estimation, Estimator, ImpactTest, Measurement, MeasurementData, Window};
-use orthopanel_identify::{DampingLaw, Search, Settings};
+use orthopanel_identify::{DampingLaw, PaperWeights, Search, Settings};
 
 use crate::error::CommandError;
 use crate::notes;
 
-/// Half the width of the force window unless said \[s\]: ten times a usual blow.
-const FORCE_HALF_WIDTH: f64 = 0.004;
-
 #[derive(Args)]
 #[command(next_help_heading = "Records to accelerance")]
 pub struct EstimationOptions {
-    /// Window over each hit [default: none]
+    /// Window over each hit [default: as-needed to identify and trace, else none]
     #[arg(long, value_enum)]
     window: Option<WindowWord>,
     /// Time constant of the exponential; a third of the record's length leaves 5 % at its end
@@ -31,6 +28,8 @@ pub struct EstimationOptions {
 enum WindowWord {
     /// Nothing: right where the response has died away at the record's end
     None,
+    /// None where the response has died away, else force-exponential with the time constant that the rest needs
+    AsNeeded,
     /// Hann's over both channels, as in the paper: only where the blow lies well inside the record, and it widens peaks
     Hann,
     /// Force kept near its peak, exp(-t/tau) over both channels: for a response cut off while it still rings. The
@@ -49,13 +48,16 @@ enum EstimatorWord {
 }
 
 impl EstimationOptions {
+    /// The estimation, with the window `unsaid` where none is asked for.
+    ///
     /// # Errors
     /// [`CommandError::Option`] for the size of a window that is not asked for.
-    pub fn estimation(&self) -> Result<Estimation, CommandError> {
+    pub fn estimation(&self, unsaid: Window) -> Result<Estimation, CommandError> {
         let window = match (self.window, self.tau) {
-            (Some(WindowWord::ForceExponential), Some(tau)) => {
-                Window::ForceExponential { half_width: self.force_half_width.unwrap_or(FORCE_HALF_WIDTH), tau }
-            }
+            (Some(WindowWord::ForceExponential), Some(tau)) => Window::ForceExponential {
+                half_width: self.force_half_width.unwrap_or(Window::usual_half_width()),
+                tau,
+            },
             (window, tau) => {
                 for (option, value) in [("tau", tau), ("force-half-width", self.force_half_width)] {
                     if let Some(value) = value {
@@ -63,7 +65,12 @@ impl EstimationOptions {
                         return Err(CommandError::Option { option, value: value.to_string(), remedy });
                     }
                 }
-                if window == Some(WindowWord::Hann) { Window::Hann } else { Window::None }
+                match window {
+                    None => unsaid,
+                    Some(WindowWord::Hann) => Window::Hann,
+                    Some(WindowWord::AsNeeded) => Window::AsNeeded,
+                    Some(WindowWord::None | WindowWord::ForceExponential) => Window::None,
+                }
             }
         };
         let estimator = match self.estimator {
@@ -100,6 +107,12 @@ pub struct IdentifyOptions {
     /// How to search for the minimum
     #[arg(long, value_enum, default_value_t = SearchWord::LeastSquares)]
     search: SearchWord,
+    /// W_f of the paper's eq. 23, on records: what a resonance's frequency counts; needs --search simplex [default: 0.1]
+    #[arg(long, value_name = "W_F", value_parser = weight, allow_negative_numbers = true)]
+    frequency_weight: Option<f64>,
+    /// W_G of the paper's eq. 23, on records: what a resonance's magnitude counts; needs --search simplex [default: 10000]
+    #[arg(long, value_name = "W_G", value_parser = weight, allow_negative_numbers = true)]
+    magnitude_weight: Option<f64>,
     /// How modes lose energy
     #[arg(long, value_enum, default_value_t = DampingWord::Viscous)]
     damping: DampingWord,
@@ -128,7 +141,19 @@ impl IdentifyOptions {
     /// # Errors
     /// As [`EstimationOptions::estimation`].
     pub fn settings(&self) -> Result<Settings, CommandError> {
+        let weights = [("frequency-weight", self.frequency_weight), ("magnitude-weight", self.magnitude_weight)];
+        if let (SearchWord::LeastSquares, Some((option, value))) =
+            (self.search, weights.into_iter().find_map(|(option, value)| Some((option, value?))))
+        {
+            let remedy = "eq. 23 is what --search simplex brings down on records: give both or neither".into();
+            return Err(CommandError::Option { option, value: value.to_string(), remedy });
+        }
+        let usual = PaperWeights::default();
         Ok(Settings {
+            paper_weights: PaperWeights {
+                frequency: self.frequency_weight.unwrap_or(usual.frequency),
+                magnitude: self.magnitude_weight.unwrap_or(usual.magnitude),
+            },
             search: match self.search {
                 SearchWord::LeastSquares => Search::LeastSquares,
                 SearchWord::Simplex => Search::Simplex,
@@ -137,8 +162,7 @@ impl IdentifyOptions {
                 DampingWord::Viscous => DampingLaw::Viscous,
                 DampingWord::Hysteretic => DampingLaw::Hysteretic,
             },
-            estimation: self.records.estimation()?,
-            ..Settings::default()
+            estimation: self.records.estimation(Settings::default().estimation.window)?,
         })
     }
 
@@ -152,6 +176,14 @@ impl IdentifyOptions {
                 &["--damping hysteretic has no effect: natural frequencies tell nothing of the damping".into()],
             );
         }
+    }
+}
+
+/// Reads a weight: finite, zero or above.
+fn weight(text: &str) -> Result<f64, String> {
+    match text.trim().parse::<f64>() {
+        Ok(value) if value.is_finite() && value >= 0.0 => Ok(value),
+        _ => Err("a weight must be a finite number, zero or above".into()),
     }
 }
 

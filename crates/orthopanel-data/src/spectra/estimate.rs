@@ -68,6 +68,7 @@ impl TimeHistory {
         let mut notes = self.notes.clone();
         let mut kept: Vec<&Hit> = Vec::new();
         let mut reasons = Vec::new();
+        let mut left: Option<f64> = None;
         let shared = shared_extremes(&self.hits);
         for (index, hit) in self.hits.iter().enumerate() {
             let mut faults = hit.faults(self.rate);
@@ -82,15 +83,29 @@ impl TimeHistory {
             }
             if !fatal {
                 kept.push(hit);
+                let ringing = faults.iter().filter_map(|fault| match fault {
+                    HitFault::NotDecayed { ratio } => Some(*ratio),
+                    _ => None,
+                });
+                left = ringing.chain(left).reduce(f64::max);
             }
         }
         if kept.is_empty() {
             return Err(DataError::NoUsableHit { file: self.file.clone(), reasons: reasons.join("; ") });
         }
         notes.append(&mut reasons);
+        let window = estimation.window.resolved(left, &kept, self.rate);
+        if left.is_some() {
+            notes.push(match window {
+                Window::ForceExponential { tau, .. } => {
+                    format!("force and exponential window, tau = {tau:.3} s: the damping that it adds is known and taken out")
+                }
+                _ => "what has not decayed leaks: record longer, or use the force and exponential window".into(),
+            });
+        }
 
         let samples = kept.first().map_or(0, |hit| hit.force.len());
-        let sums = sums(kept.iter().copied(), samples, estimation.window, self.rate);
+        let sums = sums(kept.iter().copied(), samples, window, self.rate);
         let step = self.rate / samples as f64;
         let end = self.band_end(&sums, estimation.force_drop, step, &mut notes);
         let noise = (kept.len() == 1).then(|| noise_above(&sums, end)).flatten();
@@ -119,7 +134,7 @@ impl TimeHistory {
             return Err(DataError::NoUsableHit { file: self.file.clone(), reasons });
         }
         result.hits = kept.len();
-        result.decay_rate = estimation.window.decay_rate();
+        result.decay_rate = window.decay_rate();
         if kept.len() > 1 {
             result.coherence = Some(coherence);
             result.variance = Some(variance);

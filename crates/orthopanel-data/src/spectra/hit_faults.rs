@@ -88,8 +88,7 @@ impl fmt::Display for HitFault {
                 write!(f, "force only {signal_to_noise:.1} times its noise, {LEAST_SIGNAL_TO_NOISE} needed")
             }
             Self::NotDecayed { ratio } => {
-                let remedy = "record longer, or use the force and exponential window";
-                write!(f, "response not decayed, {:.2} % left at the end: {remedy}", 100.0 * ratio)
+                write!(f, "response not decayed, {:.2} % left at the end", 100.0 * ratio)
             }
         }
     }

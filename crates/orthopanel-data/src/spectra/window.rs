@@ -1,11 +1,19 @@
 //! Windows over the records of a hit.
 
+use super::{
+    extremes::{peak, sampled_median},
+    time_history::Hit,
+};
+
 /// What the records are multiplied by before the transform.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum Window {
     /// Nothing: right where the response has decayed at the record's end.
     #[default]
     None,
+    /// [`Window::None`] where the responses of a place have died away at the record's end, else
+    /// [`Window::ForceExponential`] with the time constant that takes what is left down to 1e-4 of the greatest.
+    AsNeeded,
     /// Hann's window over both channels, $\tfrac12(1 - \cos 2\pi n/N)$, as in the paper.
     Hann,
     /// The force kept within `half_width` \[s\] of its peak and zero elsewhere; both channels times $e^{-t/\tau}$.
@@ -20,11 +28,42 @@ pub enum Window {
     },
 }
 
+/// Half the width of the force window unless said \[s\]: ten times a usual blow.
+const HALF_WIDTH: f64 = 0.004;
+
+/// What the exponential leaves of a response at the record's end, over its greatest: no more than noise does.
+const LEFT: f64 = 1e-4;
+
 impl Window {
+    /// The window over a place's hits, of which `left` is the greatest rms at the record's end over the greatest of the
+    /// record, `None` where all have died away.
+    pub(super) fn resolved(self, left: Option<f64>, hits: &[&Hit], rate: f64) -> Self {
+        match (self, left) {
+            (Self::AsNeeded, None) => Self::None,
+            (Self::AsNeeded, Some(left)) => {
+                // The blow must lie inside the force window, however soft; after the last of them the response falls.
+                let blows = hits.iter().map(|hit| blow(&hit.force));
+                let (last, longest) =
+                    blows.fold((0, 0), |(last, longest), (at, samples)| (last.max(at), longest.max(samples)));
+                let after = hits.first().map_or(0, |hit| hit.force.len()).saturating_sub(last);
+                Self::ForceExponential {
+                    half_width: HALF_WIDTH.max(4.0 * longest as f64 / rate),
+                    tau: after as f64 / rate / (left / LEFT).max(std::f64::consts::E).ln(),
+                }
+            }
+            (other, _) => other,
+        }
+    }
+
+    /// Half the width of the force window unless said \[s\].
+    pub const fn usual_half_width() -> f64 {
+        HALF_WIDTH
+    }
+
     /// The decay rate $\sigma = 1/\tau$ \[1/s\] that the window adds; zero without an exponential.
     pub fn decay_rate(self) -> f64 {
         match self {
-            Self::None | Self::Hann => 0.0,
+            Self::None | Self::AsNeeded | Self::Hann => 0.0,
             Self::ForceExponential { tau, .. } => 1.0 / tau,
         }
     }
@@ -32,7 +71,7 @@ impl Window {
     /// True where the window's numbers are finite and greater than zero.
     pub(super) fn is_valid(self) -> bool {
         match self {
-            Self::None | Self::Hann => true,
+            Self::None | Self::AsNeeded | Self::Hann => true,
             Self::ForceExponential { half_width, tau } => {
                 [half_width, tau, 1.0 / tau].iter().all(|value| value.is_finite() && *value > 0.0)
             }
@@ -42,7 +81,7 @@ impl Window {
     /// Windows the two channels of a hit whose offsets are removed; `peak` is the sample of the greatest force.
     pub(super) fn apply(self, force: &mut [f64], acceleration: &mut [f64], peak: usize, rate: f64) {
         match self {
-            Self::None => {}
+            Self::None | Self::AsNeeded => {}
             Self::Hann => {
                 for channel in [force, acceleration] {
                     let length = channel.len() as f64;
@@ -65,4 +104,14 @@ impl Window {
             }
         }
     }
+}
+
+/// Where the force peaks, and how many samples about it lie above half its height.
+fn blow(force: &[f64]) -> (usize, usize) {
+    let offset = sampled_median(force);
+    let (at, height) = peak(force, offset);
+    let high = |value: &&f64| (**value - offset) * height.signum() > 0.5 * height.abs();
+    let after = force.get(at..).unwrap_or_default().iter().take_while(high).count();
+    let before = force.get(..at).unwrap_or_default().iter().rev().take_while(high).count();
+    (at, before + after)
 }

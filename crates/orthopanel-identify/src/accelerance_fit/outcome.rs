@@ -217,6 +217,7 @@ fn accelerance_fits(
                 piece: piece.piece,
                 force_at: record.force_at,
                 response_at: record.response_at,
+                decay_rate: record.decay_rate,
                 frequency: record.frequency.clone(),
                 measured: record.value.clone(),
                 model,

@@ -15,7 +15,8 @@ use crate::record_options::IdentifyOptions;
 /// From hammer records or accelerances: e_x, g_zx and the damping ratio of every mode in the band, such that the model
 /// meets every line of every place, weighted by the records' own scatter. No peak is picked by hand. What was found
 /// wanting in the records (a double hit, an overload, a response that has not decayed) is said on standard error.
-/// Modes beyond the band get the median of the measured ratios.
+/// Modes beyond the band get the median of the measured ratios. Where a response still rings at the record's end, both
+/// channels get an exponential window, whose damping is known and taken out.
 ///
 /// With several pieces in the test, -o writes one model a piece: MODEL-NAME.json.
 ///

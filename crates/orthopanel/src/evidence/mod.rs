@@ -48,7 +48,7 @@ impl Evidence {
         let mut pieces = Vec::with_capacity(found.pieces.len());
         for (index, (fit, model)) in found.pieces.iter().zip(models).enumerate() {
             let own: Vec<_> = found.accelerances.iter().filter(|pair| pair.piece == index).collect();
-            pieces.push(PieceEvidence::of_fit(fit, model, &own, estimation, path)?);
+            pieces.push(PieceEvidence::of_fit(fit, model, &own, path)?);
         }
         let mut accelerances: Vec<(usize, Accelerance)> = Vec::new();
         let histories = test.time_histories()?;
@@ -100,16 +100,14 @@ impl PieceEvidence {
         fit: &PieceFit,
         model: &PanelModel,
         pairs: &[&AcceleranceFit],
-        estimation: Estimation,
         path: &Path,
     ) -> Result<Self, CommandError> {
         let mut evidence = Self::default();
         if !fit.modes.is_empty() {
             evidence.frequencies = Some(pictures::frequencies(fit)?);
         }
-        let decay_rate = estimation.window.decay_rate();
         for pair in pairs {
-            evidence.accelerances.push(pictures::measured_accelerance(&fit.name, pair, decay_rate)?);
+            evidence.accelerances.push(pictures::measured_accelerance(&fit.name, pair)?);
             evidence.residuals.push(PairResidual::of(pair));
         }
         if let (true, Some(&force), Some(&response)) =

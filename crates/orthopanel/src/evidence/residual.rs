@@ -81,6 +81,7 @@ mod tests {
             piece: 0,
             force_at: Place { x: 0.0, y: 0.0 },
             response_at: Place { x: 0.1, y: 0.0 },
+            decay_rate: 0.0,
             frequency: vec![10.0, 20.0],
             measured: vec![line(3.0, 0.0), line(0.0, 4.0)],
             model: vec![line(3.0, 0.3), line(0.4, 4.0)],

@@ -12,9 +12,10 @@ use crate::measured_pairs::place_text;
 /// Least measured magnitude that stretches the axis, over the greatest \[1\]; calculated valleys have no floor at all.
 const DEPTH: f64 = 1e-6;
 
-/// `decay_rate` is that of the window over the records \[1/s\], which both curves carry alike.
-pub fn measured_accelerance(piece: &str, fit: &AcceleranceFit, decay_rate: f64) -> Result<String, CommandError> {
+/// Both curves carry the decay rate of the window over the records alike.
+pub fn measured_accelerance(piece: &str, fit: &AcceleranceFit) -> Result<String, CommandError> {
     let (force, response) = (place_text(fit.force_at), place_text(fit.response_at));
+    let decay_rate = fit.decay_rate;
     let window = if decay_rate > 0.0 { format!(", window exp(-{decay_rate:.3} t)") } else { String::new() };
     let title = format!("Piece {piece}: accelerance, force at {force} m, response at {response} m{window}");
     let highest = fit.frequency.last().copied().unwrap_or(1.0);

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use orthopanel_data::{Accelerance, Estimation, ImpactTest, MeasurementData};
+use orthopanel_data::{Accelerance, Estimation, ImpactTest, MeasurementData, Window};
 use orthopanel_model::Place;
 use serde::Serialize;
 
@@ -40,7 +40,7 @@ pub fn execute(
     output: Option<&Path>,
     json: bool,
 ) -> Result<(), CommandError> {
-    let estimation = options.estimation()?;
+    let estimation = options.estimation(Window::None)?;
     let test = ImpactTest::read(path)?;
     options.say_if_idle(&test);
     let mut measured = {
