@@ -209,6 +209,8 @@ fn a_number_below_zero_is_told_what_is_allowed() {
         (&format!("{grid} --lines 3 --modes -3"), "whole number, not below zero"),
         (&format!("{grid} --lines -3"), "not in 1..=10000000"),
         ("identify test.toml --window force-exponential --tau -1", "finite number above zero"),
+        ("identify test.toml --search simplex --frequency-weight -1", "finite number, zero or above"),
+        ("identify test.toml --search simplex --magnitude-weight nan", "finite number, zero or above"),
     ] {
         let output = bench.run(line);
         let message = String::from_utf8_lossy(&output.stderr);
@@ -221,6 +223,9 @@ fn a_number_below_zero_is_told_what_is_allowed() {
 fn an_option_that_would_be_ignored_is_refused() {
     let bench = Bench::new();
     refused(&bench, "identify test.toml --tau 0.1", 2, &["--tau 0.1", "no effect", "--window force-exponential"]);
+    refused(&bench, "identify test.toml --magnitude-weight 1", 2, &["--magnitude-weight 1", "--search simplex"]);
+    let nothing = "identify test.toml --search simplex --frequency-weight 0 --magnitude-weight 0";
+    refused(&bench, nothing, 2, &["W_f = 0, W_G = 0", "one above zero"]);
     refused(&bench, "run test.toml --window hann --force-half-width 0.1 -o out", 2, &["--force-half-width", "both"]);
     let grid = "accelerance model.json --force 0 --response 0 --from 1 --to 2 --lines 3";
     refused(&bench, &format!("{grid} --window hann"), 2, &["--window", "hammer records", "a test file"]);
