@@ -22,7 +22,8 @@ from fmpy import extract, read_model_description
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
 FLAGS = ["-O3", "-std=c11", "-fno-math-errno", "-Wall", "-Wextra", "-Werror"]
-STEPS = {"fmu": 400_000, "c": 400_000, "pythonfmu": 4_000}
+# Short rounds: on a shared machine some of them run undisturbed.
+STEPS = {"fmu": 20_000, "c": 20_000, "pythonfmu": 100}
 # Flexible modes, and the share of the C propagator's time that is asked of the FMU.
 ASKED = {6: 1.0, 30: 0.5}
 START_ASKED, SIZE_ASKED = 5.0, 1.5  # ms, MB
