@@ -61,7 +61,8 @@ fn origin(panel: &PanelModel) -> String {
     }
     for effect in &panel.effects {
         let parameters = effect.parameters.iter().map(|(name, value)| format!("{name} {}", told(value)));
-        row(&format!("effect {}", effect.id), &parameters.collect::<Vec<_>>().join("; "));
+        let fate = if effect.owner == "panel" { "in the modes" } else { "left out: no part of the panel" };
+        row(&format!("effect {} ({fate})", effect.id), &parameters.collect::<Vec<_>>().join("; "));
     }
     for (name, value) in &panel.provenance {
         row(&name.replace('_', " "), &value.as_str().map_or_else(|| value.to_string(), String::from));

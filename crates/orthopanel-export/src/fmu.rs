@@ -3,7 +3,7 @@
 use std::io::Write;
 use std::path::Path;
 
-use orthopanel_fmu::{RESOURCE_FILE, Resource, content_token};
+use orthopanel_fmu::{FmuError, RESOURCE_FILE, Resource, content_token};
 use orthopanel_model::{ModalModel, ModeRange, PanelModel, Ports};
 
 use crate::archive::{Entry, pack};
@@ -88,7 +88,8 @@ impl Fmu {
 
     /// Puts together the FMU of a panel with the modes of `range`: their number is fixed, all else (sizes, mass,
     /// constants, damping ratios, places of the ports) can be set in the FMU, which then solves its modes anew.
-    /// The static part of the modes left out is added to displacements.
+    /// The static part of the modes left out is added to displacements. Effects of the panel are in the modes; those of
+    /// rig and measuring chain are left out.
     ///
     /// # Errors
     /// As [`Fmu::new`], and [`ExportError::Resource`] where the panel cannot be solved.
@@ -99,7 +100,8 @@ impl Fmu {
         options: &FmuOptions,
     ) -> Result<Self, ExportError> {
         check(&ports, options)?;
-        Self::of_resource(Resource::of_panel(panel, range, ports)?, Some(panel), options)
+        let (alone, _) = panel.panel_alone().map_err(FmuError::from)?;
+        Self::of_resource(Resource::of_panel(&alone, range, ports)?, Some(panel), options)
     }
 
     fn of_resource(resource: Resource, panel: Option<&PanelModel>, options: &FmuOptions) -> Result<Self, ExportError> {

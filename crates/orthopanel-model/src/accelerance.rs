@@ -1,5 +1,7 @@
 //! Accelerance of a [`ModalModel`] (eq. 21).
 
+use faer::Mat;
+use faer::prelude::Solve;
 use num_complex::Complex64;
 
 use crate::{ModalModel, Mode};
@@ -11,11 +13,33 @@ impl ModalModel {
     /// model lacks contributes nothing.
     pub fn accelerance(&self, force: usize, response: usize, frequency: f64) -> Complex64 {
         let omega = frequency * std::f64::consts::TAU;
+        if !self.damping_coupling().is_empty() {
+            return self.coupled_accelerance(force, response, omega);
+        }
         let part = |mode: &Mode| -> Option<Complex64> {
             let product = mode.at_forces.get(force)? * mode.at_responses.get(response)?;
             Some(product * mode.acceleration_per_force(omega))
         };
         self.modes().iter().filter_map(part).sum()
+    }
+
+    /// $-\omega^2W_r^T(\Omega - \omega^2 + j\omega(\Lambda + C))^{-1}W_f$, with the rigid modes, which nothing couples,
+    /// beside it.
+    fn coupled_accelerance(&self, force: usize, response: usize, omega: f64) -> Complex64 {
+        let seen = |mode: &Mode| Some((mode.at_forces.get(force).copied()?, mode.at_responses.get(response).copied()?));
+        let Some(ports) = self.modes().iter().map(seen).collect::<Option<Vec<_>>>() else { return Complex64::ZERO };
+        let all = || self.modes().iter().enumerate().zip(&ports);
+        let rigid: f64 = all().filter(|((_, mode), _)| mode.angular_frequency == 0.0).map(|(_, (f, r))| f * r).sum();
+        let flexible: Vec<_> = all().filter(|((_, mode), _)| mode.angular_frequency > 0.0).collect();
+        let dynamic = Mat::from_fn(flexible.len(), flexible.len(), |i, j| {
+            let ((m, mode), (n, _)) = (flexible[i].0, flexible[j].0);
+            let coupling = Complex64::new(0.0, omega * self.damping_coupling()[m][n]);
+            if i == j { mode.dynamic_stiffness(omega) + coupling } else { coupling }
+        });
+        let pushed = Mat::from_fn(flexible.len(), 1, |i, _| Complex64::from(flexible[i].1.0));
+        let moved = dynamic.partial_piv_lu().solve(&pushed);
+        let sum: Complex64 = flexible.iter().enumerate().map(|(i, (_, (_, r)))| moved[(i, 0)] * *r).sum();
+        rigid - omega * omega * sum
     }
 }
 
@@ -25,9 +49,13 @@ impl Mode {
         if self.angular_frequency == 0.0 {
             return Complex64::new(1.0, 0.0);
         }
+        -omega * omega / self.dynamic_stiffness(omega)
+    }
+
+    /// $\omega_m^2-\omega^2+2j\zeta_m\omega_m\omega$.
+    fn dynamic_stiffness(&self, omega: f64) -> Complex64 {
         let own = self.angular_frequency;
-        let dynamic = Complex64::new(own * own - omega * omega, 2.0 * self.damping_ratio * own * omega);
-        -omega * omega / dynamic
+        Complex64::new(own * own - omega * omega, 2.0 * self.damping_ratio * own * omega)
     }
 }
 

@@ -32,6 +32,9 @@ pub struct ModalModel {
     force_count: usize,
     response_count: usize,
     modes: Vec<Mode>,
+    /// Empty where nothing couples the modes.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    damping_coupling: Vec<Vec<f64>>,
 }
 
 impl ModalModel {
@@ -41,7 +44,21 @@ impl ModalModel {
     /// [`ModelError::PortCount`] where a mode's lists have another length, [`ModelError::NotFinite`] and
     /// [`ModelError::Damping`] where a number has no physical meaning.
     pub fn new(force_count: usize, response_count: usize, modes: Vec<Mode>) -> Result<Self, ModelError> {
-        Self { force_count, response_count, modes }.checked()
+        Self { force_count, response_count, modes, damping_coupling: vec![] }.checked()
+    }
+
+    /// The same modes with dampers that couple them: $c_{mn}$ \[1/s\], symmetric, a row a mode, in
+    /// $$\ddot a_m + 2\zeta_m\omega_m\dot a_m + \sum_nc_{mn}\dot a_n + \omega_m^2a_m = \sum_kW_m(x_k)f_k.$$
+    ///
+    /// # Errors
+    /// [`ModelError::StateCount`] for another number of rows or columns than modes, [`ModelError::NotFinite`].
+    pub fn with_damping_coupling(self, damping_coupling: Vec<Vec<f64>>) -> Result<Self, ModelError> {
+        Self { damping_coupling, ..self }.checked()
+    }
+
+    /// $c_{mn}$ \[1/s\] of [`ModalModel::with_damping_coupling`]; empty where nothing couples the modes.
+    pub fn damping_coupling(&self) -> &[Vec<f64>] {
+        &self.damping_coupling
     }
 
     /// Checks a model that came from a file.
@@ -71,7 +88,16 @@ impl ModalModel {
                 }
             }
         }
-        Ok(self)
+        let expected = self.modes.len();
+        for list in self.damping_coupling.iter().map(Vec::len).chain([self.damping_coupling.len()]) {
+            if !self.damping_coupling.is_empty() && list != expected {
+                return Err(ModelError::StateCount { found: list, expected });
+            }
+        }
+        match self.damping_coupling.iter().flatten().find(|value| !value.is_finite()) {
+            Some(&value) => Err(ModelError::NotFinite { what: "coupling of damping", value }),
+            None => Ok(self),
+        }
     }
 
     /// Number of force ports.

@@ -103,4 +103,11 @@ impl NaturalMode for PanelMode {
             Shape::Beam(_) | Shape::Plate { .. } => None,
         }
     }
+
+    fn damping_coupling(&self) -> &[f64] {
+        match &self.shape {
+            Shape::Dressed(mode) => &mode.damping_coupling,
+            Shape::Beam(_) | Shape::Plate { .. } => &[],
+        }
+    }
 }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use crate::{BEAM_CONSTANTS, Boundary, Constant, ModelError, PLATE_CONSTANTS, Piece, Place};
+use crate::{BEAM_CONSTANTS, Boundary, Constant, EffectState, ModelError, Owner, PLATE_CONSTANTS, Piece, Place};
 
 /// The schema that this version reads and writes.
 pub const MODEL_SCHEMA: &str = "orthopanel.model/1";
@@ -156,6 +156,23 @@ impl PanelModel {
             self.piece.contains(place)?;
         }
         Ok(())
+    }
+
+    /// The model without the effects of rig and measuring chain, which are no part of a panel, and the ids of these.
+    ///
+    /// # Errors
+    /// [`ModelError::UnknownEffect`] and its like for an entry that is no effect of the catalogue.
+    pub fn panel_alone(&self) -> Result<(Self, Vec<&'static str>), ModelError> {
+        let mut model = Self { effects: vec![], ..self.clone() };
+        let mut left_out = Vec::new();
+        for entry in &self.effects {
+            let effect = EffectState::from_entry(entry)?.effect;
+            match effect.owner() {
+                Owner::Panel => model.effects.push(entry.clone()),
+                Owner::Rig | Owner::Channel => left_out.push(effect.id()),
+            }
+        }
+        Ok((model, left_out))
     }
 
     /// The value of a constant by name.

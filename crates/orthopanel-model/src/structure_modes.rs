@@ -12,6 +12,10 @@ pub(crate) trait NaturalMode {
     fn own_damping(&self) -> Option<f64> {
         None
     }
+    /// $c_{mn}$ \[1/s\] to the modes of the list in order, perhaps to more; empty where nothing couples it.
+    fn damping_coupling(&self) -> &[f64] {
+        &[]
+    }
 }
 
 impl NaturalMode for BeamMode {
@@ -87,6 +91,9 @@ impl ModalModel {
                 at_responses: at(responses),
             }
         });
-        Self::new(forces.len(), responses.len(), seen.collect())
+        let model = Self::new(forces.len(), responses.len(), seen.collect())?;
+        let rows = modes.iter().map(|mode| mode.damping_coupling().iter().take(modes.len()).copied().collect());
+        let rows: Vec<Vec<f64>> = rows.collect();
+        if rows.iter().flatten().all(|&damping| damping == 0.0) { Ok(model) } else { model.with_damping_coupling(rows) }
     }
 }

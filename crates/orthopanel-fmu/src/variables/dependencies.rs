@@ -3,7 +3,7 @@
 
 use std::collections::HashMap;
 
-use orthopanel_model::Mode;
+use orthopanel_model::{ModalModel, Mode};
 
 use super::{Quantity, Variable};
 use crate::Resource;
@@ -42,11 +42,14 @@ fn knowns(quantity: Quantity, resource: &Resource) -> Vec<Quantity> {
         }
         Quantity::Velocity(port) => seen(port).map(|(mode, _)| Quantity::ModalVelocity(mode)).collect(),
         Quantity::Acceleration(port) => {
-            seen(port).flat_map(|(index, mode)| of_acceleration(index, mode, any)).collect()
+            let of_modes = seen(port)
+                .flat_map(|(index, mode)| of_acceleration(index, mode, any).into_iter().chain(coupled(index, model)));
+            of_modes.collect()
         }
         Quantity::ModalPositionRate(mode) => vec![Quantity::ModalVelocity(mode)],
         Quantity::ModalVelocityRate(index) => {
-            model.modes().get(index).map(|mode| of_acceleration(index, mode, any)).unwrap_or_default()
+            let own = model.modes().get(index).map(|mode| of_acceleration(index, mode, any)).unwrap_or_default();
+            own.into_iter().chain(coupled(index, model)).collect()
         }
         _ => Vec::new(),
     }
@@ -59,6 +62,15 @@ fn of_acceleration(index: usize, mode: &Mode, any: bool) -> Vec<Quantity> {
     let elastic = flexible.then_some(Quantity::ModalPosition(index));
     let damping = (flexible && (any || mode.damping_ratio > 0.0)).then_some(Quantity::ModalVelocity(index));
     forces.chain(elastic).chain(damping).collect()
+}
+
+/// Modal velocities that dampers of an effect hand on to a mode. Only where the panel is there are such effects, and their
+/// parameters are none of the FMU's: a coupling that is zero stays so, but for rounding.
+fn coupled(index: usize, model: &ModalModel) -> impl Iterator<Item = Quantity> {
+    let flexible = model.modes().get(index).is_some_and(|mode| mode.angular_frequency > 0.0);
+    let any = flexible && !model.damping_coupling().is_empty();
+    let others = model.modes().iter().enumerate().filter(move |(_, mode)| any && mode.angular_frequency > 0.0);
+    others.map(|(other, _)| Quantity::ModalVelocity(other))
 }
 
 fn is_set(values: &[f64], port: usize) -> bool {

@@ -3,6 +3,8 @@
 use faer::{Mat, MatRef};
 use nalgebra::{DMatrix, SymmetricEigen};
 
+use super::dot;
+
 /// $AB$.
 pub(crate) fn product(left: MatRef<'_, f64>, right: MatRef<'_, f64>) -> Mat<f64> {
     let Some(columns) = right.try_as_col_major() else { return product(left, copied(right).as_ref()) };
@@ -122,18 +124,4 @@ fn copied(matrix: MatRef<'_, f64>) -> Mat<f64> {
 
 fn add(sum: &mut [f64], factor: f64, values: &[f64]) {
     sum.iter_mut().zip(values).for_each(|(sum, value)| *sum += factor * value);
-}
-
-/// In four sums, which the compiler may keep side by side.
-fn dot(left: &[f64], right: &[f64]) -> f64 {
-    let (left, left_rest) = left.as_chunks::<4>();
-    let (right, right_rest) = right.as_chunks::<4>();
-    let mut sums = [0.0; 4];
-    for (a, b) in left.iter().zip(right) {
-        for i in 0..4 {
-            sums[i] += a[i] * b[i];
-        }
-    }
-    let rest: f64 = left_rest.iter().zip(right_rest).map(|(a, b)| a * b).sum();
-    sums.iter().sum::<f64>() + rest
 }

@@ -18,6 +18,20 @@ pub(crate) fn norm(vector: faer::ColRef<'_, f64>) -> f64 {
     vector.iter().map(|value| value * value).sum::<f64>().sqrt()
 }
 
+/// $a^Tb$, in four sums, which the compiler may keep side by side.
+pub(crate) fn dot(left: &[f64], right: &[f64]) -> f64 {
+    let (left, left_rest) = left.as_chunks::<4>();
+    let (right, right_rest) = right.as_chunks::<4>();
+    let mut sums = [0.0; 4];
+    for (a, b) in left.iter().zip(right) {
+        for i in 0..4 {
+            sums[i] += a[i] * b[i];
+        }
+    }
+    let rest: f64 = left_rest.iter().zip(right_rest).map(|(a, b)| a * b).sum();
+    sums.iter().sum::<f64>() + rest
+}
+
 #[cfg(test)]
 mod tests {
     use faer::Mat;

@@ -37,9 +37,10 @@ pub(crate) struct DressedMode {
     panel: Arc<DressedPanel>,
     /// $\omega$ \[rad/s\].
     pub angular_frequency: f64,
-    /// The diagonal of the damping matrix in these modes; what couples them is left out, an error of the size of
-    /// $\zeta$ times the spacing of the modes it couples.
+    /// Of the diagonal of the damping matrix in these modes.
     pub damping_ratio: f64,
+    /// $c_{mn}$ \[1/s\] to all modes in their order: the damping matrix without what is in the ratios.
+    pub damping_coupling: Vec<f64>,
     /// Nodes along x.
     pub nodes: usize,
     /// Share of each bare mode, then of each residual shape.
@@ -109,16 +110,26 @@ impl DressedPanel {
         let panel = Self { structure: Box::new(beam), values: values.to_vec(), bare, rows: placed };
         let (panel, mut found) = (Arc::new(panel), system.solve()?);
         found.truncate(rigid + count);
+        let couplings = system.couplings(&found);
         // Mode m has about m + 1 nodes; eight points between two of them part every pair.
         let points = 8 * (count + 2);
         let place = |index: usize| Place { x: piece.length * ((index as f64 + 0.5) / points as f64 - 0.5), y: 0.0 };
         let grid: Vec<Vec<f64>> = (0..points).map(|index| panel.deflections(place(index))).collect();
-        let dressed = |(angular_frequency, damping_ratio, shares): (f64, f64, Vec<f64>)| {
-            let along = grid.iter().map(|row| row.iter().zip(&shares).map(|(value, share)| value * share).sum());
-            let nodes = crossings(&along.collect::<Vec<f64>>());
-            DressedMode { panel: Arc::clone(&panel), angular_frequency, damping_ratio, nodes, shares }
-        };
-        Ok(found.into_iter().map(dressed).collect())
+        let dressed =
+            |((angular_frequency, damping_ratio, mut shares), damping_coupling): ((f64, f64, Vec<f64>), Vec<f64>)| {
+                shares.truncate(system.panel);
+                let along = grid.iter().map(|row| row.iter().zip(&shares).map(|(value, share)| value * share).sum());
+                let nodes = crossings(&along.collect::<Vec<f64>>());
+                DressedMode {
+                    panel: Arc::clone(&panel),
+                    angular_frequency,
+                    damping_ratio,
+                    damping_coupling,
+                    nodes,
+                    shares,
+                }
+            };
+        Ok(found.into_iter().zip(couplings).map(dressed).collect())
     }
 }
 
@@ -241,7 +252,7 @@ impl System {
         system
     }
 
-    /// $\omega$, $\zeta$ and coordinates of the panel of each mode, rising. As in [`crate::ritz_modes()`], by the inverse
+    /// $\omega$, $\zeta$ and all coordinates of each mode, rising. As in [`crate::ritz_modes()`], by the inverse
     /// of a shifted stiffness; a mass matrix that negative masses make indefinite leaves modes without meaning, which go.
     fn solve(&self) -> Result<Vec<(f64, f64, Vec<f64>)>, ModelError> {
         let kept = self.independent();
@@ -271,10 +282,27 @@ impl System {
             let omega = if lambda > 1e-9 * self.shift { lambda.sqrt() } else { 0.0 };
             let lost = crate::structure::quadratic_form(&self.damping, &whole);
             let zeta = if omega > 0.0 { (lost / (2.0 * omega)).min(0.7) } else { 0.0 };
-            whole.truncate(self.panel);
             (omega, zeta, whole)
         });
         Ok(modes.collect())
+    }
+
+    /// The damping matrix in these modes, less $2\zeta\omega$ on its diagonal; rigid modes have none.
+    fn couplings(&self, modes: &[(f64, f64, Vec<f64>)]) -> Vec<Vec<f64>> {
+        let row = |(m, (omega, zeta, shape)): (usize, &(f64, f64, Vec<f64>))| {
+            let forces: Vec<f64> = (0..shape.len())
+                .map(|i| self.damping.col_as_slice(i).iter().zip(shape).map(|(damping, share)| damping * share).sum())
+                .collect();
+            let other = |(n, (other, _, along)): (usize, &(f64, f64, Vec<f64>))| {
+                let whole: f64 = forces.iter().zip(along).map(|(force, share)| force * share).sum();
+                let rest = if n == m { whole - 2.0 * zeta * omega } else { whole };
+                // What rounding leaves of a rigid mode, or of the diagonal.
+                let rounding = 1e-12 * self.shift.sqrt();
+                if *omega == 0.0 || *other == 0.0 || rest.abs() <= rounding { 0.0 } else { rest }
+            };
+            modes.iter().enumerate().map(other).collect()
+        };
+        modes.iter().enumerate().map(row).collect()
     }
 
     /// Coordinates without the residual shapes that others hold already, as of two elements at one place.

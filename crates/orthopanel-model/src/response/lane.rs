@@ -27,10 +27,10 @@ impl Lane {
         Self([value; LANES])
     }
 
-    /// Is each number zero? Asked of all at once: an early answer would be a branch a number.
+    /// Is each number finite? Asked of all at once: an early answer would be a branch a number.
     #[inline(always)]
-    pub(super) fn is_zero(self) -> bool {
-        self.0.iter().fold(true, |all, &value| all & (value == 0.0))
+    pub(super) fn is_finite(self) -> bool {
+        self.0.iter().fold(true, |all, value| all & value.is_finite())
     }
 
     /// Sum, one after the other: a sum by halves would let the compiler cut the vectors of the loop before it in half.

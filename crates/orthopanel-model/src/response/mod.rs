@@ -1,6 +1,7 @@
 //! Time response: modes advanced exactly under forces that are held or run linearly over a step, and the paper's
 //! Runge-Kutta beside it.
 
+mod coupled;
 mod force_record;
 mod lane;
 mod propagator;

@@ -20,12 +20,16 @@ impl ModalModel {
     /// $n$ periods, $\omega h < (2\cdot10^{-7}/n)^{1/4}$, 0.02 at one period and 0.007 at a hundred.
     ///
     /// # Errors
-    /// As [`ModalModel::acceleration_under`]; [`ModelError::UnstableStep`] where the step is too long for a mode, and
+    /// As [`ModalModel::acceleration_under`]; [`ModelError::Unsupported`] where damping couples the modes;
+    /// [`ModelError::UnstableStep`] where the step is too long for a mode, and
     /// [`ModelError::Size`] for no steps at all.
     pub fn acceleration_by_runge_kutta(&self, record: &ForceRecord, steps: usize) -> Result<Vec<Vec<f64>>, ModelError> {
         record.check_ports(self)?;
         if steps == 0 {
             return Err(ModelError::Size { name: "steps between samples", value: 0.0, unit: "1" });
+        }
+        if !self.damping_coupling().is_empty() {
+            return Err(ModelError::Unsupported("Runge-Kutta of modes that damping couples".into()));
         }
         self.check_stability(record.interval(), steps)?;
         let mut accelerations = vec![vec![0.0; record.count()]; self.response_count()];

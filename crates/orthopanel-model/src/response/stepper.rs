@@ -1,5 +1,6 @@
 //! [`ModalStepper`]: the state of all modes, advanced together.
 
+use super::coupled::Coupled;
 use super::lane::{LANES, Lane};
 use super::propagator::Coefficients;
 use crate::{ModalModel, Mode, ModelError};
@@ -13,6 +14,8 @@ struct Group {
     /// [`Coefficients`] of the last step size.
     impulse: Lane,
     held: Lane,
+    /// $\omega^2$ times that.
+    held_stiffness: Lane,
     ramp: Lane,
     ramp_rate: Lane,
     /// Modal force now, and at the end of a linear step while that is computed.
@@ -51,6 +54,8 @@ pub struct ModalStepper {
     state: Vec<State>,
     state_after: Vec<State>,
     step: f64,
+    /// Where damping couples the modes: their step together, in place of each mode's own.
+    coupled: Option<Box<Coupled>>,
 }
 
 impl ModalStepper {
@@ -85,6 +90,7 @@ impl ModalStepper {
             state: vec![State::default(); count],
             state_after: vec![State::default(); count],
             step: 0.0,
+            coupled: Coupled::new(model).map(Box::new),
         }
     }
 
@@ -113,9 +119,16 @@ impl ModalStepper {
     /// [`ModalStepper::set_forces`] and [`ModalStepper::advance_held`] in one pass over the modes.
     ///
     /// # Errors
-    /// As these two; where a force is refused nothing has changed, where the step is, the forces are set.
+    /// As these two. The state stays as it was; the forces may be told or not.
     #[inline(always)]
     pub fn advance_under(&mut self, forces: &[f64], step: f64) -> Result<(), ModelError> {
+        if let [force] = forces
+            && self.coupled.is_none()
+        {
+            self.check_forces(forces)?;
+            self.prepare(step)?;
+            return self.advance_told(*force);
+        }
         self.set_forces(forces)?;
         self.advance_held(step)
     }
@@ -155,9 +168,13 @@ impl ModalStepper {
     #[inline(always)]
     pub fn acceleration(&self, response: usize) -> Option<f64> {
         let shape = self.at_responses.get(response)?;
-        Some(sum(shape, self.state.iter().zip(&self.groups), |(state, group)| {
+        let by_itself = sum(shape, self.state.iter().zip(&self.groups), |(state, group)| {
             group.force - group.damping * state.velocity - group.stiffness * state.position
-        }))
+        });
+        Some(match &self.coupled {
+            None => by_itself,
+            Some(coupled) => by_itself - self.coupling_acceleration(coupled, shape),
+        })
     }
 
     /// Modal coordinate $a$ \[m kg^1/2\] and its rate $\dot a$ of each mode, in the order of the model.
@@ -176,7 +193,23 @@ impl ModalStepper {
     pub fn mode_rate(&self, mode: usize) -> Option<[f64; 2]> {
         let [position, velocity] = self.mode_state(mode)?;
         let (group, i) = (self.groups.get(mode / LANES)?, mode % LANES);
-        Some([velocity, group.force.0[i] - group.damping.0[i] * velocity - group.stiffness.0[i] * position])
+        let by_itself = group.force.0[i] - group.damping.0[i] * velocity - group.stiffness.0[i] * position;
+        let coupling =
+            self.coupled.as_ref().map_or(0.0, |coupled| coupled.damping_force(mode, |n| self.velocity_of(n)));
+        Some([velocity, by_itself - coupling])
+    }
+
+    fn velocity_of(&self, mode: usize) -> f64 {
+        self.state.get(mode / LANES).map_or(0.0, |group| group.velocity.0[mode % LANES])
+    }
+
+    #[cold]
+    fn coupling_acceleration(&self, coupled: &Coupled, shape: &[Lane]) -> f64 {
+        let of_mode = |mode: usize| {
+            let at = shape.get(mode / LANES).map_or(0.0, |lane| lane.0[mode % LANES]);
+            at * coupled.damping_force(mode, |n| self.velocity_of(n))
+        };
+        (0..self.mode_count).map(of_mode).sum()
     }
 
     /// Puts back what [`ModalStepper::state`] gave.
@@ -245,10 +278,36 @@ impl ModalStepper {
                     return Err(ModelError::NotFinite { what: "angular frequency times step", value: omega * step });
                 }
                 (group.impulse.0[i], group.held.0[i]) = (new.impulse, new.held);
+                group.held_stiffness.0[i] = group.stiffness.0[i] * new.held;
                 (group.ramp.0[i], group.ramp_rate.0[i]) = (new.ramp, new.ramp_rate);
             }
         }
+        if let Some(coupled) = &mut self.coupled {
+            coupled.prepare(step)?;
+        }
         self.step = step;
+        Ok(())
+    }
+
+    /// The step of modes that damping couples.
+    #[cold]
+    fn advance_coupled(&mut self, linear: bool) -> Result<(), ModelError> {
+        let Some(coupled) = &mut self.coupled else { return Ok(()) };
+        let numbers = self.state.iter().zip(&self.groups).flat_map(|(state, group)| {
+            (0..LANES).map(move |i| {
+                let (now, then) = (group.force.0[i], group.force_after.0[i]);
+                [state.position.0[i], state.velocity.0[i], now, if linear { then - now } else { 0.0 }]
+            })
+        });
+        let after = coupled.advance(numbers);
+        if let Some(&value) = after.iter().flatten().find(|value| !value.is_finite()) {
+            return Err(ModelError::NotFinite { what: "modal state after the step", value });
+        }
+        for (state, modes) in self.state.iter_mut().zip(after.chunks(LANES)) {
+            for (i, mode) in modes.iter().enumerate() {
+                [state.position.0[i], state.velocity.0[i]] = *mode;
+            }
+        }
         Ok(())
     }
 
@@ -256,27 +315,58 @@ impl ModalStepper {
     /// stays, `force_after` is not read, and the compiler leaves its loads out.
     #[inline(always)]
     fn advance_prepared<const LINEAR: bool>(&mut self) -> Result<(), ModelError> {
-        // A sum of zeros that only an infinity or a NaN can spoil: cheaper than asking each number.
-        let mut zero = Lane::default();
-        for ((before, after), group) in self.state.iter().zip(&mut self.state_after).zip(&self.groups) {
-            let State { position: a, velocity: v } = *before;
-            let elastic = group.force - group.stiffness * a;
-            let acceleration = elastic - group.damping * v;
-            let mut position = a + group.impulse * v + group.held * elastic;
-            let mut velocity = v + group.impulse * acceleration - group.stiffness * group.held * v;
-            if LINEAR {
-                let change = group.force_after - group.force;
-                position = position + group.ramp * change;
-                velocity = velocity + group.ramp_rate * change;
-            }
-            zero = zero + Lane::all(0.0) * (position + velocity);
-            *after = State { position, velocity };
+        if self.coupled.is_some() {
+            return self.advance_coupled(LINEAR);
         }
-        if !zero.is_zero() {
-            return Err(ModelError::NotFinite { what: "modal state after the step", value: zero.sum() });
+        let mut all = Lane::default();
+        for ((before, after), group) in self.state.iter().zip(&mut self.state_after).zip(&self.groups) {
+            *after = before.stepped::<LINEAR>(group);
+            all = all + (after.position + after.velocity);
+        }
+        self.arrive(all)
+    }
+
+    /// The same under one force, told on the way.
+    #[inline(always)]
+    fn advance_told(&mut self, force: f64) -> Result<(), ModelError> {
+        let mut all = Lane::default();
+        let shape = self.at_forces.first().into_iter().flatten();
+        let states = self.state.iter().zip(&mut self.state_after);
+        for (((before, after), group), &w) in states.zip(&mut self.groups).zip(shape) {
+            group.force = w * Lane::all(force);
+            *after = before.stepped::<false>(group);
+            all = all + (after.position + after.velocity);
+        }
+        self.arrive(all)
+    }
+
+    /// Takes the state after the step, unless the sum of `all` its numbers is spoiled by an infinity or a NaN: cheaper than
+    /// asking each.
+    #[inline(always)]
+    fn arrive(&mut self, all: Lane) -> Result<(), ModelError> {
+        if !all.is_finite() {
+            return Err(ModelError::NotFinite { what: "modal state after the step", value: all.sum() });
         }
         std::mem::swap(&mut self.state, &mut self.state_after);
         Ok(())
+    }
+}
+
+impl State {
+    /// The state after the step for which the group's coefficients are made.
+    #[inline(always)]
+    fn stepped<const LINEAR: bool>(self, group: &Group) -> Self {
+        let Self { position: a, velocity: v } = self;
+        let elastic = group.force - group.stiffness * a;
+        let acceleration = elastic - group.damping * v;
+        let mut position = a + group.impulse * v + group.held * elastic;
+        let mut velocity = v + group.impulse * acceleration - group.held_stiffness * v;
+        if LINEAR {
+            let change = group.force_after - group.force;
+            position = position + group.ramp * change;
+            velocity = velocity + group.ramp_rate * change;
+        }
+        Self { position, velocity }
     }
 }
 

@@ -52,13 +52,16 @@ struct Answer<'a> {
     flexible_modes: usize,
     highest_hz: f64,
     ports: &'a Ports,
+    /// Effects of rig and measuring chain.
+    left_out: Vec<&'static str>,
 }
 
 pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
     let path = &arguments.model;
     let model = model_file::read(path)?;
     let ports = arguments.ports.needed(&model, path)?;
-    let seen = model.modal_model(arguments.modes.range(), &ports.forces, &ports.responses).in_file(path)?;
+    let (alone, left_out) = model.panel_alone().in_file(path)?;
+    let seen = alone.modal_model(arguments.modes.range(), &ports.forces, &ports.responses).in_file(path)?;
     let frequencies: Vec<f64> =
         seen.modes().iter().map(|mode| mode.angular_frequency / std::f64::consts::TAU).collect();
     let rigid_modes = frequencies.iter().filter(|frequency| **frequency == 0.0).count();
@@ -72,6 +75,7 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
         flexible_modes: frequencies.len() - rigid_modes,
         highest_hz: frequencies.last().copied().unwrap_or(0.0),
         ports: &ports,
+        left_out,
     };
     eprintln!(
         "wrote {} (FMI {}, {rigid_modes} rigid and {} flexible modes up to {:.1} Hz)",
@@ -80,6 +84,9 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
         answer.flexible_modes,
         answer.highest_hz
     );
+    if !answer.left_out.is_empty() {
+        eprintln!("left out, as no part of the panel: {}", answer.left_out.join(", "));
+    }
     if arguments.json {
         output::print_json(&answer);
     }

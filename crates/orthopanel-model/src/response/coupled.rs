@@ -1,0 +1,209 @@
+//! The exact step of modes that damping couples: all of them together.
+
+use faer::Mat;
+
+use crate::dense::{dot, product};
+use crate::{ModalModel, ModelError};
+
+/// A scaled step below which [`TERMS`] of the power series leave nothing out: $0.5^{16}/16! < 10^{-18}$.
+const SERIES_UP_TO: f64 = 0.5;
+const TERMS: u32 = 15;
+
+/// Modes with
+/// $$\ddot a_m + 2\zeta_m\omega_m\dot a_m + \sum_n c_{mn}\dot a_n + \omega_m^2a_m = p_m.$$
+///
+/// In $x = (\omega_ma_m, \dot a_m)$ this is $\dot x = Ax + Bp$, and for a $p$ that runs from $p_0$ by $\Delta p$ over $h$
+/// $$x_1 - x = Ah\varphi_1x + h\varphi_1Bp_0 + h\varphi_2B\Delta p,\quad \varphi_k = \sum_{n\ge0}\frac{(Ah)^n}{(n+k)!}.$$
+/// The series is summed for a fraction of the step, which is then doubled; increments are doubled, not states, so that a
+/// short step loses nothing. Reference: N. J. Higham, Functions of Matrices (SIAM 2008), 10.7.4.
+#[derive(Debug, Clone)]
+pub(super) struct Coupled {
+    /// $\omega$ and $2\zeta\omega$.
+    modes: Vec<[f64; 2]>,
+    damping: Vec<Vec<f64>>,
+    /// A row an increment of $a$, then of $\dot a$; columns $a$, $\dot a$, $p_0$, $\Delta p$.
+    step: Vec<Vec<f64>>,
+    /// State and forces of all modes.
+    before: Vec<f64>,
+    after: Vec<[f64; 2]>,
+}
+
+impl Coupled {
+    /// `None` where nothing couples the modes.
+    pub(super) fn new(model: &ModalModel) -> Option<Self> {
+        let damping = model.damping_coupling().to_vec();
+        let of_mode = |mode: &crate::Mode| [mode.angular_frequency, 2.0 * mode.damping_ratio * mode.angular_frequency];
+        let modes: Vec<_> = model.modes().iter().map(of_mode).collect();
+        let (before, after) = (vec![0.0; 4 * modes.len()], vec![[0.0; 2]; modes.len()]);
+        (!damping.is_empty()).then(|| Self { modes, damping, step: vec![], before, after })
+    }
+
+    /// $\sum_nc_{mn}\dot a_n$ of mode `mode`.
+    pub(super) fn damping_force(&self, mode: usize, velocity: impl Fn(usize) -> f64) -> f64 {
+        let row = self.damping.get(mode).into_iter().flatten();
+        row.enumerate().map(|(other, damping)| damping * velocity(other)).sum()
+    }
+
+    /// Makes the step's matrix.
+    ///
+    /// # Errors
+    /// [`ModelError::NotFinite`] for a step too long to be computed.
+    pub(super) fn prepare(&mut self, step: f64) -> Result<(), ModelError> {
+        let count = self.modes.len();
+        // A rigid mode is not scaled: it has no frequency.
+        let scale: Vec<f64> = self.modes.iter().map(|&[omega, _]| if omega > 0.0 { omega } else { 1.0 }).collect();
+        let mut generator = Mat::<f64>::zeros(2 * count, 2 * count);
+        for (m, &[omega, loss]) in self.modes.iter().enumerate() {
+            generator[(m, count + m)] = scale[m];
+            generator[(count + m, m)] = -omega * omega / scale[m];
+            for (n, coupling) in self.damping.get(m).into_iter().flatten().enumerate() {
+                generator[(count + m, count + n)] = -coupling;
+            }
+            generator[(count + m, count + m)] -= loss;
+        }
+        let columns = generator.col_iter().map(|column| column.iter().map(|value| value.abs()).sum::<f64>());
+        let size = step * columns.fold(0.0, f64::max);
+        if !size.is_finite() {
+            return Err(ModelError::NotFinite { what: "angular frequency times step", value: size });
+        }
+        let doublings = (size / SERIES_UP_TO).log2().ceil().max(0.0) as i32;
+        let mut part = step * (-f64::from(doublings)).exp2();
+        let generator = faer::Scale(part) * generator;
+        let mut second = faer::Scale(1.0 / factorial(TERMS + 1)) * Mat::<f64>::identity(2 * count, 2 * count);
+        for n in (0..TERMS - 1).rev() {
+            second = product(generator.as_ref(), second.as_ref());
+            let next = 1.0 / factorial(n + 2);
+            (0..2 * count).for_each(|i| second[(i, i)] += next);
+        }
+        let mut first = product(generator.as_ref(), second.as_ref());
+        (0..2 * count).for_each(|i| first[(i, i)] += 1.0);
+        let mut free = product(generator.as_ref(), first.as_ref());
+        let of_force = |matrix: &Mat<f64>| faer::Scale(part) * matrix.subcols(count, count);
+        let (mut held, mut ramp) = (of_force(&first), of_force(&second));
+        // The force of the whole step is reached in parts.
+        let mut share = part / step;
+        ramp = faer::Scale(share) * ramp;
+        for _ in 0..doublings {
+            ramp = faer::Scale(2.0) * &ramp + product(free.as_ref(), ramp.as_ref()) + faer::Scale(share) * &held;
+            held = faer::Scale(2.0) * &held + product(free.as_ref(), held.as_ref());
+            free = faer::Scale(2.0) * &free + product(free.as_ref(), free.as_ref());
+            (part, share) = (2.0 * part, 2.0 * share);
+        }
+        let unscaled = |i: usize| if i < count { 1.0 / scale[i] } else { 1.0 };
+        let row = |i: usize| {
+            let own = (0..2 * count).map(|j| unscaled(i) * free[(i, j)] / unscaled(j));
+            let forces = (0..count).map(|j| unscaled(i) * held[(i, j)]);
+            let changes = (0..count).map(|j| unscaled(i) * ramp[(i, j)]);
+            own.chain(forces).chain(changes).collect()
+        };
+        let rows: Vec<Vec<f64>> = (0..2 * count).map(row).collect();
+        match rows.iter().flatten().find(|value| !value.is_finite()) {
+            Some(&value) => Err(ModelError::NotFinite { what: "angular frequency times step", value }),
+            None => {
+                self.step = rows;
+                Ok(())
+            }
+        }
+    }
+
+    /// State of all modes after the step, from $a$, $\dot a$, $p_0$ and $\Delta p$ of each.
+    pub(super) fn advance(&mut self, modes: impl Iterator<Item = [f64; 4]>) -> &[[f64; 2]] {
+        let count = self.modes.len();
+        for (m, values) in modes.take(count).enumerate() {
+            values.into_iter().enumerate().for_each(|(kind, value)| self.before[kind * count + m] = value);
+        }
+        let change = |row: &Vec<f64>| dot(row, &self.before);
+        for (m, after) in self.after.iter_mut().enumerate() {
+            let changes = [m, count + m].map(|i| self.step.get(i).map_or(f64::NAN, change));
+            *after = [self.before[m] + changes[0], self.before[count + m] + changes[1]];
+        }
+        &self.after
+    }
+}
+
+fn factorial(n: u32) -> f64 {
+    (1..=n).map(f64::from).product()
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::{ModalModel, ModalStepper, Mode};
+
+    fn mode(omega: f64, zeta: f64, shape: f64) -> Mode {
+        Mode { angular_frequency: omega, damping_ratio: zeta, at_forces: vec![shape], at_responses: vec![shape] }
+    }
+
+    /// Displacement, velocity and acceleration after each of some steps, held and linear by turns.
+    fn motion(model: &ModalModel, step: f64) -> Vec<[f64; 3]> {
+        let mut stepper = ModalStepper::new(model);
+        let mut motion = Vec::new();
+        for n in 0..12 {
+            let force = f64::from(n * 5 % 7) - 2.0;
+            if n % 2 == 0 {
+                stepper.set_forces(&[force]).and_then(|()| stepper.advance_held(step)).unwrap();
+            } else {
+                stepper.advance_linear(step, &[force]).unwrap();
+            }
+            motion.push([stepper.displacement(0), stepper.velocity(0), stepper.acceleration(0)].map(Option::unwrap));
+        }
+        motion
+    }
+
+    fn assert_alike(found: &[[f64; 3]], expected: &[[f64; 3]], tolerance: f64) {
+        for kind in 0..3 {
+            let peak = expected.iter().fold(0.0, |most: f64, row| most.max(row[kind].abs()));
+            for (found, expected) in found.iter().zip(expected) {
+                let error = (found[kind] - expected[kind]).abs() / peak;
+                assert!(error < tolerance, "{kind}: {error:e} of the peak");
+            }
+        }
+    }
+
+    /// A coupling on the diagonal alone is a greater damping ratio: the modes' own exact step is the authority.
+    #[test]
+    fn val_a_diagonal_coupling_is_a_damping_ratio() {
+        let omegas = [0.0, 900.0, 2500.0, 7000.0, 40_000.0];
+        let more = |m: usize| if m == 0 { 0.0 } else { 0.01 * m as f64 };
+        let with = |extra: &dyn Fn(usize) -> f64| {
+            let of = |(m, &omega): (usize, &f64)| mode(omega, extra(m), 1.0 / (1.0 + m as f64));
+            ModalModel::new(1, 1, omegas.iter().enumerate().map(of).collect()).unwrap()
+        };
+        let row = |m: usize| (0..5).map(|n| if m == n { 2.0 * more(m) * omegas[m] } else { 0.0 }).collect();
+        let coupled = with(&|_| 0.0).with_damping_coupling((0..5).map(row).collect()).unwrap();
+        // Phases from 1e-6 to 40; each doubling of the step may double the rounding.
+        for (step, tolerance) in [(1e-9, 1e-13), (1e-6, 1e-13), (1e-4, 1e-12), (1e-3, 1e-11)] {
+            assert_alike(&motion(&coupled, step), &motion(&with(&more), step), tolerance);
+        }
+    }
+
+    /// Two modes of one frequency may be turned into each other: damped apart, they are coupled when turned.
+    #[test]
+    fn val_turned_modes_are_coupled() {
+        let (omega, zetas, angle) = (3000.0, [0.005, 0.08], 0.6_f64);
+        let (sine, cosine) = angle.sin_cos();
+        let shapes = [1.3, -0.4];
+        let apart = ModalModel::new(1, 1, vec![mode(omega, zetas[0], shapes[0]), mode(omega, zetas[1], shapes[1])]);
+        let turned = [cosine * shapes[0] + sine * shapes[1], -sine * shapes[0] + cosine * shapes[1]];
+        let [first, second] = zetas.map(|zeta| 2.0 * zeta * omega);
+        let between = sine * cosine * (second - first);
+        let coupling = vec![
+            vec![cosine * cosine * first + sine * sine * second, between],
+            vec![between, sine * sine * first + cosine * cosine * second],
+        ];
+        let coupled = ModalModel::new(1, 1, vec![mode(omega, 0.0, turned[0]), mode(omega, 0.0, turned[1])]);
+        let (apart, coupled) = (apart.unwrap(), coupled.unwrap().with_damping_coupling(coupling).unwrap());
+        assert_alike(&motion(&coupled, 2e-4), &motion(&apart, 2e-4), 1e-12);
+        for frequency in [40.0, 470.0, 480.0, 2000.0] {
+            let (found, expected) = (coupled.accelerance(0, 0, frequency), apart.accelerance(0, 0, frequency));
+            assert!((found - expected).norm() < 1e-12 * expected.norm(), "{frequency}: {found} {expected}");
+        }
+    }
+
+    #[test]
+    fn couplings_of_another_size_are_refused() {
+        let model = ModalModel::new(1, 1, vec![mode(1.0, 0.0, 1.0)]).unwrap();
+        for coupling in [vec![vec![]], vec![vec![0.0], vec![0.0]], vec![vec![f64::NAN]]] {
+            assert!(model.clone().with_damping_coupling(coupling).is_err());
+        }
+    }
+}

@@ -1,0 +1,148 @@
+"""Panels with effects: the FMU's accelerance against finite elements of their own (`tests/blind_tracing`).
+
+The FMU runs under a short pulse; force and acceleration go to the Laplace plane, s = sigma + j omega, where the beam of
+`blind_tracing` is evaluated line by line, with no modal sum over the dressed panel.
+"""
+
+import json
+import os
+import subprocess
+import sys
+import zipfile
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from conftest import BEAM, ROOT
+from masters import panel
+
+sys.path.insert(0, str(ROOT / "tests"))
+from blind_tracing import attachments, beam  # noqa: E402
+
+ZETA = 0.004
+FORCE, RESPONSE = -0.31, 0.27
+STEP, COUNT = 1e-5, 20_000
+SIGMA = 16.0 / (STEP * COUNT)
+UP_TO = 3500.0  # Hz
+# So many that those left out add less than 2e-5 of the rms at the highest line; what a mass or a resonator does to them, and
+# only the residual shapes hold, is five times that at a resonance.
+MODES = ("--modes", "80")
+TOLERANCE = 2e-4  # of the rms over all lines
+BARE = beam.Panel(BEAM.length, BEAM.width, BEAM.thickness, BEAM.mass_per_area, BEAM.e_x, BEAM.g_zx)
+
+
+def losing(loss, span, x):
+    ends = (x - span / 2.0, x + span / 2.0)
+    along = lambda at: np.where((at > ends[0]) & (at < ends[1]), 1.0 - loss, 1.0)  # noqa: E731
+    return replace(BARE, shear_along=along, steps=ends)
+
+
+# Effects as in a model file, and the same as the panel and the attachments (x, Z(s)) of blind_tracing.
+CASES = {
+    "none": ([], BARE, []),
+    "local-mass": ([{"id": "local-mass", "mass": 0.03, "x": 0.11}], BARE, [(0.11, attachments.mass(0.03))]),
+    "a mass that is missing": ([{"id": "local-mass", "mass": -0.02, "x": -0.2}], BARE, [(-0.2, attachments.mass(-0.02))]),
+    "edge-mass": (
+        [{"id": "edge-mass", "mass": 0.012}], BARE, [(x, attachments.mass(0.012)) for x in (-0.4, 0.4)],
+    ),
+    "stiffness-loss": ([{"id": "stiffness-loss", "loss": 0.4, "span": 0.1, "x": 0.2}], losing(0.4, 0.1, 0.2), []),
+    "rotary-inertia": ([{"id": "rotary-inertia", "factor": 2.2}], replace(BARE, rotary=2.2), []),
+    "resonator": (
+        [{"id": "resonator", "mass": 0.02, "frequency": 1200.0, "zeta": 0.02, "x": -0.33}],
+        BARE,
+        [(-0.33, attachments.resonator(0.02, 1200.0, 0.02))],
+    ),
+}
+
+
+def truth(body, hung, s):
+    """Accelerance on the lines `s`."""
+    points = [FORCE, RESPONSE, *(x for x, _ in hung)]
+    modes = beam.solve(body, points, np.full(60, ZETA))
+    at = list(range(2, len(points)))
+    receptance = lambda rows, columns: modes.receptance(s, rows, columns)  # noqa: E731
+    return s**2 * attachments.coupled(receptance, s, [1], [0], at, [z for _, z in hung])[:, 0, 0]
+
+
+def export(path, effects, *options):
+    sizes = ("length", "width", "thickness", "mass_per_area")
+    content = {
+        "schema": "orthopanel.model/1",
+        "piece": {name: getattr(BEAM, name) for name in sizes},
+        "structure": "timoshenko-beam",
+        "constants": {"e_x": BEAM.e_x, "g_zx": BEAM.g_zx},
+        "damping": {"beyond": ZETA},
+        "effects": [{"owner": "panel", **effect} for effect in effects],
+    }
+    model = path.with_suffix(".json")
+    model.write_text(json.dumps(content))
+    command = os.environ.get("ORTHOPANEL", str(ROOT / "target/release/orthopanel"))
+    words = [command, "export", str(model), "-o", str(path), f"--force={FORCE}", f"--response={RESPONSE}", *options]
+    return subprocess.run(words, capture_output=True, text=True)
+
+
+def accelerance(fmu, parameters=()):
+    """Lines s on the contour, and acceleration over force there."""
+    times = STEP * np.arange(COUNT + 1)
+    pulse = np.where(times < 4e-4, np.sin(np.pi * times / 4e-4) ** 2, 0.0)
+    with panel(fmu) as instance:
+        for name, value in parameters:
+            instance.set(name, value)
+        motion = instance.initialize(force_linear=True).run(pulse[1:], STEP)[2]
+    motion = np.concatenate([[0.0], motion])[:-1]
+    lines = np.arange(1, int(UP_TO * STEP * COUNT))
+    s = SIGMA + 2.0j * np.pi * lines / (STEP * COUNT)
+    window = np.exp(-SIGMA * times[:-1])
+    transform = lambda signal: STEP * np.fft.rfft(signal * window)[lines]  # noqa: E731
+    # Straight lines between samples are triangles, one a sample.
+    half = s * STEP / 2.0
+    return s, transform(motion) / (transform(pulse[:-1]) * (np.sinh(half) / half) ** 2)
+
+
+def worst(found, expected):
+    return np.max(np.abs(found - expected)) / np.sqrt(np.mean(np.abs(expected) ** 2))
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_an_effect_of_the_panel_is_in_the_fmu(tmp_path, name):
+    effects, body, hung = CASES[name]
+    done = export(tmp_path / "x.fmu", effects, *MODES)
+    assert done.returncode == 0, done.stderr
+    s, found = accelerance(tmp_path / "x.fmu")
+    expected = truth(body, hung, s)
+    if effects:
+        assert worst(truth(BARE, [], s), expected) > 0.05, "the effect must be seen"
+    assert worst(found, expected) < TOLERANCE
+
+
+def test_effects_stay_where_parameters_are_set(tmp_path):
+    effects, _, hung = CASES["resonator"]
+    export(tmp_path / "x.fmu", effects, *MODES)
+    changes = {"e_x": 1.2e10, "mass_per_area": 6.4, "thickness": 0.028}
+    s, found = accelerance(tmp_path / "x.fmu", changes.items())
+    expected = truth(replace(BARE, **changes), hung, s)
+    assert worst(truth(BARE, hung, s), expected) > 0.5, "the parameters must be seen"
+    assert worst(found, expected) < TOLERANCE
+
+
+def test_effects_of_rig_and_channel_are_left_out_and_said(tmp_path):
+    own = CASES["local-mass"][0]
+    others = [{"id": "sensor-mass", "owner": "rig", "mass": 0.01}, {"id": "gain", "owner": "channel", "gain": 0.9}]
+    said = export(tmp_path / "all.fmu", [others[0], *own, others[1]])
+    assert said.returncode == 0 and "left out, as no part of the panel: sensor-mass, gain" in said.stderr, said.stderr
+    assert "left out" not in export(tmp_path / "own.fmu", own).stderr
+    texts = []
+    for name in ("all.fmu", "own.fmu"):
+        with zipfile.ZipFile(tmp_path / name) as archive:
+            texts.append(archive.read("resources/panel.json"))
+            page = archive.read("documentation/index.html").decode()
+            assert ("effect gain (left out: no part of the panel)" in page) == (name == "all.fmu")
+            assert "effect local-mass (in the modes)" in page
+    assert texts[0] == texts[1]
+
+
+def test_a_viscoelastic_core_is_refused(tmp_path):
+    core = {"id": "viscoelastic-core", "strength": 0.1, "tau": 1e-4, "alpha": 0.6}
+    done = export(tmp_path / "x.fmu", [core])
+    assert done.returncode == 1 and "viscoelastic-core in a model of modes" in done.stderr, done.stderr
+    assert not (tmp_path / "x.fmu").exists()
