@@ -48,8 +48,14 @@ pub fn sensitive_modes(
     // A shape's derivative moves in the whole basis, so all of its modes are needed.
     let modes = all_ritz_modes(structure, values)?;
     let is_rigid = |mode: &&RitzMode| mode.angular_frequency == 0.0;
-    let at_places =
-        |mode: &RitzMode| -> Vec<f64> { places.iter().map(|&place| mode.deflection(structure, place)).collect() };
+    // A row of the basis costs far more than a mode's sum over it, and serves every mode of its block.
+    let rows: Vec<Vec<Vec<f64>>> = (0..structure.blocks().len())
+        .map(|block| places.iter().map(|&place| structure.shape_row(block, place)).collect())
+        .collect();
+    let at_places = |mode: &RitzMode| -> Vec<f64> {
+        let row_sum = |row: &Vec<f64>| row.iter().zip(&mode.coordinates).map(|(value, by)| value * by).sum();
+        rows[mode.block].iter().map(row_sum).collect()
+    };
     let flexible: Vec<&RitzMode> = modes.iter().filter(|mode| !is_rigid(mode)).collect();
     let shapes: Vec<Vec<f64>> = flexible.iter().map(|mode| at_places(mode)).collect();
     let couplings: Vec<Vec<Mat<f64>>> =
