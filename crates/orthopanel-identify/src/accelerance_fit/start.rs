@@ -9,7 +9,7 @@ use super::poles::{NoisePower, Pole, alike, poles};
 use super::records::PlaceRecord;
 use super::structures::{self, SeenMode};
 use crate::free_constants::FreeConstants;
-use crate::frequency_fit::{PoleFit, PoleSet, constants, fit_poles};
+use crate::frequency_fit::{PoleFit, PoleSet, fit_poles};
 use crate::{IdentifyError, Settings};
 
 /// What stands before the fit: records, their poles, and which modes these are.
@@ -47,7 +47,7 @@ pub(super) struct StartPiece {
 
 pub(super) fn start(test: &ImpactTest, settings: Settings) -> Result<Start, IdentifyError> {
     let structure = test.structure.unwrap_or(StructureKind::TimoshenkoBeam);
-    let constants = FreeConstants::of(test, constants(structure))?;
+    let constants = FreeConstants::of(test, structure.constants())?;
     let mut pieces: Vec<StartPiece> = Vec::new();
     let mut notes = Vec::new();
     let accelerances = test.accelerances(settings.estimation)?;

@@ -21,7 +21,6 @@ use problem::FrequencyProblem;
 
 pub(crate) use of_poles::{PoleFit, PoleSet, fit_poles};
 pub(crate) use report::identified_constants;
-pub(crate) use structures::constants;
 
 /// Finds the elastic constants that minimise eq. 22,
 /// $$Error(c) = \frac1M\sum_{m=1}^M\frac{(f_{exp}^{(m)}-f_{cal}^{(m)}(c))^2}{(f_{exp}^{(m)})^2},$$

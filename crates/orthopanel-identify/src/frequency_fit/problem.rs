@@ -41,7 +41,7 @@ pub(super) struct FrequencyProblem {
 impl FrequencyProblem {
     pub(super) fn of(test: &ImpactTest) -> Result<Self, IdentifyError> {
         let structure = test.structure.unwrap_or(StructureKind::TimoshenkoBeam);
-        let constants = FreeConstants::of(test, structures::constants(structure))?;
+        let constants = FreeConstants::of(test, structure.constants())?;
         let sets = frequency_sets(test, structure)?;
         let problem = Self { structure, constants, sets };
         // A plate may hold what its frequencies do not show; a beam has nothing to hold.

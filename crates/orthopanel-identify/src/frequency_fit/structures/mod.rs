@@ -3,7 +3,7 @@
 mod mindlin_plate;
 mod timoshenko_beam;
 
-use orthopanel_model::{BEAM_CONSTANTS, Boundary, Constant, ModelError, PLATE_CONSTANTS, Piece, StructureKind};
+use orthopanel_model::{Boundary, ModelError, Piece, StructureKind};
 
 use crate::IdentifyError;
 use mindlin_plate::PlateModes;
@@ -32,14 +32,6 @@ pub(super) trait MeasuredModes: std::fmt::Debug + Send + Sync {
 
     /// Nodal lines across x and across y of each measured mode.
     fn nodes(&self) -> &[[usize; 2]];
-}
-
-/// The constants of a structure.
-pub(crate) fn constants(kind: StructureKind) -> &'static [Constant] {
-    match kind {
-        StructureKind::TimoshenkoBeam => &BEAM_CONSTANTS,
-        StructureKind::MindlinPlate => &PLATE_CONSTANTS,
-    }
 }
 
 /// The measured modes of a piece, told by their nodal lines.
