@@ -31,8 +31,7 @@ pub(super) fn outcome(
     minimum: Minimum,
 ) -> Result<Identification, IdentifyError> {
     let Minimum { parameters, at } = minimum;
-    let freedom = problem.data().saturating_sub(problem.size()).max(1) as f64;
-    let chi_square = at.cost / freedom;
+    let chi_square = problem.chi_square(at.cost);
     let noise_known = problem.noise_is_known();
     let covariance = at.covariance();
     let std_factor = if noise_known { chi_square.max(1.0).sqrt() } else { chi_square.sqrt() };
@@ -51,8 +50,7 @@ pub(super) fn outcome(
 
 /// Whether the misfit is the model's, and not the noise's.
 pub(super) fn is_far_from_noise(problem: &AcceleranceProblem, minimum: &Minimum) -> bool {
-    let freedom = problem.data().saturating_sub(problem.size()).max(1) as f64;
-    problem.noise_is_known() && minimum.at.cost / freedom > FAR_FROM_NOISE
+    problem.noise_is_known() && problem.chi_square(minimum.at.cost) > FAR_FROM_NOISE
 }
 
 /// Lets those constants rest of which the records tell no more than what is usual, at the values found.

@@ -135,6 +135,11 @@ impl AcceleranceProblem {
         self.pieces.iter().flat_map(|piece| &piece.records).map(|record| 2 * record.value.len()).sum()
     }
 
+    /// Misfit per datum that is left beside the parameters, of a sum of squares.
+    pub(super) fn chi_square(&self, cost: f64) -> f64 {
+        cost / self.data().saturating_sub(self.size()).max(1) as f64
+    }
+
     /// Whether every record tells its own noise.
     pub(super) fn noise_is_known(&self) -> bool {
         self.pieces.iter().flat_map(|piece| &piece.records).all(|record| record.variance_known)
