@@ -1,9 +1,10 @@
 //! Which constants a test holds, which it leaves free, and which each piece has of its own.
 
+use faer::Mat;
 use orthopanel_data::ImpactTest;
 use orthopanel_model::Constant;
 
-use crate::IdentifyError;
+use crate::{Correlation, IdentifyError};
 
 /// A constant to find.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -187,6 +188,14 @@ impl FreeConstants {
         let constant = self.constant(parameter);
         let (low, high) = (to_scale(constant, constant.low), to_scale(constant, constant.high));
         at - low < 1e-6 || high - at < 1e-6
+    }
+
+    /// Correlation coefficient of each pair of parameters, the first ones of a covariance.
+    pub fn correlations(&self, covariance: &Mat<f64>) -> Vec<Correlation> {
+        let name = |i: usize| self.constant(i).name;
+        let value = |i: usize, j: usize| covariance[(i, j)] / (covariance[(i, i)] * covariance[(j, j)]).sqrt();
+        let pairs = (0..self.count()).flat_map(|i| (i + 1..self.count()).map(move |j| (i, j)));
+        pairs.map(|(i, j)| Correlation { first: name(i), second: name(j), value: value(i, j) }).collect()
     }
 
     /// Refuses a minimum that lies on a bound.

@@ -40,7 +40,7 @@ pub(super) fn outcome(
     let likelihood = settings.search == Search::LeastSquares;
     let log_std: Vec<Option<f64>> = (0..problem.size()).map(|i| std(i).filter(|_| likelihood)).collect();
     let covariance = covariance.filter(|_| likelihood);
-    let correlations = covariance.as_ref().map(|matrix| correlations(problem, matrix)).unwrap_or_default();
+    let correlations = covariance.as_ref().map(|matrix| problem.constants.correlations(matrix)).unwrap_or_default();
     let mut found = Found { parameters, log_std, correlations, chi_square: noise_known.then_some(chi_square) };
     if !problem.usual.is_empty() {
         start.fit.not_identified = rest_unseen(problem, &mut found, covariance.as_ref());
@@ -164,15 +164,6 @@ fn report(
     })
 }
 
-/// Correlation coefficient of each pair of free constants.
-fn correlations(problem: &AcceleranceProblem, covariance: &Mat<f64>) -> Vec<Correlation> {
-    let free = problem.constants.count();
-    let name = |i: usize| problem.constants.constant(i).name;
-    let value = |i: usize, j: usize| covariance[(i, j)] / (covariance[(i, i)] * covariance[(j, j)]).sqrt();
-    let pairs = (0..free).flat_map(|i| (i + 1..free).map(move |j| (i, j)));
-    pairs.map(|(i, j)| Correlation { first: name(i), second: name(j), value: value(i, j) }).collect()
-}
-
 /// Puts the constants of the poles' frequencies, and the poles' damping, in place of the fit's; the correlations of the
 /// constants.
 fn take_from_poles(
@@ -199,7 +190,7 @@ fn take_from_poles(
             }
         }
     }
-    covariance.map(|matrix| correlations(problem, &matrix)).unwrap_or_default()
+    covariance.map(|matrix| problem.constants.correlations(&matrix)).unwrap_or_default()
 }
 
 /// Measured and calculated accelerance of every record, and the rms of their difference \[% of the rms measured\].

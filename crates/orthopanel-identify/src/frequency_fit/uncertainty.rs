@@ -28,12 +28,7 @@ pub(super) fn uncertainty(
     let Some(covariance) = quadratic.covariance() else { return Uncertainty::default() };
     let free = problem.constants.count();
     let variance = residual_variance(problem, at);
-    let root = |i: usize| covariance[(i, i)].sqrt();
-    let name = |i: usize| problem.constants.constant(i).name;
-    let pairs = (0..free).flat_map(|i| (i + 1..free).map(move |j| (i, j)));
-    let correlations = pairs
-        .map(|(i, j)| Correlation { first: name(i), second: name(j), value: covariance[(i, j)] / (root(i) * root(j)) })
-        .collect();
+    let correlations = problem.constants.correlations(&covariance);
     let std = if variance > 0.0 {
         let stated = with_unseen(problem, predictions, parameters, variance);
         let covariance = stated.unwrap_or_else(|| faer::Scale(variance) * &covariance);
