@@ -1,6 +1,6 @@
 //! Which constants a test holds, which it leaves free, and which each piece has of its own.
 
-use faer::Mat;
+use faer::{ColRef, Mat};
 use orthopanel_data::ImpactTest;
 use orthopanel_model::Constant;
 
@@ -190,6 +190,17 @@ impl FreeConstants {
         at - low < 1e-6 || high - at < 1e-6
     }
 
+    /// A unit vector in the space of the parameters by the names of the constants, the largest component first and positive;
+    /// small ones are not told.
+    pub fn direction(&self, unit_vector: ColRef<'_, f64>) -> Vec<(&'static str, f64)> {
+        let mut components: Vec<(&'static str, f64)> =
+            (0..self.count()).map(|i| (self.constant(i).name, unit_vector[i])).collect();
+        components.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
+        let sign = components.first().map_or(1.0, |(_, component)| component.signum());
+        components.retain(|(_, component)| component.abs() > SMALL_COMPONENT);
+        components.into_iter().map(|(name, component)| (name, sign * component)).collect()
+    }
+
     /// Correlation coefficient of each pair of parameters, the first ones of a covariance.
     pub fn correlations(&self, covariance: &Mat<f64>) -> Vec<Correlation> {
         let name = |i: usize| self.constant(i).name;
@@ -207,6 +218,9 @@ impl FreeConstants {
         })
     }
 }
+
+/// Components of a direction below this part of the whole are not told.
+const SMALL_COMPONENT: f64 = 0.1;
 
 /// Moduli of panels lie within some 30 % of what is usual beside the others,
 const USUAL_LOG_STD: f64 = 0.3;

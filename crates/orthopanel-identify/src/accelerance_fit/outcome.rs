@@ -83,19 +83,14 @@ fn rest_unseen(
     reports
 }
 
-/// The direction of the largest variance of the constants, largest component first and positive.
+/// The direction of the largest variance of the constants.
 fn blind_direction(constants: &FreeConstants, covariance: &Mat<f64>) -> Vec<(&'static str, f64)> {
     let count = constants.count();
     let own = Mat::from_fn(count, count, |i, j| covariance[(i, j)]);
     let Ok(decomposition) = own.self_adjoint_eigen(Side::Lower) else { return Vec::new() };
     let vectors = decomposition.U();
     // Eigenvalues rise: the last is the greatest.
-    let mut components: Vec<(&'static str, f64)> =
-        (0..count).map(|i| (constants.constant(i).name, vectors[(i, count - 1)])).collect();
-    components.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
-    let sign = components.first().map_or(1.0, |(_, component)| component.signum());
-    components.retain(|(_, component)| component.abs() > 0.1);
-    components.into_iter().map(|(name, component)| (name, sign * component)).collect()
+    constants.direction(vectors.col(count - 1))
 }
 
 /// Parameters and what is known of them.

@@ -20,8 +20,6 @@ const USUAL_SCATTER: f64 = 1e-3;
 /// A constant that worsens the prediction of frequencies left out by more than this factor is fitted to chance: one
 /// parameter too many costs some 5 %, a mode beside a veering that one constant moves alone twice as much and more.
 const WORSE_PREDICTION: f64 = 1.25;
-/// Components of a direction below this part of the whole are not told.
-const SMALL_COMPONENT: f64 = 0.1;
 
 /// The minimum over the constants that the data show, and those that they do not.
 ///
@@ -191,15 +189,10 @@ fn reports(
     resting.iter().map(report).collect()
 }
 
-/// The direction of the least eigenvalue, largest component first and positive.
+/// The direction of the least eigenvalue.
 fn blind_direction(constants: &FreeConstants, normal: &Mat<f64>) -> Vec<(&'static str, f64)> {
     let Ok(decomposition) = normal.self_adjoint_eigen(Side::Lower) else { return Vec::new() };
     let vectors = decomposition.U();
     // Eigenvalues rise: the first is the least.
-    let mut components: Vec<(&'static str, f64)> =
-        (0..constants.count()).map(|i| (constants.constant(i).name, vectors[(i, 0)])).collect();
-    components.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
-    let sign = components.first().map_or(1.0, |(_, component)| component.signum());
-    components.retain(|(_, component)| component.abs() > SMALL_COMPONENT);
-    components.into_iter().map(|(name, component)| (name, sign * component)).collect()
+    constants.direction(vectors.col(0))
 }
