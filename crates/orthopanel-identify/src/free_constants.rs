@@ -1,6 +1,6 @@
 //! Which constants a test holds, which it leaves free, and which each piece has of its own.
 
-use faer::{ColRef, Mat};
+use faer::Mat;
 use orthopanel_data::ImpactTest;
 use orthopanel_model::Constant;
 
@@ -192,9 +192,9 @@ impl FreeConstants {
 
     /// A unit vector in the space of the parameters by the names of the constants, the largest component first and positive;
     /// small ones are not told.
-    pub fn direction(&self, unit_vector: ColRef<'_, f64>) -> Vec<(&'static str, f64)> {
+    pub fn direction(&self, unit_vector: impl Fn(usize) -> f64) -> Vec<(&'static str, f64)> {
         let mut components: Vec<(&'static str, f64)> =
-            (0..self.count()).map(|i| (self.constant(i).name, unit_vector[i])).collect();
+            (0..self.count()).map(|i| (self.constant(i).name, unit_vector(i))).collect();
         components.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
         let sign = components.first().map_or(1.0, |(_, component)| component.signum());
         components.retain(|(_, component)| component.abs() > SMALL_COMPONENT);

@@ -120,6 +120,12 @@ impl Ending {
         Self { most_iterations, little, ..Self::SMOOTH }
     }
 
+    /// Whether the next step from here, without damping, would promise little.
+    pub fn is_reached(&self, at: &Quadratic, parameters: &[f64], bounds: &[(f64, f64)]) -> bool {
+        let trial = damped_step(at, parameters, bounds, 0.0);
+        trial.is_some_and(|trial| self.is_little(promise(at, parameters, &trial), at.cost))
+    }
+
     fn is_little(&self, promised: f64, cost: f64) -> bool {
         promised <= self.little.max(self.small_gain * cost)
     }
@@ -163,36 +169,13 @@ pub(crate) fn descend<E>(
     let mut at = linearise(&parameters).map_err(Stuck::Refused)?;
     let (mut damping, mut growth) = (ending.first_damping, 2.0);
     for _ in 0..ending.most_iterations {
-        let mut normal = at.normal.clone();
-        let mut gradient = Mat::from_fn(parameters.len(), 1, |i, _| at.gradient[i]);
-        for (i, (&parameter, &(low, high))) in parameters.iter().zip(bounds).enumerate() {
-            normal[(i, i)] *= 1.0 + damping;
-            // On a bound and pressed against it: this one rests, so that the others do not answer to its step.
-            let pressed = (parameter <= low && gradient[(i, 0)] > 0.0) || (parameter >= high && gradient[(i, 0)] < 0.0);
-            if pressed {
-                for j in 0..parameters.len() {
-                    normal[(i, j)] = 0.0;
-                    normal[(j, i)] = 0.0;
-                }
-                normal[(i, i)] = 1.0;
-                gradient[(i, 0)] = 0.0;
-            }
-        }
-        let step = normal.llt(Side::Lower).ok().map(|factor| factor.solve(&gradient));
-        let Some(step) = step else {
+        let Some(trial) = damped_step(&at, &parameters, bounds, damping) else {
             damping = (damping * growth).max(1e-12);
             growth *= 2.0;
             continue;
         };
-        let trial: Vec<f64> = parameters
-            .iter()
-            .zip(bounds)
-            .enumerate()
-            .map(|(i, (p, &(low, high)))| (p - step[(i, 0)]).clamp(low, high))
-            .collect();
-        // What the step promises, to first order; once that is nothing beside what is left, either end is the minimum.
-        let promised: f64 =
-            trial.iter().zip(&parameters).zip(&at.gradient).map(|((new, old), g)| (old - new) * g).sum::<f64>().abs();
+        // Once that is nothing beside what is left, either end is the minimum.
+        let promised = promise(&at, &parameters, &trial);
         let moved = trial.iter().zip(&parameters).fold(0.0_f64, |most, (a, b)| most.max((a - b).abs()));
         if let Ok(next) = linearise(&trial) {
             let (before, after) = (at.cost, next.cost);
@@ -214,6 +197,33 @@ pub(crate) fn descend<E>(
         growth *= 2.0;
     }
     Ok((Minimum { parameters, at }, false))
+}
+
+/// The end of a step of Levenberg and Marquardt, within the bounds; `None` where the curvature is not positive.
+fn damped_step(at: &Quadratic, parameters: &[f64], bounds: &[(f64, f64)], damping: f64) -> Option<Vec<f64>> {
+    let mut normal = at.normal.clone();
+    let mut gradient = Mat::from_fn(parameters.len(), 1, |i, _| at.gradient[i]);
+    for (i, (&parameter, &(low, high))) in parameters.iter().zip(bounds).enumerate() {
+        normal[(i, i)] *= 1.0 + damping;
+        // On a bound and pressed against it: this one rests, so that the others do not answer to its step.
+        let pressed = (parameter <= low && gradient[(i, 0)] > 0.0) || (parameter >= high && gradient[(i, 0)] < 0.0);
+        if pressed {
+            for j in 0..parameters.len() {
+                normal[(i, j)] = 0.0;
+                normal[(j, i)] = 0.0;
+            }
+            normal[(i, i)] = 1.0;
+            gradient[(i, 0)] = 0.0;
+        }
+    }
+    let step = normal.llt(Side::Lower).ok()?.solve(&gradient);
+    let ends = parameters.iter().zip(bounds).enumerate();
+    Some(ends.map(|(i, (p, &(low, high)))| (p - step[(i, 0)]).clamp(low, high)).collect())
+}
+
+/// What a step to `trial` promises, to first order.
+fn promise(at: &Quadratic, parameters: &[f64], trial: &[f64]) -> f64 {
+    trial.iter().zip(parameters).zip(&at.gradient).map(|((new, old), g)| (old - new) * g).sum::<f64>().abs()
 }
 
 #[cfg(test)]

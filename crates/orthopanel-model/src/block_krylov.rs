@@ -9,8 +9,8 @@ use faer::{Mat, MatMut, MatRef};
 use crate::block_pencil::{BlockPencil, Eigenpair};
 use crate::dense::{norm, product, symmetric_eigen};
 
-/// Vectors a step; modes that coincide in this number are found together.
-const WIDTH: usize = 2;
+/// Vectors a step; modes that coincide in this number are found together. Products of fewer columns waste the machine.
+const WIDTH: usize = 4;
 /// Residual, over its eigenvalue, at which a vector has converged: its frequency is then exact to rounding.
 const CONVERGED: f64 = 1e-9;
 
@@ -31,9 +31,10 @@ pub(crate) fn lowest_modes(pencil: &BlockPencil<'_>, wanted: usize) -> Option<Ve
         basis = beside(&basis, &next);
         images = beside(&images, &image);
         let found = images.ncols();
-        // The projection costs more than a step: look only where convergence is likely, and then every other step.
-        let enough = found >= 4 * wanted && (found / WIDTH).is_multiple_of(2);
-        if enough && let Some(modes) = converged(pencil, &basis, rigid.ncols(), &images, wanted) {
+        // The projection costs more than a step: look only where convergence is likely.
+        if found >= 5 * wanted
+            && let Some(modes) = converged(pencil, &basis, rigid.ncols(), &images, wanted)
+        {
             return Some(modes);
         }
         next = orthonormal(&basis, image)?;

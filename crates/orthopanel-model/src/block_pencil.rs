@@ -74,6 +74,23 @@ impl<'a> BlockPencil<'a> {
         image
     }
 
+    /// $(K+\sigma M)^{-1}B$.
+    pub(crate) fn solve(&self, mut loads: Mat<f64>) -> Mat<f64> {
+        self.scale_rows(&mut loads);
+        self.factor.solve_lower(&mut loads);
+        self.factor.solve_upper(&mut loads);
+        self.scale_rows(&mut loads);
+        loads
+    }
+
+    fn scale_rows(&self, columns: &mut Mat<f64>) {
+        for column in 0..columns.ncols() {
+            for (value, scale) in columns.col_as_slice_mut(column).iter_mut().zip(&self.scale) {
+                *value *= scale;
+            }
+        }
+    }
+
     /// $\omega^2$ that an eigenvalue of $A$ stands for.
     pub(crate) fn omega2(&self, theta: f64) -> f64 {
         (1.0 / theta - self.sigma).max(0.0)

@@ -102,7 +102,8 @@ fn limit_above(solved: &[SolvedBlock], count: usize) -> f64 {
     clear.map_or(last * (1.0 + 1e-6), |next| 0.5 * (last + next))
 }
 
-fn checked_coefficients(structure: &dyn Structure, values: &[f64]) -> Result<Vec<f64>, ModelError> {
+/// The coefficients at these values, which must lie inside their bounds.
+pub(crate) fn checked_coefficients(structure: &dyn Structure, values: &[f64]) -> Result<Vec<f64>, ModelError> {
     check_constants(structure.constants(), values)?;
     structure.coefficients(values)
 }

@@ -90,7 +90,7 @@ fn blind_direction(constants: &FreeConstants, covariance: &Mat<f64>) -> Vec<(&'s
     let Ok(decomposition) = own.self_adjoint_eigen(Side::Lower) else { return Vec::new() };
     let vectors = decomposition.U();
     // Eigenvalues rise: the last is the greatest.
-    constants.direction(vectors.col(count - 1))
+    constants.direction(|i| vectors[(i, count - 1)])
 }
 
 /// Parameters and what is known of them.

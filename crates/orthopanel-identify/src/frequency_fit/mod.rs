@@ -11,13 +11,15 @@ mod uncertainty;
 #[cfg(test)]
 mod tests;
 
+use std::sync::Arc;
+
 use orthopanel_data::ImpactTest;
 use orthopanel_model::StructureKind;
 
 use crate::downhill_simplex::{Penalised, downhill_simplex};
-use crate::least_squares::{Ending, Stuck, levenberg_marquardt_until};
+use crate::least_squares::{Ending, Stuck, descend, levenberg_marquardt_until};
 use crate::{Identification, IdentifyError, Search};
-use problem::FrequencyProblem;
+use problem::{FrequencyProblem, FrequencySet, SetPrediction};
 
 pub(crate) use of_poles::{PoleFit, PoleSet, fit_poles};
 pub(crate) use report::identified_constants;
@@ -61,23 +63,63 @@ fn minimise(problem: &FrequencyProblem, start: &[f64], search: Search) -> Result
             let error = |parameters: &[f64]| problem.error(parameters);
             downhill_simplex(&Penalised { error, bounds: problem.constants.bounds() }, start)
         }
-        Search::LeastSquares => least_squares(problem, start),
+        Search::LeastSquares => Ok(least_squares(problem, start, None)?.parameters),
     }
 }
 
-fn least_squares(problem: &FrequencyProblem, start: &[f64]) -> Result<Vec<f64>, IdentifyError> {
-    let quadratic = |parameters: &[f64]| problem.linearise(parameters).map(|at| at.quadratic());
+/// A minimum, the modes there, and what predicts them quickly near by.
+struct Minimum {
+    parameters: Vec<f64>,
+    predictions: Vec<SetPrediction>,
+    quick: Option<Arc<[FrequencySet]>>,
+}
+
+/// Quick searches before one on the whole basis: a start far off wants a second.
+const QUICK_SEARCHES: usize = 3;
+
+/// The minimum from `start`, where `quick` predicts quickly.
+///
+/// Where modes are costly, quick searches come first. Their end counts once the modes of the whole basis promise nothing
+/// further there: it is the minimum of the whole basis then.
+fn least_squares(
+    problem: &FrequencyProblem,
+    start: &[f64],
+    quick: Option<&Arc<[FrequencySet]>>,
+) -> Result<Minimum, IdentifyError> {
     let ending = match problem.structure {
         StructureKind::TimoshenkoBeam => Ending::SMOOTH,
         StructureKind::MindlinPlate => Ending::WITH_JUMPS,
     };
     let bounds = problem.constants.bounds();
-    let minimum = levenberg_marquardt_until(quadratic, start, &bounds, ending).map_err(|stuck| match stuck {
+    let mut parameters = start.to_vec();
+    let mut quick = quick.cloned();
+    for _ in 0..QUICK_SEARCHES {
+        let made_here = quick.is_none();
+        if made_here {
+            quick = problem.near(&parameters).ok().flatten();
+        }
+        let Some(sets) = quick.take() else { break };
+        let nearby = problem.on(&sets);
+        let linearise = |parameters: &[f64]| nearby.linearise(parameters).map(|at| at.quadratic());
+        let Ok((minimum, _)) = descend(linearise, &parameters, &bounds, ending) else { break };
+        let Ok(predictions) = problem.predictions(&minimum.parameters) else { break };
+        let moves = minimum.parameters.iter().zip(&parameters).map(|(new, old)| (new - old).abs());
+        // Where it is made, the quick prediction has the whole one's values and slopes. A search that stays there stands at a
+        // jump.
+        let stays = made_here && moves.fold(0.0, f64::max) < ending.small_step;
+        parameters = minimum.parameters;
+        let at = problem.linearised(&predictions, &problem.constants).quadratic();
+        if stays || ending.is_reached(&at, &parameters, &bounds) {
+            return Ok(Minimum { parameters, predictions, quick: Some(sets) });
+        }
+    }
+    let linearise = |parameters: &[f64]| problem.linearise(parameters).map(|at| at.quadratic());
+    let minimum = levenberg_marquardt_until(linearise, &parameters, &bounds, ending).map_err(|stuck| match stuck {
         Stuck::Refused(error) => error,
         Stuck::Iterations { count, cost } => IdentifyError::NotConverged {
             iterations: count,
             error_percent: 100.0 * (cost / problem.count() as f64).sqrt(),
         },
     })?;
-    Ok(minimum.parameters)
+    Ok(Minimum { predictions: problem.predictions(&minimum.parameters)?, parameters: minimum.parameters, quick: None })
 }

@@ -1,5 +1,7 @@
 //! Constants from the poles of records: eq. 22 over the modes that they show.
 
+use std::sync::Arc;
+
 use orthopanel_model::{Boundary, Piece, StructureKind};
 
 use super::problem::{FrequencyProblem, FrequencySet};
@@ -51,7 +53,7 @@ pub(crate) fn fit_poles(
             measured: set.frequencies,
         })
     });
-    let sets = sets.collect::<Result<Vec<_>, IdentifyError>>()?;
+    let sets = sets.collect::<Result<Arc<[_]>, IdentifyError>>()?;
     let mut problem = FrequencyProblem { structure, constants: constants.clone(), sets };
     let start: Vec<f64> = constants
         .free
@@ -61,7 +63,7 @@ pub(crate) fn fit_poles(
         .collect();
     let (parameters, not_identified) = match structure {
         StructureKind::TimoshenkoBeam if start.is_empty() => (start, Vec::new()),
-        StructureKind::TimoshenkoBeam => (least_squares(&problem, &start)?, Vec::new()),
+        StructureKind::TimoshenkoBeam => (least_squares(&problem, &start, None)?.parameters, Vec::new()),
         StructureKind::MindlinPlate => seen_constants::minimise_what_is_seen(&mut problem, &start)?,
     };
     let at = problem.linearise(&parameters)?.quadratic();

@@ -1,8 +1,11 @@
 //! Eq. 22 over the measurements of a test.
 
+use std::sync::Arc;
+
 use faer::Mat;
 use orthopanel_data::{ImpactTest, MeasurementData};
 use orthopanel_model::StructureKind;
+use rayon::prelude::*;
 
 use super::structures::{self, MeasuredModes, Prediction, bending_nodes};
 use crate::IdentifyError;
@@ -35,14 +38,14 @@ pub(super) struct SetPrediction {
 pub(super) struct FrequencyProblem {
     pub structure: StructureKind,
     pub constants: FreeConstants,
-    pub sets: Vec<FrequencySet>,
+    pub sets: Arc<[FrequencySet]>,
 }
 
 impl FrequencyProblem {
     pub(super) fn of(test: &ImpactTest) -> Result<Self, IdentifyError> {
         let structure = test.structure.unwrap_or(StructureKind::TimoshenkoBeam);
         let constants = FreeConstants::of(test, structure.constants())?;
-        let sets = frequency_sets(test, structure)?;
+        let sets = frequency_sets(test, structure)?.into();
         let problem = Self { structure, constants, sets };
         // A plate may hold what its frequencies do not show; a beam has nothing to hold.
         let needed = match structure {
@@ -68,7 +71,23 @@ impl FrequencyProblem {
             let values = self.constants.values(parameters, set.piece);
             Ok(SetPrediction { modes: set.modes.predict(&values)?, values })
         };
-        self.sets.iter().map(predict).collect()
+        self.sets.par_iter().map(predict).collect()
+    }
+
+    /// What predicts the same quickly near these parameters, and less well further off; `None` where this one is quick.
+    pub(super) fn near(&self, parameters: &[f64]) -> Result<Option<Arc<[FrequencySet]>>, IdentifyError> {
+        let near = |set: &FrequencySet| {
+            let modes = set.modes.near(&self.constants.values(parameters, set.piece))?;
+            let (measured, rounding) = (set.measured.clone(), set.rounding.clone());
+            Ok(modes.map(|modes| FrequencySet { piece: set.piece, modes, measured, rounding }))
+        };
+        let sets = self.sets.par_iter().map(near).collect::<Result<Option<Vec<_>>, IdentifyError>>()?;
+        Ok(sets.map(Arc::from))
+    }
+
+    /// The same constants, on these sets.
+    pub(super) fn on(&self, sets: &Arc<[FrequencySet]>) -> Self {
+        Self { structure: self.structure, constants: self.constants.clone(), sets: Arc::clone(sets) }
     }
 
     /// Relative residuals $(f_{cal}-f_{exp})/f_{exp}$ and their derivatives by the parameters.
@@ -102,7 +121,7 @@ impl FrequencyProblem {
     /// Eq. 22.
     pub(super) fn error(&self, parameters: &[f64]) -> Result<f64, IdentifyError> {
         let mut sum = 0.0;
-        for set in &self.sets {
+        for set in self.sets.iter() {
             let calculated = set.modes.frequencies(&self.constants.values(parameters, set.piece))?;
             let misses = calculated.iter().zip(&set.measured).map(|(calculated, measured)| calculated / measured - 1.0);
             sum += misses.map(|miss| miss * miss).sum::<f64>();

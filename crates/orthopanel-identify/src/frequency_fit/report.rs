@@ -3,7 +3,6 @@
 use orthopanel_data::ImpactTest;
 
 use super::problem::{FrequencyProblem, SetPrediction};
-use super::structures::Prediction;
 use super::uncertainty::uncertainty;
 use crate::free_constants::FreeConstants;
 use crate::{Identification, IdentifiedConstant, IdentifyError, ModeFit, NotIdentified, PieceFit};
@@ -27,7 +26,7 @@ pub(super) fn report(
         ),
         not_identified,
         correlations: uncertainty.correlations,
-        pieces: piece_fits(test, problem, &predictions),
+        pieces: piece_fits(test, problem, &predictions)?,
         frequency_rms_percent: 100.0 * (at.quadratic().cost / problem.count() as f64).sqrt(),
         left_one_out_percent: uncertainty.left_one_out_percent,
         accelerance_rms_percent: None,
@@ -70,16 +69,23 @@ pub(crate) fn identified_constants(
     list
 }
 
-fn piece_fits(test: &ImpactTest, problem: &FrequencyProblem, predictions: &[SetPrediction]) -> Vec<PieceFit> {
+fn piece_fits(
+    test: &ImpactTest,
+    problem: &FrequencyProblem,
+    predictions: &[SetPrediction],
+) -> Result<Vec<PieceFit>, IdentifyError> {
     let named = test.pieces.iter();
     let mut fits: Vec<PieceFit> = named
         .map(|named| PieceFit { name: named.name.clone(), piece: named.piece, modes: vec![], damping: vec![] })
         .collect();
     for (set, predicted) in problem.sets.iter().zip(predictions) {
+        let spectrum = set.modes.spectrum(&predicted.values)?;
         for ((&measured, prediction), &nodes) in set.measured.iter().zip(&predicted.modes).zip(set.modes.nodes()) {
-            let Prediction { mode, frequency, .. } = *prediction;
-            fits[set.piece].modes.push(ModeFit { mode, nodes, measured, model: frequency, damping: None });
+            let model = prediction.frequency;
+            // Both are solved to rounding, on bases that are the same but for what they leave out.
+            let mode = spectrum.partition_point(|line| line.frequency < model * (1.0 - 1e-7)) + 1;
+            fits[set.piece].modes.push(ModeFit { mode, nodes, measured, model, damping: None });
         }
     }
-    fits
+    Ok(fits)
 }

@@ -3,9 +3,9 @@
 use faer::{Mat, Side};
 use orthopanel_model::Constant;
 
-use super::least_squares;
 use super::problem::{FrequencyProblem, SetPrediction};
 use super::uncertainty::{left_one_out_percent, residual_variance};
+use super::{Minimum, least_squares};
 use crate::free_constants::{FreeConstant, FreeConstants};
 use crate::least_squares::Linearised;
 use crate::usual_plate::usual_rest;
@@ -40,18 +40,17 @@ pub(super) fn minimise_what_is_seen(
             waiting.push(*constant);
         }
     }
-    let mut parameters = least_squares(problem, &carried(&all, start, &problem.constants))?;
-    let mut predictions = problem.predictions(&parameters)?;
+    let Minimum { mut parameters, mut predictions, mut quick } =
+        least_squares(problem, &carried(&all, start, &problem.constants), None)?;
     while let Some(next) = best_seen(problem, &all, &predictions, &parameters, &waiting) {
         waiting.retain(|constant| *constant != next);
         let before = problem.constants.clone();
         let predicted = prediction_error(&problem.linearised(&predictions, &before));
         problem.constants = with_freed(&before, &all, next);
-        let trial = least_squares(problem, &freed_parameters(&before, &parameters, &problem.constants));
-        let trial = trial.and_then(|trial| Ok((problem.predictions(&trial)?, trial)));
+        let trial = least_squares(problem, &freed_parameters(&before, &parameters, &problem.constants), quick.as_ref());
         match trial {
-            Ok((modes, trial)) if pays(problem, &modes, &trial, next, predicted) => {
-                (parameters, predictions) = (trial, modes);
+            Ok(trial) if pays(problem, &trial, next, predicted) => {
+                Minimum { parameters, predictions, quick } = trial;
             }
             _ => problem.constants = before,
         }
@@ -61,12 +60,13 @@ pub(super) fn minimise_what_is_seen(
 }
 
 /// Whether a constant just freed is seen, lies inside its bounds, and does not worsen the prediction.
-fn pays(problem: &FrequencyProblem, modes: &[SetPrediction], trial: &[f64], freed: usize, before: f64) -> bool {
+fn pays(problem: &FrequencyProblem, trial: &Minimum, freed: usize, before: f64) -> bool {
     let constants = &problem.constants;
-    let at = problem.linearised(modes, constants);
+    let at = problem.linearised(&trial.predictions, constants);
     let stds = standard_deviations(&at, residual_variance(problem, &at));
     let mut own = (0..constants.count()).filter(|&index| constants.free[index].constant == freed);
-    let seen = own.all(|index| stds[index] <= widest(constants, index) && !constants.on_bound(index, trial[index]));
+    let seen =
+        own.all(|index| stds[index] <= widest(constants, index) && !constants.on_bound(index, trial.parameters[index]));
     seen && prediction_error(&at) <= WORSE_PREDICTION * before
 }
 
@@ -194,5 +194,5 @@ fn blind_direction(constants: &FreeConstants, normal: &Mat<f64>) -> Vec<(&'stati
     let Ok(decomposition) = normal.self_adjoint_eigen(Side::Lower) else { return Vec::new() };
     let vectors = decomposition.U();
     // Eigenvalues rise: the first is the least.
-    constants.direction(vectors.col(0))
+    constants.direction(|i| vectors[(i, 0)])
 }

@@ -48,6 +48,11 @@ impl EdgeBasis {
         (0..count).filter(move |n| !symmetric || (n % 2 == 1) == odd)
     }
 
+    /// Whether functions part by parity.
+    pub(super) fn parts(&self) -> bool {
+        self.symmetric
+    }
+
     /// The parities that deflections may have: even and odd, or one stand-in where the edges differ.
     pub(super) fn parities(&self) -> &'static [bool] {
         if self.symmetric { &[false, true] } else { &[false] }

@@ -95,6 +95,21 @@ impl MindlinPlate {
         Ok(Self { piece, terms, resolved_modes, along, coordinates, blocks, beam_functions })
     }
 
+    /// The same plate without those parity blocks where no mode with these nodes along x and y lies.
+    pub fn only_with_nodes(&self, nodes: &[[usize; 2]]) -> Self {
+        let [x, y] = &self.along;
+        let holds = |coordinates: &[Coordinate]| {
+            let deflection = coordinates.iter().find(|coordinate| coordinate.field == Field::Deflection);
+            let alike = |basis: &EdgeBasis, own: usize, count: usize| !basis.parts() || own % 2 == count % 2;
+            deflection.is_some_and(|own| nodes.iter().any(|&[m, n]| alike(x, own.x, m) && alike(y, own.y, n)))
+        };
+        let own = self.coordinates.iter().zip(&self.blocks).filter(|(coordinates, _)| holds(coordinates));
+        let (coordinates, blocks): (Vec<_>, Vec<_>) = own.map(|(list, block)| (list.clone(), block.clone())).unzip();
+        let resolved_modes = self.resolved_modes * blocks.len() / self.blocks.len().max(1);
+        let (along, beam_functions) = (self.along.clone(), self.beam_functions.clone());
+        Self { resolved_modes, along, coordinates, blocks, beam_functions, ..*self }
+    }
+
     /// Number of polynomials of each field along x and y.
     pub fn terms(&self) -> [usize; 2] {
         self.terms

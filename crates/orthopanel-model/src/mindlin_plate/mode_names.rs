@@ -70,15 +70,9 @@ impl MindlinPlate {
         ModeName { nodes, kind, overlap, second_nodes, second_overlap }
     }
 
-    /// Overlap, 0 to 1, of one of this plate's modes with the product of beam functions with these nodes along x and y
-    /// (see [`ModeName`]); zero for more nodes than the basis resolves.
-    pub fn overlap(&self, mode: &RitzMode, nodes: [usize; 2]) -> f64 {
-        let overlaps = self.overlaps(mode);
-        if nodes[0] < overlaps.nrows() && nodes[1] < overlaps.ncols() { overlaps[(nodes[0], nodes[1])] } else { 0.0 }
-    }
-
-    /// A row a number of nodes along x, a column a number along y.
-    fn overlaps(&self, mode: &RitzMode) -> Mat<f64> {
+    /// Overlaps, 0 to 1, of one of this plate's modes with the products of beam functions (see [`ModeName`]): a row a
+    /// number of nodes along x, a column a number along y, as far as the basis resolves them.
+    pub fn overlaps(&self, mode: &RitzMode) -> Mat<f64> {
         let [x, y] = &self.along;
         let w = Field::Deflection;
         let mut shape = Mat::zeros(x.count(w), y.count(w));

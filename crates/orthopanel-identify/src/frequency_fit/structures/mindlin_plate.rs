@@ -1,8 +1,11 @@
 //! Measured modes of the Mindlin plate, told by their nodal lines.
 
-use orthopanel_model::{Boundary, MindlinPlate, ModelError, Piece, Structure, ritz_modes};
+use std::borrow::Borrow;
+use std::sync::Arc;
 
-use super::{MeasuredModes, Prediction};
+use orthopanel_model::{Boundary, MindlinPlate, ModelError, Piece, ReducedStructure, RitzMode, Structure, ritz_modes};
+
+use super::{MeasuredModes, Prediction, SpectrumLine};
 use crate::IdentifyError;
 
 /// Modes of a plate by their nodal lines.
@@ -12,6 +15,9 @@ pub(super) struct PlateModes {
     nodes: Vec<[usize; 2]>,
     /// Modes solved for: those measured lie among them.
     reach: usize,
+    /// The plate in the parities of the measured modes alone, and the most modes solved for there.
+    own: Arc<MindlinPlate>,
+    own_reach: usize,
 }
 
 /// Modes solved for beyond those that lie below the last measured one if all pairs of nodes exist.
@@ -22,36 +28,133 @@ impl PlateModes {
         let [most_x, most_y] = [0, 1].map(|axis| nodes.iter().map(|pair| pair[axis]).max().unwrap_or(0));
         let plate = MindlinPlate::new(piece, boundary, [most_x + 11, (most_y + 6).max(7)])?;
         let reach = ((most_x + 2) * (most_y + 3) + SPARE_MODES).min(plate.resolved_modes());
-        Ok(Self { plate, nodes, reach })
+        let own = Arc::new(plate.only_with_nodes(&nodes));
+        let share = reach * own.blocks().len() / plate.blocks().len();
+        let own_reach = (share + SPARE_MODES).min(own.resolved_modes());
+        Ok(Self { plate, nodes, reach, own, own_reach })
+    }
+}
+
+/// Modes solved for at first beyond those measured.
+const FIRST_SPARE: usize = 2;
+
+impl PlateModes {
+    /// As many of the lowest modes as tell which the measured ones are.
+    fn first_count(&self) -> usize {
+        (self.nodes.len() + FIRST_SPARE).min(self.own_reach)
     }
 }
 
 impl MeasuredModes for PlateModes {
     fn predict(&self, values: &[f64]) -> Result<Vec<Prediction>, ModelError> {
+        for count in [self.first_count(), self.own_reach] {
+            let modes = ritz_modes(self.own.as_ref(), values, count)?;
+            let told = Told::of(&self.own, &self.nodes, modes.iter());
+            if told.all_sure() || count == self.own_reach {
+                return told.predictions(self.own.as_ref(), &modes, values);
+            }
+        }
+        Err(ModelError::BasisTooSmall { asked: self.nodes.len(), available: self.own_reach })
+    }
+
+    fn nodes(&self) -> &[[usize; 2]] {
+        &self.nodes
+    }
+
+    fn near(&self, values: &[f64]) -> Result<Option<Box<dyn MeasuredModes>>, ModelError> {
+        let reduced = ReducedStructure::near(Arc::clone(&self.own), values, self.first_count())?;
+        let (plate, nodes) = (Arc::clone(&self.own), self.nodes.clone());
+        Ok(Some(Box::new(NearbyModes { plate, reduced, nodes })))
+    }
+
+    fn spectrum(&self, values: &[f64]) -> Result<Vec<SpectrumLine>, ModelError> {
         let modes = ritz_modes(&self.plate, values, self.reach)?;
-        let by_constants = self.plate.coefficient_derivatives(values)?;
-        let flexible: Vec<_> = modes.iter().filter(|mode| mode.angular_frequency > 0.0).collect();
-        let prediction = |&nodes: &[usize; 2]| {
-            let overlaps = flexible.iter().enumerate().map(|(index, mode)| (index, self.plate.overlap(mode, nodes)));
-            let (index, _) = overlaps.max_by(|a, b| a.1.total_cmp(&b.1))?;
-            let mode = flexible[index];
-            let by_coefficient = mode.coefficient_sensitivity(&self.plate);
+        let flexible = modes.iter().filter(|mode| mode.angular_frequency > 0.0);
+        let line = |mode: &RitzMode| SpectrumLine {
+            frequency: mode.angular_frequency / std::f64::consts::TAU,
+            nodes: self.plate.mode_name(mode).nodes,
+        };
+        Ok(flexible.map(line).collect())
+    }
+}
+
+/// The same modes near some values of the constants.
+#[derive(Debug)]
+struct NearbyModes {
+    plate: Arc<MindlinPlate>,
+    reduced: ReducedStructure<MindlinPlate>,
+    nodes: Vec<[usize; 2]>,
+}
+
+impl MeasuredModes for NearbyModes {
+    fn predict(&self, values: &[f64]) -> Result<Vec<Prediction>, ModelError> {
+        let modes = ritz_modes(&self.reduced, values, self.reduced.resolved_modes())?;
+        let told = Told::of(&self.plate, &self.nodes, modes.iter().map(|mode| self.reduced.in_whole(mode)));
+        told.predictions(&self.reduced, &modes, values)
+    }
+
+    fn nodes(&self) -> &[[usize; 2]] {
+        &self.nodes
+    }
+
+    fn spectrum(&self, _: &[f64]) -> Result<Vec<SpectrumLine>, ModelError> {
+        Ok(Vec::new())
+    }
+}
+
+/// Which modes the measured ones are: of each pair of nodes the number of the mode with the largest overlap, and that.
+struct Told(Vec<Option<(usize, f64)>>);
+
+/// Squares of a product's overlaps with all modes add up to one at most: beyond a half there is no larger one.
+const SURE_SHARE: f64 = 0.5;
+
+impl Told {
+    /// From the plate's modes in rising order, rigid ones first, as far as it takes.
+    fn of(plate: &MindlinPlate, nodes: &[[usize; 2]], modes: impl Iterator<Item = impl Borrow<RitzMode>>) -> Self {
+        let mut told = Self(vec![None; nodes.len()]);
+        for (index, mode) in modes.enumerate() {
+            let mode = mode.borrow();
+            if mode.angular_frequency == 0.0 {
+                continue;
+            }
+            let overlaps = plate.overlaps(mode);
+            for (&[x, y], nearest) in nodes.iter().zip(&mut told.0) {
+                let overlap = if x < overlaps.nrows() && y < overlaps.ncols() { overlaps[(x, y)] } else { 0.0 };
+                if nearest.is_none_or(|(_, most)| overlap >= most) {
+                    *nearest = Some((index, overlap));
+                }
+            }
+            if told.all_sure() {
+                break;
+            }
+        }
+        told
+    }
+
+    fn all_sure(&self) -> bool {
+        self.0.iter().all(|nearest| nearest.is_some_and(|(_, overlap)| overlap * overlap > SURE_SHARE))
+    }
+
+    /// `modes` are in the coordinates of `structure`.
+    fn predictions(
+        &self,
+        structure: &dyn Structure,
+        modes: &[RitzMode],
+        values: &[f64],
+    ) -> Result<Vec<Prediction>, ModelError> {
+        let by_constants = structure.coefficient_derivatives(values)?;
+        let prediction = |nearest: &Option<(usize, f64)>| {
+            let mode = &modes[(*nearest)?.0];
+            let by_coefficient = mode.coefficient_sensitivity(structure);
             let twice_omega2 = 2.0 * mode.angular_frequency.powi(2);
             let by = |constant: usize| {
                 let sum: f64 = by_coefficient.iter().enumerate().map(|(i, by)| by * by_constants[(i, constant)]).sum();
                 sum / twice_omega2
             };
-            Some(Prediction {
-                mode: index + 1,
-                frequency: mode.angular_frequency / std::f64::consts::TAU,
-                by_constant: (0..values.len()).map(by).collect(),
-            })
+            let frequency = mode.angular_frequency / std::f64::consts::TAU;
+            Some(Prediction { frequency, by_constant: (0..values.len()).map(by).collect() })
         };
-        let predictions: Option<Vec<Prediction>> = self.nodes.iter().map(prediction).collect();
-        predictions.ok_or(ModelError::BasisTooSmall { asked: self.nodes.len(), available: flexible.len() })
-    }
-
-    fn nodes(&self) -> &[[usize; 2]] {
-        &self.nodes
+        let predictions: Option<Vec<Prediction>> = self.0.iter().map(prediction).collect();
+        predictions.ok_or(ModelError::BasisTooSmall { asked: self.0.len(), available: modes.len() })
     }
 }

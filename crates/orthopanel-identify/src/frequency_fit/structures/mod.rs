@@ -12,12 +12,19 @@ use timoshenko_beam::BeamModes;
 /// One measured mode at given constants.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Prediction {
-    /// Its number among all flexible modes of the structure, from 1.
-    pub mode: usize,
     /// Natural frequency \[Hz\].
     pub frequency: f64,
     /// $\partial\ln f/\partial c_j$ for each constant.
     pub by_constant: Vec<f64>,
+}
+
+/// One flexible mode of a structure, whether it was measured or not.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct SpectrumLine {
+    /// Natural frequency \[Hz\].
+    pub frequency: f64,
+    /// Nodal lines across x and across y.
+    pub nodes: [usize; 2],
 }
 
 /// Predicts the modes of one piece that a test measures, in the test's order.
@@ -32,6 +39,14 @@ pub(super) trait MeasuredModes: std::fmt::Debug + Send + Sync {
 
     /// Nodal lines across x and across y of each measured mode.
     fn nodes(&self) -> &[[usize; 2]];
+
+    /// All flexible modes of the structure, rising, up to the last measured one and some beyond.
+    fn spectrum(&self, values: &[f64]) -> Result<Vec<SpectrumLine>, ModelError>;
+
+    /// What predicts the same quickly near these values, and less well further off; `None` where this one is quick.
+    fn near(&self, _values: &[f64]) -> Result<Option<Box<dyn MeasuredModes>>, ModelError> {
+        Ok(None)
+    }
 }
 
 /// The measured modes of a piece, told by their nodal lines.

@@ -2,7 +2,7 @@
 
 use orthopanel_model::{BeamConstants, Boundary, ExactBeam, ModelError, Piece};
 
-use super::{MeasuredModes, Prediction};
+use super::{MeasuredModes, Prediction, SpectrumLine};
 use crate::IdentifyError;
 
 /// Bending modes of a beam.
@@ -58,7 +58,6 @@ impl MeasuredModes for BeamModes {
             let mode = &modes[position];
             let twice_omega2 = 2.0 * mode.angular_frequency().powi(2);
             Prediction {
-                mode: position + 1,
                 frequency: mode.frequency(),
                 by_constant: mode.sensitivity().iter().map(|by| by / twice_omega2).collect(),
             }
@@ -68,5 +67,12 @@ impl MeasuredModes for BeamModes {
 
     fn nodes(&self) -> &[[usize; 2]] {
         &self.nodes
+    }
+
+    fn spectrum(&self, values: &[f64]) -> Result<Vec<SpectrumLine>, ModelError> {
+        let frequencies = self.beam(values)?.natural_frequencies(self.reach);
+        let rigid = self.boundary.rigid_modes();
+        let line = |(index, frequency)| SpectrumLine { frequency, nodes: [index + rigid, 0] };
+        Ok(frequencies.into_iter().enumerate().map(line).collect())
     }
 }

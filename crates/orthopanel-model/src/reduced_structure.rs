@@ -1,0 +1,127 @@
+//! A structure on a few shapes of its own: quick steps of a search near some values of the constants.
+
+use std::sync::Arc;
+
+use faer::Mat;
+
+use crate::block_pencil::BlockPencil;
+use crate::dense::{product, symmetric_eigen};
+use crate::ritz_modes::{checked_coefficients, ritz_modes};
+use crate::structure::{Block, RitzMode, Structure};
+use crate::{Constant, ModelError, Place, side_by_side};
+
+/// A structure on the space of its lowest modes at some values of the constants and of their first changes with these.
+///
+/// With $V$ the modes $\phi_m$ and what $K^{-1}K_i\phi_m$ adds to them (the part of $\partial\phi_m/\partial c_i$ that lies in
+/// modes far above), stiffness and mass are $V^TK_iV$ and $V^TMV$, so all that a [`Structure`] gives follows. At those values
+/// its modes are the structure's own. At others the shapes are right to first order in the change, the frequencies to third:
+/// a search that ends here must be held against the whole structure.
+#[derive(Debug, Clone)]
+pub struct ReducedStructure<S> {
+    whole: Arc<S>,
+    /// $V$ of each block, a column a shape: $V^TMV = I$.
+    shapes: Vec<Mat<f64>>,
+    blocks: Vec<Block>,
+}
+
+/// Changes of a shape below this, for a coefficient that doubles, are left out: they move frequencies by their square.
+const SMALL_CHANGE: f64 = 2e-3;
+
+impl<S: Structure + Sync> ReducedStructure<S> {
+    /// On the `count` lowest flexible modes at these values of the constants.
+    ///
+    /// # Errors
+    /// As [`ritz_modes`].
+    pub fn near(whole: Arc<S>, values: &[f64], count: usize) -> Result<Self, ModelError>
+    where
+        S: Send,
+    {
+        let modes = ritz_modes(whole.as_ref(), values, count)?;
+        let coefficients = checked_coefficients(whole.as_ref(), values)?;
+        let numbered: Vec<(usize, &Block)> = whole.blocks().iter().enumerate().collect();
+        let reduced = side_by_side::map(&numbered, |&(index, block)| {
+            let own: Vec<&RitzMode> = modes.iter().filter(|mode| mode.block == index).collect();
+            let shapes = shapes(block, &coefficients, &own)?;
+            let project = |matrix: &Mat<f64>| between(&shapes, matrix, &shapes);
+            let rigid = own.iter().filter(|mode| mode.angular_frequency == 0.0).count();
+            let unit = |position: usize| (0..shapes.ncols()).map(|i| f64::from(u8::from(i == position))).collect();
+            let block = Block {
+                stiffness: block.stiffness.iter().map(project).collect(),
+                mass: Mat::identity(shapes.ncols(), shapes.ncols()),
+                rigid: (0..rigid).map(unit).collect(),
+            };
+            Ok((shapes, block))
+        });
+        let (shapes, blocks) = reduced.into_iter().collect::<Result<Vec<_>, ModelError>>()?.into_iter().unzip();
+        Ok(Self { whole, shapes, blocks })
+    }
+
+    /// A mode of this structure in the coordinates of the whole one.
+    pub fn in_whole(&self, mode: &RitzMode) -> RitzMode {
+        let Some(shapes) = self.shapes.get(mode.block) else { return mode.clone() };
+        let mut coordinates = vec![0.0; shapes.nrows()];
+        for (shape, share) in shapes.col_iter().zip(&mode.coordinates) {
+            coordinates.iter_mut().zip(shape.iter()).for_each(|(sum, value)| *sum += share * value);
+        }
+        RitzMode { coordinates, ..*mode }
+    }
+}
+
+/// The modes of a block, rigid ones first, and the directions of their changes; orthonormal in the mass.
+fn shapes(block: &Block, coefficients: &[f64], modes: &[&RitzMode]) -> Result<Mat<f64>, ModelError> {
+    let own = Mat::from_fn(block.size(), modes.len(), |i, m| modes[m].coordinates[i]);
+    let rigid = modes.iter().filter(|mode| mode.angular_frequency == 0.0).count();
+    let flexible = own.subcols(rigid, modes.len() - rigid);
+    let images: Vec<Mat<f64>> =
+        block.stiffness.iter().map(|stiffness| product(stiffness.as_ref(), flexible)).collect();
+    let count = flexible.ncols();
+    let load = |i: usize, j: usize| coefficients[j / count] * images[j / count][(i, j % count)];
+    let loads = Mat::from_fn(block.size(), count * images.len(), load);
+    let mut changes = BlockPencil::new(block, coefficients)?.solve(loads);
+    for _ in 0..2 {
+        let shares = between(&own, &block.mass, &changes);
+        changes -= product(own.as_ref(), shares.as_ref());
+    }
+    // The principal directions of all changes together.
+    let gram = between(&changes, &block.mass, &changes);
+    let (sizes, directions) = symmetric_eigen(&gram).ok_or(ModelError::Eigenproblem)?;
+    let kept: Vec<usize> = (0..gram.nrows()).filter(|&k| sizes[k] > SMALL_CHANGE.powi(2)).collect();
+    let directions = Mat::from_fn(gram.nrows(), kept.len(), |i, k| directions[(i, kept[k])] / sizes[kept[k]].sqrt());
+    let added = product(changes.as_ref(), directions.as_ref());
+    Ok(faer::concat![[own, added]])
+}
+
+/// $A^TMB$.
+fn between(left: &Mat<f64>, matrix: &Mat<f64>, right: &Mat<f64>) -> Mat<f64> {
+    product(left.transpose(), product(matrix.as_ref(), right.as_ref()).as_ref())
+}
+
+impl<S: Structure> Structure for ReducedStructure<S> {
+    fn constants(&self) -> &'static [Constant] {
+        self.whole.constants()
+    }
+
+    fn coefficients(&self, values: &[f64]) -> Result<Vec<f64>, ModelError> {
+        self.whole.coefficients(values)
+    }
+
+    fn coefficient_derivatives(&self, values: &[f64]) -> Result<Mat<f64>, ModelError> {
+        self.whole.coefficient_derivatives(values)
+    }
+
+    fn blocks(&self) -> &[Block] {
+        &self.blocks
+    }
+
+    fn shape_row(&self, block: usize, place: Place) -> Vec<f64> {
+        let Some(shapes) = self.shapes.get(block) else { return vec![] };
+        let row = self.whole.shape_row(block, place);
+        let value = |shape: faer::ColRef<'_, f64>| row.iter().zip(shape.iter()).map(|(row, shape)| row * shape).sum();
+        shapes.col_iter().map(value).collect()
+    }
+
+    /// All of its coordinates: most are modes.
+    fn resolved_modes(&self) -> usize {
+        self.blocks.iter().map(|block| block.size() - block.rigid.len()).sum()
+    }
+}
