@@ -132,3 +132,61 @@ fn a_beam_refuses_nodal_lines_along_its_length_with_the_way_out() {
     let message = refused.unwrap_err().to_string();
     assert!(message.contains("shape [1, 1]") && message.contains("mindlin-plate"), "{message}");
 }
+
+/// A plate of 0.8 x 0.2 x 0.03 m with e_x 1.07e10, e_y 9.6e9, nu_xy 0.31, g_xy 3.7e9, g_yz 2.9e8, g_zx 5.363e8 Pa:
+/// frequencies by scikit-fem, nodal lines by its changes of sign (`fmpy-checks/plate_by_scikit_fem.py`).
+const MADE: [(f64, [usize; 2]); 10] = [
+    (321.8, [2, 0]),
+    (631.0, [1, 1]),
+    (840.3, [3, 0]),
+    (1254.6, [2, 1]),
+    (1529.4, [4, 0]),
+    (1876.5, [3, 1]),
+    (2316.8, [5, 0]),
+    (2515.8, [4, 1]),
+    (3144.8, [6, 0]),
+    (3191.4, [5, 1]),
+];
+
+/// Notes on the made plate without the lines in `left_out`, some lines named otherwise.
+fn notes(left_out: &[usize], renamed: &[(usize, [usize; 2])]) -> Vec<String> {
+    let kept = MADE.iter().enumerate().filter(|(line, _)| !left_out.contains(line));
+    let named = kept.map(|(line, &(value, nodes))| {
+        (value, renamed.iter().find(|(renamed, _)| *renamed == line).map_or(nodes, |(_, nodes)| *nodes))
+    });
+    let (values, shapes): (Vec<f64>, Vec<[usize; 2]>) = named.unzip();
+    let text = format!(
+        "{PLATE}\n[piece]\nlength = 0.8\nwidth = 0.2\nthickness = 0.03\nmass_per_area = 6.88\n\
+         [[measurement]]\nkind = \"natural-frequencies\"\nvalues = {values:?}\nshape = {shapes:?}\n"
+    );
+    let test = ImpactTest::from_toml(&text, "test.toml").unwrap();
+    identify(&test, Search::LeastSquares).unwrap_or_else(|error| panic!("{error}")).notes
+}
+
+#[test]
+fn modes_named_rightly_are_not_doubted() {
+    assert_eq!(notes(&[], &[]), [""; 0]);
+    assert_eq!(notes(&[1, 5], &[]), [""; 0]);
+}
+
+/// The line is told, and the name that it should have.
+fn assert_doubted(notes: &[String], expected: &[(&str, &str, &str)]) {
+    assert_eq!(notes.len(), expected.len(), "{notes:?}");
+    for (note, (line, named, meant)) in notes.iter().zip(expected) {
+        assert!(note.contains(&format!("{line} Hz named {named}")), "{note}");
+        assert!(note.contains(&format!("and {meant} at")), "{note}");
+    }
+}
+
+/// A torsion mode named as a bending mode, and the other way round; the same name twice is refused when the file is read.
+#[test]
+fn a_mode_named_wrongly_is_told_with_its_likely_name() {
+    assert_doubted(&notes(&[2], &[(3, [3, 0])]), &[("1254.6", "[3, 0]", "[2, 1]")]);
+    assert_doubted(&notes(&[5], &[(4, [3, 1])]), &[("1529.4", "[3, 1]", "[4, 0]")]);
+}
+
+#[test]
+fn two_modes_that_changed_their_names_are_both_told() {
+    let notes = notes(&[], &[(3, [4, 0]), (4, [2, 1])]);
+    assert_doubted(&notes, &[("1254.6", "[4, 0]", "[2, 1]"), ("1529.4", "[2, 1]", "[4, 0]")]);
+}

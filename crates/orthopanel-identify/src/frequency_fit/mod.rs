@@ -1,5 +1,6 @@
 //! Identification by natural frequencies (eqs 22 and 24).
 
+mod doubtful_names;
 mod of_poles;
 mod problem;
 mod report;

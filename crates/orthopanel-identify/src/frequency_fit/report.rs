@@ -2,6 +2,7 @@
 
 use orthopanel_data::ImpactTest;
 
+use super::doubtful_names::doubtful_names;
 use super::problem::{FrequencyProblem, SetPrediction};
 use super::uncertainty::uncertainty;
 use crate::free_constants::FreeConstants;
@@ -32,7 +33,7 @@ pub(super) fn report(
         accelerance_rms_percent: None,
         chi_square: None,
         accelerances: Vec::new(),
-        notes: Vec::new(),
+        notes: doubtful_names(test, problem, found, &at)?,
     })
 }
 
