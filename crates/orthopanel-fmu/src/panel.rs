@@ -1,8 +1,6 @@
 //! The panel behind the modes: what of it may be set before a simulation starts, and its modes solved again.
 
-use orthopanel_model::{
-    Estimate, ModalModel, ModeRange, ModelError, PanelModel, Ports, StaticFlexibility, StructureKind,
-};
+use orthopanel_model::{Estimate, ModalModel, ModeRange, ModelError, PanelModel, Ports};
 use serde::{Deserialize, Serialize};
 
 use crate::FmuError;
@@ -191,27 +189,18 @@ fn solve(model: &PanelModel, range: ModeRange) -> Result<Solution, ModelError> {
     Ok(Solution { modes, static_remainder })
 }
 
-/// What the flexible modes left out add at rest, by the closed form of all of them; zero where there is none, which is
-/// for a plate and for a beam with effects.
+/// What the flexible modes left out add at rest; zero for a panel with effects, where the sum over all is not known.
 fn static_remainder(model: &PanelModel, modes: &ModalModel) -> Result<Vec<Vec<f64>>, ModelError> {
     let Ports { forces, responses } = &model.ports;
-    if model.structure != StructureKind::TimoshenkoBeam || !model.effects.is_empty() {
+    let flexible = || modes.modes().iter().filter(|mode| mode.angular_frequency > 0.0);
+    let Some(mut remainder) = model.static_flexibility(flexible().count(), forces, responses)? else {
         return Ok(vec![vec![0.0; forces.len()]; responses.len()]);
-    }
-    let all = StaticFlexibility::new(&model.piece, model.boundary)?;
-    let (e_x, g_zx) = (model.constant("e_x")?, model.constant("g_zx")?);
-    let between = |(r, response): (usize, &orthopanel_model::Place)| {
-        let remainder = forces.iter().enumerate().map(|(f, force)| {
-            let kept = modes.modes().iter().filter(|mode| mode.angular_frequency > 0.0).filter_map(|mode| {
-                Some(mode.at_responses.get(r)? * mode.at_forces.get(f)? / mode.angular_frequency.powi(2))
-            });
-            all.between(force.x, response.x, e_x, g_zx).0 - kept.sum::<f64>()
-        });
-        remainder.collect()
     };
-    let remainder: Vec<Vec<f64>> = responses.iter().enumerate().map(between).collect();
-    match remainder.iter().flatten().find(|value| !value.is_finite()) {
-        Some(&value) => Err(ModelError::NotFinite { what: "static flexibility", value }),
-        None => Ok(remainder),
+    for mode in flexible() {
+        let omega2 = mode.angular_frequency.powi(2);
+        for (row, response) in remainder.iter_mut().zip(&mode.at_responses) {
+            row.iter_mut().zip(&mode.at_forces).for_each(|(value, force)| *value -= response * force / omega2);
+        }
     }
+    Ok(remainder)
 }

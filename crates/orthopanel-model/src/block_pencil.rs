@@ -135,7 +135,7 @@ impl<'a> BlockPencil<'a> {
 }
 
 /// A shift of the size of the lowest $\omega^2$: the least Rayleigh quotient of a single coordinate that has stiffness.
-fn shift(stiffness: &Mat<f64>, mass: &Mat<f64>) -> f64 {
+pub(crate) fn shift(stiffness: &Mat<f64>, mass: &Mat<f64>) -> f64 {
     let quotients = (0..mass.nrows()).map(|i| stiffness[(i, i)] / mass[(i, i)]);
     let greatest = quotients.clone().fold(0.0, f64::max);
     quotients.filter(|&quotient| quotient > 1e-14 * greatest).fold(greatest, f64::min)

@@ -16,11 +16,13 @@ mod model_text;
 mod panel_mode;
 mod panel_model;
 mod panel_modes;
+mod panel_statics;
 mod piece;
 mod reduced_structure;
 mod response;
 mod ritz_modes;
 mod side_by_side;
+mod static_deflection;
 mod structure;
 mod structure_modes;
 mod timoshenko_beam;
@@ -43,6 +45,7 @@ pub use piece::{Piece, Place};
 pub use reduced_structure::ReducedStructure;
 pub use response::{ForceRecord, ModalStepper};
 pub use ritz_modes::ritz_modes;
+pub use static_deflection::static_deflections;
 pub use structure::{Block, Flexibility, Motion, RitzMode, Structure, TermDerivative};
 pub use timoshenko_beam::{
     BEAM_CONSTANTS, BeamConstants, BeamElements, BeamMode, BeamTerms, ExactBeam, SHEAR_COEFFICIENT, ShearLoss,

@@ -10,7 +10,7 @@ use orthopanel_identify::{
 use orthopanel_model::{PanelModel, Place};
 use serde::Serialize;
 
-use crate::whole_accelerance::{modes_up_to, static_flexibility};
+use crate::whole_accelerance::modes_up_to;
 use crate::{output, tables};
 
 /// Whether a file is a test file, by its name: a test is TOML, a model JSON, an FMU an archive.
@@ -72,7 +72,8 @@ impl ComparedPair {
     ) -> Result<Self, IdentifyError> {
         let (force, response) = (history.force_at, history.response_at);
         let seen = modes_up_to(model, history.rate, force, response)?;
-        let static_flexibility = static_flexibility(model, force, response)?;
+        let all = model.static_flexibility(seen.modes().len(), &[force], &[response])?;
+        let static_flexibility = all.map(|all| all[0][0]);
         let settings = HistorySettings { between_samples, static_flexibility, band };
         let hits = compare_time_history(&seen, &history, &settings)?;
         Ok(Self { history, hits })

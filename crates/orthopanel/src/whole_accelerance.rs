@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use orthopanel_model::{ModalModel, Mode, ModeRange, ModelError, PanelModel, Place, StaticFlexibility, StructureKind};
+use orthopanel_model::{ModalModel, Mode, ModeRange, ModelError, PanelModel, Place, StructureKind};
 
 /// Modes summed one by one unless said; the rest, taken at rest, errs by the fourth power of a line over its modes.
 const SUMMED: usize = 300;
@@ -11,19 +11,6 @@ const MARGIN: f64 = 20.0;
 
 /// Most rigid modes that a plate has.
 const PLATE_RIGID: usize = 3;
-
-/// $\sum_m W_m(l_1)W_m(l_x)/\omega_m^2$ over all flexible modes \[m/N\], where a closed form of it is known: for a beam.
-pub fn static_flexibility(model: &PanelModel, force: Place, response: Place) -> Result<Option<f64>, ModelError> {
-    match model.structure {
-        // The closed form is that of the bare beam.
-        StructureKind::TimoshenkoBeam if model.effects.is_empty() => {
-            let all = StaticFlexibility::new(&model.piece, model.boundary)?;
-            let (e_x, g_zx) = (model.constant("e_x")?, model.constant("g_zx")?);
-            Ok(Some(all.between(force.x, response.x, e_x, g_zx).0))
-        }
-        _ => Ok(None),
-    }
-}
 
 /// The modes up to `highest` \[Hz\] as seen from two places; of a plate those that its largest basis resolves, where that
 /// does not reach so far.
@@ -69,8 +56,9 @@ impl WholeAccelerance {
         let flexible = modes.modes().iter().filter(|mode| mode.angular_frequency > 0.0);
         let own =
             |mode: &Mode| Some(mode.at_forces.first()? * mode.at_responses.first()? / mode.angular_frequency.powi(2));
-        let summed: f64 = flexible.filter_map(own).sum();
-        let beyond = static_flexibility(model, force, response)?.map_or(0.0, |all| all - summed);
+        let products: Vec<f64> = flexible.filter_map(own).collect();
+        let all = model.static_flexibility(products.len(), &[force], &[response])?;
+        let beyond = all.map_or(0.0, |all| all[0][0] - products.iter().sum::<f64>());
         Ok(Self { modes, beyond })
     }
 

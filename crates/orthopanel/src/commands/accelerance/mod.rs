@@ -15,7 +15,7 @@ use crate::record_options::EstimationOptions;
 ///
 /// Of a model: between two places, on evenly spaced lines, both ends included. Without -o the CSV
 /// (frequency_hz,real,imag) goes to standard output. The sum runs over the rigid modes and --modes flexible ones; all
-/// that lie beyond, which still move the valleys between the peaks, enter a beam's by their static flexibility.
+/// that lie beyond, which still move the valleys between the peaks, enter by their static flexibility.
 ///
 /// Of a test (a file that ends in .toml): one CSV a pair of places, with the coherence and the variance of each line
 /// where the hits tell them. With several pairs -o X.csv writes X-1.csv, X-2.csv, ... in the order of the table; -o of

@@ -1,0 +1,48 @@
+//! What all modes of a [`PanelModel`] together leave at low frequency.
+
+use crate::{ModelError, PanelModel, Place, StaticFlexibility, StructureKind, static_deflections};
+
+/// Modes for which the basis of a plate's static part is chosen: it holds some four times as many.
+const STATIC_BASIS: usize = 120;
+
+impl PanelModel {
+    /// $\sum_m W_m(r)W_m(f)/\omega_m^2$ \[m/N\] over the flexible modes: a row a response, a column a force. All modes in closed
+    /// form for a beam; for a plate all of a basis for `count` modes or 120, whichever is more, since at a point force no
+    /// sum over a plate's modes ends. `None` for a panel with effects.
+    ///
+    /// Less the sum over the modes that a model keeps, it is what the others add at rest.
+    ///
+    /// # Errors
+    /// As [`PanelModel::modes`], and [`ModelError::NotFinite`].
+    pub fn static_flexibility(
+        &self,
+        count: usize,
+        forces: &[Place],
+        responses: &[Place],
+    ) -> Result<Option<Vec<Vec<f64>>>, ModelError> {
+        if !self.effects.is_empty() {
+            return Ok(None);
+        }
+        let flexibility = match self.structure {
+            StructureKind::TimoshenkoBeam => {
+                let all = StaticFlexibility::new(&self.piece, self.boundary)?;
+                let (e_x, g_zx) = (self.constant("e_x")?, self.constant("g_zx")?);
+                let row = |response: &Place| {
+                    forces.iter().map(|force| all.between(force.x, response.x, e_x, g_zx).0).collect::<Vec<f64>>()
+                };
+                responses.iter().map(row).collect()
+            }
+            StructureKind::MindlinPlate => {
+                let (plate, values) = match self.structure_for(count.max(STATIC_BASIS)) {
+                    Err(ModelError::BasisTooSmall { available, .. }) => self.structure_for(available)?,
+                    found => found?,
+                };
+                static_deflections(plate.as_ref(), &values, forces, responses)?
+            }
+        };
+        match flexibility.iter().flatten().find(|value| !value.is_finite()) {
+            Some(&value) => Err(ModelError::NotFinite { what: "static flexibility", value }),
+            None => Ok(Some(flexibility)),
+        }
+    }
+}
