@@ -14,8 +14,8 @@ use crate::{Constant, ModelError, Place, side_by_side};
 ///
 /// With $V$ the modes $\phi_m$ and what $K^{-1}K_i\phi_m$ adds to them (the part of $\partial\phi_m/\partial c_i$ that lies in
 /// modes far above), stiffness and mass are $V^TK_iV$ and $V^TMV$, so all that a [`Structure`] gives follows. At those values
-/// its modes are the structure's own. At others the shapes are right to first order in the change, the frequencies to third:
-/// a search that ends here must be held against the whole structure.
+/// its modes, and how they follow the constants, are the structure's own. At others its frequencies lie above, by the square
+/// of the change or less: a search that ends there must be held against the whole structure.
 #[derive(Debug, Clone)]
 pub struct ReducedStructure<S> {
     whole: Arc<S>,
@@ -72,8 +72,7 @@ fn shapes(block: &Block, coefficients: &[f64], modes: &[&RitzMode]) -> Result<Ma
     let own = Mat::from_fn(block.size(), modes.len(), |i, m| modes[m].coordinates[i]);
     let rigid = modes.iter().filter(|mode| mode.angular_frequency == 0.0).count();
     let flexible = own.subcols(rigid, modes.len() - rigid);
-    let images: Vec<Mat<f64>> =
-        block.stiffness.iter().map(|stiffness| product(stiffness.as_ref(), flexible)).collect();
+    let images: Vec<Mat<f64>> = block.stiffness.iter().map(|stiffness| product(stiffness.as_ref(), flexible)).collect();
     let count = flexible.ncols();
     let load = |i: usize, j: usize| coefficients[j / count] * images[j / count][(i, j % count)];
     let loads = Mat::from_fn(block.size(), count * images.len(), load);
