@@ -11,7 +11,7 @@ use super::{Action, EffectSetting, EffectState, ElementLaw, PointElement, Record
 use crate::dense::{Cholesky, symmetric_eigen};
 use crate::panel_mode::crossings;
 use crate::structure::Motion;
-use crate::{Boundary, Damping, ModelError, Piece, Place, Structure, TimoshenkoBeam};
+use crate::{BeamTerms, Boundary, Damping, ModelError, Piece, Place, Structure, TimoshenkoBeam};
 
 /// Modes of the bare structure beyond those asked for.
 const SPARE_MODES: usize = 10;
@@ -23,7 +23,7 @@ const SPARE_MODES: usize = 10;
 /// $\mathrm{diag}(\omega_m^2)\oplus C_0$ and $I\oplus C_1$, and an element at row $r_p = (\phi_m(p), C_{0,p})$ adds
 /// $k\,r_pr_p^T$ or $m\,r_pr_p^T$.
 pub(crate) struct DressedPanel {
-    structure: Box<dyn Structure + Send + Sync>,
+    structure: Arc<TimoshenkoBeam>,
     values: Vec<f64>,
     /// Block, coordinates and $\omega^2$ of each bare mode.
     bare: Vec<(usize, Vec<f64>, f64)>,
@@ -63,33 +63,44 @@ impl DressedPanel {
         count: usize,
     ) -> Result<Vec<DressedMode>, ModelError> {
         let setting = EffectSetting { piece: *piece, boundary, suspension: vec![], record: RecordSetting::default() };
-        Self::modes_in(&setting, values, effects, damping, count)
+        let beam = even_beam(&setting, count)?;
+        let (panel, system, found) = Self::solve(&setting, &beam, values, effects, damping, count)?;
+        let panel = Arc::new(panel);
+        let grid = panel.grid(piece, count);
+        let couplings = system.couplings(&found);
+        let dressed =
+            |((angular_frequency, damping_ratio, mut shares), damping_coupling): ((f64, f64, Vec<f64>), Vec<f64>)| {
+                shares.truncate(system.panel);
+                let nodes = nodes(&grid, &shares);
+                let panel = Arc::clone(&panel);
+                DressedMode { panel, angular_frequency, damping_ratio, damping_coupling, nodes, shares }
+            };
+        Ok(found.into_iter().zip(couplings).map(dressed).collect())
     }
 
-    /// The same where suspension and sensor may be told.
-    fn modes_in(
+    /// The panel, its matrices, and $\omega$, $\zeta$ and coordinates of each mode, where suspension and sensor may be told; `even` is the beam
+    /// without any effect.
+    fn solve(
         setting: &EffectSetting,
+        even: &Arc<TimoshenkoBeam>,
         values: &[f64],
         effects: &[EffectState],
         damping: &Damping,
         count: usize,
-    ) -> Result<Vec<DressedMode>, ModelError> {
-        let (piece, boundary) = (&setting.piece, setting.boundary);
+    ) -> Result<(Self, System, Vec<(f64, f64, Vec<f64>)>), ModelError> {
         let dressing = Dressing::of(effects, setting, 0)?;
         if dressing.core.is_some() {
             return Err(ModelError::Unsupported("viscoelastic-core in a model of modes".into()));
         }
         let summed = count + SPARE_MODES;
-        let beam = TimoshenkoBeam::with_terms(piece, boundary, 2 * summed + 24, dressing.terms.unwrap_or_default())?;
-        let mut elements: Vec<PointElement> = Vec::new();
-        for state in effects {
-            for action in state.effect.act(&state.values_in(1)?, setting)? {
-                if let Action::Element(element) = action {
-                    elements.push(element);
-                }
+        let beam = match dressing.terms {
+            Some(terms) => {
+                Arc::new(TimoshenkoBeam::with_terms(&setting.piece, setting.boundary, basis_terms(count), terms)?)
             }
-        }
-        let base = ModalBase::new(&beam, values, summed, &[], &[])?;
+            None => Arc::clone(even),
+        };
+        let elements = elements(effects, setting)?;
+        let base = ModalBase::new(&*beam, values, summed, &[], &[])?;
         let rows: Vec<Row> =
             elements.iter().filter_map(|element| Some((element.motion, place(element, setting)?))).collect();
         let view = View::new(&base, &rows, &[])?;
@@ -107,30 +118,45 @@ impl DressedPanel {
         let rigid = base.rigid;
         let system = System::new(&view, &elements, damping);
         drop(base);
-        let panel = Self { structure: Box::new(beam), values: values.to_vec(), bare, rows: placed };
-        let (panel, mut found) = (Arc::new(panel), system.solve()?);
+        let panel = Self { structure: beam, values: values.to_vec(), bare, rows: placed };
+        let mut found = system.solve()?;
         found.truncate(rigid + count);
-        let couplings = system.couplings(&found);
-        // Mode m has about m + 1 nodes; eight points between two of them part every pair.
+        Ok((panel, system, found))
+    }
+
+    /// The deflections of all coordinates at points along the piece: mode m has about m + 1 nodes, and eight points between
+    /// two of them part every pair.
+    fn grid(&self, piece: &Piece, count: usize) -> Vec<Vec<f64>> {
         let points = 8 * (count + 2);
         let place = |index: usize| Place { x: piece.length * ((index as f64 + 0.5) / points as f64 - 0.5), y: 0.0 };
-        let grid: Vec<Vec<f64>> = (0..points).map(|index| panel.deflections(place(index))).collect();
-        let dressed =
-            |((angular_frequency, damping_ratio, mut shares), damping_coupling): ((f64, f64, Vec<f64>), Vec<f64>)| {
-                shares.truncate(system.panel);
-                let along = grid.iter().map(|row| row.iter().zip(&shares).map(|(value, share)| value * share).sum());
-                let nodes = crossings(&along.collect::<Vec<f64>>());
-                DressedMode {
-                    panel: Arc::clone(&panel),
-                    angular_frequency,
-                    damping_ratio,
-                    damping_coupling,
-                    nodes,
-                    shares,
-                }
-            };
-        Ok(found.into_iter().zip(couplings).map(dressed).collect())
+        (0..points).map(|index| self.deflections(place(index))).collect()
     }
+}
+
+fn nodes(grid: &[Vec<f64>], shares: &[f64]) -> usize {
+    let along = grid.iter().map(|row| row.iter().zip(shares).map(|(value, share)| value * share).sum());
+    crossings(&along.collect::<Vec<f64>>())
+}
+
+fn elements(effects: &[EffectState], setting: &EffectSetting) -> Result<Vec<PointElement>, ModelError> {
+    let mut elements = Vec::new();
+    for state in effects {
+        for action in state.effect.act(&state.values_in(1)?, setting)? {
+            if let Action::Element(element) = action {
+                elements.push(element);
+            }
+        }
+    }
+    Ok(elements)
+}
+
+fn basis_terms(count: usize) -> usize {
+    2 * (count + SPARE_MODES) + 24
+}
+
+fn even_beam(setting: &EffectSetting, count: usize) -> Result<Arc<TimoshenkoBeam>, ModelError> {
+    let terms = BeamTerms::default();
+    Ok(Arc::new(TimoshenkoBeam::with_terms(&setting.piece, setting.boundary, basis_terms(count), terms)?))
 }
 
 fn place(element: &PointElement, setting: &EffectSetting) -> Option<Place> {
@@ -140,27 +166,58 @@ fn place(element: &PointElement, setting: &EffectSetting) -> Option<Place> {
     }
 }
 
-/// The first `count` natural frequencies \[Hz\] of a beam's flexible modes with effects of panel and rig, rising, at the
-/// constants $E_x$, $G_{zx}$.
+/// The first natural frequencies \[Hz\] of a beam's flexible modes with effects of panel and rig, at any constants: what is
+/// the same for all of them is worked out once.
 ///
-/// What the effects ask of a test, they find in `setting`: the places of suspension and sensor. Modes are undamped, and
+/// What the effects ask of a test, they find in the setting: the places of suspension and sensor. Modes are undamped, and
 /// those that a suspension makes of rigid motions are left out. What acts on an accelerance alone changes nothing.
+#[derive(Debug, Clone)]
+pub struct NaturalFrequencies {
+    setting: EffectSetting,
+    count: usize,
+    beam: Arc<TimoshenkoBeam>,
+}
+
+impl NaturalFrequencies {
+    /// Of the first `count` modes.
+    ///
+    /// # Errors
+    /// As [`TimoshenkoBeam::new`].
+    pub fn new(setting: &EffectSetting, count: usize) -> Result<Self, ModelError> {
+        Ok(Self { setting: setting.clone(), count, beam: even_beam(setting, count + setting.boundary.rigid_modes())? })
+    }
+
+    /// Rising, at the constants $E_x$, $G_{zx}$.
+    ///
+    /// # Errors
+    /// [`ModelError::EffectNeeds`] and [`ModelError::EffectParameter`] where an effect cannot act, [`ModelError::Unsupported`] for
+    /// a core that depends on frequency and for a plate, and as [`crate::ritz_modes()`].
+    pub fn at(&self, values: &[f64], effects: &[EffectState]) -> Result<Vec<f64>, ModelError> {
+        let Self { setting, count, beam } = self;
+        let rigid = setting.boundary.rigid_modes();
+        let damping = Damping { ratios: vec![], beyond: 0.0 };
+        let (panel, _, found) = DressedPanel::solve(setting, beam, values, effects, &damping, count + rigid)?;
+        // Without springs and resonators rigid motions stay at zero; else a free beam's have no node and one.
+        let stays = |element: &PointElement| matches!(element.law, ElementLaw::Mass { .. });
+        let told = rigid == 0 || elements(effects, setting)?.iter().all(stays);
+        let grid = if told { vec![] } else { panel.grid(&setting.piece, count + rigid) };
+        let flexible =
+            found.iter().filter(|(omega, _, shares)| *omega > 0.0 && (told || nodes(&grid, shares) >= rigid));
+        Ok(flexible.take(*count).map(|(omega, ..)| omega / std::f64::consts::TAU).collect())
+    }
+}
+
+/// The first `count` natural frequencies \[Hz\], as [`NaturalFrequencies`] finds them.
 ///
 /// # Errors
-/// [`ModelError::EffectNeeds`] and [`ModelError::EffectParameter`] where an effect cannot act, [`ModelError::Unsupported`] for a
-/// core that depends on frequency and for a plate, and as [`crate::ritz_modes()`].
+/// As [`NaturalFrequencies::at`].
 pub fn natural_frequencies(
     setting: &EffectSetting,
     values: &[f64],
     effects: &[EffectState],
     count: usize,
 ) -> Result<Vec<f64>, ModelError> {
-    let rigid = setting.boundary.rigid_modes();
-    let damping = Damping { ratios: vec![], beyond: 0.0 };
-    let modes = DressedPanel::modes_in(setting, values, effects, &damping, count + rigid)?;
-    // A free beam's rigid motions have no node and one; held, they cross zero no more often.
-    let flexible = modes.iter().filter(|mode| mode.angular_frequency > 0.0 && mode.nodes >= rigid);
-    Ok(flexible.take(count).map(|mode| mode.angular_frequency / std::f64::consts::TAU).collect())
+    NaturalFrequencies::new(setting, count)?.at(values, effects)
 }
 
 impl DressedPanel {
