@@ -1,11 +1,11 @@
-//! Reading a model file (`orthopanel.model/1`).
+//! Reading and writing model files (`orthopanel.model/1`).
 
 use std::path::Path;
 
 use orthopanel_model::PanelModel;
 
 use crate::error::{CommandError, InFile as _};
-use crate::importer;
+use crate::{importer, output};
 
 pub fn read(path: &Path) -> Result<PanelModel, CommandError> {
     if importer::is_fmu(path)? {
@@ -14,4 +14,16 @@ pub fn read(path: &Path) -> Result<PanelModel, CommandError> {
     let text =
         std::fs::read_to_string(path).map_err(|source| CommandError::Unreadable { path: path.into(), source })?;
     PanelModel::from_json(&text).in_file(path)
+}
+
+/// Writes one model a piece, as `output::with_suffix` names them, and says so on standard error.
+pub fn write_each<'a>(path: &Path, models: impl Iterator<Item = (String, &'a PanelModel)>) -> Result<(), CommandError> {
+    let mut files = output::Files::default();
+    for (suffix, model) in models {
+        files.add(output::with_suffix(path, &suffix), model.to_json());
+    }
+    for path in files.write()? {
+        eprintln!("wrote {}", path.display());
+    }
+    Ok(())
 }

@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use crate::error::CommandError;
 use crate::identified::Identified;
-use crate::output;
 use crate::record_options::IdentifyOptions;
+use crate::{model_file, output};
 
 /// Identify the elastic constants, and the damping where there are records, from a test
 ///
@@ -40,13 +40,8 @@ pub struct Arguments {
 pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
     let identified = Identified::from_test(&arguments.test, &arguments.options)?;
     if let Some(path) = &arguments.output {
-        let mut files = output::Files::default();
-        for (fit, model) in identified.found.pieces.iter().zip(&identified.models) {
-            files.add(output::with_suffix(path, &identified.suffix(fit)), model.to_json());
-        }
-        for path in files.write()? {
-            eprintln!("wrote {}", path.display());
-        }
+        let models = identified.found.pieces.iter().zip(&identified.models);
+        model_file::write_each(path, models.map(|(fit, model)| (identified.suffix(fit), model)))?;
     }
     if arguments.json {
         output::print_json(&identified.answer);

@@ -5,8 +5,9 @@ use std::path::PathBuf;
 use orthopanel_data::ImpactTest;
 
 use crate::error::CommandError;
-use crate::output;
+use crate::identified::suffix;
 use crate::traced::Traced;
+use crate::{model_file, output};
 
 /// Name the physical effect that the model of a test lacks
 ///
@@ -16,6 +17,7 @@ use crate::traced::Traced;
 /// unexplained.
 ///
 /// -o writes the panel's model: effects of the panel stay in it, those of the rig and of the measuring chain are taken out.
+/// With several pieces in the test there is one model a piece: MODEL-NAME.json.
 ///
 /// Example: orthopanel trace examples/misplaced-hit/test.toml -o traced.json
 #[derive(clap::Args)]
@@ -36,15 +38,8 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
     let test = ImpactTest::read(path)?;
     let traced = Traced::from_test(&test).map_err(|source| CommandError::Identify { path: path.clone(), source })?;
     if let Some(output) = &arguments.output {
-        let panels = &traced.tracing.panels;
-        let mut files = output::Files::default();
-        for (index, panel) in panels.iter().enumerate() {
-            let suffix = if panels.len() == 1 { String::new() } else { format!("-{}", index + 1) };
-            files.add(output::with_suffix(output, &suffix), panel.to_json());
-        }
-        for path in files.write()? {
-            eprintln!("wrote {}", path.display());
-        }
+        let panels = test.pieces.iter().zip(&traced.tracing.panels);
+        model_file::write_each(output, panels.map(|(named, panel)| (suffix(&named.name, test.pieces.len()), panel)))?;
     }
     if arguments.json {
         output::print_json(&traced.tracing);

@@ -52,8 +52,13 @@ impl Identified {
 
     /// `-NAME` where there are several pieces, safe in file names; nothing for a single one.
     pub fn suffix(&self, piece: &PieceFit) -> String {
-        if self.found.pieces.len() == 1 { String::new() } else { format!("-{}", file_name_part(&piece.name)) }
+        suffix(&piece.name, self.found.pieces.len())
     }
+}
+
+/// `-NAME` of one of so many pieces, safe in file names; nothing for a single one.
+pub fn suffix(name: &str, pieces: usize) -> String {
+    if pieces == 1 { String::new() } else { format!("-{}", file_name_part(name)) }
 }
 
 /// A name as part of a file name: letters, digits, `-` and `_` stay, every other byte becomes `%XX`.
