@@ -3,25 +3,14 @@
 //! The folder is not part of the repository: named by `ORTHOPANEL_DATA`, or `../shared/data` beside the root; without
 //! it the test says so and passes.
 
-use std::path::{Path, PathBuf};
+mod support;
 
 use orthopanel_data::ImpactTest;
 use orthopanel_identify::{Settings, identify};
 
-fn data() -> Option<PathBuf> {
-    let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
-    let folder = std::env::var_os("ORTHOPANEL_DATA").map_or(beside, PathBuf::from);
-    let found = folder.join("free_beam/test.toml");
-    if found.is_file() {
-        return Some(found);
-    }
-    println!("skipped: {} is not there", found.display());
-    None
-}
-
 #[test]
 fn val_free_beam_modes_and_damping() {
-    let Some(path) = data() else { return };
+    let Some(path) = support::shared_data("free_beam/test.toml") else { return };
     let found = identify(&ImpactTest::read(path).unwrap(), Settings::default()).unwrap();
     let modes = &found.pieces[0].modes;
     let published = [111.994, 306.854, 596.367, 974.14];

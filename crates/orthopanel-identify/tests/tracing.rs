@@ -2,32 +2,10 @@
 //!
 //! These need Python with numpy, scipy and pyuff, named by `ORTHOPANEL_PYTHON`; without it they say so and pass.
 
-use std::path::{Path, PathBuf};
-use std::process::Command;
+mod support;
 
-use orthopanel_data::ImpactTest;
 use orthopanel_identify::{Tracing, Verdict, trace};
-use serde_json::Value;
-
-/// A made test with its truth; `None` where there is no Python for it.
-fn made(folder: &Path, set: &str, kind: &str) -> Option<(ImpactTest, Value)> {
-    let Some(python) = std::env::var_os("ORTHOPANEL_PYTHON") else {
-        println!("skipped: ORTHOPANEL_PYTHON names no Python with numpy, scipy and pyuff");
-        return None;
-    };
-    // Tests run in the crate's folder, whatever the variable was relative to.
-    let output = Command::new(PathBuf::from(python))
-        .current_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests"))
-        .args(["-m", "blind_tracing", "make"])
-        .arg(folder)
-        .args(["--set", set, "--kind", kind, "--count", "1", "--seed", "1001"])
-        .output()
-        .unwrap();
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let truth: Value = serde_json::from_str(&std::fs::read_to_string(folder.join("truth.json")).unwrap()).unwrap();
-    let case = truth["cases"][0].clone();
-    Some((ImpactTest::read(folder.join(case["case"].as_str().unwrap()).join("test.toml")).unwrap(), case))
-}
+use support::made;
 
 fn value(found: &Tracing, parameter: &str) -> (f64, f64) {
     let estimate = found.effects[0].parameters.iter().find(|known| known.name == parameter).unwrap().values[0];

@@ -1,0 +1,41 @@
+//! What the tests of tracing share.
+#![allow(dead_code, reason = "each test file takes what it needs")]
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use orthopanel_data::ImpactTest;
+use serde_json::Value;
+
+/// A test made by `tests/blind_tracing`, which shares no code with the crates, with its truth; `None` where
+/// `ORTHOPANEL_PYTHON` names no Python for it.
+pub fn made(folder: &Path, set: &str, kind: &str) -> Option<(ImpactTest, Value)> {
+    let Some(python) = std::env::var_os("ORTHOPANEL_PYTHON") else {
+        println!("skipped: ORTHOPANEL_PYTHON names no Python with numpy, scipy and pyuff");
+        return None;
+    };
+    // Tests run in the crate's folder, whatever the variable was relative to.
+    let output = Command::new(PathBuf::from(python))
+        .current_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests"))
+        .args(["-m", "blind_tracing", "make"])
+        .arg(folder)
+        .args(["--set", set, "--kind", kind, "--count", "1", "--seed", "1001"])
+        .output()
+        .unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let truth: Value = serde_json::from_str(&std::fs::read_to_string(folder.join("truth.json")).unwrap()).unwrap();
+    let case = truth["cases"][0].clone();
+    Some((ImpactTest::read(folder.join(case["case"].as_str().unwrap()).join("test.toml")).unwrap(), case))
+}
+
+/// A folder or file of the real measurements: named by `ORTHOPANEL_DATA`, or `../shared/data` beside the repository. Prints
+/// why and returns `None` where it is absent.
+pub fn shared_data(name: &str) -> Option<PathBuf> {
+    let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
+    let found = std::env::var_os("ORTHOPANEL_DATA").map_or(beside, PathBuf::from).join(name);
+    if found.exists() {
+        return Some(found);
+    }
+    println!("skipped: {} is not there (set ORTHOPANEL_DATA)", found.display());
+    None
+}
