@@ -2,10 +2,11 @@
 
 use orthopanel_data::{ImpactTest, MeasurementData};
 
-use crate::{Identification, IdentifyError, Settings, accelerance_fit, frequency_fit};
+use crate::{Identification, IdentifyError, Settings, accelerance_fit, frequency_fit, tracing};
 
 /// Finds the constants of a test, and its damping where there are records: eq. 22 for natural frequencies, the whole
-/// complex accelerance for records. Starting values are found here.
+/// complex accelerance for records. Starting values are found here. Effects that the test file declares are part of the
+/// model; what it leaves out of their parameters is identified too.
 ///
 /// `settings` may be a [`crate::Search`] alone.
 ///
@@ -16,9 +17,8 @@ use crate::{Identification, IdentifyError, Settings, accelerance_fit, frequency_
 pub fn identify(test: &ImpactTest, settings: impl Into<Settings>) -> Result<Identification, IdentifyError> {
     let settings = settings.into();
     settings.paper_weights.check()?;
-    if let Some(effect) = test.effects.first() {
-        let message = format!("effect {:?}: declared effects are not supported by this version", effect.id);
-        return Err(IdentifyError::Unsupported(message));
+    if !test.effects.is_empty() {
+        return tracing::identify_with_effects(test, settings)?.determined();
     }
     let is_frequencies = |data: &MeasurementData| matches!(data, MeasurementData::NaturalFrequencies(_));
     let lists = test.measurements.iter().filter(|measurement| is_frequencies(&measurement.data)).count();

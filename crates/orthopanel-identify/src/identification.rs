@@ -2,9 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use crate::IdentifyError;
+use crate::{IdentifyError, TracedEffect};
 use num_complex::Complex64;
-use orthopanel_model::{Boundary, Damping, Estimate, MODEL_SCHEMA, PanelModel, Piece, Place, Ports, StructureKind};
+use orthopanel_model::{
+    Boundary, Damping, Estimate, MODEL_SCHEMA, Owner, PanelModel, Piece, Place, Ports, StructureKind,
+};
 
 /// Constants, their uncertainty, and how the model meets each measured mode.
 #[derive(Debug, Clone, PartialEq)]
@@ -32,6 +34,8 @@ pub struct Identification {
     pub chi_square: Option<f64>,
     /// Measured and calculated accelerances, one a pair of places.
     pub accelerances: Vec<AcceleranceFit>,
+    /// The effects that the test file declares, with what was identified of them.
+    pub effects: Vec<TracedEffect>,
     /// What was left out, cut, assumed or found wanting, a sentence each.
     pub notes: Vec<String>,
 }
@@ -180,7 +184,12 @@ impl Identification {
                 .map(|constant| (constant.name.to_owned(), estimate(constant)))
                 .collect(),
             damping: Damping { ratios, beyond: 0.0 },
-            effects: Vec::new(),
+            effects: self
+                .effects
+                .iter()
+                .filter(|effect| effect.owner == Owner::Panel)
+                .map(TracedEffect::entry)
+                .collect(),
             ports,
             provenance: BTreeMap::new(),
         }

@@ -52,6 +52,8 @@ fn run_writes_the_panel_without_rig_and_channel_and_says_so() {
         "hammer-offset",
         "taken out of the model",
         "Error before and after",
+        "Accelerances with the effects",
+        "What the model with the effects leaves",
         "Ranking",
     ] {
         assert!(page.contains(said), "the page does not say {said:?}");

@@ -7,6 +7,7 @@ mod outcome;
 mod paper_error;
 mod poles;
 mod problem;
+mod record_poles;
 mod records;
 mod resonance_point;
 mod resonance_start;
@@ -23,6 +24,7 @@ use crate::{Identification, IdentifyError, Search, Settings};
 use problem::{AcceleranceProblem, PieceProblem};
 use start::{Start, start, usual_log_zeta};
 
+pub(crate) use record_poles::{RecordPole, record_poles};
 pub(crate) use resonance_start::{ResonanceStart, resonance_starts};
 pub use synthesis::DampingLaw;
 

@@ -154,6 +154,7 @@ fn report(
         accelerance_rms_percent: Some(accelerance_rms_percent),
         chi_square,
         accelerances: fits,
+        effects: Vec::new(),
         notes: start.notes.clone(),
         pieces,
     })

@@ -24,6 +24,7 @@ use problem::{FrequencyProblem, FrequencySet, SetPrediction};
 
 pub(crate) use of_poles::{PoleFit, PoleSet, fit_poles};
 pub(crate) use report::identified_constants;
+pub(crate) use structures::bending_nodes;
 
 /// Finds the elastic constants that minimise eq. 22,
 /// $$Error(c) = \frac1M\sum_{m=1}^M\frac{(f_{exp}^{(m)}-f_{cal}^{(m)}(c))^2}{(f_{exp}^{(m)})^2},$$

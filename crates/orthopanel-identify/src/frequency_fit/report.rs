@@ -33,6 +33,7 @@ pub(super) fn report(
         accelerance_rms_percent: None,
         chi_square: None,
         accelerances: Vec::new(),
+        effects: Vec::new(),
         notes: doubtful_names(test, problem, found, &at)?,
     })
 }

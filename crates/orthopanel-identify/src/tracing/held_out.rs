@@ -63,7 +63,8 @@ fn neutral_steps(fit: &Fit) -> Vec<f64> {
 /// A parameter of which the other groups hold less than this part is the group's own.
 const OWN: f64 = 1e-6;
 
-fn predicted(whole: &Quadratic, group: &Quadratic, neutral: &[f64]) -> f64 {
+/// What a group costs where all others alone settle the parameters, to first order.
+pub(super) fn predicted(whole: &Quadratic, group: &Quadratic, neutral: &[f64]) -> f64 {
     let size = neutral.len();
     let mut normal = &whole.normal - &group.normal;
     let mut gradient = Mat::from_fn(size, 1, |i, _| whole.gradient[i] - group.gradient[i]);

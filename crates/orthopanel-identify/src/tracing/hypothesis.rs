@@ -5,6 +5,9 @@ use orthopanel_model::{Effect, EffectState, ModelError, Piece, Scale, effect};
 
 use crate::IdentifyError;
 
+/// The plate in place of the beam.
+const PLATE: &str = "width-coupling";
+
 /// An effect with values for all its parameters.
 #[derive(Clone)]
 pub(super) struct Switched {
@@ -57,6 +60,11 @@ impl FreeParameter {
         let margin = 1e-3 * (high - low);
         at - low < margin || high - at < margin
     }
+}
+
+/// Whether an effect sits at a place of its own: a piece may have several of it.
+pub(super) fn has_place(effect: &dyn Effect) -> bool {
+    effect.parameters().iter().any(|parameter| parameter.name == "x")
 }
 
 impl Switched {
@@ -167,6 +175,15 @@ impl Hypothesis {
         let mut hypothesis = Self::default();
         for told in &test.effects {
             let effect = effect(&told.id)?;
+            let refused = |why: &str| Err(IdentifyError::Unsupported(format!("effect {:?}: {why}", told.id)));
+            if !has_place(effect) && hypothesis.effects.iter().any(|on: &Switched| on.effect.id() == effect.id()) {
+                return refused("declared twice, once is enough");
+            }
+            if effect.id() == PLATE {
+                return refused(
+                    "the plate in place of the beam is no effect to declare: say structure = \"mindlin-plate\"",
+                );
+            }
             let known = |name: &String| effect.parameters().iter().any(|parameter| parameter.name == name);
             if let Some(name) = told.parameters.keys().find(|name| !known(name)) {
                 let names: Vec<&str> = effect.parameters().iter().map(|parameter| parameter.name).collect();
@@ -185,6 +202,11 @@ impl Hypothesis {
             hypothesis.effects.push(switched);
         }
         Ok(hypothesis)
+    }
+
+    /// Whether an effect is on and cannot be there once more.
+    pub(super) fn holds(&self, effect: &dyn Effect) -> bool {
+        !has_place(effect) && self.effects.iter().any(|on| on.effect.id() == effect.id())
     }
 
     /// Every free parameter with its effect.

@@ -6,10 +6,15 @@
 //!    is left of it beside the scatter of the hits.
 //!
 //! Both channels are multiplied by $e^{-\sigma t}$, and the model is evaluated on $s = \sigma + j\omega$: exact for every linear
-//! effect, free of leakage, and with peaks as wide as a search needs ([`widened_lines`]).
+//! effect, free of leakage, and with peaks as wide as a search needs ([`widened_lines`]). Lists of natural frequencies and
+//! files of accelerances, which hold no hits, are traced in [`frequencies`] and [`accelerances`].
 
+mod accelerances;
+mod base_model;
+mod curves;
 mod fit;
 mod frequencies;
+mod further_list;
 mod held_out;
 mod hit_noise;
 mod hypothesis;
@@ -32,6 +37,7 @@ pub use outcome::{
     Candidate, FittedError, NotTested, Progress, Removed, TracedEffect, TracedError, TracedParameter, Tracing, Verdict,
 };
 
+pub(crate) use base_model::identify_with_effects;
 pub use rows::TRACE_SCHEMA;
 
 use crate::IdentifyError;
@@ -66,9 +72,14 @@ pub fn trace_with(test: &ImpactTest, progress: &(dyn Fn(Progress) + Sync)) -> Re
             format!("a trace of {} pieces in one test: give each piece a test file of its own", test.pieces.len());
         return Err(IdentifyError::Unsupported(message));
     };
-    let of_time = |data: &MeasurementData| matches!(data, MeasurementData::TimeHistory(_));
-    if !test.measurements.iter().all(|measurement| of_time(&measurement.data)) {
-        let message = "a trace needs records of force and acceleration against time (kind = \"time-history\")";
+    let kinds =
+        |wanted: fn(&MeasurementData) -> bool| test.measurements.iter().all(|measurement| wanted(&measurement.data));
+    if kinds(|data| matches!(data, MeasurementData::Accelerance(_))) {
+        return accelerances::trace_accelerances(test, progress);
+    }
+    if !kinds(|data| matches!(data, MeasurementData::TimeHistory(_))) {
+        let message = "a trace needs measurements of one kind: natural-frequencies, accelerance or time-history; put others \
+                       into a test file of their own";
         return Err(IdentifyError::Unsupported(message.to_owned()));
     }
     let histories: Vec<TimeHistory> = test.time_histories()?.into_iter().map(|(_, history)| history).collect();

@@ -1,6 +1,8 @@
 //! What a trace found.
 
-use orthopanel_model::{Estimate, Owner, PanelModel};
+use orthopanel_model::{EffectEntry, Estimate, Owner, PanelModel};
+
+use crate::AcceleranceFit;
 
 /// What can be said of the physics that the base model lacks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -50,6 +52,8 @@ pub struct Tracing {
     pub panels: Vec<PanelModel>,
     /// Effects that are in the data and not in [`Tracing::panels`].
     pub removed: Vec<Removed>,
+    /// Every record with the accelerance that the model with the effects foretells; empty where none was measured.
+    pub accelerances: Vec<AcceleranceFit>,
     /// What was assumed or left out, a sentence each.
     pub notes: Vec<String>,
 }
@@ -63,6 +67,18 @@ pub struct TracedEffect {
     pub owner: Owner,
     /// Its parameters, in the catalogue's order.
     pub parameters: Vec<TracedParameter>,
+}
+
+impl TracedEffect {
+    /// As a model file holds it.
+    pub(crate) fn entry(&self) -> EffectEntry {
+        let first = |parameter: &TracedParameter| Some((parameter.name.to_owned(), *parameter.values.first()?));
+        EffectEntry {
+            id: self.id.to_owned(),
+            owner: self.owner.name().to_owned(),
+            parameters: self.parameters.iter().filter_map(first).collect(),
+        }
+    }
 }
 
 /// A parameter of an effect.

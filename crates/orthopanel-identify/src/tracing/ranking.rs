@@ -57,8 +57,8 @@ impl Search<'_> {
     /// Where the base itself cannot be fitted.
     pub(super) fn run(&self) -> Result<Ranking, IdentifyError> {
         let base = fit(self.records, self.records.start.clone(), 0)?;
-        let declared: Vec<&str> = base.state.hypothesis.effects.iter().map(|on| on.effect.id()).collect();
-        let tried: Vec<_> = catalogue().iter().filter(|effect| !declared.contains(&effect.id())).collect();
+        let declared = &base.state.hypothesis;
+        let tried: Vec<_> = catalogue().iter().filter(|effect| !declared.holds(**effect)).collect();
         let done = AtomicUsize::new(0);
         let starts: Vec<_> = tried
             .par_iter()
@@ -153,7 +153,7 @@ impl Search<'_> {
         for root in roots {
             more.extend(self.partners(&ranking.fits[root])?);
         }
-        ranking.fits.extend(more);
+        ranking.fits.extend(each_once(more));
         Ok(())
     }
 
@@ -169,6 +169,20 @@ impl Search<'_> {
         starts.truncate(PARTNERS);
         Ok(self.finish(starts))
     }
+}
+
+/// Of fits with the same effects, reached in another order, the best.
+fn each_once(mut fits: Vec<Fit>) -> Vec<Fit> {
+    let mut ids: Vec<Vec<&str>> = Vec::new();
+    fits.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+    fits.retain(|fit| {
+        let mut own: Vec<&str> = fit.state.hypothesis.effects.iter().map(|on| on.effect.id()).collect();
+        own.sort_unstable();
+        let is_new = !ids.contains(&own);
+        ids.push(own);
+        is_new
+    });
+    fits
 }
 
 impl Ranking {

@@ -15,7 +15,7 @@ pub(super) struct RecordProblem<'a> {
     pub records: &'a [WidenedLines],
     /// Constants that are held; free ones are `None`.
     pub held: [Option<f64>; 2],
-    /// Modes whose damping ratio is free.
+    /// Modes whose damping ratio is free: the first ones; the others keep theirs.
     pub modes: usize,
     /// Where the damping of a mode that no record shows is kept.
     pub usual_log_zeta: f64,
@@ -57,7 +57,7 @@ impl RecordProblem<'_> {
     /// What a search moves.
     pub(super) fn parameters(&self, state: &State) -> Vec<f64> {
         let constants = self.free_constants().map(|index| state.constants[index]);
-        constants.chain(state.zetas.iter().copied()).chain(state.hypothesis.coordinates()).collect()
+        constants.chain(state.zetas.iter().take(self.modes).copied()).chain(state.hypothesis.coordinates()).collect()
     }
 
     /// The state that parameters stand for, of the same effects as `like`.
@@ -67,7 +67,8 @@ impl RecordProblem<'_> {
         for index in self.free_constants() {
             constants[index] = rest.next().unwrap_or(constants[index]);
         }
-        let zetas = rest.by_ref().take(self.modes).collect();
+        let free: Vec<f64> = rest.by_ref().take(self.modes).collect();
+        let zetas = free.iter().chain(like.zetas.iter().skip(self.modes)).copied().collect();
         let coordinates: Vec<f64> = rest.collect();
         State { constants, zetas, hypothesis: like.hypothesis.at(&coordinates) }
     }
@@ -158,7 +159,7 @@ impl RecordProblem<'_> {
         let constants = self.free_constants().map(|index| (index, state.constants[index].exp()));
         let zetas = (0..self.modes).map(|mode| (first_zeta + mode, 1.0));
         let mut columns: Vec<(usize, f64)> = constants.chain(zetas).collect();
-        let mut start = first_zeta + self.modes;
+        let mut start = first_zeta + state.zetas.len();
         for switched in &state.hypothesis.effects {
             columns.extend(switched.free.iter().map(|free| (start + free.at, free.slope(switched.values[free.at]))));
             start += switched.values.len();
@@ -169,7 +170,7 @@ impl RecordProblem<'_> {
     fn prior(&self, state: &State, size: usize) -> Quadratic {
         let mut prior = Quadratic::zero(size);
         let first = self.free_constants().count();
-        for (mode, log) in state.zetas.iter().enumerate() {
+        for (mode, log) in state.zetas.iter().take(self.modes).enumerate() {
             let residual = (log - self.usual_log_zeta) / PRIOR_LOG_ZETA_STD;
             prior.add_row(residual, &[(first + mode, 1.0 / PRIOR_LOG_ZETA_STD)]);
         }

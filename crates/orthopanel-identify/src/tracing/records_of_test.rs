@@ -1,16 +1,20 @@
 //! The records of a test, widened, with the model that they are to meet.
 
-use orthopanel_data::{Estimation, ImpactTest, TimeHistory};
+use orthopanel_data::{Accelerance, Estimation, ImpactTest, TimeHistory};
 use orthopanel_model::{BEAM_CONSTANTS, BeamConstants, ExactBeam, ReceptanceSetup, RecordSetting};
 use rayon::prelude::*;
 
+use super::base_model::RecordsBase;
+use super::curves::curves;
+use super::fit::{Fit, by_group, fit};
 use super::hypothesis::Hypothesis;
-use super::record_problem::{RecordProblem, State};
+use super::record_problem::{Grouping, RecordProblem, State, total};
+use super::whiteness::{independent_part, residuals};
 use super::widened_lines::{WIDENINGS, WidenedLines, widened_lines};
-use crate::IdentifyError;
 use crate::accelerance_fit::{ResonanceStart, resonance_starts};
 use crate::free_constants::FreeConstants;
 use crate::least_squares::{Ending, descend};
+use crate::{AcceleranceFit, IdentifyError};
 
 /// Everything that a trace of one piece's records needs.
 pub(super) struct TestRecords {
@@ -28,6 +32,8 @@ pub(super) struct TestRecords {
     pub summed: usize,
     /// Where a search without effects begins.
     pub start: State,
+    /// As the analyser shows the records.
+    accelerances: Vec<Accelerance>,
 }
 
 /// The band ends where the force has fallen by this much \[dB\].
@@ -69,6 +75,7 @@ impl TestRecords {
         };
         let finer = WIDENINGS.iter().skip(1).map(|&widening| widened_lines(histories, widening, records.band));
         records.widened.extend(finer);
+        records.accelerances = accelerances;
         Ok(records)
     }
 
@@ -106,7 +113,8 @@ impl TestRecords {
             hypothesis: Hypothesis::declared(test, &piece, histories.len())?,
         };
         let widened = vec![widened_lines(histories, WIDENINGS[0], band)];
-        let mut records = Self { setup, widened, held, modes, usual_log_zeta, band, in_band, summed, start };
+        let mut records =
+            Self { setup, widened, held, modes, usual_log_zeta, band, in_band, summed, start, accelerances: vec![] };
         let problem = records.problem(0);
         let from = problem.parameters(&records.start);
         let bounds = problem.bounds(&records.start);
@@ -115,6 +123,14 @@ impl TestRecords {
         let misfit = minimum.at.cost / problem.data() as f64;
         records.start = problem.state(&minimum.parameters, &records.start);
         Ok((misfit, records))
+    }
+
+    /// Every record beside the model of a fit.
+    ///
+    /// # Errors
+    /// What the model refuses.
+    pub(super) fn curves(&self, fit: &Fit) -> Result<Vec<AcceleranceFit>, IdentifyError> {
+        curves(&self.accelerances, &self.setup, (&fit.state, self.usual_log_zeta), self.band)
     }
 
     /// Scatter of the hits about their mean per datum, over the noise as it is modelled; 1 where a single hit tells none.
@@ -130,4 +146,32 @@ impl TestRecords {
         let Self { setup, held, modes, usual_log_zeta, .. } = self;
         RecordProblem { setup, records, held: *held, modes: *modes, usual_log_zeta: *usual_log_zeta }
     }
+}
+
+/// The base model fitted to the hits of a test of one piece.
+///
+/// # Errors
+/// As [`TestRecords::new`], and what the model refuses.
+pub(super) fn base_of_histories(test: &ImpactTest) -> Result<RecordsBase, IdentifyError> {
+    let histories: Vec<TimeHistory> = test.time_histories()?.into_iter().map(|(_, history)| history).collect();
+    let records = TestRecords::new(test, &histories)?;
+    let base = fit(&records, records.start.clone(), 0)?;
+    let chi_square = base.chi_square(&records);
+    let covariance = total(&by_group(&records, &base, Grouping::Places)?).covariance();
+    let unit = chi_square.max(1.0) / independent_part(&residuals(&records, &base)?);
+    let std = |i: usize| covariance.as_ref().map(|matrix| (unit * matrix[(i, i)]).sqrt()).filter(|std| std.is_finite());
+    let starts = resonance_starts(&test.pieces[0].piece, test.boundary, records.held, &records.accelerances)?;
+    let too_few = IdentifyError::TooFewResonances { found: 0, needed: 1 };
+    Ok(RecordsBase {
+        start: starts.into_iter().next().ok_or(too_few)?,
+        std: (0..base.size).map(std).collect(),
+        free_zetas: records.modes,
+        usual_log_zeta: records.usual_log_zeta,
+        band: records.band,
+        in_band: records.in_band,
+        chi_square: Some(chi_square),
+        accelerances: records.accelerances,
+        setup: records.setup,
+        state: base.state,
+    })
 }

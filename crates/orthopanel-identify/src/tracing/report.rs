@@ -5,9 +5,7 @@ use std::collections::BTreeMap;
 use faer::Side;
 use faer::linalg::solvers::DenseSolveCore;
 use orthopanel_data::ImpactTest;
-use orthopanel_model::{
-    BEAM_CONSTANTS, Damping, EffectEntry, Estimate, MODEL_SCHEMA, Owner, PanelModel, Ports, StructureKind,
-};
+use orthopanel_model::{BEAM_CONSTANTS, Damping, Estimate, MODEL_SCHEMA, Owner, PanelModel, Ports, StructureKind};
 
 use super::fit::{Fit, by_group};
 use super::held_out::held_out;
@@ -48,7 +46,7 @@ pub(super) fn report(test: &ImpactTest, search: &Search, ranking: &Ranking) -> R
     let candidates = candidates.collect::<Result<Vec<_>, IdentifyError>>()?;
     let std = deviations(search, ranking, chosen)?;
     let mut panel = panel(test, search, chosen, &std);
-    let removed = take_out(chosen, &std, search.declared(), &mut panel);
+    let removed = take_out(traced(chosen, &std, 0), search.declared(), &mut panel);
     Ok(Tracing {
         verdict,
         effects: traced(chosen, &std, search.declared()),
@@ -65,6 +63,7 @@ pub(super) fn report(test: &ImpactTest, search: &Search, ranking: &Ranking) -> R
         chi_square: chosen.chi_square(records),
         panels: vec![panel],
         removed,
+        accelerances: records.curves(chosen)?,
         notes: vec![],
     })
 }
@@ -158,17 +157,11 @@ fn panel(test: &ImpactTest, search: &Search, fit: &Fit, std: &[Option<f64>]) -> 
 }
 
 /// Puts the panel's own effects into its model, and says which of the others are taken out and why.
-fn take_out(fit: &Fit, std: &[Option<f64>], declared: usize, panel: &mut PanelModel) -> Vec<Removed> {
+pub(super) fn take_out(all: Vec<TracedEffect>, declared: usize, panel: &mut PanelModel) -> Vec<Removed> {
     let mut removed = Vec::new();
-    let all = traced(fit, std, 0);
     for (index, effect) in all.into_iter().enumerate() {
         if effect.owner == Owner::Panel {
-            let first = |parameter: &TracedParameter| Some((parameter.name.to_owned(), *parameter.values.first()?));
-            panel.effects.push(EffectEntry {
-                id: effect.id.to_owned(),
-                owner: effect.owner.name().to_owned(),
-                parameters: effect.parameters.iter().filter_map(first).collect(),
-            });
+            panel.effects.push(effect.entry());
             continue;
         }
         removed.push(removal(&effect, index < declared));

@@ -28,7 +28,7 @@ pub(super) fn best_start(
     piece: &Piece,
 ) -> Result<(State, f64), IdentifyError> {
     let problem = records.problem(0);
-    let scored: Vec<Result<(f64, State), IdentifyError>> = grid(effect, piece, records)
+    let scored: Vec<Result<(f64, State), IdentifyError>> = grid(effect, piece, (problem.records.len(), records.band))
         .into_par_iter()
         .map(|start| {
             let at = |name: &str| {
@@ -58,19 +58,19 @@ pub(super) fn best_start(
 /// Most combinations of starts, beyond which only the first of each but the place, the frequency and the record is taken.
 const MOST_STARTS: usize = 12;
 
-/// Values of all parameters, one list a start.
-fn grid(effect: &'static dyn Effect, piece: &Piece, records: &TestRecords) -> Vec<Vec<f64>> {
+/// Values of all parameters, one list a start, in a test of so many records up to `band` \[Hz\].
+pub(super) fn grid(effect: &'static dyn Effect, piece: &Piece, (records, band): (usize, f64)) -> Vec<Vec<f64>> {
     let lists: Vec<(Vec<f64>, bool)> = effect
         .parameters()
         .iter()
         .map(|parameter| {
             let mut list = match (parameter.scale, parameter.held_at) {
-                (Scale::Index, _) => (1..=records.problem(0).records.len()).map(|record| record as f64).collect(),
+                (Scale::Index, _) => (1..=records).map(|record| record as f64).collect(),
                 (_, Some(held)) => vec![held],
                 _ => parameter.starts(piece),
             };
             if parameter.unit == "Hz" && list.len() > 3 {
-                list.retain(|frequency| *frequency < records.band);
+                list.retain(|frequency| *frequency < band);
             }
             // Where something is matters more for a search than how much of it there is.
             (list, parameter.scale == Scale::Index || parameter.name == "x" || parameter.unit == "Hz")

@@ -2,7 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use orthopanel_identify::{Identification, IdentifiedConstant, ModeFit, NotIdentified, PieceFit};
+use orthopanel_identify::{
+    Identification, IdentifiedConstant, ModeFit, NotIdentified, PieceFit, TracedEffect, TracedParameter,
+};
 use orthopanel_model::StructureKind;
 use serde::Serialize;
 
@@ -18,6 +20,9 @@ pub struct Answer {
     /// Constants that the data do not show, the least seen first.
     not_identified: Vec<NotIdentifiedEntry>,
     correlations: Vec<CorrelationEntry>,
+    /// Effects that the test file declares, with what was identified of them.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    effects: Vec<EffectEntry>,
     modes: Vec<ModeEntry>,
     error: ErrorEntry,
     /// What was left out, cut or found wanting.
@@ -52,6 +57,22 @@ struct CorrelationEntry {
 }
 
 #[derive(Serialize)]
+struct EffectEntry {
+    id: &'static str,
+    owner: &'static str,
+    /// One value a parameter; one a record where each has its own.
+    parameters: BTreeMap<&'static str, Vec<ParameterEntry>>,
+}
+
+#[derive(Serialize)]
+struct ParameterEntry {
+    value: f64,
+    /// `null` where the test file or the catalogue holds it.
+    std: Option<f64>,
+    unit: &'static str,
+}
+
+#[derive(Serialize)]
 struct ModeEntry {
     piece: String,
     mode: usize,
@@ -72,6 +93,15 @@ struct ErrorEntry {
     accelerance_rms_percent: Option<f64>,
     /// Misfit per datum over the records' noise; `null` where these do not tell it.
     chi_square: Option<f64>,
+}
+
+fn effect(found: &TracedEffect) -> EffectEntry {
+    let values = |parameter: &TracedParameter| {
+        let unit = parameter.unit;
+        parameter.values.iter().map(|one| ParameterEntry { value: one.value, std: one.std, unit }).collect()
+    };
+    let parameters = found.parameters.iter().map(|parameter| (parameter.name, values(parameter)));
+    EffectEntry { id: found.id, owner: found.owner.name(), parameters: parameters.collect() }
 }
 
 impl Answer {
@@ -113,6 +143,7 @@ impl Answer {
             correlations: correlations
                 .map(|pair| CorrelationEntry { first: pair.first, second: pair.second, value: pair.value })
                 .collect(),
+            effects: found.effects.iter().map(effect).collect(),
             modes: found.pieces.iter().flat_map(|fit| fit.modes.iter().map(move |of| mode(fit, of))).collect(),
             error: ErrorEntry {
                 frequency_rms_percent: found.frequency_rms_percent,

@@ -5,6 +5,7 @@ use orthopanel_model::Piece;
 
 use super::Identified;
 use crate::tables;
+use crate::traced::effect_rows;
 
 impl Identified {
     /// Measured against model, mode by mode, then the constants.
@@ -29,6 +30,10 @@ impl Identified {
         };
         let rows: Vec<_> = self.found.constants.iter().map(row).collect();
         text += &tables::aligned(&["constant", "value", "std", "unit"], &rows);
+        if !self.found.effects.is_empty() {
+            let headings = ["declared effect", "owner", "parameter", "value", "std", "unit"];
+            text += &tables::aligned(&headings, &effect_rows(&self.found.effects));
+        }
         for unseen in &self.found.not_identified {
             let NotIdentified { name, unit, held_at, .. } = unseen;
             let unit = if *unit == "1" { "" } else { unit };

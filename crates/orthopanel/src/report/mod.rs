@@ -53,13 +53,14 @@ pub fn page(
 ) -> Result<String, CommandError> {
     let found = &identified.found;
     let pieces = found.pieces.iter().zip(&evidence.pieces);
+    let piece_name = found.pieces.first().map_or("", |piece| piece.name.as_str());
     let page = Page {
         title: format!("Hammer test {}", path.display()),
         made_by: concat!("Written by orthopanel ", env!("CARGO_PKG_VERSION")).to_owned(),
         lead: constants::lead(found),
         constants: constants::table(found),
         about_constants: constants::remarks(found),
-        trace: traced.map(TraceSection::of),
+        trace: traced.map(|traced| TraceSection::of(piece_name, traced)).transpose()?,
         pieces: pieces.map(|(fit, shown)| PieceSection::of(fit, shown)).collect::<Result<_, _>>()?,
         notes: notes::counted(&found.notes).collect(),
     };

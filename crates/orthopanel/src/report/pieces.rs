@@ -31,7 +31,7 @@ pub struct Gallery {
 const SHOWN: usize = 2;
 
 impl Gallery {
-    fn new(heading: &'static str, caption: &str, pictures: &[String]) -> Option<Self> {
+    pub fn new(heading: &'static str, caption: &str, pictures: &[String]) -> Option<Self> {
         let mut shown: Vec<Figure> = pictures.iter().map(|picture| Figure::new(picture, caption)).collect();
         let folded = shown.split_off(SHOWN.min(shown.len()));
         (!shown.is_empty()).then_some(Self { heading, shown, folded })

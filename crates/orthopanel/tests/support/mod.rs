@@ -48,6 +48,10 @@ impl Bench {
         self.folder.path().join(name)
     }
 
+    pub fn write(&self, name: &str, text: &str) {
+        std::fs::write(self.path(name), text).expect("a file is written");
+    }
+
     /// Runs `orthopanel` with the words of `line`, divided by blanks.
     pub fn run(&self, line: &str) -> Output {
         Command::new(env!("CARGO_BIN_EXE_orthopanel"))

@@ -63,6 +63,6 @@ pub(super) fn of(
 }
 
 /// Nodal lines of bending modes 1 to `count`: what a list of frequencies without shapes holds.
-pub(super) fn bending_nodes(boundary: Boundary, count: usize) -> Vec<[usize; 2]> {
+pub(crate) fn bending_nodes(boundary: Boundary, count: usize) -> Vec<[usize; 2]> {
     (0..count).map(|index| [index + boundary.rigid_modes(), 0]).collect()
 }

@@ -41,8 +41,8 @@ pub(super) fn fit(problem: &ListProblem, from: &Hypothesis, constants_from: &[f6
         constants.chain(from.each_free().map(|(on, _)| on.effect.id())).collect::<Vec<_>>().join(", ")
     };
     let needed = constants.count() + from.size();
-    if problem.count() <= needed {
-        return Err(IdentifyError::TooFewFrequencies { found: problem.count(), needed: needed + 1, names: names() });
+    if problem.count() < needed {
+        return Err(IdentifyError::TooFewFrequencies { found: problem.count(), needed, names: names() });
     }
     let start: Vec<f64> = constants_from.iter().copied().chain(from.coordinates()).collect();
     let bounds: Vec<(f64, f64)> = constants.bounds().into_iter().chain(from.bounds()).collect();
@@ -52,8 +52,8 @@ pub(super) fn fit(problem: &ListProblem, from: &Hypothesis, constants_from: &[f6
     let parameters = minimum.parameters;
     let at = linearise(&parameters)?;
     let size = parameters.len();
-    let variance = at.residuals.iter().map(|r| r * r).sum::<f64>() / (problem.count() - size) as f64;
-    let covariance = if size > 0 { at.quadratic().covariance() } else { None };
+    let variance = at.residuals.iter().map(|r| r * r).sum::<f64>() / problem.count().saturating_sub(size).max(1) as f64;
+    let covariance = if size > 0 && problem.count() > size { at.quadratic().covariance() } else { None };
     let std = covariance
         .as_ref()
         .map_or(vec![f64::INFINITY; size], |matrix| (0..size).map(|i| (variance * matrix[(i, i)]).sqrt()).collect());

@@ -3,6 +3,7 @@
 //! Noise is not told, so the criterion is that of an unknown variance, $n\ln(R/n) + k\ln n$ with the sum of squares $R$ of the
 //! relative errors, and what is held out is one frequency after the other.
 
+mod declared;
 mod list_fit;
 mod list_problem;
 mod parting;
@@ -13,9 +14,10 @@ use orthopanel_data::{ImpactTest, Measurement, MeasurementData};
 use orthopanel_model::{Effect, Owner, catalogue};
 use rayon::prelude::*;
 
-use super::hypothesis::{Hypothesis, Switched};
+use super::hypothesis::{Hypothesis, Switched, has_place};
 use super::outcome::{NotTested, Tracing};
 use crate::IdentifyError;
+pub(super) use declared::identify_lists;
 use list_fit::{ListFit, fit};
 use list_problem::ListProblem;
 
@@ -26,13 +28,18 @@ use list_problem::ListProblem;
 pub(super) fn trace_frequencies(test: &ImpactTest, declared: &Hypothesis) -> Result<Tracing, IdentifyError> {
     let problem = ListProblem::of(test)?;
     let base = fit(&problem, declared, &problem.usual())?;
+    if problem.count() <= base.size {
+        let (found, needed) = (problem.count(), base.size + 1);
+        let names = "and one more, to judge by".to_owned();
+        return Err(IdentifyError::TooFewFrequencies { found, needed, names });
+    }
     let constants = base.parameters[..problem.constants.count()].to_vec();
     let count: usize = test.measurements.iter().map(frequencies).sum();
     let mut fits = vec![base];
     let mut not_tested = Vec::new();
     for &effect in catalogue() {
         let id = effect.id();
-        if declared.effects.iter().any(|on| on.effect.id() == id) {
+        if declared.holds(effect) {
             continue;
         }
         let refused = |reason: &str| NotTested { id, reason: reason.to_owned() };
@@ -40,8 +47,7 @@ pub(super) fn trace_frequencies(test: &ImpactTest, declared: &Hypothesis) -> Res
             not_tested.push(refused("natural frequencies do not pass through the measuring chain's gain and phase"));
             continue;
         }
-        let has_place = effect.parameters().iter().any(|parameter| parameter.name == "x");
-        if has_place && problem.pieces() > 1 {
+        if has_place(effect) && problem.pieces() > 1 {
             not_tested.push(refused("each piece would have a place of its own: trace one piece in a test file"));
             continue;
         }

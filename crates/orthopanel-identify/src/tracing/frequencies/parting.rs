@@ -1,11 +1,11 @@
 //! The further list that would part two hypotheses best.
 
-use orthopanel_model::{ModelError, Place, effect, natural_frequencies};
+use orthopanel_model::{ModelError, Place};
 
 use super::list_fit::ListFit;
 use super::list_problem::{FrequencyList, ListProblem};
 use super::report::name;
-use crate::tracing::hypothesis::Hypothesis;
+use crate::tracing::further_list::{Further, further_frequencies};
 
 /// Masses that a tester adds, in parts of the piece's \[1\].
 const ADDED: [f64; 3] = [0.05, 0.1, 0.2];
@@ -80,23 +80,10 @@ fn apart(
     added: f64,
 ) -> Result<f64, ModelError> {
     let count = list.measured.len() + MORE;
-    let frequencies = |fit: &ListFit| -> Result<Vec<f64>, ModelError> {
-        let mut setting = list.setting.clone();
-        setting.record.response_at = place;
-        let mut hypothesis: Hypothesis = fit.hypothesis.clone();
-        let carried = hypothesis.effects.iter_mut().find(|on| on.effect.id() == "sensor-mass");
-        let mut states = match carried {
-            Some(on) => {
-                on.values[0] += added;
-                hypothesis.states(1)?
-            }
-            None => hypothesis.states(1)?,
-        };
-        if added > 0.0 && states.iter().all(|state| state.effect.id() != "sensor-mass") {
-            states.push(orthopanel_model::EffectState::new(effect("sensor-mass")?, vec![added, 0.0], 1)?);
-        }
+    let frequencies = |fit: &ListFit| {
         let free = fit.parameters.get(..problem.constants.count()).unwrap_or_default();
-        natural_frequencies(&setting, &problem.constants.values(free, list.piece), &states, count)
+        let values = problem.constants.values(free, list.piece);
+        further_frequencies(&list.setting, (&fit.hypothesis, 1), &values, Further { sensor: place, added }, count)
     };
     let (first, second) = (frequencies(one)?, frequencies(other)?);
     let square: f64 = first.iter().zip(&second).map(|(a, b)| (a / b - 1.0).powi(2)).sum();

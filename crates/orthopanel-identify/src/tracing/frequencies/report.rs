@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use orthopanel_data::ImpactTest;
-use orthopanel_model::{Damping, EffectEntry, Estimate, MODEL_SCHEMA, Owner, PanelModel, Ports, StructureKind, effect};
+use orthopanel_model::{Damping, Estimate, MODEL_SCHEMA, Owner, PanelModel, Ports, StructureKind, effect};
 
 use super::list_fit::ListFit;
 use super::list_problem::ListProblem;
@@ -77,6 +77,7 @@ pub(super) fn report(
         chi_square: problem.rounding().map_or(1.0, |rounding| (fits[chosen].percent() / 100.0 / rounding).powi(2)),
         panels,
         removed,
+        accelerances: vec![],
         notes: vec![
             "noise is not told by a list: the criterion takes it from the residuals themselves, and a margin of 10 is clear"
                 .to_owned(),
@@ -159,12 +160,7 @@ fn take_out(problem: &ListProblem, fit: &ListFit, declared: usize, panels: &mut 
             continue;
         }
         for panel in &mut *panels {
-            let first = |parameter: &TracedParameter| Some((parameter.name.to_owned(), *parameter.values.first()?));
-            panel.effects.push(EffectEntry {
-                id: found.id.to_owned(),
-                owner: found.owner.name().to_owned(),
-                parameters: found.parameters.iter().filter_map(first).collect(),
-            });
+            panel.effects.push(found.entry());
         }
     }
     removed

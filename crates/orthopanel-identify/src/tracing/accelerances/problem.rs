@@ -1,0 +1,265 @@
+//! Resonances and the lines between them as one sum of squares, each weighed by what it is good for.
+
+use num_complex::Complex64;
+use orthopanel_data::ImpactTest;
+use orthopanel_model::{EffectSetting, ModelError, NaturalFrequencies, Owner, Place, ReceptanceSetup, RecordSetting};
+
+use super::between_peaks::BetweenPeaks;
+use super::resonances::Resonance;
+use crate::IdentifyError;
+use crate::least_squares::{Ending, Quadratic, descend};
+use crate::tracing::record_problem::{Grouping, RecordProblem, State, total};
+use crate::tracing::whiteness::independent_part;
+use crate::tracing::widened_lines::WidenedLines;
+
+/// What a trace of accelerances holds on to.
+pub(super) struct AccelerancesProblem {
+    pub setup: ReceptanceSetup,
+    pub between: BetweenPeaks,
+    pub resonances: Vec<Resonance>,
+    /// What finds the natural frequencies with the sensor at each of its places, and the resonances that it is for.
+    places: Vec<(NaturalFrequencies, Vec<usize>)>,
+    /// Derivatives of the resonances by the logarithms of the free constants, where the last weighing was.
+    by_constants: Vec<Vec<f64>>,
+    pub held: [Option<f64>; 2],
+    pub usual_log_zeta: f64,
+    /// The lines with their variance, and how they are weighed.
+    lines: Vec<WidenedLines>,
+    pub weighing: Weighing,
+}
+
+/// How the lines between the resonances count.
+///
+/// What a model misses there (uneven hits, places, sections) is no noise: it is the same part of the motion in every
+/// record, $\mathrm{var} = c^2\overline{|H|^2} + N$, and neighbouring lines err alike. The fit that explains most so far
+/// tells $c$, and how many of the lines count as independent.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Weighing {
+    /// $c$.
+    pub relative: f64,
+    /// Part of the lines that counts.
+    pub independent: f64,
+}
+
+/// A hypothesis at its minimum.
+#[derive(Clone)]
+pub(super) struct AccelerancesFit {
+    pub state: State,
+    pub parameters: Vec<f64>,
+    /// $\sum((f_{cal}-f_{exp})/s)^2$ over the resonances.
+    pub resonances: f64,
+    /// Mean $|H_{cal}-H_{exp}|^2/\overline{|H|^2}$ of the lines between them.
+    pub missed: f64,
+    pub size: usize,
+}
+
+const FIRST: Weighing = Weighing { relative: 0.1, independent: 0.1 };
+/// The least that is ever missed: models of panels are no better.
+pub(super) const LEAST: f64 = 1e-4;
+/// Step of the differences of natural frequencies, in logarithms or parts of a range.
+const STEP: f64 = 1e-4;
+
+impl AccelerancesProblem {
+    /// # Errors
+    /// What the model refuses.
+    pub(super) fn new(
+        test: &ImpactTest,
+        setup: ReceptanceSetup,
+        resonances: Vec<Resonance>,
+        between: BetweenPeaks,
+        (held, usual_log_zeta): ([Option<f64>; 2], f64),
+    ) -> Result<Self, ModelError> {
+        let mut places: Vec<(Place, Vec<usize>)> = Vec::new();
+        for (index, resonance) in resonances.iter().enumerate() {
+            match places.iter_mut().find(|(place, _)| *place == resonance.response_at) {
+                Some((_, own)) => own.push(index),
+                None => places.push((resonance.response_at, vec![index])),
+            }
+        }
+        let places = places.into_iter().map(|(place, own)| {
+            let setting = EffectSetting {
+                piece: test.pieces[0].piece,
+                boundary: test.boundary,
+                suspension: test.suspension.clone(),
+                record: RecordSetting { number: 1, response_at: Some(place), ..RecordSetting::default() },
+            };
+            let count = own.iter().map(|&index| resonances[index].mode + 1).max().unwrap_or(1);
+            Ok((NaturalFrequencies::new(&setting, count)?, own))
+        });
+        let places = places.collect::<Result<_, ModelError>>()?;
+        let (by_constants, lines, weighing) = (vec![], vec![], FIRST);
+        let mut problem =
+            Self { setup, between, resonances, places, by_constants, held, usual_log_zeta, lines, weighing };
+        problem.weigh(FIRST);
+        Ok(problem)
+    }
+
+    /// Weighs the lines by what a fit leaves of them, and takes the derivatives by the constants from there.
+    ///
+    /// # Errors
+    /// What the model refuses.
+    pub(super) fn weigh_by(&mut self, fit: &AccelerancesFit) -> Result<(), ModelError> {
+        let relative = fit.missed.sqrt().max(LEAST);
+        let independent = independent_part(&self.residuals(&fit.state)?);
+        self.weigh(Weighing { relative, independent });
+        let constants = fit.parameters.len() - fit.state.hypothesis.size();
+        self.by_constants = self.differences(&fit.parameters, &fit.state, 0..constants)?;
+        Ok(())
+    }
+
+    fn weigh(&mut self, weighing: Weighing) {
+        self.weighing = weighing;
+        let between = &self.between;
+        let records = between.frequency.iter().zip(&between.value).zip(&between.noise).enumerate();
+        let lines = records.filter_map(|(index, ((frequency, value), noise))| {
+            let record = self.setup.setting(index)?.record;
+            let variance = between.level.iter().zip(noise);
+            Some(WidenedLines {
+                force_at: record.force_at?,
+                response_at: record.response_at?,
+                s: frequency.iter().map(|f| Complex64::new(0.0, f * std::f64::consts::TAU)).collect(),
+                value: value.clone(),
+                variance: variance.map(|(level, noise)| weighing.relative.powi(2) * level + noise).collect(),
+                scatter: None,
+                hits: vec![],
+            })
+        });
+        self.lines = lines.collect();
+    }
+
+    fn problem<'a>(&'a self, lines: &'a [WidenedLines]) -> RecordProblem<'a> {
+        let Self { setup, held, usual_log_zeta, .. } = self;
+        RecordProblem { setup, records: lines, held: *held, modes: 0, usual_log_zeta: *usual_log_zeta }
+    }
+
+    /// The fit's own lines and those of the data, over the root of their level, record by record.
+    pub(super) fn residuals(&self, state: &State) -> Result<Vec<Vec<Complex64>>, ModelError> {
+        let model = self.problem(&self.lines).lines(state)?;
+        let missed = self.lines.iter().zip(model).map(|(record, model)| {
+            let pairs = record.value.iter().zip(model).zip(&self.between.level);
+            pairs.map(|((measured, model), level)| (measured - model) / level.sqrt()).collect()
+        });
+        Ok(missed.collect())
+    }
+
+    /// $f_{cal}/f_{exp} - 1$ of every resonance.
+    pub(super) fn frequency_errors(&self, state: &State) -> Result<Vec<f64>, ModelError> {
+        let states = state.hypothesis.states(self.lines.len())?;
+        let constants = state.constants.map(f64::exp);
+        let mut errors = vec![f64::NAN; self.resonances.len()];
+        for (frequencies, own) in &self.places {
+            let found = frequencies.at(&constants, &states)?;
+            for &index in own {
+                let Resonance { mode, frequency, .. } = self.resonances[index];
+                errors[index] = found.get(mode).ok_or(ModelError::Eigenproblem)? / frequency - 1.0;
+            }
+        }
+        Ok(errors)
+    }
+
+    /// Derivatives of the resonances' errors by some of the parameters, a list a parameter.
+    fn differences(
+        &self,
+        parameters: &[f64],
+        like: &State,
+        of: impl Iterator<Item = usize>,
+    ) -> Result<Vec<Vec<f64>>, ModelError> {
+        let problem = self.problem(&self.lines);
+        let errors = |parameters: &[f64]| self.frequency_errors(&problem.state(parameters, like));
+        let (here, bounds) = (errors(parameters)?, problem.bounds(like));
+        let by = of.map(|index| {
+            let mut at = parameters.to_vec();
+            let (low, high) = bounds[index];
+            let step = STEP * (high - low).min(1.0);
+            at[index] += if at[index] + step <= high { step } else { -step };
+            let step = at[index] - parameters[index];
+            Ok(errors(&at)?.iter().zip(&here).map(|(there, here)| (there - here) / step).collect())
+        });
+        by.collect()
+    }
+
+    /// The sum of squares of all resonances.
+    fn of_resonances(&self, parameters: &[f64], like: &State) -> Result<Quadratic, ModelError> {
+        let constants = parameters.len() - like.hypothesis.size();
+        // Derivatives by the constants change little on the way, and steer the search only.
+        let mut by = match self.by_constants.len() == constants {
+            true => self.by_constants.clone(),
+            false => self.differences(parameters, like, 0..constants)?,
+        };
+        let here = self.frequency_errors(&self.problem(&self.lines).state(parameters, like))?;
+        let moves: Vec<usize> = (constants..parameters.len())
+            .zip(like.hypothesis.each_free())
+            .filter_map(|(index, (on, _))| (on.effect.owner() != Owner::Channel).then_some(index))
+            .collect();
+        by.resize(parameters.len(), vec![0.0; here.len()]);
+        if !moves.is_empty() {
+            for (index, by_parameter) in moves.iter().zip(self.differences(parameters, like, moves.iter().copied())?) {
+                by[*index] = by_parameter;
+            }
+        }
+        let mut sum = Quadratic::zero(parameters.len());
+        for (row, (error, resonance)) in here.iter().zip(&self.resonances).enumerate() {
+            let derivatives: Vec<(usize, f64)> =
+                by.iter().enumerate().map(|(i, by)| (i, by[row] / resonance.std)).collect();
+            sum.add_row(error / resonance.std, &derivatives);
+        }
+        sum.mirror();
+        Ok(sum)
+    }
+
+    /// Resonances and lines together.
+    pub(super) fn linearise(&self, parameters: &[f64], like: &State) -> Result<Quadratic, ModelError> {
+        let resonances = self.of_resonances(parameters, like)?;
+        let lines = self.problem(&self.lines).linearise(parameters, like)?;
+        Ok(total(&[resonances, scaled(lines, self.weighing.independent)]))
+    }
+
+    pub(super) fn parameters(&self, state: &State) -> Vec<f64> {
+        self.problem(&self.lines).parameters(state)
+    }
+
+    /// The minimum near `state`.
+    pub(super) fn fit(&self, state: &State, ending: Ending) -> Result<AccelerancesFit, IdentifyError> {
+        let problem = self.problem(&self.lines);
+        let (start, bounds) = (problem.parameters(state), problem.bounds(state));
+        let searched = descend(|p: &[f64]| self.linearise(p, state), &start, &bounds, ending);
+        let (minimum, _) = searched.map_err(IdentifyError::refused)?;
+        self.settle(problem.state(&minimum.parameters, state))
+    }
+
+    fn settle(&self, state: State) -> Result<AccelerancesFit, IdentifyError> {
+        let errors = self.frequency_errors(&state)?;
+        let resonances = errors.iter().zip(&self.resonances).map(|(error, of)| (error / of.std).powi(2)).sum();
+        let residuals = self.residuals(&state)?;
+        let missed = residuals.iter().flatten().map(Complex64::norm_sqr).sum::<f64>() / self.between.count() as f64;
+        let parameters = self.parameters(&state);
+        Ok(AccelerancesFit { size: parameters.len(), parameters, resonances, missed, state })
+    }
+
+    /// The sum of squares of the lines of each gap, and last that of the resonances.
+    pub(super) fn by_gap(&self, fit: &AccelerancesFit) -> Result<Vec<Quadratic>, ModelError> {
+        let gaps = self.between.gap.last().map_or(0, |last| last + 1);
+        let mut sums = Vec::new();
+        for gap in 0..gaps {
+            let own: Vec<usize> = (0..self.between.gap.len()).filter(|&at| self.between.gap[at] == gap).collect();
+            let part = |record: &WidenedLines| WidenedLines {
+                s: own.iter().map(|&at| record.s[at]).collect(),
+                value: own.iter().map(|&at| record.value[at]).collect(),
+                variance: own.iter().map(|&at| record.variance[at]).collect(),
+                ..record.clone()
+            };
+            let lines: Vec<WidenedLines> = self.lines.iter().map(part).collect();
+            let sum = self.problem(&lines).by_group(&fit.parameters, &fit.state, Grouping::Places)?;
+            sums.push(scaled(total(&sum), self.weighing.independent));
+        }
+        sums.push(self.of_resonances(&fit.parameters, &fit.state)?);
+        Ok(sums)
+    }
+}
+
+fn scaled(mut sum: Quadratic, by: f64) -> Quadratic {
+    sum.cost *= by;
+    sum.gradient.iter_mut().for_each(|slope| *slope *= by);
+    sum.normal *= faer::Scale(by);
+    sum
+}

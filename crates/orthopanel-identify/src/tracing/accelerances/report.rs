@@ -1,0 +1,172 @@
+//! What the fits of accelerances mean.
+
+use std::collections::BTreeMap;
+
+use orthopanel_data::ImpactTest;
+use orthopanel_model::{BEAM_CONSTANTS, Damping, Estimate, MODEL_SCHEMA, PanelModel, Ports, StructureKind};
+
+use super::parting::next_experiment;
+use super::problem::AccelerancesFit;
+use super::search::{Found, Search};
+use crate::IdentifyError;
+use crate::tracing::curves::curves;
+use crate::tracing::outcome::{Candidate, FittedError, TracedEffect, TracedError, Tracing, Verdict};
+use crate::tracing::record_problem::total;
+use crate::tracing::report::{effects_of, take_out};
+
+/// An effect that leaves more than this of either error explains little.
+const LEFT: f64 = 0.6;
+/// Resonances missed by more than so many of their standard deviations, rms, lack something.
+const MISSED: f64 = 3.0;
+
+/// `free_scale` says whether the last effect of the base is the factor on all records that no file declares.
+pub(super) fn report(
+    test: &ImpactTest,
+    search: &Search,
+    found: &Found,
+    free_scale: bool,
+) -> Result<Tracing, IdentifyError> {
+    let problem = &search.problem;
+    let (base, chosen) = (&found.fits[0], &found.fits[found.chosen]);
+    let mut order: Vec<usize> = (0..found.fits.len()).collect();
+    order.sort_by(|&a, &b| search.bic(&found.fits[a]).total_cmp(&search.bic(&found.fits[b])));
+    let percent = |square: f64| 100.0 * square.sqrt();
+    let error = |fit: &AccelerancesFit| -> Result<FittedError, IdentifyError> {
+        Ok(FittedError { fitted: percent(fit.missed), held_out: percent(search.held_out(fit)?) })
+    };
+    let candidate = |&index: &usize| -> Result<Candidate, IdentifyError> {
+        let fit = &found.fits[index];
+        Ok(Candidate {
+            id: name(search, fit),
+            bic: search.bic(fit),
+            held_out: percent(search.held_out(fit)?),
+            effects: traced(fit, &deviations(search, fit)?).split_off(search.declared),
+        })
+    };
+    let std = deviations(search, chosen)?;
+    let mut effects = traced(chosen, &std);
+    let mut panel = panel(test, search, chosen, &std);
+    let mut removed = take_out(effects.clone(), search.declared, &mut panel);
+    let mut notes = vec![said_of_frequencies(search, base, chosen)?];
+    if let Some((low, high)) = problem.between.band() {
+        notes.push(format!(
+            "errors are those of the lines between the resonances, {low:.0} to {high:.0} Hz, over the rms of all records there"
+        ));
+    }
+    let scale = effects.get(search.declared.saturating_sub(1)).filter(|_| free_scale);
+    if let Some(scale) = scale {
+        let value = scale.parameters.first().and_then(|parameter| parameter.values.first());
+        notes.push(format!(
+            "all records together are {:.3} times what mass and constants make of them: their calibration, or the mass",
+            value.map_or(1.0, |value| value.value)
+        ));
+        if let Some(at) = removed.iter().position(|removed| removed.id == scale.id) {
+            removed.remove(at);
+        }
+    }
+    let floor = problem.between.noise_floor();
+    Ok(Tracing {
+        verdict: verdict(search, found),
+        effects: effects.split_off(search.declared),
+        alternatives: found.rivals.iter().map(|&index| name(search, &found.fits[index])).collect(),
+        error: TracedError {
+            measure: "misfit between the resonances, % rms of the motion of all places there".to_owned(),
+            before: error(base)?,
+            after: error(chosen)?,
+            noise_floor: 100.0 * floor,
+        },
+        candidates: order.iter().map(candidate).collect::<Result<_, _>>()?,
+        not_tested: found.not_tested.clone(),
+        next_experiment: next_experiment(search, found),
+        chi_square: chosen.missed / floor.max(f64::MIN_POSITIVE).powi(2),
+        panels: vec![panel],
+        removed,
+        accelerances: curves(
+            &search.accelerances,
+            &problem.setup,
+            (&chosen.state, problem.usual_log_zeta),
+            search.band,
+        )?,
+        notes,
+    })
+}
+
+fn verdict(search: &Search, found: &Found) -> Verdict {
+    let (base, chosen) = (&found.fits[0], &found.fits[found.chosen]);
+    if found.chosen == 0 {
+        let count = search.problem.resonances.len().max(1) as f64;
+        return if base.resonances / count <= MISSED * MISSED { Verdict::NothingMissing } else { Verdict::Unexplained };
+    }
+    if !found.rivals.is_empty() {
+        return Verdict::Ambiguous;
+    }
+    let explained = chosen.missed < LEFT * LEFT * base.missed || chosen.resonances < LEFT * LEFT * base.resonances;
+    if explained { Verdict::Explained } else { Verdict::Unexplained }
+}
+
+/// The ids of the effects beyond the base.
+pub(super) fn name(search: &Search, fit: &AccelerancesFit) -> String {
+    let ids = search.ids(fit);
+    if ids.is_empty() { "base".to_owned() } else { ids.join(" + ") }
+}
+
+fn said_of_frequencies(
+    search: &Search,
+    base: &AccelerancesFit,
+    chosen: &AccelerancesFit,
+) -> Result<String, IdentifyError> {
+    let problem = &search.problem;
+    let count = problem.resonances.len().max(1) as f64;
+    let rms = |errors: Vec<f64>| 100.0 * (errors.iter().map(|error| error * error).sum::<f64>() / count).sqrt();
+    let spread = rms(problem.resonances.iter().map(|resonance| resonance.std).collect());
+    let (before, after) = (rms(problem.frequency_errors(&base.state)?), rms(problem.frequency_errors(&chosen.state)?));
+    Ok(format!(
+        "{count} natural frequencies: error {before:.4} % rms without effects, {after:.4} % with them; the records' own \
+         frequencies scatter by {spread:.4} %"
+    ))
+}
+
+/// Standard deviation of everything that a search moved.
+pub(super) fn deviations(search: &Search, fit: &AccelerancesFit) -> Result<Vec<Option<f64>>, IdentifyError> {
+    let covariance = total(&search.problem.by_gap(fit)?).covariance();
+    let std = |i: usize| covariance.as_ref().map(|matrix| matrix[(i, i)].sqrt()).filter(|std| std.is_finite());
+    Ok((0..fit.size).map(std).collect())
+}
+
+/// All effects, those of the base first.
+fn traced(fit: &AccelerancesFit, std: &[Option<f64>]) -> Vec<TracedEffect> {
+    let at = fit.size - fit.state.hypothesis.size();
+    effects_of(&fit.state.hypothesis, std.get(at..).unwrap_or_default())
+}
+
+fn panel(test: &ImpactTest, search: &Search, fit: &AccelerancesFit, std: &[Option<f64>]) -> PanelModel {
+    let mut std = std.iter().copied();
+    let mut constants = BTreeMap::new();
+    for (index, constant) in BEAM_CONSTANTS.iter().enumerate() {
+        let value = fit.state.constants[index].exp();
+        let held = search.problem.held[index].is_some();
+        let std = if held { None } else { std.next().flatten().map(|std| std * value) };
+        constants.insert(constant.name.to_owned(), Estimate { value, std });
+    }
+    let mut ports = Ports { forces: vec![], responses: vec![] };
+    for setting in (0..search.problem.between.value.len()).filter_map(|index| search.problem.setup.setting(index)) {
+        let places = [(&mut ports.forces, setting.record.force_at), (&mut ports.responses, setting.record.response_at)];
+        for (known, place) in places {
+            known.extend(place.filter(|place| !known.contains(place)));
+        }
+    }
+    PanelModel {
+        schema: MODEL_SCHEMA.to_owned(),
+        piece: search.piece,
+        boundary: test.boundary,
+        structure: StructureKind::TimoshenkoBeam,
+        constants,
+        damping: Damping {
+            ratios: fit.state.zetas.iter().map(|log| log.exp()).collect(),
+            beyond: search.problem.usual_log_zeta.exp(),
+        },
+        effects: vec![],
+        ports,
+        provenance: BTreeMap::new(),
+    }
+}

@@ -1,0 +1,45 @@
+//! The accelerances that a model with effects foretells for the records that it was fitted to.
+
+use num_complex::Complex64;
+use orthopanel_data::Accelerance;
+use orthopanel_model::{Damping, ReceptanceSetup};
+use rayon::prelude::*;
+
+use super::record_problem::State;
+use crate::{AcceleranceFit, IdentifyError};
+
+/// Measured and calculated, up to `band` \[Hz\], record by record; `setup` has the records in the same order.
+///
+/// # Errors
+/// What the model refuses.
+pub(super) fn curves(
+    accelerances: &[Accelerance],
+    setup: &ReceptanceSetup,
+    (state, usual_log_zeta): (&State, f64),
+    band: f64,
+) -> Result<Vec<AcceleranceFit>, IdentifyError> {
+    let damping = Damping { ratios: state.zetas.iter().map(|log| log.exp()).collect(), beyond: usual_log_zeta.exp() };
+    let effects = state.hypothesis.states(accelerances.len())?;
+    let model = setup.model(&state.constants.map(f64::exp), &damping, &effects)?;
+    let curve = |(index, record): (usize, &Accelerance)| {
+        let lines = record.frequency.partition_point(|&frequency| frequency <= band);
+        let frequency = record.frequency[..lines].to_vec();
+        let mut by = vec![Complex64::ZERO; model.columns()];
+        let mut evaluator = model.evaluator(index);
+        let mut line = |f: &f64| {
+            let s = Complex64::new(record.decay_rate, std::f64::consts::TAU * f);
+            evaluator.as_mut().map_or(Complex64::ZERO, |evaluator| evaluator.line(s, &mut by))
+        };
+        AcceleranceFit {
+            piece: 0,
+            force_at: record.force_at,
+            response_at: record.response_at,
+            model: frequency.iter().map(&mut line).collect(),
+            measured: record.value[..lines].to_vec(),
+            decay_rate: record.decay_rate,
+            variance: record.variance.as_ref().map(|variance| variance[..lines].to_vec()),
+            frequency,
+        }
+    };
+    Ok(accelerances.par_iter().enumerate().map(curve).collect())
+}

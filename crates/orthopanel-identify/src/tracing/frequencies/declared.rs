@@ -1,0 +1,57 @@
+//! The base model with declared effects, from lists of natural frequencies.
+
+use orthopanel_data::ImpactTest;
+use orthopanel_model::StructureKind;
+
+use super::list_fit::fit;
+use super::list_problem::ListProblem;
+use crate::frequency_fit::{bending_nodes, identified_constants};
+use crate::tracing::hypothesis::Hypothesis;
+use crate::tracing::report::effects_of;
+use crate::{Identification, IdentifyError, ModeFit, PieceFit};
+
+/// Constants, and what the test file leaves open of the declared effects.
+///
+/// # Errors
+/// As [`fit`].
+pub(in crate::tracing) fn identify_lists(
+    test: &ImpactTest,
+    declared: &Hypothesis,
+) -> Result<Identification, IdentifyError> {
+    let problem = ListProblem::of(test)?;
+    let found = fit(&problem, declared, &problem.usual())?;
+    let (constants, _) = found.parameters.split_at(problem.constants.count());
+    problem.constants.refuse_bounds(constants)?;
+    let std: Vec<Option<f64>> = found.std.iter().map(|std| Some(*std).filter(|std| std.is_finite())).collect();
+    let (of_constants, of_effects) = std.split_at(constants.len());
+    let pieces = test.pieces.iter();
+    let mut pieces: Vec<PieceFit> = pieces
+        .map(|named| PieceFit { name: named.name.clone(), piece: named.piece, modes: vec![], damping: vec![] })
+        .collect();
+    let mut errors = found.residuals.iter();
+    for list in &problem.lists {
+        let nodes = bending_nodes(test.boundary, list.measured.len());
+        let modes = (1..).zip(list.measured.iter().zip(nodes)).zip(errors.by_ref());
+        pieces[list.piece].modes.extend(modes.map(|((mode, (&measured, nodes)), error)| ModeFit {
+            mode,
+            nodes,
+            measured,
+            model: measured * (1.0 + error),
+            damping: None,
+        }));
+    }
+    Ok(Identification {
+        structure: StructureKind::TimoshenkoBeam,
+        constants: identified_constants(test, &problem.constants, constants, of_constants),
+        not_identified: vec![],
+        correlations: vec![],
+        pieces,
+        frequency_rms_percent: found.percent(),
+        left_one_out_percent: (problem.count() > found.size).then(|| found.left_out_percent()),
+        accelerance_rms_percent: None,
+        chi_square: None,
+        accelerances: vec![],
+        effects: effects_of(&found.hypothesis, of_effects),
+        notes: vec![],
+    })
+}

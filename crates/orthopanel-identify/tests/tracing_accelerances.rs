@@ -1,0 +1,115 @@
+//! Tracing in files of accelerances, which hold no hits.
+
+mod support;
+
+use std::fmt::Write as _;
+use std::path::Path;
+
+use orthopanel_data::{Estimation, ImpactTest};
+use orthopanel_identify::{TracedEffect, Tracing, Verdict, trace};
+use support::{made, shared_data};
+
+fn parameter(effect: &TracedEffect, name: &str) -> Vec<(f64, f64)> {
+    let found = effect.parameters.iter().find(|parameter| parameter.name == name).unwrap();
+    found.values.iter().map(|value| (value.value, value.std.unwrap_or(0.0))).collect()
+}
+
+fn effect<'a>(found: &'a Tracing, id: &str) -> &'a TracedEffect {
+    let ids: Vec<&str> = found.effects.iter().map(|effect| effect.id).collect();
+    found.effects.iter().find(|effect| effect.id == id).unwrap_or_else(|| panic!("{id} is not among {ids:?}"))
+}
+
+/// Rms error of the natural frequencies \[%\], before and after, as a note tells it.
+fn frequency_errors(found: &Tracing) -> (f64, f64) {
+    let note = found.notes.iter().find(|note| note.contains("natural frequencies")).unwrap();
+    let numbers: Vec<f64> = note.split_whitespace().filter_map(|word| word.parse().ok()).collect();
+    (numbers[1], numbers[2])
+}
+
+/// A real free beam: the gain of record 4 and hammer offsets between the resonances, a sensor's mass in the resonances,
+/// which a sensor that never moves cannot prove.
+#[test]
+fn val_the_free_beam_shows_an_oblique_hit_and_hides_its_sensor() {
+    let Some(folder) = shared_data("free_beam") else { return };
+    let found = trace(&ImpactTest::read(folder.join("test.toml")).unwrap()).unwrap();
+    assert_eq!(found.verdict, Verdict::Ambiguous);
+    let ids: Vec<&str> = found.effects.iter().map(|effect| effect.id).collect();
+    assert_eq!(ids[..2], ["record-gain", "hammer-offset"]);
+    let gain = effect(&found, "record-gain");
+    assert_eq!(parameter(gain, "record")[0].0, 4.0);
+    let (value, std) = parameter(gain, "gain")[0];
+    assert!((value - 0.83).abs() < 0.02 && std < 0.02, "gain {value} +- {std}");
+    // "Off by up to 9 mm", as the data's own page says.
+    assert!(parameter(effect(&found, "hammer-offset"), "offset").iter().all(|(offset, _)| offset.abs() < 9e-3));
+    let (mass, std) = parameter(effect(&found, "sensor-mass"), "mass")[0];
+    assert!((mass - 2.5e-3).abs() < 0.5e-3 && std < 0.5e-3, "sensor {mass} +- {std} kg");
+    assert!(
+        found.alternatives.iter().all(|id| id.starts_with("record-gain + hammer-offset")),
+        "{:?}",
+        found.alternatives
+    );
+    assert!(found.next_experiment.contains("sensor"), "{}", found.next_experiment);
+    let (before, after) = frequency_errors(&found);
+    assert!(before > 0.01 && after < 0.003, "{before} {after}");
+    let error = &found.error;
+    assert!(error.after.fitted < 7.0 && error.after.held_out < 7.0 && error.before.fitted > 9.0, "{error:?}");
+    // The floor is that of the lines between the resonances; what the model misses there is no noise.
+    assert!(error.noise_floor < 2.0, "{error:?}");
+    let scale = found.not_tested.iter().find(|not| not.id == "gain").unwrap();
+    assert!(scale.reason.contains("calibrated"));
+}
+
+/// The accelerances of a made roving test, without its hits, in files of their own.
+fn without_hits(test: &ImpactTest, folder: &Path) -> ImpactTest {
+    let piece = test.pieces[0].piece;
+    let mut toml = format!(
+        "[piece]\nlength = {}\nwidth = {}\nthickness = {}\nmass_per_area = {}\n",
+        piece.length, piece.width, piece.thickness, piece.mass_per_area
+    );
+    let at: Vec<f64> = test.suspension.iter().map(|place| place.x).collect();
+    if !at.is_empty() {
+        writeln!(toml, "[suspension]\nat = {at:?}").unwrap();
+    }
+    for (index, (_, record)) in test.accelerances(Estimation::default()).unwrap().iter().enumerate() {
+        let lines = record.frequency.iter().zip(&record.value).map(|(f, h)| format!("{f},{},{}\n", h.re, h.im));
+        let text = format!("frequency_hz,real,imag\n{}", lines.collect::<String>());
+        std::fs::write(folder.join(format!("{index}.csv")), text).unwrap();
+        let (force, response) = (record.force_at, record.response_at);
+        write!(
+            toml,
+            "[[measurement]]\nkind = \"accelerance\"\nfile = \"{index}.csv\"\nforce_at = [{:?}, {:?}]\nresponse_at = [{:?}, {:?}]\n",
+            force.x, force.y, response.x, response.y
+        )
+        .unwrap();
+    }
+    ImpactTest::from_toml(&toml, folder.join("test.toml")).unwrap()
+}
+
+#[test]
+fn val_effects_put_in_are_found_without_the_hits() {
+    for (kind, name) in [("record-gain", "gain"), ("sensor-mass", "mass")] {
+        let folder = tempfile::tempdir().unwrap();
+        let Some((test, case)) = made(&folder.path().join("set"), "clean", kind) else { return };
+        let found = trace(&without_hits(&test, folder.path())).unwrap();
+        let truth = case["effects"][0]["parameters"][name].as_f64().unwrap();
+        let named = found.effects.iter().any(|effect| effect.id == kind)
+            || found.alternatives.iter().any(|ids| ids.contains(kind));
+        assert!(named, "{kind} = {truth}: {:?}, {:?}", found.effects, found.alternatives);
+        let candidate = found.candidates.iter().find(|candidate| candidate.id.contains(kind)).unwrap();
+        let own = candidate.effects.iter().find(|effect| effect.id == kind).unwrap();
+        let (value, std) = parameter(own, name)[0];
+        assert!((value - truth).abs() < 4.0 * std + 0.02 * truth, "{kind}: {value} +- {std}, truth {truth}");
+        assert!(found.error.after.held_out < found.error.before.held_out, "{kind}: {:?}", found.error);
+    }
+}
+
+#[test]
+fn measurements_of_two_kinds_are_refused_with_the_way_out() {
+    let text = "[piece]\nlength = 1.0\nwidth = 0.1\nthickness = 0.01\nmass_per_area = 5.0\n[[measurement]]\n\
+                kind = \"natural-frequencies\"\nvalues = [30.0, 80.0, 150.0]\n[[measurement]]\nkind = \"accelerance\"\n\
+                file = \"0.csv\"\nforce_at = [0.0, 0.0]\nresponse_at = [0.4, 0.0]\n";
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("0.csv"), "frequency_hz,real,imag\n1.0,1.0,0.0\n2.0,1.0,0.0\n").unwrap();
+    let refused = trace(&ImpactTest::from_toml(text, folder.path().join("test.toml")).unwrap()).unwrap_err();
+    assert!(refused.to_string().contains("one kind"), "{refused}");
+}

@@ -1,0 +1,76 @@
+//! `[[effect]]` in a test file: part of the base model of `identify`, `trace` and `run`.
+
+mod support;
+
+use support::{Bench, number, refused};
+
+/// Natural frequencies of a free beam 1.2 x 0.05 x 0.01 m, 27 kg/m2, E 70 GPa, k'G 26 GPa x 2/3, with 20 g at x = 0.5 m:
+/// by finite elements in Python (200 Timoshenko elements), apart from this program.
+fn test_file(effect: &str) -> String {
+    format!(
+        "[piece]\nlength = 1.2\nwidth = 0.05\nthickness = 0.01\nmass_per_area = 27.0\n[constants]\ng_zx = 2.6e10\n{effect}\n\
+         [[measurement]]\nkind = \"natural-frequencies\"\nvalues = {FREQUENCIES:?}\nresponse_at = [0.5, 0.0]\n"
+    )
+}
+
+const FREQUENCIES: [f64; 6] = [36.014785, 99.817963, 196.028983, 323.665693, 481.862595, 669.908578];
+
+#[test]
+fn val_a_declared_sensor_is_part_of_the_base_model() {
+    let bench = Bench::new();
+    bench.write("told.toml", &test_file("[[effect]]\nid = \"sensor-mass\"\nmass = 0.02"));
+    let told = bench.json("identify told.toml -o model.json");
+    let e_x = number(&told, "/constants/e_x/value");
+    assert!((e_x / 7.0e10 - 1.0).abs() < 2e-5, "e_x {e_x}");
+    assert_eq!(told["effects"][0]["id"], "sensor-mass");
+    assert_eq!(told["effects"][0]["parameters"]["mass"][0]["value"], 0.02);
+    // The sensor is the rig's: the panel's model does not carry it.
+    assert!(bench.read_json("model.json").get("effects").is_none());
+    // Without it the constant is wrong by twice the shift of the frequencies: 1.2 % of the mass sits where modes move.
+    bench.write("untold.toml", &test_file(""));
+    let untold = bench.json("identify untold.toml");
+    let e_x = number(&untold, "/constants/e_x/value");
+    assert!(e_x / 7.0e10 - 1.0 < -0.005, "e_x {e_x}");
+}
+
+#[test]
+fn val_a_parameter_left_out_is_identified() {
+    let bench = Bench::new();
+    bench.write("test.toml", &test_file("[[effect]]\nid = \"sensor-mass\""));
+    let found = bench.json("identify test.toml");
+    let mass = &found["effects"][0]["parameters"]["mass"][0];
+    let (value, std) = (number(mass, "/value"), number(mass, "/std"));
+    assert!((value - 0.02).abs() < 1e-4 && std > 0.0 && std < 1e-4, "{value} +- {std} kg");
+    assert!((number(&found, "/constants/e_x/value") / 7.0e10 - 1.0).abs() < 1e-4);
+    // A mass of the panel stays in its model.
+    bench.write("panel.toml", &test_file("[[effect]]\nid = \"local-mass\"\nx = 0.5"));
+    bench.json("identify panel.toml -o model.json");
+    let kept = &bench.read_json("model.json")["effects"][0];
+    assert_eq!(kept["id"], "local-mass");
+    assert!((number(kept, "/mass/value") - 0.02).abs() < 1e-4, "{kept}");
+}
+
+#[test]
+fn a_wrong_effect_is_refused_with_its_numbers() {
+    for (effect, said) in [
+        ("id = \"sensor-wheel\"", &["sensor-wheel", "sensor-mass"][..]),
+        ("id = \"sensor-mass\"\nweight = 0.02", &["weight", "mass"]),
+        ("id = \"sensor-mass\"\nmass = -1.0", &["mass", "-1", "kg"]),
+        ("id = \"sensor-mass\"\nmass = 900.0", &["mass", "9e2", "kg"]),
+        ("id = \"suspension\"", &["suspension"]),
+        ("id = \"width-coupling\"", &["width-coupling"]),
+    ] {
+        let bench = Bench::new();
+        bench.write("test.toml", &test_file(&format!("[[effect]]\n{effect}")));
+        for command in ["identify", "trace"] {
+            refused(&bench, &format!("{command} test.toml"), 2, said);
+        }
+    }
+    let bench = Bench::new();
+    let twice = "[[effect]]\nid = \"sensor-mass\"\nmass = 0.01\n[[effect]]\nid = \"sensor-mass\"";
+    bench.write("test.toml", &test_file(twice));
+    refused(&bench, "identify test.toml", 2, &["sensor-mass", "twice"]);
+    let plate = format!("structure = \"mindlin-plate\"\n{}", test_file("[[effect]]\nid = \"sensor-mass\""));
+    bench.write("test.toml", &plate);
+    refused(&bench, "identify test.toml", 2, &["effect", "beam"]);
+}
