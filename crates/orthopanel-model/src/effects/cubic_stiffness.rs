@@ -35,7 +35,8 @@ impl Effect for CubicStiffness {
         let at = setting.suspension_for(self.id())?;
         let amplitudes = &setting.record.suspension_amplitudes;
         if amplitudes.len() != at.len() {
-            let what = "the amplitude at each suspension point, in each record";
+            let what =
+                "the amplitude of each suspension point in each record, which this version does not work out from hits";
             return Err(ModelError::EffectNeeds { effect: self.id(), what });
         }
         let spring = |(&place, amplitude): (&Place, &f64)| {

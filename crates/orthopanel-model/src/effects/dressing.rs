@@ -38,7 +38,8 @@ impl Dressing {
                     Action::Core(core) => dressing.core = Some((core, start)),
                     Action::Plate(_) => {
                         return Err(ModelError::Unsupported(
-                            "width-coupling as a change of the beam: take the plate".into(),
+                            "width-coupling in records (lists of natural frequencies are tested for it: put them into a test file of their own, or say structure = \"mindlin-plate\")"
+                                .into(),
                         ));
                     }
                     Action::Element(_) | Action::Channel(..) | Action::Place(_) | Action::Window { .. } => {}
