@@ -1,5 +1,8 @@
 //! Legendre polynomials $P_n$ on $[-1, 1]$.
 
+use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex};
+
 /// $P_0(t), \dots, P_{count-1}(t)$ by the three-term recurrence.
 pub(crate) fn legendre(count: usize, t: f64) -> Vec<f64> {
     let mut values = Vec::with_capacity(count);
@@ -32,8 +35,18 @@ pub(crate) fn antiderivative(coefficients: &[f64]) -> Vec<f64> {
     integral
 }
 
+/// Points and weights.
+pub(crate) type Rule = Arc<[(f64, f64)]>;
+
 /// Points and weights of Gauss and Legendre on $[-1, 1]$: exact for polynomials of degree $2\,\text{count}-1$.
-pub(crate) fn gauss_legendre(count: usize) -> Vec<(f64, f64)> {
+pub(crate) fn gauss_legendre(count: usize) -> Rule {
+    // A search assembles thousands of uneven beams with one rule.
+    static KNOWN: Mutex<BTreeMap<usize, Rule>> = Mutex::new(BTreeMap::new());
+    let Ok(mut known) = KNOWN.lock() else { return solved_rule(count) };
+    Arc::clone(known.entry(count).or_insert_with(|| solved_rule(count)))
+}
+
+fn solved_rule(count: usize) -> Rule {
     let n = count as f64;
     let point = |i: usize| {
         let mut t = (std::f64::consts::PI * (i as f64 + 0.75) / (n + 0.5)).cos();

@@ -31,8 +31,9 @@ pub use boundary::{Boundary, End};
 pub use constant::Constant;
 pub use effects::{
     Action, ChannelFactor, CoreLine, CoreModulus, Effect, EffectParameter, EffectSetting, EffectState, ElementLaw,
-    ElementLine, FactorLine, FieldTerm, LineEvaluator, NaturalFrequencies, Owner, PointElement, ReceptanceModel,
-    ReceptanceSetup, RecordSetting, Reference, Scale, Seat, Share, Shift, catalogue, effect, natural_frequencies,
+    ElementLine, FactorLine, FieldTerm, LineDerivatives, LineEvaluator, NaturalFrequencies, Owner, PointElement,
+    ReceptanceModel, ReceptanceSetup, RecordSetting, Reference, Scale, Seat, Share, Shift, catalogue, effect,
+    natural_frequencies,
 };
 pub use error::ModelError;
 pub use mindlin_plate::{MindlinPlate, ModeKind, ModeName, PLATE_CONSTANTS};

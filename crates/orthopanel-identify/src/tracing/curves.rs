@@ -24,17 +24,16 @@ pub(super) fn curves(
     let curve = |(index, record): (usize, &Accelerance)| {
         let lines = record.frequency.partition_point(|&frequency| frequency <= band);
         let frequency = record.frequency[..lines].to_vec();
-        let mut by = vec![Complex64::ZERO; model.columns()];
-        let mut evaluator = model.evaluator(index);
-        let mut line = |f: &f64| {
-            let s = Complex64::new(record.decay_rate, std::f64::consts::TAU * f);
-            evaluator.as_mut().map_or(Complex64::ZERO, |evaluator| evaluator.line(s, &mut by))
-        };
+        let at = |f: &f64| Complex64::new(record.decay_rate, std::f64::consts::TAU * f);
+        let mut of_model = vec![Complex64::ZERO; lines];
+        if let Some(mut evaluator) = model.evaluator(index) {
+            evaluator.lines(&frequency.iter().map(at).collect::<Vec<_>>(), |line, value, _| of_model[line] = value);
+        }
         AcceleranceFit {
             piece: 0,
             force_at: record.force_at,
             response_at: record.response_at,
-            model: frequency.iter().map(&mut line).collect(),
+            model: of_model,
             measured: record.value[..lines].to_vec(),
             decay_rate: record.decay_rate,
             variance: record.variance.as_ref().map(|variance| variance[..lines].to_vec()),

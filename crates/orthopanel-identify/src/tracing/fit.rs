@@ -34,7 +34,7 @@ impl Fit {
 pub(super) const LAST: usize = WIDENINGS.len() - 1;
 
 /// Evaluations at each widening: the first finds the place, the others polish it.
-const PATIENCE: [Ending; WIDENINGS.len()] =
+pub(super) const PATIENCE: [Ending; WIDENINGS.len()] =
     [Ending::short(12, 1.0), Ending::short(6, 1.0), Ending::short(4, 1.0), Ending::short(14, 0.2)];
 
 /// Fits from `state`, beginning at the widening of this number.

@@ -111,9 +111,10 @@ fn difference(
         let ratios = fit.state.zetas.iter().map(|log| log.exp()).collect();
         let damping = Damping { ratios, beyond: problem.usual_log_zeta.exp() };
         let model = setup.model(&fit.state.constants.map(f64::exp), &damping, &states)?;
-        let mut by = vec![Complex64::ZERO; model.columns()];
         let Some(mut evaluator) = model.evaluator(0) else { return Ok(vec![]) };
-        Ok(record.s.iter().map(|&s| evaluator.line(s, &mut by)).collect())
+        let mut lines = Vec::with_capacity(record.s.len());
+        evaluator.lines(&record.s, |_, value, _| lines.push(value));
+        Ok(lines)
     };
     let (one, other) = (lines(chosen)?, lines(rival)?);
     let apart = one.iter().zip(&other).zip(&record.variance).map(|((a, b), variance)| (a - b).norm_sqr() / variance);

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use orthopanel_model::{Piece, catalogue};
 use rayon::prelude::*;
 
-use super::fit::{Fit, LAST, fit, settle};
+use super::fit::{Fit, LAST, PATIENCE, fit, polish, settle};
 use super::held_out::held_out;
 use super::information::LikelihoodScale;
 use super::outcome::{NotTested, Progress};
@@ -94,15 +94,24 @@ impl Search<'_> {
         Ok(ranking)
     }
 
-    /// Fits to the end what is not hopelessly behind on the widest lines already.
-    fn finish(&self, begun: Vec<(State, f64)>) -> Vec<Fit> {
-        let best = begun.iter().map(|(_, cost)| *cost).fold(f64::INFINITY, f64::min);
-        let worst = begun.iter().map(|(_, cost)| *cost).fold(0.0, f64::max);
-        let limit = best + BEHIND * (worst - best) + LITTLE;
-        let fits = begun.into_par_iter().filter_map(|(state, cost)| {
-            if cost <= limit { fit(self.records, state, 0).ok() } else { settle(self.records, state, true).ok() }
-        });
-        fits.collect()
+    /// Fits to the end what is not hopelessly behind, widening by widening: the narrow lines cost the most, and few need them.
+    fn finish(&self, begun: Vec<Costed>) -> Vec<Fit> {
+        let (mut running, mut behind) = part(begun);
+        for (stage, &patience) in PATIENCE.iter().enumerate() {
+            let polished: Vec<_> =
+                running.par_iter().filter_map(|(state, _)| polish(self.records, state, stage, patience).ok()).collect();
+            if stage == LAST {
+                running = polished;
+            } else {
+                let (ahead, left) = part(polished);
+                running = ahead;
+                behind.extend(left);
+            }
+        }
+        let ends =
+            running.into_iter().map(|(state, _)| (state, false)).chain(behind.into_iter().map(|(s, _)| (s, true)));
+        let ends: Vec<(State, bool)> = ends.collect();
+        ends.into_par_iter().filter_map(|(state, given_up)| settle(self.records, state, given_up).ok()).collect()
     }
 
     /// Whiteness and misfit of the best fit so far make the measure for all.
@@ -161,7 +170,7 @@ impl Search<'_> {
     fn partners(&self, root: &Fit) -> Result<Vec<Fit>, IdentifyError> {
         let on: Vec<&str> = root.state.hypothesis.effects.iter().map(|on| on.effect.id()).collect();
         let others: Vec<_> = catalogue().iter().filter(|effect| !on.contains(&effect.id())).collect();
-        let mut starts: Vec<(State, f64)> = others
+        let mut starts: Vec<Costed> = others
             .par_iter()
             .filter_map(|effect| best_start(self.records, &root.state, **effect, &self.piece).ok())
             .collect();
@@ -183,6 +192,17 @@ fn each_once(mut fits: Vec<Fit>) -> Vec<Fit> {
         is_new
     });
     fits
+}
+
+/// A hypothesis on its way, and the misfit so far.
+type Costed = (State, f64);
+
+/// Those that may still win, and those that are behind.
+fn part(begun: Vec<Costed>) -> (Vec<Costed>, Vec<Costed>) {
+    let best = begun.iter().map(|(_, cost)| *cost).fold(f64::INFINITY, f64::min);
+    let worst = begun.iter().map(|(_, cost)| *cost).fold(0.0, f64::max);
+    let limit = best + BEHIND * (worst - best) + LITTLE;
+    begun.into_iter().partition(|(_, cost)| *cost <= limit)
 }
 
 impl Ranking {

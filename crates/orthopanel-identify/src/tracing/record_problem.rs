@@ -95,7 +95,6 @@ impl RecordProblem<'_> {
         let model = self.model(&state)?;
         let plan = self.columns(&state);
         let all: Vec<usize> = (0..size).collect();
-        let mut by = vec![Complex64::ZERO; model.columns()];
         let mut sums: Vec<Quadratic> = Vec::new();
         for (index, record) in self.records.iter().enumerate() {
             let Some(mut evaluator) = model.evaluator(index) else { continue };
@@ -104,19 +103,18 @@ impl RecordProblem<'_> {
                 Grouping::Hits => record.hits.iter().map(|hit| (&hit.value[..], &hit.variance[..])).collect(),
             };
             let mut rows: Vec<Mat<f64>> = targets.iter().map(|_| Mat::zeros(2 * record.s.len(), size + 1)).collect();
-            for (line, &s) in record.s.iter().enumerate() {
-                let value = evaluator.line(s, &mut by);
+            evaluator.lines(&record.s, |line, value, by| {
                 for ((measured, variance), rows) in targets.iter().zip(&mut rows) {
                     // The variance counts real and imaginary part together.
                     let weight = (2.0 / variance[line]).sqrt();
                     for (column, &(of_model, factor)) in plan.iter().enumerate() {
-                        let entry = weight * factor * by[of_model];
+                        let entry = weight * factor * by.of(of_model);
                         (rows[(2 * line, column)], rows[(2 * line + 1, column)]) = (entry.re, entry.im);
                     }
                     let missed = weight * (value - measured[line]);
                     (rows[(2 * line, size)], rows[(2 * line + 1, size)]) = (missed.re, missed.im);
                 }
-            }
+            });
             for (target, rows) in rows.iter().enumerate() {
                 let group = if grouping == Grouping::Hits { target } else { index };
                 if sums.len() <= group {
@@ -138,10 +136,11 @@ impl RecordProblem<'_> {
     /// The accelerance of every record at a state.
     pub(super) fn lines(&self, state: &State) -> Result<Vec<Vec<Complex64>>, ModelError> {
         let model = self.model(state)?;
-        let mut by = vec![Complex64::ZERO; model.columns()];
         let records = self.records.iter().enumerate().map(|(index, record)| {
             let Some(mut evaluator) = model.evaluator(index) else { return vec![] };
-            record.s.iter().map(|&s| evaluator.line(s, &mut by)).collect()
+            let mut lines = Vec::with_capacity(record.s.len());
+            evaluator.lines(&record.s, |_, value, _| lines.push(value));
+            lines
         });
         Ok(records.collect())
     }

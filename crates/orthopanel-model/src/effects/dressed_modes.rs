@@ -5,13 +5,13 @@ use std::sync::Arc;
 use faer::Mat;
 
 use super::dressing::Dressing;
-use super::receptance::modal_base::{ModalBase, Row};
+use super::receptance::modal_base::{ModalBase, Row, SharedStructure};
 use super::receptance::view::View;
 use super::{Action, EffectSetting, EffectState, ElementLaw, PointElement, RecordSetting, Seat};
 use crate::dense::{Cholesky, symmetric_eigen};
 use crate::panel_mode::crossings;
 use crate::structure::Motion;
-use crate::{BeamTerms, Boundary, Damping, ModelError, Piece, Place, Structure, TimoshenkoBeam};
+use crate::{BeamTerms, Boundary, Damping, ModelError, Piece, Place, TimoshenkoBeam};
 
 /// Modes of the bare structure beyond those asked for.
 const SPARE_MODES: usize = 10;
@@ -23,7 +23,7 @@ const SPARE_MODES: usize = 10;
 /// $\mathrm{diag}(\omega_m^2)\oplus C_0$ and $I\oplus C_1$, and an element at row $r_p = (\phi_m(p), C_{0,p})$ adds
 /// $k\,r_pr_p^T$ or $m\,r_pr_p^T$.
 pub(crate) struct DressedPanel {
-    structure: Arc<TimoshenkoBeam>,
+    structure: SharedStructure,
     values: Vec<f64>,
     /// Block, coordinates and $\omega^2$ of each bare mode.
     bare: Vec<(usize, Vec<f64>, f64)>,
@@ -68,13 +68,12 @@ impl DressedPanel {
         let panel = Arc::new(panel);
         let grid = panel.grid(piece, count);
         let couplings = system.couplings(&found);
-        let dressed =
-            |((angular_frequency, damping_ratio, mut shares), damping_coupling): ((f64, f64, Vec<f64>), Vec<f64>)| {
-                shares.truncate(system.panel);
-                let nodes = nodes(&grid, &shares);
-                let panel = Arc::clone(&panel);
-                DressedMode { panel, angular_frequency, damping_ratio, damping_coupling, nodes, shares }
-            };
+        let dressed = |((angular_frequency, damping_ratio, mut shares), damping_coupling): (FoundMode, Vec<f64>)| {
+            shares.truncate(system.panel);
+            let nodes = nodes(&grid, &shares);
+            let panel = Arc::clone(&panel);
+            DressedMode { panel, angular_frequency, damping_ratio, damping_coupling, nodes, shares }
+        };
         Ok(found.into_iter().zip(couplings).map(dressed).collect())
     }
 
@@ -87,20 +86,20 @@ impl DressedPanel {
         effects: &[EffectState],
         damping: &Damping,
         count: usize,
-    ) -> Result<(Self, System, Vec<(f64, f64, Vec<f64>)>), ModelError> {
+    ) -> Result<(Self, System, Vec<FoundMode>), ModelError> {
         let dressing = Dressing::of(effects, setting, 0)?;
         if dressing.core.is_some() {
             return Err(ModelError::Unsupported("viscoelastic-core in a model of modes".into()));
         }
         let summed = count + SPARE_MODES;
-        let beam = match dressing.terms {
+        let beam: SharedStructure = match dressing.terms {
             Some(terms) => {
                 Arc::new(TimoshenkoBeam::with_terms(&setting.piece, setting.boundary, basis_terms(count), terms)?)
             }
-            None => Arc::clone(even),
+            None => Arc::<TimoshenkoBeam>::clone(even),
         };
         let elements = elements(effects, setting)?;
-        let base = ModalBase::new(&*beam, values, summed, &[], &[])?;
+        let base = ModalBase::new(&beam, values, summed, &[], &[])?;
         let rows: Vec<Row> =
             elements.iter().filter_map(|element| Some((element.motion, place(element, setting)?))).collect();
         let view = View::new(&base, &rows, &[])?;
@@ -117,7 +116,6 @@ impl DressedPanel {
         let placed = rows.iter().enumerate().map(|(row, place)| (*place, at(row))).collect();
         let rigid = base.rigid;
         let system = System::new(&view, &elements, damping);
-        drop(base);
         let panel = Self { structure: beam, values: values.to_vec(), bare, rows: placed };
         let mut found = system.solve()?;
         found.truncate(rigid + count);
@@ -247,6 +245,9 @@ impl DressedMode {
     }
 }
 
+/// $\omega$, $\zeta$ and all coordinates of a mode.
+type FoundMode = (f64, f64, Vec<f64>);
+
 /// Stiffness, mass and damping in the coordinates of a [`DressedPanel`].
 struct System {
     stiffness: Mat<f64>,
@@ -311,7 +312,7 @@ impl System {
 
     /// $\omega$, $\zeta$ and all coordinates of each mode, rising. As in [`crate::ritz_modes()`], by the inverse
     /// of a shifted stiffness; a mass matrix that negative masses make indefinite leaves modes without meaning, which go.
-    fn solve(&self) -> Result<Vec<(f64, f64, Vec<f64>)>, ModelError> {
+    fn solve(&self) -> Result<Vec<FoundMode>, ModelError> {
         let kept = self.independent();
         let size = kept.len();
         let part = |matrix: &Mat<f64>| Mat::from_fn(size, size, |i, j| matrix[(kept[i], kept[j])]);
@@ -345,12 +346,12 @@ impl System {
     }
 
     /// The damping matrix in these modes, less $2\zeta\omega$ on its diagonal; rigid modes have none.
-    fn couplings(&self, modes: &[(f64, f64, Vec<f64>)]) -> Vec<Vec<f64>> {
-        let row = |(m, (omega, zeta, shape)): (usize, &(f64, f64, Vec<f64>))| {
+    fn couplings(&self, modes: &[FoundMode]) -> Vec<Vec<f64>> {
+        let row = |(m, (omega, zeta, shape)): (usize, &FoundMode)| {
             let forces: Vec<f64> = (0..shape.len())
                 .map(|i| self.damping.col_as_slice(i).iter().zip(shape).map(|(damping, share)| damping * share).sum())
                 .collect();
-            let other = |(n, (other, _, along)): (usize, &(f64, f64, Vec<f64>))| {
+            let other = |(n, (other, _, along)): (usize, &FoundMode)| {
                 let whole: f64 = forces.iter().zip(along).map(|(force, share)| force * share).sum();
                 let rest = if n == m { whole - 2.0 * zeta * omega } else { whole };
                 // What rounding leaves of a rigid mode, or of the diagonal.

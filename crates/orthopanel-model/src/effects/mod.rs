@@ -43,7 +43,7 @@ pub(crate) use dressed_modes::{DressedMode, DressedPanel};
 pub use dressed_modes::{NaturalFrequencies, natural_frequencies};
 pub use parameter::{EffectParameter, Reference, Scale};
 pub use point_element::{ElementLaw, ElementLine, PointElement, Seat, Share};
-pub use receptance::{LineEvaluator, ReceptanceModel, ReceptanceSetup};
+pub use receptance::{LineDerivatives, LineEvaluator, ReceptanceModel, ReceptanceSetup};
 pub use setting::{EffectSetting, RecordSetting};
 pub use state::EffectState;
 

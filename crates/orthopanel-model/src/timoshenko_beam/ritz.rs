@@ -80,19 +80,22 @@ fn assemble(functions: &[StrainFunction], section: Section, half_length: f64, te
     };
     let Section { second_moment, shear_area, mass, rotary_inertia } = section;
     let bending = matrix(&|f, g| second_moment * product(&f.curvature, &g.curvature));
-    let mut shear = matrix(&|f, g| shear_area * product(&f.shear, &g.shear));
-    let mut inertia = matrix(&|f, g| {
-        mass * product(&f.deflection, &g.deflection) + rotary_inertia * product(&f.rotation, &g.rotation)
-    });
-    if !terms.losses.is_empty() {
+    let (shear, inertia) = if terms.losses.is_empty() {
+        let shear = matrix(&|f, g| shear_area * product(&f.shear, &g.shear));
+        let inertia = matrix(&|f, g| {
+            mass * product(&f.deflection, &g.deflection) + rotary_inertia * product(&f.rotation, &g.rotation)
+        });
+        (shear, inertia)
+    } else {
         let quadrature = Quadrature::new(functions, half_length, &terms.losses);
-        shear = faer::Scale(shear_area) * quadrature.product(Field::Shear, |_| 1.0);
+        let mut shear = faer::Scale(shear_area) * quadrature.product(Field::Shear, |_| 1.0);
         for loss in &terms.losses {
             shear -= faer::Scale(loss.loss * shear_area) * quadrature.span(loss);
         }
-        inertia = faer::Scale(mass) * quadrature.product(Field::Deflection, |_| 1.0)
+        let inertia = faer::Scale(mass) * quadrature.product(Field::Deflection, |_| 1.0)
             + faer::Scale(rotary_inertia) * quadrature.product(Field::Rotation, |_| 1.0);
-    }
+        (shear, inertia)
+    };
     let mass = inertia;
     let mut stiffness = vec![bending, shear];
     if let Some(support) = terms.support {

@@ -42,12 +42,24 @@ impl StrainFunction {
     pub(super) fn at(&self, t: f64, polynomials: &[f64], half_length: f64) -> [f64; 4] {
         let sum = |series: &[f64]| -> f64 { series.iter().zip(polynomials).map(|(c, p)| c * p).sum() };
         let mut values = [sum(&self.curvature), sum(&self.shear), sum(&self.rotation), sum(&self.deflection)];
-        if let Some(step) = self.step.filter(|step| t > step.edge) {
-            let along = (t - step.edge) / (1.0 - step.edge);
-            values[1] += along.powi(step.degree);
-            values[3] += half_length * (1.0 - step.edge) * along.powi(step.degree + 1) / f64::from(step.degree + 1);
+        if let Some(step) = self.step {
+            let [shear, deflection] = step.at(t, half_length);
+            values[1] += shear;
+            values[3] += deflection;
         }
         values
+    }
+}
+
+impl Step {
+    /// Strain and its integral at $t$.
+    pub(super) fn at(&self, t: f64, half_length: f64) -> [f64; 2] {
+        if t <= self.edge {
+            return [0.0; 2];
+        }
+        let along = (t - self.edge) / (1.0 - self.edge);
+        let strain = along.powi(self.degree);
+        [strain, half_length * (1.0 - self.edge) * strain * along / f64::from(self.degree + 1)]
     }
 }
 
@@ -105,7 +117,7 @@ pub(super) fn steps(half_length: f64, edges: [f64; 2], terms: usize) -> impl Ite
 fn step(half_length: f64, step: Step, terms: usize) -> StrainFunction {
     let (middle, half) = (0.5 * (step.edge + 1.0), 0.5 * (1.0 - step.edge));
     let mut shear = vec![0.0; terms];
-    for (t, weight) in gauss_legendre(terms + 2) {
+    for &(t, weight) in gauss_legendre(terms + 2).iter() {
         let along = (0.5 * (t + 1.0)).powi(step.degree);
         for ((n, total), value) in shear.iter_mut().enumerate().zip(legendre(terms, middle + half * t)) {
             *total -= half * weight * along * value / norm(n);

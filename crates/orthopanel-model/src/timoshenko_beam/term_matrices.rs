@@ -13,14 +13,14 @@ pub(super) struct Quadrature {
     half_length: f64,
     /// $t$ and weight in $x$ of each point.
     points: Vec<(f64, f64)>,
-    /// $\psi'$, $w'+\psi$, $\psi$, $w$: a row a point, a column a function.
-    values: [Mat<f64>; 4],
+    /// $w'+\psi$, $\psi$, $w$: a row a point, a column a function.
+    values: [Mat<f64>; 3],
 }
 
 /// A field of [`Quadrature`]; none asks for the curvature, whose matrix is diagonal.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Field {
-    Shear = 1,
+    Shear,
     Rotation,
     Deflection,
 }
@@ -42,13 +42,20 @@ impl Quadrature {
                 rule.iter().map(move |(t, weight)| (middle + half * t, half_length * half * weight))
             })
             .collect();
-        let mut values = [0; 4].map(|_| Mat::zeros(points.len(), functions.len()));
-        for (row, &(t, _)) in points.iter().enumerate() {
-            let polynomials = legendre(terms, t);
-            for (column, function) in functions.iter().enumerate() {
-                for (matrix, value) in values.iter_mut().zip(function.at(t, &polynomials, half_length)) {
-                    matrix[(row, column)] = value;
-                }
+        let at_points: Vec<Vec<f64>> = points.iter().map(|&(t, _)| legendre(terms, t)).collect();
+        let polynomials = Mat::from_fn(points.len(), terms, |row, n| at_points[row][n]);
+        let of_series = |series: &dyn Fn(&StrainFunction) -> &[f64]| {
+            let coefficients = Mat::from_fn(terms, functions.len(), |n, column| {
+                series(&functions[column]).get(n).copied().unwrap_or_default()
+            });
+            product(polynomials.as_ref(), coefficients.as_ref())
+        };
+        let mut values = [of_series(&|f| &f.shear), of_series(&|f| &f.rotation), of_series(&|f| &f.deflection)];
+        for (column, step) in functions.iter().enumerate().filter_map(|(column, f)| Some((column, f.step?))) {
+            for (row, &(t, _)) in points.iter().enumerate() {
+                let [shear, deflection] = step.at(t, half_length);
+                values[Field::Shear as usize][(row, column)] += shear;
+                values[Field::Deflection as usize][(row, column)] += deflection;
             }
         }
         Self { half_length, points, values }

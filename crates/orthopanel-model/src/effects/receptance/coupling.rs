@@ -1,4 +1,4 @@
-//! One line: the sum over modes, the elements joined to it, and every derivative.
+//! Some lines: the sum over modes, the elements joined to it, and every derivative.
 //!
 //! With the bare receptances $H$, an element at row $p$ takes the force $g_p$, and $A_px_p = B_pg_p$ for its
 //! displacement (see [`ElementLine`]). A unit force at $a$ moves the element's place by $x_p = H_{pa} - \sum_qH_{pq}g_q$,
@@ -8,31 +8,11 @@
 //! acts as it would on the bare structure, one of an element as $-\mu_r(B\,dA - A\,dB)\mu_f$, and one of a place through
 //! the slope of the motion there.
 
-use std::ops::{Add, Mul};
-
 use num_complex::Complex64;
 
 use super::view::{Layout, SERIES_TERMS};
+use super::wide::{LINES, Numbers, Wide};
 use crate::effects::ElementLine;
-
-/// A number of a view: real, or complex where the modulus is.
-pub(super) trait Number:
-    Copy + Add<Output = Self> + Mul<Output = Self> + Mul<Complex64, Output = Complex64> + Into<Complex64>
-{
-    fn root(self) -> Self;
-}
-
-impl Number for f64 {
-    fn root(self) -> Self {
-        self.sqrt()
-    }
-}
-
-impl Number for Complex64 {
-    fn root(self) -> Self {
-        self.sqrt()
-    }
-}
 
 /// Where the derivatives of a line go; each list says which column takes what.
 #[derive(Debug, Clone, Default)]
@@ -49,88 +29,111 @@ pub(super) struct Columns {
     pub places: Vec<(usize, usize)>,
 }
 
-/// Space for the numbers of one line.
+/// Active rows where no element is joined: force and response, each loaded by its own unit force alone.
+const BARE: usize = 2;
+
+/// Space for the numbers of some lines.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Coupling {
     /// $1/(s^2 + 2\zeta\omega s + \omega^2)$ and $\omega$ of each mode.
-    gains: Vec<Complex64>,
-    roots: Vec<Complex64>,
-    /// Squared gain times both effective shapes: what a softer mode adds.
-    weights: Vec<Complex64>,
+    gains: Vec<Wide>,
+    roots: Vec<Wide>,
+    /// Squared gain times both effective shapes: what a softer mode adds; and that times $-(1+\zeta s/\omega)$, what a
+    /// greater $\lambda$ does.
+    weights: Vec<Wide>,
+    stiffer: Vec<Wide>,
     /// $H$ between the active rows.
-    bare: Vec<Complex64>,
+    bare: Vec<Wide>,
     system: Vec<Complex64>,
     /// $\mu$ for a unit force at the force's place and at the response's.
-    states: [Vec<Complex64>; 2],
+    states: [Vec<Wide>; 2],
     /// What a unit force there puts on each active row.
-    loads: [Vec<Complex64>; 2],
+    loads: [Vec<Wide>; 2],
     /// Effective shapes.
-    shapes: [Vec<Complex64>; 2],
+    shapes: [Vec<Wide>; 2],
+    /// $(-s^2)^k$.
+    powers: Vec<Wide>,
 }
 
 /// A receptance with its derivative by $s$.
 pub(super) struct Receptance {
-    pub value: Complex64,
-    pub by_s: Complex64,
+    pub value: Wide,
+    pub by_s: Wide,
 }
 
 impl Coupling {
-    /// The receptance at $s$ between force (row 0) and response (row 1) of a view, and into `out` its derivatives.
-    pub(super) fn line<T: Number>(
+    /// The receptances at some $s$ between force (row 0) and response (row 1) of a view, and into `out` their derivatives,
+    /// a [`Wide`] a column. `elements` has [`LINES`] lines of each element.
+    #[inline(always)]
+    pub(super) fn lines(
         &mut self,
-        (layout, numbers): (&Layout, &[T]),
+        (layout, numbers): (&Layout, &impl Numbers),
         zetas: &[f64],
-        elements: &[ElementLine],
+        elements: &[Vec<ElementLine>],
         columns: &Columns,
-        s: Complex64,
-        out: &mut [Complex64],
+        s: &Wide,
+        out: &mut [Wide],
     ) -> Receptance {
         self.sum(layout, numbers, zetas, s);
         self.join(layout, elements);
-        self.effective_shapes(layout, numbers);
+        self.effective_shapes((layout, numbers), zetas, s);
         let mut value = self.bare[1];
-        for (p, element) in elements.iter().enumerate() {
-            value -= self.bare[layout.active + 2 + p] * element.pair[0] * self.states[0][p];
+        for p in 0..elements.len() {
+            value.add_product(&self.bare[layout.active + 2 + p], &self.loads[0][2 + p]);
         }
         self.by_damping(layout, zetas, columns, s, out);
         for &(p, number, column, factor) in &columns.elements {
-            out[column] += factor * self.change(elements, p, elements[p].by_numbers[number]);
+            let change = self.change(&elements[p], p, |line| line.by_numbers[number]);
+            out[column].add_scaled(factor, &change);
         }
-        self.by_structure((layout, numbers), zetas, columns, s, out);
-        self.by_places((layout, numbers), columns, s, out);
-        let zero = Complex64::ZERO;
-        let by_s = if columns.frequency { self.by_frequency((layout, numbers), zetas, elements, s) } else { zero };
+        self.by_structure((layout, numbers), columns, out);
+        self.by_places((layout, numbers), columns, out);
+        let by_s =
+            if columns.frequency { self.by_frequency((layout, numbers), zetas, elements, s) } else { Wide::ZERO };
         Receptance { value, by_s }
     }
 
     /// Bare receptances between the active rows.
-    fn sum<T: Number>(&mut self, layout: &Layout, numbers: &[T], zetas: &[f64], s: Complex64) {
+    #[inline(always)]
+    fn sum(&mut self, layout: &Layout, numbers: &impl Numbers, zetas: &[f64], s: &Wide) {
         let n = layout.active;
-        let s2 = s * s;
+        let s2 = s.times(s);
+        let step = s2.scaled(-1.0);
+        self.powers.clear();
+        self.powers.push(Wide::ONE);
+        for k in 1..SERIES_TERMS {
+            self.powers.push(self.powers[k - 1].times(&step));
+        }
         self.bare.clear();
-        self.bare.resize(n * n, Complex64::ZERO);
+        self.bare.resize(n * n, Wide::ZERO);
         self.gains.clear();
         self.roots.clear();
-        // Horner in −s².
-        for k in (0..SERIES_TERMS).rev() {
-            let at = layout.series(k);
-            for (total, &term) in self.bare.iter_mut().zip(&numbers[at..at + n * n]) {
-                *total = term.into() - s2 * *total;
-            }
-        }
-        for (m, &lambda) in numbers.iter().enumerate().take(layout.modes) {
-            let root: Complex64 = lambda.root().into();
-            let zeta = if m < layout.rigid { 0.0 } else { zetas[m - layout.rigid] };
-            let gain = (s2 + 2.0 * zeta * root * s + lambda.into()).inv();
-            self.gains.push(gain);
-            self.roots.push(root);
-            let shape = &numbers[layout.shape(m)..layout.shape(m) + n];
-            for (a, &first) in shape.iter().enumerate() {
-                let scaled = first * gain;
-                for (b, &second) in shape.iter().enumerate().skip(a) {
-                    self.bare[a * n + b] += second * scaled;
+        // No one asks for the driving points of force and response.
+        let needed = |a: usize, b: usize| a != b || a >= BARE;
+        for a in 0..n {
+            for b in (a..n).filter(|&b| needed(a, b)) {
+                let total = &mut self.bare[a * n + b];
+                for (k, power) in self.powers.iter().enumerate() {
+                    numbers.add(layout.series(k) + a * n + b, power, total);
                 }
             }
+        }
+        for m in 0..layout.modes {
+            let root = numbers.root(m);
+            let mut whole = s2;
+            whole.add(&numbers.wide(m));
+            if m >= layout.rigid {
+                whole.add_product(&root.scaled(2.0 * zetas[m - layout.rigid]), s);
+            }
+            let gain = whole.inverse();
+            let shape = layout.shape(m);
+            for a in 0..n {
+                for b in (a..n).filter(|&b| needed(a, b)) {
+                    numbers.add_pair([shape + a, shape + b], &gain, &mut self.bare[a * n + b]);
+                }
+            }
+            self.gains.push(gain);
+            self.roots.push(root);
         }
         for a in 0..n {
             for b in 0..a {
@@ -140,144 +143,201 @@ impl Coupling {
     }
 
     /// Solves for the elements' states.
-    fn join(&mut self, layout: &Layout, elements: &[ElementLine]) {
+    fn join(&mut self, layout: &Layout, elements: &[Vec<ElementLine>]) {
         let (n, count) = (layout.active, elements.len());
         let width = count + 2;
-        self.system.clear();
-        for (p, row) in elements.iter().enumerate() {
-            for (q, element) in elements.iter().enumerate() {
-                let own = if p == q { row.pair[1] } else { Complex64::ZERO };
-                self.system.push(own + self.bare[(2 + p) * n + 2 + q] * element.pair[0]);
-            }
-            self.system.extend([self.bare[(2 + p) * n], self.bare[(2 + p) * n + 1]]);
-        }
-        eliminate(&mut self.system, count);
         for side in 0..2 {
             self.states[side].clear();
-            self.states[side].extend((0..count).map(|p| self.system[p * width + count + side]));
+            self.states[side].resize(count, Wide::ZERO);
             self.loads[side].clear();
-            self.loads[side].resize(2, Complex64::ZERO);
-            self.loads[side][side] = Complex64::ONE;
-            for (element, state) in elements.iter().zip(&self.states[side]) {
-                self.loads[side].push(-element.pair[0] * state);
+            self.loads[side].resize(n, Wide::ZERO);
+            self.loads[side][side] = Wide::ONE;
+        }
+        if count == 0 {
+            return;
+        }
+        for line in 0..LINES {
+            self.system.clear();
+            for (p, row) in elements.iter().enumerate() {
+                for (q, element) in elements.iter().enumerate() {
+                    let own = if p == q { row[line].pair[1] } else { Complex64::ZERO };
+                    self.system.push(own + self.bare[(2 + p) * n + 2 + q].at(line) * element[line].pair[0]);
+                }
+                self.system.extend([0, 1].map(|side| self.bare[(2 + p) * n + side].at(line)));
+            }
+            eliminate(&mut self.system, count);
+            for (p, element) in elements.iter().enumerate() {
+                for side in 0..2 {
+                    let state = self.system[p * width + count + side];
+                    self.states[side][p].set(line, state);
+                    self.loads[side][2 + p].set(line, -element[line].pair[0] * state);
+                }
             }
         }
     }
 
-    fn effective_shapes<T: Number>(&mut self, layout: &Layout, numbers: &[T]) {
-        for (shapes, loads) in self.shapes.iter_mut().zip(&self.loads) {
-            shapes.clear();
-            for m in 0..layout.modes {
-                let shape = &numbers[layout.shape(m)..layout.shape(m) + layout.active];
-                shapes.push(shape.iter().zip(loads).map(|(&value, &load)| value * load).sum());
+    #[inline(always)]
+    fn effective_shapes(&mut self, (layout, numbers): (&Layout, &impl Numbers), zetas: &[f64], s: &Wide) {
+        let Self { gains, roots, weights, stiffer, shapes, loads, .. } = self;
+        weights.clear();
+        stiffer.clear();
+        shapes.iter_mut().for_each(Vec::clear);
+        for m in 0..layout.modes {
+            let at = layout.shape(m);
+            let squared = gains[m].times(&gains[m]);
+            let mut weight = Wide::ZERO;
+            if layout.active == BARE {
+                numbers.add_pair([at, at + 1], &squared, &mut weight);
+            } else {
+                for (side, (shapes, loads)) in shapes.iter_mut().zip(&*loads).enumerate() {
+                    let mut shape = numbers.wide(at + side);
+                    for (row, load) in loads.iter().enumerate().skip(BARE) {
+                        numbers.add(at + row, load, &mut shape);
+                    }
+                    shapes.push(shape);
+                }
+                weight = squared.times(&shapes[0][m].times(&shapes[1][m]));
             }
+            let mut softening = weight.scaled(-1.0);
+            if m >= layout.rigid {
+                let slowness = numbers.inverse_root(m, &roots[m]);
+                softening.add_product(&weight.times(s).scaled(-zetas[m - layout.rigid]), &slowness);
+            }
+            weights.push(weight);
+            stiffer.push(softening);
         }
-        let [forced, seen] = &self.shapes;
-        self.weights.clear();
-        self.weights.extend(self.gains.iter().zip(forced).zip(seen).map(|((gain, f), r)| gain * gain * f * r));
     }
 
     /// Derivatives by the damping ratios.
-    fn by_damping(&self, layout: &Layout, zetas: &[f64], columns: &Columns, s: Complex64, out: &mut [Complex64]) {
+    #[inline(always)]
+    fn by_damping(&self, layout: &Layout, zetas: &[f64], columns: &Columns, s: &Wide, out: &mut [Wide]) {
         for (i, zeta) in zetas.iter().enumerate().take(columns.zetas.1) {
             let m = layout.rigid + i;
-            out[columns.zetas.0 + i] -= self.weights[m] * (2.0 * zeta * self.roots[m] * s);
+            let loss = self.roots[m].times(s).scaled(-2.0 * zeta);
+            out[columns.zetas.0 + i].add_product(&self.weights[m], &loss);
         }
     }
 
     /// The derivative by $s$.
-    fn by_frequency<T: Number>(
+    fn by_frequency(
         &self,
-        (layout, numbers): (&Layout, &[T]),
+        (layout, numbers): (&Layout, &impl Numbers),
         zetas: &[f64],
-        elements: &[ElementLine],
-        s: Complex64,
-    ) -> Complex64 {
+        elements: &[Vec<ElementLine>],
+        s: &Wide,
+    ) -> Wide {
+        let mut sum = Wide::ZERO;
+        let mut weights = Wide::ZERO;
+        self.weights.iter().for_each(|weight| weights.add(weight));
+        sum.add_product(&s.scaled(-2.0), &weights);
         let flexible = zetas.iter().zip(&self.roots[layout.rigid..]).zip(&self.weights[layout.rigid..]);
-        let losses: Complex64 = flexible.map(|((zeta, root), weight)| 2.0 * zeta * root * weight).sum();
-        let mut sum = -2.0 * s * self.weights.iter().sum::<Complex64>() - losses;
-        let mut power = -2.0 * s;
+        flexible.for_each(|((zeta, root), weight)| sum.add_product(&root.scaled(-2.0 * zeta), weight));
         for k in 1..SERIES_TERMS {
-            sum += k as f64 * power * self.form(&numbers[layout.series(k)..], layout.active);
-            power *= -s * s;
+            let power = s.times(&self.powers[k - 1]).scaled(-2.0 * k as f64);
+            sum.add_product(&power, &self.form(numbers, layout.series(k), layout.active));
         }
-        sum + elements.iter().enumerate().map(|(p, element)| self.change(elements, p, element.by_s)).sum::<Complex64>()
+        for (p, element) in elements.iter().enumerate() {
+            sum.add(&self.change(element, p, |line| line.by_s));
+        }
+        sum
     }
 
     /// $-\mu_r(B\,dA - A\,dB)\mu_f$ of element `p`.
-    fn change(&self, elements: &[ElementLine], p: usize, by: [Complex64; 2]) -> Complex64 {
-        let [a, b] = elements[p].pair;
-        -self.states[0][p] * self.states[1][p] * (b * by[0] - a * by[1])
+    fn change(&self, element: &[ElementLine], p: usize, by: impl Fn(&ElementLine) -> [Complex64; 2]) -> Wide {
+        Wide::from_fn(|line| {
+            let ([a, b], [by_a, by_b]) = (element[line].pair, by(&element[line]));
+            -self.states[0][p].at(line) * self.states[1][p].at(line) * (b * by_a - a * by_b)
+        })
     }
 
-    fn by_structure<T: Number>(
-        &self,
-        (layout, numbers): (&Layout, &[T]),
-        zetas: &[f64],
-        columns: &Columns,
-        s: Complex64,
-        out: &mut [Complex64],
-    ) {
+    #[inline(always)]
+    fn by_structure(&self, (layout, numbers): (&Layout, &impl Numbers), columns: &Columns, out: &mut [Wide]) {
         let n = layout.active;
         for (p, &column) in columns.structure.iter().enumerate() {
-            let mut sum = Complex64::ZERO;
+            let mut sum = Wide::ZERO;
             for m in 0..layout.modes {
-                let gain = self.gains[m];
-                let by = &numbers[layout.shape_by(p, m)..layout.shape_by(p, m) + n];
-                let turned = |side: usize| -> Complex64 {
-                    by.iter().zip(&self.loads[side]).map(|(&value, &load)| value * load).sum()
-                };
-                sum += gain * (turned(0) * self.shapes[1][m] + self.shapes[0][m] * turned(1));
+                let (by, shape) = (layout.shape_by(p, m), layout.shape(m));
+                if n == BARE {
+                    numbers.add_pair([by, shape + 1], &self.gains[m], &mut sum);
+                    numbers.add_pair([by + 1, shape], &self.gains[m], &mut sum);
+                } else {
+                    let mut turned = [Wide::ZERO; 2];
+                    for (side, turned) in turned.iter_mut().enumerate() {
+                        *turned = numbers.wide(by + side);
+                        for (row, load) in self.loads[side].iter().enumerate().skip(BARE) {
+                            numbers.add(by + row, load, turned);
+                        }
+                    }
+                    let mut both = turned[0].times(&self.shapes[1][m]);
+                    both.add_product(&turned[1], &self.shapes[0][m]);
+                    sum.add_product(&self.gains[m], &both);
+                }
                 if m >= layout.rigid {
-                    let stiffer = numbers[layout.by(p) + m] * (1.0 + zetas[m - layout.rigid] * s / self.roots[m]);
-                    sum -= stiffer * self.weights[m];
+                    numbers.add(layout.by(p) + m, &self.stiffer[m], &mut sum);
                 }
             }
-            let mut power = Complex64::ONE;
-            for k in 0..SERIES_TERMS {
-                sum += power * self.form(&numbers[layout.series_by(p, k)..], n);
-                power *= -s * s;
+            for (k, power) in self.powers.iter().enumerate() {
+                let at = layout.series_by(p, k);
+                if n == BARE {
+                    numbers.add(at + n, power, &mut sum);
+                } else {
+                    sum.add_product(power, &self.form(numbers, at, n));
+                }
             }
-            out[column] += sum;
+            out[column].add(&sum);
         }
     }
 
-    fn by_places<T: Number>(
-        &self,
-        (layout, numbers): (&Layout, &[T]),
-        columns: &Columns,
-        s: Complex64,
-        out: &mut [Complex64],
-    ) {
+    #[inline(always)]
+    fn by_places(&self, (layout, numbers): (&Layout, &impl Numbers), columns: &Columns, out: &mut [Wide]) {
         let n = layout.active;
         for (slope, &(row, column)) in columns.places.iter().enumerate() {
             let at = n + slope;
             // Slope of the motion at that row under a unit force at either side.
             let [forced, seen] = [0, 1].map(|side| {
-                let modes: Complex64 = (0..layout.modes)
-                    .map(|m| numbers[layout.shape(m) + at] * (self.gains[m] * self.shapes[side][m]))
-                    .sum();
-                let mut power = Complex64::ONE;
-                let mut rest = Complex64::ZERO;
-                for k in 0..SERIES_TERMS {
-                    let line = &numbers[layout.series(k) + at * n..layout.series(k) + (at + 1) * n];
-                    let still: Complex64 = line.iter().zip(&self.loads[side]).map(|(&value, &load)| value * load).sum();
-                    rest += power * still;
-                    power *= -s * s;
+                let mut moved = Wide::ZERO;
+                for m in 0..layout.modes {
+                    if n == BARE {
+                        numbers.add_pair([layout.shape(m) + side, layout.shape(m) + at], &self.gains[m], &mut moved);
+                    } else {
+                        let lever = self.gains[m].times(&self.shapes[side][m]);
+                        numbers.add(layout.shape(m) + at, &lever, &mut moved);
+                    }
                 }
-                modes + rest
+                for (k, power) in self.powers.iter().enumerate() {
+                    let mut still = Wide::ZERO;
+                    let row = layout.series(k) + at * n;
+                    if n == BARE {
+                        numbers.add(row + side, power, &mut moved);
+                        continue;
+                    }
+                    for b in std::iter::once(side).chain(BARE..n) {
+                        numbers.add(row + b, &self.loads[side][b], &mut still);
+                    }
+                    moved.add_product(power, &still);
+                }
+                moved
             });
-            out[column] += self.loads[0][row] * seen + self.loads[1][row] * forced;
+            out[column].add_product(&self.loads[0][row], &seen);
+            out[column].add_product(&self.loads[1][row], &forced);
         }
     }
 
-    /// $u_r^TCu_f$ over the active rows.
-    fn form<T: Number>(&self, matrix: &[T], n: usize) -> Complex64 {
+    /// $u_r^TCu_f$ over the active rows, with $C$ from `at` on.
+    #[inline(always)]
+    fn form(&self, numbers: &impl Numbers, at: usize, n: usize) -> Wide {
         let [forced, seen] = &self.loads;
-        let line = |a: usize| -> Complex64 {
-            matrix[a * n..(a + 1) * n].iter().zip(forced).map(|(&value, &load)| value * load).sum()
-        };
-        seen.iter().enumerate().map(|(a, load)| load * line(a)).sum()
+        // A unit force loads no other row than its own and those of elements.
+        let loaded = |side: usize| std::iter::once(side).chain(BARE..n);
+        let mut sum = Wide::ZERO;
+        for a in loaded(1) {
+            let mut line = Wide::ZERO;
+            for b in loaded(0) {
+                numbers.add(at + a * n + b, &forced[b], &mut line);
+            }
+            sum.add_product(&seen[a], &line);
+        }
+        sum
     }
 }
 

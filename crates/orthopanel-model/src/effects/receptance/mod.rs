@@ -11,6 +11,7 @@ mod modulus_path;
 mod record;
 mod setup;
 pub(super) mod view;
+mod wide;
 
-pub use model::{LineEvaluator, ReceptanceModel};
+pub use model::{LineDerivatives, LineEvaluator, ReceptanceModel};
 pub use setup::ReceptanceSetup;

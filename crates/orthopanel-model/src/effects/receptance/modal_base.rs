@@ -1,7 +1,10 @@
 //! All modes of a structure's basis, with how stiffness and mass couple them when a parameter changes.
 
+use std::sync::Arc;
+
 use faer::Mat;
 
+use super::view::SERIES_TERMS;
 use crate::dense::product;
 use crate::ritz_modes::all_ritz_modes;
 use crate::structure::{Motion, Structure};
@@ -19,11 +22,34 @@ pub(in crate::effects) struct BlockModes {
     pub vectors: Mat<f64>,
     /// $\kappa$ and $\mu$; an empty matrix where the parameter does not enter.
     pub couplings: Vec<[Mat<f64>; 2]>,
+    /// The modes of this block that are summed: position in [`ModalBase::near`], and number in the block.
+    pub near: Vec<(usize, usize)>,
+    /// Numbers of the others.
+    pub far: Vec<usize>,
+    /// $\lambda^{-(k+1)}$ of the far modes, a column each $k$.
+    pub powers: Mat<f64>,
+    /// What each parameter does to the summed modes and to the series of the others.
+    pub turns: Vec<Turn>,
 }
 
+/// What one parameter does to the modes of a block.
+pub(in crate::effects) struct Turn {
+    /// $d\lambda$ of the summed modes.
+    pub lambda: Vec<f64>,
+    /// Share of every mode of the block in the derivative of each summed one's shape.
+    pub near: Mat<f64>,
+    /// Share of each summed mode in the derivative of each far one's shape.
+    pub far: Mat<f64>,
+    /// $\kappa$ and $\mu$ between the far modes; empty where the parameter does not enter.
+    pub between: [Mat<f64>; 2],
+}
+
+/// A structure that several modal bases may share.
+pub(in crate::effects) type SharedStructure = Arc<dyn Structure + Send + Sync>;
+
 /// The modes of a structure at some values of its constants.
-pub(in crate::effects) struct ModalBase<'a> {
-    pub structure: &'a dyn Structure,
+pub(in crate::effects) struct ModalBase {
+    pub structure: SharedStructure,
     pub values: Vec<f64>,
     pub blocks: Vec<BlockModes>,
     /// The modes that are summed at every line: block and number in it; rigid ones first, then rising.
@@ -35,36 +61,36 @@ pub(in crate::effects) struct ModalBase<'a> {
     /// Positions in [`Structure::term_derivatives`] of those terms.
     pub terms: Vec<usize>,
     /// Parameters that only differences tell.
-    pub differences: Vec<Difference<'a>>,
+    pub differences: Vec<Difference>,
 }
 
 /// The structure with one parameter moved back and forth.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(in crate::effects) struct Moved {
     /// Position of the parameter in [`Structure::term_derivatives`].
     pub term: usize,
     pub step: f64,
-    pub sides: [TimoshenkoBeam; 2],
+    pub sides: [Arc<TimoshenkoBeam>; 2],
 }
 
 /// Modes on both sides of a parameter.
-pub(in crate::effects) struct Difference<'a> {
+pub(in crate::effects) struct Difference {
     pub parameter: usize,
     pub step: f64,
-    pub sides: [Box<ModalBase<'a>>; 2],
+    pub sides: [Box<ModalBase>; 2],
 }
 
-impl<'a> ModalBase<'a> {
+impl ModalBase {
     /// With the rigid modes and `summed` flexible ones to be summed, and the structure's own terms of these numbers among
     /// the parameters.
     pub(in crate::effects) fn new(
-        structure: &'a dyn Structure,
+        structure: &SharedStructure,
         values: &[f64],
         summed: usize,
         terms: &[usize],
-        moved: &'a [Moved],
+        moved: &[Moved],
     ) -> Result<Self, ModelError> {
-        let modes = all_ritz_modes(structure, values)?;
+        let modes = all_ritz_modes(structure.as_ref(), values)?;
         let by_constants = structure.coefficient_derivatives(values)?;
         let derivatives = if terms.is_empty() { vec![] } else { structure.term_derivatives(values) };
         let mut blocks = Vec::new();
@@ -89,26 +115,30 @@ impl<'a> ModalBase<'a> {
                 couplings.push([&by.stiffness, &by.mass].map(|list| list.get(index).map_or(Mat::new(), in_modes)));
             }
             order.extend(lambda.iter().enumerate().map(|(number, &lambda)| (lambda, index, number)));
-            blocks.push(BlockModes { lambda, vectors, couplings });
+            let (near, far, powers, turns) = (vec![], vec![], Mat::new(), vec![]);
+            blocks.push(BlockModes { lambda, vectors, couplings, near, far, powers, turns });
         }
         let rigid = order.iter().filter(|(lambda, ..)| *lambda == 0.0).count();
         order.sort_by(|a, b| a.0.total_cmp(&b.0));
         if rigid + summed >= order.len() {
             return Err(ModelError::BasisTooSmall { asked: summed, available: (order.len() - rigid) / 2 });
         }
-        let near = order.iter().take(rigid + summed).map(|&(_, block, number)| (block, number)).collect();
+        let near: Vec<_> = order.iter().take(rigid + summed).map(|&(_, block, number)| (block, number)).collect();
+        blocks.iter_mut().enumerate().for_each(|(index, block)| block.part(index, &near));
         let parameters = values.len() + terms.len();
         let mut differences = Vec::new();
         for change in moved {
             let Some(position) = terms.iter().position(|term| *term == change.term) else { continue };
-            let side =
-                |beam: &'a TimoshenkoBeam| Ok::<_, ModelError>(Box::new(Self::new(beam, values, summed, &[], &[])?));
+            let side = |beam: &Arc<TimoshenkoBeam>| {
+                let beam: SharedStructure = beam.clone();
+                Ok::<_, ModelError>(Box::new(Self::new(&beam, values, summed, &[], &[])?))
+            };
             let [back, forth] = &change.sides;
             let (parameter, step) = (values.len() + position, change.step);
             differences.push(Difference { parameter, step, sides: [side(back)?, side(forth)?] });
         }
         Ok(Self {
-            structure,
+            structure: structure.clone(),
             values: values.to_vec(),
             blocks,
             near,
@@ -140,6 +170,7 @@ impl<'a> ModalBase<'a> {
                     }
                 }
             }
+            block.part(index, &self.near);
         }
         self
     }
@@ -155,5 +186,49 @@ impl<'a> ModalBase<'a> {
             row.iter().enumerate().for_each(|(j, &value)| matrix[(i, j)] = value);
         }
         Ok(product(matrix.as_ref(), modes.vectors.as_ref()))
+    }
+}
+
+impl BlockModes {
+    /// Parts the modes into those of `near` that lie in this block, and the others.
+    fn part(&mut self, index: usize, near: &[(usize, usize)]) {
+        self.near =
+            near.iter().enumerate().filter(|(_, (block, _))| *block == index).map(|(m, (_, n))| (m, *n)).collect();
+        let is_near = |n: &usize| self.near.iter().any(|(_, near)| near == n);
+        self.far = (0..self.lambda.len()).filter(|n| !is_near(n)).collect();
+        self.powers = Mat::from_fn(self.far.len(), SERIES_TERMS, |i, k| self.lambda[self.far[i]].powi(-(k as i32 + 1)));
+        self.turns = (0..self.couplings.len()).map(|p| self.turn(p)).collect();
+    }
+
+    fn turn(&self, p: usize) -> Turn {
+        let (all, near, far) = (self.lambda.len(), self.near.len(), self.far.len());
+        let between = |kind: usize| {
+            let matrix = &self.couplings[p][kind];
+            let size = if matrix.nrows() > 0 { far } else { 0 };
+            Mat::from_fn(size, size, |i, j| matrix[(self.far[i], self.far[j])])
+        };
+        Turn {
+            lambda: self.near.iter().map(|&(_, n)| self.perturbation(p, n, n)).collect(),
+            near: Mat::from_fn(all, near, |m, i| self.share(p, m, self.near[i].1)),
+            far: Mat::from_fn(near, far, |i, j| self.share(p, self.near[i].1, self.far[j])),
+            between: [between(0), between(1)],
+        }
+    }
+
+    fn entry(&self, p: usize, kind: usize, m: usize, n: usize) -> f64 {
+        let matrix = &self.couplings[p][kind];
+        if matrix.nrows() > 0 { matrix[(m, n)] } else { 0.0 }
+    }
+
+    /// $\kappa_{mn} - \lambda_n\mu_{mn}$.
+    fn perturbation(&self, p: usize, m: usize, n: usize) -> f64 {
+        self.entry(p, 0, m, n) - self.lambda[n] * self.entry(p, 1, m, n)
+    }
+
+    /// The share of mode `m` in the derivative of mode `n`'s shape. Modes that coincide, as rigid ones do, only keep
+    /// their norm and stay orthogonal.
+    fn share(&self, p: usize, m: usize, n: usize) -> f64 {
+        let gap = self.lambda[n] - self.lambda[m];
+        if gap == 0.0 { -0.5 * self.entry(p, 1, m, n) } else { self.perturbation(p, m, n) / gap }
     }
 }

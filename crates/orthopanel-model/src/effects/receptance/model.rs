@@ -6,6 +6,7 @@ use super::coupling::{Columns, Coupling};
 use super::modulus_path::ModulusPath;
 use super::record::RecordPlan;
 use super::view::View;
+use super::wide::{Even, LINES, OfLine, Wide};
 use crate::effects::{ChannelFactor, CoreModulus, ElementLine, PointElement};
 
 /// Accelerances of the records of a test, as [`super::ReceptanceSetup::model`] makes it.
@@ -73,17 +74,19 @@ impl ReceptanceModel {
     /// What evaluates the lines of record `index`, counted from zero; one for each thread.
     pub fn evaluator(&self, index: usize) -> Option<LineEvaluator<'_>> {
         let record = self.records.get(index)?;
-        Some(LineEvaluator { model: self, record, coupling: Coupling::default(), lines: vec![], numbers: vec![] })
+        let coupling = Coupling::default();
+        Some(LineEvaluator { model: self, record, coupling, elements: vec![], numbers: vec![], by: vec![] })
     }
 }
 
-/// Evaluates one record line by line.
+/// Evaluates the lines of one record.
 pub struct LineEvaluator<'a> {
     model: &'a ReceptanceModel,
     record: &'a RecordModel,
     coupling: Coupling,
-    lines: Vec<ElementLine>,
-    numbers: Vec<Complex64>,
+    elements: Vec<Vec<ElementLine>>,
+    numbers: Vec<Wide>,
+    by: Vec<Wide>,
 }
 
 impl LineEvaluator<'_> {
@@ -91,69 +94,146 @@ impl LineEvaluator<'_> {
     /// into `derivatives` (at least [`ReceptanceModel::columns`] long) its derivatives.
     ///
     /// On $s = \sigma + j\omega$ it is the ratio of the transforms of both channels multiplied by $e^{-\sigma t}$.
+    /// Many lines cost far less by [`LineEvaluator::lines`].
     pub fn line(&mut self, s: Complex64, derivatives: &mut [Complex64]) -> Complex64 {
         derivatives.fill(Complex64::ZERO);
-        if derivatives.len() < self.model.columns {
-            return Complex64::new(f64::NAN, f64::NAN);
+        let mut value = Complex64::new(f64::NAN, f64::NAN);
+        if derivatives.len() >= self.model.columns {
+            self.lines(&[s], |_, found, by| {
+                value = found;
+                derivatives.iter_mut().enumerate().take(by.len()).for_each(|(column, to)| *to = by.of(column));
+            });
         }
+        value
+    }
+
+    /// The same at every $s$ of a list: tells `take` the line's number, its accelerance and its derivatives.
+    pub fn lines(&mut self, s: &[Complex64], mut take: impl FnMut(usize, Complex64, LineDerivatives)) {
+        for (chunk, some) in s.chunks(LINES).enumerate() {
+            let last = some.len() - 1;
+            let lines = Wide::from_fn(|line| some[line.min(last)]);
+            let value = pulp::Arch::new().dispatch(SomeLines { evaluator: &mut *self, s: &lines });
+            for line in 0..some.len() {
+                take(chunk * LINES + line, value.at(line), LineDerivatives { by: &self.by, line });
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn some_lines(&mut self, s: &Wide) -> Wide {
+        self.by.clear();
+        self.by.resize(self.model.columns, Wide::ZERO);
         let record = self.record;
-        let s = s + record.windows.iter().map(|(tau, _)| 1.0 / tau).sum::<f64>();
-        self.lines.clear();
-        self.lines.extend(record.elements.iter().map(|element| element.law.line(s)));
-        let zetas = &self.model.zetas;
+        let fading = record.windows.iter().map(|(tau, _)| 1.0 / tau).sum::<f64>();
+        let mut shifted = *s;
+        shifted.add_scaled(fading, &Wide::ONE);
+        let s = &shifted;
+        self.elements.resize(record.elements.len(), vec![]);
+        for (lines, element) in self.elements.iter_mut().zip(&record.elements) {
+            lines.clear();
+            lines.extend((0..LINES).map(|line| element.law.line(s.at(line))));
+        }
+        let (zetas, elements, by) = (&self.model.zetas, &self.elements, &mut self.by[..]);
         let receptance = match &record.base {
             Base::Real(view) => {
-                let numbers = (&view.layout, view.numbers.as_slice());
-                self.coupling.line(numbers, zetas, &self.lines, &record.columns, s, derivatives)
+                let numbers = (&view.layout, &Even(&view.numbers));
+                self.coupling.lines(numbers, zetas, elements, &record.columns, s, by)
             }
             Base::Complex { path, core, modulus } => {
-                let core = core.map(|(core, column)| (core.line(s), column));
-                let g = core.map_or(Complex64::ONE, |(line, _)| line.value);
-                path.at(g, &mut self.numbers);
-                let numbers = (&path.layout(), self.numbers.as_slice());
-                let mut receptance = self.coupling.line(numbers, zetas, &self.lines, &record.columns, s, derivatives);
-                if let (Some((line, column)), Some(&shear)) = (core, record.columns.structure.get(1)) {
+                let of_lines = |core: &CoreModulus| (0..LINES).map(|line| core.line(s.at(line))).collect::<Vec<_>>();
+                let laws = core.as_ref().map(|(core, column)| (of_lines(core), *column));
+                let g = laws.as_ref().map_or(Wide::ONE, |(laws, _)| Wide::from_fn(|line| laws[line].value));
+                path.at(&g, &mut self.numbers);
+                let numbers = (&path.layout(), &OfLine(&self.numbers));
+                let mut receptance = self.coupling.lines(numbers, zetas, elements, &record.columns, s, by);
+                if let (Some((laws, column)), Some(&shear)) = (&laws, record.columns.structure.get(1)) {
                     // The view's derivative is by the modulus gG itself.
-                    let by_modulus = derivatives[shear];
-                    derivatives[shear] = by_modulus * g;
-                    let by_g = by_modulus * *modulus;
-                    for (i, by) in line.by_numbers.into_iter().enumerate() {
-                        derivatives[column + i] += by_g * by;
+                    let by_g = by[shear].scaled(*modulus);
+                    by[shear] = by[shear].times(&g);
+                    for i in 0..laws[0].by_numbers.len() {
+                        by[column + i].add_product(&by_g, &Wide::from_fn(|line| laws[line].by_numbers[i]));
                     }
-                    receptance.by_s += by_g * line.by_s;
+                    receptance.by_s.add_product(&by_g, &Wide::from_fn(|line| laws[line].by_s));
                 }
                 receptance
             }
         };
-        let (value, by_s) = (s * s * receptance.value, s * s * receptance.by_s + 2.0 * s * receptance.value);
-        derivatives.iter_mut().for_each(|by| *by *= s * s);
-        record.through_channel(s, value, by_s, derivatives)
+        let s2 = s.times(s);
+        let value = s2.times(&receptance.value);
+        let mut by_s = s2.times(&receptance.by_s);
+        by_s.add_product(&s.scaled(2.0), &receptance.value);
+        by.iter_mut().for_each(|by| *by = by.times(&s2));
+        record.through_channel(s, value, &by_s, by)
+    }
+}
+
+/// The work on one [`Wide`], to be compiled for each kind of processor: a closure would not be inlined there.
+struct SomeLines<'a, 'b> {
+    evaluator: &'a mut LineEvaluator<'b>,
+    s: &'a Wide,
+}
+
+impl pulp::NullaryFnOnce for SomeLines<'_, '_> {
+    type Output = Wide;
+
+    #[inline(always)]
+    fn call(self) -> Wide {
+        self.evaluator.some_lines(self.s)
+    }
+}
+
+/// The derivatives of one line.
+#[derive(Debug, Clone, Copy)]
+pub struct LineDerivatives<'a> {
+    by: &'a [Wide],
+    line: usize,
+}
+
+impl LineDerivatives<'_> {
+    /// Number of derivatives.
+    #[expect(clippy::len_without_is_empty, reason = "never empty: the constants come first")]
+    pub fn len(&self) -> usize {
+        self.by.len()
+    }
+
+    /// The derivative of this column.
+    pub fn of(&self, column: usize) -> Complex64 {
+        self.by[column].at(self.line)
     }
 }
 
 impl RecordModel {
     /// Applies factors and windows to an accelerance and its derivatives.
-    fn through_channel(&self, s: Complex64, value: Complex64, by_s: Complex64, out: &mut [Complex64]) -> Complex64 {
+    fn through_channel(&self, s: &Wide, value: Wide, by_s: &Wide, out: &mut [Wide]) -> Wide {
         if self.factors.is_empty() && self.windows.is_empty() {
             return value;
         }
-        let lines: Vec<_> = self.factors.iter().map(|(factor, columns)| (factor.line(s), columns)).collect();
+        let laws = self.factors.iter().map(|(factor, columns)| {
+            let laws: Vec<_> = (0..LINES).map(|line| factor.line(s.at(line))).collect();
+            (laws, columns)
+        });
+        let laws: Vec<_> = laws.collect();
+        let values: Vec<Wide> = laws.iter().map(|(laws, _)| Wide::from_fn(|line| laws[line].value)).collect();
         let gain: f64 = self.windows.iter().map(|(tau, _)| (-self.hit_time / tau).exp()).product();
-        let product = lines.iter().map(|(line, _)| line.value).product::<Complex64>() * gain;
-        let mut factor_by_s = Complex64::ZERO;
-        out.iter_mut().for_each(|by| *by *= product);
-        for (i, (line, columns)) in lines.iter().enumerate() {
-            let others: Complex64 =
-                lines.iter().enumerate().filter(|(j, _)| *j != i).map(|(_, (other, _))| other.value).product();
-            factor_by_s += gain * others * line.by_s;
-            for (&column, by) in columns.iter().zip(line.by_numbers) {
-                out[column] += gain * others * by * value;
+        let product = values.iter().fold(Wide::ONE.scaled(gain), |product, value| product.times(value));
+        let mut factor_by_s = Wide::ZERO;
+        out.iter_mut().for_each(|by| *by = by.times(&product));
+        for (i, (laws, columns)) in laws.iter().enumerate() {
+            let others = values.iter().enumerate().filter(|(j, _)| *j != i);
+            let others = others.fold(Wide::ONE.scaled(gain), |product, (_, other)| product.times(other));
+            factor_by_s.add_product(&others, &Wide::from_fn(|line| laws[line].by_s));
+            let through = others.times(&value);
+            for (number, &column) in columns.iter().enumerate().take(laws[0].by_numbers.len()) {
+                out[column].add_product(&through, &Wide::from_fn(|line| laws[line].by_numbers[number]));
             }
         }
-        let whole_by_s = product * by_s + factor_by_s * value;
+        let mut whole_by_s = product.times(by_s);
+        whole_by_s.add_product(&factor_by_s, &value);
+        let seen = product.times(&value);
         for &(tau, column) in &self.windows {
-            out[column] += (product * value * self.hit_time - whole_by_s) / (tau * tau);
+            out[column].add_scaled(self.hit_time / (tau * tau), &seen);
+            out[column].add_scaled(-1.0 / (tau * tau), &whole_by_s);
         }
-        product * value
+        seen
     }
 }

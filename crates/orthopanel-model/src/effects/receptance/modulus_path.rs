@@ -1,14 +1,16 @@
 //! Modes at a complex shear modulus, continued from real ones.
 
-use num_complex::Complex64;
-
-use super::modal_base::{ModalBase, Moved, Row};
+use super::modal_base::{ModalBase, Moved, Row, SharedStructure};
 use super::view::{Layout, View};
+use super::wide::Wide;
+use crate::ModelError;
 use crate::effects::CoreModulus;
-use crate::{ModelError, Structure};
 
 /// Nodes of the interpolation. On the arc of a core with $\Delta = 1$ nine leave 1e-7 of a receptance.
 const NODES: usize = 9;
+/// Nodes where $\Delta$ is below [`SOFT`]: the error falls with the power of $\Delta$ that they are.
+const FEW_NODES: usize = 6;
+const SOFT: f64 = 0.3;
 
 /// The views of a record at real moduli $g_kG_{zx}$ on $1 \le g \le 1+\Delta$.
 ///
@@ -25,24 +27,25 @@ pub(super) struct ModulusPath {
 const SHEAR_MODULUS: usize = 1;
 
 /// The bases at the nodes.
-pub(super) struct NodeBases<'a> {
+pub(super) struct NodeBases {
     nodes: Vec<f64>,
-    bases: Vec<ModalBase<'a>>,
+    bases: Vec<ModalBase>,
 }
 
-impl<'a> NodeBases<'a> {
+impl NodeBases {
     pub(super) fn new(
-        structure: &'a dyn Structure,
+        structure: &SharedStructure,
         values: &[f64],
         core: &CoreModulus,
         near: usize,
         terms: &[usize],
-        moved: &'a [Moved],
+        moved: &[Moved],
     ) -> Result<Self, ModelError> {
         // A stretch of some width, so that the modes at its nodes differ by more than their rounding.
         let half = 0.5 * core.strength.max(0.05);
-        let angle = |k: usize| std::f64::consts::PI * (k as f64 + 0.5) / NODES as f64;
-        let nodes: Vec<f64> = (0..NODES).map(|k| 1.0 + half - half * angle(k).cos()).collect();
+        let count = if core.strength < SOFT { FEW_NODES } else { NODES };
+        let angle = |k: usize| std::f64::consts::PI * (k as f64 + 0.5) / count as f64;
+        let nodes: Vec<f64> = (0..count).map(|k| 1.0 + half - half * angle(k).cos()).collect();
         let mut bases: Vec<ModalBase> = Vec::new();
         for node in &nodes {
             let mut at = values.to_vec();
@@ -64,7 +67,7 @@ impl<'a> NodeBases<'a> {
             let others = self.nodes.iter().enumerate().filter(|(other, _)| *other != k);
             others.map(|(_, node)| 1.0 / (self.nodes[k] - node)).product()
         };
-        Ok(ModulusPath { views, nodes: self.nodes.clone(), weights: (0..NODES).map(weight).collect() })
+        Ok(ModulusPath { views, nodes: self.nodes.clone(), weights: (0..self.nodes.len()).map(weight).collect() })
     }
 }
 
@@ -73,16 +76,22 @@ impl ModulusPath {
         self.views[0].layout
     }
 
-    /// Writes the view at the modulus factor `g`: Lagrange's polynomial.
-    pub(super) fn at(&self, g: Complex64, numbers: &mut Vec<Complex64>) {
+    /// Writes the view at the modulus factors `g` of some lines: Lagrange's polynomial.
+    #[inline(always)]
+    pub(super) fn at(&self, g: &Wide, numbers: &mut Vec<Wide>) {
+        let away: Vec<Wide> = self.nodes.iter().map(|&node| Wide::from_fn(|line| g.at(line) - node)).collect();
+        let shares: Vec<Wide> = (0..self.nodes.len())
+            .map(|k| {
+                let others = away.iter().enumerate().filter(|(other, _)| *other != k);
+                others.fold(Wide::ONE.scaled(self.weights[k]), |product, (_, away)| product.times(away))
+            })
+            .collect();
         numbers.clear();
-        numbers.resize(self.views.first().map_or(0, |view| view.numbers.len()), Complex64::ZERO);
-        for (k, (view, weight)) in self.views.iter().zip(&self.weights).enumerate() {
-            let others = self.nodes.iter().enumerate().filter(|(other, _)| *other != k);
-            let share: Complex64 = others.map(|(_, node)| g - node).product::<Complex64>() * *weight;
-            for (total, value) in numbers.iter_mut().zip(&view.numbers) {
-                *total += share * value;
-            }
+        let size = self.views.first().map_or(0, |view| view.numbers.len());
+        for index in 0..size {
+            let mut sum = Wide::ZERO;
+            shares.iter().zip(&self.views).for_each(|(share, view)| sum.add_scaled(view.numbers[index], share));
+            numbers.push(sum);
         }
     }
 }

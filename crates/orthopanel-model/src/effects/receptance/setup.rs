@@ -1,13 +1,15 @@
 //! A test as its receptances need it: piece, records, and the effects that are switched on.
 
-use super::modal_base::{ModalBase, Moved};
+use std::sync::{Arc, Mutex};
+
+use super::modal_base::{ModalBase, Moved, SharedStructure};
 use super::model::{ReceptanceModel, RecordModel};
 use super::modulus_path::NodeBases;
 use super::record::RecordPlan;
 use super::view::View;
 use crate::effects::dressing::Dressing;
 use crate::effects::{EffectSetting, EffectState, RecordSetting};
-use crate::{BEAM_CONSTANTS, Boundary, Damping, ModelError, Piece, Place, Structure, TimoshenkoBeam};
+use crate::{BEAM_CONSTANTS, Boundary, Damping, ModelError, Piece, Place, TimoshenkoBeam};
 
 /// What stays the same while a search moves constants, damping and the parameters of effects.
 pub struct ReceptanceSetup {
@@ -16,7 +18,9 @@ pub struct ReceptanceSetup {
     suspension: Vec<Place>,
     records: Vec<RecordSetting>,
     summed: usize,
-    beam: TimoshenkoBeam,
+    beam: SharedStructure,
+    /// Modes of the even beam at the constants asked for last.
+    even: Mutex<Vec<Arc<ModalBase>>>,
 }
 
 impl ReceptanceSetup {
@@ -39,8 +43,9 @@ impl ReceptanceSetup {
         let records: Vec<_> = records.to_vec();
         let records =
             records.into_iter().enumerate().map(|(i, record)| RecordSetting { number: i + 1, ..record }).collect();
-        let beam = TimoshenkoBeam::new(&piece, boundary, basis_terms(summed))?;
-        Ok(Self { piece, boundary, suspension: suspension.to_vec(), records, summed, beam })
+        let beam = Arc::new(TimoshenkoBeam::new(&piece, boundary, basis_terms(summed))?);
+        let even = Mutex::new(vec![]);
+        Ok(Self { piece, boundary, suspension: suspension.to_vec(), records, summed, beam, even })
     }
 
     /// What an effect may ask about record `index`, counted from zero.
@@ -76,19 +81,22 @@ impl ReceptanceSetup {
         let setting = self.setting_of(self.records.first().cloned().unwrap_or_default());
         let dressed = Dressing::of(effects, &setting, first_effect)?;
         let moved = self.moved(&dressed)?;
-        let uneven;
-        let structure: &dyn Structure = match dressed.terms {
+        let is_even = dressed.terms.is_none();
+        let structure: SharedStructure = match dressed.terms {
             Some(terms) => {
-                uneven = TimoshenkoBeam::with_terms(&self.piece, self.boundary, basis_terms(self.summed), terms)?;
-                &uneven
+                let order = basis_terms(self.summed);
+                Arc::new(TimoshenkoBeam::with_terms(&self.piece, self.boundary, order, terms)?)
             }
-            None => &self.beam,
+            None => Arc::clone(&self.beam),
         };
         let (numbers, columns): (Vec<usize>, Vec<usize>) = dressed.parameters.into_iter().unzip();
         let structural: Vec<usize> = (0..constants).chain(columns).collect();
         let bases = match dressed.core {
-            Some((core, _)) => Bases::Complex(NodeBases::new(structure, values, &core, self.summed, &numbers, &moved)?),
-            None => Bases::Real(ModalBase::new(structure, values, self.summed, &numbers, &moved)?),
+            Some((core, _)) => {
+                Bases::Complex(NodeBases::new(&structure, values, &core, self.summed, &numbers, &moved)?)
+            }
+            None if is_even => Bases::Real(self.even(values)?),
+            None => Bases::Real(Arc::new(ModalBase::new(&structure, values, self.summed, &numbers, &moved)?)),
         };
         let shear_modulus = values.get(1).copied().unwrap_or_default();
         let records = self.records.iter().map(|record| {
@@ -108,6 +116,21 @@ impl ReceptanceSetup {
         Ok(ReceptanceModel::new(records, zetas, columns))
     }
 
+    /// The modes of the even beam: starts of many effects are tried at the same constants.
+    fn even(&self, values: &[f64]) -> Result<Arc<ModalBase>, ModelError> {
+        let known = |bases: &[Arc<ModalBase>]| bases.iter().find(|base| base.values == values).cloned();
+        // A lock that a panic has poisoned only costs the repetition.
+        if let Some(base) = self.even.lock().ok().and_then(|bases| known(&bases)) {
+            return Ok(base);
+        }
+        let base = Arc::new(ModalBase::new(&self.beam, values, self.summed, &[], &[])?);
+        if let Ok(mut bases) = self.even.lock() {
+            bases.truncate(KEPT - 1);
+            bases.insert(0, Arc::clone(&base));
+        }
+        Ok(base)
+    }
+
     /// The beam with span and place of each shear loss moved.
     fn moved(&self, dressing: &Dressing) -> Result<Vec<Moved>, ModelError> {
         let Some(terms) = &dressing.terms else { return Ok(vec![]) };
@@ -119,7 +142,7 @@ impl ReceptanceSetup {
                 loss.span += span;
                 loss.at += at;
             }
-            TimoshenkoBeam::with_terms(&self.piece, self.boundary, basis_terms(self.summed), terms)
+            TimoshenkoBeam::with_terms(&self.piece, self.boundary, basis_terms(self.summed), terms).map(Arc::new)
         };
         let mut moved = Vec::new();
         for index in 0..terms.losses.len() {
@@ -134,12 +157,15 @@ impl ReceptanceSetup {
     }
 }
 
-enum Bases<'a> {
-    Real(ModalBase<'a>),
-    Complex(NodeBases<'a>),
+enum Bases {
+    Real(Arc<ModalBase>),
+    Complex(NodeBases),
 }
 
-/// Twice as many terms as modes, and some: the sum's modes then stand to rounding.
+/// Bases of the even beam that are kept.
+const KEPT: usize = 4;
+
+/// Twice as many terms as modes, and some: the sum's modes then stand to rounding. Half of that looks like an effect.
 fn basis_terms(summed: usize) -> usize {
     2 * summed + 24
 }

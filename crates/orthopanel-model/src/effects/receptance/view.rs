@@ -79,11 +79,8 @@ impl View {
         let mut view = Self { layout, numbers: vec![0.0; layout.size()] };
         for (index, block) in base.blocks.iter().enumerate() {
             let shapes = base.rows(index, &rows)?;
-            let summed: Vec<(usize, usize)> =
-                base.near.iter().enumerate().filter(|(_, (b, _))| *b == index).map(|(m, (_, n))| (m, *n)).collect();
-            let part = BlockPart::new(block, shapes, summed);
-            view.add_near(&part);
-            view.add_far(&part);
+            view.add_near(block, &shapes);
+            view.add_far(block, &shapes);
         }
         view.close(base, &rows);
         for difference in &base.differences {
@@ -124,49 +121,56 @@ impl View {
         }
     }
 
-    fn add_near(&mut self, part: &BlockPart) {
-        let Layout { active, .. } = self.layout;
-        for &(m, n) in &part.summed {
-            self.numbers[m] = part.block.lambda[n];
+    fn add_near(&mut self, block: &BlockModes, shapes: &Mat<f64>) {
+        let Layout { active, parameters, .. } = self.layout;
+        for &(m, n) in &block.near {
+            self.numbers[m] = block.lambda[n];
             let at = self.layout.shape(m);
-            (0..self.layout.rows()).for_each(|row| self.numbers[at + row] = part.shapes[(row, n)]);
-            for p in 0..self.layout.parameters {
-                self.numbers[self.layout.by(p) + m] = part.perturbation(p, n, n);
+            (0..self.layout.rows()).for_each(|row| self.numbers[at + row] = shapes[(row, n)]);
+        }
+        for (p, turn) in block.turns.iter().enumerate().take(parameters) {
+            let turned = product(shapes.subrows(0, active), turn.near.as_ref());
+            for (i, &(m, _)) in block.near.iter().enumerate() {
+                self.numbers[self.layout.by(p) + m] = turn.lambda[i];
                 let at = self.layout.shape_by(p, m);
-                for other in 0..part.block.lambda.len() {
-                    let share = part.share(p, other, n);
-                    (0..active).for_each(|row| self.numbers[at + row] += share * part.shapes[(row, other)]);
-                }
+                (0..active).for_each(|row| self.numbers[at + row] = turned[(row, i)]);
             }
         }
     }
 
-    fn add_far(&mut self, part: &BlockPart) {
+    fn add_far(&mut self, block: &BlockModes, shapes: &Mat<f64>) {
         let Layout { active, parameters, .. } = self.layout;
         let rows = self.layout.rows();
-        let far = part.far_shapes();
+        let far = Mat::from_fn(rows, block.far.len(), |row, i| shapes[(row, block.far[i])]);
+        let near = Mat::from_fn(active, block.near.len(), |row, i| shapes[(row, block.near[i].1)]);
+        let heads = far.subrows(0, active);
         let weighted: Vec<Mat<f64>> = (0..SERIES_TERMS)
-            .map(|k| Mat::from_fn(rows, part.far.len(), |row, i| far[(row, i)] * part.power(i, k)))
+            .map(|k| Mat::from_fn(rows, block.far.len(), |row, i| far[(row, i)] * block.powers[(i, k)]))
             .collect();
-        let heads: Vec<_> = weighted.iter().map(|matrix| matrix.subrows(0, active)).collect();
-        let between = |j: usize, matrix: &Mat<f64>, k: usize| {
-            product(product(heads[j], matrix.as_ref()).as_ref(), heads[k].transpose())
-        };
+        let head = |k: usize| weighted[k].subrows(0, active);
         for (k, matrix) in weighted.iter().enumerate() {
-            let series = product(matrix.as_ref(), far.subrows(0, active).transpose());
+            let series = product(matrix.as_ref(), heads.transpose());
             let at = self.layout.series(k);
             add(&mut self.numbers[at..], &series);
         }
-        for p in 0..parameters {
-            let [stiffness, mass] = part.far_couplings(p);
+        for (p, turn) in block.turns.iter().enumerate().take(parameters) {
+            let [stiffness, mass] = &turn.between;
+            // What the far modes gain of the near ones.
+            let gained = product(near.as_ref(), turn.far.as_ref());
+            let through = |matrix: &Mat<f64>| -> Vec<Mat<f64>> {
+                let terms = if matrix.nrows() > 0 { SERIES_TERMS } else { 0 };
+                (0..terms).map(|j| product(head(j), matrix.as_ref())).collect()
+            };
+            let (stiffness, mass) = (through(stiffness), through(mass));
             for k in 0..SERIES_TERMS {
-                let mut by = part.towards_near(p, k, active);
+                let one_way = product(head(k), gained.transpose());
+                let mut by = &one_way + one_way.transpose();
                 // Divided differences of λ^-(k+1), and of λ^-k for the mass.
-                if stiffness.nrows() > 0 {
-                    (0..=k).for_each(|j| by -= between(j, &stiffness, k - j));
+                for (j, half) in stiffness.iter().take(k + 1).enumerate() {
+                    by -= product(half.as_ref(), head(k - j).transpose());
                 }
-                if mass.nrows() > 0 {
-                    (0..k).for_each(|j| by += between(j, &mass, k - 1 - j));
+                for (j, half) in mass.iter().take(k).enumerate() {
+                    by += product(half.as_ref(), head(k - 1 - j).transpose());
                 }
                 let at = self.layout.series_by(p, k);
                 add(&mut self.numbers[at..], &by);
@@ -217,74 +221,5 @@ fn add(into: &mut [f64], matrix: &Mat<f64>) {
         for column in 0..matrix.ncols() {
             into[row * matrix.ncols() + column] += matrix[(row, column)];
         }
-    }
-}
-
-/// One block's modes in the rows of a record, parted into those that are summed and those above.
-struct BlockPart<'a> {
-    block: &'a BlockModes,
-    shapes: Mat<f64>,
-    /// Position in the view and in the block.
-    summed: Vec<(usize, usize)>,
-    /// Positions in the block.
-    far: Vec<usize>,
-}
-
-impl<'a> BlockPart<'a> {
-    fn new(block: &'a BlockModes, shapes: Mat<f64>, summed: Vec<(usize, usize)>) -> Self {
-        let far = (0..block.lambda.len()).filter(|n| !summed.iter().any(|(_, near)| near == n)).collect();
-        Self { block, shapes, summed, far }
-    }
-
-    fn entry(&self, p: usize, kind: usize, m: usize, n: usize) -> f64 {
-        let matrix = &self.block.couplings[p][kind];
-        if matrix.nrows() > 0 { matrix[(m, n)] } else { 0.0 }
-    }
-
-    /// $\kappa_{mn} - \lambda_n\mu_{mn}$.
-    fn perturbation(&self, p: usize, m: usize, n: usize) -> f64 {
-        self.entry(p, 0, m, n) - self.block.lambda[n] * self.entry(p, 1, m, n)
-    }
-
-    /// The share of mode `m` in the derivative of mode `n`'s shape. Modes that coincide, as rigid ones do, only keep
-    /// their norm and stay orthogonal.
-    fn share(&self, p: usize, m: usize, n: usize) -> f64 {
-        let gap = self.block.lambda[n] - self.block.lambda[m];
-        if gap == 0.0 { -0.5 * self.entry(p, 1, m, n) } else { self.perturbation(p, m, n) / gap }
-    }
-
-    /// $\lambda^{-(k+1)}$ of far mode `i`.
-    fn power(&self, i: usize, k: usize) -> f64 {
-        self.block.lambda[self.far[i]].powi(-(k as i32 + 1))
-    }
-
-    fn far_shapes(&self) -> Mat<f64> {
-        Mat::from_fn(self.shapes.nrows(), self.far.len(), |row, i| self.shapes[(row, self.far[i])])
-    }
-
-    fn far_couplings(&self, p: usize) -> [Mat<f64>; 2] {
-        [0, 1].map(|kind| {
-            let matrix = &self.block.couplings[p][kind];
-            let size = if matrix.nrows() > 0 { self.far.len() } else { 0 };
-            Mat::from_fn(size, size, |i, j| matrix[(self.far[i], self.far[j])])
-        })
-    }
-
-    /// What the far modes gain of the near ones: $\sum\lambda_m^{-(k+1)}(\phi_m\phi_n^T + \phi_n\phi_m^T)$ times the shares.
-    fn towards_near(&self, p: usize, k: usize, active: usize) -> Mat<f64> {
-        let mut sum = Mat::zeros(active, active);
-        for (i, &m) in self.far.iter().enumerate() {
-            let gained: Vec<f64> = (0..active)
-                .map(|row| self.summed.iter().map(|&(_, n)| self.share(p, n, m) * self.shapes[(row, n)]).sum())
-                .collect();
-            let power = self.power(i, k);
-            for row in 0..active {
-                for column in 0..active {
-                    let pair = self.shapes[(row, m)] * gained[column] + gained[row] * self.shapes[(column, m)];
-                    sum[(row, column)] += power * pair;
-                }
-            }
-        }
-        sum
     }
 }
