@@ -26,5 +26,6 @@ def test_val_the_constants_of_every_test_with_nothing_missing(tmp_path):
         found = json.loads(ran.stdout)
         for name, within in [("e_x", 1e-3), ("g_zx", 3e-3)]:
             assert found["constants"][name]["value"] == pytest.approx(case["constants"][name], rel=within), case["case"]
-        # What neither noise nor the model explains: a leak, a mode that was not told.
-        assert found["error"]["chi_square"] < 1.3, (case["case"], found["error"])
+        # What neither noise nor the model explains: a leak gave 2.6 and 251. With three hits, of which the hard ones are the
+        # noisier, their scatter tells up to a third too little.
+        assert found["error"]["chi_square"] < 1.5, (case["case"], found["error"])

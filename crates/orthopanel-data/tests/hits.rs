@@ -325,9 +325,9 @@ fn csv_measurement(folder: &std::path::Path, name: &str, samples: usize) -> Stri
 fn val_hits_of_the_same_places_are_put_together() {
     let folder = tempfile::tempdir().unwrap();
     let piece = "[piece]\nlength = 1\nwidth = 1\nthickness = 0.01\nmass_per_area = 1\n";
-    let [one, two, short] = [("a.csv", 1000), ("b.csv", 1000), ("c.csv", 900)]
+    let [one, two, short, other] = [("a.csv", 1000), ("b.csv", 1000), ("c.csv", 900), ("d.csv", 1000)]
         .map(|(name, samples)| csv_measurement(folder.path(), name, samples));
-    let elsewhere = two.replace("[0.1, 0]", "[0.2, 0]");
+    let elsewhere = other.replace("[0.1, 0]", "[0.2, 0]");
     let read = |measurements: &[&str]| {
         let text = format!("{piece}{}", measurements.concat());
         let test = orthopanel_data::ImpactTest::from_toml(&text, folder.path().join("test.toml")).unwrap();

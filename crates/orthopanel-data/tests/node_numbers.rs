@@ -10,11 +10,11 @@ use support::Dataset;
 /// One file: hammer's and sensor's node, and the places that the test file gives.
 type Numbered = ([i64; 2], [f64; 2]);
 
-fn accelerance([hammer, sensor]: [i64; 2]) -> Vec<u8> {
+fn accelerance([hammer, sensor]: [i64; 2], size: f64) -> Vec<u8> {
     let mut response = Dataset::time(&[], (12, "m/s^2"));
     (response.function, response.complex, response.denominator) = (4, true, (13, "N".into()));
     (response.response_node, response.reference_node) = (sensor, hammer);
-    response.points = (0..8).map(|line| vec![1.0, 0.1 * f64::from(line)]).collect();
+    response.points = (0..8).map(|line| vec![size, 0.1 * f64::from(line)]).collect();
     response.text()
 }
 
@@ -48,7 +48,8 @@ fn test_of(name: &str, kind: &str, files: &[(Vec<u8>, [f64; 2])]) -> ImpactTest 
 }
 
 fn read(name: &str, of: &[Numbered]) -> Result<usize, DataError> {
-    let files: Vec<_> = of.iter().map(|&(nodes, places)| (accelerance(nodes), places)).collect();
+    let files: Vec<_> =
+        of.iter().zip(1..).map(|(&(nodes, places), n)| (accelerance(nodes, f64::from(n)), places)).collect();
     let test = test_of(name, "accelerance", &files);
     test.accelerances(Estimation::default()).map(|found| found.len())
 }
@@ -73,6 +74,19 @@ fn val_one_node_at_two_places_is_refused_with_both() {
     }
     let error = read("sensor", &[([1, 8], [-0.3, 0.3]), ([1, 9], [-0.3, 0.2]), ([1, 9], [-0.3, 0.0])]).unwrap_err();
     assert!(error.to_string().contains("sensor is at node 9"), "{error}");
+}
+
+#[test]
+fn val_a_record_that_is_listed_twice_is_refused_and_a_copy_is_told() {
+    let same = accelerance([1, 9], 1.0);
+    let copies = [(same.clone(), [-0.3, 0.3]), (same, [0.0, 0.3])];
+    let test = test_of("copies", "accelerance", &copies);
+    let found = test.accelerances(Estimation::default()).unwrap();
+    assert!(found[1].1.notes.iter().any(|note| note.contains("is it a copy?")), "{:?}", found[1].1.notes);
+    let mut twice = test_of("twice", "accelerance", &copies[..1]);
+    twice.measurements.push(twice.measurements[0].clone());
+    let error = twice.accelerances(Estimation::default()).unwrap_err().to_string();
+    assert!(error.contains("point-0.uff") && error.contains("lists this record twice"), "{error}");
 }
 
 #[test]

@@ -130,6 +130,17 @@ pub enum IdentifyError {
         /// Median of $|H_{cal}-H_{exp}|/|H_{exp}|$ \[%\].
         percent: f64,
     },
+    /// One record that contradicts the others.
+    #[error(
+        "{record}: half of its lines miss the model of all records by more than {percent:.0} %: it contradicts the others; \
+         check its file, force_at and response_at, the sensor's direction, unit and gain"
+    )]
+    RecordContradiction {
+        /// Its piece and places.
+        record: String,
+        /// Median of $|H_{cal}-H_{exp}|$ over $|H_{exp}|$ or three standard deviations of it, whichever is more \[%\].
+        percent: f64,
+    },
     /// Weights under which eq. 23 measures nothing.
     #[error(
         "weights of eq. 23: W_f = {frequency}, W_G = {magnitude}: both must be finite, zero or above, and one above zero"
@@ -166,7 +177,11 @@ impl IdentifyError {
     pub fn is_bad_input(&self) -> bool {
         !matches!(
             self,
-            Self::NotConverged { .. } | Self::OnBound { .. } | Self::NotDetermined { .. } | Self::Contradiction { .. }
+            Self::NotConverged { .. }
+                | Self::OnBound { .. }
+                | Self::NotDetermined { .. }
+                | Self::Contradiction { .. }
+                | Self::RecordContradiction { .. }
         )
     }
 }

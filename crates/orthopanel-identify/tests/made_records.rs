@@ -105,3 +105,32 @@ fn a_wrong_place_is_refused() {
     let refused = identify(&ImpactTest::from_toml(&text, &path).unwrap(), Settings::default());
     assert!(matches!(refused, Err(IdentifyError::Contradiction { .. })), "{:?}", refused.map(|found| found.constants));
 }
+
+/// One place of five typed with the wrong sign, the others right: the record is named by what the test file says of it.
+#[test]
+fn one_wrong_place_among_five_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let options = ["--five-places", "--noise", "0.003", "--seed", "15", "--format", "uff-binary"];
+    let Some(test) = made(&folder.path().join("five"), &options) else { return };
+    assert!(identify(&test, Settings::default()).is_ok());
+    let path = folder.path().join("five/test.toml");
+    let places: Vec<f64> = test
+        .measurements
+        .iter()
+        .filter_map(|of| match &of.data {
+            orthopanel_data::MeasurementData::TimeHistory(of) => Some(of.force_at.x),
+            _ => None,
+        })
+        .collect();
+    let wrong = places.into_iter().find(|x| *x < 0.0).unwrap();
+    let text = std::fs::read_to_string(&path).unwrap();
+    let mended = text.replacen(&format!("force_at = [{wrong}"), &format!("force_at = [{}", -0.83 * wrong), 1);
+    assert_ne!(text, mended);
+    let refused = identify(&ImpactTest::from_toml(&mended, &path).unwrap(), Settings::default());
+    match refused {
+        Err(IdentifyError::RecordContradiction { record, percent }) => {
+            assert!(record.contains(&format!("force at ({}", -0.83 * wrong)) && percent > 80.0, "{record} {percent}");
+        }
+        other => panic!("{:?}", other.map(|found| found.constants)),
+    }
+}

@@ -1,5 +1,7 @@
 //! All accelerances of a test, hits of the same places put together.
 
+use std::path::PathBuf;
+
 use rayon::prelude::*;
 
 use super::node_numbers::{self, NumberedPlace};
@@ -42,6 +44,8 @@ enum Gathered {
 /// What a measurement's file holds.
 struct GatheredFile {
     piece: usize,
+    path: PathBuf,
+    record: Option<usize>,
     numbered: Vec<NumberedPlace>,
     content: Gathered,
 }
@@ -60,10 +64,51 @@ impl GatheredFile {
                 MeasurementData::Accelerance(_) => Gathered::Line(Accelerance::from_records(file, recorded)?),
                 _ => Gathered::Hits(TimeHistory::from_records(file, recorded)?),
             };
-            Ok(Self { piece: measurement.piece, numbered, content })
+            Ok(Self {
+                piece: measurement.piece,
+                path: recorded.file.clone(),
+                record: recorded.record,
+                numbered,
+                content,
+            })
         };
         Some(read())
     }
+}
+
+impl Gathered {
+    /// Whether any hit or all lines of both are the same to the last digit, as in no two noisy measurements.
+    fn repeats(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Hits(own), Self::Hits(others)) => own.hits.iter().any(|hit| others.hits.contains(hit)),
+            (Self::Line(own), Self::Line(other)) => own.value == other.value,
+            _ => false,
+        }
+    }
+
+    fn notes(&mut self) -> &mut Vec<String> {
+        match self {
+            Self::Hits(history) => &mut history.notes,
+            Self::Line(accelerance) => &mut accelerance.notes,
+        }
+    }
+}
+
+/// Refuses a file that the test lists twice, for it would count twice, and tells files that hold the same record.
+fn tell_repetitions(files: &mut [GatheredFile]) -> Result<(), DataError> {
+    for index in 1..files.len() {
+        let (before, rest) = files.split_at_mut(index);
+        let Some(file) = rest.first_mut() else { continue };
+        let Some(earlier) = before.iter().find(|earlier| file.content.repeats(&earlier.content)) else { continue };
+        if earlier.path == file.path && earlier.record == file.record {
+            let at = crate::Location { file: file.path.clone(), position: crate::Position::Whole, key: String::new() };
+            let problem = "the test lists this record twice: it would count twice; list it once".into();
+            return Err(DataError::Contradiction { at: Box::new(at), problem });
+        }
+        let note = format!("{} holds a record of {} again: is it a copy?", file.path.display(), earlier.path.display());
+        file.content.notes().push(note);
+    }
+    Ok(())
 }
 
 impl ImpactTest {
@@ -73,7 +118,8 @@ impl ImpactTest {
     ///
     /// # Errors
     /// As [`TimeHistory::read`] and [`TimeHistory::join`]; [`DataError::Contradiction`] where the files' node numbers
-    /// contradict the places: one node at two places, or several nodes in the hits of one place.
+    /// contradict the places (one node at two places, or several nodes in the hits of one place), and where the test
+    /// lists one record twice.
     pub fn time_histories(&self) -> Result<Vec<(usize, TimeHistory)>, DataError> {
         let hits = self.gathered(|data| matches!(data, MeasurementData::TimeHistory(_)))?.into_iter();
         let hits = hits.filter_map(|(piece, gathered)| match gathered {
@@ -102,10 +148,11 @@ impl ImpactTest {
     fn gathered(&self, wanted: impl Fn(&MeasurementData) -> bool) -> Result<Vec<(usize, Gathered)>, DataError> {
         let measurements: Vec<_> = self.measurements.iter().filter(|measurement| wanted(&measurement.data)).collect();
         let read: Vec<_> = measurements.into_par_iter().filter_map(GatheredFile::read).collect();
-        let read = read.into_iter().collect::<Result<Vec<_>, DataError>>()?;
+        let mut read = read.into_iter().collect::<Result<Vec<_>, DataError>>()?;
         for piece in 0..self.pieces.len() {
             node_numbers::check(read.iter().filter(|file| file.piece == piece).flat_map(|file| &file.numbered))?;
         }
+        tell_repetitions(&mut read)?;
         let mut gathered: Vec<(usize, Gathered)> = Vec::new();
         for GatheredFile { piece, content, .. } in read {
             match content {

@@ -6,7 +6,7 @@ use orthopanel_model::Place;
 
 use super::{
     channels::{self, Quantity},
-    extremes::{LANES, extremes},
+    extremes::{LANES, extremes, sampled_median},
 };
 use crate::{
     DataError, RecordedResponse,
@@ -144,7 +144,9 @@ fn hit(
     if factor != 1.0 {
         hit.acceleration.iter_mut().for_each(|value| *value *= factor);
     }
-    let (pulse, ringing) = (effective_samples(&hit.force), effective_samples(&hit.acceleration));
+    // A hammer's channel rests at its offset nearly all the time, and the motion swings about its own.
+    let [pulse, ringing] =
+        [&hit.force, &hit.acceleration].map(|channel| effective_samples(channel, sampled_median(channel)));
     // A blow is over before the piece has rung: whatever the damping, a longer "force" is no force.
     if pulse > ringing && ringing > 0.0 {
         let problem = format!(
@@ -156,10 +158,10 @@ fn hit(
     Ok(hit)
 }
 
-/// Number of samples over which a signal's energy is spread, $(\sum x^2)^2 / \sum x^4$.
-fn effective_samples(values: &[f64]) -> f64 {
+/// Number of samples over which the energy of a signal about its `offset` is spread, $(\sum x^2)^2 / \sum x^4$.
+fn effective_samples(values: &[f64], offset: f64) -> f64 {
     let [least, greatest] = extremes(values);
-    let peak = greatest.max(-least);
+    let peak = (greatest - offset).max(offset - least);
     if peak <= 0.0 {
         return 0.0;
     }
@@ -168,7 +170,7 @@ fn effective_samples(values: &[f64]) -> f64 {
     let (mut squares, mut fourths) = ([0.0; LANES], [0.0; LANES]);
     for chunk in values.chunks(LANES) {
         for ((two, four), value) in squares.iter_mut().zip(&mut fourths).zip(chunk) {
-            let square = (value * scale).powi(2);
+            let square = ((value - offset) * scale).powi(2);
             *two += square;
             *four += square * square;
         }

@@ -12,7 +12,7 @@ pub enum Window {
     #[default]
     None,
     /// [`Window::None`] where the responses of a place have died away at the record's end, else
-    /// [`Window::ForceExponential`] with the time constant that takes what is left down to 1e-4 of the greatest.
+    /// [`Window::ForceExponential`] with the time constant that takes what is left down to 1e-6 of the greatest.
     AsNeeded,
     /// Hann's window over both channels, $\tfrac12(1 - \cos 2\pi n/N)$, as in the paper.
     Hann,
@@ -31,8 +31,9 @@ pub enum Window {
 /// Half the width of the force window unless said \[s\]: ten times a usual blow.
 const HALF_WIDTH: f64 = 0.004;
 
-/// What the exponential leaves of a response at the record's end, over its greatest: no more than noise does.
-const LEFT: f64 = 1e-4;
+/// What the exponential leaves of a response at the record's end, over its greatest. The slow low modes that ring longest
+/// are a hundredth of what a hammer raises in all, and their leak should still be below noise.
+const LEFT: f64 = 1e-6;
 
 impl Window {
     /// The window over a place's hits, of which `left` is the greatest rms at the record's end over the greatest of the

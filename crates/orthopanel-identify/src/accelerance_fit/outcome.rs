@@ -18,6 +18,8 @@ const FAR_FROM_NOISE: f64 = 25.0;
 /// Median misfit of a line \[%\] above which records and test file speak of different things. The median leaves out the
 /// peaks, where a right model with a wrong digit misses wholly, and the valleys, where noise does.
 const CONTRADICTION: f64 = 40.0;
+/// The same of one record: an effect that the model lacks may bend one by half, a wrong place, file or sign by all.
+const RECORD_CONTRADICTION: f64 = 80.0;
 /// A constant is seen where its standard deviation is below this part of what is usual.
 const SEEN: f64 = 0.5;
 /// A damping ratio known no better than to this factor's logarithm is the prior's, and is not reported.
@@ -123,7 +125,7 @@ pub(super) fn from_poles(
     found.correlations = take_from_poles(&start, problem, &mut found.parameters, &mut found.log_std);
     let at = problem.linearise(&found.parameters)?;
     if problem.noise_is_known() {
-        found.chi_square = Some(at.cost / problem.data() as f64);
+        found.chi_square = Some(at.cost / problem.data());
     }
     report(test, &start, problem, found)
 }
@@ -140,6 +142,12 @@ fn report(
     let percent = median_misfit_percent(&fits);
     if percent > CONTRADICTION {
         return Err(IdentifyError::Contradiction { percent });
+    }
+    if let Some((record, percent)) =
+        fits.iter().map(|fit| (fit, record_misfit_percent(fit))).max_by(|a, b| a.1.total_cmp(&b.1))
+        && percent > RECORD_CONTRADICTION
+    {
+        return Err(IdentifyError::RecordContradiction { record: record_name(test, record), percent });
     }
     let pieces = piece_fits(test, start, problem, &parameters, &log_std)?;
     let errors = pieces.iter().flat_map(|piece| &piece.modes).map(|mode| mode.error_percent().powi(2));
@@ -218,9 +226,29 @@ fn accelerance_fits(
 
 fn median_misfit_percent(fits: &[AcceleranceFit]) -> f64 {
     let lines = fits.iter().flat_map(|fit| fit.model.iter().zip(&fit.measured));
-    let mut misfits: Vec<f64> = lines.map(|(model, measured)| (model - measured).norm() / measured.norm()).collect();
-    misfits.sort_by(f64::total_cmp);
-    100.0 * misfits.get(misfits.len() / 2).copied().unwrap_or(0.0)
+    median_percent(lines.map(|(model, measured)| (model - measured).norm() / measured.norm()))
+}
+
+/// Median misfit of one record, where noise that drowns a line counts as its size.
+fn record_misfit_percent(fit: &AcceleranceFit) -> f64 {
+    let noise = |line: usize| fit.variance.as_ref().and_then(|all| all.get(line)).map_or(0.0, |of| 3.0 * of.sqrt());
+    let lines = fit.model.iter().zip(&fit.measured).enumerate();
+    median_percent(lines.map(|(line, (model, measured))| (model - measured).norm() / measured.norm().max(noise(line))))
+}
+
+fn median_percent(parts: impl Iterator<Item = f64>) -> f64 {
+    let mut parts: Vec<f64> = parts.collect();
+    parts.sort_by(f64::total_cmp);
+    100.0 * parts.get(parts.len() / 2).copied().unwrap_or(0.0)
+}
+
+fn record_name(test: &ImpactTest, of: &AcceleranceFit) -> String {
+    let piece = match test.pieces.get(of.piece) {
+        Some(piece) if test.pieces.len() > 1 => format!("piece {}, ", piece.name),
+        _ => String::new(),
+    };
+    let (force, response) = (of.force_at, of.response_at);
+    format!("{piece}force at ({}, {}), response at ({}, {})", force.x, force.y, response.x, response.y)
 }
 
 /// The modes that the records show, and the damping of all modes inside the band.

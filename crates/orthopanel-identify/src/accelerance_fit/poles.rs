@@ -6,7 +6,7 @@ use faer::Mat;
 use num_complex::Complex64;
 use rayon::prelude::*;
 
-use super::records::PlaceRecord;
+use super::records::{PlaceRecord, variance_beneath_window};
 use super::structures::SeenMode;
 use crate::least_squares::{Linearised, Quadratic, levenberg_marquardt};
 
@@ -18,6 +18,13 @@ pub(super) struct Pole {
     /// Damping ratio and the standard deviation of its logarithm.
     pub zeta: f64,
     pub log_zeta_std: f64,
+}
+
+impl Pole {
+    /// $\zeta\omega$ \[1/s\].
+    pub(super) fn decay_rate(&self) -> f64 {
+        self.zeta * std::f64::consts::TAU * self.frequency
+    }
 }
 
 /// A peak must rise this much over the valleys beside it, in power.
@@ -145,7 +152,8 @@ pub(super) fn fit_pole(record: &PlaceRecord, power: &[f64], peak: usize) -> Opti
     let data = (2 * local.lines.len()) as f64 - 8.0;
     let scale = if data > 0.0 { (minimum.at.cost / data).max(1.0) } else { 1.0 };
     let (found, zeta) = (minimum.parameters[0].exp(), minimum.parameters[1].exp());
-    let log_zeta_std = (scale * covariance[(1, 1)]).sqrt();
+    let beneath = variance_beneath_window(zeta * std::f64::consts::TAU * found, record.decay_rate, 1.0 / step);
+    let log_zeta_std = (scale * beneath * covariance[(1, 1)]).sqrt();
     // A pole away from its peak, or of any damping, is no resonance but a bump of the background.
     let at_peak = (found - frequency[peak]).abs() < 2.0 * width.max(step);
     let sure = log_zeta_std < 0.5 && zeta < MOST_DAMPING;

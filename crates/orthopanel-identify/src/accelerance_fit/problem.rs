@@ -130,14 +130,19 @@ impl AcceleranceProblem {
         self.constants.count() + self.pieces.iter().map(|piece| piece.free_zetas).sum::<usize>()
     }
 
-    /// Number of real data: two a line.
-    pub(super) fn data(&self) -> usize {
-        self.pieces.iter().flat_map(|piece| &piece.records).map(|record| 2 * record.value.len()).sum()
+    /// Number of independent real data: two a line, less what windows tie together.
+    pub(super) fn data(&self) -> f64 {
+        self.pieces
+            .iter()
+            .flat_map(|piece| &piece.records)
+            .flat_map(|record| &record.worth)
+            .map(|worth| 2.0 * worth)
+            .sum()
     }
 
     /// Misfit per datum that is left beside the parameters, of a sum of squares.
     pub(super) fn chi_square(&self, cost: f64) -> f64 {
-        cost / self.data().saturating_sub(self.size()).max(1) as f64
+        cost / (self.data() - self.size() as f64).max(1.0)
     }
 
     /// Whether every record tells its own noise.

@@ -22,6 +22,8 @@ pub(super) struct PlaceRecord {
     pub variance_known: bool,
     /// $\sigma$ of $s = \sigma + j\omega$ \[1/s\].
     pub decay_rate: f64,
+    /// How many independent data each line is worth, at most one: an exponential window ties neighbouring lines together.
+    pub worth: Vec<f64>,
 }
 
 impl PlaceRecord {
@@ -37,6 +39,21 @@ impl PlaceRecord {
             variance: usable.iter().map(|&line| variance[line]).collect(),
             variance_known: accelerance.variance.is_some(),
             decay_rate: accelerance.decay_rate,
+            worth: vec![1.0; usable.len()],
+        }
+    }
+
+    /// Takes into account how the window ties lines together, by the decay rates $\zeta\omega$ \[1/s\] and frequencies
+    /// \[Hz\] of the poles: each line by the nearest one.
+    pub(super) fn heed_window(&mut self, poles: &[(f64, f64)]) {
+        let Some(step) = self.frequency.get(1).zip(self.frequency.first()).map(|(second, first)| second - first) else {
+            return;
+        };
+        for (worth, line) in self.worth.iter_mut().zip(&self.frequency) {
+            let distance = |pole: &&(f64, f64)| (pole.1 - line).abs();
+            if let Some((decay, _)) = poles.iter().min_by(|a, b| distance(a).total_cmp(&distance(b))) {
+                *worth = 1.0 / variance_beneath_window(*decay, self.decay_rate, 1.0 / step);
+            }
         }
     }
 
@@ -50,12 +67,13 @@ impl PlaceRecord {
         LineBlock::filled((from..self.frequency.len()).map(|line| self.s(line)))
     }
 
-    /// $\sqrt{2/\mathrm{var}}$ of the lines from one on, since the variance counts real and imaginary part together; past
-    /// the record's end 0.
+    /// $\sqrt{2w/\mathrm{var}}$ of the lines from one on, with what each is worth, since the variance counts real and
+    /// imaginary part together; past the record's end 0.
     pub(super) fn weights(&self, from: usize) -> [f64; BLOCK] {
         let mut weights = [0.0; BLOCK];
-        for (weight, variance) in weights.iter_mut().zip(self.variance.iter().skip(from)) {
-            *weight = (2.0 / variance).sqrt();
+        let lines = self.variance.iter().zip(&self.worth).skip(from);
+        for (weight, (variance, worth)) in weights.iter_mut().zip(lines) {
+            *weight = (2.0 * worth / variance).sqrt();
         }
         weights
     }
@@ -63,5 +81,21 @@ impl PlaceRecord {
     /// Highest line \[Hz\].
     pub(super) fn band_end(&self) -> f64 {
         self.frequency.last().copied().unwrap_or(0.0)
+    }
+}
+
+/// Variance of what a fit finds under the window $e^{-\sigma t}$, over what it would be if the lines were independent.
+///
+/// Even noise $n(t)$ under $w = e^{-\sigma t}$ ties lines together. A response of decay rate $\delta$ depends on its pole
+/// as $J = te^{-\delta t}$, which the fit weighs with $w^2$: the variance of what it finds is $\int w^4J^2/(\int w^2J^2)^2$,
+/// that of independent lines of the same noise $\overline{w^2}/\int w^2J^2$. With $T$ the record's length,
+/// $$r = \left(\frac{\delta+\sigma}{\delta+2\sigma}\right)^3\frac{2\sigma T}{1-e^{-2\sigma T}},$$
+/// at least one here: a fit is not said to be better for its window. One where there is no window.
+pub(super) fn variance_beneath_window(decay: f64, window: f64, length: f64) -> f64 {
+    let both = 2.0 * window * length;
+    if both > 0.0 && both.is_finite() {
+        (((decay + window) / (decay + 2.0 * window)).powi(3) * both / -(-both).exp_m1()).max(1.0)
+    } else {
+        1.0
     }
 }

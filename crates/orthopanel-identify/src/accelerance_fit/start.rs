@@ -67,6 +67,8 @@ pub(super) fn start(test: &ImpactTest, settings: Settings) -> Result<Start, Iden
     }
     for piece in &mut pieces {
         piece.poles = poles(&piece.records);
+        let decays: Vec<(f64, f64)> = piece.poles.iter().map(|pole| (pole.decay_rate(), pole.frequency)).collect();
+        piece.records.iter_mut().for_each(|record| record.heed_window(&decays));
     }
     let poles: Vec<PiecePoles> = pieces.iter().map(|piece| piece_poles(piece, structure, test.boundary)).collect();
     let needed = match structure {
