@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use orthopanel_model::Place;
 use rayon::prelude::*;
 
 use super::node_numbers::{self, NumberedPlace};
@@ -86,6 +87,14 @@ impl Gathered {
         }
     }
 
+    /// Force and response.
+    fn places(&self) -> (Place, Place) {
+        match self {
+            Self::Hits(history) => (history.force_at, history.response_at),
+            Self::Line(accelerance) => (accelerance.force_at, accelerance.response_at),
+        }
+    }
+
     fn notes(&mut self) -> &mut Vec<String> {
         match self {
             Self::Hits(history) => &mut history.notes,
@@ -94,13 +103,14 @@ impl Gathered {
     }
 }
 
-/// Refuses a file that the test lists twice, for it would count twice, and tells files that hold the same record.
+/// Refuses a file that the test lists twice for the same places, for it would count twice, and tells files that hold the same record.
 fn tell_repetitions(files: &mut [GatheredFile]) -> Result<(), DataError> {
     for index in 1..files.len() {
         let (before, rest) = files.split_at_mut(index);
         let Some(file) = rest.first_mut() else { continue };
         let Some(earlier) = before.iter().find(|earlier| file.content.repeats(&earlier.content)) else { continue };
-        if earlier.path == file.path && earlier.record == file.record {
+        let places = file.content.places() == earlier.content.places();
+        if places && earlier.path == file.path && earlier.record == file.record {
             let at = crate::Location { file: file.path.clone(), position: crate::Position::Whole, key: String::new() };
             let problem = "the test lists this record twice: it would count twice; list it once".into();
             return Err(DataError::Contradiction { at: Box::new(at), problem });
