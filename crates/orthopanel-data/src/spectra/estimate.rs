@@ -105,6 +105,9 @@ impl TimeHistory {
         }
 
         let samples = kept.first().map_or(0, |hit| hit.force.len());
+        if window == Window::Hann {
+            notes.push("Hann's window widens the peaks: damping read from them comes out too high, none or force and exponential keep it".into());
+        }
         let sums = sums(kept.iter().copied(), samples, window, self.rate);
         let step = self.rate / samples as f64;
         let end = self.band_end(&sums, estimation.force_drop, step, &mut notes);
