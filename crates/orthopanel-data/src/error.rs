@@ -29,6 +29,13 @@ pub enum Position {
     Byte(usize),
 }
 
+impl Location {
+    /// A file as a whole.
+    pub(crate) fn whole(file: impl Into<PathBuf>) -> Box<Self> {
+        Box::new(Self { file: file.into(), position: Position::Whole, key: String::new() })
+    }
+}
+
 impl fmt::Display for Location {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}", self.file.display())?;

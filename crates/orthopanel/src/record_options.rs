@@ -54,10 +54,9 @@ impl EstimationOptions {
     /// [`CommandError::Option`] for the size of a window that is not asked for.
     pub fn estimation(&self, unsaid: Window) -> Result<Estimation, CommandError> {
         let window = match (self.window, self.tau) {
-            (Some(WindowWord::ForceExponential), Some(tau)) => Window::ForceExponential {
-                half_width: self.force_half_width.unwrap_or(Window::usual_half_width()),
-                tau,
-            },
+            (Some(WindowWord::ForceExponential), Some(tau)) => {
+                Window::ForceExponential { half_width: self.force_half_width.unwrap_or(Window::USUAL_HALF_WIDTH), tau }
+            }
             (window, tau) => {
                 for (option, value) in [("tau", tau), ("force-half-width", self.force_half_width)] {
                     if let Some(value) = value {

@@ -4,7 +4,7 @@ use std::{path::Path, sync::Arc};
 
 use num_complex::Complex64;
 
-use super::{Axis, Format, Port, Record, RecordFile, RecordKind, Samples, csv_columns, record, whole};
+use super::{Axis, Format, Port, Record, RecordFile, RecordKind, Samples, csv_columns, record};
 use crate::{DataError, Location};
 
 pub(super) const FORMAT: Format = Format {
@@ -23,7 +23,7 @@ fn read(bytes: &[u8], path: &Path) -> Result<RecordFile, DataError> {
     let record = |kind, title: &str, abscissa, ordinate, numerator, denominator| Record {
         kind,
         title: title.into(),
-        at: Box::new(Location { key: title.into(), ..*whole(path) }),
+        at: Box::new(Location { key: title.into(), ..*Location::whole(path) }),
         response: Port::default(),
         reference: Port::default(),
         abscissa,

@@ -2,7 +2,7 @@
 
 use std::{path::Path, sync::Arc};
 
-use super::{Axis, Format, Port, Record, RecordFile, RecordKind, Samples, csv_columns, record, whole};
+use super::{Axis, Format, Port, Record, RecordFile, RecordKind, Samples, csv_columns, record};
 use crate::{DataError, Location};
 
 pub(super) const FORMAT: Format = Format {
@@ -25,7 +25,7 @@ fn read(bytes: &[u8], path: &Path) -> Result<RecordFile, DataError> {
     let record = |title: &str, abscissa: Arc<[f64]>, ordinate: Vec<f64>, data_type: i64, unit: &str| Record {
         kind: RecordKind::Time,
         title: title.into(),
-        at: Box::new(Location { key: title.into(), ..*whole(path) }),
+        at: Box::new(Location { key: title.into(), ..*Location::whole(path) }),
         response: Port::default(),
         reference: Port::default(),
         abscissa,

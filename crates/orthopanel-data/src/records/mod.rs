@@ -8,7 +8,7 @@ mod uff;
 
 use std::{fs, path::Path};
 
-use crate::{DataError, Location, Position};
+use crate::{DataError, Location};
 pub(crate) use record::{ACCELERATION, FORCE};
 pub use record::{Axis, Port, Record, RecordFile, RecordKind, Samples};
 
@@ -29,7 +29,7 @@ impl RecordFile {
     /// [`DataError::Unreadable`] where the file cannot be read, else as [`RecordFile::from_bytes`].
     pub fn read(path: impl AsRef<Path>) -> Result<Self, DataError> {
         let path = path.as_ref();
-        let bytes = fs::read(path).map_err(|source| DataError::Unreadable { at: whole(path), source })?;
+        let bytes = fs::read(path).map_err(|source| DataError::Unreadable { at: Location::whole(path), source })?;
         Self::from_bytes(&bytes, path)
     }
 
@@ -45,12 +45,8 @@ impl RecordFile {
             Some(format) => (format.read)(bytes, path),
             None => {
                 let names = FORMATS.map(|format| format.name).join("; ");
-                Err(DataError::UnknownFormat { at: whole(path), names })
+                Err(DataError::UnknownFormat { at: Location::whole(path), names })
             }
         }
     }
-}
-
-fn whole(path: &Path) -> Box<Location> {
-    Box::new(Location { file: path.to_path_buf(), position: Position::Whole, key: String::new() })
 }

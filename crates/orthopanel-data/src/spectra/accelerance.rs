@@ -5,7 +5,7 @@ use orthopanel_model::Place;
 
 use super::channels::{self, Quantity};
 use crate::{
-    DataError, RecordedResponse,
+    DataError, Location, RecordedResponse,
     records::{Record, RecordFile, RecordKind, Samples},
 };
 
@@ -84,12 +84,8 @@ impl Accelerance {
             return refused(first, problem);
         }
         let Some(&(_, record)) = chosen else {
-            let at = crate::Location {
-                file: measurement.file.clone(),
-                position: crate::Position::Whole,
-                key: String::new(),
-            };
-            return Err(DataError::NoRecords { at: Box::new(at), what: "frequency response (function type 4)" });
+            let at = Location::whole(&measurement.file);
+            return Err(DataError::NoRecords { at, what: "frequency response (function type 4)" });
         };
         if let (None, Some((_, second))) = (measurement.record, responses.get(1)) {
             let problem = format!(

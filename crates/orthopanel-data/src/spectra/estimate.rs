@@ -95,19 +95,9 @@ impl TimeHistory {
         }
         notes.append(&mut reasons);
         let window = estimation.window.resolved(left, &kept, self.rate);
-        if left.is_some() {
-            notes.push(match window {
-                Window::ForceExponential { tau, .. } => {
-                    format!("force and exponential window, tau = {tau:.3} s: the damping that it adds is known and taken out")
-                }
-                _ => "what has not decayed leaks: record longer, or use the force and exponential window".into(),
-            });
-        }
+        notes.extend(window.notes(left.is_some()));
 
         let samples = kept.first().map_or(0, |hit| hit.force.len());
-        if window == Window::Hann {
-            notes.push("Hann's window widens the peaks: damping read from them comes out too high, none or force and exponential keep it".into());
-        }
         let sums = sums(kept.iter().copied(), samples, window, self.rate);
         let step = self.rate / samples as f64;
         let end = self.band_end(&sums, estimation.force_drop, step, &mut notes);

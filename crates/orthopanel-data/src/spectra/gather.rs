@@ -7,18 +7,22 @@ use rayon::prelude::*;
 
 use super::node_numbers::{self, NumberedPlace};
 use super::{Accelerance, Estimation, TimeHistory};
-use crate::{DataError, ImpactTest, Measurement, MeasurementData, RecordFile};
+use crate::{DataError, ImpactTest, Location, Measurement, MeasurementData, RecordFile};
 
 impl TimeHistory {
+    /// Force and response.
+    fn places(&self) -> (Place, Place) {
+        (self.force_at, self.response_at)
+    }
+
     /// Adds the hits of `other`, as where each hit has a file of its own.
     ///
     /// # Errors
     /// [`DataError::Channels`], naming `other`'s file, where places, rate or length differ.
     pub fn join(&mut self, other: Self) -> Result<(), DataError> {
         let length = |history: &Self| history.hits.first().map_or(0, |hit| hit.force.len());
-        let places = |history: &Self| (history.force_at, history.response_at);
         let (mine, theirs) = ((length(self), self.rate), (length(&other), other.rate));
-        let problem = if places(self) != places(&other) {
+        let problem = if self.places() != other.places() {
             "the places differ from those of the hits before".to_owned()
         } else if mine.0 != theirs.0 || (mine.1 - theirs.1).abs() > 1e-6 * mine.1 {
             let file = self.file.display();
@@ -31,8 +35,7 @@ impl TimeHistory {
             self.notes.extend(other.notes);
             return Ok(());
         };
-        let at = crate::Location { file: other.file, position: crate::Position::Whole, key: String::new() };
-        Err(DataError::Channels { at: Box::new(at), problem })
+        Err(DataError::Channels { at: Location::whole(other.file), problem })
     }
 }
 
@@ -90,7 +93,7 @@ impl Gathered {
     /// Force and response.
     fn places(&self) -> (Place, Place) {
         match self {
-            Self::Hits(history) => (history.force_at, history.response_at),
+            Self::Hits(history) => history.places(),
             Self::Line(accelerance) => (accelerance.force_at, accelerance.response_at),
         }
     }
@@ -111,9 +114,8 @@ fn tell_repetitions(files: &mut [GatheredFile]) -> Result<(), DataError> {
         let Some(earlier) = before.iter().find(|earlier| file.content.repeats(&earlier.content)) else { continue };
         let places = file.content.places() == earlier.content.places();
         if places && earlier.path == file.path && earlier.record == file.record {
-            let at = crate::Location { file: file.path.clone(), position: crate::Position::Whole, key: String::new() };
             let problem = "the test lists this record twice: it would count twice; list it once".into();
-            return Err(DataError::Contradiction { at: Box::new(at), problem });
+            return Err(DataError::Contradiction { at: Location::whole(&file.path), problem });
         }
         let note = format!("{} holds a record of {} again: is it a copy?", file.path.display(), earlier.path.display());
         file.content.notes().push(note);
@@ -168,11 +170,7 @@ impl ImpactTest {
             match content {
                 Gathered::Hits(history) => {
                     let same = gathered.iter_mut().find_map(|(of, earlier)| match earlier {
-                        Gathered::Hits(earlier)
-                            if *of == piece
-                                && earlier.force_at == history.force_at
-                                && earlier.response_at == history.response_at =>
-                        {
+                        Gathered::Hits(earlier) if *of == piece && earlier.places() == history.places() => {
                             Some(earlier)
                         }
                         _ => None,

@@ -9,7 +9,7 @@ use super::{
     extremes::{LANES, extremes, sampled_median},
 };
 use crate::{
-    DataError, RecordedResponse,
+    DataError, Location, RecordedResponse,
     records::{Record, RecordFile, RecordKind, Samples},
 };
 
@@ -64,7 +64,10 @@ impl TimeHistory {
         let (mut forces, mut accelerations) = (Vec::new(), Vec::new());
         let mut untold = Vec::new();
         let Some(first) = records.first().map(|record| record.at.clone()) else {
-            return Err(DataError::Contradiction { at: whole(measurement), problem: "no record is given".into() });
+            return Err(DataError::Contradiction {
+                at: Location::whole(&measurement.file),
+                problem: "no record is given".into(),
+            });
         };
         for record in records.into_iter().filter(|record| record.kind == RecordKind::Time) {
             match channels::quantity(&record.numerator) {
@@ -220,9 +223,4 @@ fn mean_step(record: &Record) -> Result<f64, DataError> {
         at: record.at.clone(),
         problem: format!("a time step of {step} s makes no sampling rate"),
     })
-}
-
-fn whole(measurement: &RecordedResponse) -> Box<crate::Location> {
-    let file = measurement.file.clone();
-    Box::new(crate::Location { file, position: crate::Position::Whole, key: String::new() })
 }

@@ -28,14 +28,14 @@ pub enum Window {
     },
 }
 
-/// Half the width of the force window unless said \[s\]: ten times a usual blow.
-const HALF_WIDTH: f64 = 0.004;
-
 /// What the exponential leaves of a response at the record's end, over its greatest. The slow low modes that ring longest
 /// are a hundredth of what a hammer raises in all, and their leak should still be below noise.
 const LEFT: f64 = 1e-6;
 
 impl Window {
+    /// Half the width of the force window unless said \[s\]: ten times a usual blow.
+    pub const USUAL_HALF_WIDTH: f64 = 0.004;
+
     /// The window over a place's hits, of which `left` is the greatest rms at the record's end over the greatest of the
     /// record, `None` where all have died away.
     pub(super) fn resolved(self, left: Option<f64>, hits: &[&Hit], rate: f64) -> Self {
@@ -48,7 +48,7 @@ impl Window {
                     blows.fold((0, 0), |(last, longest), (at, samples)| (last.max(at), longest.max(samples)));
                 let after = hits.first().map_or(0, |hit| hit.force.len()).saturating_sub(last);
                 Self::ForceExponential {
-                    half_width: HALF_WIDTH.max(4.0 * longest as f64 / rate),
+                    half_width: Self::USUAL_HALF_WIDTH.max(4.0 * longest as f64 / rate),
                     tau: after as f64 / rate / (left / LEFT).max(std::f64::consts::E).ln(),
                 }
             }
@@ -56,9 +56,19 @@ impl Window {
         }
     }
 
-    /// Half the width of the force window unless said \[s\].
-    pub const fn usual_half_width() -> f64 {
-        HALF_WIDTH
+    /// What there is to say of it, beside hits that have not all died away.
+    pub(super) fn notes(self, ringing: bool) -> Vec<String> {
+        let of_ringing = match self {
+            Self::ForceExponential { tau, .. } => {
+                format!(
+                    "force and exponential window, tau = {tau:.3} s: the damping that it adds is known and taken out"
+                )
+            }
+            _ => "what has not decayed leaks: record longer, or use the force and exponential window".into(),
+        };
+        let of_hann = "Hann's window widens the peaks: damping read from them comes out too high, none or force and \
+                       exponential keep it";
+        ringing.then_some(of_ringing).into_iter().chain((self == Self::Hann).then(|| of_hann.into())).collect()
     }
 
     /// The decay rate $\sigma = 1/\tau$ \[1/s\] that the window adds; zero without an exponential.

@@ -47,10 +47,12 @@ impl ImpactTest {
     /// [`DataError::Unreadable`] where the file cannot be read, else as [`ImpactTest::from_toml`].
     pub fn read(path: impl AsRef<Path>) -> Result<Self, DataError> {
         let path = path.as_ref();
-        let whole = Location { file: path.to_path_buf(), position: Position::Whole, key: String::new() };
-        let bytes = fs::read(path).map_err(|source| DataError::Unreadable { at: Box::new(whole.clone()), source })?;
+        let bytes = fs::read(path).map_err(|source| DataError::Unreadable { at: Location::whole(path), source })?;
         let text = String::from_utf8(bytes).map_err(|error| DataError::Syntax {
-            at: Box::new(Location { position: Position::Byte(error.utf8_error().valid_up_to()), ..whole.clone() }),
+            at: Box::new(Location {
+                position: Position::Byte(error.utf8_error().valid_up_to()),
+                ..*Location::whole(path)
+            }),
             message: "not UTF-8 text: save the test file as UTF-8".into(),
         })?;
         Self::from_toml(&text, path)

@@ -14,7 +14,7 @@ use std::{path::Path, sync::Arc};
 use num_complex::Complex64;
 
 use super::{Format, Record, RecordFile, RecordKind, Samples};
-use crate::DataError;
+use crate::{DataError, Location};
 use cursor::Cursor;
 use header::{Encoding, Header};
 
@@ -56,7 +56,7 @@ fn read(bytes: &[u8], path: &Path) -> Result<RecordFile, DataError> {
         }
     }
     if records.is_empty() {
-        return Err(DataError::NoRecords { at: super::whole(path), what: "dataset 58 or 58b" });
+        return Err(DataError::NoRecords { at: Location::whole(path), what: "dataset 58 or 58b" });
     }
     Ok(RecordFile { records, notes })
 }
