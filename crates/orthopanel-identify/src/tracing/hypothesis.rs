@@ -120,6 +120,12 @@ impl Hypothesis {
         self.effects.iter().map(|switched| switched.effect.id()).collect::<Vec<_>>().join(" + ")
     }
 
+    /// The ids of the effects beyond the first `declared`, which the test file declares.
+    pub(super) fn name_beyond(&self, declared: usize) -> String {
+        let ids: Vec<&str> = self.effects.iter().skip(declared).map(|on| on.effect.id()).collect();
+        if ids.is_empty() { "base".to_owned() } else { ids.join(" + ") }
+    }
+
     /// With one more effect.
     pub(super) fn and(&self, switched: Switched) -> Self {
         let mut more = self.clone();

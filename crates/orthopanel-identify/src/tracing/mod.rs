@@ -10,6 +10,7 @@
 //! files of accelerances, which hold no hits, are traced in [`frequencies`] and [`accelerances`].
 
 mod accelerances;
+mod bare_panel;
 mod base_model;
 mod curves;
 mod fit;

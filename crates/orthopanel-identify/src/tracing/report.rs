@@ -1,12 +1,11 @@
 //! From the ranking to what is said.
 
-use std::collections::BTreeMap;
-
 use faer::Side;
 use faer::linalg::solvers::DenseSolveCore;
 use orthopanel_data::ImpactTest;
-use orthopanel_model::{BEAM_CONSTANTS, Damping, Estimate, MODEL_SCHEMA, Owner, PanelModel, Ports, StructureKind};
+use orthopanel_model::{Estimate, Owner, PanelModel};
 
+use super::bare_panel::bare_panel;
 use super::fit::{Fit, by_group};
 use super::held_out::held_out;
 use super::hypothesis::{Hypothesis, Switched};
@@ -70,8 +69,7 @@ pub(super) fn report(test: &ImpactTest, search: &Search, ranking: &Ranking) -> R
 
 /// The ids of the effects that the file does not declare.
 pub(super) fn name(fit: &Fit, declared: usize) -> String {
-    let ids: Vec<&str> = fit.state.hypothesis.effects.iter().skip(declared).map(|on| on.effect.id()).collect();
-    if ids.is_empty() { "base".to_owned() } else { ids.join(" + ") }
+    fit.state.hypothesis.name_beyond(declared)
 }
 
 /// Standard deviation of everything that a search moved: $(J^TJ)^{-1}$, widened as the likelihood is.
@@ -121,39 +119,10 @@ fn parameters(on: &Switched, std: &[Option<f64>]) -> Vec<TracedParameter> {
 
 /// The panel at a fit, without any effect.
 fn panel(test: &ImpactTest, search: &Search, fit: &Fit, std: &[Option<f64>]) -> PanelModel {
-    let mut std = std.iter().copied();
-    let mut constants = BTreeMap::new();
-    for (index, constant) in BEAM_CONSTANTS.iter().enumerate() {
-        let value = fit.state.constants[index].exp();
-        let held = search.records.held[index].is_some();
-        let std = if held { None } else { std.next().flatten().map(|std| std * value) };
-        constants.insert(constant.name.to_owned(), Estimate { value, std });
-    }
-    let lines = search.records.problem(0).records;
-    let mut ports = Ports { forces: vec![], responses: vec![] };
-    for record in lines {
-        if !ports.forces.contains(&record.force_at) {
-            ports.forces.push(record.force_at);
-        }
-        if !ports.responses.contains(&record.response_at) {
-            ports.responses.push(record.response_at);
-        }
-    }
-    let in_band = search.records.in_band.min(fit.state.zetas.len());
-    PanelModel {
-        schema: MODEL_SCHEMA.to_owned(),
-        piece: search.piece,
-        boundary: test.boundary,
-        structure: StructureKind::TimoshenkoBeam,
-        constants,
-        damping: Damping {
-            ratios: fit.state.zetas.iter().take(in_band).map(|log| log.exp()).collect(),
-            beyond: search.records.usual_log_zeta.exp(),
-        },
-        effects: vec![],
-        ports,
-        provenance: BTreeMap::new(),
-    }
+    let records = search.records;
+    let in_band = records.in_band.min(fit.state.zetas.len());
+    let places = records.problem(0).records.iter().map(|record| [Some(record.force_at), Some(record.response_at)]);
+    bare_panel((test, search.piece), (&fit.state, std), &records.held, (in_band, records.usual_log_zeta), places)
 }
 
 /// Puts the panel's own effects into its model, and says which of the others are taken out and why.

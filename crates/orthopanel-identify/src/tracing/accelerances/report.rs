@@ -1,14 +1,13 @@
 //! What the fits of accelerances mean.
 
-use std::collections::BTreeMap;
-
 use orthopanel_data::ImpactTest;
-use orthopanel_model::{BEAM_CONSTANTS, Damping, Estimate, MODEL_SCHEMA, PanelModel, Ports, StructureKind};
+use orthopanel_model::PanelModel;
 
 use super::parting::next_experiment;
 use super::problem::AccelerancesFit;
 use super::search::{Found, Search};
 use crate::IdentifyError;
+use crate::tracing::bare_panel::bare_panel;
 use crate::tracing::curves::curves;
 use crate::tracing::outcome::{Candidate, FittedError, TracedEffect, TracedError, Tracing, Verdict};
 use crate::tracing::record_problem::total;
@@ -106,8 +105,7 @@ fn verdict(search: &Search, found: &Found) -> Verdict {
 
 /// The ids of the effects beyond the base.
 pub(super) fn name(search: &Search, fit: &AccelerancesFit) -> String {
-    let ids = search.ids(fit);
-    if ids.is_empty() { "base".to_owned() } else { ids.join(" + ") }
+    fit.state.hypothesis.name_beyond(search.declared)
 }
 
 fn said_of_frequencies(
@@ -140,33 +138,9 @@ fn traced(fit: &AccelerancesFit, std: &[Option<f64>]) -> Vec<TracedEffect> {
 }
 
 fn panel(test: &ImpactTest, search: &Search, fit: &AccelerancesFit, std: &[Option<f64>]) -> PanelModel {
-    let mut std = std.iter().copied();
-    let mut constants = BTreeMap::new();
-    for (index, constant) in BEAM_CONSTANTS.iter().enumerate() {
-        let value = fit.state.constants[index].exp();
-        let held = search.problem.held[index].is_some();
-        let std = if held { None } else { std.next().flatten().map(|std| std * value) };
-        constants.insert(constant.name.to_owned(), Estimate { value, std });
-    }
-    let mut ports = Ports { forces: vec![], responses: vec![] };
-    for setting in (0..search.problem.between.value.len()).filter_map(|index| search.problem.setup.setting(index)) {
-        let places = [(&mut ports.forces, setting.record.force_at), (&mut ports.responses, setting.record.response_at)];
-        for (known, place) in places {
-            known.extend(place.filter(|place| !known.contains(place)));
-        }
-    }
-    PanelModel {
-        schema: MODEL_SCHEMA.to_owned(),
-        piece: search.piece,
-        boundary: test.boundary,
-        structure: StructureKind::TimoshenkoBeam,
-        constants,
-        damping: Damping {
-            ratios: fit.state.zetas.iter().map(|log| log.exp()).collect(),
-            beyond: search.problem.usual_log_zeta.exp(),
-        },
-        effects: vec![],
-        ports,
-        provenance: BTreeMap::new(),
-    }
+    let problem = &search.problem;
+    let settings = (0..problem.between.value.len()).filter_map(|index| problem.setup.setting(index));
+    let places = settings.map(|setting| [setting.record.force_at, setting.record.response_at]);
+    let damping = (fit.state.zetas.len(), problem.usual_log_zeta);
+    bare_panel((test, search.piece), (&fit.state, std), &problem.held, damping, places)
 }

@@ -1,0 +1,47 @@
+//! The panel at a fit to records, without any effect.
+
+use std::collections::BTreeMap;
+
+use orthopanel_data::ImpactTest;
+use orthopanel_model::{
+    BEAM_CONSTANTS, Damping, Estimate, MODEL_SCHEMA, PanelModel, Piece, Place, Ports, StructureKind,
+};
+
+use super::record_problem::State;
+
+/// The model at `state`, with all constants that are not `held` given their standard deviation from the beginning of
+/// `std`; `damping` is the number of modes whose ratios are told, and the logarithm of the ratio beyond. Each of `places`
+/// (force and response of a record) is a port, once.
+pub(super) fn bare_panel(
+    (test, piece): (&ImpactTest, Piece),
+    (state, std): (&State, &[Option<f64>]),
+    held: &[Option<f64>; 2],
+    damping: (usize, f64),
+    places: impl IntoIterator<Item = [Option<Place>; 2]>,
+) -> PanelModel {
+    let mut std = std.iter().copied();
+    let mut constants = BTreeMap::new();
+    for ((constant, held), log) in BEAM_CONSTANTS.iter().zip(held).zip(state.constants) {
+        let value = log.exp();
+        let std = if held.is_some() { None } else { std.next().flatten().map(|std| std * value) };
+        constants.insert(constant.name.to_owned(), Estimate { value, std });
+    }
+    let mut ports = Ports { forces: vec![], responses: vec![] };
+    for [force, response] in places {
+        for (known, place) in [(&mut ports.forces, force), (&mut ports.responses, response)] {
+            known.extend(place.filter(|place| !known.contains(place)));
+        }
+    }
+    let (told, beyond) = damping;
+    PanelModel {
+        schema: MODEL_SCHEMA.to_owned(),
+        piece,
+        boundary: test.boundary,
+        structure: StructureKind::TimoshenkoBeam,
+        constants,
+        damping: Damping { ratios: state.zetas.iter().take(told).map(|log| log.exp()).collect(), beyond: beyond.exp() },
+        effects: vec![],
+        ports,
+        provenance: BTreeMap::new(),
+    }
+}
