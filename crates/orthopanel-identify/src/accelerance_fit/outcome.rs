@@ -5,7 +5,7 @@ use orthopanel_data::ImpactTest;
 use orthopanel_model::{Constant, Estimate};
 
 use super::problem::AcceleranceProblem;
-use super::start::{Start, StartPiece};
+use super::start::{Start, StartPiece, pair_name};
 use crate::free_constants::{FreeConstants, Rest};
 use crate::frequency_fit::identified_constants;
 use crate::least_squares::Minimum;
@@ -247,8 +247,7 @@ fn record_name(test: &ImpactTest, of: &AcceleranceFit) -> String {
         Some(piece) if test.pieces.len() > 1 => format!("piece {}, ", piece.name),
         _ => String::new(),
     };
-    let (force, response) = (of.force_at, of.response_at);
-    format!("{piece}force at ({}, {}), response at ({}, {})", force.x, force.y, response.x, response.y)
+    piece + &pair_name(of.force_at, of.response_at)
 }
 
 /// The modes that the records show, and the damping of all modes inside the band.

@@ -151,13 +151,14 @@ pub(super) fn fit_pole(record: &PlaceRecord, power: &[f64], peak: usize) -> Opti
     // Three complex amplitudes are taken out of the residuals.
     let data = (2 * local.lines.len()) as f64 - 8.0;
     let scale = if data > 0.0 { (minimum.at.cost / data).max(1.0) } else { 1.0 };
-    let (found, zeta) = (minimum.parameters[0].exp(), minimum.parameters[1].exp());
-    let beneath = variance_beneath_window(zeta * std::f64::consts::TAU * found, record.decay_rate, 1.0 / step);
-    let log_zeta_std = (scale * beneath * covariance[(1, 1)]).sqrt();
+    let mut pole =
+        Pole { frequency: minimum.parameters[0].exp(), zeta: minimum.parameters[1].exp(), log_zeta_std: f64::INFINITY };
+    let beneath = variance_beneath_window(pole.decay_rate(), record.decay_rate, 1.0 / step);
+    pole.log_zeta_std = (scale * beneath * covariance[(1, 1)]).sqrt();
     // A pole away from its peak, or of any damping, is no resonance but a bump of the background.
-    let at_peak = (found - frequency[peak]).abs() < 2.0 * width.max(step);
-    let sure = log_zeta_std < 0.5 && zeta < MOST_DAMPING;
-    (at_peak && sure).then_some((Pole { frequency: found, zeta, log_zeta_std }, local.lines))
+    let at_peak = (pole.frequency - frequency[peak]).abs() < 2.0 * width.max(step);
+    let sure = pole.log_zeta_std < 0.5 && pole.zeta < MOST_DAMPING;
+    (at_peak && sure).then_some((pole, local.lines))
 }
 
 /// Residuals of one resonance over a straight background, amplitudes eliminated (variable projection):

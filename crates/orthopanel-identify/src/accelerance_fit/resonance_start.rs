@@ -6,6 +6,7 @@ use orthopanel_model::{BEAM_CONSTANTS, BeamConstants, Boundary, ExactBeam, Model
 
 use super::poles::{Pole, poles};
 use super::records::PlaceRecord;
+use super::start::usual_log_zeta;
 use crate::IdentifyError;
 use crate::least_squares::{Ending, Linearised, descend};
 
@@ -198,9 +199,8 @@ impl BeamFit<'_> {
                 *mode = Some((pole.frequency, pole.zeta));
             }
         }
-        let logs: Vec<f64> = self.poles.iter().map(|pole| pole.zeta.ln()).collect();
-        if !logs.is_empty() {
-            found.usual_zeta = (logs.iter().sum::<f64>() / logs.len() as f64).exp();
+        if !self.poles.is_empty() {
+            found.usual_zeta = usual_log_zeta(self.poles).exp();
         }
         found
     }

@@ -1,7 +1,7 @@
 //! Before the fit: poles of the records, which modes they are, and the constants that meet them.
 
 use orthopanel_data::ImpactTest;
-use orthopanel_model::{Boundary, Piece, StructureKind};
+use orthopanel_model::{Boundary, Piece, Place, StructureKind};
 use rayon::prelude::*;
 
 use super::matching::{Matching, PiecePoles, candidates, match_at};
@@ -54,8 +54,7 @@ pub(super) fn start(test: &ImpactTest, settings: Settings) -> Result<Start, Iden
     let records: Vec<PlaceRecord> =
         accelerances.par_iter().map(|(_, accelerance)| PlaceRecord::of(accelerance)).collect();
     for ((index, accelerance), record) in accelerances.into_iter().zip(records) {
-        let (force, response) = (accelerance.force_at, accelerance.response_at);
-        let pair = format!("force at ({}, {}), response at ({}, {})", force.x, force.y, response.x, response.y);
+        let pair = pair_name(accelerance.force_at, accelerance.response_at);
         notes.extend(accelerance.notes.iter().map(|note| format!("{pair}: {note}")));
         match pieces.iter_mut().find(|piece| piece.index == index) {
             Some(piece) => piece.records.push(record),
@@ -162,6 +161,11 @@ fn pole_sets(pieces: &[StartPiece], matching: &Matching, boundary: Boundary) -> 
         PoleSet { piece: piece.index, sizes: piece.sizes, boundary, nodes, frequencies }
     };
     pieces.iter().zip(&matching.modes).zip(&matching.seen).map(of_piece).collect()
+}
+
+/// A record by its places, for notes and messages.
+pub(super) fn pair_name(force: Place, response: Place) -> String {
+    format!("force at ({}, {}), response at ({}, {})", force.x, force.y, response.x, response.y)
 }
 
 /// Mean of the logarithms of the damping ratios.

@@ -2,7 +2,7 @@
 
 use faer::Mat;
 use orthopanel_model::{
-    Boundary, MindlinPlate, ModelError, Piece, Place, SensitiveModes, Structure, ritz_modes, sensitive_modes,
+    Boundary, MindlinPlate, ModelError, Piece, Place, RitzMode, SensitiveModes, Structure, ritz_modes, sensitive_modes,
 };
 
 use super::{ModeSynthesis, RecordedStructure, SeenMode};
@@ -16,21 +16,20 @@ pub(super) struct RecordedPlate {
 const MODES: (usize, usize) = (24, 150);
 
 impl RecordedPlate {
-    /// The smallest basis that reaches `limit` \[Hz\], and how many of its modes are asked for; the largest one where none
-    /// reaches so far.
-    fn plate(&self, values: &[f64], limit: f64) -> Result<(MindlinPlate, usize), ModelError> {
+    /// The smallest basis that reaches `limit` \[Hz\], and its modes; the largest one where none reaches so far.
+    fn modes(&self, values: &[f64], limit: f64) -> Result<(MindlinPlate, Vec<RitzMode>), ModelError> {
         let mut count = MODES.0;
         let mut plate = MindlinPlate::with_basis_for(&self.piece, self.boundary, values, count)?;
         loop {
-            let highest =
-                ritz_modes(&plate, values, count)?.last().map_or(f64::INFINITY, |mode| mode.angular_frequency);
+            let modes = ritz_modes(&plate, values, count)?;
+            let highest = modes.last().map_or(f64::INFINITY, |mode| mode.angular_frequency);
             if highest > limit * std::f64::consts::TAU || count >= MODES.1 {
-                return Ok((plate, count));
+                return Ok((plate, modes));
             }
             let more = (count + count / 2).min(MODES.1);
             match MindlinPlate::with_basis_for(&self.piece, self.boundary, values, more) {
                 Ok(larger) => (plate, count) = (larger, more),
-                Err(ModelError::BasisTooSmall { .. }) => return Ok((plate, count)),
+                Err(ModelError::BasisTooSmall { .. }) => return Ok((plate, modes)),
                 Err(error) => return Err(error),
             }
         }
@@ -39,8 +38,7 @@ impl RecordedPlate {
 
 impl RecordedStructure for RecordedPlate {
     fn modes_below(&self, values: &[f64], limit: f64, pairs: &[(Place, Place)]) -> Result<Vec<SeenMode>, ModelError> {
-        let (plate, count) = self.plate(values, limit)?;
-        let modes = ritz_modes(&plate, values, count)?;
+        let (plate, modes) = self.modes(values, limit)?;
         let flexible = modes.iter().filter(|mode| mode.angular_frequency > 0.0);
         let seen = flexible.map(|mode| SeenMode {
             frequency: mode.angular_frequency / std::f64::consts::TAU,
