@@ -4,6 +4,7 @@
 mod coupled;
 mod force_record;
 mod lane;
+mod mode_group;
 mod propagator;
 mod runge_kutta;
 mod stepper;

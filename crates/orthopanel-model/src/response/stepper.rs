@@ -2,33 +2,9 @@
 
 use super::coupled::Coupled;
 use super::lane::{LANES, Lane};
+use super::mode_group::{Group, State, project, sum};
 use super::propagator::Coefficients;
 use crate::{ModalModel, Mode, ModelError};
-
-/// What is known of a group of modes beside its state.
-#[derive(Debug, Clone, Copy, Default)]
-struct Group {
-    /// $\omega^2$ and $2\zeta\omega$.
-    stiffness: Lane,
-    damping: Lane,
-    /// [`Coefficients`] of the last step size.
-    impulse: Lane,
-    held: Lane,
-    /// $\omega^2$ times that.
-    held_stiffness: Lane,
-    ramp: Lane,
-    ramp_rate: Lane,
-    /// Modal force now, and at the end of a linear step while that is computed.
-    force: Lane,
-    force_after: Lane,
-}
-
-/// Modal coordinates and their rates of one group.
-#[derive(Debug, Clone, Copy, Default)]
-struct State {
-    position: Lane,
-    velocity: Lane,
-}
 
 /// Advances the modes of a [`ModalModel`] exactly in time.
 ///
@@ -352,24 +328,6 @@ impl ModalStepper {
     }
 }
 
-impl State {
-    /// The state after the step for which the group's coefficients are made.
-    #[inline(always)]
-    fn stepped<const LINEAR: bool>(self, group: &Group) -> Self {
-        let Self { position: a, velocity: v } = self;
-        let elastic = group.force - group.stiffness * a;
-        let acceleration = elastic - group.damping * v;
-        let mut position = a + group.impulse * v + group.held * elastic;
-        let mut velocity = v + group.impulse * acceleration - group.held_stiffness * v;
-        if LINEAR {
-            let change = group.force_after - group.force;
-            position = position + group.ramp * change;
-            velocity = velocity + group.ramp_rate * change;
-        }
-        Self { position, velocity }
-    }
-}
-
 /// Which force, or with these forces which modal force, is not finite.
 #[cold]
 fn not_finite(forces: &[f64], bound: f64) -> ModelError {
@@ -377,26 +335,4 @@ fn not_finite(forces: &[f64], bound: f64) -> ModelError {
         Some(&value) => ModelError::NotFinite { what: "force", value },
         None => ModelError::NotFinite { what: "modal force", value: bound },
     }
-}
-
-/// Modal forces $p = \sum_k W(x_k) f_k$, written where `place` says.
-#[inline(always)]
-fn project(at_forces: &[Vec<Lane>], forces: &[f64], groups: &mut [Group], place: impl Fn(&mut Group) -> &mut Lane) {
-    for (port, (shape, &force)) in at_forces.iter().zip(forces).enumerate() {
-        for (group, &w) in groups.iter_mut().zip(shape) {
-            let modal = place(group);
-            let term = w * Lane::all(force);
-            *modal = if port == 0 { term } else { *modal + term };
-        }
-    }
-}
-
-/// $\sum_m W_m q_m$ with `quantity` giving $q$ of a group.
-#[inline(always)]
-fn sum<T>(shape: &[Lane], groups: impl IntoIterator<Item = T>, quantity: impl Fn(T) -> Lane) -> f64 {
-    let mut sums = Lane::default();
-    for (&w, group) in shape.iter().zip(groups) {
-        sums = sums + w * quantity(group);
-    }
-    sums.sum()
 }
