@@ -103,17 +103,31 @@ pub(crate) struct Ending {
     pub little: f64,
     /// Damping of the first step, as a part of the curvature.
     pub first_damping: f64,
+    /// Damping of a step after one that failed, at least: a smaller one would end where that ended.
+    pub failed_damping: f64,
 }
 
 impl Ending {
     /// For smooth residuals: after a step of 1e-8 the next would be a thousand times smaller still, and 1e-10 of the sum
     /// of squares moves a parameter by 1e-5 of its standard deviation.
-    pub const SMOOTH: Self =
-        Self { most_iterations: 100, small_step: 1e-8, small_gain: 1e-10, little: 0.0, first_damping: 1e-6 };
+    pub const SMOOTH: Self = Self {
+        most_iterations: 100,
+        small_step: 1e-8,
+        small_gain: 1e-10,
+        little: 0.0,
+        first_damping: 1e-6,
+        failed_damping: 0.0,
+    };
     /// For residuals that jump where two modes change places: 1e-6 of the sum of squares moves a parameter by 1e-3 of its
     /// standard deviation, and at a jump steps shrink without end.
-    pub const WITH_JUMPS: Self =
-        Self { most_iterations: 40, small_step: 1e-5, small_gain: 1e-6, little: 0.0, first_damping: 1e-4 };
+    pub const WITH_JUMPS: Self = Self {
+        most_iterations: 40,
+        small_step: 1e-5,
+        small_gain: 1e-6,
+        little: 0.0,
+        first_damping: 1e-4,
+        failed_damping: 0.1,
+    };
 
     /// A search that is cut short: after so many iterations, or where a step promises `little`.
     pub const fn short(most_iterations: usize, little: f64) -> Self {
@@ -193,7 +207,7 @@ pub(crate) fn descend<E>(
         if moved < ending.small_step || ending.is_little(promised, at.cost) {
             return Ok((Minimum { parameters, at }, true));
         }
-        damping *= growth;
+        damping = (damping * growth).max(ending.failed_damping);
         growth *= 2.0;
     }
     Ok((Minimum { parameters, at }, false))

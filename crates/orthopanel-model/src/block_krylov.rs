@@ -13,27 +13,55 @@ use crate::dense::{norm, product, symmetric_eigen};
 const WIDTH: usize = 4;
 /// Residual, over its eigenvalue, at which a vector has converged: its frequency is then exact to rounding.
 const CONVERGED: f64 = 1e-9;
+/// Vectors for each mode wanted from which on convergence is likely, where nothing is known.
+const LIKELY: usize = 5;
+/// Residual at which a vector that began near its mode has converged: an eigenvalue errs by its square.
+const NEARLY_CONVERGED: f64 = 1e-6;
 
 /// The lowest `wanted` flexible modes, rising; `None` where a dense solution is the cheaper or the surer way.
 pub(crate) fn lowest_modes(pencil: &BlockPencil<'_>, wanted: usize) -> Option<Vec<Eigenpair>> {
+    let capacity = pencil.size() - pencil.rigid_count();
+    if (LIKELY + 1) * wanted > capacity || wanted == 0 {
+        return None;
+    }
+    modes_from(pencil, wanted, start(pencil.size()), LIKELY * wanted, CONVERGED)
+}
+
+/// The lowest `wanted` flexible modes, rising, from shapes that nearly are some more of them; their frequencies are exact
+/// to rounding, their shapes to some 1e-6.
+pub(crate) fn lowest_modes_near(pencil: &BlockPencil<'_>, wanted: usize, shapes: &[&[f64]]) -> Option<Vec<Eigenpair>> {
+    if wanted > shapes.len() {
+        return None;
+    }
+    if wanted == 0 {
+        return Some(Vec::new());
+    }
+    modes_from(pencil, wanted, pencil.unit_vectors(shapes), 2 * shapes.len(), NEARLY_CONVERGED)
+}
+
+/// From the columns of `start`; looks for convergence once there are `likely` vectors.
+fn modes_from(
+    pencil: &BlockPencil<'_>,
+    wanted: usize,
+    start: Mat<f64>,
+    likely: usize,
+    residual: f64,
+) -> Option<Vec<Eigenpair>> {
     let size = pencil.size();
     let rigid = pencil.rigid_vectors();
     let capacity = size - rigid.ncols();
-    if 6 * wanted > capacity || wanted == 0 {
-        return None;
-    }
     // Orthonormal columns: the rigid modes, then the Krylov space; images are those of the latter.
     let mut basis = rigid.clone();
     let mut images = Mat::<f64>::zeros(size, 0);
-    let mut next = orthonormal(&basis, start(size))?;
+    let mut next = orthonormal(&basis, start)?;
     while 2 * images.ncols() < capacity {
         let image = pencil.apply(&next);
         basis = beside(&basis, &next);
         images = beside(&images, &image);
         let found = images.ncols();
         // The projection costs more than a step: look only where convergence is likely.
-        if found >= 5 * wanted
-            && let Some(modes) = converged(pencil, &basis, rigid.ncols(), &images, wanted)
+        if found >= likely
+            && let Some(modes) = converged(pencil, &basis, rigid.ncols(), &images, wanted, residual)
         {
             return Some(modes);
         }
@@ -49,6 +77,7 @@ fn converged(
     rigid: usize,
     images: &Mat<f64>,
     wanted: usize,
+    least: f64,
 ) -> Option<Vec<Eigenpair>> {
     let found = images.ncols();
     let space = basis.subcols(rigid, found);
@@ -63,7 +92,7 @@ fn converged(
     residual -= along(along_rigid, residual.as_ref());
     residual -= Mat::from_fn(shapes.nrows(), wanted, |i, j| thetas[j] * shapes[(i, j)]);
     let mut norms = residual.col_iter().map(norm).zip(&thetas);
-    norms.all(|(norm, theta)| norm <= CONVERGED * theta).then(|| pencil.modes(&thetas, shapes))
+    norms.all(|(norm, theta)| norm <= least * theta).then(|| pencil.modes(&thetas, shapes))
 }
 
 /// Columns without preference for any coordinate, the same in every run.

@@ -56,7 +56,12 @@ impl<'a> BlockPencil<'a> {
 
     /// The rigid modes as unit vectors of $A$, a column each.
     pub(crate) fn rigid_vectors(&self) -> Mat<f64> {
-        let coordinates = Mat::from_fn(self.size(), self.rigid_count(), |i, n| self.block.rigid[n][i] / self.scale[i]);
+        self.unit_vectors(&self.block.rigid)
+    }
+
+    /// The unit vectors of $A$ that stand for shapes.
+    pub(crate) fn unit_vectors(&self, shapes: &[impl AsRef<[f64]>]) -> Mat<f64> {
+        let coordinates = Mat::from_fn(self.size(), shapes.len(), |i, n| shapes[n].as_ref()[i] / self.scale[i]);
         let mut vectors = self.factor.upper_times(&coordinates);
         for mut column in vectors.col_iter_mut() {
             let norm = norm(column.as_ref());

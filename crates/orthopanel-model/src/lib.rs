@@ -45,7 +45,7 @@ pub use panel_modes::ModeRange;
 pub use piece::{Piece, Place};
 pub use reduced_structure::ReducedStructure;
 pub use response::{ForceRecord, ModalStepper};
-pub use ritz_modes::ritz_modes;
+pub use ritz_modes::{modes_below, ritz_modes, ritz_modes_near};
 pub use static_deflection::static_deflections;
 pub use structure::{Block, Flexibility, Motion, RitzMode, Structure, TermDerivative};
 pub use timoshenko_beam::{

@@ -27,16 +27,21 @@ pub struct ReducedStructure<S> {
 /// Changes of a shape below this, for a coefficient that doubles, are left out: they move frequencies by their square.
 const SMALL_CHANGE: f64 = 2e-3;
 
-impl<S: Structure + Sync> ReducedStructure<S> {
+impl<S: Structure + Send + Sync> ReducedStructure<S> {
     /// On the `count` lowest flexible modes at these values of the constants.
     ///
     /// # Errors
     /// As [`ritz_modes`].
-    pub fn near(whole: Arc<S>, values: &[f64], count: usize) -> Result<Self, ModelError>
-    where
-        S: Send,
-    {
+    pub fn near(whole: Arc<S>, values: &[f64], count: usize) -> Result<Self, ModelError> {
         let modes = ritz_modes(whole.as_ref(), values, count)?;
+        Self::on(whole, values, &modes)
+    }
+
+    /// On these modes, which are the structure's lowest, rigid ones too, at these values of the constants.
+    ///
+    /// # Errors
+    /// As [`ritz_modes`].
+    pub fn on(whole: Arc<S>, values: &[f64], modes: &[RitzMode]) -> Result<Self, ModelError> {
         let coefficients = checked_coefficients(whole.as_ref(), values)?;
         let numbered: Vec<(usize, &Block)> = whole.blocks().iter().enumerate().collect();
         let reduced = side_by_side::map(&numbered, |&(index, block)| {
@@ -54,6 +59,36 @@ impl<S: Structure + Sync> ReducedStructure<S> {
         });
         let (shapes, blocks) = reduced.into_iter().collect::<Result<Vec<_>, ModelError>>()?.into_iter().unzip();
         Ok(Self { whole, shapes, blocks })
+    }
+
+    /// Its modes, as many as it has shapes: the rigid ones, then the flexible ones, rising.
+    ///
+    /// # Errors
+    /// As [`ritz_modes`].
+    pub fn modes(&self, values: &[f64]) -> Result<Vec<RitzMode>, ModelError> {
+        let coefficients = checked_coefficients(self.whole.as_ref(), values)?;
+        let mut modes = Vec::new();
+        for (block, own) in self.blocks.iter().enumerate() {
+            // The mass is one, and nothing couples the rigid shapes, which come first.
+            let (size, rigid) = (own.size(), own.rigid.len());
+            let entry = |i: usize, j: usize| -> f64 {
+                own.stiffness.iter().zip(&coefficients).map(|(matrix, c)| c * matrix[(rigid + i, rigid + j)]).sum()
+            };
+            let stiffness = Mat::from_fn(size - rigid, size - rigid, entry);
+            let (omega2, vectors) = symmetric_eigen(&stiffness).ok_or(ModelError::Eigenproblem)?;
+            modes.extend(own.rigid.iter().map(|shape| RitzMode {
+                angular_frequency: 0.0,
+                block,
+                coordinates: shape.clone(),
+            }));
+            modes.extend(omega2.iter().enumerate().map(|(k, omega2)| RitzMode {
+                angular_frequency: omega2.max(0.0).sqrt(),
+                block,
+                coordinates: (0..size).map(|i| if i < rigid { 0.0 } else { vectors[(i - rigid, k)] }).collect(),
+            }));
+        }
+        modes.sort_by(|a, b| a.angular_frequency.total_cmp(&b.angular_frequency));
+        Ok(modes)
     }
 
     /// A mode of this structure in the coordinates of the whole one.

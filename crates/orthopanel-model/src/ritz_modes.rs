@@ -1,6 +1,6 @@
 //! Modes of any [`Structure`]: one symmetric eigenproblem a block, the blocks side by side.
 
-use crate::block_krylov::lowest_modes;
+use crate::block_krylov::{lowest_modes, lowest_modes_near};
 use crate::block_pencil::{BlockPencil, Eigenpair};
 use crate::structure::{Block, RitzMode, Structure};
 use crate::{Constant, ModelError, side_by_side};
@@ -40,6 +40,62 @@ pub fn ritz_modes(structure: &dyn Structure, values: &[f64], count: usize) -> Re
     Ok(rigid(blocks).chain(modes).collect())
 }
 
+/// The modes of [`ritz_modes`], sooner where `near` has nearly these and some more of each block: such as those of a
+/// [`ReducedStructure`](crate::ReducedStructure) at the same values. Frequencies are exact to rounding, shapes to some 1e-6.
+///
+/// # Errors
+/// As [`ritz_modes`].
+pub fn ritz_modes_near(
+    structure: &dyn Structure,
+    values: &[f64],
+    count: usize,
+    near: &[RitzMode],
+) -> Result<Vec<RitzMode>, ModelError> {
+    let mut near: Vec<&RitzMode> = near.iter().filter(|mode| mode.angular_frequency > 0.0).collect();
+    near.sort_by(|a, b| a.angular_frequency.total_cmp(&b.angular_frequency));
+    if count > 0 && count < near.len() && near.iter().all(|mode| fits(structure, mode)) {
+        let coefficients = checked_coefficients(structure, values)?;
+        if let Some(modes) = proven_near(structure.blocks(), &coefficients, count, &near)? {
+            return Ok(rigid(structure.blocks()).chain(modes).collect());
+        }
+    }
+    ritz_modes(structure, values, count)
+}
+
+fn fits(structure: &dyn Structure, mode: &RitzMode) -> bool {
+    structure.blocks().get(mode.block).is_some_and(|block| block.size() == mode.coordinates.len())
+}
+
+/// The first `count` flexible modes, each block's as many as `near` has among them; `None` where the count of negative
+/// pivots says that these are not the lowest.
+fn proven_near(
+    blocks: &[Block],
+    coefficients: &[f64],
+    count: usize,
+    near: &[&RitzMode],
+) -> Result<Option<Vec<RitzMode>>, ModelError> {
+    let numbered: Vec<(usize, &Block)> = blocks.iter().enumerate().collect();
+    let solved = side_by_side::map(&numbered, |&(index, block)| {
+        let pencil = BlockPencil::new(block, coefficients)?;
+        let wanted = near[..count].iter().filter(|mode| mode.block == index).count();
+        let own = near.iter().filter(|mode| mode.block == index);
+        let shapes: Vec<&[f64]> = own.map(|mode| &mode.coordinates[..]).collect();
+        Ok(lowest_modes_near(&pencil, wanted, &shapes).map(|modes| (pencil, modes)))
+    });
+    let solved: Vec<Option<(BlockPencil, Vec<Eigenpair>)>> = solved.into_iter().collect::<Result<_, ModelError>>()?;
+    let Some(solved) = solved.into_iter().collect::<Option<Vec<_>>>() else { return Ok(None) };
+    let last = solved.iter().flat_map(|(_, modes)| modes.iter().map(|mode| mode.0)).fold(0.0, f64::max);
+    let limit = last * (1.0 + CLOSE);
+    let proven = side_by_side::map(&solved, |(pencil, modes)| {
+        pencil.count_below(limit) == Some(modes.len() + pencil.rigid_count())
+    });
+    let all = proven.into_iter().all(|proven| proven);
+    Ok(all.then(|| flexible(solved.into_iter().map(|(_, modes)| modes))))
+}
+
+/// Modes whose squares of frequencies differ by a smaller part are counted together: between them a pivot nearly vanishes.
+const CLOSE: f64 = 1e-6;
+
 /// The rigid modes, then as many flexible ones as the basis has coordinates left, rising.
 pub(crate) fn all_ritz_modes(structure: &dyn Structure, values: &[f64]) -> Result<Vec<RitzMode>, ModelError> {
     let coefficients = checked_coefficients(structure, values)?;
@@ -48,6 +104,31 @@ pub(crate) fn all_ritz_modes(structure: &dyn Structure, values: &[f64]) -> Resul
     let solved: Vec<Vec<Eigenpair>> =
         side_by_side::map(blocks, solve).into_iter().collect::<Result<_, ModelError>>()?;
     Ok(rigid(blocks).chain(flexible(solved.into_iter())).collect())
+}
+
+/// How many flexible modes lie below each of these angular frequencies \[rad/s\], by counts of negative pivots alone.
+///
+/// # Errors
+/// As [`ritz_modes`].
+pub fn modes_below(
+    structure: &dyn Structure,
+    values: &[f64],
+    angular_frequencies: &[f64],
+) -> Result<Vec<usize>, ModelError> {
+    let coefficients = checked_coefficients(structure, values)?;
+    let count = |block| -> Result<Vec<usize>, ModelError> {
+        let pencil = BlockPencil::new(block, &coefficients)?;
+        let below = |omega: &f64| match pencil.count_below(omega * omega) {
+            Some(count) => Ok(count.saturating_sub(pencil.rigid_count())),
+            None => Ok(pencil.all_modes()?.iter().filter(|mode| mode.0 < omega * omega).count()),
+        };
+        angular_frequencies.iter().map(below).collect()
+    };
+    let mut sums = vec![0; angular_frequencies.len()];
+    for counts in side_by_side::map(structure.blocks(), count) {
+        sums.iter_mut().zip(counts?).for_each(|(sum, count)| *sum += count);
+    }
+    Ok(sums)
 }
 
 /// The modes known of one block.
@@ -97,9 +178,8 @@ fn limit_above(solved: &[SolvedBlock], count: usize) -> f64 {
     let mut all: Vec<f64> = solved.iter().flat_map(|block| block.modes.iter().map(|mode| mode.0)).collect();
     all.sort_by(f64::total_cmp);
     let last = count.checked_sub(1).and_then(|index| all.get(index)).copied().unwrap_or(0.0);
-    // Modes that nearly coincide are counted together: between them a pivot nearly vanishes.
-    let clear = all.iter().find(|&&omega2| omega2 > last * (1.0 + 1e-6));
-    clear.map_or(last * (1.0 + 1e-6), |next| 0.5 * (last + next))
+    let clear = all.iter().find(|&&omega2| omega2 > last * (1.0 + CLOSE));
+    clear.map_or(last * (1.0 + CLOSE), |next| 0.5 * (last + next))
 }
 
 /// The coefficients at these values, which must lie inside their bounds.

@@ -2,6 +2,7 @@
 
 use faer::Mat;
 
+use crate::dense::dot;
 use crate::{Constant, ModelError, Place};
 
 /// A structure with named elastic constants, on a Ritz basis.
@@ -146,8 +147,6 @@ impl RitzMode {
 
 /// $v^TAv$.
 pub(crate) fn quadratic_form(matrix: &Mat<f64>, vector: &[f64]) -> f64 {
-    let row = |(column, share): (usize, &f64)| {
-        share * matrix.col_as_slice(column).iter().zip(vector).map(|(entry, value)| entry * value).sum::<f64>()
-    };
+    let row = |(column, share): (usize, &f64)| share * dot(matrix.col_as_slice(column), vector);
     vector.iter().enumerate().map(row).sum()
 }

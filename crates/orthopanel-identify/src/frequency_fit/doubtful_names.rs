@@ -34,7 +34,8 @@ pub(super) fn doubtful_names(
     let more = FrequencyProblem { structure: problem.structure, constants, sets: problem.sets.clone() };
     let mut parameters = start.clone();
     for scatter in SCATTERS {
-        let nearby = more.near(&parameters)?.map_or_else(|| more.on(&more.sets), |sets| more.on(&sets));
+        let nearby =
+            more.near(&more.predictions(&parameters)?)?.map_or_else(|| more.on(&more.sets), |sets| more.on(&sets));
         let robust = |trial: &[f64]| -> Result<Quadratic, IdentifyError> {
             Ok(cauchy(&nearby, &nearby.linearise(trial)?, trial, &start, found.len(), scatter))
         };

@@ -48,11 +48,15 @@ pub(crate) fn identify_frequencies(test: &ImpactTest, search: Search) -> Result<
         StructureKind::TimoshenkoBeam => (minimise(&problem, &start, search)?, Vec::new()),
         StructureKind::MindlinPlate => {
             let (seen, not_identified) = seen_constants::minimise_what_is_seen(&mut problem, &start)?;
-            (if search == Search::Simplex { minimise(&problem, &seen, search)? } else { seen }, not_identified)
+            if search == Search::LeastSquares {
+                problem.constants.refuse_bounds(&seen.parameters)?;
+                return report::report(test, &problem, &seen.parameters, &seen.predictions, not_identified);
+            }
+            (minimise(&problem, &seen.parameters, search)?, not_identified)
         }
     };
     problem.constants.refuse_bounds(&found)?;
-    report::report(test, &problem, &found, not_identified)
+    report::report(test, &problem, &found, &problem.predictions(&found)?, not_identified)
 }
 
 /// The minimum from `start`.
@@ -82,7 +86,8 @@ const QUICK_SEARCHES: usize = 3;
 /// The minimum from `start`, where `quick` predicts quickly.
 ///
 /// Where modes are costly, quick searches come first. Their end counts once the modes of the whole basis promise nothing
-/// further there: it is the minimum of the whole basis then.
+/// further there: it is the minimum of the whole basis then. What a quick search found is where the whole basis' solution
+/// begins, and that solution is where the next quick search is made.
 fn least_squares(
     problem: &FrequencyProblem,
     start: &[f64],
@@ -95,16 +100,19 @@ fn least_squares(
     let bounds = problem.constants.bounds();
     let mut parameters = start.to_vec();
     let mut quick = quick.cloned();
-    for _ in 0..QUICK_SEARCHES {
+    let mut known: Option<Vec<SetPrediction>> = None;
+    let searches = if problem.structure == StructureKind::MindlinPlate { QUICK_SEARCHES } else { 0 };
+    for _ in 0..searches {
         let made_here = quick.is_none();
         if made_here {
-            quick = problem.near(&parameters).ok().flatten();
+            let Some(at) = known.take().or_else(|| problem.predictions(&parameters).ok()) else { break };
+            quick = problem.near(&at).ok().flatten();
         }
         let Some(sets) = quick.take() else { break };
         let nearby = problem.on(&sets);
         let linearise = |parameters: &[f64]| nearby.linearise(parameters).map(|at| at.quadratic());
         let Ok((minimum, _)) = descend(linearise, &parameters, &bounds, ending) else { break };
-        let Ok(predictions) = problem.predictions(&minimum.parameters) else { break };
+        let Ok(predictions) = problem.predictions_from(&minimum.parameters, Some(&sets)) else { break };
         let moves = minimum.parameters.iter().zip(&parameters).map(|(new, old)| (new - old).abs());
         // Where it is made, the quick prediction has the whole one's values and slopes. A search that stays there stands at a
         // jump.
@@ -114,6 +122,7 @@ fn least_squares(
         if stays || ending.is_reached(&at, &parameters, &bounds) {
             return Ok(Minimum { parameters, predictions, quick: Some(sets) });
         }
+        known = Some(predictions);
     }
     let linearise = |parameters: &[f64]| problem.linearise(parameters).map(|at| at.quadratic());
     let minimum = levenberg_marquardt_until(linearise, &parameters, &bounds, ending).map_err(|stuck| match stuck {

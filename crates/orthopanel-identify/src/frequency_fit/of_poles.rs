@@ -64,7 +64,10 @@ pub(crate) fn fit_poles(
     let (parameters, not_identified) = match structure {
         StructureKind::TimoshenkoBeam if start.is_empty() => (start, Vec::new()),
         StructureKind::TimoshenkoBeam => (least_squares(&problem, &start, None)?.parameters, Vec::new()),
-        StructureKind::MindlinPlate => seen_constants::minimise_what_is_seen(&mut problem, &start)?,
+        StructureKind::MindlinPlate => {
+            let (seen, not_identified) = seen_constants::minimise_what_is_seen(&mut problem, &start)?;
+            (seen.parameters, not_identified)
+        }
     };
     let at = problem.linearise(&parameters)?.quadratic();
     Ok(PoleFit { constants: problem.constants, parameters, at, not_identified })

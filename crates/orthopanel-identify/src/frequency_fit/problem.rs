@@ -4,10 +4,10 @@ use std::sync::Arc;
 
 use faer::Mat;
 use orthopanel_data::{ImpactTest, MeasurementData};
-use orthopanel_model::StructureKind;
+use orthopanel_model::{RitzMode, StructureKind};
 use rayon::prelude::*;
 
-use super::structures::{self, MeasuredModes, Prediction, bending_nodes};
+use super::structures::{self, MeasuredModes, Prediction, Solved, bending_nodes};
 use crate::IdentifyError;
 use crate::free_constants::FreeConstants;
 use crate::least_squares::Linearised;
@@ -31,6 +31,8 @@ pub(super) struct SetPrediction {
     pub values: Vec<f64>,
     /// The measured modes, in the test's order.
     pub modes: Vec<Prediction>,
+    /// The shapes that these were found among, where they help to solve again.
+    pub shapes: Vec<RitzMode>,
 }
 
 /// The measurements, and which constants are free.
@@ -67,21 +69,33 @@ impl FrequencyProblem {
 
     /// The modes of every set at these parameters.
     pub(super) fn predictions(&self, parameters: &[f64]) -> Result<Vec<SetPrediction>, IdentifyError> {
-        let predict = |set: &FrequencySet| {
-            let values = self.constants.values(parameters, set.piece);
-            Ok(SetPrediction { modes: set.modes.predict(&values)?, values })
-        };
-        self.sets.par_iter().map(predict).collect()
+        self.predictions_from(parameters, None)
     }
 
-    /// What predicts the same quickly near these parameters, and less well further off; `None` where this one is quick.
-    pub(super) fn near(&self, parameters: &[f64]) -> Result<Option<Arc<[FrequencySet]>>, IdentifyError> {
-        let near = |set: &FrequencySet| {
-            let modes = set.modes.near(&self.constants.values(parameters, set.piece))?;
+    /// The same, sooner where `quick` predicts quickly near by.
+    pub(super) fn predictions_from(
+        &self,
+        parameters: &[f64],
+        quick: Option<&Arc<[FrequencySet]>>,
+    ) -> Result<Vec<SetPrediction>, IdentifyError> {
+        let predict = |(index, set): (usize, &FrequencySet)| {
+            let values = self.constants.values(parameters, set.piece);
+            let known = quick.map(|sets| sets[index].modes.shapes(&values)).transpose()?.unwrap_or_default();
+            let Solved { predictions, shapes } = set.modes.solve(&values, &known)?;
+            Ok(SetPrediction { modes: predictions, values, shapes })
+        };
+        self.sets.par_iter().enumerate().map(predict).collect()
+    }
+
+    /// What predicts the same quickly near these predictions, and less well further off; `None` where this one is quick.
+    pub(super) fn near(&self, at: &[SetPrediction]) -> Result<Option<Arc<[FrequencySet]>>, IdentifyError> {
+        let near = |(set, at): (&FrequencySet, &SetPrediction)| {
+            let modes = set.modes.near(&at.values, &at.shapes)?;
             let (measured, rounding) = (set.measured.clone(), set.rounding.clone());
             Ok(modes.map(|modes| FrequencySet { piece: set.piece, modes, measured, rounding }))
         };
-        let sets = self.sets.par_iter().map(near).collect::<Result<Option<Vec<_>>, IdentifyError>>()?;
+        let pairs = self.sets.par_iter().zip(at);
+        let sets = pairs.map(near).collect::<Result<Option<Vec<_>>, IdentifyError>>()?;
         Ok(sets.map(Arc::from))
     }
 
@@ -99,7 +113,7 @@ impl FrequencyProblem {
     pub(super) fn linearised(&self, predictions: &[SetPrediction], constants: &FreeConstants) -> Linearised {
         let mut residuals = Vec::with_capacity(self.count());
         let mut rows = Vec::with_capacity(self.count());
-        for (set, SetPrediction { values, modes }) in self.sets.iter().zip(predictions) {
+        for (set, SetPrediction { values, modes, .. }) in self.sets.iter().zip(predictions) {
             let of_constant = constants.parameters_of(set.piece);
             for (prediction, measured) in modes.iter().zip(&set.measured) {
                 let ratio = prediction.frequency / measured;

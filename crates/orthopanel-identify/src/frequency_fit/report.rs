@@ -12,11 +12,11 @@ pub(super) fn report(
     test: &ImpactTest,
     problem: &FrequencyProblem,
     found: &[f64],
+    predictions: &[SetPrediction],
     not_identified: Vec<NotIdentified>,
 ) -> Result<Identification, IdentifyError> {
-    let predictions = problem.predictions(found)?;
-    let at = problem.linearised(&predictions, &problem.constants);
-    let uncertainty = uncertainty(problem, &predictions, found, &at);
+    let at = problem.linearised(predictions, &problem.constants);
+    let uncertainty = uncertainty(problem, predictions, found, &at);
     Ok(Identification {
         structure: problem.structure,
         constants: identified_constants(
@@ -27,7 +27,7 @@ pub(super) fn report(
         ),
         not_identified,
         correlations: uncertainty.correlations,
-        pieces: piece_fits(test, problem, &predictions)?,
+        pieces: piece_fits(test, problem, predictions)?,
         frequency_rms_percent: 100.0 * (at.quadratic().cost / problem.count() as f64).sqrt(),
         left_one_out_percent: uncertainty.left_one_out_percent,
         accelerance_rms_percent: None,
@@ -81,11 +81,11 @@ fn piece_fits(
         .map(|named| PieceFit { name: named.name.clone(), piece: named.piece, modes: vec![], damping: vec![] })
         .collect();
     for (set, predicted) in problem.sets.iter().zip(predictions) {
-        let spectrum = set.modes.spectrum(&predicted.values)?;
-        for ((&measured, prediction), &nodes) in set.measured.iter().zip(&predicted.modes).zip(set.modes.nodes()) {
-            let model = prediction.frequency;
-            // Both are solved to rounding, on bases that are the same but for what they leave out.
-            let mode = spectrum.partition_point(|line| line.frequency < model * (1.0 - 1e-7)) + 1;
+        let frequencies: Vec<f64> = predicted.modes.iter().map(|mode| mode.frequency).collect();
+        let numbers = set.modes.numbers(&predicted.values, &frequencies)?;
+        for (((&measured, model), mode), &nodes) in
+            set.measured.iter().zip(frequencies).zip(numbers).zip(set.modes.nodes())
+        {
             fits[set.piece].modes.push(ModeFit { mode, nodes, measured, model, damping: None });
         }
     }

@@ -1,13 +1,15 @@
 //! Which constants of a plate the frequencies show: freed one by one, the best seen first, and the rest reported.
 
+use std::sync::Arc;
+
 use faer::{Mat, Side};
 use orthopanel_model::Constant;
 
-use super::problem::{FrequencyProblem, SetPrediction};
+use super::problem::{FrequencyProblem, FrequencySet};
 use super::uncertainty::{left_one_out_percent, residual_variance};
 use super::{Minimum, least_squares};
 use crate::free_constants::{FreeConstant, FreeConstants};
-use crate::least_squares::Linearised;
+use crate::least_squares::{Ending, Linearised, descend};
 use crate::usual_plate::usual_rest;
 use crate::{IdentifyError, NotIdentified};
 
@@ -20,6 +22,11 @@ const USUAL_SCATTER: f64 = 1e-3;
 /// A constant that worsens the prediction of frequencies left out by more than this factor is fitted to chance: one
 /// parameter too many costs some 5 %, a mode beside a veering that one constant moves alone twice as much and more.
 const WORSE_PREDICTION: f64 = 1.25;
+/// A quick search tells the error of that prediction to some per cent: one that is worse by this factor still is refused
+/// without a search on the whole basis.
+const HOPELESS: f64 = 1.2;
+/// That quick search ends sooner: what has not settled by then stands at a jump.
+const LOOK: Ending = Ending { most_iterations: 12, ..Ending::WITH_JUMPS };
 
 /// The minimum over the constants that the data show, and those that they do not.
 ///
@@ -29,7 +36,7 @@ const WORSE_PREDICTION: f64 = 1.25;
 pub(super) fn minimise_what_is_seen(
     problem: &mut FrequencyProblem,
     start: &[f64],
-) -> Result<(Vec<f64>, Vec<NotIdentified>), IdentifyError> {
+) -> Result<(Minimum, Vec<NotIdentified>), IdentifyError> {
     let all = problem.constants.clone();
     let position = |name: &str| all.constants.iter().position(|constant| constant.name == name).unwrap_or(0);
     let mut waiting: Vec<usize> = Vec::new();
@@ -40,23 +47,34 @@ pub(super) fn minimise_what_is_seen(
             waiting.push(*constant);
         }
     }
-    let Minimum { mut parameters, mut predictions, mut quick } =
-        least_squares(problem, &carried(&all, start, &problem.constants), None)?;
-    while let Some(next) = best_seen(problem, &all, &predictions, &parameters, &waiting) {
+    let mut minimum = least_squares(problem, &carried(&all, start, &problem.constants), None)?;
+    while let Some(next) = best_seen(problem, &all, &minimum, &waiting) {
         waiting.retain(|constant| *constant != next);
         let before = problem.constants.clone();
-        let predicted = prediction_error(&problem.linearised(&predictions, &before));
+        let predicted = prediction_error(&problem.linearised(&minimum.predictions, &before));
         problem.constants = with_freed(&before, &all, next);
-        let trial = least_squares(problem, &freed_parameters(&before, &parameters, &problem.constants), quick.as_ref());
-        match trial {
-            Ok(trial) if pays(problem, &trial, next, predicted) => {
-                Minimum { parameters, predictions, quick } = trial;
-            }
-            _ => problem.constants = before,
+        let start = freed_parameters(&before, &minimum.parameters, &problem.constants);
+        let trial = match quick_trial(problem, &start, minimum.quick.as_ref()) {
+            Some(quick) if !pays(problem, &quick, next, HOPELESS * predicted) => None,
+            Some(quick) => least_squares(problem, &quick.parameters, minimum.quick.as_ref()).ok(),
+            None => least_squares(problem, &start, None).ok(),
+        };
+        match trial.filter(|trial| pays(problem, trial, next, predicted)) {
+            Some(trial) => minimum = trial,
+            None => problem.constants = before,
         }
     }
-    let not_identified = reports(problem, &all, &predictions, &parameters);
-    Ok((parameters, not_identified))
+    let not_identified = reports(problem, &all, &minimum);
+    Ok((minimum, not_identified))
+}
+
+/// The minimum of a quick search alone.
+fn quick_trial(problem: &FrequencyProblem, start: &[f64], quick: Option<&Arc<[FrequencySet]>>) -> Option<Minimum> {
+    let nearby = problem.on(quick?);
+    let linearise = |parameters: &[f64]| nearby.linearise(parameters).map(|at| at.quadratic());
+    let (found, _) = descend(linearise, start, &problem.constants.bounds(), LOOK).ok()?;
+    let predictions = nearby.predictions(&found.parameters).ok()?;
+    Some(Minimum { parameters: found.parameters, predictions, quick: None })
 }
 
 /// Whether a constant just freed is seen, lies inside its bounds, and does not worsen the prediction.
@@ -77,17 +95,12 @@ fn prediction_error(at: &Linearised) -> f64 {
 }
 
 /// The waiting constant that the data would show best, if they would show it.
-fn best_seen(
-    problem: &FrequencyProblem,
-    all: &FreeConstants,
-    predictions: &[SetPrediction],
-    parameters: &[f64],
-    waiting: &[usize],
-) -> Option<usize> {
+fn best_seen(problem: &FrequencyProblem, all: &FreeConstants, at: &Minimum, waiting: &[usize]) -> Option<usize> {
     let mut best: Option<(usize, f64)> = None;
     for &constant in waiting {
-        let (constants, _) = as_if_freed(problem, all, parameters, &[constant]);
-        let stds = standard_deviations(&problem.linearised(predictions, &constants), residual_variance_stated(problem));
+        let (constants, _) = as_if_freed(problem, all, &at.parameters, &[constant]);
+        let stds =
+            standard_deviations(&problem.linearised(&at.predictions, &constants), residual_variance_stated(problem));
         let own = (0..constants.count()).filter(|&index| constants.free[index].constant == constant);
         let ratio = own.map(|index| stds[index] / widest(&constants, index)).fold(0.0, f64::max);
         if ratio <= 1.0 && best.is_none_or(|(_, least)| ratio < least) {
@@ -162,12 +175,8 @@ fn widest(constants: &FreeConstants, index: usize) -> f64 {
 }
 
 /// What is said of each constant that rests.
-fn reports(
-    problem: &FrequencyProblem,
-    all: &FreeConstants,
-    predictions: &[SetPrediction],
-    parameters: &[f64],
-) -> Vec<NotIdentified> {
+fn reports(problem: &FrequencyProblem, all: &FreeConstants, minimum: &Minimum) -> Vec<NotIdentified> {
+    let Minimum { parameters, predictions, .. } = minimum;
     let resting: Vec<usize> = problem.constants.resting.iter().map(|(constant, _)| *constant).collect();
     let (constants, values) = as_if_freed(problem, all, parameters, &resting);
     let at = problem.linearised(predictions, &constants);

@@ -39,7 +39,7 @@ impl Scaling {
     fn of(problem: &FrequencyProblem, constants: &[f64]) -> Result<Self, IdentifyError> {
         let mut scaling = Self { count: 0.0, sum: 0.0, squares: 0.0 };
         for set in problem.sets.iter() {
-            for (calculated, measured) in set.modes.frequencies(constants)?.iter().zip(&set.measured) {
+            for (calculated, measured) in set.modes.rough_frequencies(constants)?.iter().zip(&set.measured) {
                 let quotient = calculated / measured;
                 scaling.count += 1.0;
                 scaling.sum += quotient;

@@ -3,9 +3,12 @@
 use std::borrow::Borrow;
 use std::sync::Arc;
 
-use orthopanel_model::{Boundary, MindlinPlate, ModelError, Piece, ReducedStructure, RitzMode, Structure, ritz_modes};
+use orthopanel_model::{
+    Boundary, MindlinPlate, ModelError, Piece, ReducedStructure, RitzMode, Structure, modes_below, ritz_modes,
+    ritz_modes_near,
+};
 
-use super::{MeasuredModes, Prediction, SpectrumLine};
+use super::{MeasuredModes, Prediction, Solved, SpectrumLine, just_below};
 use crate::IdentifyError;
 
 /// Modes of a plate by their nodal lines.
@@ -18,6 +21,8 @@ pub(super) struct PlateModes {
     /// The plate in the parities of the measured modes alone, and the most modes solved for there.
     own: Arc<MindlinPlate>,
     own_reach: usize,
+    /// The same on fewer polynomials.
+    rough: MindlinPlate,
 }
 
 /// Modes solved for beyond those that lie below the last measured one if all pairs of nodes exist.
@@ -31,40 +36,75 @@ impl PlateModes {
         let own = Arc::new(plate.only_with_nodes(&nodes));
         let share = reach * own.blocks().len() / plate.blocks().len();
         let own_reach = (share + SPARE_MODES).min(own.resolved_modes());
-        Ok(Self { plate, nodes, reach, own, own_reach })
+        let rough = own.with_fewer_terms([most_x, most_y].map(|most| most + ROUGH_SPARE));
+        Ok(Self { plate, nodes, reach, own, own_reach, rough })
     }
 }
 
+/// Polynomials beyond the number of nodes that hold a frequency to some per cent.
+const ROUGH_SPARE: usize = 4;
+
 /// Modes solved for at first beyond those measured.
 const FIRST_SPARE: usize = 2;
+/// Shapes beyond those measured that a solution of the whole plate begins with.
+const NEAR_SPARE: usize = 8;
 
 impl PlateModes {
     /// As many of the lowest modes as tell which the measured ones are.
     fn first_count(&self) -> usize {
         (self.nodes.len() + FIRST_SPARE).min(self.own_reach)
     }
+
+    /// Which modes of a plate in the parities of the measured ones these are, and as many modes as tell it.
+    fn told(
+        &self,
+        plate: &MindlinPlate,
+        values: &[f64],
+        known: &[RitzMode],
+    ) -> Result<(Told, Vec<RitzMode>), ModelError> {
+        let reach = self.own_reach.min(plate.resolved_modes());
+        let mut count = self.first_count().min(reach);
+        loop {
+            let modes = ritz_modes_near(plate, values, count, known)?;
+            let told = Told::of(plate, &self.nodes, modes.iter());
+            if told.all_sure() || count == reach {
+                return Ok((told, modes));
+            }
+            count = reach;
+        }
+    }
 }
 
 impl MeasuredModes for PlateModes {
     fn predict(&self, values: &[f64]) -> Result<Vec<Prediction>, ModelError> {
-        for count in [self.first_count(), self.own_reach] {
-            let modes = ritz_modes(self.own.as_ref(), values, count)?;
-            let told = Told::of(&self.own, &self.nodes, modes.iter());
-            if told.all_sure() || count == self.own_reach {
-                return told.predictions(self.own.as_ref(), &modes, values);
-            }
-        }
-        Err(ModelError::BasisTooSmall { asked: self.nodes.len(), available: self.own_reach })
+        Ok(self.solve(values, &[])?.predictions)
+    }
+
+    fn solve(&self, values: &[f64], known: &[RitzMode]) -> Result<Solved, ModelError> {
+        let (told, mut shapes) = self.told(&self.own, values, known)?;
+        let predictions = told.predictions(self.own.as_ref(), &shapes, values)?;
+        shapes.truncate(shapes.partition_point(|mode| mode.angular_frequency == 0.0) + self.first_count());
+        Ok(Solved { predictions, shapes })
+    }
+
+    fn rough_frequencies(&self, values: &[f64]) -> Result<Vec<f64>, ModelError> {
+        let (told, modes) = self.told(&self.rough, values, &[])?;
+        told.frequencies(&modes)
     }
 
     fn nodes(&self) -> &[[usize; 2]] {
         &self.nodes
     }
 
-    fn near(&self, values: &[f64]) -> Result<Option<Box<dyn MeasuredModes>>, ModelError> {
-        let reduced = ReducedStructure::near(Arc::clone(&self.own), values, self.first_count())?;
+    fn near(&self, values: &[f64], shapes: &[RitzMode]) -> Result<Option<Box<dyn MeasuredModes>>, ModelError> {
+        let reduced = ReducedStructure::on(Arc::clone(&self.own), values, shapes)?;
         let (plate, nodes) = (Arc::clone(&self.own), self.nodes.clone());
         Ok(Some(Box::new(NearbyModes { plate, reduced, nodes })))
+    }
+
+    fn numbers(&self, values: &[f64], frequencies: &[f64]) -> Result<Vec<usize>, ModelError> {
+        let limits: Vec<f64> = frequencies.iter().map(|f| just_below(*f) * std::f64::consts::TAU).collect();
+        Ok(modes_below(&self.plate, values, &limits)?.into_iter().map(|below| below + 1).collect())
     }
 
     fn spectrum(&self, values: &[f64]) -> Result<Vec<SpectrumLine>, ModelError> {
@@ -88,13 +128,19 @@ struct NearbyModes {
 
 impl MeasuredModes for NearbyModes {
     fn predict(&self, values: &[f64]) -> Result<Vec<Prediction>, ModelError> {
-        let modes = ritz_modes(&self.reduced, values, self.reduced.resolved_modes())?;
+        let modes = self.reduced.modes(values)?;
         let told = Told::of(&self.plate, &self.nodes, modes.iter().map(|mode| self.reduced.in_whole(mode)));
         told.predictions(&self.reduced, &modes, values)
     }
 
     fn nodes(&self) -> &[[usize; 2]] {
         &self.nodes
+    }
+
+    fn shapes(&self, values: &[f64]) -> Result<Vec<RitzMode>, ModelError> {
+        let modes = self.reduced.modes(values)?;
+        let flexible = modes.iter().filter(|mode| mode.angular_frequency > 0.0);
+        Ok(flexible.take(self.nodes.len() + NEAR_SPARE).map(|mode| self.reduced.in_whole(mode)).collect())
     }
 
     fn spectrum(&self, _: &[f64]) -> Result<Vec<SpectrumLine>, ModelError> {
@@ -133,6 +179,14 @@ impl Told {
 
     fn all_sure(&self) -> bool {
         self.0.iter().all(|nearest| nearest.is_some_and(|(_, overlap)| overlap * overlap > SURE_SHARE))
+    }
+
+    /// \[Hz\].
+    fn frequencies(&self, modes: &[RitzMode]) -> Result<Vec<f64>, ModelError> {
+        let frequency =
+            |nearest: &Option<(usize, f64)>| Some(modes[(*nearest)?.0].angular_frequency / std::f64::consts::TAU);
+        let frequencies: Option<Vec<f64>> = self.0.iter().map(frequency).collect();
+        frequencies.ok_or(ModelError::BasisTooSmall { asked: self.0.len(), available: modes.len() })
     }
 
     /// `modes` are in the coordinates of `structure`.

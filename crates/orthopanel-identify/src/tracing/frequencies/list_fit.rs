@@ -28,8 +28,14 @@ pub(super) struct ListFit {
 
 /// Step of the differences in logarithms, or in parts of a linear parameter's range.
 const STEP: f64 = 1e-5;
-const ENDING: Ending =
-    Ending { most_iterations: 40, small_step: 1e-7, small_gain: 1e-8, little: 0.0, first_damping: 1e-4 };
+const ENDING: Ending = Ending {
+    most_iterations: 40,
+    small_step: 1e-7,
+    small_gain: 1e-8,
+    little: 0.0,
+    first_damping: 1e-4,
+    failed_damping: 0.0,
+};
 /// Fits constants and effects from parameters of the constants and from where the effects stand.
 ///
 /// # Errors
