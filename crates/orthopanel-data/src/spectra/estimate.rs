@@ -56,8 +56,8 @@ impl TimeHistory {
     ///
     /// The variance of a line is, for two hits and more, that of their scatter; for hits alike it is
     /// $|H_1|^2 (1 - \gamma^2) / ((n - 1)\gamma^2)$ (Bendat and Piersol, Random Data, chapter 9, with the degrees of
-    /// freedom of $n$ hits), and a hard hit may be noisier than a soft one. For a single
-    /// hit it is $(N_a + |H|^2 N_f)/|F|^2$ with the noise $N$ of either channel read above the band, and unknown where
+    /// freedom of $n$ hits). Hits may be of unequal strength, and a hard hit noisier than a soft one by what the records
+    /// show before each blow. For a single hit it is $(N_a + |H|^2 N_f)/|F|^2$ with the noise $N$ of either channel read above the band, and unknown where
     /// no line stands there.
     ///
     /// # Errors
@@ -98,12 +98,13 @@ impl TimeHistory {
         notes.extend(window.notes(left.is_some()));
 
         let samples = kept.first().map_or(0, |hit| hit.force.len());
-        let sums = sums(kept.iter().copied(), samples, window, self.rate);
+        let sums = sums(&kept, samples, window, self.rate);
         let step = self.rate / samples as f64;
         let end = self.band_end(&sums, estimation.force_drop, step, &mut notes);
         let noise = (kept.len() == 1).then(|| noise_above(&sums, end)).flatten();
         let mut result = Accelerance::empty(self.force_at, self.response_at);
         let (mut variance, mut coherence) = (Vec::new(), Vec::new());
+        let scatter = if kept.len() > 1 { sums.variance(1..end) } else { Vec::new() };
         let lines = sums.force.iter().zip(&sums.motion).zip(&sums.cross).enumerate().take(end).skip(1);
         for (line, ((&force, &motion), &cross)) in lines {
             // A line without force has no quotient; it is left out like the band above.
@@ -119,7 +120,7 @@ impl TimeHistory {
             coherence.push(gamma);
             variance.push(match noise {
                 Some((force_noise, motion_noise)) => (motion_noise + first * force_noise) / force,
-                None => sums.scatter(line),
+                None => scatter.get(line - 1).copied().unwrap_or_default(),
             });
         }
         if result.frequency.is_empty() {

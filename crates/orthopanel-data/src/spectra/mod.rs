@@ -1,6 +1,7 @@
 //! Records to accelerance: channels put right, hits judged, spectra averaged, each line with its variance.
 
 mod accelerance;
+mod channel_noise;
 mod channels;
 mod estimate;
 mod extremes;
@@ -8,11 +9,13 @@ mod gather;
 mod hit_faults;
 mod node_numbers;
 mod overload;
+mod scatter;
 mod spectrum;
 mod time_history;
 mod window;
 
 pub use accelerance::Accelerance;
+pub use channel_noise::ChannelNoise;
 pub use estimate::{Estimation, Estimator};
 pub use hit_faults::{Channel, HitFault};
 pub use time_history::{Hit, TimeHistory};

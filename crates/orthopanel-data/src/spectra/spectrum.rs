@@ -5,6 +5,7 @@ use realfft::RealFftPlanner;
 
 use super::{
     extremes::{peak, sampled_median},
+    scatter::NoisePower,
     time_history::Hit,
     window::Window,
 };
@@ -14,33 +15,24 @@ pub(super) struct Sums {
     pub(super) force: Vec<f64>,
     pub(super) motion: Vec<f64>,
     pub(super) cross: Vec<Complex64>,
-    /// The same three weighted with $|F|^2$ again: the hits' own scatter about their common quotient.
-    weighted: Weighted,
-}
-
-struct Weighted {
-    force: Vec<f64>,
-    motion: Vec<f64>,
-    cross: Vec<Complex64>,
+    /// $|F|^2$ of each hit.
+    pub(super) powers: Vec<Vec<f64>>,
+    /// Sums of $|F|^2|A|^2$ and $|F|^2\bar F A$.
+    weighted: (Vec<f64>, Vec<Complex64>),
+    /// Noise of every hit; `None` where one does not tell it, and for a single hit.
+    pub(super) noise: Option<Vec<NoisePower>>,
 }
 
 impl Sums {
-    /// Variance of $H_1$ at a line from the scatter of the hits, each with a noise of its own size:
-    /// $$\frac{\sum|F_i|^2|A_i-H_1F_i|^2}{(\sum|F_i|^2)^2}\Big/\Big(1-\frac{\sum|F_i|^4}{(\sum|F_i|^2)^2}\Big)$$
-    ///
-    /// The numerator holds whether a hard hit is noisier than a soft one or not (White, Econometrica 48, 1980); the
-    /// denominator makes it free of bias where all hits are equally noisy.
-    pub(super) fn scatter(&self, line: usize) -> f64 {
-        let (force, quotient) = (self.force[line], self.cross[line] / self.force[line]);
-        let Weighted { force: force4, motion, cross } = &self.weighted;
-        let misfit = motion[line] - 2.0 * (quotient.conj() * cross[line]).re + quotient.norm_sqr() * force4[line];
-        let one_hit_share = force4[line] / (force * force);
-        (misfit / (force * force) / (1.0 - one_hit_share)).max(0.0)
+    /// Sums of $|F|^4$, $|F|^2|A|^2$ and $|F|^2\bar F A$ at a line.
+    pub(super) fn weighted(&self, line: usize) -> (f64, f64, Complex64) {
+        let force4 = self.powers.iter().map(|power| power[line] * power[line]).sum();
+        (force4, self.weighted.0[line], self.weighted.1[line])
     }
 }
 
 /// Sums the spectra of `hits`, all of length `samples`.
-pub(super) fn sums<'a>(hits: impl Iterator<Item = &'a Hit>, samples: usize, window: Window, rate: f64) -> Sums {
+pub(super) fn sums(hits: &[&Hit], samples: usize, window: Window, rate: f64) -> Sums {
     let mut planner = RealFftPlanner::<f64>::new();
     let transform = planner.plan_fft_forward(samples);
     let (mut force_spectrum, mut motion_spectrum) = (transform.make_output_vec(), transform.make_output_vec());
@@ -50,11 +42,9 @@ pub(super) fn sums<'a>(hits: impl Iterator<Item = &'a Hit>, samples: usize, wind
         force: vec![0.0; lines],
         motion: vec![0.0; lines],
         cross: vec![Complex64::default(); lines],
-        weighted: Weighted {
-            force: vec![0.0; lines],
-            motion: vec![0.0; lines],
-            cross: vec![Complex64::default(); lines],
-        },
+        powers: Vec::with_capacity(hits.len()),
+        weighted: (vec![0.0; lines], vec![Complex64::default(); lines]),
+        noise: None,
     };
     for hit in hits {
         // The hammer is off the piece nearly all the time, so the median is its channel's offset; the mean is not,
@@ -70,17 +60,32 @@ pub(super) fn sums<'a>(hits: impl Iterator<Item = &'a Hit>, samples: usize, wind
             .and_then(|()| transform.process_with_scratch(&mut motion, &mut motion_spectrum, &mut scratch));
         // It fails for other lengths than planned only; the caller has checked that all hits are of one length.
         debug_assert!(transformed.is_ok());
+        let mut powers = Vec::with_capacity(lines);
         for (line, (f, a)) in force_spectrum.iter().zip(&motion_spectrum).enumerate() {
             let (power, cross) = (f.norm_sqr(), f.conj() * a);
             sums.force[line] += power;
             sums.motion[line] += a.norm_sqr();
             sums.cross[line] += cross;
-            sums.weighted.force[line] += power * power;
-            sums.weighted.motion[line] += power * a.norm_sqr();
-            sums.weighted.cross[line] += power * cross;
+            sums.weighted.0[line] += power * a.norm_sqr();
+            sums.weighted.1[line] += power * cross;
+            powers.push(power);
         }
+        sums.powers.push(powers);
+    }
+    if let [first, _, ..] = hits {
+        let noise: Vec<_> = hits.iter().map(|hit| hit.noise_before_blow()).collect();
+        sums.noise = NoisePower::of(&noise, windowed(first, window, rate));
     }
     sums
+}
+
+/// Sums of the squared windows over force and acceleration, by which white noise comes into a line.
+fn windowed(hit: &Hit, window: Window, rate: f64) -> [f64; 2] {
+    let (at, _) = peak(&hit.force, sampled_median(&hit.force));
+    let mut channels = [vec![1.0; hit.force.len()], vec![1.0; hit.force.len()]];
+    let [force, acceleration] = &mut channels;
+    window.apply(force, acceleration, at, rate);
+    channels.map(|weights| weights.iter().map(|weight| weight * weight).sum())
 }
 
 /// Samples before the hit from which an offset can be told.

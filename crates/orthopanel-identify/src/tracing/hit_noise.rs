@@ -4,14 +4,20 @@ use num_complex::Complex64;
 
 use super::widened_lines::{HitSpectra, median};
 
-/// Variance of a line of the motion's transform about the force's times the accelerance,
+/// Variance of a line of a hit's motion about its force times the accelerance,
 /// $N_a + |A/F|^2N_f + c^2|A|^2$: noise of either channel, and hits that are not quite alike (a millimetre beside the place,
-/// a hand that gives).
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// a hand that gives). The channels' noise is each hit's own: noise in per cent of a record goes with its strength.
+#[derive(Debug, Clone, PartialEq)]
 pub(super) struct HitNoise {
-    floor: f64,
-    force: f64,
+    channels: Vec<ChannelNoise>,
     relative: f64,
+}
+
+/// Variances of a line by one hit's channels.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct ChannelNoise {
+    motion: f64,
+    force: f64,
 }
 
 /// Part of the lines, weakest or strongest, from which either number is read.
@@ -22,31 +28,34 @@ const SINGLE_HIT: f64 = 1e-6;
 impl HitNoise {
     /// From the lines below `end` of all hits of one record; of a single hit from the quietest stretch of lines above.
     pub(super) fn of(hits: &[HitSpectra], end: usize) -> Self {
-        let force = hits.iter().map(|hit| hit.force_noise).sum::<f64>() / hits.len().max(1) as f64;
+        let channels = |floor: f64| {
+            let quiet = relative_floors(hits);
+            let both = hits.iter().zip(quiet);
+            both.map(|(hit, quiet)| ChannelNoise { motion: floor * quiet, force: hit.force_noise }).collect()
+        };
         if hits.len() < 2 {
-            return Self { floor: floor_above(hits, end), force, relative: SINGLE_HIT };
+            return Self { channels: channels(floor_above(hits, end)), relative: SINGLE_HIT };
         }
         let freedom = 2.0 * (hits.len() as f64 - 1.0);
         // A chi-square's median over its mean (Wilson and Hilferty).
         let of_mean = (1.0 - 2.0 / (9.0 * freedom)).powi(3);
-        let mut lines: Vec<(f64, f64)> = (1..end)
-            .map(|line| {
-                let Scatter { motion, gain, left } = scatter_at(hits, line);
-                (motion, (left / of_mean - gain * force).max(0.0))
-            })
-            .collect();
-        lines.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let unit = Self { channels: channels(1.0), relative: 1.0 };
+        let mut lines: Vec<Scatter> = (1..end).map(|line| unit.scatter_at(hits, line)).collect();
+        lines.sort_by(|a, b| a.strength.total_cmp(&b.strength));
         let tail = (TAIL * lines.len() as f64) as usize;
-        let weak: Vec<f64> = lines.iter().take(tail.max(1)).map(|(_, scatter)| *scatter).collect();
+        let beyond_force = |line: &Scatter| (line.left / of_mean - line.force).max(0.0);
+        let weak: Vec<f64> = lines.iter().take(tail.max(1)).map(|line| beyond_force(line) / line.floor).collect();
         let floor = median(&weak).max(f64::MIN_POSITIVE);
-        let strong: Vec<f64> = lines.iter().rev().take(tail).map(|(power, left)| (left - floor) / power).collect();
-        Self { floor, force, relative: median(&strong).max(0.0) }
+        let strong = lines.iter().rev().take(tail);
+        let strong: Vec<f64> = strong.map(|line| (beyond_force(line) - floor * line.floor) / line.motion).collect();
+        Self { channels: channels(floor), relative: median(&strong).max(0.0) }
     }
 
-    /// Variance of a line of the motion.
-    pub(super) fn at(&self, force: Complex64, motion: Complex64) -> f64 {
+    /// Variance of a line of the motion of one hit.
+    pub(super) fn at(&self, hit: usize, force: Complex64, motion: Complex64) -> f64 {
+        let ChannelNoise { motion: floor, force: of_force } = self.channels[hit];
         let power = motion.norm_sqr();
-        self.floor + power * (self.force / force.norm_sqr().max(f64::MIN_POSITIVE) + self.relative)
+        floor + power * (of_force / force.norm_sqr().max(f64::MIN_POSITIVE) + self.relative)
     }
 
     /// Mean square of the hits' scatter over this variance, on some lines; `None` for a single hit.
@@ -55,33 +64,58 @@ impl HitNoise {
             return None;
         }
         let ratio = |&line: &usize| {
-            let Scatter { motion, gain, left } = scatter_at(hits, line);
-            left / (self.floor + gain * self.force + self.relative * motion)
+            let Scatter { left, floor, force, motion, .. } = self.scatter_at(hits, line);
+            left / (floor + force + motion)
         };
         Some(lines.iter().map(ratio).sum::<f64>() / lines.len().max(1) as f64)
+    }
+
+    /// The scatter of the hits at a line, beside what each kind of noise makes of it. With a hit's share
+    /// $h = |F|^2/\sum|F|^2$ of their common accelerance, a variance $s$ leaves $\sum s(1-h)$ of itself about that.
+    fn scatter_at(&self, hits: &[HitSpectra], line: usize) -> Scatter {
+        let (mut cross, mut power, mut motion) = (Complex64::ZERO, f64::MIN_POSITIVE, 0.0);
+        for hit in hits {
+            let (f, a) = (hit.force[line], hit.motion[line]);
+            cross += f.conj() * a;
+            power += f.norm_sqr();
+            motion += a.norm_sqr();
+        }
+        let freedom = hits.len() as f64 - 1.0;
+        let mut scatter = Scatter {
+            strength: motion,
+            left: (motion - cross.norm_sqr() / power).max(0.0) / freedom,
+            floor: 0.0,
+            force: 0.0,
+            motion: 0.0,
+        };
+        for (hit, noise) in hits.iter().zip(&self.channels) {
+            let left = (1.0 - hit.force[line].norm_sqr() / power) / freedom;
+            scatter.floor += noise.motion * left;
+            scatter.force += motion / power * noise.force * left;
+            scatter.motion += self.relative * hit.motion[line].norm_sqr() * left;
+        }
+        scatter
     }
 }
 
 /// Hits at one line.
 struct Scatter {
-    /// Mean $|A|^2$.
-    motion: f64,
-    /// $|A|^2/|F|^2$.
-    gain: f64,
-    /// Variance of one hit about their common accelerance.
+    /// $\sum|A|^2$.
+    strength: f64,
+    /// Scatter about their common accelerance.
     left: f64,
+    /// What the motion's channel makes of that, the force's, and hits not quite alike.
+    floor: f64,
+    force: f64,
+    motion: f64,
 }
 
-fn scatter_at(hits: &[HitSpectra], line: usize) -> Scatter {
-    let (mut cross, mut force, mut motion) = (Complex64::ZERO, f64::MIN_POSITIVE, 0.0);
-    for hit in hits {
-        let (f, a) = (hit.force[line], hit.motion[line]);
-        cross += f.conj() * a;
-        force += f.norm_sqr();
-        motion += a.norm_sqr();
-    }
-    let left = (motion - cross.norm_sqr() / force).max(0.0) / (hits.len() as f64 - 1.0);
-    Scatter { motion: motion / hits.len() as f64, gain: motion / force, left }
+/// Noise of each hit's motion over their mean, as read before the blows; alike where one does not tell it.
+fn relative_floors(hits: &[HitSpectra]) -> Vec<f64> {
+    let told: Option<Vec<f64>> = hits.iter().map(|hit| hit.motion_noise.filter(|noise| *noise > 0.0)).collect();
+    let told = told.unwrap_or_else(|| vec![1.0; hits.len()]);
+    let mean = told.iter().sum::<f64>() / told.len().max(1) as f64;
+    told.into_iter().map(|noise| noise / mean).collect()
 }
 
 /// Stretches between the band and half the rate; the quietest one holds no motion.

@@ -76,6 +76,8 @@ pub(super) struct HitSpectra {
     pub impulse: f64,
     /// Variance of a line of the force by its channel's noise.
     pub force_noise: f64,
+    /// Variance of a sample of the motion before the blow \[(m/s²)²\], where the record tells it.
+    pub motion_noise: Option<f64>,
 }
 
 fn of_record(history: &TimeHistory, widening: Widening, band: f64) -> WidenedLines {
@@ -98,9 +100,9 @@ fn of_record(history: &TimeHistory, widening: Widening, band: f64) -> WidenedLin
     };
     for &line in &lines {
         let (mut cross, mut power) = (Complex64::ZERO, 0.0);
-        for (hit, own) in spectra.iter().zip(&mut record.hits) {
+        for (index, (hit, own)) in spectra.iter().zip(&mut record.hits).enumerate() {
             let (force, motion) = (hit.force[line], hit.motion[line]);
-            let variance = noise.at(force, motion);
+            let variance = noise.at(index, force, motion);
             let weight = force.norm_sqr() / variance;
             cross += weight * motion / force;
             power += weight;
@@ -139,7 +141,8 @@ fn spectra(hit: &Hit, rate: f64, decay_rate: f64) -> HitSpectra {
     // Lengths are the plan's own, so neither can fail; were it to, the lines would be zero and weigh nothing.
     let done = transform.process(&mut force, &mut f).and_then(|()| transform.process(&mut motion, &mut a));
     debug_assert!(done.is_ok());
-    HitSpectra { force: f, motion: a, impulse, force_noise }
+    let motion_noise = hit.noise_before_blow().map(|noise| noise.acceleration * noise.acceleration);
+    HitSpectra { force: f, motion: a, impulse, force_noise, motion_noise }
 }
 
 pub(super) fn median(values: &[f64]) -> f64 {

@@ -1,0 +1,151 @@
+//! Variance of an averaged line from the scatter of hits of unequal strength and unequal noise.
+
+use std::ops::Range;
+
+use super::{channel_noise::ChannelNoise, extremes::median, spectrum::Sums};
+
+/// Part of the lines, with the weakest or the strongest motion, from which either kind of noise is read.
+const TAIL: f64 = 0.3;
+
+/// Standard deviations by which the strong lines must scatter more than the weak ones.
+const SURE: f64 = 3.0;
+
+/// What white noise of a hit's channels adds to $|F|^2$ and $|A|^2$ of any line.
+#[derive(Clone, Copy)]
+pub(super) struct NoisePower {
+    force: f64,
+    acceleration: f64,
+}
+
+impl NoisePower {
+    /// Of every hit, `None` where not all tell theirs; `windowed` are the sums of the squared windows over force and
+    /// acceleration.
+    pub(super) fn of(hits: &[Option<ChannelNoise>], windowed: [f64; 2]) -> Option<Vec<Self>> {
+        let told: Vec<ChannelNoise> = hits.iter().copied().collect::<Option<_>>()?;
+        let channel = |deviation: fn(&ChannelNoise) -> f64, windowed: f64| {
+            let powers: Vec<f64> = told.iter().map(|noise| deviation(noise).powi(2) * windowed).collect();
+            // No noise read is noise below the converter's step: alike in all hits.
+            let mean = powers.iter().sum::<f64>() / powers.len().max(1) as f64;
+            if powers.contains(&0.0) { vec![mean; powers.len()] } else { powers }
+        };
+        let (force, acceleration) =
+            (channel(|noise| noise.force, windowed[0]), channel(|noise| noise.acceleration, windowed[1]));
+        let both = force.into_iter().zip(acceleration);
+        Some(both.map(|(force, acceleration)| Self { force, acceleration }).collect())
+    }
+}
+
+/// Sums of a noise $s_i$ over the hits, each with its share $h_i$.
+#[derive(Clone, Copy, Default)]
+struct Shared {
+    /// $\sum h_is_i$
+    once: f64,
+    /// $\sum h_i^2s_i$
+    twice: f64,
+}
+
+impl Shared {
+    fn add(&mut self, share: f64, noise: f64) {
+        self.once += share * noise;
+        self.twice += share * share * noise;
+    }
+
+    fn plus(self, part: f64, other: Self) -> Self {
+        Self { once: self.once + part * other.once, twice: self.twice + part * other.twice }
+    }
+
+    /// $\sum h_is_i$ as the scatter shows it, `squares` being $\sum h_i^2$.
+    fn scattered(self, squares: f64) -> f64 {
+        self.once * (1.0 + squares) - 2.0 * self.twice
+    }
+}
+
+/// One line of all hits.
+struct Line {
+    /// $\sum h_i|A_i-H_1F_i|^2$.
+    scatter: f64,
+    /// $\sum|F_i|^2$.
+    force: f64,
+    squares: f64,
+    /// The channels' noise, $N_a + |H|^2N_f$.
+    channels: Shared,
+    /// The hit's own motion, $|HF|^2$.
+    motion: Shared,
+}
+
+impl Line {
+    /// Variance of the line where a part `astray` of each hit's motion comes to its channels' noise.
+    fn variance(&self, astray: f64) -> f64 {
+        let noise = self.channels.plus(astray, self.motion);
+        let seen = noise.scattered(self.squares) / noise.once;
+        // Without any noise told, as of computed records, all hits are alike.
+        let seen = if seen > 0.0 { seen } else { 1.0 - self.squares };
+        (self.scatter / seen / self.force).max(0.0)
+    }
+}
+
+impl Sums {
+    /// Variance of $H_1$ at each of `lines` from the scatter of the hits. With shares $h_i = |F_i|^2/\sum|F|^2$ and a
+    /// hit's noise $s_i = E|A_i - HF_i|^2$ it is $\sum h_is_i/\sum|F|^2$. A residual is
+    /// $e_i - F_i\sum_j\bar F_je_j/\sum|F|^2$, hence
+    /// $$E\sum h_i|A_i-H_1F_i|^2 = \sum h_is_i\,\Big(1-\frac{2\sum h_i^2s_i-\sum h_i^2\sum h_is_i}{\sum h_is_i}\Big).$$
+    /// The scatter is divided by the bracket, for which only the noises' ratios count: it is $1-\sum h_i^2$ where all
+    /// hits are equally noisy, and a fifth of that for two of 1 : 3 whose noise goes with their strength.
+    ///
+    /// The ratios are read from the channels before each blow, and from what strong lines scatter beyond them, which is
+    /// taken to go with the hit's own motion. Where a record begins with its blow, all hits are taken as equally noisy.
+    pub(super) fn variance(&self, lines: Range<usize>) -> Vec<f64> {
+        let lines: Vec<Line> = lines.map(|line| self.line(line)).collect();
+        let astray = if self.noise.is_some() { self.astray(&lines) } else { 0.0 };
+        lines.iter().map(|line| line.variance(astray)).collect()
+    }
+
+    fn line(&self, line: usize) -> Line {
+        let (force, quotient) = (self.force[line], self.cross[line] / self.force[line]);
+        let power = quotient.norm_sqr();
+        let (force4, motion, cross) = self.weighted(line);
+        let misfit = motion - 2.0 * (quotient.conj() * cross).re + power * force4;
+        let mut sums = Line {
+            scatter: misfit / force,
+            force,
+            squares: force4 / (force * force),
+            channels: Shared::default(),
+            motion: Shared::default(),
+        };
+        for (hit, noise) in self.powers.iter().zip(self.noise.iter().flatten()) {
+            let share = hit[line] / force;
+            sums.channels.add(share, noise.acceleration + power * noise.force);
+            sums.motion.add(share, power * hit[line]);
+        }
+        sums
+    }
+
+    /// Part of a hit's own motion that strong lines scatter by beyond the channels' noise, over what weak lines show
+    /// of that; zero where chance alone may be it.
+    fn astray(&self, lines: &[Line]) -> f64 {
+        let differences = self.powers.len() as f64 - 1.0;
+        // A chi-square's median over its mean (Wilson and Hilferty).
+        let of_mean = (1.0 - 1.0 / (9.0 * differences)).powi(3);
+        let mut lines: Vec<[f64; 3]> = lines
+            .iter()
+            .map(|line| {
+                let expected = |noise: Shared| noise.scattered(line.squares);
+                [line.scatter / of_mean, expected(line.channels), expected(line.motion)]
+            })
+            .filter(|line| line.iter().all(|part| part.is_finite()))
+            .collect();
+        lines.sort_unstable_by(|a, b| (a[2] * b[1]).total_cmp(&(b[2] * a[1])));
+        let tail = (TAIL * lines.len() as f64) as usize;
+        let over_channels = |[seen, channels, _]: &[f64; 3]| seen / channels;
+        let level = median(lines.iter().take(tail).map(over_channels).collect());
+        let strong = || lines.iter().rev().take(tail);
+        // Two medians of so many exponential numbers, each known to 1.44 of itself over the root of their count.
+        let chance = 1.44 * (2.0 / (tail as f64 * differences)).sqrt();
+        if median(strong().map(over_channels).collect()) / level > 1.0 + SURE * chance {
+            let beyond = strong().map(|[seen, channels, motion]| (seen - level * channels) / motion);
+            (median(beyond.collect()) / level).max(0.0)
+        } else {
+            0.0
+        }
+    }
+}
