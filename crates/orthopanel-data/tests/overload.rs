@@ -115,6 +115,48 @@ fn val_hits_that_share_their_extreme_are_cut_off() {
     assert_eq!(history(twice).accelerance(Estimation::default()).unwrap().hits, 3);
 }
 
+/// A response cut off at four fifths of its peak, which two samples in a row reached: free ones are hardly ever alike to
+/// the last bit of a fine converter.
+#[test]
+fn val_two_samples_cut_off_to_the_same_bit_are_an_overload() {
+    let cut = |codes: Option<f64>| {
+        let free = Noise(5).over(&Resonator { radius: 0.9, angle: 0.9 }.soft_hit(1000, 100.0), 0.01, 0.01);
+        let reach = free.acceleration.iter().fold(0.0, |reach: f64, value| reach.max(value.abs()));
+        let hit = codes.map_or(free.clone(), |codes| quantised(&free, [200.0, 1.5 * reach], codes));
+        let mut sorted = hit.acceleration.clone();
+        sorted.sort_by(f64::total_cmp);
+        let limit = sorted[sorted.len() - 2];
+        (hit.clone(), Hit { acceleration: hit.acceleration.iter().map(|value| value.min(limit)).collect(), ..hit })
+    };
+    for codes in [None, Some(8_388_608.0)] {
+        let (free, cut) = cut(codes);
+        assert_eq!((overloads(&free), overloads(&cut)), (vec![], vec![(Channel::Acceleration, 2)]), "{codes:?}");
+    }
+    // Of 16 bits two free samples are alike too often to say so.
+    assert_eq!(overloads(&cut(Some(32768.0)).1), []);
+    // Nor do four printed digits tell, or a computed blow that is even about its middle.
+    let (_, hit) = cut(None);
+    let printed = |values: &[f64]| values.iter().map(|value| format!("{value:.3e}").parse().unwrap()).collect();
+    assert_eq!(overloads(&Hit { force: printed(&hit.force), acceleration: printed(&hit.acceleration) }), []);
+    assert_eq!(overloads(&blow(4.0, 0.5, 100.0)), []);
+}
+
+/// A blow of three samples whose middle one is cut off looks like any other; the same ceiling in two hits does not.
+#[test]
+fn val_two_short_blows_that_share_their_ceiling_to_the_last_bit_are_cut_off() {
+    let hits = |limit: f64| -> Vec<Hit> {
+        let heights = [(96.0, 0.1), (103.0, 0.05)].into_iter().enumerate();
+        let blows =
+            heights.map(|(index, (height, phase))| Noise(index as u64 + 1).over(&blow(4.0, phase, height), 0.01, 0.01));
+        blows.map(|hit| Hit { force: hit.force.iter().map(|force| force.min(limit)).collect(), ..hit }).collect()
+    };
+    assert_eq!(history(hits(1e9)).accelerance(Estimation::default()).unwrap().hits, 2);
+    let cut = hits(90.0);
+    assert!(cut.iter().all(|hit| overloads(hit).is_empty()), "one sample at the ceiling tells nothing");
+    let refused = history(cut).accelerance(Estimation::default()).unwrap_err().to_string();
+    assert_eq!(refused.matches("1 samples at exactly 90.0000 N").count(), 2, "{refused}");
+}
+
 /// What a sharp anti-alias filter makes of a blow much shorter than a sample: it rings on either side.
 #[test]
 fn val_a_rate_too_low_for_the_blow_is_no_double_hit() {

@@ -3,6 +3,7 @@
 use std::fmt;
 
 use super::{
+    dropped_sample::dropped_sample,
     extremes::{median, peak, sampled_median},
     overload::overload,
     time_history::Hit,
@@ -30,6 +31,17 @@ pub enum HitFault {
         samples: usize,
         /// The extreme \[N or m/s²\].
         value: f64,
+    },
+    /// A sample that was lost, and a zero or its neighbour written in its place.
+    DroppedSample {
+        /// The channel.
+        channel: Channel,
+        /// The sample, from 1.
+        sample: usize,
+        /// What stands there \[N or m/s²\].
+        value: f64,
+        /// What would fit among its neighbours \[N or m/s²\].
+        expected: f64,
     },
     /// The hammer touched again.
     DoubleHit {
@@ -76,6 +88,13 @@ impl fmt::Display for HitFault {
                 let (name, unit) = name(channel);
                 write!(f, "{name} cut off: {samples} samples at exactly {value:.4} {unit} (overload)")
             }
+            Self::DroppedSample { channel, sample, value, expected } => {
+                let (name, unit) = name(channel);
+                write!(
+                    f,
+                    "sample {sample} of the {name} was lost: {value:.4} {unit} stands where {expected:.4} would fit"
+                )
+            }
             Self::DoubleHit { after, ratio } => {
                 write!(f, "double hit: {:.1} % of the force again after {:.1} ms", 100.0 * ratio, 1e3 * after)
             }
@@ -117,6 +136,10 @@ const FALLING: f64 = 0.9;
 
 impl Hit {
     /// What is wrong with the hit; `rate` is the sampling rate \[Hz\].
+    ///
+    /// Not to be found in one hit: a single sample cut off at a ceiling, and a channel that goes gently into it. Hits
+    /// whose greatest samples are exactly alike tell the former: [`TimeHistory::accelerance`](crate::TimeHistory::accelerance)
+    /// looks for them. Nor a lost sample that fits its neighbours, one on a crest, or one whose time was lost too.
     pub fn faults(&self, rate: f64) -> Vec<HitFault> {
         let channels = [(Channel::Force, &self.force), (Channel::Acceleration, &self.acceleration)];
         let silent =
@@ -126,6 +149,10 @@ impl Hit {
             return silent;
         }
         let mut faults: Vec<_> = channels.iter().filter_map(|(channel, values)| overload(*channel, values)).collect();
+        // What is cut off has many corners: a lost sample is told of whole channels only.
+        if faults.is_empty() {
+            faults.extend(channels.iter().filter_map(|(channel, values)| dropped_sample(*channel, values)));
+        }
         faults.extend(force_fault(&self.force, rate));
         faults.extend(not_decayed(&self.acceleration));
         faults

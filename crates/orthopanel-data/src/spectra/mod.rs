@@ -3,6 +3,7 @@
 mod accelerance;
 mod channel_noise;
 mod channels;
+mod dropped_sample;
 mod estimate;
 mod extremes;
 mod gather;

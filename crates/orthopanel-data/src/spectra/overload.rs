@@ -19,6 +19,13 @@ const CLIPPED_RUN: usize = 3;
 /// beside them, one of three by 4.
 const CLIPPED_DROP: f64 = 12.0;
 
+/// That drop, in steps of the converter, beside two equal samples: of a free crest they are equal with a chance of one
+/// over it.
+const PAIR_DROP: f64 = 5000.0;
+
+/// Difference of its two neighbours, as a part of its reach, below which a crest is that of a computed blow.
+const EVEN: f64 = 1e-9;
+
 /// How far the flanks of a pulse must point over two equal top samples, as a part of its reach; a smooth pulse is
 /// rounder than a parabola, so its flanks point below its top.
 const OVERSHOOT: f64 = 0.01;
@@ -73,11 +80,14 @@ impl Touches {
     /// Samples on the extreme where they cannot be there by chance.
     fn clipped(&self, channel: Channel, values: &[f64], reach: f64) -> Option<usize> {
         let step = converter_step(values);
+        let top_step = step.max(printed_step(values, self.extreme));
         let flat = self.runs.iter().any(|&(start, length)| {
-            let beside = [start.checked_sub(1), Some(start + length)].map(|n| n.and_then(|n| values.get(n)));
-            let drop = beside.into_iter().flatten().fold(0.0, |drop: f64, next| drop.max((self.extreme - next).abs()));
+            let beside = [start.checked_sub(1), Some(start + length)].map(|n| n.and_then(|n| values.get(n).copied()));
+            let drops = || beside.into_iter().flatten().map(|next| (self.extreme - next).abs());
+            let (drop, least) = (drops().fold(0.0, f64::max), drops().fold(f64::INFINITY, f64::min));
             (length >= FLAT_RUN && drop > FLAT_DROP * step)
                 || (length >= CLIPPED_RUN && drop > CLIPPED_DROP * step)
+                || (length == 2 && least > PAIR_DROP * top_step && uneven(&beside, reach))
                 // A response may turn within two samples, a blow's flanks tell where its top would have been.
                 || (length == 2 && channel == Channel::Force && self.flanks_point_over(values, start, reach))
         });
@@ -112,19 +122,41 @@ impl Touches {
     }
 }
 
+/// False where both neighbours of a flat top are alike too: a computed blow, even about its middle.
+fn uneven(beside: &[Option<f64>; 2], reach: f64) -> bool {
+    !matches!(beside, [Some(left), Some(right)] if (left - right).abs() < EVEN * reach)
+}
+
 /// The least difference between two unequal samples: the converter's step where the signal is long and lively.
-fn converter_step(values: &[f64]) -> f64 {
+pub(super) fn converter_step(values: &[f64]) -> f64 {
     let mut sorted = values.to_vec();
     sorted.sort_unstable_by(f64::total_cmp);
     let gaps = sorted.windows(2).filter_map(|pair| if let [a, b] = pair { Some(b - a) } else { None });
     gaps.filter(|&gap| gap > 0.0).fold(f64::INFINITY, f64::min)
 }
 
+/// The step at `top` of values printed with a few digits, which is greater there than near zero; zero for binary ones.
+fn printed_step(values: &[f64], top: f64) -> f64 {
+    let stride = (values.len() / 1000).max(1);
+    let printed = values.iter().step_by(stride).map(|value| {
+        let text = format!("{:e}", value.abs());
+        text.split('e').next().map_or(0, |mantissa| mantissa.bytes().filter(u8::is_ascii_digit).count())
+    });
+    // A number of single precision has nine digits at most: whatever has fewer was printed.
+    match printed.max() {
+        Some(digits @ 1..9) => 10f64.powi(top.abs().log10().floor() as i32 + 1 - digits as i32),
+        _ => 0.0,
+    }
+}
+
+/// Part of their height by which hits of one hand differ at least.
+const HITS_DIFFER: f64 = 0.02;
+
 /// Hits whose extreme is exactly that of others, by index: hits differ in strength, so the range was at its end.
 ///
-/// Three hits, or two with four samples on the extreme, are taken for clipped: with 12 bits, five free hits that differ
-/// by a fifth do the former once in some ten thousand tests. Channels alike in every sample count once: one hit read
-/// twice, or a computed blow.
+/// Three hits, two with four samples on the extreme, or two of a converter so fine that their tops would hardly meet
+/// ([`PAIR_DROP`]) are taken for clipped: with 12 bits, five free hits that differ by a fifth do the first once in some
+/// ten thousand tests. Channels whose tops are alike sample by sample count once: one hit read twice, or a computed blow.
 pub(super) fn shared_extremes(hits: &[Hit]) -> Vec<(usize, HitFault)> {
     let mut found = Vec::new();
     for (channel, values) in [(Channel::Force, force as fn(&Hit) -> &[f64]), (Channel::Acceleration, acceleration)] {
@@ -133,17 +165,28 @@ pub(super) fn shared_extremes(hits: &[Hit]) -> Vec<(usize, HitFault)> {
             let on_it = |samples: &[f64]| samples.iter().filter(|&&sample| sample == value).count();
             let mut sharing: Vec<&[f64]> = Vec::new();
             for (other, _) in hits.iter().zip(&tops).filter(|&(_, &top)| top == value) {
-                if !sharing.contains(&values(other)) {
+                if !sharing.iter().any(|samples| about(samples, value) == about(values(other), value)) {
                     sharing.push(values(other));
                 }
             }
             let samples: usize = sharing.iter().map(|samples| on_it(samples)).sum();
-            if sharing.len() >= 3 || (sharing.len() == 2 && samples >= 4) {
+            let fine = || {
+                let steps = sharing.iter().map(|values| converter_step(values).max(printed_step(values, value)));
+                let differ = HITS_DIFFER * (value - sampled_median(values(hit))).abs();
+                differ > PAIR_DROP * steps.fold(0.0, f64::max)
+            };
+            if sharing.len() >= 3 || (sharing.len() == 2 && (samples >= 4 || fine())) {
                 found.push((index, HitFault::Overload { channel, samples: on_it(values(hit)), value }));
             }
         }
     }
     found
+}
+
+/// The samples about the first one at `top`.
+fn about(values: &[f64], top: f64) -> &[f64] {
+    let at = values.iter().position(|&value| value == top).unwrap_or(0);
+    values.get(at.saturating_sub(2)..values.len().min(at + 3)).unwrap_or_default()
 }
 
 fn force(hit: &Hit) -> &[f64] {
