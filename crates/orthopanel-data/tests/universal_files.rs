@@ -178,6 +178,21 @@ fn val_marks_may_be_doubled_or_left_out_between_datasets() {
     assert_eq!(read(windows.as_bytes()).records.len(), 2);
 }
 
+/// Cut within the mark that opens the next dataset, nothing of the records is missing, and more may be.
+#[test]
+fn val_a_file_cut_within_the_next_mark_is_told() {
+    for dataset in [layout(4).0.text(), layout(4).0.binary(false)] {
+        let whole = [&dataset[..], &dataset].concat();
+        assert_eq!(read(&whole).notes, [""; 0]);
+        for cut in 1..=6 {
+            let file = read(&whole[..dataset.len() + cut]);
+            assert_eq!(file.records.len(), 1);
+            let said = format!("byte {}", dataset.len() + if cut < 6 { 0 } else { 4 });
+            assert!(matches!(&file.notes[..], [note] if note.contains(&said) && note.contains("may be cut off")));
+        }
+    }
+}
+
 #[test]
 fn val_joined_fields_are_parted() {
     let dataset = Dataset { double: false, ..Dataset::time(&[-1e-100, -2e-101, -3e-102, 4.0], (12, "m/s^2")) };

@@ -14,8 +14,9 @@ pub(super) const FORMAT: Format = Format {
 };
 
 fn read(bytes: &[u8], path: &Path) -> Result<RecordFile, DataError> {
-    let mut columns =
-        csv_columns::read(bytes, path, &["frequency_hz", "real", "imag"], &["coherence", "variance"])?.into_iter();
+    let csv_columns::Columns { values, names_at, lines } =
+        csv_columns::read(bytes, path, &["frequency_hz", "real", "imag"], &["coherence", "variance"])?;
+    let mut columns = values.into_iter();
     let mut next = || columns.next().flatten();
     let (frequency, re, im) = (next().unwrap_or_default(), next().unwrap_or_default(), next().unwrap_or_default());
     let frequency: Arc<[f64]> = frequency.into();
@@ -23,7 +24,8 @@ fn read(bytes: &[u8], path: &Path) -> Result<RecordFile, DataError> {
     let record = |kind, title: &str, abscissa, ordinate, numerator, denominator| Record {
         kind,
         title: title.into(),
-        at: Box::new(Location { key: title.into(), ..*Location::whole(path) }),
+        at: Box::new(Location { position: names_at, key: title.into(), ..*Location::whole(path) }),
+        lines: Some(Arc::clone(&lines)),
         response: Port::default(),
         reference: Port::default(),
         abscissa,

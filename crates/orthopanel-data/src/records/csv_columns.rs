@@ -1,6 +1,6 @@
 //! Columns of numbers under a line of names: what both CSV formats share.
 
-use std::path::Path;
+use std::{path::Path, sync::Arc};
 
 use crate::{DataError, Location, Position};
 
@@ -20,18 +20,22 @@ pub(super) fn has_column(bytes: &[u8], name: &str) -> bool {
     header.is_some_and(|line| line.split(|&byte| byte == b',').any(|found| found.trim_ascii() == name.as_bytes()))
 }
 
+/// Columns of a file, and where they stand in it.
+pub(super) struct Columns {
+    /// In the order asked for; `None` for an optional one that is not there.
+    pub(super) values: Vec<Option<Vec<f64>>>,
+    /// Line of the names.
+    pub(super) names_at: Position,
+    /// Line of each row.
+    pub(super) lines: Arc<[usize]>,
+}
+
 /// Reads the columns `needed`, and `optional` where they are there, in this order; each is as long as the first.
 ///
 /// The first column must rise, since it is time or frequency.
-pub(super) fn read(
-    bytes: &[u8],
-    path: &Path,
-    needed: &[&str],
-    optional: &[&str],
-) -> Result<Vec<Option<Vec<f64>>>, DataError> {
+pub(super) fn read(bytes: &[u8], path: &Path, needed: &[&str], optional: &[&str]) -> Result<Columns, DataError> {
     let at = |line: u64, key: &str| {
-        let position = usize::try_from(line).map_or(Position::Whole, Position::Line);
-        Box::new(Location { file: path.to_path_buf(), position, key: key.into() })
+        Box::new(Location { file: path.to_path_buf(), position: position(line), key: key.into() })
     };
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     let mut reader = csv::ReaderBuilder::new().comment(Some(b'#')).trim(csv::Trim::All).from_reader(bytes);
@@ -48,14 +52,15 @@ pub(super) fn read(
     };
     let names = reader.headers().map_err(broken)?.clone();
     let expected = || [needed, optional].concat().join(",");
-    let header = |problem: String| Err(DataError::Header { at: at(1, ""), problem });
+    let names_line = names.position().map_or(1, csv::Position::line);
+    let header = |problem: String| Err(DataError::Header { at: at(names_line, ""), problem });
     if let Some(missing) = needed.iter().find(|&&name| !names.iter().any(|found| found == name)) {
         return header(format!("column {missing} is missing: the columns are {}, divided by commas", expected()));
     }
-    let position = |name: &str| [needed, optional].concat().iter().position(|&known| known == name);
+    let place_of = |name: &str| [needed, optional].concat().iter().position(|&known| known == name);
     let mut places = Vec::new();
     for name in &names {
-        match position(name) {
+        match place_of(name) {
             Some(place) if !places.contains(&place) => places.push(place),
             Some(_) => return header(format!("column {name} stands twice")),
             None => return header(format!("column {name:?} is unknown: the columns are {}", expected())),
@@ -63,17 +68,17 @@ pub(super) fn read(
     }
     let mut columns: Vec<Option<Vec<f64>>> = vec![None; needed.len() + optional.len()];
     let mut row = csv::StringRecord::new();
-    let mut point = 0;
+    let mut lines = Vec::new();
     while reader.read_record(&mut row).map_err(broken)? {
-        point += 1;
         let line = row.position().map_or(1, csv::Position::line);
+        lines.push(usize::try_from(line).unwrap_or(usize::MAX));
         for ((text, name), &place) in row.iter().zip(&names).zip(&places) {
             let value: f64 = text.parse().map_err(|_| {
                 let text = text.chars().take(40).collect();
                 DataError::BadNumber { at: at(line, name), text }
             })?;
             if !value.is_finite() {
-                return Err(DataError::NotFinite { at: at(line, name), point });
+                return Err(DataError::NotFinite { at: at(line, name), point: lines.len() });
             }
             let Some(column) = columns.get_mut(place) else { continue };
             let column = column.get_or_insert_with(Vec::new);
@@ -84,8 +89,12 @@ pub(super) fn read(
             column.push(value);
         }
     }
-    if point == 0 {
-        return Err(DataError::NoRecords { at: at(1, ""), what: "row under the column names" });
+    if lines.is_empty() {
+        return Err(DataError::NoRecords { at: at(names_line, ""), what: "row under the column names" });
     }
-    Ok(columns)
+    Ok(Columns { values: columns, names_at: position(names_line), lines: lines.into() })
+}
+
+fn position(line: u64) -> Position {
+    usize::try_from(line).map_or(Position::Whole, Position::Line)
 }

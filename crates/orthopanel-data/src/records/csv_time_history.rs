@@ -17,15 +17,17 @@ fn read(bytes: &[u8], path: &Path) -> Result<RecordFile, DataError> {
         true => ("acceleration_g", "g"),
         false => ("acceleration_m_s2", "m/s2"),
     };
-    let columns = csv_columns::read(bytes, path, &["time_s", "force_n", title], &[])?;
-    let mut columns = columns.into_iter().map(Option::unwrap_or_default);
+    let csv_columns::Columns { values, names_at, lines } =
+        csv_columns::read(bytes, path, &["time_s", "force_n", title], &[])?;
+    let mut columns = values.into_iter().map(Option::unwrap_or_default);
     let time: Arc<[f64]> = columns.next().unwrap_or_default().into();
     let force = columns.next().unwrap_or_default();
     let acceleration = columns.next().unwrap_or_default();
     let record = |title: &str, abscissa: Arc<[f64]>, ordinate: Vec<f64>, data_type: i64, unit: &str| Record {
         kind: RecordKind::Time,
         title: title.into(),
-        at: Box::new(Location { key: title.into(), ..*Location::whole(path) }),
+        at: Box::new(Location { position: names_at, key: title.into(), ..*Location::whole(path) }),
+        lines: Some(Arc::clone(&lines)),
         response: Port::default(),
         reference: Port::default(),
         abscissa,

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use num_complex::Complex64;
 
-use crate::Location;
+use crate::{Location, Position};
 
 /// The records of one file, and what the reader had to say about them.
 #[derive(Debug, Clone, PartialEq)]
@@ -26,6 +26,8 @@ pub struct Record {
     pub title: String,
     /// Where the record begins.
     pub at: Box<Location>,
+    /// Line of each point, where the file has one for each.
+    pub(super) lines: Option<Arc<[usize]>>,
     /// Where and in which direction the ordinate was measured.
     pub response: Port,
     /// Where and in which direction the reference acts, for functions of two channels.
@@ -38,6 +40,15 @@ pub struct Record {
     pub numerator: Axis,
     /// What the ordinate is divided by, for functions of two channels.
     pub denominator: Axis,
+}
+
+impl Record {
+    /// Where a point of the record stands, from 0: its line, or where the record begins.
+    pub(crate) fn at_point(&self, point: usize) -> Box<Location> {
+        let line = self.lines.as_ref().and_then(|lines| lines.get(point));
+        let position = line.map_or(self.at.position, |&line| Position::Line(line));
+        Box::new(Location { position, ..(*self.at).clone() })
+    }
 }
 
 /// What a record's function is; numbers as in universal file dataset 58, record 6, field 1.

@@ -161,7 +161,10 @@ fn matching_variance(response: &Record, variance: &Record) -> Result<Vec<f64>, D
     }
     match values.iter().enumerate().find(|(_, value)| **value < 0.0) {
         None => Ok(values.clone()),
-        Some((line, value)) => refused(format!("variance {value} in line {}: must be zero or more", line + 1)),
+        Some((line, value)) => {
+            let problem = format!("variance {value} at point {}: must be zero or more", line + 1);
+            Err(DataError::Channels { at: variance.at_point(line), problem })
+        }
     }
 }
 
@@ -174,6 +177,9 @@ fn matching_coherence(response: &Record, coherence: &Record) -> Result<Vec<f64>,
     // A last digit above 1 is rounding; more is another quantity.
     match values.iter().enumerate().find(|(_, value)| !(-1e-6..=1.0 + 1e-6).contains(*value)) {
         None => Ok(values.iter().map(|value| value.clamp(0.0, 1.0)).collect()),
-        Some((line, value)) => refused(format!("coherence {value} in line {}: must lie between 0 and 1", line + 1)),
+        Some((line, value)) => {
+            let problem = format!("coherence {value} at point {}: must lie between 0 and 1", line + 1);
+            Err(DataError::Channels { at: coherence.at_point(line), problem })
+        }
     }
 }

@@ -207,7 +207,7 @@ fn common_grid(force: &Record, acceleration: &Record) -> Result<(usize, f64), Da
                 index + 1,
                 start + step * index as f64
             );
-            return refused(record, problem);
+            return Err(DataError::Channels { at: record.at_point(index), problem });
         }
     }
     Ok((length, 1.0 / step))

@@ -23,6 +23,11 @@ impl<'a> Line<'a> {
         is_mark(self.bytes)
     }
 
+    /// True for a mark of which the end is missing: blanks, and its sign.
+    pub(super) fn begins_mark(&self) -> bool {
+        (1..MARK.len()).contains(&self.bytes.len()) && MARK.starts_with(self.bytes)
+    }
+
     /// True where nothing but blanks and control characters stands (Ctrl-Z ends files of old systems).
     pub(super) fn is_blank(&self) -> bool {
         self.bytes.iter().all(|byte| byte.is_ascii_whitespace() || byte.is_ascii_control())
@@ -37,6 +42,22 @@ impl<'a> Line<'a> {
             ),
         }
     }
+}
+
+/// The mark as the definition has it, in format I6.
+const MARK: &[u8] = b"    -1";
+
+/// Byte of a last mark that opens a dataset which is not there: a second one in a row, of a writer that does not put
+/// all twice.
+pub(super) fn opens_at_end(bytes: &[u8]) -> Option<usize> {
+    let lines = |line: &&[u8]| !line.trim_ascii().is_empty();
+    let mut first = bytes.split(|&byte| byte == b'\n').filter(lines);
+    let mut last = bytes.rsplit(|&byte| byte == b'\n').filter(lines);
+    let doubled = first.nth(1).is_none_or(is_mark);
+    let ending = last.next().filter(|line| is_mark(line));
+    let second = last.next().is_some_and(is_mark);
+    let end = bytes.trim_ascii_end().len();
+    (!doubled && second).then_some(ending?).map(|_| end - b"-1".len())
 }
 
 /// True for `    -1` (format I6), and for the same mark with fewer blanks.

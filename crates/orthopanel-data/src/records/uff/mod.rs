@@ -33,6 +33,10 @@ fn read(bytes: &[u8], path: &Path) -> Result<RecordFile, DataError> {
     // Between datasets any number of marks may stand: one closes, one opens, and some writers write both twice or
     // leave one out. So a mark carries no state here; the first line that is neither mark nor blank is a dataset.
     while let Some(line) = cursor.line() {
+        if cursor.rest().is_empty() && !bytes.ends_with(b"\n") && line.begins_mark() {
+            notes.push(format!("the file ends at byte {} within a mark: it may be cut off", line.start));
+            break;
+        }
         if line.is_blank() || line.is_mark() {
             continue;
         }
@@ -54,6 +58,9 @@ fn read(bytes: &[u8], path: &Path) -> Result<RecordFile, DataError> {
                 return Err(DataError::Header { at: cursor.at(line.start, ""), problem });
             }
         }
+    }
+    if let Some(byte) = cursor::opens_at_end(bytes) {
+        notes.push(format!("the mark at byte {byte} opens a dataset, and the file ends: it may be cut off"));
     }
     if records.is_empty() {
         return Err(DataError::NoRecords { at: Location::whole(path), what: "dataset 58 or 58b" });
@@ -121,7 +128,7 @@ fn record(
     check_numbers(cursor, data_start, &key, &abscissa, &ordinate, layout.even)?;
     let Header { title, response, reference, numerator, denominator, .. } = header;
     let at = cursor.at(start, &key);
-    Ok(Record { kind, title, at, response, reference, abscissa, ordinate, numerator, denominator })
+    Ok(Record { kind, title, at, lines: None, response, reference, abscissa, ordinate, numerator, denominator })
 }
 
 /// Times or frequencies of an even record: those of the record before where they are the same.
