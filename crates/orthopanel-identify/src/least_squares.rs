@@ -105,6 +105,8 @@ pub(crate) struct Ending {
     pub first_damping: f64,
     /// Damping of a step after one that failed, at least: a smaller one would end where that ended.
     pub failed_damping: f64,
+    /// What is left of the damping after a step that went down.
+    pub easing: f64,
 }
 
 impl Ending {
@@ -117,6 +119,7 @@ impl Ending {
         little: 0.0,
         first_damping: 1e-6,
         failed_damping: 0.0,
+        easing: 0.1,
     };
     /// For residuals that jump where two modes change places: 1e-6 of the sum of squares moves a parameter by 1e-3 of its
     /// standard deviation, and at a jump steps shrink without end.
@@ -127,11 +130,17 @@ impl Ending {
         little: 0.0,
         first_damping: 1e-4,
         failed_damping: 0.1,
+        easing: 0.1,
     };
 
     /// A search that is cut short: after so many iterations, or where a step promises `little`.
     pub const fn short(most_iterations: usize, little: f64) -> Self {
         Self { most_iterations, little, ..Self::SMOOTH }
+    }
+
+    /// The same from a start that may be far off, or along a valley that bends: full steps fail there one after the other.
+    pub const fn far(most_iterations: usize, little: f64) -> Self {
+        Self { first_damping: 1e-2, easing: 0.3, ..Self::short(most_iterations, little) }
     }
 
     /// Whether the next step from here, without damping, would promise little.
@@ -197,7 +206,7 @@ pub(crate) fn descend<E>(
             if after <= before {
                 let settled = moved < ending.small_step || ending.is_little(promised, before);
                 (parameters, at) = (trial, next);
-                (damping, growth) = (damping * 0.1, 2.0);
+                (damping, growth) = (damping * ending.easing, 2.0);
                 if settled {
                     return Ok((Minimum { parameters, at }, true));
                 }

@@ -21,6 +21,8 @@ pub(super) struct Fit {
     pub cost: f64,
     /// Number of free parameters.
     pub size: usize,
+    /// Where the search for it was given up: its parameters are no minimum, and `cost` is a promise.
+    pub given_up: Option<usize>,
 }
 
 impl Fit {
@@ -33,9 +35,9 @@ impl Fit {
 /// The narrowest lines.
 pub(super) const LAST: usize = WIDENINGS.len() - 1;
 
-/// Evaluations at each widening: the first finds the place, the others polish it.
+/// Evaluations at each widening: a valley that bends, as a core's modulus over frequency makes one, takes many.
 pub(super) const PATIENCE: [Ending; WIDENINGS.len()] =
-    [Ending::short(12, 1.0), Ending::short(6, 1.0), Ending::short(4, 1.0), Ending::short(14, 0.2)];
+    [Ending::far(16, 1.0), Ending::far(12, 1.0), Ending::far(8, 1.0), Ending::far(30, 0.2)];
 
 /// Fits from `state`, beginning at the widening of this number.
 ///
@@ -46,20 +48,21 @@ pub(super) fn fit(records: &TestRecords, state: State, from: usize) -> Result<Fi
     for (stage, &patience) in PATIENCE.iter().enumerate().skip(from) {
         state = polish(records, &state, stage, patience)?.0;
     }
-    settle(records, state, false)
+    settle(records, state, None)
 }
 
-/// A hypothesis as it stands; where the search was given up, with the sum of squares that one more step promises.
+/// A hypothesis as it stands; where the search was given up at a widening, with the sum of squares that one more step
+/// promises.
 ///
 /// # Errors
 /// What the model refuses.
-pub(super) fn settle(records: &TestRecords, state: State, given_up: bool) -> Result<Fit, IdentifyError> {
+pub(super) fn settle(records: &TestRecords, state: State, given_up: Option<usize>) -> Result<Fit, IdentifyError> {
     let problem = records.problem(LAST);
     let parameters = problem.parameters(&state);
     let places = problem.by_group(&parameters, &state, Grouping::Places)?;
     let whole = total(&places);
-    let cost = if given_up { promise(&whole).max(0.0) } else { whole.cost };
-    Ok(Fit { size: parameters.len(), parameters, places, cost, state })
+    let cost = if given_up.is_some() { promise(&whole).max(0.0) } else { whole.cost };
+    Ok(Fit { size: parameters.len(), parameters, places, cost, state, given_up })
 }
 
 /// The state at the minimum of one widening, and its sum of squares.

@@ -125,6 +125,9 @@ pub struct Candidate {
     pub held_out: f64,
     /// What was found of the effects.
     pub effects: Vec<TracedEffect>,
+    /// Where the search left it behind, the others being far ahead: $\sigma$ \[1/s\] by which peaks were widened there. Its
+    /// criterion is then what one more step promised, and may stand above that of hypotheses that it contains.
+    pub left_behind: Option<f64>,
 }
 
 /// An effect that was not tested.

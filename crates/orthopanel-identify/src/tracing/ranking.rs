@@ -7,11 +7,13 @@ use rayon::prelude::*;
 
 use super::fit::{Fit, LAST, PATIENCE, fit, polish, settle};
 use super::held_out::held_out;
+use super::hypothesis::Hypothesis;
 use super::information::LikelihoodScale;
 use super::outcome::{NotTested, Progress};
 use super::record_problem::{Grouping, State};
 use super::records_of_test::TestRecords;
-use super::starts::best_start;
+use super::starts::{Costed, followed, scored_starts};
+use super::verdict::{CLEAR, MET};
 use super::whiteness::{independent_part, residuals};
 use crate::IdentifyError;
 
@@ -22,21 +24,31 @@ pub(super) struct Ranking {
     pub chosen: usize,
     pub not_tested: Vec<NotTested>,
     pub scale: LikelihoodScale,
+    /// Whether further effects were left untried, the search having cost what it may.
+    pub unfinished: bool,
 }
 
-/// By so much a criterion must fall for one more effect: odds of 20 000 to one.
+/// By so much a criterion must fall for one more effect of one parameter: odds of 20 000 to one; [`SIMPLER`] is what each
+/// parameter has to pay of it.
 pub(super) const PAYS: f64 = 20.0;
+const SIMPLER: f64 = 10.0;
 /// Effects at most.
 const MOST_EFFECTS: usize = 3;
 /// Single effects from which pairs are built, and partners that are fitted to the end beside each.
 const ROOTS: usize = 2;
 const PARTNERS: usize = 3;
+/// Partners that are followed from their starts, the most promising of all.
+const PROMISING: usize = 6;
+/// Lines of the plain beam after which no further effect is added: some 20 s of one processor. Counted rather than timed,
+/// so that an answer is the same on any machine.
+const MOST_WORK: u64 = 25_000_000;
 /// Of what the best effect gains on the widest lines over the worst, another must gain all but this part to be followed on;
 /// [`LITTLE`] is what the narrower lines may still tell apart.
 const BEHIND: f64 = 0.2;
 const LITTLE: f64 = 300.0;
-/// A misfit per datum this near that of the hits' scatter leaves nothing for another effect.
-const DONE: f64 = 1.05;
+/// Rounds on the narrowest lines that the best hypothesis may take beyond the first, and the gain that is worth another.
+const MORE_ROUNDS: usize = 3;
+const SETTLED: f64 = 1.0;
 
 /// What a search needs to know.
 pub(super) struct Search<'a> {
@@ -63,7 +75,8 @@ impl Search<'_> {
         let starts: Vec<_> = tried
             .par_iter()
             .map(|effect| {
-                let found = best_start(self.records, &self.records.start, **effect, &self.piece);
+                let scored = scored_starts(self.records, &self.records.start, **effect, &self.piece);
+                let found = scored.map(|starts| followed(self.records, &starts));
                 let number = done.fetch_add(1, Ordering::Relaxed) + 1;
                 (self.progress)(Progress { effect: effect.id(), done: number, of: tried.len() });
                 (effect.id(), found)
@@ -73,30 +86,36 @@ impl Search<'_> {
         let mut begun = Vec::new();
         for (id, found) in starts {
             match found {
-                Ok(found) => begun.push(found),
+                Ok(found) => begun.extend(found),
                 Err(error) => not_tested.push(NotTested { id, reason: error.to_string() }),
             }
         }
         let fits = [base].into_iter().chain(self.finish(begun)).collect::<Vec<_>>();
-        let mut ranking = Ranking { scale: self.scale(&fits)?, fits, chosen: 0, not_tested };
+        let mut ranking = Ranking { scale: self.scale(&fits)?, fits, chosen: 0, not_tested, unfinished: false };
         self.choose(&mut ranking)?;
-        for _ in 1..MOST_EFFECTS {
+        for size in 1..MOST_EFFECTS {
             let before = ranking.chosen;
-            if before == 0 || !self.leaves_something(&ranking) {
+            if !self.leaves_something(&ranking) {
                 break;
             }
-            self.extend(&mut ranking)?;
+            // Where neither of two effects pays alone, both together may.
+            self.extend(&mut ranking, self.declared() + size)?;
             self.choose(&mut ranking)?;
-            if ranking.chosen == before {
+            if ranking.unfinished || (before > 0 && ranking.chosen == before) {
                 break;
+            }
+            if ranking.chosen != before {
+                self.drop_each(&mut ranking)?;
             }
         }
+        ranking.prefer_the_simpler();
         Ok(ranking)
     }
 
     /// Fits to the end what is not hopelessly behind, widening by widening: the narrow lines cost the most, and few need them.
     fn finish(&self, begun: Vec<Costed>) -> Vec<Fit> {
-        let (mut running, mut behind) = part(begun);
+        let (mut running, left) = part(begun);
+        let mut behind: Vec<(State, usize)> = left.into_iter().map(|(state, _)| (state, 0)).collect();
         for (stage, &patience) in PATIENCE.iter().enumerate() {
             let polished: Vec<_> =
                 running.par_iter().filter_map(|(state, _)| polish(self.records, state, stage, patience).ok()).collect();
@@ -105,19 +124,31 @@ impl Search<'_> {
             } else {
                 let (ahead, left) = part(polished);
                 running = ahead;
-                behind.extend(left);
+                behind.extend(left.into_iter().map(|(state, _)| (state, stage)));
             }
         }
-        let ends =
-            running.into_iter().map(|(state, _)| (state, false)).chain(behind.into_iter().map(|(s, _)| (s, true)));
-        let ends: Vec<(State, bool)> = ends.collect();
+        self.lead_on(&mut running);
+        let ahead = running.into_iter().map(|(state, _)| (state, None));
+        let behind = behind.into_iter().map(|(state, stage)| (state, Some(stage)));
+        let ends: Vec<(State, Option<usize>)> = ahead.chain(behind).collect();
         ends.into_par_iter().filter_map(|(state, given_up)| settle(self.records, state, given_up).ok()).collect()
+    }
+
+    /// Follows the best to its minimum: what others are held against must be what it can be.
+    fn lead_on(&self, running: &mut [Costed]) {
+        let Some(best) = running.iter_mut().min_by(|a, b| a.1.total_cmp(&b.1)) else { return };
+        for _ in 0..MORE_ROUNDS {
+            match polish(self.records, &best.0, LAST, PATIENCE[LAST]) {
+                Ok((state, cost)) if cost < best.1 - SETTLED => *best = (state, cost),
+                _ => break,
+            }
+        }
     }
 
     /// Whiteness and misfit of the best fit so far make the measure for all.
     fn scale(&self, fits: &[Fit]) -> Result<LikelihoodScale, IdentifyError> {
         let problem = self.records.problem(LAST);
-        let best = fits.iter().min_by(|a, b| a.cost.total_cmp(&b.cost));
+        let best = fits.iter().filter(|fit| fit.given_up.is_none()).min_by(|a, b| a.cost.total_cmp(&b.cost));
         let Some(best) = best else { return Ok(LikelihoodScale { independent: 1.0, unit: 1.0, data: problem.data() }) };
         let independent = independent_part(&residuals(self.records, best)?);
         Ok(LikelihoodScale { independent, unit: best.chi_square(self.records).max(1.0), data: problem.data() })
@@ -125,23 +156,26 @@ impl Search<'_> {
 
     fn leaves_something(&self, ranking: &Ranking) -> bool {
         let scatter = self.records.noise_floor();
-        ranking.fits[ranking.chosen].chi_square(self.records) > DONE * scatter.max(1.0)
+        ranking.fits[ranking.chosen].chi_square(self.records) > MET * scatter.max(1.0)
     }
 
-    /// Moves on to the hypothesis of least criterion that pays for each of its effects, on the data and on what was held
-    /// out.
+    /// Moves on to the hypothesis that pays best for its effects and their parameters, on the data and on what was held out.
     fn choose(&self, ranking: &mut Ranking) -> Result<(), IdentifyError> {
         ranking.scale = self.scale(&ranking.fits)?;
         let current = ranking.chosen;
         let mut order: Vec<usize> = (0..ranking.fits.len()).filter(|&index| index != current).collect();
-        order.sort_by(|&a, &b| ranking.bic(a).total_cmp(&ranking.bic(b)));
+        order.retain(|&index| ranking.fits[index].given_up.is_none());
+        order.sort_by(|&a, &b| ranking.price(a).total_cmp(&ranking.price(b)));
+        let size = |index: usize| ranking.fits[index].state.hypothesis.size();
         for index in order {
-            if ranking.bic(current) - ranking.bic(index) < PAYS {
+            if ranking.price(index) >= ranking.price(current) {
                 break;
             }
+            // What is simpler and pays as well need not foretell better, too.
+            let is_simpler = size(index) < size(current);
             let grouping = ranking.grouping(self.records, index);
             let before = held_out(self.records, &ranking.fits[current], grouping)?;
-            if held_out(self.records, &ranking.fits[index], grouping)? < before {
+            if is_simpler || held_out(self.records, &ranking.fits[index], grouping)? < before {
                 ranking.chosen = index;
                 break;
             }
@@ -149,41 +183,68 @@ impl Search<'_> {
         Ok(())
     }
 
-    /// Adds one more effect to the best few hypotheses of the size reached.
-    fn extend(&self, ranking: &mut Ranking) -> Result<(), IdentifyError> {
-        let size = ranking.fits[ranking.chosen].state.hypothesis.effects.len();
+    /// Adds one more effect to the best few hypotheses of so many.
+    fn extend(&self, ranking: &mut Ranking, size: usize) -> Result<(), IdentifyError> {
         let mut roots: Vec<usize> =
             (0..ranking.fits.len()).filter(|&i| ranking.fits[i].state.hypothesis.effects.len() == size).collect();
         roots.sort_by(|&a, &b| ranking.bic(a).total_cmp(&ranking.bic(b)));
-        let base = ranking.bic(0);
-        roots.retain(|&root| ranking.bic(root) < base - PAYS);
-        roots.truncate(ROOTS);
+        let paying = roots.iter().filter(|&&root| ranking.bic(root) < ranking.bic(0) - PAYS).count();
+        roots.truncate(if ranking.chosen == 0 { ROOTS } else { paying.min(ROOTS) });
         let mut more = Vec::new();
         for root in roots {
+            if self.records.work.load(Ordering::Relaxed) > MOST_WORK {
+                ranking.unfinished = true;
+                break;
+            }
             more.extend(self.partners(&ranking.fits[root])?);
         }
         ranking.fits.extend(each_once(more));
         Ok(())
     }
 
+    /// Fits the chosen hypothesis without each of its effects: one that came in early may have stood for what a later one
+    /// explains better.
+    fn drop_each(&self, ranking: &mut Ranking) -> Result<(), IdentifyError> {
+        let chosen = &ranking.fits[ranking.chosen];
+        let all = &chosen.state.hypothesis.effects;
+        // Without the last one it is the hypothesis from which it was reached.
+        let fewer = (self.declared()..all.len().saturating_sub(1)).map(|without| {
+            let mut effects = all.clone();
+            effects.remove(without);
+            State { hypothesis: Hypothesis { effects }, ..chosen.state.clone() }
+        });
+        let states: Vec<State> = fewer.collect();
+        let fits: Vec<Fit> = states.into_par_iter().filter_map(|state| fit(self.records, state, 1).ok()).collect();
+        let mut all = std::mem::take(&mut ranking.fits);
+        let chosen = all.remove(ranking.chosen);
+        let base = all.remove(0);
+        all.extend(fits);
+        ranking.fits = [base, chosen].into_iter().chain(each_once(all)).collect();
+        ranking.chosen = 1;
+        self.choose(ranking)
+    }
+
     /// The root with each of the effects that promise most beside it.
     fn partners(&self, root: &Fit) -> Result<Vec<Fit>, IdentifyError> {
         let on: Vec<&str> = root.state.hypothesis.effects.iter().map(|on| on.effect.id()).collect();
         let others: Vec<_> = catalogue().iter().filter(|effect| !on.contains(&effect.id())).collect();
-        let mut starts: Vec<Costed> = others
+        let mut scored: Vec<Vec<Costed>> = others
             .par_iter()
-            .filter_map(|effect| best_start(self.records, &root.state, **effect, &self.piece).ok())
+            .filter_map(|effect| scored_starts(self.records, &root.state, **effect, &self.piece).ok())
             .collect();
-        starts.sort_by(|a, b| a.1.total_cmp(&b.1));
-        starts.truncate(PARTNERS);
-        Ok(self.finish(starts))
+        scored.sort_by(|a, b| a[0].1.total_cmp(&b[0].1));
+        scored.truncate(PROMISING);
+        let mut begun: Vec<Costed> = scored.par_iter().filter_map(|starts| followed(self.records, starts)).collect();
+        begun.sort_by(|a, b| a.1.total_cmp(&b.1));
+        begun.truncate(PARTNERS);
+        Ok(self.finish(begun))
     }
 }
 
 /// Of fits with the same effects, reached in another order, the best.
 fn each_once(mut fits: Vec<Fit>) -> Vec<Fit> {
     let mut ids: Vec<Vec<&str>> = Vec::new();
-    fits.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+    fits.sort_by(|a, b| a.given_up.is_some().cmp(&b.given_up.is_some()).then(a.cost.total_cmp(&b.cost)));
     fits.retain(|fit| {
         let mut own: Vec<&str> = fit.state.hypothesis.effects.iter().map(|on| on.effect.id()).collect();
         own.sort_unstable();
@@ -193,9 +254,6 @@ fn each_once(mut fits: Vec<Fit>) -> Vec<Fit> {
     });
     fits
 }
-
-/// A hypothesis on its way, and the misfit so far.
-type Costed = (State, f64);
 
 /// Those that may still win, and those that are behind.
 fn part(begun: Vec<Costed>) -> (Vec<Costed>, Vec<Costed>) {
@@ -209,15 +267,39 @@ impl Ranking {
     /// The likeliest hypothesis that is neither the base nor the chosen one with more effects.
     pub(super) fn nearest(&self) -> Option<usize> {
         let chosen = self.fits[self.chosen].state.hypothesis.name();
-        let others = (1..self.fits.len())
-            .filter(|&i| i != self.chosen && !self.fits[i].state.hypothesis.name().starts_with(&chosen));
+        let others = (1..self.fits.len()).filter(|&i| {
+            i != self.chosen
+                && self.fits[i].given_up.is_none()
+                && !self.fits[i].state.hypothesis.name().starts_with(&chosen)
+        });
         others.min_by(|&a, &b| self.bic(a).total_cmp(&self.bic(b)))
+    }
+
+    /// Names the simplest first of as many effects that the data do not part: a mass that the data put beside the sensor, at a
+    /// place of its own, is the sensor's.
+    fn prefer_the_simpler(&mut self) {
+        let effects = |index: usize| self.fits[index].state.hypothesis.effects.len();
+        let size = |index: usize| self.fits[index].state.hypothesis.size();
+        let limit = self.bic(self.chosen) + CLEAR;
+        let alike = (1..self.fits.len()).filter(|&index| {
+            let as_many = effects(index) == effects(self.chosen) && size(index) < size(self.chosen);
+            as_many && self.fits[index].given_up.is_none() && self.bic(index) < limit
+        });
+        let simplest = alike.min_by(|&a, &b| size(a).cmp(&size(b)).then(self.bic(a).total_cmp(&self.bic(b))));
+        self.chosen = simplest.unwrap_or(self.chosen);
     }
 
     /// Criterion of one of the fits.
     pub(super) fn bic(&self, index: usize) -> f64 {
         let fit = &self.fits[index];
         self.scale.bic(fit.cost, fit.size)
+    }
+
+    /// Criterion with what each effect and each of its parameters must pay.
+    fn price(&self, index: usize) -> f64 {
+        let hypothesis = &self.fits[index].state.hypothesis;
+        let effects = (PAYS - SIMPLER) * hypothesis.effects.len() as f64;
+        self.bic(index) + effects + SIMPLER * hypothesis.size() as f64
     }
 
     /// What is left out to judge a fit: what one record alone tells, as its gain, no other record can foretell.

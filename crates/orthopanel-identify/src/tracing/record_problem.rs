@@ -1,5 +1,7 @@
 //! The records at one widening as a sum of squares, for any effects that are switched on.
 
+use std::sync::atomic::{AtomicU64, Ordering};
+
 use faer::Mat;
 use num_complex::Complex64;
 use orthopanel_model::{BEAM_CONSTANTS, Damping, ModelError, ReceptanceSetup};
@@ -19,6 +21,17 @@ pub(super) struct RecordProblem<'a> {
     pub modes: usize,
     /// Where the damping of a mode that no record shows is kept.
     pub usual_log_zeta: f64,
+    /// What is known of damping beforehand.
+    pub prior: DampingPrior<'a>,
+    /// Lines that were evaluated, counted as those of the plain beam.
+    pub work: &'a AtomicU64,
+}
+
+/// Each free mode's $\ln\zeta$ before the records speak: about where it is, and the standard deviation.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct DampingPrior<'a> {
+    pub about: &'a [f64],
+    pub std: f64,
 }
 
 /// Constants, damping and effects at some values.
@@ -40,8 +53,11 @@ pub(super) enum Grouping {
     Hits,
 }
 
-/// Standard deviation of a mode's $\ln\zeta$ before the records speak: as in the fit of records without effects.
-const PRIOR_LOG_ZETA_STD: f64 = 2.0;
+/// Making a model costs as much as so many of its lines.
+const MAKING: u64 = 4000;
+/// Effects for which modes are solved at several nodes or edges, and how much more each line of these costs.
+const DEAR: [&str; 2] = ["viscoelastic-core", "stiffness-loss"];
+const DEARER: u64 = 8;
 
 impl RecordProblem<'_> {
     /// Positions of the free constants.
@@ -93,6 +109,7 @@ impl RecordProblem<'_> {
         let state = self.state(parameters, like);
         let size = parameters.len();
         let model = self.model(&state)?;
+        self.count(&state);
         let plan = self.columns(&state);
         let all: Vec<usize> = (0..size).collect();
         let mut sums: Vec<Quadratic> = Vec::new();
@@ -166,12 +183,18 @@ impl RecordProblem<'_> {
         columns
     }
 
+    fn count(&self, state: &State) {
+        let dear = state.hypothesis.effects.iter().filter(|on| DEAR.contains(&on.effect.id())).count() as u32;
+        let lines = MAKING + self.records.iter().map(|record| record.s.len() as u64).sum::<u64>();
+        self.work.fetch_add(lines * DEARER.pow(dear), Ordering::Relaxed);
+    }
+
     fn prior(&self, state: &State, size: usize) -> Quadratic {
         let mut prior = Quadratic::zero(size);
         let first = self.free_constants().count();
         for (mode, log) in state.zetas.iter().take(self.modes).enumerate() {
-            let residual = (log - self.usual_log_zeta) / PRIOR_LOG_ZETA_STD;
-            prior.add_row(residual, &[(first + mode, 1.0 / PRIOR_LOG_ZETA_STD)]);
+            let about = self.prior.about.get(mode).unwrap_or(&self.usual_log_zeta);
+            prior.add_row((log - about) / self.prior.std, &[(first + mode, 1.0 / self.prior.std)]);
         }
         prior
     }

@@ -1,14 +1,16 @@
 //! The records of a test, widened, with the model that they are to meet.
 
+use std::sync::atomic::AtomicU64;
+
 use orthopanel_data::{Accelerance, Estimation, ImpactTest, TimeHistory};
 use orthopanel_model::{BEAM_CONSTANTS, BeamConstants, ExactBeam, ReceptanceSetup, RecordSetting};
 use rayon::prelude::*;
 
 use super::base_model::RecordsBase;
 use super::curves::curves;
-use super::fit::{Fit, by_group, fit};
+use super::fit::{Fit, LAST, by_group, fit};
 use super::hypothesis::Hypothesis;
-use super::record_problem::{Grouping, RecordProblem, State, total};
+use super::record_problem::{DampingPrior, Grouping, RecordProblem, State, total};
 use super::whiteness::{independent_part, residuals};
 use super::widened_lines::{WIDENINGS, WidenedLines, widened_lines};
 use crate::accelerance_fit::{ResonanceStart, resonance_starts};
@@ -32,6 +34,10 @@ pub(super) struct TestRecords {
     pub summed: usize,
     /// Where a search without effects begins.
     pub start: State,
+    /// $\ln\zeta$ of the free modes as the resonances alone tell it.
+    log_zetas: Vec<f64>,
+    /// See [`RecordProblem::work`].
+    pub work: AtomicU64,
     /// As the analyser shows the records.
     accelerances: Vec<Accelerance>,
 }
@@ -45,9 +51,12 @@ const MOST_MODES: usize = 10;
 /// Damping is free of every mode up to this part of the band, and lines sum modes up to [`SUMMED`] times it.
 const FREE_DAMPING: f64 = 1.6;
 const SUMMED: f64 = 2.5;
+/// Standard deviation of a mode's $\ln\zeta$ before the records speak, at each widening; the last as in the fit of records
+/// without effects.
+const LOG_ZETA_STD: [f64; WIDENINGS.len()] = [0.5, 1.0, 2.0, 2.0];
 /// Starts that are followed a little way, and the evaluations spent on each before the best is taken.
 const TRIED: usize = 4;
-const TRIAL: Ending = Ending::short(12, 1.0);
+const TRIAL: Ending = Ending::far(12, 1.0);
 
 impl TestRecords {
     /// Widens the hits of a test and reads where to start off its resonances.
@@ -107,14 +116,27 @@ impl TestRecords {
         let setup = ReceptanceSetup::new(&piece, test.boundary, &test.suspension, &settings, summed)?;
         let usual_log_zeta = start.usual_zeta.ln();
         let zeta = |mode: usize| start.modes.get(mode).copied().flatten().map_or(usual_log_zeta, |(_, zeta)| zeta.ln());
+        let log_zetas: Vec<f64> = (0..modes).map(zeta).collect();
         let start = State {
             constants: start.constants.map(f64::ln),
-            zetas: (0..modes).map(zeta).collect(),
+            zetas: log_zetas.clone(),
             hypothesis: Hypothesis::declared(test, &piece, histories.len())?,
         };
         let widened = vec![widened_lines(histories, WIDENINGS[0], band)];
-        let mut records =
-            Self { setup, widened, held, modes, usual_log_zeta, band, in_band, summed, start, accelerances: vec![] };
+        let mut records = Self {
+            setup,
+            widened,
+            held,
+            modes,
+            usual_log_zeta,
+            band,
+            in_band,
+            summed,
+            start,
+            log_zetas,
+            work: AtomicU64::new(0),
+            accelerances: vec![],
+        };
         let problem = records.problem(0);
         let from = problem.parameters(&records.start);
         let bounds = problem.bounds(&records.start);
@@ -143,8 +165,11 @@ impl TestRecords {
     /// The problem at one widening, counted from the widest.
     pub(super) fn problem(&self, stage: usize) -> RecordProblem<'_> {
         let records = self.widened.get(stage).or(self.widened.last()).map_or(&[][..], Vec::as_slice);
-        let Self { setup, held, modes, usual_log_zeta, .. } = self;
-        RecordProblem { setup, records, held: *held, modes: *modes, usual_log_zeta: *usual_log_zeta }
+        let Self { setup, held, modes, usual_log_zeta, work, .. } = self;
+        // While peaks are wide a misfit that is no damping would else drag the damping off, and the search with it.
+        let about = if stage < LAST { &self.log_zetas[..] } else { &[] };
+        let prior = DampingPrior { about, std: LOG_ZETA_STD[stage.min(LAST)] };
+        RecordProblem { setup, records, held: *held, modes: *modes, usual_log_zeta: *usual_log_zeta, prior, work }
     }
 }
 

@@ -14,9 +14,13 @@ use super::outcome::{Candidate, FittedError, Removed, TracedEffect, TracedError,
 use super::ranking::{Ranking, Search};
 use super::record_problem::{Grouping, total};
 use super::verdict::verdict;
+use super::widened_lines::WIDENINGS;
 use crate::IdentifyError;
 
 const MEASURE: &str = "misfit of the accelerances over the noise of the hits, rms over all lines (1: noise alone)";
+
+const UNFINISHED: &str = "the search ended at the work that it may cost before all further effects were tried: what is \
+                          named fits, but has not been compared with all that might fit better";
 
 /// Says what a ranking of hypotheses over records means.
 ///
@@ -40,6 +44,7 @@ pub(super) fn report(test: &ImpactTest, search: &Search, ranking: &Ranking) -> R
             bic: ranking.bic(index),
             held_out: held_out(records, fit, ranking.grouping(records, index))?.sqrt(),
             effects: traced(fit, &std, search.declared()),
+            left_behind: fit.given_up.map(|stage| WIDENINGS[stage].decay_rate),
         })
     });
     let candidates = candidates.collect::<Result<Vec<_>, IdentifyError>>()?;
@@ -63,7 +68,7 @@ pub(super) fn report(test: &ImpactTest, search: &Search, ranking: &Ranking) -> R
         panels: vec![panel],
         removed,
         accelerances: records.curves(chosen)?,
-        notes: vec![],
+        notes: if ranking.unfinished { vec![UNFINISHED.to_owned()] } else { vec![] },
     })
 }
 

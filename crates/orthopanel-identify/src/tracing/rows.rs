@@ -66,6 +66,9 @@ struct CandidateRow<'a> {
     bic: f64,
     held_out: f64,
     parameters: BTreeMap<String, ParameterRow>,
+    /// Only of a candidate that was left behind: by how much peaks were widened there \[1/s\].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    left_behind: Option<f64>,
 }
 
 #[derive(Serialize)]
@@ -108,6 +111,7 @@ impl Serialize for Tracing {
                     bic: candidate.bic,
                     held_out: candidate.held_out,
                     parameters: of_candidate(&candidate.effects),
+                    left_behind: candidate.left_behind,
                 })
                 .collect(),
             not_tested: self.not_tested.iter().map(|row| NotTestedRow { id: row.id, reason: &row.reason }).collect(),

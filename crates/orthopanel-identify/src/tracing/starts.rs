@@ -11,24 +11,27 @@ use crate::IdentifyError;
 use crate::least_squares::Ending;
 
 /// Starts that are followed for some steps before the best is taken.
-const FOLLOWED: usize = 2;
-const FOLLOW: Ending = Ending::short(10, 1.0);
+const FOLLOWED: usize = 3;
+const FOLLOW: Ending = Ending::far(8, 1.0);
 
-/// `base` with one more effect, at the best of its starts on the widest lines, and what that leaves of the sum of squares.
+/// A state on the widest lines, and the sum of squares that it leaves or promises to leave.
+pub(super) type Costed = (State, f64);
+
+/// `base` with one more effect at each of its starts, the most promising first.
 ///
 /// Each start is scored by $c - g^TN^{-1}g$, the sum of squares that one step in all parameters promises to leave: the
 /// constants, the damping and the effects that are on already answer for what they can.
 ///
 /// # Errors
 /// Where no start can be evaluated: the first one's reason, as that the test lacks what the effect needs.
-pub(super) fn best_start(
+pub(super) fn scored_starts(
     records: &TestRecords,
     base: &State,
     effect: &'static dyn Effect,
     piece: &Piece,
-) -> Result<(State, f64), IdentifyError> {
+) -> Result<Vec<Costed>, IdentifyError> {
     let problem = records.problem(0);
-    let scored: Vec<Result<(f64, State), IdentifyError>> = grid(effect, piece, (problem.records.len(), records.band))
+    let scored: Vec<Result<Costed, IdentifyError>> = grid(effect, piece, (problem.records.len(), records.band))
         .into_par_iter()
         .map(|start| {
             let at = |name: &str| {
@@ -37,7 +40,7 @@ pub(super) fn best_start(
             let switched = Switched::new(effect, piece, problem.records.len(), at, |_| false);
             let state = State { hypothesis: base.hypothesis.and(switched), ..base.clone() };
             let at = problem.linearise(&problem.parameters(&state), &state)?;
-            Ok((promise(&at), state))
+            Ok((state, promise(&at)))
         })
         .collect();
     let mut reason = None;
@@ -48,11 +51,19 @@ pub(super) fn best_start(
             Err(error) => reason = reason.or(Some(error)),
         }
     }
-    starts.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let followed: Vec<(State, f64)> =
-        starts.par_iter().take(FOLLOWED).filter_map(|(_, state)| polish(records, state, 0, FOLLOW).ok()).collect();
-    let best = followed.into_iter().min_by(|a, b| a.1.total_cmp(&b.1));
-    best.ok_or_else(|| reason.unwrap_or_else(|| IdentifyError::Unsupported(format!("{}: no start", effect.id()))))
+    starts.sort_by(|a, b| a.1.total_cmp(&b.1));
+    match (starts.is_empty(), reason) {
+        (false, _) => Ok(starts),
+        (true, Some(reason)) => Err(reason),
+        (true, None) => Err(IdentifyError::Unsupported(format!("{}: no start", effect.id()))),
+    }
+}
+
+/// The best of the first few starts after some steps on the widest lines.
+pub(super) fn followed(records: &TestRecords, starts: &[Costed]) -> Option<Costed> {
+    let followed: Vec<Costed> =
+        starts.par_iter().take(FOLLOWED).filter_map(|(state, _)| polish(records, state, 0, FOLLOW).ok()).collect();
+    followed.into_iter().min_by(|a, b| a.1.total_cmp(&b.1))
 }
 
 /// Most combinations of starts, beyond which only the first of each but the place, the frequency and the record is taken.

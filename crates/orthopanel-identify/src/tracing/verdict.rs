@@ -5,9 +5,9 @@ use super::ranking::Ranking;
 use super::records_of_test::TestRecords;
 
 /// A rival must stay behind by this much of the scaled criterion to be out of the question.
-const CLEAR: f64 = 100.0;
+pub(super) const CLEAR: f64 = 100.0;
 /// Misfit per datum, over that of the hits' scatter, up to which nothing need be missing.
-const MET: f64 = 1.25;
+pub(super) const MET: f64 = 1.25;
 /// and up to which an effect may still be said to explain the data.
 const EXPLAINED: f64 = 2.0;
 
@@ -21,7 +21,7 @@ pub(super) fn verdict(records: &TestRecords, ranking: &Ranking) -> (Verdict, Vec
     let rivals = rivals(ranking);
     let verdict = if left > EXPLAINED || on_bound(ranking) {
         Verdict::Unexplained
-    } else if rivals.is_empty() {
+    } else if rivals.is_empty() && !ranking.unfinished {
         Verdict::Explained
     } else {
         Verdict::Ambiguous
@@ -41,6 +41,7 @@ fn rivals(ranking: &Ranking) -> Vec<usize> {
     let contains = |index: usize| chosen.iter().all(|id| ids(index).contains(id));
     let mut rivals: Vec<usize> = (1..ranking.fits.len())
         .filter(|&index| index != ranking.chosen && !contains(index) && ranking.bic(index) < limit)
+        .filter(|&index| ranking.fits[index].given_up.is_none())
         // A part of the chosen hypothesis is no rival to it: it has been found wanting.
         .filter(|&index| ids(index).iter().any(|id| !chosen.contains(id)))
         .collect();

@@ -39,7 +39,12 @@ pub fn ranking_rows(tracing: &Tracing, most: usize) -> Vec<Vec<String>> {
     let best = tracing.candidates.iter().map(|candidate| candidate.bic).fold(f64::INFINITY, f64::min);
     let row = |candidate: &Candidate| {
         let margin = candidate.bic - best;
-        vec![candidate.id.clone(), format!("{margin:.1}"), number(candidate.held_out), parameters_text(candidate)]
+        let parameters = parameters_text(candidate);
+        let told = match candidate.left_behind {
+            Some(rate) => format!("left behind at peaks widened by {rate:.0} /s; {parameters}"),
+            None => parameters,
+        };
+        vec![candidate.id.clone(), format!("{margin:.1}"), number(candidate.held_out), told]
     };
     tracing.candidates.iter().take(most).map(row).collect()
 }

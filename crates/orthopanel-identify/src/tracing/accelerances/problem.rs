@@ -1,5 +1,7 @@
 //! Resonances and the lines between them as one sum of squares, each weighed by what it is good for.
 
+use std::sync::atomic::AtomicU64;
+
 use num_complex::Complex64;
 use orthopanel_data::ImpactTest;
 use orthopanel_model::{EffectSetting, ModelError, NaturalFrequencies, Owner, Place, ReceptanceSetup, RecordSetting};
@@ -8,7 +10,7 @@ use super::between_peaks::BetweenPeaks;
 use super::resonances::Resonance;
 use crate::IdentifyError;
 use crate::least_squares::{Ending, Quadratic, descend};
-use crate::tracing::record_problem::{Grouping, RecordProblem, State, total};
+use crate::tracing::record_problem::{DampingPrior, Grouping, RecordProblem, State, total};
 use crate::tracing::whiteness::independent_part;
 use crate::tracing::widened_lines::WidenedLines;
 
@@ -26,6 +28,7 @@ pub(super) struct AccelerancesProblem {
     /// The lines with their variance, and how they are weighed.
     lines: Vec<WidenedLines>,
     pub weighing: Weighing,
+    work: AtomicU64,
 }
 
 /// How the lines between the resonances count.
@@ -87,9 +90,9 @@ impl AccelerancesProblem {
             Ok((NaturalFrequencies::new(&setting, count)?, own))
         });
         let places = places.collect::<Result<_, ModelError>>()?;
-        let (by_constants, lines, weighing) = (vec![], vec![], FIRST);
+        let (by_constants, lines, weighing, work) = (vec![], vec![], FIRST, AtomicU64::new(0));
         let mut problem =
-            Self { setup, between, resonances, places, by_constants, held, usual_log_zeta, lines, weighing };
+            Self { setup, between, resonances, places, by_constants, held, usual_log_zeta, lines, weighing, work };
         problem.weigh(FIRST);
         Ok(problem)
     }
@@ -128,8 +131,10 @@ impl AccelerancesProblem {
     }
 
     fn problem<'a>(&'a self, lines: &'a [WidenedLines]) -> RecordProblem<'a> {
-        let Self { setup, held, usual_log_zeta, .. } = self;
-        RecordProblem { setup, records: lines, held: *held, modes: 0, usual_log_zeta: *usual_log_zeta }
+        let Self { setup, held, usual_log_zeta, work, .. } = self;
+        // No damping is free here.
+        let prior = DampingPrior { about: &[], std: f64::INFINITY };
+        RecordProblem { setup, records: lines, held: *held, modes: 0, usual_log_zeta: *usual_log_zeta, prior, work }
     }
 
     /// The fit's own lines and those of the data, over the root of their level, record by record.

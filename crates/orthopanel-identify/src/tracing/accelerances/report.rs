@@ -36,6 +36,7 @@ pub(super) fn report(
     let candidate = |&index: &usize| -> Result<Candidate, IdentifyError> {
         let fit = &found.fits[index];
         Ok(Candidate {
+            left_behind: None,
             id: name(search, fit),
             bic: search.bic(fit),
             held_out: percent(search.held_out(fit)?),

@@ -54,6 +54,7 @@ pub(super) fn report(
     };
     let error = |fit: &ListFit| FittedError { fitted: fit.percent(), held_out: fit.left_out_percent() };
     let candidate = |&index: &usize| Candidate {
+        left_behind: None,
         id: name(&fits[index], index == 0, declared),
         bic: fits[index].bic(),
         held_out: fits[index].left_out_percent(),
