@@ -60,6 +60,7 @@ pub(super) struct Measurement {
     pub(super) piece: Option<Spanned<String>>,
     pub(super) values: Option<Spanned<Vec<Spanned<f64>>>>,
     pub(super) resolution: Option<Spanned<OneOrEach>>,
+    pub(super) scatter: Option<Spanned<OneOrEach>>,
     pub(super) shape: Option<Spanned<Vec<Spanned<[u32; 2]>>>>,
     pub(super) file: Option<Spanned<String>>,
     pub(super) force_at: Option<Spanned<[f64; 2]>>,

@@ -1,7 +1,7 @@
 //! A value of the wrong type: which key it is, and what is wanted there, instead of the TOML reader's own words.
 
 /// What each key wants.
-const WANTED: [(&str, &str); 27] = [
+const WANTED: [(&str, &str); 28] = [
     ("length", "a number in m"),
     ("width", "a number in m"),
     ("thickness", "a number in m"),
@@ -24,6 +24,7 @@ const WANTED: [(&str, &str); 27] = [
     ("kind", "\"natural-frequencies\", \"time-history\" or \"accelerance\""),
     ("values", "a list of frequencies in Hz"),
     ("resolution", "one number [Hz], or a list with one number a mode"),
+    ("scatter", "one number [Hz], or a list with one number a mode"),
     ("shape", "a list with one [nodes_x, nodes_y] a mode, whole numbers from 0"),
     ("file", "a file's name in quotes"),
     ("unit", "\"m/s2\" or \"g\""),

@@ -16,6 +16,9 @@ pub struct NaturalFrequencies {
     pub values: Vec<f64>,
     /// Bin width of the analyser \[Hz\], one a mode; empty where the file says nothing.
     pub resolution: Vec<f64>,
+    /// Standard deviation \[Hz\] by which each is known to miss a model that lacks nothing, as repeated tests tell it, one a
+    /// mode; empty where the file says nothing.
+    pub scatter: Vec<f64>,
     /// Nodal lines crossed along x and along y, one pair a mode; empty for a beam.
     pub shape: Vec<[u32; 2]>,
     /// Place of the sensor, where known: its mass lowers the frequencies.
@@ -47,12 +50,13 @@ impl Entry<'_> {
             }
             values.push(value);
         }
-        let resolution = self.resolution(entry, values.len())?;
+        let resolution = self.each_mode(entry.resolution.as_ref(), "resolution", values.len())?;
+        let scatter = self.each_mode(entry.scatter.as_ref(), "scatter", values.len())?;
         let response_at = {
             let place = entry.response_at.as_ref();
             place.map(|place| self.place(place, "response_at", &named.piece)).transpose()?
         };
-        Ok(NaturalFrequencies { values, resolution, shape, response_at })
+        Ok(NaturalFrequencies { values, resolution, scatter, shape, response_at })
     }
 
     fn shape(&self, entry: &syntax::Measurement, modes: usize) -> Result<Vec<[u32; 2]>, DataError> {
@@ -74,21 +78,27 @@ impl Entry<'_> {
         Ok(shape)
     }
 
-    fn resolution(&self, entry: &syntax::Measurement, modes: usize) -> Result<Vec<f64>, DataError> {
-        let Some(given) = &entry.resolution else { return Ok(Vec::new()) };
+    /// One number \[Hz\] for all modes, or one a mode.
+    fn each_mode(
+        &self,
+        given: Option<&Spanned<syntax::OneOrEach>>,
+        key: &str,
+        modes: usize,
+    ) -> Result<Vec<f64>, DataError> {
+        let Some(given) = given else { return Ok(Vec::new()) };
         match given.get_ref() {
             syntax::OneOrEach::One(value) => {
                 let number = Spanned::new(given.span(), *value);
-                Ok(vec![self.source.positive(&number, &self.name("resolution"), "Hz")?; modes])
+                Ok(vec![self.source.positive(&number, &self.name(key), "Hz")?; modes])
             }
             syntax::OneOrEach::Each(list) if list.len() != modes => {
                 let remedy = format!("give one number in Hz, or one a mode, {modes} in all");
-                Err(DataError::Count { at: self.at(given.span(), "resolution"), found: list.len(), remedy })
+                Err(DataError::Count { at: self.at(given.span(), key), found: list.len(), remedy })
             }
             syntax::OneOrEach::Each(list) => {
                 let each = list.iter().enumerate();
-                let key = |index: usize| self.name(&format!("resolution[{}]", index + 1));
-                each.map(|(index, number)| self.source.positive(number, &key(index), "Hz")).collect()
+                let name = |index: usize| self.name(&format!("{key}[{}]", index + 1));
+                each.map(|(index, number)| self.source.positive(number, &name(index), "Hz")).collect()
             }
         }
     }

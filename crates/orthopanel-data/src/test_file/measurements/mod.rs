@@ -77,6 +77,7 @@ impl Entry<'_> {
             "time-history" | "accelerance" => {
                 self.unwanted(kind, entry.values.as_ref(), "values")?;
                 self.unwanted(kind, entry.resolution.as_ref(), "resolution")?;
+                self.unwanted(kind, entry.scatter.as_ref(), "scatter")?;
                 self.unwanted(kind, entry.shape.as_ref(), "shape")?;
                 if kind.get_ref() == "time-history" {
                     self.unwanted(kind, entry.record.as_ref(), "record")?;

@@ -22,6 +22,8 @@ pub(super) struct ListFit {
     pub std: Vec<f64>,
     /// Number of free parameters.
     pub size: usize,
+    /// Relative standard deviation of each frequency, where the lists tell it.
+    pub scatter: Option<Vec<f64>>,
     /// The plate in place of the beam, where that is the hypothesis.
     pub plate: Option<crate::Identification>,
 }
@@ -59,7 +61,10 @@ pub(super) fn fit(problem: &ListProblem, from: &Hypothesis, constants_from: &[f6
     let parameters = minimum.parameters;
     let at = linearise(&parameters)?;
     let size = parameters.len();
-    let variance = at.residuals.iter().map(|r| r * r).sum::<f64>() / problem.count().saturating_sub(size).max(1) as f64;
+    let scatter = problem.scatter();
+    let left = at.residuals.iter().map(|r| r * r).sum::<f64>() / problem.count().saturating_sub(size).max(1) as f64;
+    // Residuals are in units of what the lists tell; where they miss by more, so do the parameters.
+    let variance = if scatter.is_some() { left.max(1.0) } else { left };
     let covariance = if size > 0 && problem.count() > size { at.quadratic().covariance() } else { None };
     let std = covariance
         .as_ref()
@@ -71,10 +76,19 @@ pub(super) fn fit(problem: &ListProblem, from: &Hypothesis, constants_from: &[f6
         });
         residual / (1.0 - leverage).max(1e-6)
     });
-    let left_out = left_out.collect();
+    let left_out = in_parts(left_out.collect(), scatter.as_deref());
     let (_, coordinates) = parameters.split_at(constants.count());
     let hypothesis = from.at(coordinates);
-    Ok(ListFit { hypothesis, residuals: at.residuals, left_out, std, size, parameters, plate: None })
+    let residuals = in_parts(at.residuals, scatter.as_deref());
+    Ok(ListFit { hypothesis, residuals, left_out, std, size, parameters, scatter, plate: None })
+}
+
+/// From units of the scatter to parts of each frequency.
+fn in_parts(residuals: Vec<f64>, scatter: Option<&[f64]>) -> Vec<f64> {
+    match scatter {
+        Some(scatter) => residuals.iter().zip(scatter).map(|(residual, scatter)| residual * scatter).collect(),
+        None => residuals,
+    }
 }
 
 fn linearise(
@@ -83,14 +97,14 @@ fn linearise(
     like: &Hypothesis,
     bounds: &[(f64, f64)],
 ) -> Result<Linearised, ModelError> {
-    let residuals = problem.residuals(parameters, like)?;
+    let residuals = problem.weighed(parameters, like)?;
     let mut jacobian = Mat::zeros(residuals.len(), parameters.len());
     for (column, &(low, high)) in bounds.iter().enumerate() {
         let step = STEP * (high - low).min(1.0);
         let moved = |by: f64| {
             let mut at = parameters.to_vec();
             at[column] = (at[column] + by).clamp(low, high);
-            (problem.residuals(&at, like), at[column])
+            (problem.weighed(&at, like), at[column])
         };
         let ((above, right), (below, left)) = (moved(step), moved(-step));
         for (row, (above, below)) in above?.iter().zip(&below?).enumerate() {
@@ -105,9 +119,19 @@ impl ListFit {
         self.residuals.iter().map(|r| r * r).sum()
     }
 
-    /// $n\ln(R/n) + k\ln n$.
+    /// $\sum(r_i/\sigma_i)^2$ and its mean, where the lists tell $\sigma$.
+    pub(super) fn chi_square(&self) -> Option<(f64, f64)> {
+        let scatter = self.scatter.as_ref()?;
+        let sum: f64 = self.residuals.iter().zip(scatter).map(|(residual, scatter)| (residual / scatter).powi(2)).sum();
+        Some((sum, sum / self.residuals.len().max(1) as f64))
+    }
+
+    /// $\sum(r_i/\sigma_i)^2 + k\ln n$ where the lists tell $\sigma$, else $n\ln(R/n) + k\ln n$.
     pub(super) fn bic(&self) -> f64 {
         let count = self.residuals.len().max(1) as f64;
+        if let Some((sum, _)) = self.chi_square() {
+            return sum + self.size as f64 * count.ln();
+        }
         count * (self.square() / count).max(f64::MIN_POSITIVE).ln() + self.size as f64 * count.ln()
     }
 

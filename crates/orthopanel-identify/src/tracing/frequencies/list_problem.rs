@@ -16,6 +16,8 @@ pub(super) struct FrequencyList {
     pub measured: Vec<f64>,
     /// Relative standard deviation of each by rounding to a bin; empty where the bin is not told.
     pub rounding: Vec<f64>,
+    /// Relative standard deviation of each as the file tells it; empty where it does not.
+    pub scatter: Vec<f64>,
 }
 
 /// $E_x$ and $G_{zx}$ from which a search begins \[Pa\].
@@ -39,7 +41,8 @@ impl ListProblem {
                 record: RecordSetting { number: 1, response_at: data.response_at, ..RecordSetting::default() },
             };
             let rounding = data.resolution.iter().zip(&data.values).map(|(bin, f)| bin / 12.0_f64.sqrt() / f).collect();
-            Some(FrequencyList { piece: measurement.piece, setting, measured: data.values.clone(), rounding })
+            let scatter = data.scatter.iter().zip(&data.values).map(|(std, f)| std / f).collect();
+            Some(FrequencyList { piece: measurement.piece, setting, measured: data.values.clone(), rounding, scatter })
         });
         Ok(Self { lists: lists.collect(), constants })
     }
@@ -83,6 +86,21 @@ impl ListProblem {
             residuals.extend(found.iter().zip(&list.measured).map(|(f, measured)| f / measured - 1.0));
         }
         Ok(residuals)
+    }
+
+    /// The same over their standard deviations, where the lists tell these.
+    pub(super) fn weighed(&self, parameters: &[f64], like: &Hypothesis) -> Result<Vec<f64>, ModelError> {
+        let residuals = self.residuals(parameters, like)?;
+        Ok(match self.scatter() {
+            Some(scatter) => residuals.iter().zip(scatter).map(|(residual, scatter)| residual / scatter).collect(),
+            None => residuals,
+        })
+    }
+
+    /// Relative standard deviation of every frequency, where every list tells it.
+    pub(super) fn scatter(&self) -> Option<Vec<f64>> {
+        let told: Vec<f64> = self.lists.iter().flat_map(|list| list.scatter.iter().copied()).collect();
+        (!told.is_empty() && told.len() == self.count()).then_some(told)
     }
 
     /// Rms that rounding to the bins alone makes, where every list tells its bins.

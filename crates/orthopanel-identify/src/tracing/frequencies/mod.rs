@@ -58,6 +58,10 @@ pub(super) fn trace_frequencies(test: &ImpactTest, declared: &Hypothesis) -> Res
             not_tested.push(NotTested { id, reason });
             continue;
         }
+        if id == width::ID && !declared.effects.is_empty() {
+            not_tested.push(refused("the effects that the test file declares act on beams"));
+            continue;
+        }
         if id == width::ID {
             match width::fit_plate(test, &problem) {
                 Ok(found) => fits.push(found),
@@ -121,7 +125,7 @@ fn alone(
         .par_iter()
         .map(|hypothesis| {
             let parameters = [constants, &hypothesis.coordinates()].concat();
-            let square = problem.residuals(&parameters, hypothesis).map(|list| list.iter().map(|r| r * r).sum());
+            let square = problem.weighed(&parameters, hypothesis).map(|list| list.iter().map(|r| r * r).sum());
             (square.unwrap_or(f64::INFINITY), hypothesis)
         })
         .collect();

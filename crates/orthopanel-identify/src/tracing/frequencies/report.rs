@@ -19,6 +19,13 @@ use crate::tracing::report::{effects_of, removal};
 const CLEAR: f64 = 10.0;
 /// An effect that leaves more than this of the error explains little.
 const LEFT: f64 = 0.6;
+/// Where the scatter is told, its mean square may stand above one by so many of its own standard deviations.
+const SURE: f64 = 3.0;
+
+const UNTOLD: &str =
+    "noise is not told by a list: the criterion takes it from the residuals themselves, and a margin of 10 is clear";
+const TOLD: &str =
+    "the criterion weighs each frequency by the scatter that the test file tells, and a margin of 10 is clear";
 
 pub(super) fn report(
     test: &ImpactTest,
@@ -43,7 +50,11 @@ pub(super) fn report(
         .copied()
         .filter(|&index| index != 0 && index != chosen && chosen != 0 && fits[index].bic() < fits[chosen].bic() + CLEAR)
         .collect();
-    let verdict = if chosen == 0 {
+    let misses =
+        fits[0].chi_square().is_some_and(|(_, mean)| mean > 1.0 + SURE * (2.0 / fits[0].residuals.len() as f64).sqrt());
+    let verdict = if chosen == 0 && misses {
+        Verdict::Unexplained
+    } else if chosen == 0 {
         Verdict::NothingMissing
     } else if !rivals.is_empty() {
         Verdict::Ambiguous
@@ -52,6 +63,9 @@ pub(super) fn report(
     } else {
         Verdict::Explained
     };
+    let told = problem.scatter();
+    let rms = |told: &Vec<f64>| (told.iter().map(|std| std * std).sum::<f64>() / told.len().max(1) as f64).sqrt();
+    let floor = told.as_ref().map(rms).or_else(|| problem.rounding());
     let error = |fit: &ListFit| FittedError { fitted: fit.percent(), held_out: fit.left_out_percent() };
     let candidate = |&index: &usize| Candidate {
         left_behind: None,
@@ -70,19 +84,19 @@ pub(super) fn report(
             measure: "natural frequencies, % rms; held out: each predicted from the others".to_owned(),
             before: error(&fits[0]),
             after: error(&fits[chosen]),
-            noise_floor: 100.0 * problem.rounding().unwrap_or_else(|| fits[chosen].scatter()),
+            noise_floor: 100.0 * floor.unwrap_or_else(|| fits[chosen].scatter()),
         },
         candidates: order.iter().map(candidate).collect(),
         not_tested,
         next_experiment: next_experiment(problem, &fits, chosen, &rivals, &order),
-        chi_square: problem.rounding().map_or(1.0, |rounding| (fits[chosen].percent() / 100.0 / rounding).powi(2)),
+        chi_square: match fits[chosen].chi_square() {
+            Some((_, mean)) => mean,
+            None => floor.map_or(1.0, |floor| (fits[chosen].percent() / 100.0 / floor).powi(2)),
+        },
         panels,
         removed,
         accelerances: vec![],
-        notes: vec![
-            "noise is not told by a list: the criterion takes it from the residuals themselves, and a margin of 10 is clear"
-                .to_owned(),
-        ],
+        notes: vec![if told.is_some() { TOLD } else { UNTOLD }.to_owned()],
     })
 }
 

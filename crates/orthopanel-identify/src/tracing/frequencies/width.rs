@@ -34,6 +34,7 @@ pub(super) fn fit_plate(test: &ImpactTest, problem: &ListProblem) -> Result<List
         residuals,
         std: vec![],
         size,
+        scatter: problem.scatter(),
         plate: Some(found),
     })
 }
