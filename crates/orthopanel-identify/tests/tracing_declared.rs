@@ -1,0 +1,62 @@
+//! Effects that a test file declares, through records: they belong to the base model, and what is missing beside them is
+//! still found.
+//!
+//! The records come from `tests/blind_tracing`, which shares no code with the crates.
+
+mod support;
+
+use std::path::Path;
+
+use orthopanel_data::ImpactTest;
+use orthopanel_identify::{Tracing, Verdict, trace};
+use serde_json::Value;
+use support::made;
+
+/// The made test of a set and kind with its effect `id` declared as it was put in, and the truth.
+fn declared(folder: &Path, (set, kind): (&str, &str), id: &str) -> Option<(Tracing, Value)> {
+    let (_, case) = made(folder, set, kind)?;
+    let effects = case["effects"].as_array().unwrap();
+    let parameters = &effects.iter().find(|effect| effect["id"] == id).unwrap()["parameters"];
+    let told: String =
+        parameters.as_object().unwrap().iter().map(|(name, value)| format!("{name} = {value}\n")).collect();
+    let file = folder.join(case["case"].as_str().unwrap()).join("test.toml");
+    let text = std::fs::read_to_string(&file).unwrap() + &format!("\n[[effect]]\nid = \"{id}\"\n{told}");
+    std::fs::write(&file, text).unwrap();
+    Some((trace(&ImpactTest::read(&file).unwrap()).unwrap(), case))
+}
+
+#[test]
+fn val_with_its_sensor_declared_nothing_is_missing() {
+    let folder = tempfile::tempdir().unwrap();
+    let Some((found, _)) = declared(&folder.path().join("set"), ("clean", "sensor-mass"), "sensor-mass") else {
+        return;
+    };
+    assert_eq!((found.verdict, found.effects.len()), (Verdict::NothingMissing, 0), "{:?}", found.effects);
+    assert!(found.candidates.iter().all(|candidate| !candidate.id.contains("sensor-mass")));
+    // Declared, and still the rig's: the panel's model does not carry it.
+    assert_eq!((found.removed.len(), found.removed[0].id), (1, "sensor-mass"));
+    assert!(found.removed[0].why.contains("declared") && found.panels[0].effects.is_empty());
+}
+
+#[test]
+fn val_what_is_missing_beside_a_declared_sensor_is_named_and_measured() {
+    let folder = tempfile::tempdir().unwrap();
+    let pair = ("pairs", "local-mass + sensor-mass");
+    let Some((found, case)) = declared(&folder.path().join("set"), pair, "sensor-mass") else { return };
+    assert!(matches!(found.verdict, Verdict::Explained | Verdict::Ambiguous), "{}", found.verdict.name());
+    let ids: Vec<&str> = found.effects.iter().map(|effect| effect.id).collect();
+    assert_eq!(ids, ["local-mass"]);
+    let effects = case["effects"].as_array().unwrap();
+    let truth = &effects.iter().find(|effect| effect["id"] == "local-mass").unwrap()["parameters"];
+    for parameter in &found.effects[0].parameters {
+        let (truth, value) = (truth[parameter.name].as_f64().unwrap(), parameter.values[0]);
+        // Five standard deviations: the generator's own solution may differ by a small part of the noise.
+        assert!(
+            (value.value - truth).abs() < 5.0 * value.std.unwrap() + 1e-4,
+            "{}: {value:?}, {truth}",
+            parameter.name
+        );
+    }
+    // Mass of the panel stays in its model, the sensor does not.
+    assert_eq!((found.panels[0].effects.len(), found.removed.len()), (1, 1));
+}
