@@ -75,8 +75,8 @@ impl Search<'_> {
         let starts: Vec<_> = tried
             .par_iter()
             .map(|effect| {
-                let scored = scored_starts(self.records, &self.records.start, **effect, &self.piece);
-                let found = scored.map(|starts| followed(self.records, &starts));
+                let scored = scored_starts(self.records, &self.records.start, **effect, (&self.piece, 0));
+                let found = scored.map(|starts| followed(self.records, &starts, 0));
                 let number = done.fetch_add(1, Ordering::Relaxed) + 1;
                 (self.progress)(Progress { effect: effect.id(), done: number, of: tried.len() });
                 (effect.id(), found)
@@ -90,12 +90,12 @@ impl Search<'_> {
                 Err(error) => not_tested.push(NotTested { id, reason: error.to_string() }),
             }
         }
-        let fits = [base].into_iter().chain(self.finish(begun)).collect::<Vec<_>>();
+        let fits = [base].into_iter().chain(self.finish(begun, 0)).collect::<Vec<_>>();
         let mut ranking = Ranking { scale: self.scale(&fits)?, fits, chosen: 0, not_tested, unfinished: false };
         self.choose(&mut ranking)?;
         for size in 1..MOST_EFFECTS {
             let before = ranking.chosen;
-            if !self.leaves_something(&ranking) {
+            if self.meets_noise(&ranking.fits[ranking.chosen]) {
                 break;
             }
             // Where neither of two effects pays alone, both together may.
@@ -113,10 +113,10 @@ impl Search<'_> {
     }
 
     /// Fits to the end what is not hopelessly behind, widening by widening: the narrow lines cost the most, and few need them.
-    fn finish(&self, begun: Vec<Costed>) -> Vec<Fit> {
+    fn finish(&self, begun: Vec<Costed>, from: usize) -> Vec<Fit> {
         let (mut running, left) = part(begun);
-        let mut behind: Vec<(State, usize)> = left.into_iter().map(|(state, _)| (state, 0)).collect();
-        for (stage, &patience) in PATIENCE.iter().enumerate() {
+        let mut behind: Vec<(State, usize)> = left.into_iter().map(|(state, _)| (state, from)).collect();
+        for (stage, &patience) in PATIENCE.iter().enumerate().skip(from) {
             let polished: Vec<_> =
                 running.par_iter().filter_map(|(state, _)| polish(self.records, state, stage, patience).ok()).collect();
             if stage == LAST {
@@ -154,9 +154,8 @@ impl Search<'_> {
         Ok(LikelihoodScale { independent, unit: best.chi_square(self.records).max(1.0), data: problem.data() })
     }
 
-    fn leaves_something(&self, ranking: &Ranking) -> bool {
-        let scatter = self.records.noise_floor();
-        ranking.fits[ranking.chosen].chi_square(self.records) > MET * scatter.max(1.0)
+    fn meets_noise(&self, fit: &Fit) -> bool {
+        fit.chi_square(self.records) <= MET * self.records.noise_floor().max(1.0)
     }
 
     /// Moves on to the hypothesis that pays best for its effects and their parameters, on the data and on what was held out.
@@ -197,6 +196,10 @@ impl Search<'_> {
                 break;
             }
             more.extend(self.partners(&ranking.fits[root])?);
+            // What meets the noise leaves nothing that another root could do better.
+            if more.iter().any(|fit| fit.given_up.is_none() && self.meets_noise(fit)) {
+                break;
+            }
         }
         ranking.fits.extend(each_once(more));
         Ok(())
@@ -224,20 +227,34 @@ impl Search<'_> {
         self.choose(ranking)
     }
 
+    /// The widest lines on which a fit misses more than noise: wider ones cannot tell what it lacks.
+    fn first_that_lacks(&self, fit: &Fit) -> Result<usize, IdentifyError> {
+        for stage in 0..LAST {
+            let problem = self.records.problem(stage);
+            let at = problem.linearise(&problem.parameters(&fit.state), &fit.state)?;
+            if at.cost > MET * problem.data() as f64 {
+                return Ok(stage);
+            }
+        }
+        Ok(LAST)
+    }
+
     /// The root with each of the effects that promise most beside it.
     fn partners(&self, root: &Fit) -> Result<Vec<Fit>, IdentifyError> {
+        let stage = self.first_that_lacks(root)?;
         let on: Vec<&str> = root.state.hypothesis.effects.iter().map(|on| on.effect.id()).collect();
         let others: Vec<_> = catalogue().iter().filter(|effect| !on.contains(&effect.id())).collect();
         let mut scored: Vec<Vec<Costed>> = others
             .par_iter()
-            .filter_map(|effect| scored_starts(self.records, &root.state, **effect, &self.piece).ok())
+            .filter_map(|effect| scored_starts(self.records, &root.state, **effect, (&self.piece, stage)).ok())
             .collect();
         scored.sort_by(|a, b| a[0].1.total_cmp(&b[0].1));
         scored.truncate(PROMISING);
-        let mut begun: Vec<Costed> = scored.par_iter().filter_map(|starts| followed(self.records, starts)).collect();
+        let mut begun: Vec<Costed> =
+            scored.par_iter().filter_map(|starts| followed(self.records, starts, stage)).collect();
         begun.sort_by(|a, b| a.1.total_cmp(&b.1));
         begun.truncate(PARTNERS);
-        Ok(self.finish(begun))
+        Ok(self.finish(begun, stage))
     }
 }
 

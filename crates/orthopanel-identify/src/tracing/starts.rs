@@ -14,10 +14,10 @@ use crate::least_squares::Ending;
 const FOLLOWED: usize = 3;
 const FOLLOW: Ending = Ending::far(8, 1.0);
 
-/// A state on the widest lines, and the sum of squares that it leaves or promises to leave.
+/// A state at one widening, and the sum of squares that it leaves there or promises to leave.
 pub(super) type Costed = (State, f64);
 
-/// `base` with one more effect at each of its starts, the most promising first.
+/// `base` with one more effect at each of its starts, the most promising at a widening first.
 ///
 /// Each start is scored by $c - g^TN^{-1}g$, the sum of squares that one step in all parameters promises to leave: the
 /// constants, the damping and the effects that are on already answer for what they can.
@@ -28,9 +28,9 @@ pub(super) fn scored_starts(
     records: &TestRecords,
     base: &State,
     effect: &'static dyn Effect,
-    piece: &Piece,
+    (piece, stage): (&Piece, usize),
 ) -> Result<Vec<Costed>, IdentifyError> {
-    let problem = records.problem(0);
+    let problem = records.problem(stage);
     let scored: Vec<Result<Costed, IdentifyError>> = grid(effect, piece, (problem.records.len(), records.band))
         .into_par_iter()
         .map(|start| {
@@ -59,15 +59,15 @@ pub(super) fn scored_starts(
     }
 }
 
-/// The best of the first few starts after some steps on the widest lines.
-pub(super) fn followed(records: &TestRecords, starts: &[Costed]) -> Option<Costed> {
+/// The best of the first few starts after some steps at one widening.
+pub(super) fn followed(records: &TestRecords, starts: &[Costed], stage: usize) -> Option<Costed> {
     let followed: Vec<Costed> =
-        starts.par_iter().take(FOLLOWED).filter_map(|(state, _)| polish(records, state, 0, FOLLOW).ok()).collect();
+        starts.par_iter().take(FOLLOWED).filter_map(|(state, _)| polish(records, state, stage, FOLLOW).ok()).collect();
     followed.into_iter().min_by(|a, b| a.1.total_cmp(&b.1))
 }
 
 /// Most combinations of starts, beyond which only the first of each but the place, the frequency and the record is taken.
-const MOST_STARTS: usize = 12;
+const MOST_STARTS: usize = 30;
 
 /// Values of all parameters, one list a start, in a test of so many records up to `band` \[Hz\].
 pub(super) fn grid(effect: &'static dyn Effect, piece: &Piece, (records, band): (usize, f64)) -> Vec<Vec<f64>> {
