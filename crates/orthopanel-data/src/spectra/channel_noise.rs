@@ -35,7 +35,11 @@ impl Hit {
     /// Read from second differences, which neither an offset nor a hum nor what rings on from the hit before reaches.
     pub fn noise_before_blow(&self) -> Option<ChannelNoise> {
         let offset = sampled_median(&self.force);
-        let (at, height) = peak(&self.force, offset);
+        self.noise_before(offset, peak(&self.force, offset))
+    }
+
+    /// As [`Hit::noise_before_blow`], where the force's offset, and where and how high it peaks, are known.
+    pub(super) fn noise_before(&self, offset: f64, (at, height): (usize, f64)) -> Option<ChannelNoise> {
         let touches = |force: &&f64| (**force - offset) * height.signum() > TOUCH * height.abs();
         let foot = self.force.get(..at)?.iter().rev().take_while(touches).count();
         let quiet = at.checked_sub(foot + AHEAD)?;

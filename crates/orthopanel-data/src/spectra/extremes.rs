@@ -3,6 +3,33 @@
 /// Running results kept side by side, so that one sample does not wait for the one before.
 pub(super) const LANES: usize = 8;
 
+/// What every judgement of a channel asks for, found once.
+#[derive(Clone, Copy)]
+pub(super) struct Levels {
+    /// Least and greatest sample.
+    pub(super) extremes: [f64; 2],
+    /// The level it rests at, or swings about.
+    pub(super) middle: f64,
+}
+
+impl Levels {
+    pub(super) fn of(values: &[f64]) -> Self {
+        Self { extremes: extremes(values), middle: sampled_median(values) }
+    }
+
+    /// The farther extreme's distance from the middle.
+    pub(super) fn reach(self) -> f64 {
+        let [least, greatest] = self.extremes;
+        (greatest - self.middle).max(self.middle - least)
+    }
+
+    /// The extremes far from the middle: a quiet side rests on its last bit.
+    pub(super) fn far(self) -> impl Iterator<Item = f64> {
+        let [least, greatest] = self.extremes;
+        [greatest, least].into_iter().filter(move |extreme| (extreme - self.middle).abs() > 0.5 * self.reach())
+    }
+}
+
 /// The least and the greatest value; infinite, the wrong way round, of an empty list.
 pub(super) fn extremes(values: &[f64]) -> [f64; 2] {
     let (mut least, mut greatest) = ([f64::INFINITY; LANES], [f64::NEG_INFINITY; LANES]);
@@ -18,7 +45,11 @@ pub(super) fn extremes(values: &[f64]) -> [f64; 2] {
 
 /// The sample farthest from the offset, the first where several are, and its height over it.
 pub(super) fn peak(values: &[f64], offset: f64) -> (usize, f64) {
-    let [least, greatest] = extremes(values);
+    peak_among(values, offset, extremes(values))
+}
+
+/// As [`peak`], where the extremes are known.
+pub(super) fn peak_among(values: &[f64], offset: f64, [least, greatest]: [f64; 2]) -> (usize, f64) {
     let first = |extreme: f64| values.iter().position(|&value| value == extreme);
     let (down, up) = ((least - offset).abs(), (greatest - offset).abs());
     let found = match (first(least), first(greatest)) {

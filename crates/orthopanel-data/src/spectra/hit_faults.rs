@@ -3,10 +3,10 @@
 use std::fmt;
 
 use super::{
-    dropped_sample::dropped_sample,
-    extremes::{median, peak, sampled_median},
+    extremes::{Levels, median, peak_among},
     overload::overload,
     time_history::Hit,
+    wrong_sample::{cut_crest, dropped_sample},
 };
 
 /// A channel of a hit.
@@ -31,6 +31,13 @@ pub enum HitFault {
         samples: usize,
         /// The extreme \[N or m/s²\].
         value: f64,
+    },
+    /// The one greatest sample of the response cut off.
+    CutCrest {
+        /// What stands there \[m/s²\].
+        value: f64,
+        /// What its neighbours point to \[m/s²\].
+        expected: f64,
     },
     /// A sample that was lost, and a zero or its neighbour written in its place.
     DroppedSample {
@@ -88,6 +95,10 @@ impl fmt::Display for HitFault {
                 let (name, unit) = name(channel);
                 write!(f, "{name} cut off: {samples} samples at exactly {value:.4} {unit} (overload)")
             }
+            Self::CutCrest { value, expected } => write!(
+                f,
+                "acceleration cut off: its greatest sample is {value:.4} m/s2 where {expected:.4} would fit (overload)"
+            ),
             Self::DroppedSample { channel, sample, value, expected } => {
                 let (name, unit) = name(channel);
                 write!(
@@ -137,8 +148,9 @@ const FALLING: f64 = 0.9;
 impl Hit {
     /// What is wrong with the hit; `rate` is the sampling rate \[Hz\].
     ///
-    /// Not to be found in one hit: a single sample cut off at a ceiling, and a channel that goes gently into it. Hits
-    /// whose greatest samples are exactly alike tell the former: [`TimeHistory::accelerance`](crate::TimeHistory::accelerance)
+    /// Not to be found in one hit: a single sample of the force cut off at a ceiling, one of the response that was not
+    /// recorded through an anti-alias filter, and a channel that goes gently into its ceiling. Hits whose greatest samples
+    /// are exactly alike tell the first two: [`TimeHistory::accelerance`](crate::TimeHistory::accelerance)
     /// looks for them. Nor a lost sample that fits its neighbours, one on a crest, or one whose time was lost too.
     pub fn faults(&self, rate: f64) -> Vec<HitFault> {
         let channels = [(Channel::Force, &self.force), (Channel::Acceleration, &self.acceleration)];
@@ -148,20 +160,25 @@ impl Hit {
         if !silent.is_empty() {
             return silent;
         }
-        let mut faults: Vec<_> = channels.iter().filter_map(|(channel, values)| overload(*channel, values)).collect();
+        let [force, motion] = [&self.force, &self.acceleration].map(|channel| Levels::of(channel));
+        let both = channels.iter().zip([force, motion]);
+        let mut faults: Vec<_> =
+            both.filter_map(|((channel, values), levels)| overload(*channel, values, levels)).collect();
         // What is cut off has many corners: a lost sample is told of whole channels only.
+        if faults.is_empty() {
+            faults.extend(cut_crest(&self.acceleration, motion));
+        }
         if faults.is_empty() {
             faults.extend(channels.iter().filter_map(|(channel, values)| dropped_sample(*channel, values)));
         }
-        faults.extend(force_fault(&self.force, rate));
+        faults.extend(force_fault(&self.force, force, rate));
         faults.extend(not_decayed(&self.acceleration));
         faults
     }
 }
 
-fn force_fault(force: &[f64], rate: f64) -> Option<HitFault> {
-    let offset = sampled_median(force);
-    let (peak, height) = peak(force, offset);
+fn force_fault(force: &[f64], Levels { extremes, middle: offset }: Levels, rate: f64) -> Option<HitFault> {
+    let (peak, height) = peak_among(force, offset, extremes);
     let sign = height.signum();
     let push = |value: f64| sign * (value - offset);
     let threshold = TOUCH * height.abs();

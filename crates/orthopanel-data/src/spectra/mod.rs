@@ -3,7 +3,6 @@
 mod accelerance;
 mod channel_noise;
 mod channels;
-mod dropped_sample;
 mod estimate;
 mod extremes;
 mod gather;
@@ -14,6 +13,7 @@ mod scatter;
 mod spectrum;
 mod time_history;
 mod window;
+mod wrong_sample;
 
 pub use accelerance::Accelerance;
 pub use channel_noise::ChannelNoise;

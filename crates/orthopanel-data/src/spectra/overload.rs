@@ -1,7 +1,7 @@
 //! A channel cut off at the end of its range: flat tops, and crests that meet at the very same value.
 
 use super::{
-    extremes::{extremes, sampled_median},
+    extremes::{Levels, extremes, sampled_median},
     hit_faults::{Channel, HitFault},
     time_history::Hit,
 };
@@ -40,14 +40,9 @@ const NEAR_STEPS: f64 = 64.0;
 const CHANCE: f64 = 1e-4;
 
 /// The overload of one channel of a hit.
-pub(super) fn overload(channel: Channel, values: &[f64]) -> Option<HitFault> {
-    let [least, greatest] = extremes(values);
-    let middle = sampled_median(values);
-    let reach = (greatest - middle).max(middle - least);
-    // A quiet side rests on its last bit; a clipped one stands far from the middle.
-    let far = [greatest, least].into_iter().filter(|extreme| (extreme - middle).abs() > 0.5 * reach);
-    far.filter_map(|extreme| Touches::of(values, extreme)).find_map(|touches| {
-        let samples = touches.clipped(channel, values, reach)?;
+pub(super) fn overload(channel: Channel, values: &[f64], levels: Levels) -> Option<HitFault> {
+    levels.far().filter_map(|extreme| Touches::of(values, extreme)).find_map(|touches| {
+        let samples = touches.clipped(channel, values, levels.reach())?;
         Some(HitFault::Overload { channel, samples, value: touches.extreme })
     })
 }
@@ -62,6 +57,10 @@ struct Touches {
 impl Touches {
     /// `None` for a crest that is met once, as nearly all are.
     fn of(values: &[f64], extreme: f64) -> Option<Self> {
+        // Counted first, in one pass without branches.
+        if values.iter().filter(|&&value| value == extreme).count() < 2 {
+            return None;
+        }
         let mut runs: Vec<(usize, usize)> = Vec::new();
         for (n, _) in values.iter().enumerate().filter(|(_, value)| **value == extreme) {
             match runs.last_mut() {
@@ -69,8 +68,7 @@ impl Touches {
                 _ => runs.push((n, 1)),
             }
         }
-        let touches = Self { extreme, runs };
-        (touches.samples() > 1).then_some(touches)
+        Some(Self { extreme, runs })
     }
 
     fn samples(&self) -> usize {

@@ -112,8 +112,9 @@ impl Sums {
             channels: Shared::default(),
             motion: Shared::default(),
         };
+        let per_force = 1.0 / force;
         for (hit, noise) in self.powers.iter().zip(self.noise.iter().flatten()) {
-            let share = hit[line] / force;
+            let share = hit[line] * per_force;
             sums.channels.add(share, noise.acceleration + power * noise.force);
             sums.motion.add(share, power * hit[line]);
         }
@@ -134,15 +135,23 @@ impl Sums {
             })
             .filter(|line| line.iter().all(|part| part.is_finite()))
             .collect();
-        lines.sort_unstable_by(|a, b| (a[2] * b[1]).total_cmp(&(b[2] * a[1])));
         let tail = (TAIL * lines.len() as f64) as usize;
+        if tail == 0 {
+            return 0.0;
+        }
+        let by_motion = |a: &[f64; 3], b: &[f64; 3]| (a[2] * b[1]).total_cmp(&(b[2] * a[1]));
+        let (from, last) = (lines.len() - tail, lines.len() - 1);
+        lines.select_nth_unstable_by(tail - 1, by_motion);
+        if let Some(rest) = lines.get_mut(tail..).filter(|rest| !rest.is_empty()) {
+            rest.select_nth_unstable_by(from.min(last) - tail, by_motion);
+        }
+        let (weak, strong) = (lines.get(..tail).unwrap_or_default(), lines.get(from..).unwrap_or_default());
         let over_channels = |[seen, channels, _]: &[f64; 3]| seen / channels;
-        let level = median(lines.iter().take(tail).map(over_channels).collect());
-        let strong = || lines.iter().rev().take(tail);
+        let level = median(weak.iter().map(over_channels).collect());
         // Two medians of so many exponential numbers, each known to 1.44 of itself over the root of their count.
         let chance = 1.44 * (2.0 / (tail as f64 * differences)).sqrt();
-        if median(strong().map(over_channels).collect()) / level > 1.0 + SURE * chance {
-            let beyond = strong().map(|[seen, channels, motion]| (seen - level * channels) / motion);
+        if median(strong.iter().map(over_channels).collect()) / level > 1.0 + SURE * chance {
+            let beyond = strong.iter().map(|[seen, channels, motion]| (seen - level * channels) / motion);
             (median(beyond.collect()) / level).max(0.0)
         } else {
             0.0

@@ -24,6 +24,23 @@ pub(super) struct Sums {
 }
 
 impl Sums {
+    fn add(&mut self, force: &[Complex64], motion: &[Complex64]) {
+        let spectra = force.iter().zip(motion);
+        let sums = self.force.iter_mut().zip(&mut self.motion).zip(&mut self.cross);
+        let weighted = self.weighted.0.iter_mut().zip(&mut self.weighted.1);
+        let mut powers = vec![0.0; force.len()];
+        for ((((f, a), own), sums), weighted) in spectra.zip(&mut powers).zip(sums).zip(weighted) {
+            let (power, of_motion, cross) = (f.norm_sqr(), a.norm_sqr(), f.conj() * a);
+            *own = power;
+            *sums.0.0 += power;
+            *sums.0.1 += of_motion;
+            *sums.1 += cross;
+            *weighted.0 += power * of_motion;
+            *weighted.1 += power * cross;
+        }
+        self.powers.push(powers);
+    }
+
     /// Sums of $|F|^4$, $|F|^2|A|^2$ and $|F|^2\bar F A$ at a line.
     pub(super) fn weighted(&self, line: usize) -> (f64, f64, Complex64) {
         let force4 = self.powers.iter().map(|power| power[line] * power[line]).sum();
@@ -46,6 +63,7 @@ pub(super) fn sums(hits: &[&Hit], samples: usize, window: Window, rate: f64) -> 
         weighted: (vec![0.0; lines], vec![Complex64::default(); lines]),
         noise: None,
     };
+    let mut noise = Vec::with_capacity(hits.len());
     for hit in hits {
         // The hammer is off the piece nearly all the time, so the median is its channel's offset; the mean is not,
         // for it holds the impulse.
@@ -60,20 +78,10 @@ pub(super) fn sums(hits: &[&Hit], samples: usize, window: Window, rate: f64) -> 
             .and_then(|()| transform.process_with_scratch(&mut motion, &mut motion_spectrum, &mut scratch));
         // It fails for other lengths than planned only; the caller has checked that all hits are of one length.
         debug_assert!(transformed.is_ok());
-        let mut powers = Vec::with_capacity(lines);
-        for (line, (f, a)) in force_spectrum.iter().zip(&motion_spectrum).enumerate() {
-            let (power, cross) = (f.norm_sqr(), f.conj() * a);
-            sums.force[line] += power;
-            sums.motion[line] += a.norm_sqr();
-            sums.cross[line] += cross;
-            sums.weighted.0[line] += power * a.norm_sqr();
-            sums.weighted.1[line] += power * cross;
-            powers.push(power);
-        }
-        sums.powers.push(powers);
+        sums.add(&force_spectrum, &motion_spectrum);
+        noise.push(if hits.len() > 1 { hit.noise_before(offset, (peak, height)) } else { None });
     }
     if let [first, _, ..] = hits {
-        let noise: Vec<_> = hits.iter().map(|hit| hit.noise_before_blow()).collect();
         sums.noise = NoisePower::of(&noise, windowed(first, window, rate));
     }
     sums
@@ -81,6 +89,9 @@ pub(super) fn sums(hits: &[&Hit], samples: usize, window: Window, rate: f64) -> 
 
 /// Sums of the squared windows over force and acceleration, by which white noise comes into a line.
 fn windowed(hit: &Hit, window: Window, rate: f64) -> [f64; 2] {
+    if window == Window::None {
+        return [hit.force.len() as f64; 2];
+    }
     let (at, _) = peak(&hit.force, sampled_median(&hit.force));
     let mut channels = [vec![1.0; hit.force.len()], vec![1.0; hit.force.len()]];
     let [force, acceleration] = &mut channels;

@@ -1,4 +1,4 @@
-//! A sample that was lost, found by what it leaves at half the rate; and hits without such a fault, which show none.
+//! A single wrong sample, lost or cut off, found by what it leaves at half the rate; and hits without such a fault.
 
 mod support;
 
@@ -20,6 +20,15 @@ fn quantised(hit: &Hit, bits: i32) -> Hit {
         values.iter().map(|value| (value / step).round() * step).collect()
     };
     Hit { force: round(&hit.force), acceleration: round(&hit.acceleration) }
+}
+
+fn cut(hit: &Hit) -> Vec<f64> {
+    let faults = hit.faults(RATE).into_iter();
+    let cut = faults.filter_map(|fault| match fault {
+        HitFault::CutCrest { expected, .. } => Some(expected),
+        _ => None,
+    });
+    cut.collect()
 }
 
 fn dropped(hit: &Hit) -> Vec<(Channel, usize, f64)> {
@@ -60,13 +69,35 @@ fn val_a_lost_sample_is_found_where_it_stands_out_of_the_noise() {
     assert!(of > 200 && f64::from(found) > 0.9 * f64::from(of), "{found} of {of}");
 }
 
+/// The greatest sample alone at the end of the range: no second one is there to be alike.
+#[test]
+fn val_a_crest_of_one_sample_that_is_cut_off_is_found() {
+    for part in [0.8, 0.9] {
+        let mut found = 0;
+        for seed in 1..=50 {
+            let mut hit = hit(seed);
+            let top = hit.acceleration.iter().copied().fold(0.0, f64::max);
+            let at = hit.acceleration.iter().position(|&value| value == top).unwrap();
+            hit.acceleration[at] *= part;
+            if hit.acceleration.iter().any(|&value| value > hit.acceleration[at]) {
+                // Not the greatest any more: the range would have cut others too.
+                hit.acceleration.iter_mut().for_each(|value| *value = value.min(part * top));
+            }
+            let faults = hit.faults(RATE);
+            found += usize::from(faults.iter().any(|fault| fault.to_string().starts_with("acceleration cut off")));
+        }
+        assert!(found >= 45, "{found} of 50 at {part}");
+    }
+}
+
 #[test]
 fn val_whole_hits_show_no_lost_sample_at_any_number_of_bits() {
     for seed in 1..=125 {
         let whole = hit(1000 + seed);
-        assert_eq!(dropped(&whole), [], "seed {seed}");
+        assert_eq!((dropped(&whole), cut(&whole)), (vec![], vec![]), "seed {seed}");
         for bits in [8, 10, 12, 14, 16, 24] {
-            assert_eq!(dropped(&quantised(&whole, bits)), [], "seed {seed}, {bits} bits");
+            let coarse = quantised(&whole, bits);
+            assert_eq!((dropped(&coarse), cut(&coarse)), (vec![], vec![]), "seed {seed}, {bits} bits");
         }
     }
 }

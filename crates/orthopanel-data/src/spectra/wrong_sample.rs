@@ -1,7 +1,11 @@
-//! A sample that the converter or the file lost: a zero, or its neighbour again, in the midst of a smooth record.
+//! A single sample that is wrong in a smooth record: lost (a zero, or its neighbour again), or the top of a crest cut off.
+//!
+//! Analysers record through a filter that leaves nothing at half the rate. A single wrong sample is even over all
+//! frequencies, so there it stands alone: the record is seen through Blackman's window about half the rate, and
+//! what one wrong sample would leave must explain nine tenths of that.
 
 use super::{
-    extremes::median,
+    extremes::{Levels, median},
     hit_faults::{Channel, HitFault},
     overload::converter_step,
 };
@@ -12,8 +16,11 @@ const REACH: usize = 16;
 /// Samples on either side among which a lost one must stand out.
 const AROUND: usize = 24;
 
-/// Part of what lies at half the rate there that one wrong sample explains.
+/// Part of what lies at half the rate there that one wrong sample explains, ...
 const EXPLAINED: f64 = 0.9;
+
+/// ... and where nothing but its size marks it: the greatest of a response that no filter passed is sharp by nature.
+const EXPLAINED_CREST: f64 = 0.97;
 
 /// Size of the error in standard deviations of the record's second differences, which tell noise and, on the safe side,
 /// what still rings, ...
@@ -27,14 +34,16 @@ const MOST: usize = 16;
 
 /// The first lost sample of a channel that can be told.
 ///
-/// Analysers record through a filter that leaves nothing at half the rate. A single wrong sample is even over all
-/// frequencies, so there it stands alone: the record is seen through Blackman's window about half the rate, and
-/// what one wrong sample would leave must explain nine tenths of that. Only samples that are exactly zero, or exactly
-/// the one before on a flank, are looked at; free ones hardly are.
+/// Only samples that are exactly zero, or exactly the one before on a flank, are looked at; free ones hardly are.
 ///
 /// Not to be found: a lost sample that lies within twelve standard deviations of where it belongs, as in a record's quiet
 /// tail, where it does no harm; one on a crest; one that takes the time with it, so that all after it come a step early.
 pub(super) fn dropped_sample(channel: Channel, values: &[f64]) -> Option<HitFault> {
+    // Of a fine converter hardly any sample is; one pass without branches says so.
+    let any = values.iter().zip(values.iter().skip(1)).fold(false, |any, (a, b)| any | (a == b) | (*b == 0.0));
+    if !any {
+        return None;
+    }
     let mut candidates: Vec<(usize, f64)> = values
         .windows(4)
         .enumerate()
@@ -44,21 +53,12 @@ pub(super) fn dropped_sample(channel: Channel, values: &[f64]) -> Option<HitFaul
             _ => None,
         })
         .collect();
-    if candidates.is_empty() {
-        return None;
-    }
     let least = DEVIATIONS * bending(values);
     candidates.retain(|&(_, bend)| bend > 0.5 * least);
     candidates.sort_by(|a, b| b.1.total_cmp(&a.1));
     candidates.truncate(MOST);
     let filter = filter();
-    let told = candidates.into_iter().filter_map(|(n, _)| {
-        let seen = Seen::at(values, n, &filter)?;
-        let beside = [n - 1, n + 1].into_iter().filter_map(|n| Seen::at(values, n, &filter));
-        let sharpest = beside.fold(0.0, |most: f64, seen| most.max(seen.explained));
-        (seen.explained > EXPLAINED && seen.explained >= sharpest && seen.error.abs() > least)
-            .then_some((n, seen.error))
-    });
+    let told = candidates.into_iter().filter_map(|(n, _)| Some((n, error_at(values, n, least, EXPLAINED, &filter)?)));
     let told: Vec<(usize, f64)> = told.collect();
     let steps = if told.is_empty() { 0.0 } else { STEPS * converter_step(values) };
     let first = told.into_iter().filter(|(_, error)| error.abs() > steps).min_by_key(|&(n, _)| n);
@@ -68,6 +68,28 @@ pub(super) fn dropped_sample(channel: Channel, values: &[f64]) -> Option<HitFaul
         value: values[n],
         expected: values[n] - error,
     })
+}
+
+/// The greatest sample of a response where it lies well below what its neighbours point to: one sample alone at the end
+/// of the range.
+///
+/// Of a response only: a blow recorded without a filter has as sharp a top by nature.
+pub(super) fn cut_crest(acceleration: &[f64], levels: Levels) -> Option<HitFault> {
+    let noise = DEVIATIONS * bending(acceleration);
+    let filter = filter();
+    levels.far().find_map(|value| {
+        let n = acceleration.iter().position(|&sample| sample == value)?;
+        let error = error_at(acceleration, n, noise, EXPLAINED_CREST, &filter)?;
+        let is_cut = error * (value - levels.middle) < 0.0 && error.abs() > STEPS * converter_step(acceleration);
+        is_cut.then_some(HitFault::CutCrest { value, expected: value - error })
+    })
+}
+
+/// By how much a sample is too great, where a part `explained` of what stands at half the rate about it is its own, and more than `least`.
+fn error_at(values: &[f64], n: usize, least: f64, explained: f64, filter: &[f64]) -> Option<f64> {
+    let seen = Seen::at(values, n, filter).filter(|seen| seen.explained > explained && seen.error.abs() > least)?;
+    let beside = [n.checked_sub(1)?, n + 1].into_iter().filter_map(|n| Seen::at(values, n, filter));
+    beside.into_iter().all(|beside| beside.explained <= seen.explained).then_some(seen.error)
 }
 
 /// Standard deviation of white noise whose second differences are as great as the record's.
