@@ -22,7 +22,7 @@ pub use identification::{
 };
 pub use settings::{PaperWeights, Search, Settings};
 pub use time_history::{
-    ComparedSignals, ForceBetweenSamples, HistorySettings, HitComparison, Misfit, compare_time_history,
+    ComparedSignals, ForceBetweenSamples, HistorySettings, HitComparison, Misfit, Stepping, compare_time_history,
 };
 pub use tracing::{
     Candidate, FittedError, NotTested, Progress, Removed, TRACE_SCHEMA, TracedEffect, TracedError, TracedParameter,

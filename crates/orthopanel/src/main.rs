@@ -16,6 +16,7 @@ mod pictures;
 mod progress;
 mod record_options;
 mod report;
+mod section_3_5;
 mod tables;
 mod time_response;
 mod traced;

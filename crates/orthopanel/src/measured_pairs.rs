@@ -7,7 +7,7 @@ use orthopanel_data::{Hit, TimeHistory};
 use orthopanel_identify::{
     ForceBetweenSamples, HistorySettings, HitComparison, IdentifyError, Misfit, compare_time_history,
 };
-use orthopanel_model::{PanelModel, Place};
+use orthopanel_model::{ModalModel, PanelModel, Place};
 use serde::Serialize;
 
 use crate::whole_accelerance::modes_up_to;
@@ -57,6 +57,10 @@ pub struct ComparedPair {
     pub history: TimeHistory,
     /// In the order of `history.hits`.
     pub hits: Vec<HitComparison>,
+    /// The modes that were driven.
+    pub modes: ModalModel,
+    /// Static flexibility of all flexible modes \[m/N\], where it is known.
+    pub static_flexibility: Option<f64>,
 }
 
 impl ComparedPair {
@@ -74,9 +78,9 @@ impl ComparedPair {
         let seen = modes_up_to(model, history.rate, force, response)?;
         let all = model.static_flexibility(seen.modes().len(), &[force], &[response])?;
         let static_flexibility = all.map(|all| all[0][0]);
-        let settings = HistorySettings { between_samples, static_flexibility, band };
+        let settings = HistorySettings { between_samples, static_flexibility, band, ..HistorySettings::default() };
         let hits = compare_time_history(&seen, &history, &settings)?;
-        Ok(Self { history, hits })
+        Ok(Self { history, hits, modes: seen, static_flexibility })
     }
 
     /// The hit to draw: the first without a fault that spoils it, else the first.
@@ -95,6 +99,7 @@ impl ComparedPair {
                 peak_force_n: peak(hit),
                 whole: compared.whole.misfit.into(),
                 in_band: compared.in_band.as_ref().map(|signals| signals.misfit.into()),
+                exact: None,
             })
             .collect()
     }
@@ -111,15 +116,32 @@ pub struct HitMisfit {
     whole: MisfitEntry,
     /// With every line outside the band of the identification taken out; `null` where there was none.
     in_band: Option<MisfitEntry>,
+    /// The exact modes and stepper beside another method, and how far that is from them; left out where it is the method.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    exact: Option<BesideExact>,
+}
+
+#[derive(Serialize)]
+struct BesideExact {
+    #[serde(flatten)]
+    misfit: MisfitEntry,
+    /// Greatest difference of both calculated accelerations.
+    apart_percent_of_peak: f64,
 }
 
 impl HitMisfit {
+    /// With the exact solution of the same hit beside it.
+    pub fn beside_exact(self, exact: Self, apart_percent_of_peak: f64) -> Self {
+        Self { exact: Some(BesideExact { misfit: exact.whole, apart_percent_of_peak }), ..self }
+    }
+
     /// Of the calculated acceleration from the measured one, in the band where there is one \[% of its peak\].
     pub fn rms_percent(&self) -> f64 {
         self.in_band.as_ref().unwrap_or(&self.whole).rms_percent_of_peak
     }
 }
 
+/// Error against the record.
 #[derive(Serialize)]
 struct MisfitEntry {
     peak_m_s2: f64,
@@ -152,12 +174,17 @@ pub fn misfit_table(misfits: &[&HitMisfit]) -> String {
             format!("{:.2}", misfit.whole.greatest_percent_of_peak),
             format!("{:.5}", misfit.whole.variance_explained),
         ];
+        if let Some(BesideExact { misfit: exact, apart_percent_of_peak }) = &misfit.exact {
+            row.push(format!("{:.2}", exact.rms_percent_of_peak));
+            row.push(format!("{:.5}", exact.variance_explained));
+            row.push(format!("{apart_percent_of_peak:.4}"));
+        }
         if with_band {
             row.push(misfit.in_band.as_ref().map_or(String::new(), |band| format!("{:.5}", band.variance_explained)));
         }
         row
     };
-    let heading = [
+    let mut heading = vec![
         "force [m]",
         "response [m]",
         "hit",
@@ -165,10 +192,14 @@ pub fn misfit_table(misfits: &[&HitMisfit]) -> String {
         "rms [% of peak]",
         "greatest [% of peak]",
         "variance explained",
-        "in the band",
     ];
-    let columns = if with_band { heading.len() } else { heading.len() - 1 };
-    tables::aligned(&heading[..columns], &misfits.iter().map(row).collect::<Vec<_>>())
+    if misfits.iter().any(|misfit| misfit.exact.is_some()) {
+        heading.extend(["exact: rms [% of peak]", "variance explained", "apart [% of peak]"]);
+    }
+    if with_band {
+        heading.push("in the band");
+    }
+    tables::aligned(&heading, &misfits.iter().map(row).collect::<Vec<_>>())
 }
 
 /// Measured and calculated acceleration of every hit, one below the other.

@@ -5,7 +5,10 @@ use std::ops::RangeInclusive;
 use orthopanel_data::{Hit, TimeHistory};
 use orthopanel_model::{ModalModel, ModelError};
 
-use super::{force_between_samples::ForceBetweenSamples, spectrum::Transforms};
+use super::{
+    force_between_samples::{ForceBetweenSamples, Stepping},
+    spectrum::Transforms,
+};
 use crate::IdentifyError;
 
 /// How a model is held against records.
@@ -13,6 +16,8 @@ use crate::IdentifyError;
 pub struct HistorySettings {
     /// How the measured force runs between its samples.
     pub between_samples: ForceBetweenSamples,
+    /// How the modes are carried from sample to sample.
+    pub stepping: Stepping,
     /// Static flexibility $G = \sum_m W_m(l_1)W_m(l_x)/\omega_m^2$ over **all** flexible modes \[m/N\], for a beam by
     /// [`StaticFlexibility`](orthopanel_model::StaticFlexibility). What the modes of the model leave of it, $R$, answers
     /// as $R\ddot f$.
@@ -64,8 +69,8 @@ pub struct Misfit {
 /// Drives the model with each measured force and compares its acceleration with the measured one.
 ///
 /// Force enters at the model's only force port, motion leaves at its first response port: make the model with the
-/// places of `history`. Each hit starts at rest, so its record must begin before the blow. Steps are exact
-/// ([`ModalStepper`](orthopanel_model::ModalStepper)); `settings` says how the force runs between samples.
+/// places of `history`. Each hit starts at rest, so its record must begin before the blow. `settings` says how the force
+/// runs between samples, and how the modes are stepped: exactly, unless said.
 ///
 /// **Modes beyond the records.** A mode that the model leaves out still answers below its frequency, as a static
 /// flexibility. Without it a model errs between its peaks and beside them: with modes up to four times half the
@@ -128,7 +133,7 @@ fn compare_hit(
     let force: Vec<f64> = hit.force.iter().map(|value| value - at_rest).collect();
     let beyond = settings.static_flexibility.map(|all| left_out(model, all)).transpose()?;
     let beyond = beyond.map(|flexibility| (flexibility, transforms.second_derivative(&force, rate)));
-    let mut calculated = settings.between_samples.acceleration(model, force, rate, transforms)?;
+    let mut calculated = settings.between_samples.acceleration(model, force, rate, settings.stepping, transforms)?;
     if let Some((flexibility, derivative)) = beyond {
         calculated.iter_mut().zip(derivative).for_each(|(sum, value)| *sum += flexibility * value);
     }

@@ -20,6 +20,20 @@ pub enum ForceBetweenSamples {
     Linear,
 }
 
+/// How the modes are carried from sample to sample.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Stepping {
+    /// Exactly: [`ModalStepper`](orthopanel_model::ModalStepper).
+    #[default]
+    Exact,
+    /// By the classic Runge-Kutta method of section 3.5, the witness beside it:
+    /// [`ModalModel::acceleration_by_runge_kutta`].
+    RungeKutta {
+        /// Equal steps from one sample to the next.
+        steps: usize,
+    },
+}
+
 impl ForceBetweenSamples {
     /// Forces \[N\] at finer instants such that straight lines between them drive a model as this force does, and the
     /// number of such steps from one sample to the next.
@@ -43,11 +57,16 @@ impl ForceBetweenSamples {
         model: &ModalModel,
         force: Vec<f64>,
         rate: f64,
+        stepping: Stepping,
         transforms: &mut Transforms,
     ) -> Result<Vec<f64>, ModelError> {
         let (force, finer) = self.lines(force, transforms);
         let record = ForceRecord::new(1.0 / (rate * finer as f64), vec![force])?;
-        let first = model.acceleration_under(&record)?.into_iter().next().unwrap_or_default();
+        let all = match stepping {
+            Stepping::Exact => model.acceleration_under(&record)?,
+            Stepping::RungeKutta { steps } => model.acceleration_by_runge_kutta(&record, steps.div_ceil(finer))?,
+        };
+        let first = all.into_iter().next().unwrap_or_default();
         Ok(first.into_iter().step_by(finer).collect())
     }
 }

@@ -5,4 +5,4 @@ mod force_between_samples;
 mod spectrum;
 
 pub use comparison::{ComparedSignals, HistorySettings, HitComparison, Misfit, compare_time_history};
-pub use force_between_samples::ForceBetweenSamples;
+pub use force_between_samples::{ForceBetweenSamples, Stepping};

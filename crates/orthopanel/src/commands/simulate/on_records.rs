@@ -7,9 +7,10 @@ use orthopanel_identify::ForceBetweenSamples;
 use orthopanel_model::PanelModel;
 use serde::Serialize;
 
-use super::Arguments;
+use super::{Arguments, Method};
 use crate::error::CommandError;
 use crate::measured_pairs::{ComparedPair, HitMisfit, csv, is_test_file, misfit_table};
+use crate::section_3_5::{self, Integration};
 use crate::time_response::Hold;
 use crate::{importer, model_file, notes, output, progress};
 
@@ -30,6 +31,10 @@ pub fn is_measured(path: &Path) -> Result<bool, CommandError> {
 #[derive(Serialize)]
 struct Answer {
     schema: &'static str,
+    method: &'static str,
+    /// Of each pair of places, where the method is Runge-Kutta's.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    integrations: Vec<Integration>,
     hits: Vec<HitMisfit>,
 }
 
@@ -45,24 +50,50 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
         let problem = "measured hits take every mode up to the sampling rate: leave out --modes and --up-to".into();
         return Err(CommandError::Records { path: arguments.force_file.clone(), problem });
     }
-    let between_samples = match arguments.hold {
-        None | Some(Hold::BandLimited) => ForceBetweenSamples::BandLimited,
-        Some(Hold::Linear) => ForceBetweenSamples::Linear,
-        Some(Hold::Held) => {
+    if arguments.method == Method::Exact && arguments.steps.is_some() {
+        let problem = "--steps belongs to --method runge-kutta: the exact method needs none".into();
+        return Err(CommandError::Records { path: arguments.force_file.clone(), problem });
+    }
+    let between_samples = match (arguments.hold, arguments.method) {
+        (None, Method::Exact) | (Some(Hold::BandLimited), _) => ForceBetweenSamples::BandLimited,
+        (None, Method::RungeKutta) | (Some(Hold::Linear), _) => ForceBetweenSamples::Linear,
+        (Some(Hold::Held), _) => {
             let remedy = "measured hits are not held: leave it out for band-limited, or give linear".into();
             return Err(CommandError::Option { option: "hold", value: "held".into(), remedy });
         }
     };
     let model = model_file::read(path)?;
+    if arguments.method == Method::RungeKutta && !section_3_5::takes(&model) {
+        let problem =
+            "section 3.5 is of a beam without effects: leave out --method runge-kutta, the exact one takes them".into();
+        return Err(CommandError::Records { path: path.clone(), problem });
+    }
     let histories = histories(arguments, &model)?;
     let shown = progress::bar("driving the model", histories.len());
-    let mut pairs = Vec::with_capacity(histories.len());
+    let (mut pairs, mut hits, mut integrations) = (Vec::with_capacity(histories.len()), Vec::new(), Vec::new());
+    let refused = |source| CommandError::Identify { path: arguments.force_file.clone(), source };
     for history in histories {
-        let compared = ComparedPair::of(&model, history, between_samples, None);
-        pairs.push(compared.map_err(|source| CommandError::Identify { path: arguments.force_file.clone(), source })?);
+        let exact = ComparedPair::of(&model, history, between_samples, None).map_err(refused)?;
+        match arguments.method {
+            Method::Exact => {
+                hits.extend(exact.misfits());
+                pairs.push(exact);
+            }
+            Method::RungeKutta => {
+                let found = section_3_5::by_runge_kutta(&model, &exact, between_samples, arguments.steps);
+                let (pair, integration) = found.map_err(refused)?;
+                let beside = pair.misfits().into_iter().zip(exact.misfits()).zip(section_3_5::apart(&pair, &exact));
+                hits.extend(beside.map(|((own, exact), apart)| own.beside_exact(exact, apart)));
+                integrations.push(integration);
+                pairs.push(pair);
+            }
+        }
         shown.step();
     }
     drop(shown);
+    for Integration { elements, steps } in &integrations {
+        eprintln!("{elements} beam elements, {steps} steps of Runge-Kutta from one sample to the next");
+    }
     for ComparedPair { history, .. } in &pairs {
         notes::say(&format!("{}: ", history.file.display()), &history.notes);
     }
@@ -70,9 +101,12 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
         output::write(path, csv(&pairs))?;
         eprintln!("wrote {}", path.display());
     }
-    let hits: Vec<HitMisfit> = pairs.iter().flat_map(ComparedPair::misfits).collect();
     if arguments.json {
-        output::print_json(&Answer { schema: "orthopanel.simulated-hits/1", hits });
+        let method = match arguments.method {
+            Method::Exact => "exact",
+            Method::RungeKutta => "runge-kutta",
+        };
+        output::print_json(&Answer { schema: "orthopanel.simulated-hits/1", method, integrations, hits });
     } else {
         output::print(&misfit_table(&hits.iter().collect::<Vec<_>>()));
     }
