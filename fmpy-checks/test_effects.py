@@ -6,10 +6,12 @@ The FMU runs under a short pulse; force and acceleration go to the Laplace plane
 
 import json
 import os
+import re
 import subprocess
 import sys
 import zipfile
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -17,7 +19,7 @@ from conftest import BEAM, ROOT
 from masters import panel
 
 sys.path.insert(0, str(ROOT / "tests"))
-from blind_tracing import attachments, beam  # noqa: E402
+from blind_tracing import attachments, beam, core  # noqa: E402
 
 ZETA = 0.004
 FORCE, RESPONSE = -0.31, 0.27
@@ -64,14 +66,14 @@ def truth(body, hung, s):
     return s**2 * attachments.coupled(receptance, s, [1], [0], at, [z for _, z in hung])[:, 0, 0]
 
 
-def export(path, effects, *options):
+def export(path, effects, *options, zeta=ZETA):
     sizes = ("length", "width", "thickness", "mass_per_area")
     content = {
         "schema": "orthopanel.model/1",
         "piece": {name: getattr(BEAM, name) for name in sizes},
         "structure": "timoshenko-beam",
         "constants": {"e_x": BEAM.e_x, "g_zx": BEAM.g_zx},
-        "damping": {"beyond": ZETA},
+        "damping": {"beyond": zeta},
         "effects": [{"owner": "panel", **effect} for effect in effects],
     }
     model = path.with_suffix(".json")
@@ -141,8 +143,36 @@ def test_effects_of_rig_and_channel_are_left_out_and_said(tmp_path):
     assert texts[0] == texts[1]
 
 
-def test_a_viscoelastic_core_is_refused(tmp_path):
-    core = {"id": "viscoelastic-core", "strength": 0.1, "tau": 1e-4, "alpha": 0.6}
-    done = export(tmp_path / "x.fmu", [core])
-    assert done.returncode == 1 and "viscoelastic-core in a model of modes" in done.stderr, done.stderr
+def modulus(strength, tau, alpha, factor=1.0):
+    """Shear modulus over that at low frequency (Bagley and Torvik 1983), times a factor."""
+    return lambda s: factor * (1.0 + strength * (s * tau) ** alpha / (1.0 + (s * tau) ** alpha))
+
+
+@pytest.mark.parametrize("numbers", [(0.1, 1e-4, 0.6), (0.6, 2e-4, 0.45)])
+def test_a_viscoelastic_core_is_in_the_fmu(tmp_path, numbers):
+    effect = dict(zip(("strength", "tau", "alpha"), numbers), id="viscoelastic-core")
+    done = export(tmp_path / "x.fmu", [effect], "--modes", "16", zeta=0.0)
+    assert done.returncode == 0, done.stderr
+    with zipfile.ZipFile(tmp_path / "x.fmu") as archive:
+        page = archive.read("documentation/index.html").decode()
+    stated = re.search(r"errs by ([0-9.]+) % of it at most, from ([0-9]+) to ([0-9]+) Hz", page)
+    assert stated and float(stated[2]) < 40.0 and float(stated[3]) > UP_TO, page
+    error = (float(stated[1]) + 0.005) / 100.0  # as printed
+    s, found = accelerance(tmp_path / "x.fmu")
+    sampling = SimpleNamespace(sigma=SIGMA, lines=lambda: (np.array([UP_TO]),))
+
+    def expected(law):
+        return s**2 * core.solve(BARE, [FORCE, RESPONSE], np.zeros(60), law, sampling).receptance(s, [1], [0])[:, 0, 0]
+
+    whole = expected(modulus(*numbers))
+    # A modulus that errs by so much everywhere; and what the modes left out add.
+    allowed = worst(expected(modulus(*numbers, factor=1.0 + error)), whole) + 2e-3
+    assert worst(found, whole) < allowed
+    assert worst(expected(lambda s: 1.0 + 0.0 * s), whole) > 10.0 * allowed, "the core must be seen"
+
+
+def test_a_core_beside_a_mass_is_refused(tmp_path):
+    both = [{"id": "viscoelastic-core", "strength": 0.1, "tau": 1e-4, "alpha": 0.6}, *CASES["local-mass"][0]]
+    done = export(tmp_path / "x.fmu", both)
+    assert done.returncode == 1 and "viscoelastic-core beside masses" in done.stderr, done.stderr
     assert not (tmp_path / "x.fmu").exists()

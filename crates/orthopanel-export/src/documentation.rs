@@ -4,12 +4,19 @@ use std::f64::consts::TAU;
 use std::fmt::Write as _;
 
 use orthopanel_fmu::{GENERATOR, Resource};
-use orthopanel_model::{Estimate, ModalModel, PanelModel};
+use orthopanel_model::{CoreFit, Estimate, ModalModel, PanelModel};
 
 use crate::{FmiVersion, FmuOptions};
 
+/// What the page tells of the panel behind the modes.
+pub(crate) struct Origin<'a> {
+    pub panel: &'a PanelModel,
+    /// How the core's modulus is fitted, where one relaxes.
+    pub core: Option<CoreFit>,
+}
+
 /// The page: variables with their places, modes, how the force is held, and where the panel comes from.
-pub(crate) fn write(resource: &Resource, panel: Option<&PanelModel>, options: &FmuOptions) -> String {
+pub(crate) fn write(resource: &Resource, from: Option<&Origin<'_>>, options: &FmuOptions) -> String {
     let mut page = String::from("<!DOCTYPE html>\n<html lang=\"en\">\n<head><meta charset=\"utf-8\"><title>");
     page += &escaped(&options.name);
     page += "</title></head>\n<body>\n<h1>";
@@ -41,13 +48,13 @@ pub(crate) fn write(resource: &Resource, panel: Option<&PanelModel>, options: &F
         let _ = writeln!(page, "<tr><td>{frequency:.3}</td><td>{}</td></tr>", mode.damping_ratio);
     }
     page += "</table>\n";
-    page += &panel.map(origin).unwrap_or_default();
+    page += &from.map(origin).unwrap_or_default();
     let _ = write!(page, "<p>Written by {GENERATOR}.</p>\n</body>\n</html>\n");
     page
 }
 
 /// The constants with their standard deviations, the effects, and what is told of the identification behind them.
-fn origin(panel: &PanelModel) -> String {
+fn origin(Origin { panel, core }: &Origin<'_>) -> String {
     let mut text = String::from("<h2>Where the panel comes from</h2>\n<table>\n");
     let mut row = |name: &str, value: &str| {
         let _ = writeln!(text, "<tr><td>{}</td><td>{}</td></tr>", escaped(name), escaped(value));
@@ -61,13 +68,31 @@ fn origin(panel: &PanelModel) -> String {
     }
     for effect in &panel.effects {
         let parameters = effect.parameters.iter().map(|(name, value)| format!("{name} {}", told(value)));
-        let fate = if effect.owner == "panel" { "in the modes" } else { "left out: no part of the panel" };
+        let fate = match core {
+            _ if effect.owner != "panel" => "left out: no part of the panel".into(),
+            Some(fit) if effect.id == CORE => relaxing(fit),
+            _ => "in the modes".into(),
+        };
         row(&format!("effect {} ({fate})", effect.id), &parameters.collect::<Vec<_>>().join("; "));
     }
     for (name, value) in &panel.provenance {
         row(&name.replace('_', " "), &value.as_str().map_or_else(|| value.to_string(), String::from));
     }
     text + "</table>\n"
+}
+
+/// The effect that brings internal variables.
+const CORE: &str = "viscoelastic-core";
+
+fn relaxing(fit: &CoreFit) -> String {
+    let CoreFit { terms, ratio, band: [from, to], error } = fit;
+    format!(
+        "in internal variables, {} oscillators of damping ratio {ratio} for each mode, so the frequencies above are those of \
+         the modes and these variables together, undamped: this rational fit of the shear modulus errs by {:.2} % of it at \
+         most, from {from:.0} to {to:.0} Hz, and gives no energy at any frequency",
+        terms.len(),
+        100.0 * error
+    )
 }
 
 const PARAMETERS: &str = "Parameters are fixed: they are set before or in initialization mode, and stay for the run. Where \

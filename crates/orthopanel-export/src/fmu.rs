@@ -7,7 +7,8 @@ use orthopanel_fmu::{FmuError, RESOURCE_FILE, Resource, content_token};
 use orthopanel_model::{ModalModel, ModeRange, PanelModel, Ports};
 
 use crate::archive::{Entry, pack};
-use crate::{ExportError, Library, documentation, library, model_description, terminals};
+use crate::documentation::{self, Origin};
+use crate::{ExportError, Library, library, model_description, terminals};
 
 /// Version of the FMI standard.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -88,8 +89,9 @@ impl Fmu {
 
     /// Puts together the FMU of a panel with the modes of `range`: their number is fixed, all else (sizes, mass,
     /// constants, damping ratios, places of the ports) can be set in the FMU, which then solves its modes anew.
-    /// The static part of the modes left out is added to displacements. Effects of the panel are in the modes; those of
-    /// rig and measuring chain are left out.
+    /// The static part of the modes left out is added to displacements. Effects of the panel are in the modes, a viscoelastic
+    /// core by internal variables, with the error of its fit in the documentation; those of rig and measuring chain are left
+    /// out.
     ///
     /// # Errors
     /// As [`Fmu::new`], and [`ExportError::Resource`] where the panel cannot be solved.
@@ -101,17 +103,19 @@ impl Fmu {
     ) -> Result<Self, ExportError> {
         check(&ports, options)?;
         let (alone, _) = panel.panel_alone().map_err(FmuError::from)?;
-        Self::of_resource(Resource::of_panel(&alone, range, ports)?, Some(panel), options)
+        let resource = Resource::of_panel(&alone, range, ports)?;
+        let core = alone.time_model(range, &[], &[]).map_err(FmuError::from)?.core;
+        Self::of_resource(resource, Some(Origin { panel, core }), options)
     }
 
-    fn of_resource(resource: Resource, panel: Option<&PanelModel>, options: &FmuOptions) -> Result<Self, ExportError> {
+    fn of_resource(resource: Resource, origin: Option<Origin<'_>>, options: &FmuOptions) -> Result<Self, ExportError> {
         let resource = &if options.arrays { resource.in_arrays() } else { resource };
         let text = resource.to_json();
         let token = content_token(text.as_bytes());
         Ok(Self {
             version: options.version,
             model_description: model_description::write(resource, options, &token)?,
-            documentation: documentation::write(resource, panel, options),
+            documentation: documentation::write(resource, origin.as_ref(), options),
             terminals: if options.arrays { None } else { Some(terminals::write(resource)?) },
             libraries: library::all(options.version, &options.libraries)?,
             resource: text,

@@ -1,6 +1,6 @@
 //! The panel behind the modes: what of it may be set before a simulation starts, and its modes solved again.
 
-use orthopanel_model::{Estimate, ModalModel, ModeRange, ModelError, PanelModel, Ports};
+use orthopanel_model::{Estimate, ModalModel, ModeRange, ModelError, PanelModel, Ports, TimeModel};
 use serde::{Deserialize, Serialize};
 
 use crate::FmuError;
@@ -41,6 +41,8 @@ pub(crate) struct PanelParameter {
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Solution {
     pub modes: ModalModel,
+    /// Flexible modes of the panel itself among these: a core adds its internal variables.
+    pub flexible: usize,
     /// $\sum W_rW_f/\omega^2$ \[m/N\] over the modes left out: a row a response, a column a force.
     pub static_remainder: Vec<Vec<f64>>,
 }
@@ -52,7 +54,7 @@ impl Panel {
         model.ports = ports;
         model.provenance.clear();
         let solution = solve(&model, range)?;
-        let flexible_modes = solution.modes.modes().iter().filter(|mode| mode.angular_frequency > 0.0).count();
+        let flexible_modes = solution.flexible;
         model.damping.ratios = (1..=flexible_modes).map(|mode| model.damping.ratio(mode)).collect();
         Ok((Self { model, flexible_modes }, solution))
     }
@@ -184,9 +186,9 @@ fn in_range(what: &'static str, value: f64, low: f64, high: f64) -> Result<(), F
 }
 
 fn solve(model: &PanelModel, range: ModeRange) -> Result<Solution, ModelError> {
-    let modes = model.modal_model(range, &model.ports.forces, &model.ports.responses)?;
+    let TimeModel { modes, flexible, .. } = model.time_model(range, &model.ports.forces, &model.ports.responses)?;
     let static_remainder = static_remainder(model, &modes)?;
-    Ok(Solution { modes, static_remainder })
+    Ok(Solution { modes, flexible, static_remainder })
 }
 
 /// What the flexible modes left out add at rest; zero for a panel with effects, where the sum over all is not known.

@@ -54,7 +54,7 @@ impl Resource {
     /// [`FmuError::Model`] where the panel has no physical meaning or cannot be solved.
     pub fn of_panel(panel: &PanelModel, range: ModeRange, ports: Ports) -> Result<Self, FmuError> {
         let (panel, solution) = Panel::new(panel, range, ports.clone())?;
-        let Solution { modes: model, static_remainder } = solution;
+        let Solution { modes: model, static_remainder, .. } = solution;
         let (schema, generator) = (RESOURCE_SCHEMA.into(), GENERATOR.into());
         Self { schema, generator, ports, model, static_remainder, panel: Some(panel), arrays: false }.checked()
     }

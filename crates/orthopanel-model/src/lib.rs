@@ -25,15 +25,16 @@ mod side_by_side;
 mod static_deflection;
 mod structure;
 mod structure_modes;
+mod time_model;
 mod timoshenko_beam;
 
 pub use boundary::{Boundary, End};
 pub use constant::Constant;
 pub use effects::{
-    Action, ChannelFactor, CoreLine, CoreModulus, Effect, EffectParameter, EffectSetting, EffectState, ElementLaw,
-    ElementLine, FactorLine, FieldTerm, LineDerivatives, LineEvaluator, NaturalFrequencies, Owner, PointElement,
-    ReceptanceModel, ReceptanceSetup, RecordSetting, Reference, Scale, Seat, Share, Shift, catalogue, effect,
-    natural_frequencies,
+    Action, ChannelFactor, CoreFit, CoreLine, CoreModulus, Effect, EffectParameter, EffectSetting, EffectState,
+    ElementLaw, ElementLine, FactorLine, FieldTerm, LineDerivatives, LineEvaluator, NaturalFrequencies, Owner,
+    PointElement, ReceptanceModel, ReceptanceSetup, RecordSetting, Reference, Scale, Seat, Share, Shift, catalogue,
+    effect, natural_frequencies,
 };
 pub use error::ModelError;
 pub use mindlin_plate::{MindlinPlate, ModeKind, ModeName, PLATE_CONSTANTS};
@@ -48,6 +49,7 @@ pub use response::{ForceRecord, ModalStepper};
 pub use ritz_modes::{modes_below, ritz_modes, ritz_modes_near};
 pub use static_deflection::static_deflections;
 pub use structure::{Block, Flexibility, Motion, RitzMode, Structure, TermDerivative};
+pub use time_model::TimeModel;
 pub use timoshenko_beam::{
     BEAM_CONSTANTS, BeamConstants, BeamElements, BeamMode, BeamTerms, ExactBeam, SHEAR_COEFFICIENT, ShearLoss,
     StaticFlexibility, Support, TimoshenkoBeam,

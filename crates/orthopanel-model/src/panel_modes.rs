@@ -21,7 +21,7 @@ pub enum ModeRange {
 const MOST_MODES: usize = 1000;
 
 impl ModeRange {
-    fn checked(self) -> Result<Self, ModelError> {
+    pub(crate) fn checked(self) -> Result<Self, ModelError> {
         match self {
             Self::Count(count) if count > MOST_MODES => {
                 Err(ModelError::BasisTooSmall { asked: count, available: MOST_MODES })
@@ -86,13 +86,7 @@ impl PanelModel {
 
     /// Modes of a beam with effects. Those of the bare modes' damping ratios that they hold mix in each.
     fn dressed_modes(&self, range: ModeRange) -> Result<Vec<PanelMode>, ModelError> {
-        self.check()?;
-        let effects = self.effects.iter().map(EffectState::from_entry).collect::<Result<Vec<_>, _>>()?;
-        if let Some(state) = effects.iter().find(|state| state.effect.owner() != Owner::Panel) {
-            let (effect, owner) = (state.effect.id(), state.effect.owner().name());
-            return Err(ModelError::EffectOwner { effect, owner });
-        }
-        let constants = BeamConstants { e_x: self.constant("e_x")?, g_zx: self.constant("g_zx")? }.checked()?;
+        let (constants, effects) = self.beam_with_effects()?;
         let first = |count: usize| {
             let values = [constants.e_x, constants.g_zx];
             DressedPanel::modes((&self.piece, self.boundary), &values, &effects, &self.damping, count)
@@ -114,6 +108,17 @@ impl PanelModel {
             }
         };
         Ok(modes.into_iter().map(PanelMode::of_dressed).collect())
+    }
+
+    /// The constants of a beam and its effects, all of which are the panel's.
+    pub(crate) fn beam_with_effects(&self) -> Result<(BeamConstants, Vec<EffectState>), ModelError> {
+        self.check()?;
+        let effects = self.effects.iter().map(EffectState::from_entry).collect::<Result<Vec<_>, _>>()?;
+        if let Some(state) = effects.iter().find(|state| state.effect.owner() != Owner::Panel) {
+            let (effect, owner) = (state.effect.id(), state.effect.owner().name());
+            return Err(ModelError::EffectOwner { effect, owner });
+        }
+        Ok((BeamConstants { e_x: self.constant("e_x")?, g_zx: self.constant("g_zx")? }.checked()?, effects))
     }
 
     fn plate_constants(&self) -> Result<[f64; 6], ModelError> {

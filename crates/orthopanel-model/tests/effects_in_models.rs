@@ -4,7 +4,8 @@ use std::f64::consts::TAU;
 
 use num_complex::Complex64;
 use orthopanel_model::{
-    Boundary, Damping, EffectState, ModeRange, PanelModel, Piece, Place, ReceptanceSetup, RecordSetting, effect,
+    Boundary, CoreModulus, Damping, EffectState, ModalStepper, ModeRange, PanelModel, Piece, Place, ReceptanceSetup,
+    RecordSetting, effect,
 };
 
 const PIECE: Piece = Piece { length: 0.8, width: 0.1, thickness: 0.03, mass_per_area: 6.88 };
@@ -121,4 +122,83 @@ fn what_is_no_effect_of_the_panel_is_refused_with_its_reason() {
     for (effects, start) in cases {
         assert!(said(effects).starts_with(start), "{}", said(effects));
     }
+}
+
+fn core(strength: f64, tau: f64, alpha: f64) -> String {
+    format!(r#"{{"id":"viscoelastic-core","owner":"panel","strength":{strength},"tau":{tau},"alpha":{alpha}}}"#)
+}
+
+fn undamped(effects: &str) -> PanelModel {
+    PanelModel::from_json(&text(effects).replace(r#""beyond":0.004"#, r#""beyond":0.0"#)).unwrap()
+}
+
+/// With internal variables in place of the law itself: the receptance at complex moduli, which knows of none, is met within
+/// what the fit says of the modulus, as far as a change of the modulus moves the receptance.
+#[test]
+fn val_a_core_in_internal_variables_is_its_receptance() {
+    for (strength, tau, alpha) in [(0.1, 1e-4, 0.6), (0.5, 1e-4, 0.5), (1.0, 1e-3, 0.8)] {
+        let model = undamped(&core(strength, tau, alpha));
+        let found = model.time_model(ModeRange::Count(20), &[at(-0.31)], &[at(0.27)]).unwrap();
+        let fit = found.core.unwrap();
+        assert_eq!((found.flexible, found.modes.modes().len()), (20, 2 + 20 * 8));
+        assert!(fit.error < 1e-2, "{}", fit.error);
+        let (mut missed, mut moved, mut bare) = (0.0_f64, 0.0_f64, 0.0_f64);
+        let mut whole = 0.0_f64;
+        for index in 0..200 {
+            let frequency = 40.0 * 1.024_f64.powi(index);
+            let s = Complex64::new(0.0, TAU * frequency);
+            let exact = line(&[("viscoelastic-core", &[strength, tau, alpha])], 0.0, s);
+            let stronger = line(&[("viscoelastic-core", &[strength * (1.0 + 1e-3), tau, alpha])], 0.0, s);
+            missed = missed.max((found.modes.accelerance(0, 0, frequency) - exact).norm());
+            let modulus = |strength| CoreModulus { strength, tau, alpha }.line(s).value;
+            let change = (modulus(strength * (1.0 + 1e-3)) - modulus(strength)).norm() / modulus(strength).norm();
+            moved = moved.max((stronger - exact).norm() / change);
+            bare = bare.max((line(&[], 1e-3, s) - exact).norm());
+            whole = whole.max(exact.norm());
+        }
+        // To first order; the modes left out add less than 1e-3 of the largest value.
+        assert!(missed < 1.2 * fit.error * moved + 1e-3 * whole, "{missed} {moved} {}", fit.error);
+        assert!(bare > 20.0 * missed, "the core must be seen: {bare} {missed}");
+    }
+}
+
+/// Whatever force has acted: once it ends, the energy of panel and internal variables falls at every step of any size.
+#[test]
+fn val_energy_never_grows_without_a_force() {
+    let model = undamped(&core(0.6, 2e-4, 0.4));
+    let found = model.time_model(ModeRange::Count(10), &[at(-0.31)], &[at(0.27)]).unwrap().modes;
+    assert_eq!(found.modes().len(), 2 + 10 * 8);
+    let mut stepper = ModalStepper::new(&found);
+    let energy = |stepper: &ModalStepper| -> f64 {
+        let both = stepper.state().into_iter().zip(found.modes());
+        both.map(|([a, v], mode)| 0.5 * (v * v + (mode.angular_frequency * a).powi(2))).sum()
+    };
+    for (round, step) in [1e-6, 1e-5, 1e-4, 1e-3, 3e-6].into_iter().enumerate() {
+        for n in 0..40 {
+            stepper.set_forces(&[f64::from(n * 7 % 11) - 5.0 + round as f64]).unwrap();
+            stepper.advance_held(1e-5).unwrap();
+        }
+        stepper.set_forces(&[0.0]).unwrap();
+        let first = energy(&stepper);
+        let mut before = first;
+        for _ in 0..200 {
+            stepper.advance_held(step).unwrap();
+            let now = energy(&stepper);
+            assert!(now <= before * (1.0 + 1e-11), "step {step}: {before:e} to {now:e}");
+            before = now;
+        }
+        assert!(before < first, "step {step}: nothing was lost");
+    }
+}
+
+#[test]
+fn a_core_is_refused_where_no_internal_variables_can_be_told() {
+    let model = undamped(&core(0.5, 1e-4, 0.5));
+    let refused = |model: &PanelModel, count| {
+        model.time_model(ModeRange::Count(count), &[at(0.0)], &[at(0.0)]).expect_err("refused").to_string()
+    };
+    assert!(model.modes(ModeRange::Count(5)).is_err(), "no natural modes in which it is not coupled");
+    assert!(refused(&model, 1).contains("from 2 to 60"), "{}", refused(&model, 1));
+    let beside = undamped(&(core(0.5, 1e-4, 0.5) + r#",{"id":"local-mass","owner":"panel","mass":0.03,"x":0.11}"#));
+    assert!(refused(&beside, 5).contains("beside masses"), "{}", refused(&beside, 5));
 }

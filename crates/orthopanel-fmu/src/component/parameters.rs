@@ -36,7 +36,7 @@ impl Component {
         let Some(solved) = self.solved.as_mut().filter(|solved| solved.values != values) else {
             return Ok(());
         };
-        let Solution { modes, static_remainder } = solved.panel.solve(values)?;
+        let Solution { modes, static_remainder, .. } = solved.panel.solve(values)?;
         if modes.modes().len() != self.nominals.len() {
             return Err(FmuError::ModeCount { found: modes.modes().len(), expected: self.nominals.len() });
         }

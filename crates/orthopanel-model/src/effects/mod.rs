@@ -6,12 +6,15 @@
 mod action;
 mod catalogue;
 mod channel_factor;
+mod core_fit;
 mod core_modulus;
 mod dressed_modes;
+mod dressed_system;
 mod dressing;
 mod parameter;
 mod point_element;
 mod receptance;
+mod relaxing_panel;
 mod setting;
 mod state;
 
@@ -38,6 +41,7 @@ mod width_coupling;
 pub use action::{Action, FieldTerm, Shift};
 pub use catalogue::{catalogue, effect};
 pub use channel_factor::{ChannelFactor, FactorLine};
+pub use core_fit::CoreFit;
 pub use core_modulus::{CoreLine, CoreModulus};
 pub(crate) use dressed_modes::{DressedMode, DressedPanel};
 pub use dressed_modes::{NaturalFrequencies, natural_frequencies};

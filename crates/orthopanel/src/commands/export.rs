@@ -61,10 +61,15 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
     let model = model_file::read(path)?;
     let ports = arguments.ports.needed(&model, path)?;
     let (alone, left_out) = model.panel_alone().in_file(path)?;
-    let seen = alone.modal_model(arguments.modes.range(), &ports.forces, &ports.responses).in_file(path)?;
+    let seen = alone.time_model(arguments.modes.range(), &ports.forces, &ports.responses).in_file(path)?;
     let frequencies: Vec<f64> =
-        seen.modes().iter().map(|mode| mode.angular_frequency / std::f64::consts::TAU).collect();
+        seen.modes.modes().iter().map(|mode| mode.angular_frequency / std::f64::consts::TAU).collect();
     let rigid_modes = frequencies.iter().filter(|frequency| **frequency == 0.0).count();
+    let highest_hz = match &seen.core {
+        // Beyond are the internal variables' own.
+        Some(fit) => fit.band[1],
+        None => frequencies.last().copied().unwrap_or(0.0),
+    };
     let fmu = Fmu::of_panel(&model, arguments.modes.range(), ports.clone(), &options(arguments)?)?;
     output::write(&arguments.output, fmu.to_bytes()?)?;
     let answer = Answer {
@@ -72,8 +77,8 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
         file: &arguments.output,
         fmi: if arguments.fmi == FmiVersion::Fmi2 { "2.0" } else { "3.0" },
         rigid_modes,
-        flexible_modes: frequencies.len() - rigid_modes,
-        highest_hz: frequencies.last().copied().unwrap_or(0.0),
+        flexible_modes: seen.flexible,
+        highest_hz,
         ports: &ports,
         left_out,
     };
@@ -84,6 +89,11 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
         answer.flexible_modes,
         answer.highest_hz
     );
+    if let Some(fit) = &seen.core {
+        let [from, to] = fit.band;
+        let percent = 100.0 * fit.error;
+        eprintln!("viscoelastic-core: fitted within {percent:.2} % of its modulus from {from:.0} to {to:.0} Hz");
+    }
     if !answer.left_out.is_empty() {
         eprintln!("left out, as no part of the panel: {}", answer.left_out.join(", "));
     }

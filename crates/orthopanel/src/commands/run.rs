@@ -112,7 +112,7 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
 fn add_model(files: &mut output::Files, test: &Path, suffix: &str, model: &PanelModel) -> Result<(), CommandError> {
     files.add(format!("model{suffix}.json"), model.to_json());
     let ports = &model.ports;
-    let seen = match model.modal_model(USUAL_MODES, &ports.forces, &ports.responses) {
+    let seen = match model.time_model(USUAL_MODES, &ports.forces, &ports.responses) {
         // The trace may find what has no modes; the model file holds it all the same.
         Err(ModelError::Unsupported(what)) if !model.effects.is_empty() => {
             eprintln!(
@@ -120,7 +120,7 @@ fn add_model(files: &mut output::Files, test: &Path, suffix: &str, model: &Panel
             );
             return Ok(());
         }
-        seen => seen.in_file(test)?,
+        seen => seen.in_file(test)?.modes,
     };
     for (version, ending) in [(FmiVersion::Fmi2, ""), (FmiVersion::Fmi3, "-fmi3")] {
         let options = FmuOptions { version, ..FmuOptions::default() };

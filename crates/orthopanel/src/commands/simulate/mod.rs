@@ -121,8 +121,8 @@ fn run_model(arguments: &Arguments) -> Result<(ForceHistory, Vec<Motion>), Comma
     let model = model_file::read(path)?;
     let ports = arguments.ports.needed(&model, path)?;
     let force = driving_force(arguments, ports.forces.len())?;
-    let seen = model.modal_model(arguments.modes.range(), &ports.forces, &ports.responses).in_file(path)?;
-    let motions = time_response::simulate(&seen, &force).in_file(path)?;
+    let seen = model.time_model(arguments.modes.range(), &ports.forces, &ports.responses).in_file(path)?;
+    let motions = time_response::simulate(&seen.modes, &force).in_file(path)?;
     Ok((force.samples, motions))
 }
 

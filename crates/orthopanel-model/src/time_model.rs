@@ -1,0 +1,68 @@
+//! What a time stepper needs of a panel: its modes, and the internal variables of a core that relaxes.
+
+use crate::effects::{CoreFit, DressedPanel};
+use crate::{ExactBeam, ModalModel, ModeRange, ModelError, PanelModel, Place, StructureKind};
+
+/// Modes as seen from ports, ready to be stepped.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TimeModel {
+    /// The modes; with a core, those of the panel and its internal variables together.
+    pub modes: ModalModel,
+    /// Flexible modes of the panel itself that these hold.
+    pub flexible: usize,
+    /// How the core's modulus is fitted, where there is one.
+    pub core: Option<CoreFit>,
+}
+
+impl PanelModel {
+    /// The modes of `range` as seen from these ports, and with a viscoelastic core those of the enlarged panel: the same
+    /// number whatever the constants. Beside a core, damping ratios are those of the bare modes without it.
+    ///
+    /// # Errors
+    /// As [`PanelModel::modal_model`], and [`ModelError::Unsupported`] for a core beside masses, springs or resonators.
+    pub fn time_model(&self, range: ModeRange, forces: &[Place], responses: &[Place]) -> Result<TimeModel, ModelError> {
+        if let Some(model) = self.relaxing_model(range, forces, responses)? {
+            return Ok(model);
+        }
+        let modes = self.modal_model(range, forces, responses)?;
+        let flexible = modes.modes().iter().filter(|mode| mode.angular_frequency > 0.0).count();
+        Ok(TimeModel { modes, flexible, core: None })
+    }
+
+    /// `None` for a panel without a viscoelastic core.
+    fn relaxing_model(
+        &self,
+        range: ModeRange,
+        forces: &[Place],
+        responses: &[Place],
+    ) -> Result<Option<TimeModel>, ModelError> {
+        let relaxes = self.effects.iter().any(|entry| entry.id == "viscoelastic-core");
+        if !relaxes || self.structure != StructureKind::TimoshenkoBeam {
+            return Ok(None);
+        }
+        for &place in forces.iter().chain(responses) {
+            self.piece.contains(place)?;
+        }
+        let (constants, effects) = self.beam_with_effects()?;
+        let flexible = match range.checked()? {
+            ModeRange::Count(count) => count,
+            ModeRange::UpTo(frequency) => ExactBeam::new(&self.piece, self.boundary, constants)?.count_below(frequency),
+        };
+        // The first two frequencies make a band; more modes than these many make no stepper.
+        if !(2..=MOST_RELAXING).contains(&flexible) {
+            return Err(ModelError::Unsupported(format!(
+                "viscoelastic-core with {flexible} modes: from 2 to {MOST_RELAXING} can be stepped"
+            )));
+        }
+        let values = [constants.e_x, constants.g_zx];
+        let found =
+            DressedPanel::relaxing_modes((&self.piece, self.boundary), &values, &effects, &self.damping, flexible)?;
+        let Some((modes, fit)) = found else { return Ok(None) };
+        let modes: Vec<_> = modes.into_iter().map(crate::PanelMode::of_dressed).collect();
+        let modes = ModalModel::of_modes(&modes, &self.damping, forces, responses)?;
+        Ok(Some(TimeModel { modes, flexible, core: Some(fit) }))
+    }
+}
+
+/// Each mode brings its internal variables, and all are coupled: a step costs the square of their number.
+const MOST_RELAXING: usize = 60;
