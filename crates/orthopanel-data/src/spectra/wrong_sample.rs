@@ -107,7 +107,7 @@ fn filter() -> Vec<f64> {
     let weight = |n: usize| {
         let angle = std::f64::consts::PI * (n as f64 - REACH as f64) / (REACH + 1) as f64;
         let window = 0.42 + 0.5 * angle.cos() + 0.08 * (2.0 * angle).cos();
-        if n % 2 == 0 { window } else { -window }
+        if n.is_multiple_of(2) { window } else { -window }
     };
     (0..=2 * REACH).map(weight).collect()
 }
