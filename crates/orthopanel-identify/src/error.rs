@@ -122,9 +122,10 @@ pub enum IdentifyError {
     },
     /// Records that no panel of these sizes could give.
     #[error(
-        "half of all lines miss the model by more than {percent:.0} %: the records contradict the test file; check \
-         force_at and response_at, the sensor's direction, units and gain, the sizes and mass of the piece, the window and \
-         the sampling rate"
+        "half of all lines miss the model by more than {percent:.0} %, whatever the constants: either the test file says \
+         other things than the records (force_at and response_at, the sensor's direction, units and gain, sizes and mass of \
+         the piece, the window, the sampling rate), or they show too little: measure more places, or from below the first \
+         resonance on"
     )]
     Contradiction {
         /// Median of $|H_{cal}-H_{exp}|/|H_{exp}|$ \[%\].
@@ -171,6 +172,11 @@ impl IdentifyError {
                 Self::NotConverged { iterations: count, error_percent: 100.0 * cost.sqrt() }
             }
         }
+    }
+
+    /// Whether the model cannot be evaluated, or the records not be read, whatever the search.
+    pub(crate) fn is_of_model(&self) -> bool {
+        matches!(self, Self::Data(_) | Self::Model(_) | Self::Unsupported(_) | Self::UnknownConstant { .. })
     }
 
     /// Whether the test itself must be mended, rather than that its data or the model say no.

@@ -107,6 +107,8 @@ pub(crate) struct Ending {
     pub failed_damping: f64,
     /// What is left of the damping after a step that went down.
     pub easing: f64,
+    /// No parameter moves further in one step.
+    pub longest_step: f64,
 }
 
 impl Ending {
@@ -120,6 +122,7 @@ impl Ending {
         first_damping: 1e-6,
         failed_damping: 0.0,
         easing: 0.1,
+        longest_step: f64::INFINITY,
     };
     /// For residuals that jump where two modes change places: 1e-6 of the sum of squares moves a parameter by 1e-3 of its
     /// standard deviation, and at a jump steps shrink without end.
@@ -127,11 +130,17 @@ impl Ending {
         most_iterations: 40,
         small_step: 1e-5,
         small_gain: 1e-6,
-        little: 0.0,
         first_damping: 1e-4,
         failed_damping: 0.1,
-        easing: 0.1,
+        ..Self::SMOOTH
     };
+
+    /// For a likelihood of so many data: a thousandth of what one parameter's standard deviation costs moves it by a
+    /// thirtieth of that. Flat directions, as the damping of a mode that hardly shows, would else be followed for long.
+    pub fn likelihood(data: f64) -> Self {
+        // Where a mode hardly shows, the logarithm of its damping is no straight line for longer than this.
+        Self { small_gain: Self::SMOOTH.small_gain.max(1e-3 / data.max(1.0)), longest_step: 1.0, ..Self::SMOOTH }
+    }
 
     /// A search that is cut short: after so many iterations, or where a step promises `little`.
     pub const fn short(most_iterations: usize, little: f64) -> Self {
@@ -145,7 +154,7 @@ impl Ending {
 
     /// Whether the next step from here, without damping, would promise little.
     pub fn is_reached(&self, at: &Quadratic, parameters: &[f64], bounds: &[(f64, f64)]) -> bool {
-        let trial = damped_step(at, parameters, bounds, 0.0);
+        let trial = damped_step(at, parameters, bounds, (0.0, self.longest_step));
         trial.is_some_and(|trial| self.is_little(promise(at, parameters, &trial), at.cost))
     }
 
@@ -192,7 +201,7 @@ pub(crate) fn descend<E>(
     let mut at = linearise(&parameters).map_err(Stuck::Refused)?;
     let (mut damping, mut growth) = (ending.first_damping, 2.0);
     for _ in 0..ending.most_iterations {
-        let Some(trial) = damped_step(&at, &parameters, bounds, damping) else {
+        let Some(trial) = damped_step(&at, &parameters, bounds, (damping, ending.longest_step)) else {
             damping = (damping * growth).max(1e-12);
             growth *= 2.0;
             continue;
@@ -223,7 +232,12 @@ pub(crate) fn descend<E>(
 }
 
 /// The end of a step of Levenberg and Marquardt, within the bounds; `None` where the curvature is not positive.
-fn damped_step(at: &Quadratic, parameters: &[f64], bounds: &[(f64, f64)], damping: f64) -> Option<Vec<f64>> {
+fn damped_step(
+    at: &Quadratic,
+    parameters: &[f64],
+    bounds: &[(f64, f64)],
+    (damping, longest): (f64, f64),
+) -> Option<Vec<f64>> {
     let mut normal = at.normal.clone();
     let mut gradient = Mat::from_fn(parameters.len(), 1, |i, _| at.gradient[i]);
     for (i, (&parameter, &(low, high))) in parameters.iter().zip(bounds).enumerate() {
@@ -241,7 +255,7 @@ fn damped_step(at: &Quadratic, parameters: &[f64], bounds: &[(f64, f64)], dampin
     }
     let step = normal.llt(Side::Lower).ok()?.solve(&gradient);
     let ends = parameters.iter().zip(bounds).enumerate();
-    Some(ends.map(|(i, (p, &(low, high)))| (p - step[(i, 0)]).clamp(low, high)).collect())
+    Some(ends.map(|(i, (p, &(low, high)))| (p - step[(i, 0)].clamp(-longest, longest)).clamp(low, high)).collect())
 }
 
 /// What a step to `trial` promises, to first order.

@@ -11,18 +11,24 @@ mod record_poles;
 mod records;
 mod resonance_point;
 mod resonance_start;
+mod sharpening;
+mod smeared;
 mod smooth_part;
 mod start;
 mod structures;
 mod synthesis;
+mod wide_scan;
 
 use orthopanel_data::ImpactTest;
 use orthopanel_model::StructureKind;
 
-use crate::least_squares::{Minimum, levenberg_marquardt};
+use crate::least_squares::Minimum;
 use crate::{Identification, IdentifyError, Search, Settings};
-use problem::{AcceleranceProblem, PieceProblem};
-use start::{Start, start, usual_log_zeta};
+use problem::AcceleranceProblem;
+use records::PlaceRecord;
+use sharpening::{Rough, line_by_line, problem_at, sharpened_lines};
+use start::{Recorded, Start, start, usual_log_zeta};
+use wide_scan::rough_starts;
 
 pub(crate) use record_poles::{RecordPole, record_poles};
 pub(crate) use resonance_start::{ResonanceStart, resonance_starts};
@@ -36,68 +42,122 @@ pub use synthesis::DampingLaw;
 ///    $\min \sum |H_{cal}-H_{exp}|^2/\mathrm{var}$ over $\ln E_x$, $\ln G_{zx}$ and every $\ln\zeta_m$. Modes beyond
 ///    the band enter through their static part.
 ///
+/// Where poles lead nowhere, a beam's constants are scanned over records made wide, and sharpened from there.
+///
 /// Standard deviations are $(J^TJ)^{-1}$, widened by the misfit per datum where that is above one. Where the model
 /// misses the records by far more than their noise, a line by line fit would bend damping to make up for a wrong
 /// frequency; then the constants come from the poles' frequencies, the damping from the poles, and a note says so.
 pub(crate) fn identify_records(test: &ImpactTest, settings: Settings) -> Result<Identification, IdentifyError> {
-    let start = start(test, settings)?;
+    let recorded = start::recorded(test, settings)?;
+    if settings.search == Search::Simplex {
+        return by_papers_error(test, settings, &recorded);
+    }
+    let by_poles = start(&recorded).and_then(|start| by_poles(test, settings, start));
+    match by_poles {
+        Err(refused) if recorded.structure == StructureKind::TimoshenkoBeam && !refused.is_of_model() => {
+            by_wide_records(test, settings, &recorded).map_err(|_| refused)
+        }
+        other => other,
+    }
+}
+
+/// Width, as a part of the frequency, from which records are sharpened where poles have told the constants.
+const NEAR: f64 = 0.005;
+
+/// Poles lead to constants, and these to a fit line by line, or to none.
+fn by_poles(test: &ImpactTest, settings: Settings, start: Start) -> Result<Identification, IdentifyError> {
     let mut problem = assemble(&start, settings)?;
     let parameters = starting_parameters(&problem, &start);
-    let minimum = match settings.search {
-        Search::LeastSquares if !start.resonances_meet() => {
-            return outcome::from_poles(test, start, &problem, &parameters);
-        }
-        Search::LeastSquares => {
-            // Lines tell far more than poles: what these do not show, lines may.
-            let seen = problem.constants.clone();
-            let all = problem.free_resting(&parameters);
-            let fitted = levenberg_marquardt(|p| problem.linearise(p), &all, &problem.bounds());
-            match fitted {
-                Ok(minimum) if !outcome::is_far_from_noise(&problem, &minimum) => minimum,
-                // What cannot be fitted line by line is judged by its resonances, and refused there if need be.
-                fitted => {
-                    let own = |minimum: Minimum| {
-                        let zetas = minimum.parameters.into_iter().skip(all.len() - parameters.len() + seen.count());
-                        parameters[..seen.count()].iter().copied().chain(zetas).collect()
-                    };
-                    let parameters = fitted.map_or_else(|_| parameters.clone(), own);
-                    (problem.constants, problem.usual) = (seen, Vec::new());
-                    return outcome::from_poles(test, start, &problem, &parameters);
-                }
+    let mut fallback = parameters.clone();
+    if start.resonances_meet() {
+        // Lines tell far more than poles: what these do not show, lines may.
+        let seen = problem.constants.clone();
+        let all = problem.free_resting(&parameters);
+        match line_by_line(&problem, &all) {
+            Some(minimum) if !outcome::is_far_from_noise(&problem, &minimum) => {
+                return outcome::outcome(test, settings, start, &mut problem, minimum);
             }
+            Some(Minimum { parameters: found, .. }) => {
+                let zetas = found.into_iter().skip(all.len() - parameters.len() + seen.count());
+                fallback = parameters[..seen.count()].iter().copied().chain(zetas).collect();
+            }
+            None => {}
         }
-        Search::Simplex if start.structure != StructureKind::TimoshenkoBeam => {
-            let message = "the paper's search on records is for beams: leave out --search simplex";
-            return Err(IdentifyError::Unsupported(message.to_owned()));
+        (problem.constants, problem.usual) = (seen, Vec::new());
+    }
+    if start.recorded.structure == StructureKind::TimoshenkoBeam {
+        let rough = Rough::of(&problem, &parameters);
+        let sharpened = sharpened_lines(start.recorded, settings.damping_law, rough, NEAR);
+        if let Ok(Some((mut problem, minimum))) = sharpened {
+            let start = Start::at(start.recorded, &problem.constants, &minimum.parameters)?;
+            return outcome::outcome(test, settings, start, &mut problem, minimum);
         }
-        Search::Simplex => {
-            let parameters =
-                paper_error::minimise(&problem, &start, test.boundary, &parameters, settings.paper_weights)?;
-            Minimum { at: problem.linearise(&parameters)?, parameters }
+    }
+    // What cannot be fitted line by line is judged by its resonances, and refused there if need be.
+    outcome::from_poles(test, start, &problem, &fallback)
+}
+
+/// Constants scanned over records made wide, sharpened from there.
+fn by_wide_records(
+    test: &ImpactTest,
+    settings: Settings,
+    recorded: &Recorded,
+) -> Result<Identification, IdentifyError> {
+    let mut refused = None;
+    for rough in rough_starts(recorded, settings.damping_law)? {
+        let Some((mut problem, minimum)) = sharpened_lines(recorded, settings.damping_law, rough, wide_scan::WIDTH)?
+        else {
+            continue;
+        };
+        let start = Start::at(recorded, &problem.constants, &minimum.parameters)?;
+        match outcome::outcome(test, settings, start, &mut problem, minimum) {
+            Ok(found) => return Ok(found),
+            Err(error) => refused = refused.or(Some(error)),
         }
-    };
+    }
+    Err(refused.unwrap_or(IdentifyError::TooFewResonances { found: 0, needed: recorded.constants.count() }))
+}
+
+fn by_papers_error(
+    test: &ImpactTest,
+    settings: Settings,
+    recorded: &Recorded,
+) -> Result<Identification, IdentifyError> {
+    if recorded.structure != StructureKind::TimoshenkoBeam {
+        let message = "the paper's search on records is for beams: leave out --search simplex";
+        return Err(IdentifyError::Unsupported(message.to_owned()));
+    }
+    let start = start(recorded)?;
+    let mut problem = assemble(&start, settings)?;
+    let parameters = starting_parameters(&problem, &start);
+    let parameters = paper_error::minimise(&problem, &start, test.boundary, &parameters, settings.paper_weights)?;
+    let minimum = Minimum { at: problem.linearise(&parameters)?, parameters };
     outcome::outcome(test, settings, start, &mut problem, minimum)
 }
 
 fn assemble(start: &Start, settings: Settings) -> Result<AcceleranceProblem, IdentifyError> {
-    let pieces = start.pieces.iter().zip(&start.poles).zip(&start.matching.values).map(|((piece, poles), values)| {
-        let reach = poles.structure.reach() * poles.band;
-        let modes = poles.structure.modes_below(values, reach, &[])?;
-        let frequencies: Vec<f64> = modes.iter().map(|mode| mode.frequency).collect();
-        let synthesis = poles.structure.synthesis(values, frequencies.len().max(1))?;
-        Ok(PieceProblem::new(piece.index, piece.sizes, synthesis, piece.records.clone(), &frequencies))
-    });
-    let pieces = pieces.collect::<Result<Vec<_>, IdentifyError>>()?;
-    let usual = usual_log_zeta(start.pieces.iter().flat_map(|piece| &piece.poles));
-    Ok(AcceleranceProblem::new(start.fit.constants.clone(), settings.damping_law, pieces, usual))
+    let rough = Rough {
+        constants: start.fit.parameters.clone(),
+        log_zetas: vec![Vec::new(); start.recorded.pieces.len()],
+        usual_log_zeta: usual_log_zeta(start.poles.iter().flatten()),
+        misfit: f64::INFINITY,
+    };
+    Ok(problem_at(
+        start.recorded,
+        &start.fit.constants,
+        &rough,
+        settings.damping_law,
+        (f64::INFINITY, <[PlaceRecord]>::to_vec),
+    )?
+    .0)
 }
 
 /// The free constants and the logarithm of each damping ratio, from the poles.
 fn starting_parameters(problem: &AcceleranceProblem, start: &Start) -> Vec<f64> {
     let mut parameters = start.fit.parameters.clone();
-    for ((piece, own), matched) in problem.pieces.iter().zip(&start.pieces).zip(&start.matching.modes) {
+    for ((piece, poles), matched) in problem.pieces.iter().zip(&start.poles).zip(&start.matching.modes) {
         let mut zetas = vec![problem.usual_log_zeta; piece.free_zetas];
-        for (pole, mode) in own.poles.iter().zip(matched) {
+        for (pole, mode) in poles.iter().zip(matched) {
             if let Some(zeta) = mode.and_then(|mode| zetas.get_mut(mode)) {
                 *zeta = pole.zeta.ln();
             }

@@ -5,7 +5,7 @@ use orthopanel_data::ImpactTest;
 use orthopanel_model::{Constant, Estimate};
 
 use super::problem::AcceleranceProblem;
-use super::start::{Start, StartPiece, pair_name};
+use super::start::{Start, pair_name};
 use crate::free_constants::{FreeConstants, Rest};
 use crate::frequency_fit::identified_constants;
 use crate::least_squares::Minimum;
@@ -47,7 +47,7 @@ pub(super) fn outcome(
     if !problem.usual.is_empty() {
         start.fit.not_identified = rest_unseen(problem, &mut found, covariance.as_ref());
     }
-    report(test, &start, problem, found)
+    report(test, &start, problem, found, start.recorded.notes.clone())
 }
 
 /// Whether the misfit is the model's, and not the noise's.
@@ -107,11 +107,12 @@ struct Found {
 /// what no resonance shows.
 pub(super) fn from_poles(
     test: &ImpactTest,
-    mut start: Start,
+    start: Start,
     problem: &AcceleranceProblem,
     parameters: &[f64],
 ) -> Result<Identification, IdentifyError> {
-    start.notes.push(
+    let mut notes = start.recorded.notes.clone();
+    notes.push(
         "the model's resonances lie beside those of the records by more than their width or their noise: constants are \
          from the frequencies of the resonances, damping from each resonance by itself"
             .to_owned(),
@@ -127,7 +128,7 @@ pub(super) fn from_poles(
     if problem.noise_is_known() {
         found.chi_square = Some(at.cost / problem.data());
     }
-    report(test, &start, problem, found)
+    report(test, &start, problem, found, notes)
 }
 
 fn report(
@@ -135,6 +136,7 @@ fn report(
     start: &Start,
     problem: &AcceleranceProblem,
     found: Found,
+    notes: Vec<String>,
 ) -> Result<Identification, IdentifyError> {
     let Found { parameters, log_std, correlations, chi_square } = found;
     problem.constants.refuse_bounds(&parameters)?;
@@ -153,7 +155,7 @@ fn report(
     let errors = pieces.iter().flat_map(|piece| &piece.modes).map(|mode| mode.error_percent().powi(2));
     let count = pieces.iter().map(|piece| piece.modes.len()).sum::<usize>().max(1);
     Ok(Identification {
-        structure: start.structure,
+        structure: start.recorded.structure,
         constants: identified_constants(test, &problem.constants, &parameters, &log_std),
         not_identified: start.fit.not_identified.clone(),
         correlations,
@@ -163,7 +165,7 @@ fn report(
         chi_square,
         accelerances: fits,
         effects: Vec::new(),
-        notes: start.notes.clone(),
+        notes,
         pieces,
     })
 }
@@ -185,9 +187,9 @@ fn take_from_poles(
     for (index, std) in log_std.iter_mut().enumerate().take(free) {
         *std = covariance.as_ref().zip(scatter).map(|(matrix, scatter)| (scatter * matrix[(index, index)]).sqrt());
     }
-    for (index, (piece, matched)) in start.pieces.iter().zip(&start.matching.modes).enumerate() {
+    for (index, (poles, matched)) in start.poles.iter().zip(&start.matching.modes).enumerate() {
         let offset = problem.zeta_offset(index);
-        for (pole, mode) in piece.poles.iter().zip(matched) {
+        for (pole, mode) in poles.iter().zip(matched) {
             if let Some(mode) = mode.filter(|&mode| mode < problem.pieces[index].free_zetas) {
                 parameters[offset + mode] = pole.zeta.ln();
                 log_std[offset + mode] = Some(pole.log_zeta_std);
@@ -261,7 +263,7 @@ fn piece_fits(
     let mut fits = Vec::new();
     for (index, named) in test.pieces.iter().enumerate() {
         let mut fit = PieceFit { name: named.name.clone(), piece: named.piece, modes: vec![], damping: vec![] };
-        let own = start.pieces.iter().position(|piece| piece.index == index);
+        let own = start.recorded.pieces.iter().position(|piece| piece.index == index);
         if let Some(own) = own {
             let piece = &problem.pieces[own];
             let offset = problem.zeta_offset(own);
@@ -270,11 +272,10 @@ fn piece_fits(
                 Estimate { value, std: log_std[offset + mode].map(|std| std * value) }
             };
             fit.damping = (0..piece.in_band).map(estimate).collect();
-            let structure = &start.poles[own].structure;
-            let limit = 1.3 * start.poles[own].band;
+            let structure = &start.recorded.poles[own].structure;
+            let limit = 1.3 * start.recorded.poles[own].band;
             let seen = structure.modes_below(&problem.values(parameters, own), limit, &[])?;
-            let StartPiece { poles, .. } = &start.pieces[own];
-            for (pole, mode) in poles.iter().zip(&start.matching.modes[own]) {
+            for (pole, mode) in start.poles[own].iter().zip(&start.matching.modes[own]) {
                 let Some((mode, found)) = mode.and_then(|mode| Some((mode, seen.get(mode)?))) else { continue };
                 let told = mode < piece.free_zetas && log_std[offset + mode].is_none_or(|std| std < DAMPING_UNSEEN);
                 let damping = told.then(|| estimate(mode));

@@ -40,8 +40,8 @@ pub(super) fn minimise(
     parameters: &[f64],
     weights: PaperWeights,
 ) -> Result<Vec<f64>, IdentifyError> {
-    let pieces = problem.pieces.iter().zip(&start.pieces).zip(&start.matching.modes);
-    let points = pieces.map(|((piece, own), modes)| piece_points(&piece.records, &own.poles, modes)).collect();
+    let pieces = problem.pieces.iter().zip(&start.poles).zip(&start.matching.modes);
+    let points = pieces.map(|((piece, poles), modes)| piece_points(&piece.records, poles, modes)).collect();
     let error = PaperError { problem, boundary, parameters, weights, points };
     let free = problem.constants.count();
     let mut found = parameters.to_vec();

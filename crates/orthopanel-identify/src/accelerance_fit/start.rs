@@ -10,29 +10,57 @@ use super::records::PlaceRecord;
 use super::structures::{self, SeenMode};
 use crate::free_constants::FreeConstants;
 use crate::frequency_fit::{PoleFit, PoleSet, fit_poles};
+use crate::least_squares::Quadratic;
 use crate::{IdentifyError, Settings};
 
-/// What stands before the fit: records, their poles, and which modes these are.
-pub(super) struct Start {
+/// The records of a test and their poles.
+pub(super) struct Recorded {
     pub structure: StructureKind,
+    pub boundary: Boundary,
+    /// Constants that the test leaves free.
+    pub constants: FreeConstants,
     pub pieces: Vec<StartPiece>,
     pub poles: Vec<PiecePoles>,
-    pub matching: Matching,
-    /// Constants that meet the poles best, and which of them the poles show.
-    pub fit: PoleFit,
     pub notes: Vec<String>,
 }
 
-impl Start {
+/// What stands before the fit: which modes the poles are, and constants.
+pub(super) struct Start<'a> {
+    pub recorded: &'a Recorded,
+    /// Those of each piece.
+    pub poles: Vec<Vec<Pole>>,
+    pub matching: Matching,
+    /// Constants that meet the poles best, and which of them the poles show.
+    pub fit: PoleFit,
+}
+
+impl<'a> Start<'a> {
+    /// At constants that were found without the poles.
+    pub fn at(recorded: &'a Recorded, constants: &FreeConstants, parameters: &[f64]) -> Result<Self, IdentifyError> {
+        let parameters = &parameters[..constants.count()];
+        let values = recorded.pieces.iter().map(|piece| constants.values(parameters, piece.index)).collect();
+        let fit = PoleFit {
+            constants: constants.clone(),
+            parameters: parameters.to_vec(),
+            at: Quadratic::zero(parameters.len()),
+            not_identified: Vec::new(),
+        };
+        Ok(Self { recorded, poles: poles_of(recorded), matching: match_at(&recorded.poles, values)?, fit })
+    }
+
     /// Whether the starting model's resonances overlap those of the records, so that a fit line by line can pull them
     /// together. Where one lies wholly beside its peak, the misfit has no slope towards it: damping would grow instead.
     pub fn resonances_meet(&self) -> bool {
-        let pieces = self.pieces.iter().zip(&self.matching.modes).zip(&self.matching.seen);
-        let mut matched = pieces.flat_map(|((own, modes), seen)| {
-            own.poles.iter().zip(modes).filter_map(|(pole, mode)| Some((pole, seen.get((*mode)?)?)))
+        let pieces = self.poles.iter().zip(&self.matching.modes).zip(&self.matching.seen);
+        let mut matched = pieces.flat_map(|((poles, modes), seen)| {
+            poles.iter().zip(modes).filter_map(|(pole, mode)| Some((pole, seen.get((*mode)?)?)))
         });
         matched.all(|(pole, mode)| (mode.frequency - pole.frequency).abs() <= OVERLAP * pole.zeta * pole.frequency)
     }
+}
+
+fn poles_of(recorded: &Recorded) -> Vec<Vec<Pole>> {
+    recorded.pieces.iter().map(|piece| piece.poles.clone()).collect()
 }
 
 /// Resonances overlap well within this part of half a half-power width.
@@ -45,7 +73,8 @@ pub(super) struct StartPiece {
     pub poles: Vec<Pole>,
 }
 
-pub(super) fn start(test: &ImpactTest, settings: Settings) -> Result<Start, IdentifyError> {
+/// Reads the records of a test, and their poles off them.
+pub(super) fn recorded(test: &ImpactTest, settings: Settings) -> Result<Recorded, IdentifyError> {
     let structure = test.structure.unwrap_or(StructureKind::TimoshenkoBeam);
     let constants = FreeConstants::of(test, structure.constants())?;
     let mut pieces: Vec<StartPiece> = Vec::new();
@@ -70,6 +99,13 @@ pub(super) fn start(test: &ImpactTest, settings: Settings) -> Result<Start, Iden
         piece.records.iter_mut().for_each(|record| record.heed_window(&decays));
     }
     let poles: Vec<PiecePoles> = pieces.iter().map(|piece| piece_poles(piece, structure, test.boundary)).collect();
+    Ok(Recorded { structure, boundary: test.boundary, constants, pieces, poles, notes })
+}
+
+/// The constants that meet the poles best.
+pub(super) fn start(recorded: &Recorded) -> Result<Start<'_>, IdentifyError> {
+    let Recorded { structure, boundary, constants, pieces, poles, .. } = recorded;
+    let structure = *structure;
     let needed = match structure {
         StructureKind::TimoshenkoBeam => constants.count().max(1),
         StructureKind::MindlinPlate => constants.count().clamp(1, 2),
@@ -79,10 +115,10 @@ pub(super) fn start(test: &ImpactTest, settings: Settings) -> Result<Start, Iden
     if found < needed {
         return Err(too_few());
     }
-    let candidates = candidates(&poles, structure, &constants, tried(structure))?;
+    let candidates = candidates(poles, structure, constants, tried(structure))?;
     let fitted = candidates.into_iter().map(|candidate| {
-        let sets = |matching: &Matching| pole_sets(&pieces, matching, test.boundary);
-        fit_candidate(&poles, structure, &constants, needed, sets, candidate)
+        let sets = |matching: &Matching| pole_sets(pieces, matching, *boundary);
+        fit_candidate(poles, structure, constants, needed, sets, candidate)
     });
     let mut best: Option<(Matching, PoleFit)> = None;
     let mut first_refusal = None;
@@ -96,7 +132,7 @@ pub(super) fn start(test: &ImpactTest, settings: Settings) -> Result<Start, Iden
         }
     }
     let (matching, fit) = best.ok_or_else(|| first_refusal.unwrap_or_else(too_few))?;
-    Ok(Start { structure, pieces, poles, matching, fit, notes })
+    Ok(Start { recorded, poles: poles_of(recorded), matching, fit })
 }
 
 /// Candidates that are fitted to their poles: those of a plate cost far more, and its modes are told by their shapes.
