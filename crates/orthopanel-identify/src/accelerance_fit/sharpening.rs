@@ -75,6 +75,8 @@ pub(super) fn problem_at(
 
 /// A misfit per datum above this, half of the lines' own size, is no start at all.
 const LOST: f64 = 25.0;
+/// and above this once records are narrower, a seventh of it, the model lacks something that no constants make up for.
+const LACKING: f64 = 2.0;
 /// Records narrower than this part of the damping ratios look as they are.
 const NARROW: f64 = 0.25;
 
@@ -92,7 +94,7 @@ fn sharpen(
     let mut part = widest;
     while part == widest || (narrows(recorded, part) && part > NARROW * rough.mean_zeta()) {
         rough = fit_wide(recorded, constants, &rough, law, part)?;
-        if rough.misfit.is_nan() || rough.misfit > LOST {
+        if rough.misfit.is_nan() || rough.misfit > if part == widest { LOST } else { LACKING } {
             return Ok(None);
         }
         part *= 0.5;
