@@ -2,7 +2,7 @@
 
 use faer::{Mat, Side};
 use orthopanel_data::ImpactTest;
-use orthopanel_model::{Constant, Estimate};
+use orthopanel_model::{Constant, Estimate, StructureKind};
 
 use super::problem::AcceleranceProblem;
 use super::start::{Start, pair_name};
@@ -111,6 +111,10 @@ pub(super) fn from_poles(
     problem: &AcceleranceProblem,
     parameters: &[f64],
 ) -> Result<Identification, IdentifyError> {
+    let start = match start.recorded.structure {
+        StructureKind::TimoshenkoBeam => start.grouped()?,
+        StructureKind::MindlinPlate => start,
+    };
     let mut notes = start.recorded.notes.clone();
     notes.push(
         "the model's resonances lie beside those of the records by more than their width or their noise: constants are \

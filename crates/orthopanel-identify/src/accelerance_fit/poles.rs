@@ -32,7 +32,7 @@ const PROMINENCE: f64 = 10.0;
 /// and this much over the noise.
 const SIGNAL_TO_NOISE: f64 = 30.0;
 /// A resonance has less damping than this.
-const MOST_DAMPING: f64 = 0.2;
+pub(super) const MOST_DAMPING: f64 = 0.2;
 
 /// The noise of all records of a piece that stand at the same lines, in power.
 pub(super) struct NoisePower {
@@ -117,6 +117,11 @@ const SIDE_LINES: (usize, usize) = (15, 400);
 /// a whole half-power width, and a common pole would come out wide.
 fn common_pole(records: &[&PlaceRecord], power: &[f64], peak: usize) -> Option<Pole> {
     let own: Vec<Pole> = records.iter().filter_map(|record| Some(fit_pole(record, power, peak)?.0)).collect();
+    mean_pole(&own)
+}
+
+/// The mean of the records' poles, each weighted by what it knows.
+pub(super) fn mean_pole(own: &[Pole]) -> Option<Pole> {
     let weights = own.iter().map(|pole| pole.log_zeta_std.max(1e-6).powi(-2));
     let total: f64 = weights.clone().sum();
     let mean = |value: &dyn Fn(&Pole) -> f64| {
@@ -194,7 +199,7 @@ impl LocalFit<'_> {
         let middle = 0.5 * (record.frequency[lines.start] + record.frequency[lines.end - 1]);
         let span = record.frequency[lines.end - 1] - record.frequency[lines.start];
         let even = record.variance[lines.clone()].iter().copied().fold(f64::MIN_POSITIVE, f64::max);
-        let mut columns: [Vec<Complex64>; 3] = Default::default();
+        let mut columns = vec![Vec::new(); 3];
         let mut right = Vec::new();
         for line in lines {
             // Variance counts real and imaginary part together. Where it is not told, all lines of a resonance weigh
@@ -212,7 +217,7 @@ impl LocalFit<'_> {
 }
 
 /// What of `right` no combination of the columns can make: Gram-Schmidt, twice for its rounding.
-fn project_out(mut columns: [Vec<Complex64>; 3], mut right: Vec<Complex64>) -> Vec<Complex64> {
+pub(super) fn project_out(mut columns: Vec<Vec<Complex64>>, mut right: Vec<Complex64>) -> Vec<Complex64> {
     let remove = |direction: &[Complex64], from: &mut [Complex64]| {
         let share: Complex64 = direction.iter().zip(from.iter()).map(|(d, f)| d.conj() * f).sum();
         for (value, d) in from.iter_mut().zip(direction) {

@@ -5,6 +5,7 @@ use orthopanel_model::{Boundary, Piece, Place, StructureKind};
 use rayon::prelude::*;
 
 use super::matching::{Matching, PiecePoles, candidates, match_at};
+use super::mode_group::{NearMode, Overlap, group_pole};
 use super::poles::{NoisePower, Pole, alike, poles};
 use super::records::PlaceRecord;
 use super::structures::{self, SeenMode};
@@ -63,6 +64,48 @@ fn poles_of(recorded: &Recorded) -> Vec<Vec<Pole>> {
     recorded.pieces.iter().map(|piece| piece.poles.clone()).collect()
 }
 
+/// What is known of a mode's $\ln\zeta$ where its neighbours hide it.
+const HIDDEN: f64 = 2.0;
+/// A damping ratio this many times the usual one is no place to begin: two resonances look like one.
+const UNLIKELY: f64 = 3.0;
+
+impl Start<'_> {
+    /// The same with resonances that overlap fitted together, and the constants of their frequencies.
+    pub fn grouped(mut self) -> Result<Self, IdentifyError> {
+        let Recorded { structure, boundary, constants, pieces, .. } = self.recorded;
+        for (index, piece) in pieces.iter().enumerate() {
+            let usual = usual_log_zeta(&self.poles[index]).exp();
+            let mut near: Vec<NearMode> = self.matching.seen[index]
+                .iter()
+                .map(|mode| NearMode { frequency: mode.frequency, zeta: usual, products: mode.products.clone() })
+                .collect();
+            let matched = self.poles[index].iter().zip(&self.matching.modes[index]);
+            for (pole, mode) in matched {
+                if let Some(mode) = mode.and_then(|mode| near.get_mut(mode)) {
+                    mode.frequency = pole.frequency;
+                    mode.zeta = if pole.zeta < UNLIKELY * usual { pole.zeta } else { usual };
+                }
+            }
+            let (poles, modes) = (&mut self.poles[index], &mut self.matching.modes[index]);
+            for mode in 0..near.len() {
+                let known = modes.iter().position(|of| *of == Some(mode));
+                match (group_pole(&piece.records, &near, mode), known) {
+                    (Overlap::Alone, _) | (Overlap::Hidden, None) => {}
+                    (Overlap::Told(pole), Some(at)) => poles[at] = pole,
+                    (Overlap::Told(pole), None) => {
+                        poles.push(pole);
+                        modes.push(Some(mode));
+                    }
+                    (Overlap::Hidden, Some(at)) => poles[at].log_zeta_std = HIDDEN,
+                }
+            }
+        }
+        let Some(values) = self.matching.values.first() else { return Ok(self) };
+        self.fit = fit_poles(*structure, constants, values, pole_sets(pieces, &self.poles, &self.matching, *boundary))?;
+        Ok(self)
+    }
+}
+
 /// Resonances overlap well within this part of half a half-power width.
 const OVERLAP: f64 = 0.5;
 
@@ -116,8 +159,9 @@ pub(super) fn start(recorded: &Recorded) -> Result<Start<'_>, IdentifyError> {
         return Err(too_few());
     }
     let candidates = candidates(poles, structure, constants, tried(structure))?;
+    let own_poles = poles_of(recorded);
     let fitted = candidates.into_iter().map(|candidate| {
-        let sets = |matching: &Matching| pole_sets(pieces, matching, *boundary);
+        let sets = |matching: &Matching| pole_sets(pieces, &own_poles, matching, *boundary);
         fit_candidate(poles, structure, constants, needed, sets, candidate)
     });
     let mut best: Option<(Matching, PoleFit)> = None;
@@ -190,13 +234,15 @@ fn piece_poles(piece: &StartPiece, structure: StructureKind, boundary: Boundary)
 }
 
 /// The matched poles of every piece with their modes' nodal lines.
-fn pole_sets(pieces: &[StartPiece], matching: &Matching, boundary: Boundary) -> Vec<PoleSet> {
-    let of_piece = |((piece, modes), seen): ((&StartPiece, &Vec<Option<usize>>), &Vec<SeenMode>)| {
-        let matched = piece.poles.iter().zip(modes).filter_map(|(pole, mode)| Some((pole, seen.get((*mode)?)?)));
+fn pole_sets(pieces: &[StartPiece], poles: &[Vec<Pole>], matching: &Matching, boundary: Boundary) -> Vec<PoleSet> {
+    let of_piece = |(index, piece): (usize, &StartPiece)| {
+        let seen = &matching.seen[index];
+        let matched = poles[index].iter().zip(&matching.modes[index]);
+        let matched = matched.filter_map(|(pole, mode)| Some((pole, seen.get((*mode)?)?)));
         let (nodes, frequencies) = matched.map(|(pole, mode)| (mode.nodes, pole.frequency)).unzip();
         PoleSet { piece: piece.index, sizes: piece.sizes, boundary, nodes, frequencies }
     };
-    pieces.iter().zip(&matching.modes).zip(&matching.seen).map(of_piece).collect()
+    pieces.iter().enumerate().map(of_piece).collect()
 }
 
 /// A record by its places, for notes and messages.
