@@ -8,7 +8,7 @@ use super::matching::{Matching, PiecePoles, candidates, match_at};
 use super::mode_group::{NearMode, Overlap, group_pole};
 use super::poles::{NoisePower, Pole, alike, poles};
 use super::records::PlaceRecord;
-use super::structures::{self, SeenMode};
+use super::structures;
 use crate::free_constants::FreeConstants;
 use crate::frequency_fit::{PoleFit, PoleSet, fit_poles};
 use crate::least_squares::Quadratic;

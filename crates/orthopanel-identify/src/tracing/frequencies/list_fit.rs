@@ -37,7 +37,9 @@ const ENDING: Ending = Ending {
     little: 0.0,
     first_damping: 1e-4,
     failed_damping: 0.0,
-    easing: 0.1, ..Ending::SMOOTH };
+    easing: 0.1,
+    ..Ending::SMOOTH
+};
 /// Fits constants and effects from parameters of the constants and from where the effects stand.
 ///
 /// # Errors
