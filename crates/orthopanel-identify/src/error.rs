@@ -125,7 +125,7 @@ pub enum IdentifyError {
         "half of all lines miss the model by more than {percent:.0} %, whatever the constants: either the test file says \
          other things than the records (force_at and response_at, the sensor's direction, units and gain, sizes and mass of \
          the piece, the window, the sampling rate), or they show too little: measure more places, or from below the first \
-         resonance on"
+         resonance on; or the beam lacks something large: orthopanel trace looks for it, the plate of a wide panel among others"
     )]
     Contradiction {
         /// Median of $|H_{cal}-H_{exp}|/|H_{exp}|$ \[%\].

@@ -7,7 +7,7 @@ use faer::Mat;
 use crate::block_pencil::BlockPencil;
 use crate::dense::{product, symmetric_eigen};
 use crate::ritz_modes::{checked_coefficients, ritz_modes};
-use crate::structure::{Block, RitzMode, Structure};
+use crate::structure::{Block, Motion, RitzMode, Structure};
 use crate::{Constant, ModelError, Place, side_by_side};
 
 /// A structure on the space of its lowest modes at some values of the constants and of their first changes with these.
@@ -33,8 +33,17 @@ impl<S: Structure + Send + Sync> ReducedStructure<S> {
     /// # Errors
     /// As [`ritz_modes`].
     pub fn near(whole: Arc<S>, values: &[f64], count: usize) -> Result<Self, ModelError> {
+        Self::answering(whole, values, count, &[])
+    }
+
+    /// The same, on the space of what forces at these places do besides: $K^{-1}F$ and $K^{-1}MK^{-1}F$, so that the
+    /// receptances between them hold what all modes above give, to the order $s^2$.
+    ///
+    /// # Errors
+    /// As [`ritz_modes`].
+    pub(crate) fn answering(whole: Arc<S>, values: &[f64], count: usize, forces: &[Place]) -> Result<Self, ModelError> {
         let modes = ritz_modes(whole.as_ref(), values, count)?;
-        Self::on(whole, values, &modes)
+        Self::on_modes(whole, values, &modes, forces)
     }
 
     /// On these modes, which are the structure's lowest, rigid ones too, at these values of the constants.
@@ -42,11 +51,17 @@ impl<S: Structure + Send + Sync> ReducedStructure<S> {
     /// # Errors
     /// As [`ritz_modes`].
     pub fn on(whole: Arc<S>, values: &[f64], modes: &[RitzMode]) -> Result<Self, ModelError> {
+        Self::on_modes(whole, values, modes, &[])
+    }
+
+    fn on_modes(whole: Arc<S>, values: &[f64], modes: &[RitzMode], forces: &[Place]) -> Result<Self, ModelError> {
         let coefficients = checked_coefficients(whole.as_ref(), values)?;
         let numbered: Vec<(usize, &Block)> = whole.blocks().iter().enumerate().collect();
         let reduced = side_by_side::map(&numbered, |&(index, block)| {
             let own: Vec<&RitzMode> = modes.iter().filter(|mode| mode.block == index).collect();
-            let shapes = shapes(block, &coefficients, &own)?;
+            let rows: Vec<Vec<f64>> = forces.iter().map(|&place| whole.shape_row(index, place)).collect();
+            let forces = Mat::from_fn(block.size(), rows.len(), |i, force| rows[force][i]);
+            let shapes = shapes(block, &coefficients, &own, forces)?;
             let project = |matrix: &Mat<f64>| between(&shapes, matrix, &shapes);
             let rigid = own.iter().filter(|mode| mode.angular_frequency == 0.0).count();
             let unit = |position: usize| (0..shapes.ncols()).map(|i| f64::from(u8::from(i == position))).collect();
@@ -102,8 +117,17 @@ impl<S: Structure + Send + Sync> ReducedStructure<S> {
     }
 }
 
+impl<S> ReducedStructure<S> {
+    /// A row of the whole structure's coordinates in these.
+    fn seen(&self, block: usize, row: &[f64]) -> Vec<f64> {
+        let Some(shapes) = self.shapes.get(block) else { return vec![] };
+        let value = |shape: faer::ColRef<'_, f64>| row.iter().zip(shape.iter()).map(|(row, shape)| row * shape).sum();
+        shapes.col_iter().map(value).collect()
+    }
+}
+
 /// The modes of a block, rigid ones first, and the directions of their changes; orthonormal in the mass.
-fn shapes(block: &Block, coefficients: &[f64], modes: &[&RitzMode]) -> Result<Mat<f64>, ModelError> {
+fn shapes(block: &Block, coefficients: &[f64], modes: &[&RitzMode], forces: Mat<f64>) -> Result<Mat<f64>, ModelError> {
     let own = Mat::from_fn(block.size(), modes.len(), |i, m| modes[m].coordinates[i]);
     let rigid = modes.iter().filter(|mode| mode.angular_frequency == 0.0).count();
     let flexible = own.subcols(rigid, modes.len() - rigid);
@@ -111,10 +135,22 @@ fn shapes(block: &Block, coefficients: &[f64], modes: &[&RitzMode]) -> Result<Ma
     let count = flexible.ncols();
     let load = |i: usize, j: usize| coefficients[j / count] * images[j / count][(i, j % count)];
     let loads = Mat::from_fn(block.size(), count * images.len(), load);
-    let mut changes = BlockPencil::new(block, coefficients)?.solve(loads);
-    for _ in 0..2 {
-        let shares = between(&own, &block.mass, &changes);
-        changes -= product(own.as_ref(), shares.as_ref());
+    let pencil = BlockPencil::new(block, coefficients)?;
+    let mut changes = pencil.solve(loads);
+    let without_modes = |vectors: &mut Mat<f64>| {
+        for _ in 0..2 {
+            let shares = between(&own, &block.mass, vectors);
+            *vectors -= product(own.as_ref(), shares.as_ref());
+        }
+    };
+    without_modes(&mut changes);
+    if forces.ncols() > 0 {
+        let mut answers = pencil.solve(forces);
+        without_modes(&mut answers);
+        let mut again = pencil.solve(product(block.mass.as_ref(), answers.as_ref()));
+        without_modes(&mut again);
+        [&mut answers, &mut again].into_iter().for_each(|vectors| to_unit_mass(vectors, &block.mass));
+        changes = faer::concat![[changes, answers, again]];
     }
     // The principal directions of all changes together.
     let gram = between(&changes, &block.mass, &changes);
@@ -123,6 +159,16 @@ fn shapes(block: &Block, coefficients: &[f64], modes: &[&RitzMode]) -> Result<Ma
     let directions = Mat::from_fn(gram.nrows(), kept.len(), |i, k| directions[(i, kept[k])] / sizes[kept[k]].sqrt());
     let added = product(changes.as_ref(), directions.as_ref());
     Ok(faer::concat![[own, added]])
+}
+
+/// Scales each column to $v^TMv = 1$.
+fn to_unit_mass(vectors: &mut Mat<f64>, mass: &Mat<f64>) {
+    let images = product(mass.as_ref(), vectors.as_ref());
+    for column in 0..vectors.ncols() {
+        let square: f64 = (0..vectors.nrows()).map(|i| vectors[(i, column)] * images[(i, column)]).sum();
+        let scale = if square > 0.0 { square.sqrt().recip() } else { 0.0 };
+        vectors.col_as_slice_mut(column).iter_mut().for_each(|value| *value *= scale);
+    }
 }
 
 /// $A^TMB$.
@@ -148,10 +194,15 @@ impl<S: Structure> Structure for ReducedStructure<S> {
     }
 
     fn shape_row(&self, block: usize, place: Place) -> Vec<f64> {
-        let Some(shapes) = self.shapes.get(block) else { return vec![] };
-        let row = self.whole.shape_row(block, place);
-        let value = |shape: faer::ColRef<'_, f64>| row.iter().zip(shape.iter()).map(|(row, shape)| row * shape).sum();
-        shapes.col_iter().map(value).collect()
+        self.seen(block, &self.whole.shape_row(block, place))
+    }
+
+    fn motion_row(&self, block: usize, motion: Motion, place: Place) -> Option<Vec<f64>> {
+        Some(self.seen(block, &self.whole.motion_row(block, motion, place)?))
+    }
+
+    fn static_remainder(&self, values: &[f64], motions: [(Motion, Place); 2]) -> Option<(f64, Vec<f64>)> {
+        self.whole.static_remainder(values, motions)
     }
 
     /// All of its coordinates: most are modes.

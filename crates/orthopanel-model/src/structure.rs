@@ -52,6 +52,12 @@ pub trait Structure {
         None
     }
 
+    /// What the basis lacks of the static flexibility between two motions, and its derivatives by the coefficients; `None`
+    /// where that is not known. Asked only where [`Structure::static_flexibility`] knows nothing.
+    fn static_remainder(&self, _values: &[f64], _motions: [(Motion, Place); 2]) -> Option<(f64, Vec<f64>)> {
+        None
+    }
+
     /// How stiffness and mass follow each parameter of the structure's own terms; none unless said.
     fn term_derivatives(&self, _values: &[f64]) -> Vec<TermDerivative> {
         vec![]

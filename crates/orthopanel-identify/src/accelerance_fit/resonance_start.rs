@@ -18,6 +18,8 @@ pub(crate) struct ResonanceStart {
     pub modes: Vec<Option<(f64, f64)>>,
     /// Geometric mean of the damping ratios.
     pub usual_zeta: f64,
+    /// Frequencies \[Hz\] of all resonances, whether a mode was found for them or not.
+    pub poles: Vec<f64>,
 }
 
 /// A damping ratio where no resonance tells one.
@@ -192,7 +194,8 @@ impl BeamFit<'_> {
     }
 
     fn start(&self, constants: [f64; 2], modes: &[Option<usize>]) -> ResonanceStart {
-        let mut found = ResonanceStart { constants, modes: vec![], usual_zeta: UNTOLD_ZETA };
+        let poles = self.poles.iter().map(|pole| pole.frequency).collect();
+        let mut found = ResonanceStart { constants, modes: vec![], usual_zeta: UNTOLD_ZETA, poles };
         found.modes.resize(modes.iter().flatten().max().map_or(0, |mode| mode + 1), None);
         for (pole, mode) in self.poles.iter().zip(modes) {
             if let Some(mode) = mode.and_then(|mode| found.modes.get_mut(mode)) {

@@ -4,26 +4,31 @@ use std::collections::BTreeMap;
 
 use orthopanel_data::ImpactTest;
 use orthopanel_model::{
-    BEAM_CONSTANTS, Damping, Estimate, MODEL_SCHEMA, PanelModel, Piece, Place, Ports, StructureKind,
+    BEAM_CONSTANTS, Damping, Estimate, MODEL_SCHEMA, ModelError, PanelModel, Piece, Place, Ports, StructureKind,
 };
 
+use super::hypothesis::PLATE;
 use super::record_problem::State;
+use super::wide_panel::widen;
 
 /// The model at `state`, with all constants that are not `held` given their standard deviation from the beginning of
 /// `std`; `damping` is the number of modes whose ratios are told, and the logarithm of the ratio beyond. Each of `places`
-/// (force and response of a record) is a port, once.
+/// (force and response of a record) is a port, once. Where a plate stands in place of the beam, the panel is that plate.
+///
+/// # Errors
+/// What the plate refuses.
 pub(super) fn bare_panel(
     (test, piece): (&ImpactTest, Piece),
     (state, std): (&State, &[Option<f64>]),
     held: &[Option<f64>; 2],
     damping: (usize, f64),
     places: impl IntoIterator<Item = [Option<Place>; 2]>,
-) -> PanelModel {
-    let mut std = std.iter().copied();
+) -> Result<PanelModel, ModelError> {
+    let mut of_constants = std.iter().copied();
     let mut constants = BTreeMap::new();
     for ((constant, held), log) in BEAM_CONSTANTS.iter().zip(held).zip(state.constants) {
         let value = log.exp();
-        let std = if held.is_some() { None } else { std.next().flatten().map(|std| std * value) };
+        let std = if held.is_some() { None } else { of_constants.next().flatten().map(|std| std * value) };
         constants.insert(constant.name.to_owned(), Estimate { value, std });
     }
     let mut ports = Ports { forces: vec![], responses: vec![] };
@@ -32,8 +37,9 @@ pub(super) fn bare_panel(
             known.extend(place.filter(|place| !known.contains(place)));
         }
     }
-    let (told, beyond) = damping;
-    PanelModel {
+    let (in_band, beyond) = damping;
+    let told = if state.hypothesis.holds_plate() { state.zetas.len() } else { in_band };
+    let mut panel = PanelModel {
         schema: MODEL_SCHEMA.to_owned(),
         piece,
         boundary: test.boundary,
@@ -43,5 +49,14 @@ pub(super) fn bare_panel(
         effects: vec![],
         ports,
         provenance: BTreeMap::new(),
+    };
+    let mut of_effects = std.get(std.len().saturating_sub(state.hypothesis.size())..).unwrap_or_default();
+    for on in &state.hypothesis.effects {
+        let (own, rest) = of_effects.split_at(on.free.len().min(of_effects.len()));
+        of_effects = rest;
+        if on.effect.id() == PLATE {
+            widen(&mut panel, on, own)?;
+        }
     }
+    Ok(panel)
 }

@@ -6,7 +6,7 @@ use orthopanel_model::{Effect, EffectState, ModelError, Piece, Scale, effect};
 use crate::IdentifyError;
 
 /// The plate in place of the beam.
-const PLATE: &str = "width-coupling";
+pub(super) const PLATE: &str = "width-coupling";
 
 /// An effect with values for all its parameters.
 #[derive(Clone)]
@@ -213,6 +213,11 @@ impl Hypothesis {
     /// Whether an effect is on and cannot be there once more.
     pub(super) fn holds(&self, effect: &dyn Effect) -> bool {
         !has_place(effect) && self.effects.iter().any(|on| on.effect.id() == effect.id())
+    }
+
+    /// Whether a plate stands in place of the beam.
+    pub(super) fn holds_plate(&self) -> bool {
+        self.effects.iter().any(|on| on.effect.id() == PLATE)
     }
 
     /// Every free parameter with its effect.

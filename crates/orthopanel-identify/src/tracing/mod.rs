@@ -22,6 +22,7 @@ mod hypothesis;
 mod information;
 mod next_experiment;
 mod outcome;
+mod plate_starts;
 mod ranking;
 mod record_problem;
 mod records_of_test;
@@ -30,6 +31,7 @@ mod rows;
 mod starts;
 mod verdict;
 mod whiteness;
+mod wide_panel;
 mod widened_lines;
 
 use orthopanel_data::{ImpactTest, MeasurementData, TimeHistory};

@@ -6,7 +6,7 @@ use faer::Mat;
 use num_complex::Complex64;
 use orthopanel_model::{BEAM_CONSTANTS, Damping, ModelError, ReceptanceSetup};
 
-use super::hypothesis::Hypothesis;
+use super::hypothesis::{Hypothesis, PLATE};
 use super::widened_lines::WidenedLines;
 use crate::least_squares::Quadratic;
 
@@ -17,8 +17,8 @@ pub(super) struct RecordProblem<'a> {
     pub records: &'a [WidenedLines],
     /// Constants that are held; free ones are `None`.
     pub held: [Option<f64>; 2],
-    /// Modes whose damping ratio is free: the first ones; the others keep theirs.
-    pub modes: usize,
+    /// Whether the damping ratios of a state are free, all of them; else they stay.
+    pub free_damping: bool,
     /// Where the damping of a mode that no record shows is kept.
     pub usual_log_zeta: f64,
     /// What is known of damping beforehand.
@@ -55,14 +55,19 @@ pub(super) enum Grouping {
 
 /// Making a model costs as much as so many of its lines.
 const MAKING: u64 = 4000;
-/// Effects for which modes are solved at several nodes or edges, and how much more each line of these costs.
-const DEAR: [&str; 2] = ["viscoelastic-core", "stiffness-loss"];
+/// Effects for which modes are solved at several nodes or edges, or are those of a plate, and how much more each line of these costs.
+const DEAR: [&str; 3] = ["viscoelastic-core", "stiffness-loss", PLATE];
 const DEARER: u64 = 8;
 
 impl RecordProblem<'_> {
     /// Positions of the free constants.
     fn free_constants(&self) -> impl Iterator<Item = usize> + '_ {
         (0..self.held.len()).filter(|&index| self.held[index].is_none())
+    }
+
+    /// The logarithms of the free damping ratios.
+    fn free_zetas<'s>(&self, state: &'s State) -> &'s [f64] {
+        if self.free_damping { &state.zetas } else { &[] }
     }
 
     /// Number of real data: two a line.
@@ -73,7 +78,7 @@ impl RecordProblem<'_> {
     /// What a search moves.
     pub(super) fn parameters(&self, state: &State) -> Vec<f64> {
         let constants = self.free_constants().map(|index| state.constants[index]);
-        constants.chain(state.zetas.iter().take(self.modes).copied()).chain(state.hypothesis.coordinates()).collect()
+        constants.chain(self.free_zetas(state).iter().copied()).chain(state.hypothesis.coordinates()).collect()
     }
 
     /// The state that parameters stand for, of the same effects as `like`.
@@ -83,8 +88,8 @@ impl RecordProblem<'_> {
         for index in self.free_constants() {
             constants[index] = rest.next().unwrap_or(constants[index]);
         }
-        let free: Vec<f64> = rest.by_ref().take(self.modes).collect();
-        let zetas = free.iter().chain(like.zetas.iter().skip(self.modes)).copied().collect();
+        let free = self.free_zetas(like).len();
+        let zetas = rest.by_ref().take(free).chain(like.zetas.iter().skip(free).copied()).collect();
         let coordinates: Vec<f64> = rest.collect();
         State { constants, zetas, hypothesis: like.hypothesis.at(&coordinates) }
     }
@@ -95,7 +100,7 @@ impl RecordProblem<'_> {
             let constant = BEAM_CONSTANTS[index];
             (constant.low.ln(), constant.high.ln())
         });
-        let zetas = (0..self.modes).map(|_| (1e-6_f64.ln(), 0.9_f64.ln()));
+        let zetas = self.free_zetas(state).iter().map(|_| (1e-6_f64.ln(), 0.9_f64.ln()));
         constants.chain(zetas).chain(state.hypothesis.bounds()).collect()
     }
 
@@ -173,7 +178,7 @@ impl RecordProblem<'_> {
     fn columns(&self, state: &State) -> Vec<(usize, f64)> {
         let first_zeta = state.constants.len();
         let constants = self.free_constants().map(|index| (index, state.constants[index].exp()));
-        let zetas = (0..self.modes).map(|mode| (first_zeta + mode, 1.0));
+        let zetas = (0..self.free_zetas(state).len()).map(|mode| (first_zeta + mode, 1.0));
         let mut columns: Vec<(usize, f64)> = constants.chain(zetas).collect();
         let mut start = first_zeta + state.zetas.len();
         for switched in &state.hypothesis.effects {
@@ -192,7 +197,7 @@ impl RecordProblem<'_> {
     fn prior(&self, state: &State, size: usize) -> Quadratic {
         let mut prior = Quadratic::zero(size);
         let first = self.free_constants().count();
-        for (mode, log) in state.zetas.iter().take(self.modes).enumerate() {
+        for (mode, log) in self.free_zetas(state).iter().enumerate() {
             let about = self.prior.about.get(mode).unwrap_or(&self.usual_log_zeta);
             prior.add_row((log - about) / self.prior.std, &[(first + mode, 1.0 / self.prior.std)]);
         }

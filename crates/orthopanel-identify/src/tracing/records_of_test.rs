@@ -3,13 +3,14 @@
 use std::sync::atomic::AtomicU64;
 
 use orthopanel_data::{Accelerance, Estimation, ImpactTest, TimeHistory};
-use orthopanel_model::{BEAM_CONSTANTS, BeamConstants, ExactBeam, ReceptanceSetup, RecordSetting};
+use orthopanel_model::{BEAM_CONSTANTS, BeamConstants, ExactBeam, ModelError, ReceptanceSetup, RecordSetting};
 use rayon::prelude::*;
 
 use super::base_model::RecordsBase;
 use super::curves::curves;
 use super::fit::{Fit, LAST, by_group, fit};
-use super::hypothesis::Hypothesis;
+use super::hypothesis::{Hypothesis, PLATE, Switched};
+use super::plate_starts::plate_starts;
 use super::record_problem::{DampingPrior, Grouping, RecordProblem, State, total};
 use super::whiteness::{independent_part, residuals};
 use super::widened_lines::{WIDENINGS, WidenedLines, widened_lines};
@@ -24,8 +25,6 @@ pub(super) struct TestRecords {
     /// The records at each of [`WIDENINGS`].
     pub widened: Vec<Vec<WidenedLines>>,
     pub held: [Option<f64>; 2],
-    /// Modes whose damping ratio is free.
-    pub modes: usize,
     pub usual_log_zeta: f64,
     /// Highest line \[Hz\].
     pub band: f64,
@@ -38,6 +37,10 @@ pub(super) struct TestRecords {
     log_zetas: Vec<f64>,
     /// See [`RecordProblem::work`].
     pub work: AtomicU64,
+    /// Frequencies \[Hz\] of the resonances that the records show.
+    poles: Vec<f64>,
+    /// How many of them the beam has no mode for.
+    strange_poles: usize,
     /// As the analyser shows the records.
     accelerances: Vec<Accelerance>,
 }
@@ -54,6 +57,8 @@ const SUMMED: f64 = 2.5;
 /// Standard deviation of a mode's $\ln\zeta$ before the records speak, at each widening; the last as in the fit of records
 /// without effects.
 const LOG_ZETA_STD: [f64; WIDENINGS.len()] = [0.5, 1.0, 2.0, 2.0];
+/// One resonance more than a beam has may be something loose; so many are a plate's.
+const STRANGE: usize = 2;
 /// Starts that are followed a little way, and the evaluations spent on each before the best is taken.
 const TRIED: usize = 4;
 const TRIAL: Ending = Ending::far(12, 1.0);
@@ -115,6 +120,8 @@ impl TestRecords {
         let (in_band, summed) = (below(band), below(SUMMED * band));
         let setup = ReceptanceSetup::new(&piece, test.boundary, &test.suspension, &settings, summed)?;
         let usual_log_zeta = start.usual_zeta.ln();
+        let poles = start.poles.clone();
+        let strange_poles = poles.len().saturating_sub(start.modes.iter().flatten().count());
         let zeta = |mode: usize| start.modes.get(mode).copied().flatten().map_or(usual_log_zeta, |(_, zeta)| zeta.ln());
         let log_zetas: Vec<f64> = (0..modes).map(zeta).collect();
         let start = State {
@@ -127,7 +134,6 @@ impl TestRecords {
             setup,
             widened,
             held,
-            modes,
             usual_log_zeta,
             band,
             in_band,
@@ -135,6 +141,8 @@ impl TestRecords {
             start,
             log_zetas,
             work: AtomicU64::new(0),
+            poles,
+            strange_poles,
             accelerances: vec![],
         };
         let problem = records.problem(0);
@@ -162,14 +170,53 @@ impl TestRecords {
         if told.is_empty() { 1.0 } else { told.iter().sum::<f64>() / told.len() as f64 }
     }
 
+    /// Whether there are resonances that the beam has no modes for: then its constants are no start for a plate.
+    pub(super) fn shows_more_than_a_beam(&self) -> bool {
+        self.strange_poles >= STRANGE
+    }
+
+    /// States with one more effect, at which a search may begin. A plate has more modes than the beam, each taking the damping
+    /// of the nearest mode before, and the constants of a beam that misses its modes are no start for it.
+    ///
+    /// # Errors
+    /// What the model refuses.
+    pub(super) fn with(&self, before: &State, switched: Switched) -> Result<Vec<State>, ModelError> {
+        let is_plate = switched.effect.id() == PLATE;
+        let after = State { hypothesis: before.hypothesis.and(switched), ..before.clone() };
+        if !is_plate {
+            return Ok(vec![after]);
+        }
+        let effects = |state: &State| state.hypothesis.states(self.widened.first().map_or(0, Vec::len));
+        let usual = before.constants.map(f64::exp);
+        let known = self.setup.summed_frequencies(&usual, &effects(before)?)?;
+        let damping = |frequency: f64| {
+            let away = |other: &f64| (other / frequency).ln().abs();
+            let nearest = (0..known.len()).min_by(|&a, &b| away(&known[a]).total_cmp(&away(&known[b])));
+            nearest.and_then(|mode| before.zetas.get(mode)).copied().unwrap_or(self.usual_log_zeta)
+        };
+        let effects = effects(&after)?;
+        let starts = if self.shows_more_than_a_beam() {
+            plate_starts(&self.setup, &effects, (&self.poles, &self.held), usual)?
+        } else {
+            vec![]
+        };
+        let states = starts.into_iter().chain([usual]).map(|constants| {
+            let modes = self.setup.summed_frequencies(&constants, &effects)?;
+            let zetas = modes.into_iter().take_while(|&f| f < FREE_DAMPING * self.band).map(damping).collect();
+            Ok(State { constants: constants.map(f64::ln), zetas, hypothesis: after.hypothesis.clone() })
+        });
+        states.collect()
+    }
+
     /// The problem at one widening, counted from the widest.
     pub(super) fn problem(&self, stage: usize) -> RecordProblem<'_> {
         let records = self.widened.get(stage).or(self.widened.last()).map_or(&[][..], Vec::as_slice);
-        let Self { setup, held, modes, usual_log_zeta, work, .. } = self;
+        let Self { setup, held, usual_log_zeta, work, .. } = self;
         // While peaks are wide a misfit that is no damping would else drag the damping off, and the search with it.
         let about = if stage < LAST { &self.log_zetas[..] } else { &[] };
         let prior = DampingPrior { about, std: LOG_ZETA_STD[stage.min(LAST)] };
-        RecordProblem { setup, records, held: *held, modes: *modes, usual_log_zeta: *usual_log_zeta, prior, work }
+        let (held, usual_log_zeta) = (*held, *usual_log_zeta);
+        RecordProblem { setup, records, held, free_damping: true, usual_log_zeta, prior, work }
     }
 }
 
@@ -190,7 +237,7 @@ pub(super) fn base_of_histories(test: &ImpactTest) -> Result<RecordsBase, Identi
     Ok(RecordsBase {
         start: starts.into_iter().next().ok_or(too_few)?,
         std: (0..base.size).map(std).collect(),
-        free_zetas: records.modes,
+        free_zetas: base.state.zetas.len(),
         usual_log_zeta: records.usual_log_zeta,
         band: records.band,
         in_band: records.in_band,

@@ -8,7 +8,7 @@ use orthopanel_model::{Estimate, Owner, PanelModel};
 use super::bare_panel::bare_panel;
 use super::fit::{Fit, by_group};
 use super::held_out::held_out;
-use super::hypothesis::{Hypothesis, Switched};
+use super::hypothesis::{Hypothesis, PLATE, Switched};
 use super::next_experiment::next_experiment;
 use super::outcome::{Candidate, FittedError, Removed, TracedEffect, TracedError, TracedParameter, Tracing};
 use super::ranking::{Ranking, Search};
@@ -49,7 +49,7 @@ pub(super) fn report(test: &ImpactTest, search: &Search, ranking: &Ranking) -> R
     });
     let candidates = candidates.collect::<Result<Vec<_>, IdentifyError>>()?;
     let std = deviations(search, ranking, chosen)?;
-    let mut panel = panel(test, search, chosen, &std);
+    let mut panel = panel(test, search, chosen, &std)?;
     let removed = take_out(traced(chosen, &std, 0), search.declared(), &mut panel);
     Ok(Tracing {
         verdict,
@@ -123,11 +123,12 @@ fn parameters(on: &Switched, std: &[Option<f64>]) -> Vec<TracedParameter> {
 }
 
 /// The panel at a fit, without any effect.
-fn panel(test: &ImpactTest, search: &Search, fit: &Fit, std: &[Option<f64>]) -> PanelModel {
+fn panel(test: &ImpactTest, search: &Search, fit: &Fit, std: &[Option<f64>]) -> Result<PanelModel, IdentifyError> {
     let records = search.records;
     let in_band = records.in_band.min(fit.state.zetas.len());
     let places = records.problem(0).records.iter().map(|record| [Some(record.force_at), Some(record.response_at)]);
-    bare_panel((test, search.piece), (&fit.state, std), &records.held, (in_band, records.usual_log_zeta), places)
+    let damping = (in_band, records.usual_log_zeta);
+    Ok(bare_panel((test, search.piece), (&fit.state, std), &records.held, damping, places)?)
 }
 
 /// Puts the panel's own effects into its model, and says which of the others are taken out and why.
@@ -135,7 +136,10 @@ pub(super) fn take_out(all: Vec<TracedEffect>, declared: usize, panel: &mut Pane
     let mut removed = Vec::new();
     for (index, effect) in all.into_iter().enumerate() {
         if effect.owner == Owner::Panel {
-            panel.effects.push(effect.entry());
+            // The plate is the structure itself.
+            if effect.id != PLATE {
+                panel.effects.push(effect.entry());
+            }
             continue;
         }
         removed.push(removal(&effect, index < declared));

@@ -13,6 +13,9 @@ use crate::least_squares::Ending;
 /// Starts that are followed for some steps before the best is taken.
 const FOLLOWED: usize = 3;
 const FOLLOW: Ending = Ending::far(8, 1.0);
+/// A plate's modes of two families change their order: one step foretells little.
+const PLATES_FOLLOWED: usize = 4;
+const PLATES_FOLLOW: Ending = Ending::far(16, 1.0);
 
 /// A state at one widening, and the sum of squares that it leaves there or promises to leave.
 pub(super) type Costed = (State, f64);
@@ -31,14 +34,27 @@ pub(super) fn scored_starts(
     (piece, stage): (&Piece, usize),
 ) -> Result<Vec<Costed>, IdentifyError> {
     let problem = records.problem(stage);
-    let scored: Vec<Result<Costed, IdentifyError>> = grid(effect, piece, (problem.records.len(), records.band))
+    let begun: Vec<Result<Vec<State>, IdentifyError>> = grid(effect, piece, (problem.records.len(), records.band))
         .into_par_iter()
         .map(|start| {
             let at = |name: &str| {
                 effect.parameters().iter().position(|parameter| parameter.name == name).map(|index| start[index])
             };
             let switched = Switched::new(effect, piece, problem.records.len(), at, |_| false);
-            let state = State { hypothesis: base.hypothesis.and(switched), ..base.clone() };
+            Ok(records.with(base, switched)?)
+        })
+        .collect();
+    let begun: Vec<Result<State, IdentifyError>> = begun
+        .into_iter()
+        .flat_map(|states| match states {
+            Ok(states) => states.into_iter().map(Ok).collect(),
+            Err(error) => vec![Err(error)],
+        })
+        .collect();
+    let scored: Vec<Result<Costed, IdentifyError>> = begun
+        .into_par_iter()
+        .map(|state| {
+            let state = state?;
             let at = problem.linearise(&problem.parameters(&state), &state)?;
             Ok((state, promise(&at)))
         })
@@ -61,8 +77,11 @@ pub(super) fn scored_starts(
 
 /// The best of the first few starts after some steps at one widening.
 pub(super) fn followed(records: &TestRecords, starts: &[Costed], stage: usize) -> Option<Costed> {
+    let is_plate = starts.iter().any(|(state, _)| state.hypothesis.holds_plate());
+    let is_hard = is_plate && records.shows_more_than_a_beam();
+    let (follow, patience) = if is_hard { (PLATES_FOLLOWED, PLATES_FOLLOW) } else { (FOLLOWED, FOLLOW) };
     let followed: Vec<Costed> =
-        starts.par_iter().take(FOLLOWED).filter_map(|(state, _)| polish(records, state, stage, FOLLOW).ok()).collect();
+        starts.par_iter().take(follow).filter_map(|(state, _)| polish(records, state, stage, patience).ok()).collect();
     followed.into_iter().min_by(|a, b| a.1.total_cmp(&b.1))
 }
 

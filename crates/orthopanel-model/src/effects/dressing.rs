@@ -12,6 +12,8 @@ pub(super) struct Dressing {
     pub parameters: Vec<(usize, usize)>,
     /// With the column of its first parameter.
     pub core: Option<(CoreModulus, usize)>,
+    /// A plate in place of the beam: its ratios, with the column of the first.
+    pub plate: Option<([f64; 4], usize)>,
 }
 
 impl Dressing {
@@ -36,15 +38,15 @@ impl Dressing {
                         support = numbers.iter().map(|number| start + number).collect();
                     }
                     Action::Core(core) => dressing.core = Some((core, start)),
-                    Action::Plate(_) => {
-                        return Err(ModelError::Unsupported(
-                            "width-coupling in records (lists of natural frequencies are tested for it: put them into a test file of their own, or say structure = \"mindlin-plate\")"
-                                .into(),
-                        ));
-                    }
+                    Action::Plate(ratios) => dressing.plate = Some((ratios, start)),
                     Action::Element(_) | Action::Channel(..) | Action::Place(_) | Action::Window { .. } => {}
                 }
             }
+        }
+        if dressing.plate.is_some() && (dressing.core.is_some() || rotary.len() + losses.len() + support.len() > 0) {
+            return Err(ModelError::Unsupported(
+                "width-coupling beside another effect that is spread over the panel: take one of them out".into(),
+            ));
         }
         // In the order of the beam's own terms: the rotary factor is there always.
         let later = losses.into_iter().chain(support).enumerate().map(|(i, column)| (i + 1, column));

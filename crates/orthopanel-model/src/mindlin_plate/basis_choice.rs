@@ -50,10 +50,23 @@ impl MindlinPlate {
         values: &[f64],
         frequency: f64,
     ) -> Result<usize, ModelError> {
+        Ok(Self::estimated_nodes(piece, boundary, values, frequency)?.len())
+    }
+
+    /// The nodes of these modes along x and y.
+    ///
+    /// # Errors
+    /// As [`MindlinPlate::with_basis_for`].
+    pub(crate) fn estimated_nodes(
+        piece: &Piece,
+        boundary: Boundary,
+        values: &[f64],
+        frequency: f64,
+    ) -> Result<Vec<[usize; 2]>, ModelError> {
         let stiffnesses = plate_stiffnesses(piece.checked()?.thickness, values)?;
         let reach = Reach::new(piece, boundary, stiffnesses)?;
         let omega2 = (frequency * std::f64::consts::TAU).powi(2) * piece.mass_per_area;
-        Ok(reach.modes.iter().take_while(|(estimate, _)| *estimate <= omega2).count())
+        Ok(reach.modes.into_iter().take_while(|(estimate, _)| *estimate <= omega2).map(|(_, nodes)| nodes).collect())
     }
 }
 

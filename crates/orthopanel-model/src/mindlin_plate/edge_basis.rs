@@ -92,11 +92,20 @@ impl EdgeBasis {
         integrals
     }
 
-    /// Values of all deflection functions at a place \[m\] of this direction, from its centre.
-    pub(super) fn deflections_at(&self, place: f64) -> Vec<f64> {
+    /// Values of all functions of a field at a place \[m\] of this direction, from its centre.
+    pub(super) fn values_at(&self, field: Field, place: f64) -> Vec<f64> {
+        self.sums_at(field, place, |function| &function.series, 1.0)
+    }
+
+    /// Their slopes \[1/m\] there.
+    pub(super) fn slopes_at(&self, field: Field, place: f64) -> Vec<f64> {
+        self.sums_at(field, place, |function| &function.slope, self.half_length.recip())
+    }
+
+    fn sums_at(&self, field: Field, place: f64, series: fn(&EdgeFunction) -> &[f64], scale: f64) -> Vec<f64> {
         let values = legendre(self.terms, place / self.half_length);
-        let at = |f: &EdgeFunction| f.series.iter().zip(&values).map(|(c, p)| c * p).sum();
-        self.fields[Field::Deflection as usize].iter().map(at).collect()
+        let at = |f: &EdgeFunction| scale * series(f).iter().zip(&values).map(|(c, p)| c * p).sum::<f64>();
+        self.fields[field as usize].iter().map(at).collect()
     }
 
     /// Where function `number` of the deflection is linear, its slope \[1/m\]; zero where it is constant.
@@ -179,7 +188,7 @@ mod tests {
         let basis = EdgeBasis::new(0.15, [End::Free, End::Clamped], Field::RotationX, 8);
         let w = Field::Deflection;
         let slopes = basis.integrals((w, 1), (w, 0));
-        let (low, high) = (basis.deflections_at(-0.15), basis.deflections_at(0.15));
+        let (low, high) = (basis.values_at(w, -0.15), basis.values_at(w, 0.15));
         for i in 0..7 {
             for j in 0..7 {
                 let parts = slopes[(i, j)] + slopes[(j, i)];

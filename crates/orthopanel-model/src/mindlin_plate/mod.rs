@@ -17,6 +17,7 @@
 mod assembly;
 mod basis_choice;
 mod edge_basis;
+mod kink;
 mod law;
 mod mode_names;
 
@@ -25,7 +26,7 @@ use faer::Mat;
 pub use law::PLATE_CONSTANTS;
 pub use mode_names::{ModeKind, ModeName};
 
-use crate::structure::{Block, Structure};
+use crate::structure::{Block, Motion, Structure};
 use crate::{Boundary, Constant, ModelError, Piece, Place};
 use assembly::{Coordinate, assemble};
 use edge_basis::EdgeBasis;
@@ -155,6 +156,18 @@ impl MindlinPlate {
     }
 }
 
+impl MindlinPlate {
+    /// A field of each coordinate of a block at a place, or its slope along x.
+    fn row(&self, block: usize, field: Field, is_slope: bool, place: Place) -> Vec<f64> {
+        let Some(coordinates) = self.coordinates.get(block) else { return vec![] };
+        let [x, y] = &self.along;
+        let at_x = if is_slope { x.slopes_at(field, place.x) } else { x.values_at(field, place.x) };
+        let at_y = y.values_at(field, place.y);
+        let value = |own: &Coordinate| if own.field == field { at_x[own.x] * at_y[own.y] } else { 0.0 };
+        coordinates.iter().map(value).collect()
+    }
+}
+
 impl Structure for MindlinPlate {
     fn constants(&self) -> &'static [Constant] {
         &PLATE_CONSTANTS
@@ -175,14 +188,23 @@ impl Structure for MindlinPlate {
     }
 
     fn shape_row(&self, block: usize, place: Place) -> Vec<f64> {
-        let Some(coordinates) = self.coordinates.get(block) else { return vec![] };
-        let [x, y] = &self.along;
-        let (at_x, at_y) = (x.deflections_at(place.x), y.deflections_at(place.y));
-        let value = |coordinate: &Coordinate| match coordinate.field {
-            Field::Deflection => at_x[coordinate.x] * at_y[coordinate.y],
-            _ => 0.0,
+        self.row(block, Field::Deflection, false, place)
+    }
+
+    fn motion_row(&self, block: usize, motion: Motion, place: Place) -> Option<Vec<f64>> {
+        let (field, is_slope) = match motion {
+            Motion::Deflection => (Field::Deflection, false),
+            Motion::Slope => (Field::Deflection, true),
+            Motion::Rotation => (Field::RotationX, false),
+            Motion::Curvature => (Field::RotationX, true),
         };
-        coordinates.iter().map(value).collect()
+        Some(self.row(block, field, is_slope, place))
+    }
+
+    fn static_remainder(&self, values: &[f64], motions: [(Motion, Place); 2]) -> Option<(f64, Vec<f64>)> {
+        let coefficients = self.coefficients(values).ok()?;
+        let [value, by_a_55, by_a_44] = self.kink([*coefficients.get(4)?, *coefficients.get(5)?], motions)?;
+        Some((value, vec![0.0, 0.0, 0.0, 0.0, by_a_55, by_a_44]))
     }
 
     fn resolved_modes(&self) -> usize {

@@ -122,7 +122,7 @@ pub(super) fn beam_functions(basis: &EdgeBasis, length: f64, [left, right]: [End
         for (point, weight) in gauss_points() {
             let place = (index as f64 + 0.5 * (1.0 + point)) * cell - 0.5 * length;
             let weight = 0.5 * cell * weight;
-            let values = basis.deflections_at(place);
+            let values = basis.values_at(Field::Deflection, place);
             for (row, (function, square)) in functions.iter().zip(&mut squares).enumerate() {
                 let deflection = function.deflection(place);
                 *square += weight * deflection * deflection;

@@ -134,7 +134,8 @@ impl AccelerancesProblem {
         let Self { setup, held, usual_log_zeta, work, .. } = self;
         // No damping is free here.
         let prior = DampingPrior { about: &[], std: f64::INFINITY };
-        RecordProblem { setup, records: lines, held: *held, modes: 0, usual_log_zeta: *usual_log_zeta, prior, work }
+        let (held, usual_log_zeta) = (*held, *usual_log_zeta);
+        RecordProblem { setup, records: lines, held, free_damping: false, usual_log_zeta, prior, work }
     }
 
     /// The fit's own lines and those of the data, over the root of their level, record by record.

@@ -45,7 +45,7 @@ pub(super) fn report(
     };
     let std = deviations(search, chosen)?;
     let mut effects = traced(chosen, &std);
-    let mut panel = panel(test, search, chosen, &std);
+    let mut panel = panel(test, search, chosen, &std)?;
     let mut removed = take_out(effects.clone(), search.declared, &mut panel);
     let mut notes = vec![said_of_frequencies(search, base, chosen)?];
     if let Some((low, high)) = problem.between.band() {
@@ -138,10 +138,15 @@ fn traced(fit: &AccelerancesFit, std: &[Option<f64>]) -> Vec<TracedEffect> {
     effects_of(&fit.state.hypothesis, std.get(at..).unwrap_or_default())
 }
 
-fn panel(test: &ImpactTest, search: &Search, fit: &AccelerancesFit, std: &[Option<f64>]) -> PanelModel {
+fn panel(
+    test: &ImpactTest,
+    search: &Search,
+    fit: &AccelerancesFit,
+    std: &[Option<f64>],
+) -> Result<PanelModel, IdentifyError> {
     let problem = &search.problem;
     let settings = (0..problem.between.value.len()).filter_map(|index| problem.setup.setting(index));
     let places = settings.map(|setting| [setting.record.force_at, setting.record.response_at]);
     let damping = (fit.state.zetas.len(), problem.usual_log_zeta);
-    bare_panel((test, search.piece), (&fit.state, std), &problem.held, damping, places)
+    Ok(bare_panel((test, search.piece), (&fit.state, std), &problem.held, damping, places)?)
 }

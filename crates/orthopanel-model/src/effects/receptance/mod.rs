@@ -12,6 +12,7 @@ mod record;
 mod setup;
 pub(super) mod view;
 mod wide;
+mod wide_plate;
 
 pub use model::{LineDerivatives, LineEvaluator, ReceptanceModel};
 pub use setup::ReceptanceSetup;

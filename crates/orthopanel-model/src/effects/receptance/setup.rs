@@ -7,8 +7,9 @@ use super::model::{ReceptanceModel, RecordModel};
 use super::modulus_path::NodeBases;
 use super::record::RecordPlan;
 use super::view::View;
+use super::wide_plate::WidePlates;
 use crate::effects::dressing::Dressing;
-use crate::effects::{EffectSetting, EffectState, RecordSetting};
+use crate::effects::{CoreModulus, EffectSetting, EffectState, RecordSetting};
 use crate::{BEAM_CONSTANTS, Boundary, Damping, ModelError, Piece, Place, TimoshenkoBeam};
 
 /// What stays the same while a search moves constants, damping and the parameters of effects.
@@ -21,6 +22,7 @@ pub struct ReceptanceSetup {
     beam: SharedStructure,
     /// Modes of the even beam at the constants asked for last.
     even: Mutex<Vec<Arc<ModalBase>>>,
+    plates: WidePlates,
 }
 
 impl ReceptanceSetup {
@@ -39,13 +41,15 @@ impl ReceptanceSetup {
         let piece = piece.checked()?;
         let summed = summed.max(1);
         let places = records.iter().flat_map(|record| [record.force_at, record.response_at]).flatten();
-        places.chain(suspension.iter().copied()).try_for_each(|place| piece.contains(place))?;
+        let places = once_each(places.chain(suspension.iter().copied()));
+        places.iter().try_for_each(|place| piece.contains(*place))?;
         let records: Vec<_> = records.to_vec();
         let records =
             records.into_iter().enumerate().map(|(i, record)| RecordSetting { number: i + 1, ..record }).collect();
         let beam = Arc::new(TimoshenkoBeam::new(&piece, boundary, basis_terms(summed))?);
         let even = Mutex::new(vec![]);
-        Ok(Self { piece, boundary, suspension: suspension.to_vec(), records, summed, beam, even })
+        let plates = WidePlates::new(piece, boundary, places);
+        Ok(Self { piece, boundary, suspension: suspension.to_vec(), records, summed, beam, even, plates })
     }
 
     /// What an effect may ask about record `index`, counted from zero.
@@ -74,12 +78,55 @@ impl ReceptanceSetup {
         damping: &Damping,
         effects: &[EffectState],
     ) -> Result<ReceptanceModel, ModelError> {
-        let zetas: Vec<f64> = (1..=self.summed).map(|mode| damping.ratio(mode)).collect();
-        let free = damping.ratios.len().min(self.summed);
         let constants = BEAM_CONSTANTS.len();
+        let free = damping.ratios.len();
         let first_effect = constants + free;
+        let Based { bases, core, columns: structural, summed } = self.based(values, effects, first_effect)?;
+        let shear_modulus = values.get(1).copied().unwrap_or_default();
+        let records = self.records.iter().map(|record| {
+            let mut plan = RecordPlan::new(&self.setting_of(record.clone()), effects, first_effect)?;
+            plan.columns.structure.clone_from(&structural);
+            plan.columns.zetas = (constants, free);
+            Ok(match &bases {
+                Bases::Real(base) => RecordModel::real(View::new(base, &plan.active, &plan.slopes)?, plan),
+                Bases::Complex(bases) => {
+                    let path = bases.path(&plan.active, &plan.slopes)?;
+                    RecordModel::complex(path, core, shear_modulus, plan)
+                }
+            })
+        });
+        let records = records.collect::<Result<Vec<_>, ModelError>>()?;
+        let columns = first_effect + effects.iter().map(|effect| effect.values.len()).sum::<usize>();
+        let zetas: Vec<f64> = (1..=summed).map(|mode| damping.ratio(mode)).collect();
+        Ok(ReceptanceModel::new(records, zetas, columns))
+    }
+
+    /// Frequencies \[Hz\] of the flexible modes that every line sums, without point elements.
+    ///
+    /// # Errors
+    /// As [`ReceptanceSetup::model`].
+    pub fn summed_frequencies(&self, values: &[f64], effects: &[EffectState]) -> Result<Vec<f64>, ModelError> {
+        let base = match self.based(values, effects, BEAM_CONSTANTS.len())?.bases {
+            Bases::Real(base) => base,
+            // Damping is of the relaxed modulus.
+            Bases::Complex(_) => self.even(values)?,
+        };
+        let lambda = |&(block, number): &(usize, usize)| base.blocks[block].lambda[number];
+        Ok(base.near[base.rigid..].iter().map(|at| lambda(at).sqrt() / std::f64::consts::TAU).collect())
+    }
+
+    /// The modes with what effects spread over the piece; `first_effect` is the column of the first effect's first value.
+    fn based(&self, values: &[f64], effects: &[EffectState], first_effect: usize) -> Result<Based, ModelError> {
         let setting = self.setting_of(self.records.first().cloned().unwrap_or_default());
         let dressed = Dressing::of(effects, &setting, first_effect)?;
+        let constants = 0..BEAM_CONSTANTS.len();
+        if let Some((ratios, column)) = dressed.plate {
+            let values: Vec<f64> = values.iter().chain(&ratios).copied().collect();
+            let plate = self.plates.near(&values, self.summed)?;
+            let base = ModalBase::new(&plate.structure, &values, plate.summed, &[], &[])?;
+            let columns = constants.chain(column..column + ratios.len()).collect();
+            return Ok(Based { bases: Bases::Real(Arc::new(base)), core: None, columns, summed: plate.summed });
+        }
         let moved = self.moved(&dressed)?;
         let is_even = dressed.terms.is_none();
         let structure: SharedStructure = match dressed.terms {
@@ -90,7 +137,7 @@ impl ReceptanceSetup {
             None => Arc::clone(&self.beam),
         };
         let (numbers, columns): (Vec<usize>, Vec<usize>) = dressed.parameters.into_iter().unzip();
-        let structural: Vec<usize> = (0..constants).chain(columns).collect();
+        let columns = constants.chain(columns).collect();
         let bases = match dressed.core {
             Some((core, _)) => {
                 Bases::Complex(NodeBases::new(&structure, values, &core, self.summed, &numbers, &moved)?)
@@ -98,22 +145,7 @@ impl ReceptanceSetup {
             None if is_even => Bases::Real(self.even(values)?),
             None => Bases::Real(Arc::new(ModalBase::new(&structure, values, self.summed, &numbers, &moved)?)),
         };
-        let shear_modulus = values.get(1).copied().unwrap_or_default();
-        let records = self.records.iter().map(|record| {
-            let mut plan = RecordPlan::new(&self.setting_of(record.clone()), effects, first_effect)?;
-            plan.columns.structure.clone_from(&structural);
-            plan.columns.zetas = (constants, free);
-            Ok(match &bases {
-                Bases::Real(base) => RecordModel::real(View::new(base, &plan.active, &plan.slopes)?, plan),
-                Bases::Complex(bases) => {
-                    let path = bases.path(&plan.active, &plan.slopes)?;
-                    RecordModel::complex(path, dressed.core, shear_modulus, plan)
-                }
-            })
-        });
-        let records = records.collect::<Result<Vec<_>, ModelError>>()?;
-        let columns = first_effect + effects.iter().map(|effect| effect.values.len()).sum::<usize>();
-        Ok(ReceptanceModel::new(records, zetas, columns))
+        Ok(Based { bases, core: dressed.core, columns, summed: self.summed })
     }
 
     /// The modes of the even beam: starts of many effects are tried at the same constants.
@@ -157,9 +189,27 @@ impl ReceptanceSetup {
     }
 }
 
+/// What all records share.
+struct Based {
+    bases: Bases,
+    /// With the column of its first parameter.
+    core: Option<(CoreModulus, usize)>,
+    /// Column of each parameter of the structure.
+    columns: Vec<usize>,
+    /// Flexible modes that every line sums.
+    summed: usize,
+}
+
 enum Bases {
     Real(Arc<ModalBase>),
     Complex(NodeBases),
+}
+
+fn once_each(places: impl Iterator<Item = Place>) -> Vec<Place> {
+    places.fold(vec![], |mut known, place| {
+        known.extend((!known.contains(&place)).then_some(place));
+        known
+    })
 }
 
 /// Bases of the even beam that are kept.

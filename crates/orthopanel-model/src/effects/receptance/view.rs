@@ -183,7 +183,10 @@ impl View {
         let layout = self.layout;
         for (row, &first) in rows.iter().enumerate() {
             for (column, &second) in rows.iter().take(layout.active).enumerate() {
-                let Some(whole) = base.structure.static_flexibility(&base.values, [first, second]) else { return };
+                let Some(whole) = base.structure.static_flexibility(&base.values, [first, second]) else {
+                    self.add_remainder(base, [first, second], [row, column]);
+                    continue;
+                };
                 let summed = (layout.rigid..layout.modes).map(|m| self.product(m, row, column) / self.numbers[m]);
                 let rest = whole.value - summed.sum::<f64>();
                 self.numbers[layout.series(0) + row * layout.active + column] = rest;
@@ -198,6 +201,20 @@ impl View {
                     let rest = by - summed.sum::<f64>();
                     self.numbers[layout.series_by(p, 0) + row * layout.active + column] = rest;
                 }
+            }
+        }
+    }
+
+    /// Adds what the basis is known to lack.
+    fn add_remainder(&mut self, base: &ModalBase, motions: [Row; 2], [row, column]: [usize; 2]) {
+        let Some((value, by_coefficients)) = base.structure.static_remainder(&base.values, motions) else { return };
+        let (layout, at) = (self.layout, row * self.layout.active + column);
+        self.numbers[layout.series(0) + at] += value;
+        let Ok(chain) = base.structure.coefficient_derivatives(&base.values) else { return };
+        if row < layout.active {
+            for p in 0..chain.ncols().min(layout.parameters) {
+                let by: f64 = by_coefficients.iter().enumerate().map(|(i, by)| by * chain[(i, p)]).sum();
+                self.numbers[layout.series_by(p, 0) + at] += by;
             }
         }
     }

@@ -1,0 +1,164 @@
+//! The plate in place of the beam, on a few shapes of its own.
+
+use std::sync::{Arc, Mutex};
+
+use faer::Mat;
+
+use super::modal_base::SharedStructure;
+use crate::ritz_modes::ritz_modes;
+use crate::structure::{Block, Motion, Structure};
+use crate::{BeamConstants, Boundary, Constant, ExactBeam, MindlinPlate, ModelError, Piece, Place, ReducedStructure};
+
+/// The beam's two constants, then the ratios of `width-coupling`.
+type Ratios = [f64; 6];
+
+/// A [`MindlinPlate`] by the constants $E_x$, $G_{zx}$ and the ratios $E_y/E_x$, $\nu_{xy}$, $G_{xy}/E_x$, $G_{yz}/G_{zx}$.
+struct RatioPlate(MindlinPlate);
+
+const RATIO_CONSTANTS: [Constant; 6] = [
+    Constant { name: "e_x", unit: "Pa", low: 1e3, high: 1e15 },
+    Constant { name: "g_zx", unit: "Pa", low: 1e3, high: 1e15 },
+    Constant { name: "e_y_ratio", unit: "1", low: 1e-3, high: 1e3 },
+    Constant { name: "nu_xy", unit: "1", low: 0.0, high: 0.95 },
+    Constant { name: "g_xy_ratio", unit: "1", low: 1e-4, high: 1e3 },
+    Constant { name: "g_yz_ratio", unit: "1", low: 1e-3, high: 1e3 },
+];
+
+/// In the order of [`crate::PLATE_CONSTANTS`].
+fn plate_constants([e_x, g_zx, e_y, nu_xy, g_xy, g_yz]: Ratios) -> [f64; 6] {
+    [e_x, e_y * e_x, nu_xy, g_xy * e_x, g_yz * g_zx, g_zx]
+}
+
+fn six(values: &[f64]) -> Result<Ratios, ModelError> {
+    values.try_into().map_err(|_| ModelError::ConstantCount { found: values.len(), expected: 6 })
+}
+
+impl Structure for RatioPlate {
+    fn constants(&self) -> &'static [Constant] {
+        &RATIO_CONSTANTS
+    }
+
+    fn coefficients(&self, values: &[f64]) -> Result<Vec<f64>, ModelError> {
+        self.0.coefficients(&plate_constants(six(values)?))
+    }
+
+    fn coefficient_derivatives(&self, values: &[f64]) -> Result<Mat<f64>, ModelError> {
+        let ratios @ [e_x, g_zx, e_y, _, g_xy, g_yz] = six(values)?;
+        let by_plate = self.0.coefficient_derivatives(&plate_constants(ratios))?;
+        let mut by_ratios = Mat::zeros(6, 6);
+        let chain = [(0, 0, 1.0), (1, 0, e_y), (1, 2, e_x), (2, 3, 1.0), (3, 0, g_xy), (3, 4, e_x), (4, 1, g_yz)];
+        for (constant, ratio, factor) in chain.into_iter().chain([(4, 5, g_zx), (5, 1, 1.0)]) {
+            (0..6).for_each(|row| by_ratios[(row, ratio)] += by_plate[(row, constant)] * factor);
+        }
+        Ok(by_ratios)
+    }
+
+    fn blocks(&self) -> &[Block] {
+        self.0.blocks()
+    }
+
+    fn shape_row(&self, block: usize, place: Place) -> Vec<f64> {
+        self.0.shape_row(block, place)
+    }
+
+    fn motion_row(&self, block: usize, motion: Motion, place: Place) -> Option<Vec<f64>> {
+        self.0.motion_row(block, motion, place)
+    }
+
+    fn static_remainder(&self, values: &[f64], motions: [(Motion, Place); 2]) -> Option<(f64, Vec<f64>)> {
+        self.0.static_remainder(&plate_constants(six(values).ok()?), motions)
+    }
+
+    fn resolved_modes(&self) -> usize {
+        self.0.resolved_modes()
+    }
+}
+
+/// A plate that lines can sum.
+#[derive(Clone)]
+pub(super) struct WidePlate {
+    pub structure: SharedStructure,
+    /// Flexible modes that every line sums.
+    pub summed: usize,
+}
+
+/// The plates that a search has met.
+pub(super) struct WidePlates {
+    piece: Piece,
+    boundary: Boundary,
+    /// Where forces act and responses are seen.
+    places: Vec<Place>,
+    known: Mutex<Vec<(Cell, WidePlate)>>,
+}
+
+/// A neighbourhood of values.
+type Cell = [i32; 6];
+
+/// Its width in the logarithms (of $\nu_{xy}$ in itself). A plate on its own shapes at the middle then has frequencies to
+/// 1e-7, for shapes err by the square of the way from there and frequencies by the square of that; and which plate is
+/// taken follows from the values alone, not from what a search met before.
+const CELL: f64 = 0.05;
+/// Plates that are kept.
+const KEPT: usize = 24;
+/// Parts of the beam's highest summed frequency (2.5 times the highest line): modes below the first are summed, those below
+/// the second stand in the space besides, the rest as what forces at the places do.
+const SUMMED: f64 = 0.6;
+const HELD: f64 = 0.8;
+
+impl WidePlates {
+    pub(super) fn new(piece: Piece, boundary: Boundary, places: Vec<Place>) -> Self {
+        Self { piece, boundary, places, known: Mutex::new(vec![]) }
+    }
+
+    /// The plate for values near these, up to where the beam's mode `summed` lies.
+    pub(super) fn near(&self, values: &[f64], summed: usize) -> Result<WidePlate, ModelError> {
+        let values = six(values)?;
+        for (constant, &value) in RATIO_CONSTANTS.iter().zip(&values) {
+            constant.check(value)?;
+        }
+        let is_linear = |index: usize| RATIO_CONSTANTS[index].low == 0.0;
+        let coordinate = |index: usize| if is_linear(index) { values[index] } else { values[index].ln() };
+        let cell: Cell = std::array::from_fn(|index| (coordinate(index) / CELL).round() as i32);
+        let known = |plates: &[(Cell, WidePlate)]| plates.iter().find(|(of, _)| *of == cell).map(|(_, p)| p.clone());
+        if let Some(plate) = self.known.lock().ok().and_then(|plates| known(&plates)) {
+            return Ok(plate);
+        }
+        let middle: Ratios = std::array::from_fn(|index| {
+            let at = f64::from(cell[index]) * CELL;
+            if is_linear(index) { at } else { at.exp() }
+        });
+        let plate = self.at(middle, summed)?;
+        if let Ok(mut plates) = self.known.lock() {
+            plates.truncate(KEPT - 1);
+            plates.insert(0, (cell, plate.clone()));
+        }
+        Ok(plate)
+    }
+
+    fn at(&self, values: Ratios, summed: usize) -> Result<WidePlate, ModelError> {
+        let Self { piece, boundary, .. } = self;
+        let [e_x, g_zx, ..] = values;
+        let beam = ExactBeam::new(piece, *boundary, BeamConstants { e_x, g_zx })?;
+        let top = beam.flexible_modes().nth(summed.saturating_sub(1)).map_or(f64::INFINITY, |mode| mode.frequency());
+        let constants = plate_constants(values);
+        let mut nodes = MindlinPlate::estimated_nodes(piece, *boundary, &constants, HELD * top)?;
+        let mut plate = match MindlinPlate::with_basis_for(piece, *boundary, &constants, nodes.len().max(1)) {
+            Err(ModelError::BasisTooSmall { available, .. }) => {
+                nodes.truncate(available);
+                MindlinPlate::with_basis_for(piece, *boundary, &constants, available)?
+            }
+            plate => plate?,
+        };
+        // On the centre line nothing is seen of what is odd across.
+        if boundary.front == boundary.back && self.places.iter().all(|place| place.y == 0.0) {
+            plate = plate.only_with_nodes(&[[0, 0], [1, 0]]);
+            nodes.retain(|[_, across]| across % 2 == 0);
+        }
+        let count = nodes.len().clamp(1, plate.resolved_modes().max(1));
+        let reduced = ReducedStructure::answering(Arc::new(RatioPlate(plate)), &values, count, &self.places)?;
+        let modes = ritz_modes(&reduced, &values, count)?;
+        let limit = SUMMED * top * std::f64::consts::TAU;
+        let below = modes.iter().filter(|mode| (f64::MIN_POSITIVE..limit).contains(&mode.angular_frequency)).count();
+        Ok(WidePlate { structure: Arc::new(reduced), summed: below.max(1) })
+    }
+}
