@@ -8,6 +8,9 @@
 //! \sum_jw_jQ_j(y)Q_j(y'),\qquad q_k(t) = \int_t^1P_k = \frac{P_{k-1}-P_{k+1}}{2k+1},\ q_0 = 1-t$$
 //! with $t = x/h$ and $h$ half the length. Where the shear across takes part, the first wave left out, $k_x = n/h$, has
 //! $w_j = A_{55}k_x^2/(A_{55}k_x^2+A_{44}k_y^2)$ with $k_y = 2j/b$.
+//!
+//! Limits: that share is of the first wave left out. On a panel 0.8 m by 0.27 m some 3e-11 m/N remain, a quarter of what the
+//! kink alone would leave: at 1 kHz 0.001 (m/s2)/N beside 1/m = 0.7.
 
 use super::MindlinPlate;
 use crate::Place;

@@ -11,7 +11,7 @@ use crate::IdentifyError;
 use crate::least_squares::Ending;
 use crate::tracing::fit::promise;
 use crate::tracing::held_out::predicted;
-use crate::tracing::hypothesis::Switched;
+use crate::tracing::hypothesis::{PLATE, Switched};
 use crate::tracing::outcome::{NotTested, Progress};
 use crate::tracing::ranking::PAYS;
 use crate::tracing::record_problem::{State, total};
@@ -162,6 +162,11 @@ impl Search<'_> {
         let records = self.problem.between.value.len();
         if records < 2 && effect.parameters().iter().any(|parameter| parameter.name == "record") {
             return Err(IdentifyError::Unsupported("one record has no other to differ from".to_owned()));
+        }
+        if effect.id() == PLATE {
+            let message = "width-coupling in files of accelerances (hammer records and lists of natural frequencies are \
+                           tested for it), or say structure = \"mindlin-plate\"";
+            return Err(IdentifyError::Unsupported(message.to_owned()));
         }
         let values = match again {
             Some(switched) => vec![switched],
