@@ -6,6 +6,7 @@ mod matching;
 mod mode_group;
 mod outcome;
 mod paper_error;
+mod pole_charge;
 mod poles;
 mod problem;
 mod record_poles;
@@ -31,6 +32,7 @@ use sharpening::{Rough, line_by_line, problem_at, sharpened_lines};
 use start::{Recorded, Start, start, usual_log_zeta};
 use wide_scan::rough_starts;
 
+pub(crate) use pole_charge::pole_charge;
 pub(crate) use record_poles::{RecordPole, record_poles};
 pub(crate) use resonance_start::{ResonanceStart, resonance_starts};
 pub use synthesis::DampingLaw;

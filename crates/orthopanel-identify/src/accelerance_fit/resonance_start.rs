@@ -4,6 +4,7 @@ use faer::Mat;
 use orthopanel_data::Accelerance;
 use orthopanel_model::{BEAM_CONSTANTS, BeamConstants, Boundary, ExactBeam, ModelError, Piece};
 
+use super::pole_charge::pole_charge;
 use super::poles::{Pole, poles};
 use super::records::PlaceRecord;
 use super::start::usual_log_zeta;
@@ -30,9 +31,6 @@ const RATIOS: (f64, f64, usize) = (1.5, 1500.0, 40);
 const ANCHORS: (usize, usize) = (4, 6);
 /// A pole further than this from every mode belongs to none.
 const REACH: f64 = 0.04;
-/// A mode without a pole counts as this much of a pole without a mode: sensor or hammer may sit at its node, but none of
-/// many modes may be dreamt up to meet few poles.
-const UNSEEN_MODE: f64 = 0.3;
 /// Starts that are handed on.
 const STARTS: usize = 4;
 /// Where nothing else is known \[Pa\].
@@ -120,28 +118,10 @@ impl BeamFit<'_> {
 
     /// How far the poles lie from their nearest modes, with a charge for a pole without a mode and a mode without a pole.
     fn charge(&self, constants: [f64; 2]) -> Result<f64, ModelError> {
-        let top = self.poles.last().map_or(0.0, |pole| pole.frequency);
+        let poles: Vec<f64> = self.poles.iter().map(|pole| pole.frequency).collect();
+        let top = poles.last().copied().unwrap_or(0.0) * (1.0 + REACH);
         let beam = self.beam(constants)?;
-        let modes: Vec<f64> = beam
-            .flexible_modes()
-            .take(60)
-            .map(|mode| mode.frequency())
-            .take_while(|f| *f < top * (1.0 + REACH))
-            .collect();
-        let mut seen = vec![false; modes.len()];
-        let mut charge = 0.0;
-        for pole in self.poles {
-            let distance = |mode: usize| (modes[mode] / pole.frequency - 1.0).abs();
-            let free = (0..modes.len()).filter(|&mode| !seen[mode] && distance(mode) < REACH);
-            match free.min_by(|&a, &b| distance(a).total_cmp(&distance(b))) {
-                Some(mode) => {
-                    seen[mode] = true;
-                    charge += distance(mode);
-                }
-                None => charge += REACH,
-            }
-        }
-        Ok(charge + UNSEEN_MODE * REACH * seen.iter().filter(|seen| !**seen).count() as f64)
+        Ok(pole_charge(&poles, beam.flexible_modes().take(60).map(|mode| mode.frequency()), top, REACH))
     }
 
     fn values(&self, logs: &[f64]) -> [f64; 2] {

@@ -2,14 +2,14 @@
 
 use orthopanel_model::{BEAM_CONSTANTS, EffectState, ModelError, ReceptanceSetup};
 
+use crate::accelerance_fit::pole_charge;
+
 /// Ratios $E_x/G_{zx}$ tried: lowest, highest and steps between.
 const RATIOS: (f64, f64, usize) = (4.0, 100.0, 7);
 /// One of so many lowest poles is one of so many lowest modes.
 const ANCHORS: usize = 3;
 /// A pole further than this from every mode belongs to none.
 const REACH: f64 = 0.05;
-/// A mode without a pole counts as this much of a pole without a mode.
-const UNSEEN_MODE: f64 = 0.3;
 /// Starts that are handed on.
 const STARTS: usize = 4;
 
@@ -38,9 +38,9 @@ pub(super) fn plate_starts(
         let anchored = |pole: &f64| modes.iter().take(ANCHORS).map(|mode| pole / mode).collect::<Vec<_>>();
         let factors: Vec<f64> =
             if *held == [None; 2] { poles.iter().take(ANCHORS).flat_map(anchored).collect() } else { vec![1.0] };
-        found.extend(
-            factors.into_iter().map(|factor| (charge(poles, &modes, factor), unit.map(|c| c * factor * factor))),
-        );
+        let top = poles.last().copied().unwrap_or(0.0) * (1.0 + REACH);
+        let charge = |factor: f64| pole_charge(poles, modes.iter().map(|mode| mode * factor), top, REACH);
+        found.extend(factors.into_iter().map(|factor| (charge(factor), unit.map(|c| c * factor * factor))));
     }
     found.retain(|(_, values)| {
         BEAM_CONSTANTS.iter().zip(values).all(|(constant, &value)| constant.check(value).is_ok())
@@ -53,24 +53,4 @@ pub(super) fn plate_starts(
         }
         starts
     }))
-}
-
-/// How far the poles lie from the modes times `factor`, with a charge for either without the other.
-fn charge(poles: &[f64], modes: &[f64], factor: f64) -> f64 {
-    let top = poles.last().copied().unwrap_or(0.0) * (1.0 + REACH);
-    let modes: Vec<f64> = modes.iter().map(|mode| mode * factor).take_while(|mode| *mode < top).collect();
-    let mut seen = vec![false; modes.len()];
-    let mut charge = 0.0;
-    for pole in poles {
-        let distance = |mode: usize| (modes[mode] / pole - 1.0).abs();
-        let free = (0..modes.len()).filter(|&mode| !seen[mode] && distance(mode) < REACH);
-        match free.min_by(|&a, &b| distance(a).total_cmp(&distance(b))) {
-            Some(mode) => {
-                seen[mode] = true;
-                charge += distance(mode);
-            }
-            None => charge += REACH,
-        }
-    }
-    charge + UNSEEN_MODE * REACH * seen.iter().filter(|seen| !**seen).count() as f64
 }
