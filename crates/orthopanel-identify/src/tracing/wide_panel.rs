@@ -1,7 +1,7 @@
 //! A plate that was traced in records, as a panel of its own.
 
 use orthopanel_model::{
-    Estimate, MindlinPlate, ModelError, PLATE_CONSTANTS, PanelModel, RitzMode, StructureKind, ritz_modes,
+    Estimate, MindlinPlate, ModelError, PLATE_CONSTANTS, PanelModel, RitzMode, Structure, StructureKind, ritz_modes,
 };
 
 use super::hypothesis::Switched;
@@ -42,14 +42,20 @@ pub(super) fn widen(panel: &mut PanelModel, plate: &Switched, std: &[Option<f64>
         panel.damping.ratios = seen;
         return Ok(());
     }
-    let whole = MindlinPlate::with_basis_for(&panel.piece, panel.boundary, &values, EACH * seen.len().max(1))?;
+    let wanted = EACH * seen.len().max(1);
+    let (whole, count) = match MindlinPlate::with_basis_for(&panel.piece, panel.boundary, &values, wanted) {
+        Err(ModelError::BasisTooSmall { available, .. }) => {
+            (MindlinPlate::with_basis_for(&panel.piece, panel.boundary, &values, available)?, available)
+        }
+        plate => (plate?, wanted),
+    };
     let middle = whole.only_with_nodes(&[[0, 0], [1, 0]]);
     let frequencies = |plate: &MindlinPlate, count: usize| -> Result<Vec<f64>, ModelError> {
         let modes: Vec<RitzMode> = ritz_modes(plate, &values, count)?;
         Ok(modes.iter().map(|mode| mode.angular_frequency).filter(|omega| *omega > 0.0).collect())
     };
-    let shown = frequencies(&middle, seen.len())?;
-    for omega in frequencies(&whole, EACH * seen.len().max(1))? {
+    let shown = frequencies(&middle, seen.len().min(middle.resolved_modes()))?;
+    for omega in frequencies(&whole, count)? {
         // The same mode on the same functions, solved in another company of blocks: equal but for rounding.
         let mode = shown.iter().position(|own| (own / omega - 1.0).abs() < 1e-9);
         let ratio = mode.and_then(|mode| seen.get(mode)).copied().unwrap_or(panel.damping.beyond);

@@ -30,6 +30,7 @@ use crate::structure::{Block, Motion, Structure};
 use crate::{Boundary, Constant, ModelError, Piece, Place};
 use assembly::{Coordinate, assemble};
 use edge_basis::EdgeBasis;
+pub(crate) use kink::Membrane;
 use law::{plate_stiffness_derivatives, plate_stiffnesses};
 use mode_names::beam_functions;
 
@@ -59,6 +60,7 @@ impl Field {
 #[derive(Debug, Clone)]
 pub struct MindlinPlate {
     piece: Piece,
+    boundary: Boundary,
     terms: [usize; 2],
     resolved_modes: usize,
     along: [EdgeBasis; 2],
@@ -93,7 +95,7 @@ impl MindlinPlate {
         // In each direction n polynomials follow 2n/π half-waves; some nx ny/3 products lie within the ellipse that both
         // span, and the lower half of these hold 1e-4.
         let resolved_modes = terms[0] * terms[1] / 6;
-        Ok(Self { piece, terms, resolved_modes, along, coordinates, blocks, beam_functions })
+        Ok(Self { piece, boundary, terms, resolved_modes, along, coordinates, blocks, beam_functions })
     }
 
     /// The same plate without those parity blocks where no mode with these nodes along x and y lies.
@@ -168,6 +170,27 @@ impl MindlinPlate {
     }
 }
 
+impl MindlinPlate {
+    /// What tells the kinks that this basis lacks; `None` where its functions cannot be told apart.
+    pub(crate) fn membrane(&self) -> Option<Membrane> {
+        let Boundary { left, right, .. } = self.boundary;
+        Membrane::new(&self.along, 0.5 * self.piece.length, [left, right])
+    }
+
+    /// What the basis lacks of the static flexibility between two motions, and its derivatives by the coefficients; `None`
+    /// for a rotation, which has no kink.
+    pub(crate) fn kink(
+        &self,
+        membrane: &Membrane,
+        values: &[f64],
+        motions: [(Motion, Place); 2],
+    ) -> Option<(f64, Vec<f64>)> {
+        let [_, d_22, _, _, a_55, a_44] = plate_stiffnesses(self.piece.thickness, values).ok()?;
+        let [value, by_d_22, by_a_55, by_a_44] = membrane.kink(&self.along, [d_22, a_55, a_44], motions)?;
+        Some((value, vec![0.0, by_d_22, 0.0, 0.0, by_a_55, by_a_44]))
+    }
+}
+
 impl Structure for MindlinPlate {
     fn constants(&self) -> &'static [Constant] {
         &PLATE_CONSTANTS
@@ -199,12 +222,6 @@ impl Structure for MindlinPlate {
             Motion::Curvature => (Field::RotationX, true),
         };
         Some(self.row(block, field, is_slope, place))
-    }
-
-    fn static_remainder(&self, values: &[f64], motions: [(Motion, Place); 2]) -> Option<(f64, Vec<f64>)> {
-        let coefficients = self.coefficients(values).ok()?;
-        let [value, by_a_55, by_a_44] = self.kink([*coefficients.get(4)?, *coefficients.get(5)?], motions)?;
-        Some((value, vec![0.0, 0.0, 0.0, 0.0, by_a_55, by_a_44]))
     }
 
     fn resolved_modes(&self) -> usize {

@@ -5,6 +5,7 @@ use std::sync::{Arc, Mutex};
 use faer::Mat;
 
 use super::modal_base::SharedStructure;
+use crate::mindlin_plate::Membrane;
 use crate::ritz_modes::ritz_modes;
 use crate::structure::{Block, Motion, Structure};
 use crate::{BeamConstants, Boundary, Constant, ExactBeam, MindlinPlate, ModelError, Piece, Place, ReducedStructure};
@@ -13,7 +14,10 @@ use crate::{BeamConstants, Boundary, Constant, ExactBeam, MindlinPlate, ModelErr
 type Ratios = [f64; 6];
 
 /// A [`MindlinPlate`] by the constants $E_x$, $G_{zx}$ and the ratios $E_y/E_x$, $\nu_{xy}$, $G_{xy}/E_x$, $G_{yz}/G_{zx}$.
-struct RatioPlate(MindlinPlate);
+struct RatioPlate {
+    plate: MindlinPlate,
+    membrane: Option<Membrane>,
+}
 
 const RATIO_CONSTANTS: [Constant; 6] = [
     Constant { name: "e_x", unit: "Pa", low: 1e3, high: 1e15 },
@@ -39,12 +43,12 @@ impl Structure for RatioPlate {
     }
 
     fn coefficients(&self, values: &[f64]) -> Result<Vec<f64>, ModelError> {
-        self.0.coefficients(&plate_constants(six(values)?))
+        self.plate.coefficients(&plate_constants(six(values)?))
     }
 
     fn coefficient_derivatives(&self, values: &[f64]) -> Result<Mat<f64>, ModelError> {
         let ratios @ [e_x, g_zx, e_y, _, g_xy, g_yz] = six(values)?;
-        let by_plate = self.0.coefficient_derivatives(&plate_constants(ratios))?;
+        let by_plate = self.plate.coefficient_derivatives(&plate_constants(ratios))?;
         let mut by_ratios = Mat::zeros(6, 6);
         let chain = [(0, 0, 1.0), (1, 0, e_y), (1, 2, e_x), (2, 3, 1.0), (3, 0, g_xy), (3, 4, e_x), (4, 1, g_yz)];
         for (constant, ratio, factor) in chain.into_iter().chain([(4, 5, g_zx), (5, 1, 1.0)]) {
@@ -54,23 +58,23 @@ impl Structure for RatioPlate {
     }
 
     fn blocks(&self) -> &[Block] {
-        self.0.blocks()
+        self.plate.blocks()
     }
 
     fn shape_row(&self, block: usize, place: Place) -> Vec<f64> {
-        self.0.shape_row(block, place)
+        self.plate.shape_row(block, place)
     }
 
     fn motion_row(&self, block: usize, motion: Motion, place: Place) -> Option<Vec<f64>> {
-        self.0.motion_row(block, motion, place)
+        self.plate.motion_row(block, motion, place)
     }
 
     fn static_remainder(&self, values: &[f64], motions: [(Motion, Place); 2]) -> Option<(f64, Vec<f64>)> {
-        self.0.static_remainder(&plate_constants(six(values).ok()?), motions)
+        self.plate.kink(self.membrane.as_ref()?, &plate_constants(six(values).ok()?), motions)
     }
 
     fn resolved_modes(&self) -> usize {
-        self.0.resolved_modes()
+        self.plate.resolved_modes()
     }
 }
 
@@ -155,7 +159,12 @@ impl WidePlates {
             nodes.retain(|[_, across]| across % 2 == 0);
         }
         let count = nodes.len().clamp(1, plate.resolved_modes().max(1));
-        let reduced = ReducedStructure::answering(Arc::new(RatioPlate(plate)), &values, count, &self.places)?;
+        let reduced = ReducedStructure::answering(
+            Arc::new(RatioPlate { membrane: plate.membrane(), plate }),
+            &values,
+            count,
+            &self.places,
+        )?;
         let modes = ritz_modes(&reduced, &values, count)?;
         let limit = SUMMED * top * std::f64::consts::TAU;
         let below = modes.iter().filter(|mode| (f64::MIN_POSITIVE..limit).contains(&mode.angular_frequency)).count();
