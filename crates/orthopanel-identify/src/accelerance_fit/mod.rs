@@ -11,6 +11,7 @@ mod poles;
 mod problem;
 mod record_poles;
 mod records;
+mod resonance_fit;
 mod resonance_point;
 mod resonance_start;
 mod sharpening;

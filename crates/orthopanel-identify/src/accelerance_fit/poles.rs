@@ -2,13 +2,13 @@
 
 use std::ops::Range;
 
-use faer::Mat;
 use num_complex::Complex64;
 use rayon::prelude::*;
 
-use super::records::{PlaceRecord, variance_beneath_window};
+use super::records::PlaceRecord;
+use super::resonance_fit::ResonanceFit;
 use super::structures::SeenMode;
-use crate::least_squares::{Linearised, Quadratic, levenberg_marquardt};
+use crate::least_squares::levenberg_marquardt;
 
 /// One resonance.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -150,70 +150,13 @@ pub(super) fn fit_pole(record: &PlaceRecord, power: &[f64], peak: usize) -> Opti
         (start[0] - 3.0 * side as f64 * step / frequency[peak], start[0] + 3.0 * side as f64 * step / frequency[peak]),
         (1e-7_f64.ln(), 0.5_f64.ln()),
     ];
-    let local = LocalFit { record, lines };
-    let minimum = levenberg_marquardt(|p| local.linearise(p), &start, &bounds).ok()?;
-    let covariance = minimum.at.covariance()?;
-    // Three complex amplitudes are taken out of the residuals.
-    let data = (2 * local.lines.len()) as f64 - 8.0;
-    let scale = if data > 0.0 { (minimum.at.cost / data).max(1.0) } else { 1.0 };
-    let mut pole =
-        Pole { frequency: minimum.parameters[0].exp(), zeta: minimum.parameters[1].exp(), log_zeta_std: f64::INFINITY };
-    let beneath = variance_beneath_window(pole.decay_rate(), record.decay_rate, 1.0 / step);
-    pole.log_zeta_std = (scale * beneath * covariance[(1, 1)]).sqrt();
+    let fit = ResonanceFit { record, value: record.value[lines.clone()].to_vec(), lines };
+    let linearise = |p: &[f64]| Ok::<_, std::convert::Infallible>(fit.linearise(p));
+    let pole = fit.pole(&levenberg_marquardt(linearise, &start, &bounds).ok()?, 0, step)?;
     // A pole away from its peak, or of any damping, is no resonance but a bump of the background.
     let at_peak = (pole.frequency - frequency[peak]).abs() < 2.0 * width.max(step);
     let sure = pole.log_zeta_std < 0.5 && pole.zeta < MOST_DAMPING;
-    (at_peak && sure).then_some((pole, local.lines))
-}
-
-/// Residuals of one resonance over a straight background, amplitudes eliminated (variable projection):
-/// $H \approx As^2/d(s) + B + C(f-f_0)$ with $A$, $B$, $C$ complex.
-struct LocalFit<'a> {
-    record: &'a PlaceRecord,
-    lines: Range<usize>,
-}
-
-impl LocalFit<'_> {
-    fn linearise(&self, parameters: &[f64]) -> Result<Quadratic, std::convert::Infallible> {
-        let residuals = self.residuals(parameters);
-        // Steps well inside a half-power width: the frequency's counts in units of the damping ratio.
-        let steps = [1e-3 * parameters[1].exp(), 1e-3];
-        let columns: Vec<Vec<f64>> = (0..2)
-            .map(|i| {
-                let shifted = |sign: f64| {
-                    let mut at = [parameters[0], parameters[1]];
-                    at[i] += sign * steps[i];
-                    self.residuals(&at)
-                };
-                let (low, high) = (shifted(-1.0), shifted(1.0));
-                high.iter().zip(&low).map(|(h, l)| (h - l) / (2.0 * steps[i])).collect()
-            })
-            .collect();
-        let jacobian = Mat::from_fn(residuals.len(), 2, |i, j| columns[j][i]);
-        Ok(Linearised { jacobian, residuals }.quadratic())
-    }
-
-    fn residuals(&self, parameters: &[f64]) -> Vec<f64> {
-        let (omega, zeta) = (parameters[0].exp() * std::f64::consts::TAU, parameters[1].exp());
-        let (record, lines) = (self.record, self.lines.clone());
-        let middle = 0.5 * (record.frequency[lines.start] + record.frequency[lines.end - 1]);
-        let span = record.frequency[lines.end - 1] - record.frequency[lines.start];
-        let even = record.variance[lines.clone()].iter().copied().fold(f64::MIN_POSITIVE, f64::max);
-        let mut columns = vec![Vec::new(); 3];
-        let mut right = Vec::new();
-        for line in lines {
-            // Variance counts real and imaginary part together. Where it is not told, all lines of a resonance weigh
-            // alike: the strong ones near the peak hold what there is to know of its width.
-            let variance = if record.variance_known { record.variance[line] } else { even };
-            let weight = (2.0 / variance).sqrt();
-            let s = record.s(line);
-            columns[0].push(weight * s * s / (s * s + 2.0 * zeta * omega * s + omega * omega) * 2.0 * zeta);
-            columns[1].push(Complex64::new(weight, 0.0));
-            columns[2].push(Complex64::new(weight * (record.frequency[line] - middle) / span, 0.0));
-            right.push(weight * record.value[line]);
-        }
-        project_out(columns, right).into_iter().flat_map(|value| [value.re, value.im]).collect()
-    }
+    (at_peak && sure).then_some((pole, fit.lines))
 }
 
 /// What of `right` no combination of the columns can make: Gram-Schmidt, twice for its rounding.

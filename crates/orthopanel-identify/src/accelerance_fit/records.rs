@@ -43,12 +43,15 @@ impl PlaceRecord {
         }
     }
 
+    /// Distance between lines \[Hz\]; zero of a single one.
+    pub(super) fn line_step(&self) -> f64 {
+        self.frequency.get(1).zip(self.frequency.first()).map_or(0.0, |(second, first)| second - first)
+    }
+
     /// Takes into account how the window ties lines together, by the decay rates $\zeta\omega$ \[1/s\] and frequencies
     /// \[Hz\] of the poles: each line by the nearest one.
     pub(super) fn heed_window(&mut self, poles: &[(f64, f64)]) {
-        let Some(step) = self.frequency.get(1).zip(self.frequency.first()).map(|(second, first)| second - first) else {
-            return;
-        };
+        let step = self.line_step();
         for (worth, line) in self.worth.iter_mut().zip(&self.frequency) {
             let distance = |pole: &&(f64, f64)| (pole.1 - line).abs();
             if let Some((decay, _)) = poles.iter().min_by(|a, b| distance(a).total_cmp(&distance(b))) {

@@ -3,7 +3,7 @@
 use super::outcome::is_far_from_noise;
 use super::problem::{AcceleranceProblem, PieceProblem};
 use super::records::PlaceRecord;
-use super::smeared::{line_step, smeared};
+use super::smeared::smeared;
 use super::start::Recorded;
 use super::synthesis::DampingLaw;
 use crate::IdentifyError;
@@ -148,5 +148,5 @@ pub(super) fn sharpened_lines(
 /// Whether a width of this part of the frequency is more than the distance between lines anywhere.
 fn narrows(recorded: &Recorded, part: f64) -> bool {
     let mut records = recorded.pieces.iter().flat_map(|piece| &piece.records);
-    records.any(|record| part * record.band_end() > line_step(record))
+    records.any(|record| part * record.band_end() > record.line_step())
 }

@@ -37,14 +37,9 @@ pub(super) fn smeared_value(record: &PlaceRecord, frequency: f64, width: f64) ->
     if weights > 0.0 { sum / weights } else { Complex64::ZERO }
 }
 
-/// Distance between lines \[Hz\].
-pub(super) fn line_step(record: &PlaceRecord) -> f64 {
-    record.frequency.get(1).zip(record.frequency.first()).map_or(0.0, |(second, first)| second - first)
-}
-
 /// The lines of a record that may be told at a width that is `part` of the frequency.
 pub(super) fn told(record: &PlaceRecord, part: f64) -> (f64, f64) {
-    let (step, end) = (line_step(record), record.band_end());
+    let (step, end) = (record.line_step(), record.band_end());
     let first = record.frequency.first().copied().unwrap_or(0.0);
     let edge = |frequency: f64| EDGE * (part * frequency).max(LEAST_LINES * step);
     // Below a line that is near zero nothing is missing: negative frequencies mirror the positive ones.
@@ -57,7 +52,7 @@ pub(super) fn told(record: &PlaceRecord, part: f64) -> (f64, f64) {
 /// Lines are weighed by what is usual nearby rather than by their noise: this is for finding where to start.
 pub(super) fn smeared(record: &PlaceRecord, part: f64) -> Vec<PlaceRecord> {
     let (mut from, end) = told(record, part);
-    let step = line_step(record);
+    let step = record.line_step();
     let mut stretches = Vec::new();
     while from < end && step > 0.0 {
         let top = (from.max(REACH * step) * SHARED).min(end);

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 
 use super::records::PlaceRecord;
 use super::sharpening::{Rough, fit_wide};
-use super::smeared::{line_step, smeared_value, told};
+use super::smeared::{smeared_value, told};
 use super::start::Recorded;
 use super::structures::RecordedStructure;
 use super::synthesis::DampingLaw;
@@ -60,7 +60,7 @@ impl<'a> WidePiece<'a> {
         for record in &records {
             let own = told(record, WIDTH);
             (from, end) = (from.max(own.0), end.min(own.1));
-            (step, decay) = (step.max(line_step(record)), decay.max(record.decay_rate));
+            (step, decay) = (step.max(record.line_step()), decay.max(record.decay_rate));
         }
         let width = |frequency: f64| (WIDTH * frequency).max(2.0 * step);
         let mut lines = Vec::new();
