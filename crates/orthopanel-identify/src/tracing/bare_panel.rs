@@ -9,6 +9,7 @@ use orthopanel_model::{
 
 use super::hypothesis::PLATE;
 use super::record_problem::State;
+use super::report::effects_of;
 use super::wide_panel::widen;
 
 /// The model at `state`, with all constants that are not `held` given their standard deviation from the beginning of
@@ -50,13 +51,9 @@ pub(super) fn bare_panel(
         ports,
         provenance: BTreeMap::new(),
     };
-    let mut of_effects = std.get(std.len().saturating_sub(state.hypothesis.size())..).unwrap_or_default();
-    for on in &state.hypothesis.effects {
-        let (own, rest) = of_effects.split_at(on.free.len().min(of_effects.len()));
-        of_effects = rest;
-        if on.effect.id() == PLATE {
-            widen(&mut panel, on, own)?;
-        }
+    let of_effects = std.get(std.len().saturating_sub(state.hypothesis.size())..).unwrap_or_default();
+    if let Some(plate) = effects_of(&state.hypothesis, of_effects).iter().find(|effect| effect.id == PLATE) {
+        widen(&mut panel, plate)?;
     }
     Ok(panel)
 }

@@ -34,25 +34,18 @@ pub(super) fn scored_starts(
     (piece, stage): (&Piece, usize),
 ) -> Result<Vec<Costed>, IdentifyError> {
     let problem = records.problem(stage);
-    let begun: Vec<Result<Vec<State>, IdentifyError>> = grid(effect, piece, (problem.records.len(), records.band))
+    let scored: Vec<Result<Costed, IdentifyError>> = grid(effect, piece, (problem.records.len(), records.band))
         .into_par_iter()
-        .map(|start| {
+        .flat_map_iter(|start| {
             let at = |name: &str| {
                 effect.parameters().iter().position(|parameter| parameter.name == name).map(|index| start[index])
             };
             let switched = Switched::new(effect, piece, problem.records.len(), at, |_| false);
-            Ok(records.with(base, switched)?)
+            match records.with(base, switched) {
+                Ok(states) => states.into_iter().map(Ok).collect(),
+                Err(error) => vec![Err(error)],
+            }
         })
-        .collect();
-    let begun: Vec<Result<State, IdentifyError>> = begun
-        .into_iter()
-        .flat_map(|states| match states {
-            Ok(states) => states.into_iter().map(Ok).collect(),
-            Err(error) => vec![Err(error)],
-        })
-        .collect();
-    let scored: Vec<Result<Costed, IdentifyError>> = begun
-        .into_par_iter()
         .map(|state| {
             let state = state?;
             let at = problem.linearise(&problem.parameters(&state), &state)?;

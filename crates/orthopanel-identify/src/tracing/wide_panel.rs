@@ -4,28 +4,25 @@ use orthopanel_model::{
     Estimate, MindlinPlate, ModelError, PLATE_CONSTANTS, PanelModel, RitzMode, Structure, StructureKind, ritz_modes,
 };
 
-use super::hypothesis::Switched;
+use super::outcome::TracedEffect;
 
 /// Modes of the plate among which those that the records show are looked for, for each of these.
 const EACH: usize = 4;
 
 /// Turns the panel's beam into the plate that `width-coupling` stands for, $E_y = (E_y/E_x)E_x$ and so on.
 ///
-/// The ratios' standard deviations `std` (of their coordinates) and those of $E_x$, $G_{zx}$ are added as those of
-/// independent numbers. Damping ratios are of the modes that the records' places show, in rising order; the plate's other
-/// modes, which no record shows, get the usual one.
+/// The ratios' standard deviations and those of $E_x$, $G_{zx}$ are added as those of independent numbers. Damping ratios are
+/// of the modes that the records' places show, in rising order; the plate's other modes, which no record shows, get the usual
+/// one.
 ///
 /// # Errors
 /// What the plate refuses.
-pub(super) fn widen(panel: &mut PanelModel, plate: &Switched, std: &[Option<f64>]) -> Result<(), ModelError> {
-    let beam = |name: &str| panel.constants.get(name).copied().unwrap_or(Estimate { value: 0.0, std: None });
+pub(super) fn widen(panel: &mut PanelModel, plate: &TracedEffect) -> Result<(), ModelError> {
+    let untold = Estimate { value: 0.0, std: None };
+    let beam = |name: &str| panel.constants.get(name).copied().unwrap_or(untold);
     let (e_x, g_zx) = (beam("e_x"), beam("g_zx"));
-    let ratio = |at: usize| {
-        let free = plate.free.iter().position(|free| free.at == at);
-        let value = plate.values.get(at).copied().unwrap_or_default();
-        let std = free.and_then(|i| Some(std.get(i).copied().flatten()? * plate.free[i].slope(value)));
-        Estimate { value, std }
-    };
+    let ratio =
+        |at: usize| plate.parameters.get(at).and_then(|parameter| parameter.values.first()).copied().unwrap_or(untold);
     let times = |ratio: Estimate, of: Estimate| {
         let part = |one: Estimate| one.std.map(|std| (std / one.value).powi(2));
         let value = ratio.value * of.value;
@@ -36,12 +33,11 @@ pub(super) fn widen(panel: &mut PanelModel, plate: &Switched, std: &[Option<f64>
     panel.constants =
         PLATE_CONSTANTS.iter().zip(told).map(|(constant, told)| (constant.name.to_owned(), told)).collect();
     let values = told.map(|estimate| estimate.value);
-    let seen = std::mem::take(&mut panel.damping.ratios);
-    let places = panel.ports.forces.iter().chain(&panel.ports.responses);
-    if places.clone().any(|place| place.y != 0.0) {
-        panel.damping.ratios = seen;
+    let mut places = panel.ports.forces.iter().chain(&panel.ports.responses);
+    if places.any(|place| place.y != 0.0) {
         return Ok(());
     }
+    let seen = std::mem::take(&mut panel.damping.ratios);
     let wanted = EACH * seen.len().max(1);
     let (whole, count) = match MindlinPlate::with_basis_for(&panel.piece, panel.boundary, &values, wanted) {
         Err(ModelError::BasisTooSmall { available, .. }) => {

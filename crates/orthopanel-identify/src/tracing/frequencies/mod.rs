@@ -14,7 +14,7 @@ use orthopanel_data::{ImpactTest, Measurement, MeasurementData};
 use orthopanel_model::{Effect, Owner, catalogue};
 use rayon::prelude::*;
 
-use super::hypothesis::{Hypothesis, Switched, has_place};
+use super::hypothesis::{Hypothesis, PLATE, Switched, has_place};
 use super::outcome::{NotTested, Tracing};
 use crate::IdentifyError;
 pub(super) use declared::identify_lists;
@@ -58,11 +58,11 @@ pub(super) fn trace_frequencies(test: &ImpactTest, declared: &Hypothesis) -> Res
             not_tested.push(NotTested { id, reason });
             continue;
         }
-        if id == width::ID && !declared.effects.is_empty() {
+        if id == PLATE && !declared.effects.is_empty() {
             not_tested.push(refused("the effects that the test file declares act on beams"));
             continue;
         }
-        if id == width::ID {
+        if id == PLATE {
             match width::fit_plate(test, &problem) {
                 Ok(found) => fits.push(found),
                 Err(error) => not_tested.push(NotTested { id, reason: error.to_string() }),
@@ -83,7 +83,7 @@ const DATA_FOR_EACH: usize = 2;
 fn free_parameters(effect: &dyn Effect) -> usize {
     match effect.id() {
         // The plate frees Poisson's ratio first; its other constants answer for themselves.
-        width::ID => 1,
+        PLATE => 1,
         _ => effect.parameters().iter().filter(|parameter| parameter.held_at.is_none()).count(),
     }
 }

@@ -8,8 +8,8 @@ use orthopanel_model::{Damping, Estimate, MODEL_SCHEMA, Owner, PanelModel, Ports
 use super::list_fit::ListFit;
 use super::list_problem::ListProblem;
 use super::parting::next_experiment;
-use super::width;
 use crate::IdentifyError;
+use crate::tracing::hypothesis::PLATE;
 use crate::tracing::outcome::{
     Candidate, FittedError, NotTested, Removed, TracedEffect, TracedError, TracedParameter, Tracing, Verdict,
 };
@@ -104,7 +104,7 @@ pub(super) fn name(fit: &ListFit, is_base: bool, declared: usize) -> String {
     let ids: Vec<&str> = fit.hypothesis.effects.iter().skip(declared).map(|on| on.effect.id()).collect();
     match (is_base, fit.plate.is_some()) {
         (true, _) => "base".to_owned(),
-        (_, true) => width::ID.to_owned(),
+        (_, true) => PLATE.to_owned(),
         _ => ids.join(" + "),
     }
 }
@@ -130,7 +130,7 @@ fn traced(problem: &ListProblem, fit: &ListFit, declared: usize) -> Vec<TracedEf
         let std = if name == "nu_xy" { std } else { None };
         Some(TracedParameter { name, unit: "1", values: vec![Estimate { value: value?, std }] })
     });
-    vec![TracedEffect { id: width::ID, owner: Owner::Panel, parameters: parameters.collect() }]
+    vec![TracedEffect { id: PLATE, owner: Owner::Panel, parameters: parameters.collect() }]
 }
 
 /// A model of each piece, without effects; damping is not told by frequencies.

@@ -6,7 +6,6 @@ use orthopanel_model::StructureKind;
 use super::list_fit::ListFit;
 use super::list_problem::ListProblem;
 use crate::tracing::hypothesis::Hypothesis;
-pub(super) use crate::tracing::hypothesis::PLATE as ID;
 use crate::{IdentifyError, Settings, identify};
 
 /// Identifies the plate from the same lists; constants that these do not show rest at their usual values.
