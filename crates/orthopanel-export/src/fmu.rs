@@ -103,8 +103,7 @@ impl Fmu {
     ) -> Result<Self, ExportError> {
         check(&ports, options)?;
         let (alone, _) = panel.panel_alone().map_err(FmuError::from)?;
-        let resource = Resource::of_panel(&alone, range, ports)?;
-        let core = alone.time_model(range, &[], &[]).map_err(FmuError::from)?.core;
+        let (resource, core) = Resource::of_panel(&alone, range, ports)?;
         Self::of_resource(resource, Some(Origin { panel, core }), options)
     }
 

@@ -165,7 +165,7 @@ fn prepare(folder: &std::path::Path) -> Result<Fmu, Box<dyn std::error::Error>> 
         "constants": {"e_x": 1.067e10, "g_zx": 5.304e8}, "damping": {"beyond": 0.003}}"#;
     let place = |x| Place { x, y: 0.0 };
     let ports = Ports { forces: vec![place(-0.3), place(0.1)], responses: vec![place(0.3)] };
-    let resource = Resource::of_panel(&PanelModel::from_json(text)?, ModeRange::Count(5), ports)?;
+    let (resource, _) = Resource::of_panel(&PanelModel::from_json(text)?, ModeRange::Count(5), ports)?;
     let text = resource.to_json();
     std::fs::write(folder.join(RESOURCE_FILE), &text)?;
     let path = folder.to_str().ok_or("the temporary folder's name is not UTF-8")?;

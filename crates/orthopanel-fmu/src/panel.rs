@@ -1,6 +1,6 @@
 //! The panel behind the modes: what of it may be set before a simulation starts, and its modes solved again.
 
-use orthopanel_model::{Estimate, ModalModel, ModeRange, ModelError, PanelModel, Ports, TimeModel};
+use orthopanel_model::{CoreFit, Estimate, ModalModel, ModeRange, ModelError, PanelModel, Ports, TimeModel};
 use serde::{Deserialize, Serialize};
 
 use crate::FmuError;
@@ -43,6 +43,8 @@ pub(crate) struct Solution {
     pub modes: ModalModel,
     /// Flexible modes of the panel itself among these: a core adds its internal variables.
     pub flexible: usize,
+    /// How the core's modulus is fitted, where there is one.
+    pub core: Option<CoreFit>,
     /// $\sum W_rW_f/\omega^2$ \[m/N\] over the modes left out: a row a response, a column a force.
     pub static_remainder: Vec<Vec<f64>>,
 }
@@ -186,9 +188,9 @@ fn in_range(what: &'static str, value: f64, low: f64, high: f64) -> Result<(), F
 }
 
 fn solve(model: &PanelModel, range: ModeRange) -> Result<Solution, ModelError> {
-    let TimeModel { modes, flexible, .. } = model.time_model(range, &model.ports.forces, &model.ports.responses)?;
+    let TimeModel { modes, flexible, core } = model.time_model(range, &model.ports.forces, &model.ports.responses)?;
     let static_remainder = static_remainder(model, &modes)?;
-    Ok(Solution { modes, flexible, static_remainder })
+    Ok(Solution { modes, flexible, core, static_remainder })
 }
 
 /// What the flexible modes left out add at rest; zero for a panel with effects, where the sum over all is not known.

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use orthopanel_model::{ModalModel, ModeRange, PanelModel, Ports};
+use orthopanel_model::{CoreFit, ModalModel, ModeRange, PanelModel, Ports};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
@@ -48,15 +48,16 @@ impl Resource {
     }
 
     /// The modes of `range` of a panel, with the static part of all others in displacement. Sizes, mass, constants,
-    /// damping ratios and places can be set in the FMU.
+    /// damping ratios and places can be set in the FMU. With it, how a viscoelastic core's modulus is fitted, where there is one.
     ///
     /// # Errors
     /// [`FmuError::Model`] where the panel has no physical meaning or cannot be solved.
-    pub fn of_panel(panel: &PanelModel, range: ModeRange, ports: Ports) -> Result<Self, FmuError> {
+    pub fn of_panel(panel: &PanelModel, range: ModeRange, ports: Ports) -> Result<(Self, Option<CoreFit>), FmuError> {
         let (panel, solution) = Panel::new(panel, range, ports.clone())?;
-        let Solution { modes: model, static_remainder, .. } = solution;
+        let Solution { modes: model, static_remainder, core, .. } = solution;
         let (schema, generator) = (RESOURCE_SCHEMA.into(), GENERATOR.into());
-        Self { schema, generator, ports, model, static_remainder, panel: Some(panel), arrays: false }.checked()
+        let resource = Self { schema, generator, ports, model, static_remainder, panel: Some(panel), arrays: false };
+        Ok((resource.checked()?, core))
     }
 
     /// The same with all forces as one array and each kind of output as another, which FMI 3.0 alone has.
