@@ -125,9 +125,35 @@ fn val_damping_of_a_crowd_that_the_model_does_not_meet() {
     let case = Case { name: "astray", g_zx: E_X / 300.0, zeta: 0.004, astray: 0.005, ..USUAL };
     for (noise, seed) in [(0.001, 1), (0.01, 2)] {
         let Some(found) = found(&case, noise, seed) else { return };
-        let told: Vec<f64> =
-            found.pieces[0].modes.iter().filter_map(|mode| Some(mode.damping?.value / case.zeta - 1.0)).collect();
+        let told: Vec<(f64, f64)> = found.pieces[0]
+            .modes
+            .iter()
+            .filter_map(|mode| mode.damping)
+            .filter_map(|zeta| Some((zeta.value / case.zeta - 1.0, zeta.std? / case.zeta)))
+            .collect();
         assert!(told.len() > 15, "noise {noise}: {}", told.len());
-        assert!(told.iter().all(|error| error.abs() < 0.03), "noise {noise}: {told:?}");
+        // A mode that its neighbours all but hide may miss by more, where its deviation says so.
+        let holds = |&(error, std): &(f64, f64)| error.abs() < f64::max(0.03, 3.0 * std);
+        assert!(told.iter().all(holds), "noise {noise}: {told:?}");
+        let well_known = told.iter().filter(|(_, std)| *std < 0.01).count();
+        assert!(well_known > 15, "noise {noise}: {well_known} of {}", told.len());
     }
+}
+
+/// How far such a damping is said to be known: 90 % of the 95 % intervals hold the truth (66 % where each mode was fitted
+/// once beside the model's neighbours). What is missing are modes that their neighbours press from both sides, with
+/// deviations of a tenth of a per cent.
+#[test]
+fn val_intervals_of_a_crowd_that_the_model_does_not_meet() {
+    let case = Case { name: "astray", g_zx: E_X / 300.0, zeta: 0.004, astray: 0.005, ..USUAL };
+    let (mut inside, mut all) = (0, 0);
+    for seed in 11..17 {
+        let Some(found) = found(&case, 0.003, seed) else { return };
+        let told = found.pieces[0].modes.iter().filter_map(|mode| mode.damping);
+        for (zeta, std) in told.filter_map(|zeta| Some((zeta.value, zeta.std?))) {
+            all += 1;
+            inside += usize::from((zeta - case.zeta).abs() < 1.96 * std);
+        }
+    }
+    assert!(all > 130 && inside * 100 >= 87 * all, "{inside} of {all}");
 }

@@ -21,8 +21,9 @@ pub(super) struct NearMode {
     pub products: Vec<f64>,
 }
 
-/// Modes overlap that lie nearer than so many of their half widths together.
-const OVERLAP: f64 = 6.0;
+/// Modes overlap that lie nearer than so many of their half widths together. Beyond six a neighbour still bends what a
+/// straight background takes up, and shifts damping by 0.3 %.
+const OVERLAP: f64 = 15.0;
 /// Most neighbours on either side that are fitted with a mode; the model stands for the others.
 const NEIGHBOURS: usize = 2;
 /// Half widths beyond the outer modes that take part, and the fewest lines.

@@ -69,6 +69,9 @@ const HIDDEN: f64 = 2.0;
 /// A damping ratio this many times the usual one is no place to begin: two resonances look like one.
 const UNLIKELY: f64 = 3.0;
 
+/// How often overlapping resonances are fitted anew.
+const PASSES: usize = 3;
+
 impl Start<'_> {
     /// The same with resonances that overlap fitted together, and the constants of their frequencies.
     pub fn grouped(mut self) -> Result<Self, IdentifyError> {
@@ -87,22 +90,33 @@ impl Start<'_> {
                 }
             }
             let (poles, modes) = (&mut self.poles[index], &mut self.matching.modes[index]);
-            for mode in 0..near.len() {
-                let known = modes.iter().position(|of| *of == Some(mode));
-                match (group_pole(&piece.records, &near, mode), known) {
-                    (Overlap::Alone, _) | (Overlap::Hidden, None) => {}
-                    (Overlap::Told(pole), Some(at)) => poles[at] = pole,
-                    (Overlap::Told(pole), None) => {
-                        poles.push(pole);
-                        modes.push(Some(mode));
-                    }
-                    (Overlap::Hidden, Some(at)) => poles[at].log_zeta_std = HIDDEN,
-                }
+            for _ in 0..PASSES {
+                regroup(&piece.records, &mut near, poles, modes);
             }
         }
         let Some(values) = self.matching.values.first() else { return Ok(self) };
         self.fit = fit_poles(*structure, constants, values, pole_sets(pieces, &self.poles, &self.matching, *boundary))?;
         Ok(self)
+    }
+}
+
+/// One pass over all modes; the next takes a mode's neighbours from where this one found them.
+fn regroup(records: &[PlaceRecord], near: &mut [NearMode], poles: &mut Vec<Pole>, modes: &mut Vec<Option<usize>>) {
+    let told: Vec<Overlap> = (0..near.len()).map(|mode| group_pole(records, near, mode)).collect();
+    for (mode, overlap) in told.into_iter().enumerate() {
+        let known = modes.iter().position(|of| *of == Some(mode));
+        if let Overlap::Told(pole) = &overlap {
+            (near[mode].frequency, near[mode].zeta) = (pole.frequency, pole.zeta);
+        }
+        match (overlap, known) {
+            (Overlap::Alone, _) | (Overlap::Hidden, None) => {}
+            (Overlap::Told(pole), Some(at)) => poles[at] = pole,
+            (Overlap::Told(pole), None) => {
+                poles.push(pole);
+                modes.push(Some(mode));
+            }
+            (Overlap::Hidden, Some(at)) => poles[at].log_zeta_std = HIDDEN,
+        }
     }
 }
 
