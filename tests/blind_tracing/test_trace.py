@@ -1,4 +1,4 @@
-"""`orthopanel trace` on a smaller benchmark than the judging sets: a case of every kind that it can explain from records.
+"""`orthopanel trace` on a smaller benchmark than the judging sets: a case of every kind.
 
 Seeds from 1000 on are for development; the judging sets have seeds below 100 and stand in docs/how-often-tracing-is-right.md.
 """
@@ -11,8 +11,6 @@ from . import make, score
 
 ORTHOPANEL = os.environ.get("ORTHOPANEL")
 SEED = 1000
-# A spring that stiffens does not act on records yet: `unexplained` is its answer.
-NOT_IN_RECORDS = {"cubic-stiffness"}
 
 
 @pytest.fixture(scope="module")
@@ -40,15 +38,9 @@ def _cases(result):
 def test_val_the_effect_put_in_is_named_first(scored):
     """One case of each kind: at most one may go wrong (98 % are asked of many)."""
     cases = _cases(scored("clean"))
-    wrong = [kind for kind, case in cases.items() if kind not in NOT_IN_RECORDS and not case["right_first"]]
+    wrong = [kind for kind, case in cases.items() if not case["right_first"]]
     assert len(cases) == 19
     assert len(wrong) <= 1, wrong
-
-
-def test_val_what_the_model_cannot_hold_is_not_explained(scored):
-    """Whatever is missing, a wrong name never comes with the verdict `explained`."""
-    cases = _cases(scored("clean"))
-    assert all(cases[kind]["verdict"] == "unexplained" for kind in NOT_IN_RECORDS), cases
 
 
 def test_val_nothing_is_named_where_nothing_is_missing(scored):

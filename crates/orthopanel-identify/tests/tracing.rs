@@ -14,7 +14,9 @@ fn value(found: &Tracing, parameter: &str) -> (f64, f64) {
 
 #[test]
 fn val_an_effect_put_in_is_named_and_measured() {
-    for (kind, parameter) in [("sensor-mass", "mass"), ("record-gain", "gain"), ("channel-delay", "delay")] {
+    for (kind, parameter) in
+        [("sensor-mass", "mass"), ("record-gain", "gain"), ("channel-delay", "delay"), ("cubic-stiffness", "k3")]
+    {
         let folder = tempfile::tempdir().unwrap();
         let Some((test, case)) = made(&folder.path().join("set"), "clean", kind) else { return };
         let found = trace(&test).unwrap();

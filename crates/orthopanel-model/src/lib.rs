@@ -33,8 +33,8 @@ pub use constant::Constant;
 pub use effects::{
     Action, ChannelFactor, CoreFit, CoreLine, CoreModulus, Effect, EffectParameter, EffectSetting, EffectState,
     ElementLaw, ElementLine, FactorLine, FieldTerm, LineDerivatives, LineEvaluator, NaturalFrequencies, Owner,
-    PointElement, ReceptanceModel, ReceptanceSetup, RecordSetting, Reference, Scale, Seat, Share, Shift, catalogue,
-    effect, natural_frequencies,
+    PointElement, ReceptanceModel, ReceptanceSetup, RecordSetting, Reference, Scale, Seat, Share, Shift,
+    SuspensionMotion, catalogue, effect, natural_frequencies,
 };
 pub use error::ModelError;
 pub use mindlin_plate::{MindlinPlate, ModeKind, ModeName, PLATE_CONSTANTS};
@@ -45,7 +45,7 @@ pub use panel_model::{Damping, EffectEntry, Estimate, MODEL_SCHEMA, PanelModel, 
 pub use panel_modes::ModeRange;
 pub use piece::{Piece, Place};
 pub use reduced_structure::ReducedStructure;
-pub use response::{ForceRecord, ModalStepper};
+pub use response::{CubicForces, ForceRecord, ModalStepper, cubic_support_forces};
 pub use ritz_modes::{modes_below, ritz_modes, ritz_modes_near};
 pub use static_deflection::static_deflections;
 pub use structure::{Block, Flexibility, Motion, RitzMode, Structure, TermDerivative};

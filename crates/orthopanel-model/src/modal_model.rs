@@ -100,6 +100,22 @@ impl ModalModel {
         }
     }
 
+    /// The same modes with one of the force ports alone.
+    ///
+    /// # Errors
+    /// [`ModelError::PortCount`] where there is no such port.
+    pub fn with_force(&self, port: usize) -> Result<Self, ModelError> {
+        let mut one = Self { force_count: 1, ..self.clone() };
+        for (index, mode) in one.modes.iter_mut().enumerate() {
+            let Some(&shape) = mode.at_forces.get(port) else {
+                let (found, expected) = (mode.at_forces.len(), port + 1);
+                return Err(ModelError::PortCount { mode: index + 1, ports: "forces", found, expected });
+            };
+            mode.at_forces = vec![shape];
+        }
+        Ok(one)
+    }
+
     /// Number of force ports.
     pub fn force_count(&self) -> usize {
         self.force_count

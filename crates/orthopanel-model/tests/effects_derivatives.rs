@@ -2,7 +2,8 @@
 
 use num_complex::Complex64;
 use orthopanel_model::{
-    Boundary, Damping, Effect, EffectState, End, Piece, Place, ReceptanceSetup, RecordSetting, catalogue, effect,
+    Boundary, Damping, Effect, EffectState, End, Piece, Place, ReceptanceSetup, RecordSetting, SuspensionMotion,
+    catalogue, effect,
 };
 
 const PIECE: Piece = Piece { length: 0.8, width: 0.1, thickness: 0.03, mass_per_area: 6.88 };
@@ -19,7 +20,7 @@ fn setup(boundary: Boundary) -> ReceptanceSetup {
         force_at: Some(at(force)),
         response_at: Some(at(0.27)),
         hit_time: 2e-3,
-        suspension_amplitudes: vec![3e-5, 2e-5],
+        suspension_motion: SuspensionMotion::Amplitudes(vec![3e-5, 2e-5]),
         ..RecordSetting::default()
     };
     ReceptanceSetup::new(&PIECE, boundary, &[at(-0.22), at(0.22)], &[record(-0.31), record(0.12)], 12).unwrap()

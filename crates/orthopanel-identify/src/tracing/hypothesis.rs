@@ -7,6 +7,8 @@ use crate::IdentifyError;
 
 /// The plate in place of the beam.
 pub(super) const PLATE: &str = "width-coupling";
+/// Suspension springs that are not linear.
+pub(super) const CUBIC: &str = "cubic-stiffness";
 
 /// An effect with values for all its parameters.
 #[derive(Clone)]

@@ -12,6 +12,7 @@
 mod accelerances;
 mod bare_panel;
 mod base_model;
+mod blow;
 mod curves;
 mod fit;
 mod frequencies;
@@ -24,6 +25,8 @@ mod next_experiment;
 mod outcome;
 mod plate_starts;
 mod ranking;
+mod reaction_lines;
+mod reactions;
 mod record_problem;
 mod records_of_test;
 mod report;

@@ -7,8 +7,10 @@ use orthopanel_model::{
 };
 
 use super::fit::Fit;
+use super::hypothesis::CUBIC;
 use super::outcome::Verdict;
 use super::ranking::{Ranking, Search};
+use super::reactions::cubic;
 use super::report::name;
 
 /// Places tried along the piece.
@@ -28,7 +30,14 @@ pub(super) fn next_experiment(
     let nearest = ranking.nearest();
     match (verdict, rivals.first().copied().or(nearest)) {
         (Verdict::NothingMissing, _) => "none: the base model meets the records within their noise".to_owned(),
-        (_, Some(rival)) => parting(test, search, chosen, &ranking.fits[rival], rivals.is_empty()),
+        (_, Some(rival)) => {
+            let rival = &ranking.fits[rival];
+            let sureness = if rivals.is_empty() { "to be surer still: " } else { "" };
+            let level_tells = [chosen, rival].iter().any(|fit| cubic(&fit.state.hypothesis, 0).is_some());
+            let proposal =
+                if level_tells { harder(search, chosen, rival) } else { parting(test, search, chosen, rival) };
+            format!("{sureness}{proposal}")
+        }
         (_, None) => "none: no other effect of the catalogue can be compared".to_owned(),
     }
 }
@@ -41,7 +50,38 @@ struct Proposal {
     added_mass: f64,
 }
 
-fn parting(test: &ImpactTest, search: &Search, chosen: &Fit, rival: &Fit, sure: bool) -> String {
+/// A hit of another strength: what is linear answers to it alike.
+///
+/// The motion under hits `HARDER` times as hard on springs $k_3w^3$ is that under these hits on springs $c^2k_3$, times c.
+fn harder(search: &Search, chosen: &Fit, rival: &Fit) -> String {
+    let problem = search.records.problem(1);
+    let lines = |fit: &Fit| {
+        let mut state = fit.state.clone();
+        let springs = state.hypothesis.effects.iter_mut().filter(|on| on.effect.id() == CUBIC);
+        springs.flat_map(|on| on.values.first_mut()).for_each(|k3| *k3 *= HARDER * HARDER);
+        problem.lines(&state)
+    };
+    let pair = format!("{} and {}", name(chosen, search.declared()), name(rival, search.declared()));
+    let (Ok(one), Ok(other)) = (lines(chosen), lines(rival)) else {
+        return format!("{pair} cannot be compared by harder hits");
+    };
+    let (mut apart, mut count) = (0.0, 0_usize);
+    for ((one, other), record) in one.iter().zip(&other).zip(problem.records) {
+        let pairs = one.iter().zip(other).zip(&record.variance);
+        apart += pairs.map(|((a, b), variance)| HARDER * HARDER * (a - b).norm_sqr() / variance).sum::<f64>();
+        count += record.s.len();
+    }
+    let difference = (apart / count.max(1) as f64).sqrt();
+    format!(
+        "hit {HARDER:.0} times as hard, at the same places: there {pair} differ by {difference:.1} times the noise (rms over \
+         the lines)"
+    )
+}
+
+/// How much harder.
+const HARDER: f64 = 2.0;
+
+fn parting(test: &ImpactTest, search: &Search, chosen: &Fit, rival: &Fit) -> String {
     let Some(record) = search.records.problem(0).records.first() else { return String::new() };
     let (force, response) = (record.force_at, record.response_at);
     let added = ADDED * search.piece.mass();
@@ -75,8 +115,7 @@ fn parting(test: &ImpactTest, search: &Search, chosen: &Fit, rival: &Fit, sure: 
         );
     };
     let pair = format!("{} and {}", name(chosen, search.declared()), name(rival, search.declared()));
-    let sureness = if sure { "to be surer still: " } else { "" };
-    format!("{sureness}{}: there {pair} differ by {difference:.1} times the noise (rms over the lines)", best.words)
+    format!("{}: there {pair} differ by {difference:.1} times the noise (rms over the lines)", best.words)
 }
 
 /// Rms difference of two hypotheses over the noise in a further record, noise being that of the first one.

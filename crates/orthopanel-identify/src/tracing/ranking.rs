@@ -154,8 +154,9 @@ impl Search<'_> {
         Ok(LikelihoodScale { independent, unit: best.chi_square(self.records).max(1.0), data: problem.data() })
     }
 
+    /// Whether a fit leaves nothing to explain. What a model refuses meets nothing.
     fn meets_noise(&self, fit: &Fit) -> bool {
-        fit.chi_square(self.records) <= MET * self.records.noise_floor().max(1.0)
+        self.records.misfit_over_floor(fit).is_ok_and(|left| left <= MET)
     }
 
     /// Moves on to the hypothesis that pays best for its effects and their parameters, on the data and on what was held out.

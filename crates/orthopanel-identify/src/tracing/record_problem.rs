@@ -4,9 +4,11 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use faer::Mat;
 use num_complex::Complex64;
-use orthopanel_model::{BEAM_CONSTANTS, Damping, ModelError, ReceptanceSetup};
+use orthopanel_model::{BEAM_CONSTANTS, Damping, ModelError, ReceptanceModel, ReceptanceSetup};
 
-use super::hypothesis::{Hypothesis, PLATE};
+use super::hypothesis::{CUBIC, Hypothesis, PLATE};
+use super::reaction_lines::{ReactionLines, Taken};
+use super::reactions::Reactions;
 use super::widened_lines::WidenedLines;
 use crate::least_squares::Quadratic;
 
@@ -25,6 +27,8 @@ pub(super) struct RecordProblem<'a> {
     pub prior: DampingPrior<'a>,
     /// Lines that were evaluated, counted as those of the plain beam.
     pub work: &'a AtomicU64,
+    /// Forces that are not linear, where the test can tell them.
+    pub reactions: Option<&'a Reactions>,
 }
 
 /// Each free mode's $\ln\zeta$ before the records speak: about where it is, and the standard deviation.
@@ -113,7 +117,7 @@ impl RecordProblem<'_> {
     ) -> Result<Vec<Quadratic>, ModelError> {
         let state = self.state(parameters, like);
         let size = parameters.len();
-        let model = self.model(&state)?;
+        let (model, reactions) = self.model(&state)?;
         self.count(&state);
         let plan = self.columns(&state);
         let all: Vec<usize> = (0..size).collect();
@@ -124,15 +128,20 @@ impl RecordProblem<'_> {
                 Grouping::Places => vec![(&record.value, &record.variance)],
                 Grouping::Hits => record.hits.iter().map(|hit| (&hit.value[..], &hit.variance[..])).collect(),
             };
+            let taken: Vec<Taken> =
+                reactions.as_ref().map_or_else(Vec::new, |all| all.taken(index, record, grouping, &plan));
             let mut rows: Vec<Mat<f64>> = targets.iter().map(|_| Mat::zeros(2 * record.s.len(), size + 1)).collect();
             evaluator.lines(&record.s, |line, value, by| {
-                for ((measured, variance), rows) in targets.iter().zip(&mut rows) {
+                for (target, ((measured, variance), rows)) in targets.iter().zip(&mut rows).enumerate() {
                     // The variance counts real and imaginary part together.
                     let weight = (2.0 / variance[line]).sqrt();
+                    let taken = taken.get(target);
                     for (column, &(of_model, factor)) in plan.iter().enumerate() {
-                        let entry = weight * factor * by.of(of_model);
+                        let taken = taken.map_or(Complex64::ZERO, |taken| taken.by[line][column]);
+                        let entry = weight * (factor * by.of(of_model) - taken);
                         (rows[(2 * line, column)], rows[(2 * line + 1, column)]) = (entry.re, entry.im);
                     }
+                    let value = value - taken.map_or(Complex64::ZERO, |taken| taken.value[line]);
                     let missed = weight * (value - measured[line]);
                     (rows[(2 * line, size)], rows[(2 * line + 1, size)]) = (missed.re, missed.im);
                 }
@@ -157,21 +166,52 @@ impl RecordProblem<'_> {
 
     /// The accelerance of every record at a state.
     pub(super) fn lines(&self, state: &State) -> Result<Vec<Vec<Complex64>>, ModelError> {
-        let model = self.model(state)?;
+        let (model, reactions) = self.model(state)?;
         let records = self.records.iter().enumerate().map(|(index, record)| {
             let Some(mut evaluator) = model.evaluator(index) else { return vec![] };
             let mut lines = Vec::with_capacity(record.s.len());
             evaluator.lines(&record.s, |_, value, _| lines.push(value));
+            let taken = reactions.as_ref().map_or_else(Vec::new, |all| all.taken(index, record, Grouping::Places, &[]));
+            for taken in taken {
+                lines.iter_mut().zip(taken.value).for_each(|(line, taken)| *line -= taken);
+            }
             lines
         });
         Ok(records.collect())
     }
 
-    fn model(&self, state: &State) -> Result<orthopanel_model::ReceptanceModel, ModelError> {
+    /// Mean square of the hits' scatter over their variance, each hit with what forces that are not linear took off it; `None`
+    /// where no such force is on or single hits tell nothing.
+    pub(super) fn scatter_beside_reactions(&self, state: &State) -> Result<Option<f64>, ModelError> {
+        if !state.hypothesis.effects.iter().any(|on| on.effect.id() == CUBIC) {
+            return Ok(None);
+        }
+        let (_, Some(reactions)) = self.model(state)? else { return Ok(None) };
+        let (mut sum, mut lines) = (0.0, 0_usize);
+        for (index, record) in self.records.iter().enumerate().filter(|(_, record)| record.hits.len() > 1) {
+            let taken = reactions.taken(index, record, Grouping::Hits, &[]);
+            for line in 0..record.s.len() {
+                let hits = || {
+                    let pairs = record.hits.iter().zip(&taken);
+                    pairs.map(|(hit, taken)| (hit.value[line] + taken.value[line], 1.0 / hit.variance[line]))
+                };
+                let weights: f64 = hits().map(|(_, weight)| weight).sum();
+                let mean = hits().map(|(value, weight)| weight * value).sum::<Complex64>() / weights;
+                let left: f64 = hits().map(|(value, weight)| weight * (value - mean).norm_sqr()).sum();
+                sum += left / (record.hits.len() - 1) as f64;
+            }
+            lines += record.s.len();
+        }
+        Ok((lines > 0).then(|| sum / lines as f64))
+    }
+
+    /// What is linear, and what is not.
+    fn model(&self, state: &State) -> Result<(ReceptanceModel, Option<ReactionLines>), ModelError> {
         let ratios = state.zetas.iter().map(|log| log.exp()).collect();
         let damping = Damping { ratios, beyond: self.usual_log_zeta.exp() };
         let effects = state.hypothesis.states(self.records.len())?;
-        self.setup.model(&state.constants.map(f64::exp), &damping, &effects)
+        let reactions = ReactionLines::of(self.reactions, state, (&damping, &effects), self.records)?;
+        Ok((self.setup.model(&state.constants.map(f64::exp), &damping, &effects)?, reactions))
     }
 
     /// Column of the model and factor of each parameter.

@@ -3,7 +3,9 @@
 use std::sync::atomic::AtomicU64;
 
 use orthopanel_data::{Accelerance, Estimation, ImpactTest, TimeHistory};
-use orthopanel_model::{BEAM_CONSTANTS, BeamConstants, ExactBeam, ModelError, ReceptanceSetup, RecordSetting};
+use orthopanel_model::{
+    BEAM_CONSTANTS, BeamConstants, ExactBeam, ModelError, ReceptanceSetup, RecordSetting, SuspensionMotion,
+};
 use rayon::prelude::*;
 
 use super::base_model::RecordsBase;
@@ -11,6 +13,7 @@ use super::curves::curves;
 use super::fit::{Fit, LAST, by_group, fit};
 use super::hypothesis::{Hypothesis, PLATE, Switched};
 use super::plate_starts::plate_starts;
+use super::reactions::Reactions;
 use super::record_problem::{DampingPrior, Grouping, RecordProblem, State, total};
 use super::whiteness::{independent_part, residuals};
 use super::widened_lines::{WIDENINGS, WidenedLines, widened_lines};
@@ -43,6 +46,7 @@ pub(super) struct TestRecords {
     strange_poles: usize,
     /// As the analyser shows the records.
     accelerances: Vec<Accelerance>,
+    reactions: Option<Reactions>,
 }
 
 /// The band ends where the force has fallen by this much \[dB\].
@@ -57,6 +61,9 @@ const SUMMED: f64 = 2.5;
 /// Standard deviation of a mode's $\ln\zeta$ before the records speak, at each widening; the last as in the fit of records
 /// without effects.
 const LOG_ZETA_STD: [f64; WIDENINGS.len()] = [0.5, 1.0, 2.0, 2.0];
+/// Scatter of the hits over their noise that may still be the noise's own: beyond, they differ by something that a hypothesis
+/// has to explain, as a force that is not linear, and a misfit may not hide behind it.
+const SCATTERED: f64 = 2.0;
 /// One resonance more than a beam has may be something loose; so many are a plate's.
 const STRANGE: usize = 2;
 /// Starts that are followed a little way, and the evaluations spent on each before the best is taken.
@@ -90,6 +97,7 @@ impl TestRecords {
         let finer = WIDENINGS.iter().skip(1).map(|&widening| widened_lines(histories, widening, records.band));
         records.widened.extend(finer);
         records.accelerances = accelerances;
+        records.reactions = Reactions::new(test, histories, (records.summed, records.band))?;
         Ok(records)
     }
 
@@ -114,6 +122,7 @@ impl TestRecords {
             .map(|history| RecordSetting {
                 force_at: Some(history.force_at),
                 response_at: Some(history.response_at),
+                suspension_motion: SuspensionMotion::InTime,
                 ..RecordSetting::default()
             })
             .collect();
@@ -144,6 +153,7 @@ impl TestRecords {
             poles,
             strange_poles,
             accelerances: vec![],
+            reactions: None,
         };
         let problem = records.problem(0);
         let from = problem.parameters(&records.start);
@@ -164,10 +174,26 @@ impl TestRecords {
     }
 
     /// Scatter of the hits about their mean per datum, over the noise as it is modelled; 1 where a single hit tells none.
-    pub(super) fn noise_floor(&self) -> f64 {
+    ///
+    /// Where forces that are not linear are on, hits scatter about what these make of each.
+    ///
+    /// # Errors
+    /// What the model refuses.
+    pub(super) fn noise_floor(&self, fit: &Fit) -> Result<f64, IdentifyError> {
+        if let Some(scatter) = self.problem(LAST).scatter_beside_reactions(&fit.state)? {
+            return Ok(scatter);
+        }
         let last = self.widened.last().map_or(&[][..], Vec::as_slice);
         let told: Vec<f64> = last.iter().filter_map(|record| record.scatter).collect();
-        if told.is_empty() { 1.0 } else { told.iter().sum::<f64>() / told.len() as f64 }
+        Ok(if told.is_empty() { 1.0 } else { told.iter().sum::<f64>() / told.len() as f64 })
+    }
+
+    /// Misfit per datum of a fit over what the hits' scatter asks of any: at least 1, and no more than [`SCATTERED`].
+    ///
+    /// # Errors
+    /// What the model refuses.
+    pub(super) fn misfit_over_floor(&self, fit: &Fit) -> Result<f64, IdentifyError> {
+        Ok(fit.chi_square(self) / self.noise_floor(fit)?.clamp(1.0, SCATTERED))
     }
 
     /// Whether there are resonances that the beam has no modes for: then its constants are no start for a plate.
@@ -216,7 +242,8 @@ impl TestRecords {
         let about = if stage < LAST { &self.log_zetas[..] } else { &[] };
         let prior = DampingPrior { about, std: LOG_ZETA_STD[stage.min(LAST)] };
         let (held, usual_log_zeta) = (*held, *usual_log_zeta);
-        RecordProblem { setup, records, held, free_damping: true, usual_log_zeta, prior, work }
+        let reactions = self.reactions.as_ref();
+        RecordProblem { setup, records, held, free_damping: true, usual_log_zeta, prior, work, reactions }
     }
 }
 

@@ -28,7 +28,7 @@ const UNFINISHED: &str = "the search ended at the work that it may cost before a
 /// What the model refuses.
 pub(super) fn report(test: &ImpactTest, search: &Search, ranking: &Ranking) -> Result<Tracing, IdentifyError> {
     let records = search.records;
-    let (verdict, rivals) = verdict(records, ranking);
+    let (verdict, rivals) = verdict(records, ranking)?;
     let chosen = &ranking.fits[ranking.chosen];
     let grouping = ranking.grouping(records, ranking.chosen);
     let error = |fit: &Fit, grouping: Grouping| -> Result<FittedError, IdentifyError> {
@@ -59,7 +59,7 @@ pub(super) fn report(test: &ImpactTest, search: &Search, ranking: &Ranking) -> R
             measure: MEASURE.to_owned(),
             before: error(&ranking.fits[0], grouping)?,
             after: error(chosen, grouping)?,
-            noise_floor: records.noise_floor().sqrt(),
+            noise_floor: records.noise_floor(chosen)?.sqrt(),
         },
         candidates,
         not_tested: ranking.not_tested.clone(),

@@ -3,6 +3,7 @@
 use super::outcome::Verdict;
 use super::ranking::Ranking;
 use super::records_of_test::TestRecords;
+use crate::IdentifyError;
 
 /// A rival must stay behind by this much of the scaled criterion to be out of the question.
 pub(super) const CLEAR: f64 = 100.0;
@@ -12,11 +13,14 @@ pub(super) const MET: f64 = 1.25;
 const EXPLAINED: f64 = 2.0;
 
 /// The verdict, and the positions of the hypotheses that fit about as well as the chosen one.
-pub(super) fn verdict(records: &TestRecords, ranking: &Ranking) -> (Verdict, Vec<usize>) {
+///
+/// # Errors
+/// What the model refuses.
+pub(super) fn verdict(records: &TestRecords, ranking: &Ranking) -> Result<(Verdict, Vec<usize>), IdentifyError> {
     let chosen = &ranking.fits[ranking.chosen];
-    let left = chosen.chi_square(records) / records.noise_floor().max(1.0);
+    let left = records.misfit_over_floor(chosen)?;
     if ranking.chosen == 0 {
-        return (if left <= MET { Verdict::NothingMissing } else { Verdict::Unexplained }, vec![]);
+        return Ok((if left <= MET { Verdict::NothingMissing } else { Verdict::Unexplained }, vec![]));
     }
     let rivals = rivals(ranking);
     let verdict = if left > EXPLAINED || on_bound(ranking) {
@@ -26,7 +30,7 @@ pub(super) fn verdict(records: &TestRecords, ranking: &Ranking) -> (Verdict, Vec
     } else {
         Verdict::Ambiguous
     };
-    (verdict, rivals)
+    Ok((verdict, rivals))
 }
 
 /// Hypotheses within [`CLEAR`] of the chosen one that are not the chosen one with more effects; the likeliest first.

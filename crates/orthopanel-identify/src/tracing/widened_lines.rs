@@ -8,6 +8,7 @@ use orthopanel_model::Place;
 use rayon::prelude::*;
 use realfft::RealFftPlanner;
 
+use super::blow::Blow;
 use super::hit_noise::HitNoise;
 
 /// How far the peaks are widened, and how far the lines stand apart.
@@ -29,9 +30,6 @@ pub(super) const WIDENINGS: [Widening; 4] = [
     Widening { decay_rate: 15.0, step: 6.0, tolerance: 0.0 },
     Widening { decay_rate: 6.0, step: 3.0, tolerance: 0.0 },
 ];
-
-/// Half the width of the window over the force \[s\]: the hammer has left the piece, its channel's noise stays out.
-const FORCE_HALF_WIDTH: f64 = 4e-3;
 
 /// Half-widths of that window on either side from which its channel's noise is read.
 const BESIDE: usize = 25;
@@ -60,6 +58,8 @@ pub(super) struct WidenedLines {
 pub(super) struct HitLines {
     pub value: Vec<Complex64>,
     pub variance: Vec<f64>,
+    /// Transform of the force, a sum over samples \[N\].
+    pub force: Vec<Complex64>,
     /// $\int f\,dt$ \[N s\].
     pub impulse: f64,
 }
@@ -96,7 +96,10 @@ fn of_record(history: &TimeHistory, widening: Widening, band: f64) -> WidenedLin
         value: Vec::with_capacity(lines.len()),
         variance: Vec::with_capacity(lines.len()),
         scatter: noise.scatter(&spectra, &lines),
-        hits: spectra.iter().map(|hit| HitLines { value: vec![], variance: vec![], impulse: hit.impulse }).collect(),
+        hits: spectra
+            .iter()
+            .map(|hit| HitLines { value: vec![], variance: vec![], force: vec![], impulse: hit.impulse })
+            .collect(),
     };
     for &line in &lines {
         let (mut cross, mut power) = (Complex64::ZERO, 0.0);
@@ -108,6 +111,7 @@ fn of_record(history: &TimeHistory, widening: Widening, band: f64) -> WidenedLin
             power += weight;
             own.value.push(motion / force);
             own.variance.push(1.0 / weight);
+            own.force.push(force);
         }
         let value = cross / power;
         record.value.push(value);
@@ -119,17 +123,15 @@ fn of_record(history: &TimeHistory, widening: Widening, band: f64) -> WidenedLin
 /// Transforms of one hit, each channel times $e^{-\sigma(t-t_0)}$ with $t_0$ the hit.
 fn spectra(hit: &Hit, rate: f64, decay_rate: f64) -> HitSpectra {
     let samples = hit.force.len();
-    let offset = median(&hit.force);
-    let peak = (0..samples)
-        .max_by(|&a, &b| (hit.force[a] - offset).abs().total_cmp(&(hit.force[b] - offset).abs()))
-        .unwrap_or(0);
-    let reach = (FORCE_HALF_WIDTH * rate) as usize;
+    let blow = Blow::of(hit, rate);
+    let Blow { peak, offset, reach, .. } = blow;
     let fading = |n: usize| (-decay_rate * (n as f64 - peak as f64) / rate).exp();
-    let near = |n: usize| n.abs_diff(peak) <= reach;
+    let near = |n: usize| blow.holds(n);
     let mut force: Vec<f64> =
-        hit.force.iter().enumerate().map(|(n, f)| if near(n) { (f - offset) * fading(n) } else { 0.0 }).collect();
+        blow.force.iter().enumerate().map(|(n, f)| if near(n) { f * fading(n) } else { 0.0 }).collect();
+    force.resize(samples, 0.0);
     let mut motion: Vec<f64> = hit.acceleration.iter().enumerate().map(|(n, a)| a * fading(n)).collect();
-    let impulse = hit.force.iter().enumerate().filter(|(n, _)| near(*n)).map(|(_, f)| f - offset).sum::<f64>() / rate;
+    let impulse = blow.force.iter().sum::<f64>() / rate;
     // Read beside the hit: a window over the record would have faded it later.
     let beside = peak.saturating_sub(BESIDE * reach)..(peak + BESIDE * reach).min(samples);
     let quiet: Vec<f64> = beside.filter(|&n| !near(n)).map(|n| (hit.force[n] - offset).abs()).collect();

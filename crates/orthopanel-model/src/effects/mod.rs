@@ -48,7 +48,7 @@ pub use dressed_modes::{NaturalFrequencies, natural_frequencies};
 pub use parameter::{EffectParameter, Reference, Scale};
 pub use point_element::{ElementLaw, ElementLine, PointElement, Seat, Share};
 pub use receptance::{LineDerivatives, LineEvaluator, ReceptanceModel, ReceptanceSetup};
-pub use setting::{EffectSetting, RecordSetting};
+pub use setting::{EffectSetting, RecordSetting, SuspensionMotion};
 pub use state::EffectState;
 
 use crate::{ModelError, Piece};

@@ -26,9 +26,29 @@ pub struct RecordSetting {
     pub response_at: Option<Place>,
     /// When the hammer strikes \[s\], from the beginning of the record.
     pub hit_time: f64,
-    /// How far each suspension point moves in this record \[m\]: the effective amplitude of
-    /// `cubic-stiffness`. Empty where nobody worked it out.
-    pub suspension_amplitudes: Vec<f64>,
+    /// What is known of how the suspension points move.
+    pub suspension_motion: SuspensionMotion,
+    /// Whether the force is not the hammer's but one at the place itself, as a suspension's: no offset of the hammer moves it.
+    pub is_reaction: bool,
+}
+
+/// What is known of how the suspension points move in a record, on which forces that are not linear depend.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub enum SuspensionMotion {
+    /// Nothing.
+    #[default]
+    Unknown,
+    /// How far each moves \[m\]: the effective amplitude of `cubic-stiffness`.
+    Amplitudes(Vec<f64>),
+    /// Whoever asks works the forces out of the hits, in time, and joins what they do: the receptance is left linear.
+    InTime,
+}
+
+impl RecordSetting {
+    /// With this number where it has none.
+    pub(super) fn numbered(self, number: usize) -> Self {
+        if self.number == 0 { Self { number, ..self } } else { self }
+    }
 }
 
 impl EffectSetting {

@@ -2,6 +2,7 @@
 //! Runge-Kutta beside it.
 
 mod coupled;
+mod cubic_supports;
 mod force_record;
 mod lane;
 mod mode_group;
@@ -9,6 +10,7 @@ mod propagator;
 mod runge_kutta;
 mod stepper;
 
+pub use cubic_supports::{CubicForces, cubic_support_forces};
 pub use force_record::ForceRecord;
 pub use stepper::ModalStepper;
 

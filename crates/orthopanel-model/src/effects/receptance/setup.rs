@@ -10,7 +10,7 @@ use super::view::View;
 use super::wide_plate::WidePlates;
 use crate::effects::dressing::Dressing;
 use crate::effects::{CoreModulus, EffectSetting, EffectState, RecordSetting};
-use crate::{BEAM_CONSTANTS, Boundary, Damping, ModelError, Piece, Place, TimoshenkoBeam};
+use crate::{BEAM_CONSTANTS, Boundary, Damping, ModalModel, Mode, ModelError, Motion, Piece, Place, TimoshenkoBeam};
 
 /// What stays the same while a search moves constants, damping and the parameters of effects.
 pub struct ReceptanceSetup {
@@ -27,7 +27,8 @@ pub struct ReceptanceSetup {
 
 impl ReceptanceSetup {
     /// A beam with these records. `summed` flexible modes enter at every line: take those below 2.5 times the highest
-    /// line, or the series that stands for the others ends too early. Records are numbered from 1 in their order.
+    /// line, or the series that stands for the others ends too early. Records without a number are given that of
+    /// their order, from 1.
     ///
     /// # Errors
     /// As [`TimoshenkoBeam::new`], and [`ModelError::OffPiece`] for a place off the piece.
@@ -44,8 +45,7 @@ impl ReceptanceSetup {
         let places = once_each(places.chain(suspension.iter().copied()));
         places.iter().try_for_each(|place| piece.contains(*place))?;
         let records: Vec<_> = records.to_vec();
-        let records =
-            records.into_iter().enumerate().map(|(i, record)| RecordSetting { number: i + 1, ..record }).collect();
+        let records = records.into_iter().enumerate().map(|(i, record)| record.numbered(i + 1)).collect();
         let beam = Arc::new(TimoshenkoBeam::new(&piece, boundary, basis_terms(summed))?);
         let even = Mutex::new(vec![]);
         let plates = WidePlates::new(piece, boundary, places);
@@ -106,13 +106,46 @@ impl ReceptanceSetup {
     /// # Errors
     /// As [`ReceptanceSetup::model`].
     pub fn summed_frequencies(&self, values: &[f64], effects: &[EffectState]) -> Result<Vec<f64>, ModelError> {
-        let base = match self.based(values, effects, BEAM_CONSTANTS.len())?.bases {
-            Bases::Real(base) => base,
-            // Damping is of the relaxed modulus.
-            Bases::Complex(_) => self.even(values)?,
-        };
+        let base = self.real_base(values, effects)?;
         let lambda = |&(block, number): &(usize, usize)| base.blocks[block].lambda[number];
         Ok(base.near[base.rigid..].iter().map(|at| lambda(at).sqrt() / std::f64::consts::TAU).collect())
+    }
+
+    /// The modes that every line sums and that lie below `up_to` \[Hz\], without point elements, seen from these places.
+    ///
+    /// # Errors
+    /// As [`ReceptanceSetup::model`].
+    pub fn summed_modes(
+        &self,
+        values: &[f64],
+        (damping, effects): (&Damping, &[EffectState]),
+        [forces, responses]: [&[Place]; 2],
+        up_to: f64,
+    ) -> Result<ModalModel, ModelError> {
+        let base = self.real_base(values, effects)?;
+        let rows: Vec<_> = forces.iter().chain(responses).map(|&place| (Motion::Deflection, place)).collect();
+        let shapes = (0..base.blocks.len()).map(|block| base.rows(block, &rows)).collect::<Result<Vec<_>, _>>()?;
+        let modes = base.near.iter().enumerate().map(|(index, &(block, number))| {
+            let at = |row: usize| shapes[block][(row, number)];
+            let flexible = (index + 1).saturating_sub(base.rigid);
+            Mode {
+                angular_frequency: base.blocks[block].lambda[number].sqrt(),
+                damping_ratio: if flexible == 0 { 0.0 } else { damping.ratio(flexible) },
+                at_forces: (0..forces.len()).map(at).collect(),
+                at_responses: (forces.len()..rows.len()).map(at).collect(),
+            }
+        });
+        let modes = modes.take_while(|mode| mode.angular_frequency < std::f64::consts::TAU * up_to);
+        ModalModel::new(forces.len(), responses.len(), modes.collect())
+    }
+
+    /// The modes that damping belongs to.
+    fn real_base(&self, values: &[f64], effects: &[EffectState]) -> Result<Arc<ModalBase>, ModelError> {
+        match self.based(values, effects, BEAM_CONSTANTS.len())?.bases {
+            Bases::Real(base) => Ok(base),
+            // Damping is of the relaxed modulus.
+            Bases::Complex(_) => self.even(values),
+        }
     }
 
     /// The modes with what effects spread over the piece; `first_effect` is the column of the first effect's first value.

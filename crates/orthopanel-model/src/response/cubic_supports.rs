@@ -1,0 +1,192 @@
+//! Springs whose force goes with the cube of the motion, under measured hits.
+
+use super::lane::{LANES, Lane};
+use super::propagator::Coefficients;
+use crate::{ModalModel, ModelError};
+
+/// The forces of springs $f_j = k_3w_j^3$ at the responses of `model` [N] under hits at its first force, and their
+/// derivatives by $k_3$ [m³].
+///
+/// `hits` are samples of the force [N], `step` [s] apart, each from where everything is at rest; the forces run over `samples`
+/// of them. Each sample of a force acts as an impulse, between which modes move freely and exactly. For a load whose band ends
+/// below half the rate this leaves of a mode's motion what it is at its own frequency, and the springs' own stiffness may not be
+/// such that it swings within a few samples.
+///
+/// # Errors
+/// [`ModelError::PortCount`] for a model without a force, [`ModelError::NotFinite`] where the motion has no bounds.
+pub fn cubic_support_forces(
+    model: &ModalModel,
+    k3: f64,
+    hits: &[&[f64]],
+    (step, samples): (f64, usize),
+) -> Result<Vec<CubicForces>, ModelError> {
+    if model.force_count() == 0 {
+        return Err(ModelError::PortCount { mode: 1, ports: "forces", found: 0, expected: 1 });
+    }
+    let modes: Vec<Stepped> = model
+        .modes()
+        .iter()
+        .map(|mode| Stepped {
+            free: FreeMotion::new(mode.angular_frequency, mode.damping_ratio, step),
+            struck: Lane::all(step * mode.at_forces[0]),
+            held: mode.at_responses.iter().map(|shape| (Lane::all(*shape), Lane::all(step * shape))).collect(),
+        })
+        .collect();
+    let mut found = Vec::with_capacity(hits.len());
+    for some in hits.chunks(LANES) {
+        found.extend(side_by_side(&modes, model.response_count(), k3, some, samples)?);
+    }
+    Ok(found)
+}
+
+/// What springs did in one hit: a list of samples each.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CubicForces {
+    /// \[N\].
+    pub force: Vec<Vec<f64>>,
+    /// Derivative by $k_3$ \[m³\].
+    pub by_k3: Vec<Vec<f64>>,
+}
+
+struct Stepped {
+    free: FreeMotion,
+    /// Shape times the step, of the hammer's place.
+    struck: Lane,
+    /// Shape of each spring's place, and the same times the step.
+    held: Vec<(Lane, Lane)>,
+}
+
+/// $(a, \dot a)$ after a step from that before.
+struct FreeMotion([[Lane; 2]; 2]);
+
+impl FreeMotion {
+    fn new(omega: f64, zeta: f64, step: f64) -> Self {
+        let Coefficients { impulse, held, .. } = Coefficients::new(omega, zeta, step);
+        let square = omega * omega;
+        let fading = 2.0 * zeta * omega * impulse;
+        Self(
+            [[1.0 - square * held, impulse], [-square * impulse, 1.0 - fading - square * held]]
+                .map(|row| row.map(Lane::all)),
+        )
+    }
+
+    #[inline(always)]
+    fn carry(&self, [a, v]: &mut [Lane; 2]) {
+        let Self([[aa, av], [va, vv]]) = *self;
+        (*a, *v) = (*a * aa + *v * av, *a * va + *v * vv);
+    }
+}
+
+fn side_by_side(
+    modes: &[Stepped],
+    springs: usize,
+    k3: f64,
+    hits: &[&[f64]],
+    samples: usize,
+) -> Result<Vec<CubicForces>, ModelError> {
+    let empty = || vec![vec![0.0; samples]; springs];
+    let mut found: Vec<CubicForces> = hits.iter().map(|_| CubicForces { force: empty(), by_k3: empty() }).collect();
+    let mut motion = vec![[Lane::default(); 2]; modes.len()];
+    let mut by_k3 = motion.clone();
+    let mut forces = vec![[Lane::default(); 2]; springs];
+    for sample in 0..samples {
+        let mut blow = Lane::default();
+        blow.0.iter_mut().zip(hits).for_each(|(to, hit)| *to = hit.get(sample).copied().unwrap_or(0.0));
+        for (spring, [force, slope]) in forces.iter_mut().enumerate() {
+            let (mut w, mut by) = (Lane::default(), Lane::default());
+            for ((mode, [a, _]), [da, _]) in modes.iter().zip(&motion).zip(&by_k3) {
+                w = w + *a * mode.held[spring].0;
+                by = by + *da * mode.held[spring].0;
+            }
+            let square = w * w;
+            *force = square * w * Lane::all(k3);
+            *slope = square * w + square * by * Lane::all(3.0 * k3);
+            for (lane, hit) in found.iter_mut().enumerate() {
+                (hit.force[spring][sample], hit.by_k3[spring][sample]) = (force.0[lane], slope.0[lane]);
+            }
+        }
+        for ((mode, motion), by_k3) in modes.iter().zip(&mut motion).zip(&mut by_k3) {
+            let (mut kick, mut by) = (blow * mode.struck, Lane::default());
+            for ((_, held), [force, slope]) in mode.held.iter().zip(&forces) {
+                kick = kick - *force * *held;
+                by = by - *slope * *held;
+            }
+            motion[1] = motion[1] + kick;
+            by_k3[1] = by_k3[1] + by;
+            mode.free.carry(motion);
+            mode.free.carry(by_k3);
+        }
+    }
+    let last = forces.iter().flatten().chain(motion.iter().flatten()).chain(by_k3.iter().flatten());
+    match last.flat_map(|lane| lane.0).find(|value| !value.is_finite()) {
+        Some(value) => Err(ModelError::NotFinite { what: "motion on cubic springs", value }),
+        None => Ok(found),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Mode;
+
+    const STEP: f64 = 1.0 / 20480.0;
+
+    fn mode(omega: f64, zeta: f64, struck: f64, held: &[f64]) -> Mode {
+        Mode { angular_frequency: omega, damping_ratio: zeta, at_forces: vec![struck], at_responses: held.to_vec() }
+    }
+
+    /// A free mass on one cubic spring swings with the period $T = \Gamma(1/4)^2\sqrt{m/k_3}/(\sqrt\pi\,A)$
+    /// ($4\sqrt{2m/k_3}/A\int_0^1du/\sqrt{1-u^4}$, the lemniscate's quarter), and $A^4 = 2mv^2/k_3$.
+    #[test]
+    fn val_a_mass_on_a_cubic_spring_has_its_period() {
+        let (mass, k3, impulse): (f64, f64, f64) = (0.55, 2e10, 8e-3);
+        let shape = mass.sqrt().recip();
+        let model = ModalModel::new(1, 1, vec![mode(0.0, 0.0, shape, &[shape])]).unwrap();
+        let mut hit = vec![0.0; 40];
+        hit[20] = impulse / STEP;
+        let samples = 32768;
+        let found = cubic_support_forces(&model, k3, &[&hit], (STEP, samples)).unwrap().remove(0);
+        let amplitude = (2.0 * impulse * impulse / mass / k3).powf(0.25);
+        let gamma_of_a_quarter = 3.625_609_908_221_908_f64;
+        let period = gamma_of_a_quarter.powi(2) * (mass / k3).sqrt() / (std::f64::consts::PI.sqrt() * amplitude);
+        let force = &found.force[0];
+        // Where the force rises through zero, interpolated: its cube root runs straight there.
+        let root = |n: usize| force[n].cbrt();
+        let rises: Vec<f64> = (21..samples)
+            .filter(|&n| force[n - 1] <= 0.0 && force[n] > 0.0)
+            .map(|n| (n - 1) as f64 - root(n - 1) / (root(n) - root(n - 1)))
+            .collect();
+        let found = (rises[rises.len() - 1] - rises[0]) / (rises.len() - 1) as f64 * STEP;
+        assert!(rises.len() > 5 && (found / period - 1.0).abs() < 1e-4, "{found} {period}");
+        let most = force.iter().copied().fold(0.0, f64::max);
+        assert!((most / (k3 * amplitude.powi(3)) - 1.0).abs() < 1e-4);
+    }
+
+    /// Two springs, rigid and flexible modes, five hits: more than stand side by side.
+    #[test]
+    fn val_the_derivative_is_that_of_differences() {
+        let modes = vec![
+            mode(0.0, 0.0, 1.3, &[1.3, 1.3]),
+            mode(0.0, 0.0, -2.0, &[1.2, -1.2]),
+            mode(2100.0, 0.01, 1.9, &[0.3, 0.2]),
+            mode(5600.0, 0.004, -1.5, &[1.1, -1.2]),
+        ];
+        let model = ModalModel::new(1, 2, modes).unwrap();
+        let hits: Vec<Vec<f64>> =
+            (1..=5).map(|size| [0.0, 30.0, 90.0, 40.0].map(|f| f * f64::from(size)).to_vec()).collect();
+        let hits: Vec<&[f64]> = hits.iter().map(Vec::as_slice).collect();
+        let at = |k3: f64| cubic_support_forces(&model, k3, &hits, (STEP, 4096)).unwrap();
+        let k3 = 3e10;
+        let h = 1e-4 * k3;
+        let (here, low, high) = (at(k3), at(k3 - h), at(k3 + h));
+        for hit in 0..hits.len() {
+            for spring in 0..2 {
+                let size = here[hit].by_k3[spring].iter().fold(0.0_f64, |most, by| most.max(by.abs()));
+                for sample in 0..4096 {
+                    let difference = (high[hit].force[spring][sample] - low[hit].force[spring][sample]) / (2.0 * h);
+                    assert!((here[hit].by_k3[spring][sample] - difference).abs() < 1e-5 * size);
+                }
+            }
+        }
+    }
+}
