@@ -384,3 +384,77 @@ fn val_a_range_touched_again_and_again_is_an_overload() {
     assert!(overloaded(&hit(300.0)));
     assert!(!overloaded(&hit(1e9)), "{:?}", hit(1e9).faults(rate));
 }
+
+/// A weak hit between good ones: left out with its reason, not taken for swapped channels, however long its noise lasts.
+#[test]
+fn val_a_weak_hit_is_left_out_and_the_others_count() {
+    let csv = |hit: &Hit| {
+        let rows = hit.force.iter().zip(&hit.acceleration).enumerate();
+        let rows: String = rows.map(|(n, (f, a))| format!("{},{f},{a}\n", n as f64 / RATE)).collect();
+        format!("time_s,force_n,acceleration_m_s2\n{rows}")
+    };
+    let piece = Resonator { radius: 0.99, angle: 0.5 };
+    let clean = piece.hit(8000, 100.0);
+    for part in [0.1, 0.03, 0.01] {
+        let weak = Hit {
+            force: clean.force.iter().map(|force| part * force).collect(),
+            acceleration: clean.acceleration.iter().map(|a| part * a).collect(),
+        };
+        let read = |hit: &Hit, seed: u64| {
+            let noisy = Noise(seed).over(hit, 0.4, 0.1);
+            let file = RecordFile::from_bytes(csv(&noisy).as_bytes(), "hits.csv").unwrap();
+            TimeHistory::from_records(file, &measurement()).unwrap_or_else(|refused| panic!("{part}: {refused}"))
+        };
+        let mut all = read(&clean, 1);
+        all.join(read(&weak, 2)).unwrap();
+        all.join(read(&clean, 3)).unwrap();
+        let found = all.accelerance(orthopanel_data::Estimation::default()).unwrap();
+        let said = found.notes.iter().any(|note| note.contains("hit 2 (hits.uff) left out: force only"));
+        // 7.2 N over 0.4 N is 18.
+        assert!(said && found.hits == 2, "{part}: {:?}", found.notes);
+    }
+}
+
+/// A hit that just stands out of its noise differs from strong ones in every line, which is no fault of its place.
+#[test]
+fn val_a_hit_just_above_its_noise_is_weighed_not_left_out() {
+    let clean = DAMPED.hit(8000, 100.0);
+    let part = |part: f64, seed| {
+        let scaled = |channel: &[f64]| channel.iter().map(|value| part * value).collect();
+        let hit = Hit { force: scaled(&clean.force), acceleration: scaled(&clean.acceleration) };
+        Noise(seed).over(&hit, 0.002, 0.01)
+    };
+    let hits = vec![part(1.0, 1), part(0.001, 2), part(1.0, 3)];
+    let found = support::hammer::history(hits).accelerance(orthopanel_data::Estimation::default()).unwrap();
+    assert_eq!((found.hits, found.notes.len()), (3, 0), "{:?}", found.notes);
+}
+
+#[test]
+fn val_noise_is_no_second_touch() {
+    for (noise, seed) in [(1.0, 11), (2.0, 12), (3.0, 13)] {
+        let hit = Noise(seed).over(&DAMPED.hit(30_000, 100.0), noise, 0.01);
+        assert_eq!(hit.faults(RATE), [], "{noise} N under 72 N");
+    }
+    let touched_before = {
+        let mut force = good().force;
+        for n in 0..700 {
+            force[n] += 0.2 * force[n + 100];
+        }
+        DAMPED.respond(force)
+    };
+    let fault = touched_before.faults(RATE)[0].to_string();
+    assert!(fault.contains("of the force touched before, by 99"), "{fault}");
+}
+
+/// A pulse of three samples that rings on, as a band-limited one does, and 40 % of it again: the ringing has long died.
+#[test]
+fn val_a_second_touch_of_a_short_blow_is_a_double_hit() {
+    let ringing = |n: f64| if n == 0.0 { 1.0 } else { (2.0 * n).sin() / (2.0 * n) };
+    let blow = |at: f64| move |n: usize| if (n as f64 - at).abs() < 12.0 { ringing(n as f64 - at) } else { 0.0 };
+    let (first, second) = (blow(200.3), blow(260.3));
+    let once = DAMPED.respond((0..1000).map(|n| 100.0 * first(n)).collect());
+    let twice = DAMPED.respond((0..1000).map(|n| 100.0 * (first(n) + 0.4 * second(n))).collect());
+    let [HitFault::DoubleHit { after, ratio }] = twice.faults(RATE)[..] else { panic!("{:?}", twice.faults(RATE)) };
+    assert!((after - 0.06).abs() < 0.002 && (ratio - 0.4).abs() < 0.05, "{after} {ratio}");
+    assert!(!matches!(once.faults(RATE)[..], [HitFault::DoubleHit { .. }]), "{:?}", once.faults(RATE));
+}

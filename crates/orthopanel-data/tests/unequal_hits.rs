@@ -16,8 +16,8 @@ enum Noisy {
     Alike,
     /// In proportion to the hit, as noise in per cent of a record's peak or rms.
     WithStrength,
-    /// The same in all hits, and each answers by a few per cent more or less than the piece does, as where it lands
-    /// beside its place.
+    /// The same in all hits, and each answers by some per cent more or less than the piece does, as where it lands
+    /// beside its place. One that answers by more than five is left out.
     Astray,
 }
 
@@ -31,7 +31,7 @@ fn stated_over_seen(heights: &[f64], force: f64, acceleration: f64, noisy: Noisy
             let part = if noisy == Noisy::WithStrength { height / 100.0 } else { 1.0 };
             let mut hit = hit.clone();
             if noisy == Noisy::Astray {
-                let astray = 1.0 + 0.05 * noise.next();
+                let astray = 1.0 + 0.02 * noise.next();
                 hit.acceleration.iter_mut().for_each(|a| *a *= astray);
             }
             noise.over(&hit, part * force, part * acceleration)

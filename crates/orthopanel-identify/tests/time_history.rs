@@ -37,7 +37,15 @@ fn answer(model: &ModalModel, samples: usize) -> Hit {
 
 fn history(hits: Vec<Hit>) -> TimeHistory {
     let place = Place { x: 0.0, y: 0.0 };
-    TimeHistory { file: "hits.csv".into(), force_at: place, response_at: place, rate: RATE, hits, notes: Vec::new() }
+    TimeHistory {
+        file: "hits.csv".into(),
+        force_at: place,
+        response_at: place,
+        rate: RATE,
+        hits,
+        further_files: Vec::new(),
+        notes: Vec::new(),
+    }
 }
 
 fn compared(model: &ModalModel, hit: Hit, settings: &HistorySettings) -> HitComparison {

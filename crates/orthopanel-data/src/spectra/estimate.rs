@@ -1,13 +1,16 @@
 //! Accelerance from hits: estimators, coherence, variance, and the band in which the hammer had force.
 
+use std::ops::Range;
+
 use num_complex::Complex64;
 
 use super::{
     accelerance::Accelerance,
     extremes::median,
+    hit_agreement::Agreement,
     hit_faults::HitFault,
     overload::shared_extremes,
-    spectrum::{Sums, sums},
+    spectrum::{self, Sums},
     time_history::{Hit, TimeHistory},
     window::Window,
 };
@@ -66,7 +69,7 @@ impl TimeHistory {
     pub fn accelerance(&self, estimation: Estimation) -> Result<Accelerance, DataError> {
         self.check(estimation)?;
         let mut notes = self.notes.clone();
-        let mut kept: Vec<&Hit> = Vec::new();
+        let mut kept: Vec<(usize, &Hit)> = Vec::new();
         let mut reasons = Vec::new();
         let mut left: Option<f64> = None;
         let shared = shared_extremes(&self.hits);
@@ -79,10 +82,10 @@ impl TimeHistory {
             let fatal = faults.iter().any(|fault| fault.is_fatal());
             for fault in &faults {
                 let verdict = if fault.is_fatal() { "left out" } else { "kept" };
-                reasons.push(format!("hit {} {verdict}: {fault}", index + 1));
+                reasons.push(format!("{} {verdict}: {fault}", self.hit_name(index)));
             }
             if !fatal {
-                kept.push(hit);
+                kept.push((index, hit));
                 let ringing = faults.iter().filter_map(|fault| match fault {
                     HitFault::NotDecayed { ratio } => Some(*ratio),
                     _ => None,
@@ -94,13 +97,21 @@ impl TimeHistory {
             return Err(DataError::NoUsableHit { file: self.file.clone(), reasons: reasons.join("; ") });
         }
         notes.append(&mut reasons);
-        let window = estimation.window.resolved(left, &kept, self.rate);
+        let hits: Vec<&Hit> = kept.iter().map(|(_, hit)| *hit).collect();
+        let window = estimation.window.resolved(left, &hits, self.rate);
         notes.extend(window.notes(left.is_some()));
 
-        let samples = kept.first().map_or(0, |hit| hit.force.len());
-        let sums = sums(&kept, samples, window, self.rate);
+        let samples = hits.first().map_or(0, |hit| hit.force.len());
+        let mut sums = spectrum::sums(&hits, samples, window, self.rate);
         let step = self.rate / samples as f64;
-        let end = self.band_end(&sums, estimation.force_drop, step, &mut notes);
+        let mut band = self.band_end(&sums, estimation.force_drop, step);
+        if self.heed_agreement(&sums, 1..band.0, &mut kept, &mut notes)? {
+            let hits: Vec<&Hit> = kept.iter().map(|(_, hit)| *hit).collect();
+            sums = spectrum::sums(&hits, samples, window, self.rate);
+            band = self.band_end(&sums, estimation.force_drop, step);
+        }
+        let (end, cut) = band;
+        notes.extend(cut);
         let noise = (kept.len() == 1).then(|| noise_above(&sums, end)).flatten();
         let mut result = Accelerance::empty(self.force_at, self.response_at);
         let (mut variance, mut coherence) = (Vec::new(), Vec::new());
@@ -159,8 +170,57 @@ impl TimeHistory {
         Ok(())
     }
 
-    /// The first line that is left out above the band.
-    fn band_end(&self, sums: &Sums, force_drop: f64, step: f64, notes: &mut Vec<String>) -> usize {
+    /// Takes hits that stand beside the others out of `kept`, and says so; true where any was.
+    fn heed_agreement(
+        &self,
+        sums: &Sums,
+        band: Range<usize>,
+        kept: &mut Vec<(usize, &Hit)>,
+        notes: &mut Vec<String>,
+    ) -> Result<bool, DataError> {
+        let named = |own: usize| self.hit_name(kept[own].0);
+        match sums.agreement(band) {
+            Agreement::Alike => Ok(false),
+            Agreement::Astray(astray) => {
+                notes.extend(astray.iter().map(|(own, fault)| format!("{} left out: {fault}", named(*own))));
+                let mut own = 0..;
+                kept.retain(|_| own.next().is_none_or(|index| astray.iter().all(|(of, _)| *of != index)));
+                Ok(true)
+            }
+            Agreement::Parted { second, apart, within } => {
+                let names: Vec<String> = second.iter().map(|&own| named(own)).collect();
+                Err(DataError::NoUsableHit {
+                    file: self.file.clone(),
+                    reasons: format!(
+                        "{} differ by {:.0} % in the median line from the other hits of force [{}, {}], response [{}, {}], \
+                         and agree with one another within {:.0} %: they belong to another place; correct force_at or \
+                         response_at",
+                        names.join(", "),
+                        100.0 * apart,
+                        self.force_at.x,
+                        self.force_at.y,
+                        self.response_at.x,
+                        self.response_at.y,
+                        (100.0 * within).ceil()
+                    ),
+                })
+            }
+            Agreement::Differ { by, in_gain } => {
+                let names: Vec<String> = (0..kept.len()).map(named).collect();
+                let how = if in_gain {
+                    "over the whole band, and nothing tells which is right: a sample cut off, or another \
+                     gain"
+                } else {
+                    "in the median line: much noise, or hits at several places"
+                };
+                notes.push(format!("{} differ by {:.1} % {how}", names.join(", "), 100.0 * by));
+                Ok(false)
+            }
+        }
+    }
+
+    /// The first line that is left out above the band, and what to say of it.
+    fn band_end(&self, sums: &Sums, force_drop: f64, step: f64) -> (usize, Option<String>) {
         let half = SMOOTHED_LINES / 2;
         let smooth = |line: usize| {
             let lines = sums.force.get(line.saturating_sub(half).max(1)..(line + half + 1).min(sums.force.len()));
@@ -172,13 +232,11 @@ impl TimeHistory {
         let least = greatest * 10f64.powf(-force_drop / 10.0);
         let top = smoothed.iter().position(|&value| value == greatest).unwrap_or(0);
         let end = smoothed.iter().skip(top).position(|&value| value < least).map(|after| top + after);
-        if let Some(end) = end {
-            notes.push(format!(
-                "band cut at {:.1} Hz: above, the force is more than {force_drop} dB below its greatest line",
-                end as f64 * step
-            ));
-        }
-        end.unwrap_or(sums.force.len())
+        let cut = end.map(|end| {
+            let at = end as f64 * step;
+            format!("band cut at {at:.1} Hz: above, the force is more than {force_drop} dB below its greatest line")
+        });
+        (end.unwrap_or(sums.force.len()), cut)
     }
 }
 

@@ -31,6 +31,9 @@ impl TimeHistory {
                 theirs.0, theirs.1, mine.0, mine.1
             )
         } else {
+            let joined = self.hits.len();
+            self.further_files.push((joined, other.file));
+            self.further_files.extend(other.further_files.into_iter().map(|(from, file)| (joined + from, file)));
             self.hits.extend(other.hits);
             self.notes.extend(other.notes);
             return Ok(());

@@ -3,7 +3,8 @@
 use std::fmt;
 
 use super::{
-    extremes::{Levels, median, peak_among},
+    blow::force_fault,
+    extremes::Levels,
     overload::overload,
     time_history::Hit,
     wrong_sample::{cut_crest, dropped_sample},
@@ -69,6 +70,18 @@ pub enum HitFault {
         /// Peak over the noise's standard deviation \[1\].
         signal_to_noise: f64,
     },
+    /// An accelerance beside that of the other hits over the whole band.
+    Astray {
+        /// Its magnitude over theirs \[1\].
+        gain: f64,
+    },
+    /// An accelerance unlike that of the other hits.
+    Elsewhere {
+        /// How far it is from theirs in the median line, over the greater of both \[1\].
+        apart: f64,
+        /// How far these differ \[1\].
+        within: f64,
+    },
     /// A response that still rings at the record's end.
     NotDecayed {
         /// Rms of the last twentieth over the greatest rms of a twentieth \[1\].
@@ -107,7 +120,8 @@ impl fmt::Display for HitFault {
                 )
             }
             Self::DoubleHit { after, ratio } => {
-                write!(f, "double hit: {:.1} % of the force again after {:.1} ms", 100.0 * ratio, 1e3 * after)
+                let when = if after < 0.0 { "touched before, by" } else { "again after" };
+                write!(f, "double hit: {:.1} % of the force {when} {:.1} ms", 100.0 * ratio, 1e3 * after.abs())
             }
             Self::RateTooLow { samples, rate } => write!(
                 f,
@@ -117,6 +131,20 @@ impl fmt::Display for HitFault {
             Self::WeakForce { signal_to_noise } => {
                 write!(f, "force only {signal_to_noise:.1} times its noise, {LEAST_SIGNAL_TO_NOISE} needed")
             }
+            Self::Astray { gain } => write!(
+                f,
+                "its accelerance is {:.1} % {} that of the other hits over the whole band, which agree: a sample cut off at \
+                 the crest, or another gain",
+                100.0 * (gain - 1.0).abs(),
+                if gain > 1.0 { "above" } else { "below" }
+            ),
+            Self::Elsewhere { apart, within } => write!(
+                f,
+                "its accelerance differs by {:.0} % in the median line from that of the other hits, which agree within \
+                 {:.0} %: another place, or a spoilt record",
+                100.0 * apart,
+                (100.0 * within).ceil()
+            ),
             Self::NotDecayed { ratio } => {
                 write!(f, "response not decayed, {:.2} % left at the end", 100.0 * ratio)
             }
@@ -124,23 +152,17 @@ impl fmt::Display for HitFault {
     }
 }
 
-/// Force that counts as a touch, over the peak: less does not change the spectrum by more than this.
-const TOUCH: f64 = 0.05;
-
-/// Next to the pulse, within three times its length, up to this the anti-alias filter rings.
-const FILTER_RINGING: f64 = 0.2;
-
-/// Samples that a pulse lasts at most where the sampling rate decides its shape: a band-limited pulse is no shorter.
-const SHORTEST_PULSE: usize = 4;
-
 /// Peak over noise below which the force spectrum is no better than a few per cent.
-const LEAST_SIGNAL_TO_NOISE: f64 = 20.0;
+pub(super) const LEAST_SIGNAL_TO_NOISE: f64 = 20.0;
 
 /// Rms left at the end, over the greatest, that leakage makes visible between the peaks.
 const DECAYED: f64 = 1e-3;
 
-/// Rms left at the end that is ringing for certain, noise or not.
+/// Rms left at the end that is ringing for certain, unless the channel is that noisy.
 const RINGING: f64 = 0.1;
+
+/// Rms over the noise's, below which it may be all noise.
+const NOISY: f64 = 1.5;
 
 /// Rms of four twentieths over that of the four before, below which it still falls; noise stays as it is.
 const FALLING: f64 = 0.9;
@@ -172,65 +194,25 @@ impl Hit {
             faults.extend(channels.iter().filter_map(|(channel, values)| dropped_sample(*channel, values)));
         }
         faults.extend(force_fault(&self.force, force, rate));
-        faults.extend(not_decayed(&self.acceleration));
+        faults.extend(self.not_decayed());
         faults
     }
-}
 
-fn force_fault(force: &[f64], Levels { extremes, middle: offset }: Levels, rate: f64) -> Option<HitFault> {
-    let (peak, height) = peak_among(force, offset, extremes);
-    let sign = height.signum();
-    let push = |value: f64| sign * (value - offset);
-    let threshold = TOUCH * height.abs();
-    // Runs of samples that push: [from, to).
-    let mut runs: Vec<(usize, usize, f64)> = Vec::new();
-    for (n, &value) in force.iter().enumerate() {
-        let value = push(value);
-        if value <= threshold {
-            continue;
-        }
-        match runs.last_mut() {
-            Some((_, to, top)) if *to == n => (*to, *top) = (n + 1, top.max(value)),
-            _ => runs.push((n, n + 1, value)),
-        }
+    fn not_decayed(&self) -> Option<HitFault> {
+        let acceleration = &self.acceleration;
+        let mean = acceleration.iter().sum::<f64>() / acceleration.len() as f64;
+        let part = (acceleration.len() / 20).max(1);
+        let rms: Vec<f64> = acceleration
+            .chunks_exact(part)
+            .map(|chunk| (chunk.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / part as f64).sqrt())
+            .collect();
+        let greatest = rms.iter().copied().fold(0.0, f64::max);
+        let last = rms.last().copied().unwrap_or(0.0);
+        let ratio = last / greatest;
+        let mut last_eight = rms.rchunks(4).map(|part| part.iter().sum::<f64>());
+        let falls = last_eight.next().zip(last_eight.next()).is_some_and(|(last, before)| last < FALLING * before);
+        // A weak hit's channel is all noise at the end, as it was before the blow.
+        let is_noise = || self.noise_before_blow().is_some_and(|noise| last < NOISY * noise.acceleration);
+        ((ratio > RINGING && !is_noise()) || (ratio > DECAYED && falls)).then_some(HitFault::NotDecayed { ratio })
     }
-    let &(from, to, _) = runs.iter().find(|(from, to, _)| (*from..*to).contains(&peak))?;
-    let near = 3 * (to - from);
-    let before = force.get(..from.saturating_sub(near)).unwrap_or_default();
-    let after = force.get(to + near..).unwrap_or_default();
-    let stride = ((before.len() + after.len()) / 1000).max(1);
-    let quiet = before.iter().chain(after).step_by(stride).map(|&value| push(value).abs()).collect();
-    // The median of |noise| is 0.6745 standard deviations; second touches hardly move it.
-    let noise = median(quiet) / 0.674_49;
-    let signal_to_noise = height.abs() / noise;
-    if noise > 0.0 && signal_to_noise < LEAST_SIGNAL_TO_NOISE {
-        return Some(HitFault::WeakForce { signal_to_noise });
-    }
-    let second = runs.iter().filter(|run| run.0 != from).find(|&&(other_from, other_to, top)| {
-        let gap = if other_from >= to { other_from - to } else { from.saturating_sub(other_to) };
-        gap > near || top > FILTER_RINGING * height.abs()
-    });
-    let &(other, _, top) = second?;
-    // A hammer only pushes, a filter swings both ways. Between the pulse and what looks like a second touch of a pulse
-    // this short, a pull tells the filter's ringing.
-    let (start, end) = (from.min(other), to.max(other));
-    let pulls = force.get(start..end).unwrap_or_default().iter().any(|&value| push(value) < -threshold);
-    Some(match to - from {
-        samples if samples <= SHORTEST_PULSE && pulls => HitFault::RateTooLow { samples, rate },
-        _ => HitFault::DoubleHit { after: (other as f64 - from as f64) / rate, ratio: top / height.abs() },
-    })
-}
-
-fn not_decayed(acceleration: &[f64]) -> Option<HitFault> {
-    let mean = acceleration.iter().sum::<f64>() / acceleration.len() as f64;
-    let part = (acceleration.len() / 20).max(1);
-    let rms: Vec<f64> = acceleration
-        .chunks_exact(part)
-        .map(|chunk| (chunk.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / part as f64).sqrt())
-        .collect();
-    let greatest = rms.iter().copied().fold(0.0, f64::max);
-    let ratio = rms.last().copied().unwrap_or(0.0) / greatest;
-    let mut last_eight = rms.rchunks(4).map(|part| part.iter().sum::<f64>());
-    let falls = last_eight.next().zip(last_eight.next()).is_some_and(|(last, before)| last < FALLING * before);
-    (ratio > RINGING || (ratio > DECAYED && falls)).then_some(HitFault::NotDecayed { ratio })
 }

@@ -1,11 +1,13 @@
 //! Records to accelerance: channels put right, hits judged, spectra averaged, each line with its variance.
 
 mod accelerance;
+mod blow;
 mod channel_noise;
 mod channels;
 mod estimate;
 mod extremes;
 mod gather;
+mod hit_agreement;
 mod hit_faults;
 mod node_numbers;
 mod overload;

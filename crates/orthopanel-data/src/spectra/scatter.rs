@@ -35,6 +35,13 @@ impl NoisePower {
     }
 }
 
+impl NoisePower {
+    /// $N_a + |H|^2N_f$ of a line with this $|H|^2$.
+    pub(super) fn of_line(self, power: f64) -> f64 {
+        self.acceleration + power * self.force
+    }
+}
+
 /// Sums of a noise $s_i$ over the hits, each with its share $h_i$.
 #[derive(Clone, Copy, Default)]
 struct Shared {
@@ -115,7 +122,7 @@ impl Sums {
         let per_force = 1.0 / force;
         for (hit, noise) in self.powers.iter().zip(self.noise.iter().flatten()) {
             let share = hit[line] * per_force;
-            sums.channels.add(share, noise.acceleration + power * noise.force);
+            sums.channels.add(share, noise.of_line(power));
             sums.motion.add(share, power * hit[line]);
         }
         sums

@@ -19,6 +19,9 @@ pub(super) struct Sums {
     pub(super) powers: Vec<Vec<f64>>,
     /// Sums of $|F|^2|A|^2$ and $|F|^2\bar F A$.
     weighted: (Vec<f64>, Vec<Complex64>),
+    /// $A/F$ of each hit at every line whose number `stride` divides.
+    pub(super) quotients: Vec<Vec<Complex64>>,
+    pub(super) stride: usize,
     /// Noise of every hit; `None` where one does not tell it, and for a single hit.
     pub(super) noise: Option<Vec<NoisePower>>,
 }
@@ -39,6 +42,8 @@ impl Sums {
             *weighted.1 += power * cross;
         }
         self.powers.push(powers);
+        let sampled = force.iter().zip(motion).step_by(self.stride);
+        self.quotients.push(sampled.map(|(f, a)| a / f).collect());
     }
 
     /// Sums of $|F|^4$, $|F|^2|A|^2$ and $|F|^2\bar F A$ at a line.
@@ -47,6 +52,9 @@ impl Sums {
         (force4, self.weighted.0[line], self.weighted.1[line])
     }
 }
+
+/// Lines at which hits are held against one another, at most.
+const MOST_SAMPLED: usize = 2048;
 
 /// Sums the spectra of `hits`, all of length `samples`.
 pub(super) fn sums(hits: &[&Hit], samples: usize, window: Window, rate: f64) -> Sums {
@@ -61,6 +69,8 @@ pub(super) fn sums(hits: &[&Hit], samples: usize, window: Window, rate: f64) -> 
         cross: vec![Complex64::default(); lines],
         powers: Vec::with_capacity(hits.len()),
         weighted: (vec![0.0; lines], vec![Complex64::default(); lines]),
+        quotients: Vec::with_capacity(hits.len()),
+        stride: lines.div_ceil(MOST_SAMPLED).max(1),
         noise: None,
     };
     let mut noise = Vec::with_capacity(hits.len());

@@ -26,6 +26,8 @@ pub struct TimeHistory {
     pub rate: f64,
     /// The hits; at least one, all of one length.
     pub hits: Vec<Hit>,
+    /// Where hits of several files stand together: each further file, and the index of its first hit.
+    pub further_files: Vec<(usize, PathBuf)>,
     /// What was mended or assumed, a sentence each.
     pub notes: Vec<String>,
 }
@@ -46,6 +48,15 @@ const STEP_TOLERANCE: f64 = 0.1;
 const LEAST_SAMPLES: usize = 16;
 
 impl TimeHistory {
+    /// A hit by its number from 1, and by its file where there are several.
+    pub(super) fn hit_name(&self, index: usize) -> String {
+        let Some((first, _)) = self.further_files.first() else { return format!("hit {}", index + 1) };
+        let later = self.further_files.iter().rev().find(|(from, _)| *from <= index);
+        let file = later.map_or(&self.file, |(_, file)| file);
+        debug_assert!(*first > 0);
+        format!("hit {} ({})", index + 1, file.file_name().unwrap_or(file.as_os_str()).display())
+    }
+
     /// Reads the file of a time-history measurement.
     ///
     /// # Errors
@@ -122,7 +133,8 @@ impl TimeHistory {
         }
         let rate = grid.map_or(0.0, |(_, rate)| rate);
         let RecordedResponse { force_at, response_at, .. } = *measurement;
-        Ok(Self { file: measurement.file.clone(), force_at, response_at, rate, hits, notes })
+        let file = measurement.file.clone();
+        Ok(Self { file, force_at, response_at, rate, hits, further_files: Vec::new(), notes })
     }
 }
 
@@ -150,13 +162,20 @@ fn hit(
     // A hammer's channel rests at its offset nearly all the time, and the motion swings about its own.
     let [pulse, ringing] =
         [&hit.force, &hit.acceleration].map(|channel| effective_samples(channel, sampled_median(channel)));
-    // A blow is over before the piece has rung: whatever the damping, a longer "force" is no force.
+    // A blow is over before the piece has rung, and pushes once or twice: a longer "force" that swings more often than
+    // the response is none. Noise alone makes a weak force long, too, but the response then swings more often.
     if pulse > ringing && ringing > 0.0 {
-        let problem = format!(
-            "the force lasts longer ({pulse:.0} samples) than the response ({ringing:.0}): the channels are swapped, or \
-             this was no hammer"
-        );
-        return Err(DataError::Channels { at: force_record, problem });
+        let pushes = hit.pushes();
+        std::mem::swap(&mut hit.force, &mut hit.acceleration);
+        let swapped = hit.pushes();
+        std::mem::swap(&mut hit.force, &mut hit.acceleration);
+        if swapped < pushes {
+            let problem = format!(
+                "the force lasts longer ({pulse:.0} samples) than the response ({ringing:.0}) and swings more often: the \
+                 channels are swapped, or this was no hammer"
+            );
+            return Err(DataError::Channels { at: force_record, problem });
+        }
     }
     Ok(hit)
 }

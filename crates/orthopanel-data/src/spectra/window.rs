@@ -66,8 +66,8 @@ impl Window {
             }
             _ => "what has not decayed leaks: record longer, or use the force and exponential window".into(),
         };
-        let of_hann = "Hann's window widens the peaks: damping read from them comes out too high, none or force and \
-                       exponential keep it";
+        let of_hann = "Hann's window shapes the decay: damping comes out too low for a blow before the record's middle, \
+                       too high after it; none or force and exponential keep it";
         ringing.then_some(of_ringing).into_iter().chain((self == Self::Hann).then(|| of_hann.into())).collect()
     }
 

@@ -50,7 +50,15 @@ impl Resonator {
 
 pub fn history(hits: Vec<Hit>) -> TimeHistory {
     let place = Place { x: 0.0, y: 0.0 };
-    TimeHistory { file: "hits.uff".into(), force_at: place, response_at: place, rate: RATE, hits, notes: Vec::new() }
+    TimeHistory {
+        file: "hits.uff".into(),
+        force_at: place,
+        response_at: place,
+        rate: RATE,
+        hits,
+        further_files: Vec::new(),
+        notes: Vec::new(),
+    }
 }
 
 /// Greatest relative deviation from the resonator's transfer function.

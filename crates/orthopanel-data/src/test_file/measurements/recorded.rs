@@ -1,5 +1,6 @@
 //! `kind = "time-history"` and `"accelerance"`: a file of records, the places, and the sensor's unit and direction.
 
+use std::fmt;
 use std::{io, path::PathBuf};
 
 use orthopanel_model::{Piece, Place};
@@ -40,6 +41,15 @@ pub enum Direction {
     AlongForce,
     /// `direction = -1`: against the force, so the record is turned round.
     AgainstForce,
+}
+
+impl fmt::Display for AccelerationUnit {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::MetrePerSecondSquared => "m/s2",
+            Self::StandardGravity => "g",
+        })
+    }
 }
 
 impl AccelerationUnit {

@@ -30,8 +30,9 @@ use crate::{importer, model_file, output, time_response};
 ///
 /// --method runge-kutta does the paper's section 3.5 on the same hits: beam elements with modal damping (eqs 26 to 28),
 /// integrated by the classic Runge-Kutta method, the force in straight lines between its samples. The exact modes and
-/// stepper under the same force stand beside it, each with its error against the record, and how far the two are apart;
-/// --steps more takes that down with the fourth power.
+/// stepper under the same force stand beside it, each with its error against the record, and how far the two are apart:
+/// the step's error, which --steps more takes down with the fourth power, and below it that of the elements' frequencies.
+/// With the same modes the two meet within 1e-8 of the peak.
 ///
 /// Examples: orthopanel simulate out/panel.fmu --force-file examples/half-sine.csv -o response.csv
 ///           orthopanel simulate out/model.json --force-file examples/made-hits/test.toml
