@@ -1,15 +1,9 @@
 """The panel under test, exported once for each version of the standard."""
 
-import json
-import os
-import subprocess
-from pathlib import Path
-
 import pytest
 
+from exported import ROOT, exporter  # noqa: F401  (ROOT is taken from here)
 from timoshenko import Beam
-
-ROOT = Path(__file__).resolve().parent.parent
 
 # Test piece 1 of the paper: table 3, mass per area of section 3.1, constants and damping of table 9.
 BEAM = Beam(length=0.8, width=0.1, thickness=0.03, mass_per_area=6.880, e_x=1.067e10, g_zx=5.304e8)
@@ -20,36 +14,21 @@ FORCES = [-0.3, -0.25, -0.15, -0.05, 0.0, 0.05, 0.15, 0.25, 0.4]
 RESPONSES = [0.3, -0.3]
 
 
-def model_file(beam):
-    """Text of the model file of a beam."""
+def model(beam=BEAM):
+    """The model file's content."""
     sizes = ("length", "width", "thickness", "mass_per_area")
-    content = {
+    return {
         "schema": "orthopanel.model/1",
         "piece": {name: getattr(beam, name) for name in sizes},
         "structure": "timoshenko-beam",
         "constants": {"e_x": beam.e_x, "g_zx": beam.g_zx},
         "damping": {"ratios": ZETAS, "beyond": 0.003},
     }
-    return json.dumps(content)
 
 
 @pytest.fixture(scope="session")
 def export(tmp_path_factory):
-    """Exports a panel to a file of this name; returns its path."""
-    folder = tmp_path_factory.mktemp("fmu")
-    command = os.environ.get("ORTHOPANEL", str(ROOT / "target/release/orthopanel"))
-
-    def export(name, *options, beam=BEAM, modes=len(ZETAS), forces=FORCES):
-        path = folder / name
-        model = path.with_suffix(".json")
-        model.write_text(model_file(beam))
-        words = [command, "export", str(model), "-o", str(path), "--modes", str(modes), *options]
-        words += [f"--force={x}" for x in forces] + [f"--response={x}" for x in RESPONSES]
-        done = subprocess.run(words, capture_output=True, text=True, cwd=ROOT)
-        assert done.returncode == 0, done.stderr
-        return path
-
-    return export
+    return exporter(tmp_path_factory.mktemp("fmu"), model, FORCES, RESPONSES, len(ZETAS))
 
 
 @pytest.fixture(scope="session", params=[2, 3], ids=["fmi2", "fmi3"])

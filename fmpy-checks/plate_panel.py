@@ -1,11 +1,7 @@
 """The plate under test, with ports off its centre line; its fixtures take the place of the beam's where they are imported."""
 
-import json
-import os
-import subprocess
-
 import pytest
-from conftest import ROOT
+from exported import exporter
 from plate_by_scikit_fem import shapes_at
 
 PIECE = {"length": 0.8, "width": 0.3, "thickness": 0.03, "mass_per_area": 6.880}
@@ -40,21 +36,7 @@ def modes_at(force, response, count=len(ZETAS)):
 
 @pytest.fixture(scope="session")
 def export(tmp_path_factory):
-    """Exports the plate to a file of this name; returns its path."""
-    folder = tmp_path_factory.mktemp("plate-fmu")
-    command = os.environ.get("ORTHOPANEL", str(ROOT / "target/release/orthopanel"))
-
-    def export(name, *options, modes=len(ZETAS), forces=FORCES, **changes):
-        path = folder / name
-        source = path.with_suffix(".json")
-        source.write_text(json.dumps(model(**changes)))
-        words = [command, "export", str(source), "-o", str(path), "--modes", str(modes), *options]
-        words += [f"--force={x},{y}" for x, y in forces] + [f"--response={x},{y}" for x, y in RESPONSES]
-        done = subprocess.run(words, capture_output=True, text=True, cwd=ROOT)
-        assert done.returncode == 0, done.stderr
-        return path
-
-    return export
+    return exporter(tmp_path_factory.mktemp("plate-fmu"), model, FORCES, RESPONSES, len(ZETAS))
 
 
 @pytest.fixture(scope="session", params=[2, 3], ids=["fmi2", "fmi3"])

@@ -8,7 +8,8 @@ from pathlib import Path
 
 import fmpy
 import pytest
-from conftest import BEAM, FORCES, RESPONSES, ROOT, model_file
+from conftest import BEAM, FORCES, RESPONSES, ROOT
+from conftest import model as beam_model
 from lxml import etree
 from masters import panel
 
@@ -49,8 +50,19 @@ def test_terminals_follow_the_schema_and_join_what_lies_at_one_place(export):
     assert found == expected
 
 
+def test_arrays_have_one_terminal_of_all_places(export):
+    with zipfile.ZipFile(export("array-terminal.fmu", "--fmi", "3", "--arrays")) as archive:
+        document = etree.fromstring(archive.read("terminalsAndIcons/terminalsAndIcons.xml"))
+        variables = etree.fromstring(archive.read("modelDescription.xml"))
+    etree.XMLSchema(file=str(SCHEMAS / "fmi3TerminalsAndIcons.xsd")).assertValid(document)
+    (terminal,) = document.iter("Terminal")
+    assert [member.get("variableName") for member in terminal] == ["force", "acceleration", "velocity", "displacement"]
+    sized = [v.get("name") for v in variables.iter("Float64") if v.find("Dimension") is not None]
+    assert {member.get("variableName") for member in terminal} <= set(sized)
+
+
 def test_the_documentation_tells_the_identification_and_the_band(tmp_path):
-    model = json.loads(model_file(BEAM))
+    model = beam_model(BEAM)
     model["constants"]["e_x"] = {"value": BEAM.e_x, "std": 4.5e7}
     model["provenance"] = {"piece": "piece <1>", "frequency_rms_percent": 0.21}
     path = tmp_path / "told.json"
@@ -70,7 +82,7 @@ def test_a_library_given_for_this_platform_takes_the_place_of_the_embedded_one(f
         name = next(name for name in archive.namelist() if name.startswith("binaries/"))
         (tmp_path / "own.so").write_bytes(archive.read(name) + b"and a mark of ours")
     model = tmp_path / "model.json"
-    model.write_text(model_file(BEAM))
+    model.write_text(json.dumps(beam_model(BEAM)))
     ports = ("--force=-0.3", "--response=0.3")
     merged = tmp_path / "merged.fmu"
     subprocess.run(export_words(model, merged, "--library", f"linux64={tmp_path / 'own.so'}", *ports), check=True)
@@ -90,7 +102,7 @@ def test_a_library_given_for_this_platform_takes_the_place_of_the_embedded_one(f
     ],
 )
 def test_libraries_that_are_none_are_refused(tmp_path, option, message):
-    (tmp_path / "model.json").write_text(model_file(BEAM))
+    (tmp_path / "model.json").write_text(json.dumps(beam_model(BEAM)))
     words = export_words("model.json", "x.fmu", "--library", option, "--force=-0.3", "--response=0.3")
     done = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True)
     assert done.returncode == 2 and message in done.stderr, done.stderr
@@ -98,7 +110,7 @@ def test_libraries_that_are_none_are_refused(tmp_path, option, message):
 
 
 def test_arrays_are_refused_for_fmi_2(tmp_path):
-    (tmp_path / "model.json").write_text(model_file(BEAM))
+    (tmp_path / "model.json").write_text(json.dumps(beam_model(BEAM)))
     words = export_words("model.json", "x.fmu", "--arrays", "--force=-0.3", "--response=0.3")
     done = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True)
     assert done.returncode == 2 and "FMI 2.0 has none" in done.stderr, done.stderr

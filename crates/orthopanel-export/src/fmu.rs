@@ -71,8 +71,7 @@ pub struct Fmu {
     model_description: String,
     resource: String,
     documentation: String,
-    /// None with arrays: a terminal cannot name one element.
-    terminals: Option<String>,
+    terminals: String,
     libraries: Vec<(String, Vec<u8>)>,
 }
 
@@ -115,7 +114,7 @@ impl Fmu {
             version: options.version,
             model_description: model_description::write(resource, options, &token)?,
             documentation: documentation::write(resource, origin.as_ref(), options),
-            terminals: if options.arrays { None } else { Some(terminals::write(resource)?) },
+            terminals: terminals::write(resource)?,
             libraries: library::all(options.version, &options.libraries)?,
             resource: text,
         })
@@ -143,8 +142,8 @@ impl Fmu {
                 vec![text("terminalsAndIcons/icon.png", ICON_PNG), text("terminalsAndIcons/icon.svg", ICON_SVG)]
             }
         });
-        if let (FmiVersion::Fmi3, Some(terminals)) = (self.version, &self.terminals) {
-            entries.push(text("terminalsAndIcons/terminalsAndIcons.xml", terminals.as_bytes()));
+        if self.version == FmiVersion::Fmi3 {
+            entries.push(text("terminalsAndIcons/terminalsAndIcons.xml", self.terminals.as_bytes()));
         }
         entries.extend(self.libraries.iter().map(|(path, content)| Entry {
             path: path.clone(),

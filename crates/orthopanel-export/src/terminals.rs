@@ -4,6 +4,7 @@
 use std::io;
 
 use orthopanel_fmu::Resource;
+use orthopanel_model::Place;
 use quick_xml::Writer;
 use quick_xml::events::{BytesDecl, Event};
 
@@ -11,11 +12,24 @@ use crate::ExportError;
 
 const MOTIONS: [&str; 3] = ["acceleration", "velocity", "displacement"];
 
-/// One terminal: numbers of the force and of the response at its place, from 1.
+/// One terminal: name and variable of each of its members.
 struct Terminal {
-    force: Option<usize>,
-    response: Option<usize>,
+    name: String,
     description: String,
+    members: Vec<(&'static str, String)>,
+}
+
+impl Terminal {
+    /// Of a place: numbers of the force and of the response there, from 1.
+    fn at(place: &Place, force: Option<usize>, response: Option<usize>) -> Self {
+        let motions = response.into_iter().flat_map(|number| MOTIONS.map(|motion| (motion, number)));
+        let members = force.map(|number| ("force", number)).into_iter().chain(motions);
+        Self {
+            name: String::new(),
+            description: format!("At x = {} m, y = {} m from the centre", place.x, place.y),
+            members: members.map(|(member, number)| (member, format!("{member}_{number}"))).collect(),
+        }
+    }
 }
 
 /// The text of the file.
@@ -25,10 +39,7 @@ pub(crate) fn write(resource: &Resource) -> Result<String, ExportError> {
         xml.create_element("fmiTerminalsAndIcons").with_attribute(("fmiVersion", "3.0")).write_inner_content(
             |xml| {
                 xml.create_element("Terminals").write_inner_content(|xml| {
-                    terminals(resource)
-                        .iter()
-                        .enumerate()
-                        .try_for_each(|(index, terminal)| one(xml, index + 1, terminal))
+                    terminals(resource).iter().try_for_each(|terminal| one(xml, terminal))
                 })?;
                 Ok(())
             },
@@ -40,34 +51,37 @@ pub(crate) fn write(resource: &Resource) -> Result<String, ExportError> {
     Ok(text + "\n")
 }
 
-/// Each force with the first response at its place that no other force has, then the responses left over.
+/// Each force with the first response at its place that no other force has, then the responses left over. Of arrays, in which
+/// no member can be named by itself, one terminal with all.
 fn terminals(resource: &Resource) -> Vec<Terminal> {
     let ports = resource.ports();
+    let table = resource.variables();
+    if !table.arrays().is_empty() {
+        let members = table.arrays().iter().map(|array| (array.name, array.name.to_owned())).collect();
+        let description = "All forces, and all motions of the panel, in the order of the places".into();
+        return vec![Terminal { name: "places".into(), description, members }];
+    }
     let mut left: Vec<usize> = (0..ports.responses.len()).collect();
     let mut list = Vec::new();
     for (force, place) in ports.forces.iter().enumerate() {
         let same = left.iter().position(|&response| ports.responses.get(response) == Some(place));
         let response = same.map(|position| left.remove(position));
-        let description = format!("At x = {} m, y = {} m from the centre", place.x, place.y);
-        list.push(Terminal { force: Some(force + 1), response: response.map(|number| number + 1), description });
+        list.push(Terminal::at(place, Some(force + 1), response.map(|number| number + 1)));
     }
     for response in left {
         let Some(place) = ports.responses.get(response) else { continue };
-        let description = format!("At x = {} m, y = {} m from the centre", place.x, place.y);
-        list.push(Terminal { force: None, response: Some(response + 1), description });
+        list.push(Terminal::at(place, None, Some(response + 1)));
     }
+    list.iter_mut().zip(1..).for_each(|(terminal, number)| terminal.name = format!("place_{number}"));
     list
 }
 
-fn one(xml: &mut Writer<Vec<u8>>, number: usize, terminal: &Terminal) -> io::Result<()> {
-    let name = format!("place_{number}");
+fn one(xml: &mut Writer<Vec<u8>>, terminal: &Terminal) -> io::Result<()> {
     // A bus joins what both sides have: a sensor has no force, a hammer no motion.
-    let attributes = [("name", name.as_str()), ("matchingRule", "bus"), ("description", &terminal.description)];
+    let attributes =
+        [("name", terminal.name.as_str()), ("matchingRule", "bus"), ("description", &terminal.description)];
     xml.create_element("Terminal").with_attributes(attributes).write_inner_content(|xml| {
-        let force = terminal.force.map(|number| ("force", number));
-        let motions = terminal.response.map(|number| MOTIONS.map(|motion| (motion, number)));
-        for (member, number) in force.into_iter().chain(motions.into_iter().flatten()) {
-            let variable = format!("{member}_{number}");
+        for (member, variable) in &terminal.members {
             let attributes = [("variableName", variable.as_str()), ("memberName", member), ("variableKind", "signal")];
             xml.create_element("TerminalMemberVariable").with_attributes(attributes).write_empty()?;
         }

@@ -5,30 +5,19 @@
 //! With `FUZZ_TELL` set each seed is printed before it runs, to find a call that does not return.
 #![expect(unsafe_code, reason = "an importer in Rust calls C functions")]
 
-use std::ffi::{CString, c_char, c_int, c_void};
+use std::ffi::{CString, c_char, c_int};
 use std::ptr::null_mut;
 use std::time::{Duration, Instant};
 
 use orthopanel_fmu::{RESOURCE_FILE, Resource, content_token};
 use orthopanel_model::{ModeRange, PanelModel, Place, Ports};
 
-type Pointer = *mut c_void;
+#[path = "../tests/instantiation/mod.rs"]
+mod instantiation;
+
+use instantiation::{Pointer, fmi2Instantiate, fmi3InstantiateCoSimulation};
 
 unsafe extern "C" {
-    fn fmi3InstantiateCoSimulation(
-        name: *const c_char,
-        token: *const c_char,
-        resources: *const c_char,
-        visible: u8,
-        logging: u8,
-        events: u8,
-        early: u8,
-        intermediate: *const u32,
-        count: usize,
-        environment: Pointer,
-        log: Pointer,
-        update: Pointer,
-    ) -> Pointer;
     fn fmi3InstantiateModelExchange(
         name: *const c_char,
         token: *const c_char,
@@ -37,15 +26,6 @@ unsafe extern "C" {
         logging: u8,
         environment: Pointer,
         log: Pointer,
-    ) -> Pointer;
-    fn fmi2Instantiate(
-        name: *const c_char,
-        kind: c_int,
-        guid: *const c_char,
-        location: *const c_char,
-        callbacks: *const [Pointer; 5],
-        visible: c_int,
-        logging: c_int,
     ) -> Pointer;
 }
 

@@ -1,7 +1,7 @@
 //! Several instances in several threads, through the C functions of both versions: each runs as if it were alone.
 #![expect(unsafe_code, reason = "an importer in Rust calls C functions")]
 
-use std::ffi::{CString, c_char, c_int, c_void};
+use std::ffi::{CString, c_int};
 use std::path::Path;
 use std::ptr::null_mut;
 use std::sync::Barrier;
@@ -9,38 +9,17 @@ use std::sync::Barrier;
 use orthopanel_fmu::{RESOURCE_FILE, Resource, content_token};
 use orthopanel_model::{ModeRange, PanelModel, Place, Ports};
 
-type Pointer = *mut c_void;
+mod instantiation;
+
+use instantiation::{Pointer, fmi2Instantiate, fmi3InstantiateCoSimulation};
 
 unsafe extern "C" {
-    fn fmi2Instantiate(
-        name: *const c_char,
-        kind: c_int,
-        guid: *const c_char,
-        location: *const c_char,
-        callbacks: *const [Pointer; 5],
-        visible: c_int,
-        logging: c_int,
-    ) -> Pointer;
     fn fmi2EnterInitializationMode(instance: Pointer) -> c_int;
     fn fmi2ExitInitializationMode(instance: Pointer) -> c_int;
     fn fmi2SetReal(instance: Pointer, references: *const u32, count: usize, values: *const f64) -> c_int;
     fn fmi2GetReal(instance: Pointer, references: *const u32, count: usize, values: *mut f64) -> c_int;
     fn fmi2DoStep(instance: Pointer, start: f64, step: f64, last: c_int) -> c_int;
     fn fmi2FreeInstance(instance: Pointer);
-    fn fmi3InstantiateCoSimulation(
-        name: *const c_char,
-        token: *const c_char,
-        resources: *const c_char,
-        visible: u8,
-        logging: u8,
-        events: u8,
-        early: u8,
-        intermediate: *const u32,
-        count: usize,
-        environment: Pointer,
-        log: Pointer,
-        update: Pointer,
-    ) -> Pointer;
     fn fmi3EnterInitializationMode(i: Pointer, has: u8, tolerance: f64, start: f64, stops: u8, stop: f64) -> c_int;
     fn fmi3ExitInitializationMode(instance: Pointer) -> c_int;
     fn fmi3SetFloat64(instance: Pointer, references: *const u32, count: usize, values: *const f64, n: usize) -> c_int;

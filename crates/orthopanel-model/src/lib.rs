@@ -5,6 +5,7 @@ mod block_krylov;
 mod block_pencil;
 mod boundary;
 mod constant;
+mod core_in_frequency;
 mod dense;
 mod effects;
 mod error;
@@ -33,7 +34,7 @@ pub use constant::Constant;
 pub use effects::{
     Action, ChannelFactor, CoreFit, CoreLine, CoreModulus, Effect, EffectParameter, EffectSetting, EffectState,
     ElementLaw, ElementLine, FactorLine, FieldTerm, LineDerivatives, LineEvaluator, NaturalFrequencies, Owner,
-    PointElement, ReceptanceModel, ReceptanceSetup, RecordSetting, Reference, Scale, Seat, Share, Shift,
+    PointElement, ReceptanceModel, ReceptanceSetup, RecordSetting, Reference, RelaxingLines, Scale, Seat, Share, Shift,
     SuspensionMotion, catalogue, effect, natural_frequencies,
 };
 pub use error::ModelError;

@@ -35,6 +35,14 @@ impl PanelMode {
         self.angular_frequency() / std::f64::consts::TAU
     }
 
+    /// $\zeta$ where effects give it; `None` where it is the model's own for that number.
+    pub fn own_damping_ratio(&self) -> Option<f64> {
+        match &self.shape {
+            Shape::Dressed(mode) => Some(mode.damping_ratio),
+            Shape::Beam(_) | Shape::Plate { .. } => None,
+        }
+    }
+
     /// Whether the panel moves without strain.
     pub fn is_rigid(&self) -> bool {
         self.angular_frequency() == 0.0
@@ -42,13 +50,17 @@ impl PanelMode {
 
     /// Nodal lines crossed along x and along y between the edges; a beam has none along y.
     pub fn nodes(&self) -> [usize; 2] {
-        self.nodes
+        match &self.shape {
+            Shape::Dressed(mode) => mode.nodes(),
+            Shape::Beam(_) | Shape::Plate { .. } => self.nodes,
+        }
     }
 
     /// The name of a plate's mode; a beam's modes need none beside their nodes.
     pub fn name(&self) -> Option<ModeName> {
         match &self.shape {
-            Shape::Beam(_) | Shape::Dressed(_) => None,
+            Shape::Beam(_) => None,
+            Shape::Dressed(mode) => mode.name(),
             Shape::Plate { name, .. } => Some(*name),
         }
     }
@@ -71,9 +83,9 @@ impl PanelMode {
         Self { nodes: [crossings(&deflections), 0], shape: Shape::Beam(mode) }
     }
 
-    /// A mode of a beam with effects.
+    /// A mode of a panel with effects; its nodes are counted when they are asked for.
     pub(crate) fn of_dressed(mode: DressedMode) -> Self {
-        Self { nodes: [mode.nodes, 0], shape: Shape::Dressed(mode) }
+        Self { nodes: [0, 0], shape: Shape::Dressed(mode) }
     }
 
     pub(crate) fn of_plate(plate: &Arc<MindlinPlate>, mode: RitzMode) -> Self {
@@ -98,10 +110,7 @@ impl NaturalMode for PanelMode {
     }
 
     fn own_damping(&self) -> Option<f64> {
-        match &self.shape {
-            Shape::Dressed(mode) => Some(mode.damping_ratio),
-            Shape::Beam(_) | Shape::Plate { .. } => None,
-        }
+        self.own_damping_ratio()
     }
 
     fn damping_coupling(&self) -> &[f64] {

@@ -2,10 +2,10 @@
 
 use std::sync::Arc;
 
-use crate::effects::DressedPanel;
+use crate::effects::{DressedPanel, Even};
 use crate::{
-    BeamConstants, BeamMode, EffectState, ExactBeam, MindlinPlate, ModalModel, ModelError, Owner, PLATE_CONSTANTS,
-    PanelMode, PanelModel, Place, RitzMode, Structure, StructureKind, TimoshenkoBeam, ritz_modes,
+    BeamConstants, BeamMode, EffectSetting, EffectState, ExactBeam, MindlinPlate, ModalModel, ModelError, Owner,
+    PLATE_CONSTANTS, PanelMode, PanelModel, Place, RitzMode, Structure, StructureKind, TimoshenkoBeam, ritz_modes,
 };
 
 /// Which modes to keep beside the rigid ones.
@@ -36,7 +36,8 @@ impl ModeRange {
 
 impl PanelModel {
     /// The rigid modes, then the flexible ones of `range`, in rising order, of whatever structure the model has: exact
-    /// for a beam, and for a plate on a basis that holds them to about 1e-4 of their frequencies.
+    /// for a beam, and for a plate on a basis that holds them to about 1e-4 of their frequencies. With a viscoelastic core each
+    /// at the core's storage modulus at its own frequency, with the core's loss in its damping ratio.
     ///
     /// # Errors
     /// [`ModelError::MissingConstant`], [`ModelError::Constant`], [`ModelError::Size`] or
@@ -45,7 +46,8 @@ impl PanelModel {
     /// version cannot solve.
     pub fn modes(&self, range: ModeRange) -> Result<Vec<PanelMode>, ModelError> {
         match self.structure {
-            StructureKind::TimoshenkoBeam if !self.effects.is_empty() => self.dressed_modes(range.checked()?),
+            _ if self.relaxes() => self.modes_with_core(range),
+            _ if !self.effects.is_empty() => self.dressed_modes(range.checked()?),
             StructureKind::TimoshenkoBeam => {
                 let modes = self.beam_modes(range)?;
                 let rigid = self.boundary.rigid_modes();
@@ -55,7 +57,6 @@ impl PanelModel {
             }
             StructureKind::MindlinPlate => {
                 self.check()?;
-                self.check_effects()?;
                 let (plate, modes) = self.plate_modes(range.checked()?)?;
                 let plate = Arc::new(plate);
                 Ok(modes.into_iter().map(|mode| PanelMode::of_plate(&plate, mode)).collect())
@@ -84,20 +85,20 @@ impl PanelModel {
         })
     }
 
-    /// Modes of a beam with effects. Those of the bare modes' damping ratios that they hold mix in each.
+    /// Modes of a panel with effects. Those of the bare modes' damping ratios that they hold mix in each.
     fn dressed_modes(&self, range: ModeRange) -> Result<Vec<PanelMode>, ModelError> {
-        let (constants, effects) = self.beam_with_effects()?;
+        let (values, effects) = self.with_effects()?;
+        let setting = EffectSetting::of_panel(&self.piece, self.boundary);
         let first = |count: usize| {
-            let values = [constants.e_x, constants.g_zx];
-            DressedPanel::modes((&self.piece, self.boundary), &values, &effects, &self.damping, count)
+            let even = self.even(&setting, count)?;
+            DressedPanel::modes(&setting, &even, &values, &effects, &self.damping, count)
         };
         let modes = match range {
             ModeRange::Count(count) => first(count)?,
             ModeRange::UpTo(frequency) => {
                 let limit = frequency * std::f64::consts::TAU;
-                // As many as the bare beam has there, and what resonators and masses may bring down.
-                let bare = ExactBeam::new(&self.piece, self.boundary, constants)?.count_below(frequency);
-                let mut count = bare + effects.len() + 4;
+                // As many as the bare panel has there, and what resonators and masses may bring down.
+                let mut count = self.bare_count(&values, frequency)? + effects.len() + 4;
                 loop {
                     let modes = first(count.min(MOST_MODES))?;
                     if count >= MOST_MODES || modes.last().is_some_and(|mode| mode.angular_frequency > limit) {
@@ -110,15 +111,40 @@ impl PanelModel {
         Ok(modes.into_iter().map(PanelMode::of_dressed).collect())
     }
 
-    /// The constants of a beam and its effects, all of which are the panel's.
-    pub(crate) fn beam_with_effects(&self) -> Result<(BeamConstants, Vec<EffectState>), ModelError> {
+    /// What vibrates without effects, on a basis for `count` modes.
+    pub(crate) fn even(&self, setting: &EffectSetting, count: usize) -> Result<Even, ModelError> {
+        match self.structure {
+            StructureKind::TimoshenkoBeam => Even::beam(setting, count),
+            StructureKind::MindlinPlate => Ok(Even::Plate),
+        }
+    }
+
+    /// Flexible modes without effects up to a frequency \[Hz\]: of a plate roughly.
+    pub(crate) fn bare_count(&self, values: &[f64], frequency: f64) -> Result<usize, ModelError> {
+        match (self.structure, values) {
+            (StructureKind::TimoshenkoBeam, &[e_x, g_zx]) => {
+                Ok(ExactBeam::new(&self.piece, self.boundary, BeamConstants { e_x, g_zx })?.count_below(frequency))
+            }
+            _ => MindlinPlate::estimated_count(&self.piece, self.boundary, values, frequency),
+        }
+    }
+
+    /// The values of the constants, and the effects, all of which are the panel's.
+    pub(crate) fn with_effects(&self) -> Result<(Vec<f64>, Vec<EffectState>), ModelError> {
         self.check()?;
         let effects = self.effects.iter().map(EffectState::from_entry).collect::<Result<Vec<_>, _>>()?;
         if let Some(state) = effects.iter().find(|state| state.effect.owner() != Owner::Panel) {
             let (effect, owner) = (state.effect.id(), state.effect.owner().name());
             return Err(ModelError::EffectOwner { effect, owner });
         }
-        Ok((BeamConstants { e_x: self.constant("e_x")?, g_zx: self.constant("g_zx")? }.checked()?, effects))
+        let values = match self.structure {
+            StructureKind::TimoshenkoBeam => {
+                let constants = BeamConstants { e_x: self.constant("e_x")?, g_zx: self.constant("g_zx")? }.checked()?;
+                vec![constants.e_x, constants.g_zx]
+            }
+            StructureKind::MindlinPlate => self.plate_constants()?.to_vec(),
+        };
+        Ok((values, effects))
     }
 
     fn plate_constants(&self) -> Result<[f64; 6], ModelError> {
@@ -194,7 +220,8 @@ impl PanelModel {
     /// The modes of `range` as seen from these ports.
     ///
     /// # Errors
-    /// As [`PanelModel::modes`], and [`ModelError::OffPiece`] for a port off the piece.
+    /// As [`PanelModel::modes`], [`ModelError::OffPiece`] for a port off the piece, and [`ModelError::Unsupported`] for a
+    /// viscoelastic core, in which each mode would stand for another modulus: see [`PanelModel::time_model`].
     pub fn modal_model(
         &self,
         range: ModeRange,
@@ -203,6 +230,9 @@ impl PanelModel {
     ) -> Result<ModalModel, ModelError> {
         for &place in forces.iter().chain(responses) {
             self.piece.contains(place)?;
+        }
+        if self.relaxes() {
+            return Err(ModelError::Unsupported("viscoelastic-core in a sum of modes".into()));
         }
         ModalModel::of_modes(&self.modes(range)?, &self.damping, forces, responses)
     }

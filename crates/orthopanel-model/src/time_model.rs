@@ -1,7 +1,7 @@
 //! What a time stepper needs of a panel: its modes, and the internal variables of a core that relaxes.
 
 use crate::effects::{CoreFit, DressedPanel};
-use crate::{ExactBeam, ModalModel, ModeRange, ModelError, PanelModel, Place, StructureKind};
+use crate::{EffectSetting, ModalModel, ModeRange, ModelError, PanelModel, Place};
 
 /// Modes as seen from ports, ready to be stepped.
 #[derive(Debug, Clone, PartialEq)]
@@ -15,11 +15,16 @@ pub struct TimeModel {
 }
 
 impl PanelModel {
+    /// Whether a viscoelastic core is among the effects.
+    pub(crate) fn relaxes(&self) -> bool {
+        self.effects.iter().any(|entry| entry.id == CORE)
+    }
+
     /// The modes of `range` as seen from these ports, and with a viscoelastic core those of the enlarged panel: the same
     /// number whatever the constants. Beside a core, damping ratios are those of the bare modes without it.
     ///
     /// # Errors
-    /// As [`PanelModel::modal_model`], and [`ModelError::Unsupported`] for a core beside masses, springs or resonators.
+    /// As [`PanelModel::modal_model`].
     pub fn time_model(&self, range: ModeRange, forces: &[Place], responses: &[Place]) -> Result<TimeModel, ModelError> {
         if let Some(model) = self.relaxing_model(range, forces, responses)? {
             return Ok(model);
@@ -36,17 +41,16 @@ impl PanelModel {
         forces: &[Place],
         responses: &[Place],
     ) -> Result<Option<TimeModel>, ModelError> {
-        let relaxes = self.effects.iter().any(|entry| entry.id == "viscoelastic-core");
-        if !relaxes || self.structure != StructureKind::TimoshenkoBeam {
+        if !self.relaxes() {
             return Ok(None);
         }
         for &place in forces.iter().chain(responses) {
             self.piece.contains(place)?;
         }
-        let (constants, effects) = self.beam_with_effects()?;
+        let (values, effects) = self.with_effects()?;
         let flexible = match range.checked()? {
             ModeRange::Count(count) => count,
-            ModeRange::UpTo(frequency) => ExactBeam::new(&self.piece, self.boundary, constants)?.count_below(frequency),
+            ModeRange::UpTo(frequency) => self.bare_count(&values, frequency)?,
         };
         // The first two frequencies make a band; more modes than these many make no stepper.
         if !(2..=MOST_RELAXING).contains(&flexible) {
@@ -54,15 +58,18 @@ impl PanelModel {
                 "viscoelastic-core with {flexible} modes: from 2 to {MOST_RELAXING} can be stepped"
             )));
         }
-        let values = [constants.e_x, constants.g_zx];
-        let found =
-            DressedPanel::relaxing_modes((&self.piece, self.boundary), &values, &effects, &self.damping, flexible)?;
+        let setting = EffectSetting::of_panel(&self.piece, self.boundary);
+        let even = self.even(&setting, flexible)?;
+        let found = DressedPanel::relaxing_modes(&setting, &even, &values, &effects, &self.damping, flexible)?;
         let Some((modes, fit)) = found else { return Ok(None) };
         let modes: Vec<_> = modes.into_iter().map(crate::PanelMode::of_dressed).collect();
         let modes = ModalModel::of_modes(&modes, &self.damping, forces, responses)?;
         Ok(Some(TimeModel { modes, flexible, core: Some(fit) }))
     }
 }
+
+/// The effect whose modulus depends on frequency.
+pub(crate) const CORE: &str = "viscoelastic-core";
 
 /// Each mode brings its internal variables, and all are coupled: a step costs the square of their number.
 const MOST_RELAXING: usize = 60;

@@ -2,7 +2,8 @@
 
 use std::f64::consts::TAU;
 
-use orthopanel_model::{ModalModel, Mode, ModeRange, ModelError, PanelModel, Place, StructureKind};
+use num_complex::Complex64;
+use orthopanel_model::{ModalModel, Mode, ModeRange, ModelError, PanelModel, Place, RelaxingLines, StructureKind};
 
 /// Modes summed one by one unless said; the rest, taken at rest, errs by the fourth power of a line over its modes.
 const SUMMED: usize = 300;
@@ -22,17 +23,37 @@ pub fn modes_up_to(model: &PanelModel, highest: f64, force: Place, response: Pla
     }
 }
 
+/// Modes of a panel with a viscoelastic core below this many times the highest line, and some, stand by themselves; what
+/// the others do, shapes of their own for force and response hold.
+const RELAXING_MARGIN: f64 = 3.0;
+const RELAXING_SPARE: f64 = 2000.0; // Hz
+
 /// The accelerance of a model from one place to another.
-pub struct WholeAccelerance {
-    modes: ModalModel,
-    /// Flexibility of the modes beyond `modes` \[m/N\].
-    beyond: f64,
+pub enum WholeAccelerance {
+    /// By a sum over modes.
+    Modes {
+        modes: ModalModel,
+        /// Flexibility of the modes beyond `modes` \[m/N\].
+        beyond: f64,
+    },
+    /// Line by line with the modulus of a viscoelastic core.
+    Relaxing(Box<RelaxingLines>),
 }
 
 impl WholeAccelerance {
     /// With modes enough for lines up to `highest` \[Hz\]; of a plate those that its largest basis resolves, and
     /// [`ModelError::BeyondBasis`] where they end below.
     pub fn up_to(model: &PanelModel, highest: f64, force: Place, response: Place) -> Result<Self, ModelError> {
+        let margin = ModeRange::UpTo(RELAXING_MARGIN * highest + RELAXING_SPARE);
+        let relaxing = match model.relaxing_lines(margin, force, response) {
+            Err(ModelError::BasisTooSmall { available, .. }) => {
+                model.relaxing_lines(ModeRange::Count(available), force, response)
+            }
+            lines => lines,
+        };
+        if let Some(lines) = relaxing? {
+            return Ok(Self::Relaxing(Box::new(lines)));
+        }
         let usual = match Self::of(model, ModeRange::Count(SUMMED), force, response) {
             Err(ModelError::BasisTooSmall { available, .. }) => {
                 let all = Self::of(model, ModeRange::Count(available), force, response)?;
@@ -52,6 +73,9 @@ impl WholeAccelerance {
 
     /// With the modes of `range`, and the static part of all others where it is known.
     pub fn of(model: &PanelModel, range: ModeRange, force: Place, response: Place) -> Result<Self, ModelError> {
+        if let Some(lines) = model.relaxing_lines(range, force, response)? {
+            return Ok(Self::Relaxing(Box::new(lines)));
+        }
         let modes = model.modal_model(range, &[force], &[response])?;
         let flexible = modes.modes().iter().filter(|mode| mode.angular_frequency > 0.0);
         let own =
@@ -59,17 +83,29 @@ impl WholeAccelerance {
         let products: Vec<f64> = flexible.filter_map(own).collect();
         let all = model.static_flexibility(products.len(), &[force], &[response])?;
         let beyond = all.map_or(0.0, |all| all[0][0] - products.iter().sum::<f64>());
-        Ok(Self { modes, beyond })
+        Ok(Self::Modes { modes, beyond })
     }
 
     /// Real and imaginary part \[(m/s²)/N\] at `frequency` \[Hz\].
     pub fn at(&self, frequency: f64) -> (f64, f64) {
-        let value = self.modes.accelerance(0, 0, frequency);
-        (value.re - (TAU * frequency).powi(2) * self.beyond, value.im)
+        match self {
+            Self::Modes { modes, beyond } => {
+                let value = modes.accelerance(0, 0, frequency);
+                (value.re - (TAU * frequency).powi(2) * beyond, value.im)
+            }
+            Self::Relaxing(lines) => {
+                let value = lines.at(Complex64::new(0.0, TAU * frequency));
+                (value.re, value.im)
+            }
+        }
     }
 
-    /// Natural frequencies of the flexible modes that are summed \[Hz\], in rising order.
+    /// Natural frequencies of the flexible modes that are summed \[Hz\], in rising order; none where no sum of modes is made.
     pub fn natural_frequencies(&self) -> impl Iterator<Item = f64> {
-        self.modes.modes().iter().map(|mode| mode.angular_frequency / TAU).filter(|&frequency| frequency > 0.0)
+        let modes = match self {
+            Self::Modes { modes, .. } => modes.modes(),
+            Self::Relaxing(_) => &[],
+        };
+        modes.iter().map(|mode| mode.angular_frequency / TAU).filter(|&frequency| frequency > 0.0)
     }
 }

@@ -168,9 +168,9 @@ fn effects_of_a_model() {
         (r#"{"id": "sensor-mass", "owner": "rig", "mass": 0.005}"#, 2, &["sensor-mass", "rig", "not to the panel"]),
         // Not bad input: this version cannot solve it.
         (
-            r#"{"id": "viscoelastic-core", "owner": "panel", "strength": 0.1, "tau": 1e-4, "alpha": 0.5}"#,
+            r#"{"id": "width-coupling", "owner": "panel", "e_y_ratio": 0.9, "nu_xy": 0.3, "g_xy_ratio": 0.3, "g_yz_ratio": 0.6}"#,
             1,
-            &["viscoelastic-core", "not supported"],
+            &["width-coupling", "mindlin-plate", "not supported"],
         ),
     ] {
         let with = changed(MODEL, "\"structure\"", &format!("\"effects\": [{effect}], \"structure\""));

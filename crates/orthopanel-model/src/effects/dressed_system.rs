@@ -20,7 +20,7 @@ pub(super) struct System {
     /// Coordinates that stand for the panel; the resonators' and those of a core follow.
     pub(super) panel: usize,
     /// A frequency squared of the size of the lowest.
-    shift: f64,
+    pub(super) shift: f64,
 }
 
 impl System {
@@ -48,28 +48,33 @@ impl System {
             system.stiffness[(modes + a, modes + b)] = series(0, a, b);
             system.mass[(modes + a, modes + b)] = series(1, a, b);
         }
-        let mut next = panel;
+        let mut resonators = panel..size;
         for (a, element) in elements.iter().enumerate() {
             let mut row = vec![0.0; size];
             (0..modes).for_each(|m| row[m] = numbers[layout.shape(m) + a]);
             (0..count).for_each(|b| row[modes + b] = series(0, a, b));
-            match element.law {
-                ElementLaw::Mass { mass } => add(&mut system.mass, mass, &row),
-                ElementLaw::Spring { stiffness, damping } => {
-                    add(&mut system.stiffness, stiffness, &row);
-                    add(&mut system.damping, damping, &row);
-                }
-                ElementLaw::Resonator { mass, frequency, zeta } => {
-                    let own = frequency * std::f64::consts::TAU;
-                    system.mass[(next, next)] += mass;
-                    row[next] = -1.0;
-                    add(&mut system.stiffness, mass * own * own, &row);
-                    add(&mut system.damping, 2.0 * zeta * mass * own, &row);
-                    next += 1;
-                }
-            }
+            system.join(element.law, row, &mut resonators);
         }
         system
+    }
+
+    /// Adds an element that sits where the coordinates have these values; a resonator takes the next of its coordinates.
+    pub(super) fn join(&mut self, law: ElementLaw, mut row: Vec<f64>, resonators: &mut impl Iterator<Item = usize>) {
+        match law {
+            ElementLaw::Mass { mass } => add(&mut self.mass, mass, &row),
+            ElementLaw::Spring { stiffness, damping } => {
+                add(&mut self.stiffness, stiffness, &row);
+                add(&mut self.damping, damping, &row);
+            }
+            ElementLaw::Resonator { mass, frequency, zeta } => {
+                let Some(own) = resonators.next() else { return };
+                let omega = frequency * std::f64::consts::TAU;
+                self.mass[(own, own)] += mass;
+                row[own] = -1.0;
+                add(&mut self.stiffness, mass * omega * omega, &row);
+                add(&mut self.damping, 2.0 * zeta * mass * omega, &row);
+            }
+        }
     }
 
     /// $\omega$, $\zeta$ and all coordinates of each mode, rising. As in [`crate::ritz_modes()`], by the inverse
@@ -92,7 +97,9 @@ impl System {
         let symmetric = Mat::from_fn(size, size, |i, j| 0.5 * (flexibility[(i, j)] + flexibility[(j, i)]));
         let (thetas, mut vectors) = symmetric_eigen(&symmetric).ok_or(ModelError::Eigenproblem)?;
         factor.solve_upper(&mut vectors);
-        let positive = (0..size).rev().filter(|&column| thetas[column] > 0.0);
+        // A coordinate without mass has none but rounding, and follows the others at once.
+        let least = 1e-13 * thetas.last().copied().unwrap_or(0.0);
+        let positive = (0..size).rev().filter(|&column| thetas[column] > least);
         let modes = positive.map(|column| {
             let norm = thetas[column].sqrt().recip();
             let mut whole = vec![0.0; self.mass.nrows()];
@@ -101,7 +108,8 @@ impl System {
             // Rounding of a rigid mode.
             let omega = if lambda > 1e-9 * self.shift { lambda.sqrt() } else { 0.0 };
             let lost = crate::structure::quadratic_form(&self.damping, &whole);
-            let zeta = if omega > 0.0 { (lost / (2.0 * omega)).min(0.7) } else { 0.0 };
+            // Below zero by rounding, where nothing is lost.
+            let zeta = if omega > 0.0 { (lost / (2.0 * omega)).clamp(0.0, 0.7) } else { 0.0 };
             (omega, zeta, whole)
         });
         Ok(modes.collect())
@@ -126,7 +134,7 @@ impl System {
     }
 
     /// Coordinates without the residual shapes that others hold already, as of two elements at one place.
-    fn independent(&self) -> Vec<usize> {
+    pub(super) fn independent(&self) -> Vec<usize> {
         let size = self.stiffness.nrows();
         let first = self.residuals;
         let mut kept: Vec<usize> = (0..first).collect();

@@ -4,7 +4,7 @@ use super::{Action, Effect, EffectParameter, EffectSetting, ElementLaw, Owner, P
 use crate::{ModelError, Place};
 
 /// The same mass $m$ \[kg\] at each end, $x = \pm a/2$: edge fillers, frames, or a trim that cut them off (negative).
-/// $Z = ms^2$ at both.
+/// $Z = ms^2$ at both; on a plate spread evenly along both edges.
 ///
 /// Limits: as `local-mass`, a twentieth of the piece's mass may be missing at each end. Source: Newton's law.
 #[derive(Debug, Clone, Copy)]
@@ -30,7 +30,7 @@ impl Effect for EdgeMass {
         self.check(values, &setting.piece)?;
         let &[mass] = values else { return Ok(vec![]) };
         let half = 0.5 * setting.piece.length;
-        let at = |x: f64| PointElement::on_deflection(ElementLaw::Mass { mass }, Seat::At(Place { x, y: 0.0 }));
+        let at = |x: f64| PointElement::on_deflection(ElementLaw::Mass { mass }, Seat::AlongEdge(Place { x, y: 0.0 }));
         Ok(vec![Action::Element(at(-half)), Action::Element(at(half))])
     }
 }

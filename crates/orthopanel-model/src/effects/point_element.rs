@@ -26,6 +26,8 @@ pub enum Seat {
     At(Place),
     /// At a place whose x is that parameter.
     Free(Place, usize),
+    /// Evenly along the edge through this place, from side to side; a beam has it at the place.
+    AlongEdge(Place),
     /// Where the record's sensor sits, wherever that is.
     AtResponse,
 }

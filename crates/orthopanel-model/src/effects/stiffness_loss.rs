@@ -5,6 +5,8 @@ use crate::{ModelError, ShearLoss};
 
 /// A face come off the core: shear stiffness $k'G_{zx}A\,(1-\text{loss})$ for $|x-x_0| < \text{span}/2$.
 ///
+/// A plate loses the same part of both shear stiffnesses, across its whole width.
+///
 /// Source: a disbond leaves the faces' bending and takes shear stiffness over its span. The faces' own sliding
 /// modes inside a long disbond are not in it.
 #[derive(Debug, Clone, Copy)]

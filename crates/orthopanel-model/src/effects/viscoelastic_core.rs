@@ -4,7 +4,7 @@ use super::{Action, CoreModulus, Effect, EffectParameter, EffectSetting, Owner};
 use crate::ModelError;
 
 /// A core whose shear modulus rises with frequency and takes energy: see [`CoreModulus`], parameters $\Delta$, $\tau$,
-/// $\alpha$. $G_{zx}$ is then the modulus at low frequency.
+/// $\alpha$. $G_{zx}$, and with it $G_{yz}$ of a plate, is then the modulus at low frequency.
 ///
 /// Source: Bagley and Torvik, J. Rheology 27 (1983) 201.
 #[derive(Debug, Clone, Copy)]

@@ -1,6 +1,6 @@
 //! Stiffness and mass matrices of the plate, block by block: sums of products of integrals along x and along y.
 
-use faer::Mat;
+use faer::{Mat, MatRef};
 
 use super::Field;
 use super::edge_basis::EdgeBasis;
@@ -28,7 +28,12 @@ const SHEAR_Y: &[Term] = &[(Field::Deflection, 0, 1), (Field::RotationY, 0, 0)];
 
 /// The coordinates of each block, and the blocks. Stiffnesses stand in the order $D_{11}, D_{22}, D_{12}, D_{66},
 /// A_{55}, A_{44}$.
-pub(super) fn assemble(piece: &Piece, along: &[EdgeBasis; 2]) -> (Vec<Vec<Coordinate>>, Vec<Block>) {
+pub(super) fn assemble(
+    piece: &Piece,
+    along: &[EdgeBasis; 2],
+    rotary_factor: f64,
+    edge_mass: f64,
+) -> (Vec<Vec<Coordinate>>, Vec<Block>) {
     let [x, y] = along;
     let mut coordinates = Vec::new();
     for &odd_y in y.parities() {
@@ -36,7 +41,13 @@ pub(super) fn assemble(piece: &Piece, along: &[EdgeBasis; 2]) -> (Vec<Vec<Coordi
             coordinates.push(block_coordinates(along, [odd_x, odd_y]));
         }
     }
-    let blocks = side_by_side::map(&coordinates, |list| block(piece, along, list));
+    let blocks = side_by_side::map(&coordinates, |list| {
+        let mut block = block(piece, along, rotary_factor, list);
+        if edge_mass != 0.0 {
+            add_edge_mass(piece, along, edge_mass, list, &mut block);
+        }
+        block
+    });
     (coordinates, blocks)
 }
 
@@ -53,18 +64,19 @@ fn block_coordinates([x, y]: &[EdgeBasis; 2], [odd_x, odd_y]: [bool; 2]) -> Vec<
     list
 }
 
-fn block(piece: &Piece, along: &[EdgeBasis; 2], list: &[Coordinate]) -> Block {
-    let form = |f: &[Term], g: &[Term]| product(along, list, f, g);
+fn block(piece: &Piece, along: &[EdgeBasis; 2], rotary_factor: f64, list: &[Coordinate]) -> Block {
+    let form = |f: &[Term], g: &[Term]| product(along, list, EdgeBasis::integrals, [f, g]);
+    let shear = |f: &[Term]| product(along, list, EdgeBasis::sheared_integrals, [f, f]);
     let crossed = form(CURVATURE_X, CURVATURE_Y);
     let stiffness = vec![
         form(CURVATURE_X, CURVATURE_X),
         form(CURVATURE_Y, CURVATURE_Y),
         &crossed + crossed.transpose(),
         form(TWIST, TWIST),
-        form(SHEAR_X, SHEAR_X),
-        form(SHEAR_Y, SHEAR_Y),
+        shear(SHEAR_X),
+        shear(SHEAR_Y),
     ];
-    let rotary_inertia = piece.mass_per_area * piece.thickness * piece.thickness / 12.0;
+    let rotary_inertia = rotary_factor * piece.mass_per_area * piece.thickness * piece.thickness / 12.0;
     let mut mass = Mat::zeros(list.len(), list.len());
     for (field, inertia) in Field::ALL.into_iter().zip([piece.mass_per_area, rotary_inertia, rotary_inertia]) {
         let own: &[Term] = &[(field, 0, 0)];
@@ -74,8 +86,30 @@ fn block(piece: &Piece, along: &[EdgeBasis; 2], list: &[Coordinate]) -> Block {
     Block { stiffness, mass, rigid }
 }
 
+/// Adds $\frac mb\int ww\,dy$ at both ends of x, and scales the rigid modes to it: even mass at both ends keeps these
+/// orthogonal.
+fn add_edge_mass(piece: &Piece, [x, y]: &[EdgeBasis; 2], mass: f64, list: &[Coordinate], block: &mut Block) {
+    let w = Field::Deflection;
+    let across = y.integrals((w, 0), (w, 0));
+    let own: Vec<usize> = (0..list.len()).filter(|&i| list[i].field == w).collect();
+    for end in [-0.5, 0.5] {
+        let along = x.values_at(w, end * piece.length);
+        for (&i, &j) in own.iter().flat_map(|i| own.iter().map(move |j| (i, j))) {
+            let (a, b) = (list[i], list[j]);
+            block.mass[(i, j)] += mass / piece.width * along[a.x] * along[b.x] * across[(a.y, b.y)];
+        }
+    }
+    for mode in &mut block.rigid {
+        let scale = quadratic_form(&block.mass, mode).sqrt().recip();
+        mode.iter_mut().for_each(|value| *value *= scale);
+    }
+}
+
+/// Integrals along x of two fields, each with its order of differentiation.
+type AlongX = fn(&EdgeBasis, (Field, usize), (Field, usize)) -> MatRef<'_, f64>;
+
 /// $\int fg\,dx\,dy$ of two strains in the coordinates of a block: a row a coordinate of `f`, a column one of `g`.
-fn product([x, y]: &[EdgeBasis; 2], list: &[Coordinate], f: &[Term], g: &[Term]) -> Mat<f64> {
+fn product([x, y]: &[EdgeBasis; 2], list: &[Coordinate], integrals: AlongX, [f, g]: [&[Term]; 2]) -> Mat<f64> {
     let mut matrix = Mat::zeros(list.len(), list.len());
     // The coordinates of a block stand field by field.
     let own = |field: Field| {
@@ -84,7 +118,7 @@ fn product([x, y]: &[EdgeBasis; 2], list: &[Coordinate], f: &[Term], g: &[Term])
     };
     for &(left, left_x, left_y) in f {
         for &(right, right_x, right_y) in g {
-            let along_x = x.integrals((left, left_x), (right, right_x));
+            let along_x = integrals(x, (left, left_x), (right, right_x));
             let along_y = y.integrals((left, left_y), (right, right_y));
             let ((first_row, rows), (first_column, columns)) = (own(left), own(right));
             let rows: Vec<&Coordinate> = rows.collect();

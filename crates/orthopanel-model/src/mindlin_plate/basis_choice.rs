@@ -1,7 +1,7 @@
 //! How many polynomials a plate needs: from the nodes that its lowest modes have in each direction.
 
-use super::MindlinPlate;
 use super::law::plate_stiffnesses;
+use super::{MindlinPlate, PlateTerms};
 use crate::{Boundary, End, ModelError, Piece};
 
 /// Most entries of one matrix of all blocks together: 1.8 million keep a plate below 100 MB.
@@ -18,7 +18,8 @@ impl MindlinPlate {
     /// As [`MindlinPlate::with_basis_for`].
     pub fn with_default_basis(piece: &Piece, boundary: Boundary, count: usize) -> Result<Self, ModelError> {
         let terms = Reach::new(piece, boundary, EQUAL_STIFFNESSES)?.terms(count)?;
-        Self::resolving(piece, boundary, terms, count)
+        let plate = Self::new(piece, boundary, terms)?;
+        Ok(Self { resolved_modes: plate.resolved_modes.max(count), ..plate })
     }
 
     /// A plate whose basis holds its first `count` flexible modes to about 1e-4 of their frequencies at these values of
@@ -30,12 +31,21 @@ impl MindlinPlate {
     /// # Errors
     /// [`ModelError::BasisTooSmall`] for more modes than the largest basis resolves, and as [`MindlinPlate::new`].
     pub fn with_basis_for(piece: &Piece, boundary: Boundary, values: &[f64], count: usize) -> Result<Self, ModelError> {
-        let stiffnesses = plate_stiffnesses(piece.checked()?.thickness, values)?;
-        Self::resolving(piece, boundary, Reach::new(piece, boundary, stiffnesses)?.terms(count)?, count)
+        Self::uneven_with_basis_for((piece, boundary), values, count, &PlateTerms::default())
     }
 
-    fn resolving(piece: &Piece, boundary: Boundary, terms: [usize; 2], count: usize) -> Result<Self, ModelError> {
-        let plate = Self::new(piece, boundary, terms)?;
+    /// The same with terms beyond the even plate.
+    ///
+    /// # Errors
+    /// As [`MindlinPlate::with_basis_for`], and [`ModelError::Unsupported`] for supports that yield.
+    pub(crate) fn uneven_with_basis_for(
+        (piece, boundary): (&Piece, Boundary),
+        values: &[f64],
+        count: usize,
+        own: &PlateTerms,
+    ) -> Result<Self, ModelError> {
+        let stiffnesses = plate_stiffnesses(piece.checked()?.thickness, values)?;
+        let plate = Self::uneven(piece, boundary, Reach::new(piece, boundary, stiffnesses)?.terms(count)?, own)?;
         Ok(Self { resolved_modes: plate.resolved_modes.max(count), ..plate })
     }
 

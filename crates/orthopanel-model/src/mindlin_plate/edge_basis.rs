@@ -4,11 +4,16 @@
 //! nowhere $P_n$; at one edge $P_n \pm P_{n-1}$; at both $P_{n+2}-P_n$, which are the integrated Legendre polynomials.
 //! All are scaled to $\int f^2dt = 1$. The products' integrals are sums of two or three terms or, for derivatives, finite
 //! sums: nothing is left to quadrature.
+//!
+//! Where spans have lost shear stiffness, deflections with a kink at each edge of a span join in, and integrals are by Gauss'
+//! rule from edge to edge, which is exact for them.
 
 use faer::{Mat, MatRef};
 
 use super::Field;
+use super::span_edges::{Kink, Spans};
 use crate::End;
+use crate::dense::Cholesky;
 use crate::legendre::{legendre, norm};
 
 /// A function of $t$ by its Legendre coefficients, and its derivative by $t$ likewise.
@@ -16,6 +21,8 @@ use crate::legendre::{legendre, norm};
 struct EdgeFunction {
     series: Vec<f64>,
     slope: Vec<f64>,
+    /// What no series follows, with its factor.
+    kink: Option<(Kink, f64)>,
 }
 
 /// The functions of all three fields along one direction, with the integrals of their products.
@@ -28,6 +35,8 @@ pub(super) struct EdgeBasis {
     fields: [Vec<EdgeFunction>; 3],
     /// Integrals over the direction \[m^(1 - orders)\], rows and columns by [`EdgeBasis::index`].
     integrals: Mat<f64>,
+    /// The same of what is left of the shear stiffness; none where all is.
+    sheared: Option<Mat<f64>>,
 }
 
 impl EdgeBasis {
@@ -37,9 +46,47 @@ impl EdgeBasis {
             let holds = |end: End| if field == across { end == End::Clamped } else { end != End::Free };
             edge_functions(ends.map(holds), terms)
         });
-        let mut basis = Self { half_length, terms, symmetric: ends[0] == ends[1], fields, integrals: Mat::zeros(0, 0) };
+        let (symmetric, integrals) = (ends[0] == ends[1], Mat::zeros(0, 0));
+        let mut basis = Self { half_length, terms, symmetric, fields, integrals, sheared: None };
         basis.integrals = basis.all_integrals();
         basis
+    }
+
+    /// The same with spans that have lost shear stiffness.
+    pub(super) fn with_spans(mut self, ends: [End; 2], spans: &Spans) -> Self {
+        let held = ends.map(|end| end != End::Free);
+        let polynomials = self.terms;
+        let rule = spans.rule(polynomials + 3);
+        let own = &mut self.fields[Field::Deflection as usize];
+        let with = |kink| EdgeFunction::with_kink(kink, own, polynomials, &rule);
+        let more: Vec<EdgeFunction> = spans.kinks(held).into_iter().filter_map(with).collect();
+        own.extend(more);
+        self.terms = self.fields.iter().map(Vec::len).max().unwrap_or(polynomials).max(polynomials);
+        self.symmetric = false;
+        self.integrals = self.by_rule(&rule, |_| 1.0);
+        self.sheared = Some(self.by_rule(&rule, |t| spans.remaining(t)));
+        self
+    }
+
+    fn by_rule(&self, rule: &[(f64, f64)], share: impl Fn(f64) -> f64) -> Mat<f64> {
+        let size = 6 * self.terms;
+        let values = Mat::<f64>::zeros(size, rule.len());
+        let (mut left, mut right) = (values.clone(), values);
+        let h = self.half_length;
+        for (column, &(t, weight)) in rule.iter().enumerate() {
+            let polynomials = legendre(self.terms, t);
+            for field in Field::ALL {
+                for (n, function) in self.fields[field as usize].iter().enumerate() {
+                    let [value, slope] = function.at(t, &polynomials);
+                    for (order, value) in [(0, value), (1, slope / h)] {
+                        let row = self.index(field, order, n);
+                        left[(row, column)] = weight * share(t) * h * value;
+                        right[(row, column)] = value;
+                    }
+                }
+            }
+        }
+        crate::dense::product(left.as_ref(), right.transpose())
     }
 
     /// Numbers of a field's functions of one parity; of all functions where the edges differ.
@@ -69,6 +116,13 @@ impl EdgeBasis {
         self.integrals.submatrix(row, column, self.count(f), self.count(g))
     }
 
+    /// The same over what is left of the shear stiffness.
+    pub(super) fn sheared_integrals(&self, (f, p): (Field, usize), (g, q): (Field, usize)) -> MatRef<'_, f64> {
+        let (row, column) = (self.index(f, p, 0), self.index(g, q, 0));
+        let integrals = self.sheared.as_ref().unwrap_or(&self.integrals);
+        integrals.submatrix(row, column, self.count(f), self.count(g))
+    }
+
     fn index(&self, field: Field, order: usize, number: usize) -> usize {
         (2 * field as usize + order) * self.terms + number
     }
@@ -94,18 +148,18 @@ impl EdgeBasis {
 
     /// Values of all functions of a field at a place \[m\] of this direction, from its centre.
     pub(super) fn values_at(&self, field: Field, place: f64) -> Vec<f64> {
-        self.sums_at(field, place, |function| &function.series, 1.0)
+        self.sums_at(field, place, 0)
     }
 
     /// Their slopes \[1/m\] there.
     pub(super) fn slopes_at(&self, field: Field, place: f64) -> Vec<f64> {
-        self.sums_at(field, place, |function| &function.slope, self.half_length.recip())
+        self.sums_at(field, place, 1).into_iter().map(|slope| slope / self.half_length).collect()
     }
 
-    fn sums_at(&self, field: Field, place: f64, series: fn(&EdgeFunction) -> &[f64], scale: f64) -> Vec<f64> {
-        let values = legendre(self.terms, place / self.half_length);
-        let at = |f: &EdgeFunction| scale * series(f).iter().zip(&values).map(|(c, p)| c * p).sum::<f64>();
-        self.fields[field as usize].iter().map(at).collect()
+    fn sums_at(&self, field: Field, place: f64, order: usize) -> Vec<f64> {
+        let t = place / self.half_length;
+        let polynomials = legendre(self.terms, t);
+        self.fields[field as usize].iter().map(|function| function.at(t, &polynomials)[order]).collect()
     }
 
     /// Where function `number` of the deflection is linear, its slope \[1/m\]; zero where it is constant.
@@ -147,15 +201,64 @@ impl EdgeFunction {
     fn of_unit_norm(mut series: Vec<f64>) -> Self {
         let square: f64 = series.iter().enumerate().map(|(n, c)| c * c * norm(n)).sum();
         series.iter_mut().for_each(|c| *c /= square.sqrt());
-        // P_n' = (2n-1) P_{n-1} + (2n-5) P_{n-3} + ...
-        let mut slope = vec![0.0; series.len().saturating_sub(1)];
-        for (n, coefficient) in series.iter().enumerate() {
-            for k in (0..n).rev().step_by(2) {
-                slope[k] += coefficient * (2 * k + 1) as f64;
-            }
-        }
-        Self { series, slope }
+        Self { slope: slope_of(&series), series, kink: None }
     }
+
+    /// A kink without what the functions there already follow of it; `None` where that is all.
+    fn with_kink(kink: Kink, own: &[Self], terms: usize, rule: &[(f64, f64)]) -> Option<Self> {
+        let samples: Vec<(f64, f64, Vec<f64>)> = rule
+            .iter()
+            .map(|&(t, weight)| {
+                let polynomials = legendre(terms, t);
+                (kink.at(t)[0], weight, own.iter().map(|f| f.at(t, &polynomials)[0]).collect())
+            })
+            .collect();
+        let gram = Mat::from_fn(own.len(), own.len(), |i, j| {
+            samples.iter().map(|(_, weight, f)| weight * f[i] * f[j]).sum::<f64>()
+        });
+        let mut shares =
+            Mat::from_fn(own.len(), 1, |i, _| samples.iter().map(|(kink, weight, f)| weight * kink * f[i]).sum());
+        let factor = Cholesky::new(&gram)?;
+        factor.solve_lower(&mut shares);
+        factor.solve_upper(&mut shares);
+        let left =
+            |(kink, _, f): &(f64, f64, Vec<f64>)| kink - (0..f.len()).map(|i| shares[(i, 0)] * f[i]).sum::<f64>();
+        let size = samples.iter().map(|sample| sample.1 * left(sample).powi(2)).sum::<f64>().sqrt();
+        let whole = samples.iter().map(|sample| sample.1 * sample.0.powi(2)).sum::<f64>().sqrt();
+        if size <= FOLLOWED * whole {
+            return None;
+        }
+        let mut series = vec![0.0; terms];
+        for (i, function) in own.iter().enumerate() {
+            let share = -shares[(i, 0)] / size;
+            series.iter_mut().zip(&function.series).for_each(|(sum, c)| *sum += share * c);
+        }
+        Some(Self { slope: slope_of(&series), series, kink: Some((kink, size.recip())) })
+    }
+
+    /// Value and derivative at $t$, given the Legendre polynomials there.
+    fn at(&self, t: f64, polynomials: &[f64]) -> [f64; 2] {
+        let mut values =
+            [&self.series, &self.slope].map(|series| series.iter().zip(polynomials).map(|(c, p)| c * p).sum::<f64>());
+        if let Some((kink, factor)) = &self.kink {
+            values.iter_mut().zip(kink.at(t)).for_each(|(value, own)| *value += factor * own);
+        }
+        values
+    }
+}
+
+/// Part of a kink's size that is no function of its own.
+const FOLLOWED: f64 = 1e-7;
+
+/// $P_n' = (2n-1)P_{n-1} + (2n-5)P_{n-3} + \dots$
+fn slope_of(series: &[f64]) -> Vec<f64> {
+    let mut slope = vec![0.0; series.len().saturating_sub(1)];
+    for (n, coefficient) in series.iter().enumerate() {
+        for k in (0..n).rev().step_by(2) {
+            slope[k] += coefficient * (2 * k + 1) as f64;
+        }
+    }
+    slope
 }
 
 #[cfg(test)]

@@ -20,6 +20,9 @@ mod edge_basis;
 mod kink;
 mod law;
 mod mode_names;
+mod span_edges;
+
+use std::sync::OnceLock;
 
 use faer::Mat;
 
@@ -27,12 +30,13 @@ pub use law::PLATE_CONSTANTS;
 pub use mode_names::{ModeKind, ModeName};
 
 use crate::structure::{Block, Motion, Structure};
-use crate::{Boundary, Constant, ModelError, Piece, Place};
+use crate::{BeamTerms, Boundary, Constant, ModelError, Piece, Place};
 use assembly::{Coordinate, assemble};
 use edge_basis::EdgeBasis;
 pub(crate) use kink::Membrane;
 use law::{plate_stiffness_derivatives, plate_stiffnesses};
 use mode_names::beam_functions;
+use span_edges::Spans;
 
 /// What moves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -68,6 +72,18 @@ pub struct MindlinPlate {
     blocks: Vec<Block>,
     /// Integrals of the deflection functions with beam functions, by their nodes.
     beam_functions: [Mat<f64>; 2],
+    /// What tells the kinks under forces, once it is asked for.
+    membrane: OnceLock<Option<Membrane>>,
+    is_even: bool,
+}
+
+/// What may differ from the even plate.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct PlateTerms {
+    /// Spans across the whole width that have lost part of both shear stiffnesses, and the factor on the rotary inertia.
+    pub spread: BeamTerms,
+    /// Mass \[kg\] spread evenly along each of the edges at $x = \pm a/2$.
+    pub edge_mass: f64,
 }
 
 /// Fewest and most terms along one direction.
@@ -80,22 +96,45 @@ impl MindlinPlate {
     /// [`ModelError::Size`] where the piece has no physical meaning, [`ModelError::TermCount`] for other numbers of
     /// terms.
     pub fn new(piece: &Piece, boundary: Boundary, terms: [usize; 2]) -> Result<Self, ModelError> {
+        Self::uneven(piece, boundary, terms, &PlateTerms::default())
+    }
+
+    fn uneven(piece: &Piece, boundary: Boundary, terms: [usize; 2], own: &PlateTerms) -> Result<Self, ModelError> {
         let piece = piece.checked()?;
+        let PlateTerms { spread: own, edge_mass } = own;
+        own.check()?;
+        if own.support.is_some() {
+            return Err(ModelError::Unsupported("supports that yield under a plate".into()));
+        }
         let [least, most] = TERMS;
         if let Some(&found) = terms.iter().find(|count| !(least..=most).contains(*count)) {
             return Err(ModelError::TermCount { found, least, most });
         }
         let Boundary { left, right, front, back } = boundary;
-        let x = EdgeBasis::new(0.5 * piece.length, [left, right], Field::RotationX, terms[0]);
+        let mut x = EdgeBasis::new(0.5 * piece.length, [left, right], Field::RotationX, terms[0]);
+        if !own.losses.is_empty() {
+            x = x.with_spans([left, right], &Spans::new(0.5 * piece.length, &own.losses));
+        }
         let y = EdgeBasis::new(0.5 * piece.width, [front, back], Field::RotationY, terms[1]);
         let beam_functions =
             [beam_functions(&x, piece.length, [left, right])?, beam_functions(&y, piece.width, [front, back])?];
-        let along = [x, y];
-        let (coordinates, blocks) = assemble(&piece, &along);
+        let (along, is_even) = ([x, y], own.losses.is_empty());
+        let (coordinates, blocks) = assemble(&piece, &along, own.rotary_factor, *edge_mass);
         // In each direction n polynomials follow 2n/π half-waves; some nx ny/3 products lie within the ellipse that both
         // span, and the lower half of these hold 1e-4.
         let resolved_modes = terms[0] * terms[1] / 6;
-        Ok(Self { piece, boundary, terms, resolved_modes, along, coordinates, blocks, beam_functions })
+        Ok(Self {
+            piece,
+            boundary,
+            terms,
+            resolved_modes,
+            along,
+            coordinates,
+            blocks,
+            beam_functions,
+            membrane: OnceLock::new(),
+            is_even,
+        })
     }
 
     /// The same plate without those parity blocks where no mode with these nodes along x and y lies.
@@ -110,7 +149,7 @@ impl MindlinPlate {
         let (coordinates, blocks): (Vec<_>, Vec<_>) = own.map(|(list, block)| (list.clone(), block.clone())).unzip();
         let resolved_modes = self.resolved_modes * blocks.len() / self.blocks.len().max(1);
         let (along, beam_functions) = (self.along.clone(), self.beam_functions.clone());
-        Self { resolved_modes, along, coordinates, blocks, beam_functions, ..*self }
+        Self { resolved_modes, along, coordinates, blocks, beam_functions, membrane: OnceLock::new(), ..*self }
     }
 
     /// The same plate with fewer polynomials along x and y: rougher, and quicker.
@@ -131,7 +170,7 @@ impl MindlinPlate {
         let resolved_modes =
             blocks.iter().map(|block| block.size() - block.rigid.len()).sum::<usize>().min(self.resolved_modes);
         let (along, beam_functions) = (self.along.clone(), self.beam_functions.clone());
-        Self { terms, resolved_modes, along, coordinates, blocks, beam_functions, ..*self }
+        Self { terms, resolved_modes, along, coordinates, blocks, beam_functions, membrane: OnceLock::new(), ..*self }
     }
 
     /// Number of polynomials of each field along x and y.
@@ -222,6 +261,12 @@ impl Structure for MindlinPlate {
             Motion::Curvature => (Field::RotationX, true),
         };
         Some(self.row(block, field, is_slope, place))
+    }
+
+    /// The kinks, of an even plate.
+    fn static_remainder(&self, values: &[f64], motions: [(Motion, Place); 2]) -> Option<(f64, Vec<f64>)> {
+        let membrane = self.membrane.get_or_init(|| if self.is_even { self.membrane() } else { None });
+        self.kink(membrane.as_ref()?, values, motions)
     }
 
     fn resolved_modes(&self) -> usize {

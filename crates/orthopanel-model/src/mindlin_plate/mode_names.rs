@@ -53,7 +53,15 @@ impl MindlinPlate {
     /// A mode that shears through the thickness without deflection has overlap zero with all products and is
     /// [`ModeKind::Mixed`].
     pub fn mode_name(&self, mode: &RitzMode) -> ModeName {
-        let overlaps = self.overlaps(mode);
+        self.name_of(&self.overlaps(mode))
+    }
+
+    /// The name of a motion that is the sum of these.
+    pub(crate) fn name_of_sum(&self, parts: &[RitzMode]) -> ModeName {
+        self.name_of(&self.overlaps_of(parts))
+    }
+
+    fn name_of(&self, overlaps: &Mat<f64>) -> ModeName {
         let mut ranked: Vec<([usize; 2], f64)> = (0..overlaps.nrows())
             .flat_map(|m| (0..overlaps.ncols()).map(move |n| [m, n]))
             .map(|[m, n]| ([m, n], overlaps[(m, n)]))
@@ -73,12 +81,18 @@ impl MindlinPlate {
     /// Overlaps, 0 to 1, of one of this plate's modes with the products of beam functions (see [`ModeName`]): a row a
     /// number of nodes along x, a column a number along y, as far as the basis resolves them.
     pub fn overlaps(&self, mode: &RitzMode) -> Mat<f64> {
+        self.overlaps_of(std::slice::from_ref(mode))
+    }
+
+    fn overlaps_of(&self, parts: &[RitzMode]) -> Mat<f64> {
         let [x, y] = &self.along;
         let w = Field::Deflection;
         let mut shape = Mat::zeros(x.count(w), y.count(w));
-        let coordinates = self.coordinates.get(mode.block).map_or(&[][..], |list| list);
-        for (coordinate, value) in coordinates.iter().zip(&mode.coordinates).filter(|(c, _)| c.field == w) {
-            shape[(coordinate.x, coordinate.y)] = *value;
+        for mode in parts {
+            let coordinates = self.coordinates.get(mode.block).map_or(&[][..], |list| list);
+            for (coordinate, value) in coordinates.iter().zip(&mode.coordinates).filter(|(c, _)| c.field == w) {
+                shape[(coordinate.x, coordinate.y)] += *value;
+            }
         }
         let [along_x, along_y] = &self.beam_functions;
         let [left, right] = [

@@ -1,4 +1,4 @@
-//! What may differ from the even beam: shear stiffness lost over a span, rotary inertia, supports that yield.
+//! What may differ from the even beam, or plate: shear stiffness lost over a span, rotary inertia, supports that yield.
 
 use crate::ModelError;
 
@@ -24,7 +24,7 @@ impl BeamTerms {
     ///
     /// # Errors
     /// [`ModelError::Size`] names the first number that has no physical meaning.
-    pub(super) fn check(&self) -> Result<(), ModelError> {
+    pub(crate) fn check(&self) -> Result<(), ModelError> {
         let mut sizes = vec![("rotary factor", self.rotary_factor, "")];
         for loss in &self.losses {
             sizes
@@ -57,7 +57,7 @@ pub struct ShearLoss {
 
 impl ShearLoss {
     /// The span's ends, as far as they lie on the beam.
-    pub(super) fn edges(&self, half_length: f64) -> [f64; 2] {
+    pub(crate) fn edges(&self, half_length: f64) -> [f64; 2] {
         [-0.5, 0.5].map(|side| (self.at + side * self.span).clamp(-half_length, half_length))
     }
 }

@@ -13,7 +13,8 @@ use crate::{model_file, output, tables};
 /// List the natural frequencies of a model, flexible modes from 1
 ///
 /// A plate's modes are told by their nodal lines across x and across y, and by their kind: bending (none across the
-/// width), torsion (one), transverse (two and more), or mixed where two such shapes share a mode.
+/// width), torsion (one), transverse (two and more), or mixed where two such shapes share a mode. With a viscoelastic core each
+/// mode stands at the core's storage modulus at its own frequency, and zeta holds the core's loss.
 ///
 /// Examples: orthopanel modes out/model.json --count 6
 ///           orthopanel modes out/model.json --picture out/modes.svg
@@ -37,6 +38,9 @@ pub struct Arguments {
 struct Answer {
     schema: &'static str,
     modes: Vec<ModeEntry>,
+    /// How a viscoelastic core enters, where there is one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    core: Option<&'static str>,
 }
 
 #[derive(Serialize)]
@@ -51,6 +55,8 @@ struct ModeEntry {
     zeta: f64,
 }
 
+const CORE: &str = "each mode at the storage modulus at its own frequency; zeta holds the core's loss there";
+
 pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
     let model = model_file::read(&arguments.model)?;
     let modes = model.modes(ModeRange::Count(arguments.count)).in_file(&arguments.model)?;
@@ -60,9 +66,10 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
         frequency_hz: of.frequency(),
         nodes: of.nodes(),
         kind: of.name().map(|name| name.kind),
-        zeta: model.damping.ratio(mode),
+        zeta: of.own_damping_ratio().unwrap_or_else(|| model.damping.ratio(mode)),
     };
-    let answer = Answer { schema: "orthopanel.modes/1", modes: (1..).zip(&flexible).map(entry).collect() };
+    let core = model.effects.iter().any(|effect| effect.id == "viscoelastic-core").then_some(CORE);
+    let answer = Answer { schema: "orthopanel.modes/1", modes: (1..).zip(&flexible).map(entry).collect(), core };
     if let Some(path) = &arguments.picture {
         let shape = |(mode, entry)| shape(mode, entry);
         let shapes: Vec<ModeShape> = flexible.iter().copied().zip(&answer.modes).map(shape).collect();
@@ -77,6 +84,9 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
         output::print_json(&answer);
     } else {
         output::print(&table(&answer.modes, model.structure));
+    }
+    if let Some(core) = core {
+        eprintln!("viscoelastic core: {core}");
     }
     Ok(())
 }

@@ -87,7 +87,7 @@ impl RecordPlan {
         moved: &[usize],
     ) {
         let at = match element.seat {
-            Seat::At(place) | Seat::Free(place, _) => place,
+            Seat::At(place) | Seat::Free(place, _) | Seat::AlongEdge(place) => place,
             Seat::AtResponse => response,
         };
         let (row, number) = (self.active.len(), self.elements.len());

@@ -1,0 +1,313 @@
+//! A panel with effects, and the coordinates in which its modes are found.
+
+use std::sync::{Arc, OnceLock};
+
+use faer::Mat;
+
+use super::dressed_system::{FoundMode, System};
+use super::dressing::Dressing;
+use super::receptance::modal_base::{ModalBase, Row, SharedStructure};
+use super::receptance::view::View;
+use super::{Action, CoreModulus, EffectSetting, EffectState, ElementLaw, PointElement, Seat};
+use crate::dense::product;
+use crate::mindlin_plate::PlateTerms;
+use crate::panel_mode::crossings;
+use crate::structure::Motion;
+use crate::{
+    BeamTerms, Damping, MindlinPlate, ModeName, ModelError, Piece, Place, ReducedStructure, RitzMode, TimoshenkoBeam,
+};
+
+/// Modes of the bare structure beyond those asked for.
+pub(super) const SPARE_MODES: usize = 10;
+/// A panel with effects, in coordinates of its bare modes, of the static residual shape under each element, and of each
+/// resonator's own mass (Rubin, AIAA J. 13 (1975) 995).
+///
+/// With $C_0$, $C_1$ the residual flexibility and its next term, stiffness and mass are
+/// $\mathrm{diag}(\omega_m^2)\oplus C_0$ and $I\oplus C_1$, and an element at row $r_p = (\phi_m(p), C_{0,p})$ adds
+/// $k\,r_pr_p^T$ or $m\,r_pr_p^T$.
+pub(crate) struct DressedPanel {
+    pub(super) structure: SharedStructure,
+    piece: Piece,
+    pub(super) values: Vec<f64>,
+    /// Block, coordinates and $\omega^2$ of each bare mode.
+    pub(super) bare: Vec<(usize, Vec<f64>, f64)>,
+    rigid: usize,
+    /// The residual shapes.
+    pub(super) residuals: Vec<Residual>,
+    plate: Option<WholePlate>,
+    grid: OnceLock<Vec<Vec<f64>>>,
+}
+
+/// What a force at a place does beyond the bare coordinates.
+pub(super) struct Residual {
+    pub row: Row,
+    /// Share of each bare coordinate in what the force does altogether, for a structure that knows that in closed form.
+    pub image: Vec<f64>,
+    /// Else the part of it in the basis, in the coordinates of each block.
+    pub shape: Vec<Vec<f64>>,
+}
+
+/// The plate whose few shapes the panel stands on.
+struct WholePlate {
+    plate: Arc<MindlinPlate>,
+    reduced: Arc<ReducedStructure<MindlinPlate>>,
+}
+
+/// What vibrates where no effect acts.
+#[derive(Debug, Clone)]
+pub(crate) enum Even {
+    /// A beam on a basis for the modes asked for.
+    Beam(Arc<TimoshenkoBeam>),
+    /// A plate, whose basis follows from its constants.
+    Plate,
+}
+
+impl Even {
+    /// A beam for `count` modes and some.
+    pub(crate) fn beam(setting: &EffectSetting, count: usize) -> Result<Self, ModelError> {
+        let terms = BeamTerms::default();
+        let order = basis_terms(count + SPARE_MODES);
+        Ok(Self::Beam(Arc::new(TimoshenkoBeam::with_terms(&setting.piece, setting.boundary, order, terms)?)))
+    }
+}
+
+fn basis_terms(summed: usize) -> usize {
+    2 * summed + 24
+}
+
+/// The structure of a panel with the modes that are summed, before any element joins it.
+pub(super) struct Dressed {
+    pub(super) panel: DressedPanel,
+    pub(super) base: ModalBase,
+    pub(super) elements: Vec<PointElement>,
+    pub(super) core: Option<CoreModulus>,
+}
+
+impl Dressed {
+    /// On the first `summed` flexible modes of the structure with what effects spread over it.
+    pub(super) fn new(
+        setting: &EffectSetting,
+        even: &Even,
+        values: &[f64],
+        effects: &[EffectState],
+        summed: usize,
+    ) -> Result<Self, ModelError> {
+        let dressing = Dressing::of(effects, setting, 0)?;
+        if dressing.plate.is_some() {
+            return Err(ModelError::Unsupported(
+                "width-coupling in a model file: write structure \"mindlin-plate\" with its six constants".into(),
+            ));
+        }
+        let mut elements = elements(effects, setting)?;
+        let (structure, plate): (SharedStructure, _) = match (even, dressing.terms) {
+            (Even::Beam(even), None) => (Arc::<TimoshenkoBeam>::clone(even), None),
+            (Even::Beam(_), Some(terms)) => {
+                let order = basis_terms(summed);
+                (Arc::new(TimoshenkoBeam::with_terms(&setting.piece, setting.boundary, order, terms)?), None)
+            }
+            (Even::Plate, terms) => {
+                let edge_mass = take_edge_mass(&mut elements);
+                let terms = PlateTerms { spread: terms.unwrap_or_default(), edge_mass };
+                let whole = WholePlate::new(setting, values, summed, &terms, &elements)?;
+                (Arc::<ReducedStructure<MindlinPlate>>::clone(&whole.reduced), Some(whole))
+            }
+        };
+        let base = ModalBase::new(&structure, values, summed, &[], &[])?;
+        let mode = |&(block, number): &(usize, usize)| {
+            let modes = base.blocks.get(block)?;
+            let coordinates = (0..modes.vectors.nrows()).map(|i| modes.vectors[(i, number)]).collect();
+            Some((block, coordinates, modes.lambda[number]))
+        };
+        let bare = base.near.iter().filter_map(mode).collect();
+        let panel = DressedPanel {
+            structure,
+            piece: setting.piece,
+            values: values.to_vec(),
+            bare,
+            rigid: base.rigid,
+            residuals: vec![],
+            plate,
+            grid: OnceLock::new(),
+        };
+        Ok(Self { panel, base, elements, core: dressing.core.map(|(core, _)| core) })
+    }
+
+    /// With the residual shapes of all elements: the panel and its matrices.
+    pub(super) fn with_residuals(mut self, damping: &Damping) -> Result<(DressedPanel, System), ModelError> {
+        let rows: Vec<Row> = self.elements.iter().filter_map(row).collect();
+        let view = View::new(&self.base, &rows, &[])?;
+        for (number, &row) in rows.iter().enumerate() {
+            let share = |(m, mode): (usize, &(usize, Vec<f64>, f64))| {
+                if mode.2 > 0.0 { view.numbers[view.layout.shape(m) + number] / mode.2 } else { 0.0 }
+            };
+            let image = self.panel.bare.iter().enumerate().map(share).collect();
+            let shape = if self.panel.plate.is_some() { far_shape(&self.base, row)? } else { vec![] };
+            self.panel.residuals.push(Residual { row, image, shape });
+        }
+        Ok((self.panel, System::new(&view, &self.elements, damping)))
+    }
+}
+
+/// $\sum\phi_m\phi_m(p)/\omega_m^2$ over the modes that are not summed, block by block.
+fn far_shape(base: &ModalBase, row: Row) -> Result<Vec<Vec<f64>>, ModelError> {
+    let of_block = |(index, block): (usize, &super::receptance::modal_base::BlockModes)| {
+        let here = base.rows(index, &[row])?;
+        let shares = Mat::from_fn(block.lambda.len(), 1, |m, _| {
+            block.far.iter().position(|far| *far == m).map_or(0.0, |far| here[(0, m)] * block.powers[(far, 0)])
+        });
+        let shape = product(block.vectors.as_ref(), shares.as_ref());
+        Ok((0..shape.nrows()).map(|i| shape[(i, 0)]).collect())
+    };
+    base.blocks.iter().enumerate().map(of_block).collect()
+}
+
+impl WholePlate {
+    fn new(
+        setting: &EffectSetting,
+        values: &[f64],
+        summed: usize,
+        terms: &PlateTerms,
+        elements: &[PointElement],
+    ) -> Result<Self, ModelError> {
+        let (piece, boundary) = (&setting.piece, setting.boundary);
+        let plate = Arc::new(MindlinPlate::uneven_with_basis_for((piece, boundary), values, summed, terms)?);
+        let places: Vec<Place> = elements.iter().filter_map(row).map(|(_, place)| place).collect();
+        let reduced = ReducedStructure::answering(Arc::clone(&plate), values, summed, &places)?;
+        Ok(Self { plate, reduced: Arc::new(reduced) })
+    }
+}
+
+impl DressedPanel {
+    /// How many of the bare modes are rigid.
+    pub(super) fn rigid(&self) -> usize {
+        self.rigid
+    }
+
+    /// The deflections of all coordinates at points along the piece: mode m has about m + 1 nodes, and eight points between
+    /// two of them part every pair.
+    pub(super) fn grid(&self, count: usize) -> Vec<Vec<f64>> {
+        let points = 8 * (count + 2);
+        let place =
+            |index: usize| Place { x: self.piece.length * ((index as f64 + 0.5) / points as f64 - 0.5), y: 0.0 };
+        (0..points).map(|index| self.deflections(place(index))).collect()
+    }
+
+    /// Nodes along a beam, of `count` modes that are asked for.
+    pub(super) fn nodes(&self, shares: &[f64], count: usize) -> usize {
+        nodes(self.grid.get_or_init(|| self.grid(count)), shares)
+    }
+
+    /// The name of a plate's mode; `None` for a beam's.
+    pub(super) fn name(&self, shares: &[f64]) -> Option<ModeName> {
+        let whole = self.plate.as_ref()?;
+        let block = |(block, matrices): (usize, &crate::Block)| {
+            let mut sum = vec![0.0; matrices.size()];
+            let mut add = |share: f64, shape: &[f64]| sum.iter_mut().zip(shape).for_each(|(sum, s)| *sum += share * s);
+            for ((_, shape, _), share) in self.bare.iter().zip(shares).filter(|((own, ..), _)| *own == block) {
+                add(*share, shape);
+            }
+            for (residual, share) in self.residuals.iter().zip(shares.iter().skip(self.bare.len())) {
+                add(*share, residual.shape.get(block).map_or(&[][..], |shape| shape));
+            }
+            whole.reduced.in_whole(&RitzMode { angular_frequency: 0.0, block, coordinates: sum })
+        };
+        let parts: Vec<RitzMode> = self.structure.blocks().iter().enumerate().map(block).collect();
+        Some(whole.plate.name_of_sum(&parts))
+    }
+
+    /// Values of all bare coordinates in one row.
+    pub(super) fn bare_row(&self, (motion, place): Row) -> Result<Vec<f64>, ModelError> {
+        let row = |block: usize| self.structure.motion_row(block, motion, place);
+        let rows: Option<Vec<Vec<f64>>> = (0..self.structure.blocks().len()).map(row).collect();
+        let rows = rows.ok_or_else(|| ModelError::Unsupported("an effect on a rotation of this structure".into()))?;
+        Ok(self.bare.iter().map(|(block, shape, _)| seen(&rows, *block, shape)).collect())
+    }
+
+    /// Deflection at a place of each coordinate of the panel: bare coordinates, then residual shapes.
+    pub(super) fn deflections(&self, place: Place) -> Vec<f64> {
+        let rows: Vec<_> =
+            (0..self.structure.blocks().len()).map(|block| self.structure.shape_row(block, place)).collect();
+        let bare: Vec<f64> = self.bare.iter().map(|(block, shape, _)| seen(&rows, *block, shape)).collect();
+        let residual = |residual: &Residual| -> f64 {
+            let shape = residual.shape.iter().enumerate().map(|(block, shape)| seen(&rows, block, shape)).sum::<f64>();
+            shape + self.beyond_basis((Motion::Deflection, place), &bare, residual)
+        };
+        let residuals: Vec<f64> = self.residuals.iter().map(residual).collect();
+        bare.into_iter().chain(residuals).collect()
+    }
+
+    /// What the basis lacks of a residual shape in a row where the bare coordinates have these values.
+    pub(super) fn beyond_basis(&self, row: Row, bare: &[f64], residual: &Residual) -> f64 {
+        match self.structure.static_flexibility(&self.values, [row, residual.row]) {
+            Some(whole) => whole.value - bare.iter().zip(&residual.image).map(|(a, b)| a * b).sum::<f64>(),
+            None => self.structure.static_remainder(&self.values, [row, residual.row]).map_or(0.0, |(value, _)| value),
+        }
+    }
+
+    /// The modes of the panel and its matrices, in rising order, all that there are.
+    pub(super) fn solve(
+        setting: &EffectSetting,
+        even: &Even,
+        values: &[f64],
+        effects: &[EffectState],
+        damping: &Damping,
+        count: usize,
+    ) -> Result<(Self, System, Vec<FoundMode>), ModelError> {
+        let dressed = Dressed::new(setting, even, values, effects, count + SPARE_MODES)?;
+        if dressed.core.is_some() {
+            return Err(ModelError::Unsupported("viscoelastic-core in a model of modes".into()));
+        }
+        let (panel, system) = dressed.with_residuals(damping)?;
+        let rigid = panel.rigid();
+        let mut found = system.solve()?;
+        found.truncate(rigid + count);
+        Ok((panel, system, found))
+    }
+}
+
+/// A shape of one block in rows of all blocks.
+fn seen(rows: &[Vec<f64>], block: usize, shape: &[f64]) -> f64 {
+    rows.get(block).map_or(0.0, |row| row.iter().zip(shape).map(|(r, c)| r * c).sum())
+}
+
+pub(super) fn nodes(grid: &[Vec<f64>], shares: &[f64]) -> usize {
+    let along = grid.iter().map(|row| row.iter().zip(shares).map(|(value, share)| value * share).sum());
+    crossings(&along.collect::<Vec<f64>>())
+}
+
+/// Where an element of [`elements`] sits.
+pub(super) fn row(element: &PointElement) -> Option<Row> {
+    match element.seat {
+        Seat::At(place) | Seat::Free(place, _) | Seat::AlongEdge(place) => Some((element.motion, place)),
+        Seat::AtResponse => None,
+    }
+}
+
+/// The elements of all effects, each at a place of its own.
+pub(super) fn elements(effects: &[EffectState], setting: &EffectSetting) -> Result<Vec<PointElement>, ModelError> {
+    let mut elements = Vec::new();
+    for state in effects {
+        for action in state.effect.act(&state.values_in(1)?, setting)? {
+            let Action::Element(mut element) = action else { continue };
+            if element.seat == Seat::AtResponse {
+                let Some(place) = setting.record.response_at else { continue };
+                element.seat = Seat::At(place);
+            }
+            elements.push(element);
+        }
+    }
+    Ok(elements)
+}
+
+/// Takes the masses along edges from the list: what each of the two edges carries, for they carry the same.
+fn take_edge_mass(elements: &mut Vec<PointElement>) -> f64 {
+    let mut both = 0.0;
+    elements.retain(|element| match (element.seat, element.law) {
+        (Seat::AlongEdge(_), ElementLaw::Mass { mass }) => {
+            both += mass;
+            false
+        }
+        _ => true,
+    });
+    0.5 * both
+}
