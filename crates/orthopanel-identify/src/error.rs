@@ -6,6 +6,9 @@ use thiserror::Error;
 
 use crate::least_squares::Stuck;
 
+/// Sampling rate over the band of an analyser, whose anti-alias filter needs the rest.
+const RATE_OVER_BAND: f64 = 2.56;
+
 /// Errors of this crate.
 #[derive(Debug, Error)]
 #[non_exhaustive]
@@ -26,14 +29,32 @@ pub enum IdentifyError {
     /// Records in which too few resonances stand out.
     #[error(
         "{found} resonances stand out from the records, for {needed} constants: look at the accelerance; a \
-         Hann window cuts off a hit near the record's start (take none, or force-exponential), and the sampling rate must \
-         be more than twice the highest mode asked for"
+         Hann window cuts off a hit near the record's start (take none, or force-exponential), files listed under one pair \
+         of places are taken as hits of it, and the sampling rate must be more than twice the highest mode asked for"
     )]
     TooFewResonances {
         /// Resonances found.
         found: usize,
         /// Constants to find.
         needed: usize,
+    },
+    /// Records that end below the modes that would tell the constants.
+    #[error(
+        "the records end at {to:.1} Hz and hold {found} modes of {of}, for {needed} constants: the next needed lies at about \
+         {next:.0} Hz; sample at {:.0} Hz or more (2.56 times that), with a hammer tip whose force reaches it, or hold a \
+         constant under [constants]", RATE_OVER_BAND * next
+    )]
+    BandTooLow {
+        /// The highest line \[Hz\].
+        to: f64,
+        /// Modes in the band.
+        found: usize,
+        /// Constants to find.
+        needed: usize,
+        /// Whose modes: those of the constants that meet the records, or of usual ones.
+        of: &'static str,
+        /// The mode with which there would be enough \[Hz\].
+        next: f64,
     },
     /// The test holds a constant that the structure does not have.
     #[error("constants.{name}: the structure has no such constant, it has {known}")]
@@ -122,25 +143,30 @@ pub enum IdentifyError {
     },
     /// Records that no panel of these sizes could give.
     #[error(
-        "half of all lines miss the model by more than {percent:.0} %, whatever the constants: either the test file says \
+        "half of all lines miss the model by more than {percent:.0} %, whatever the constants, most of all in {record}: either the test file says \
          other things than the records (force_at and response_at, the sensor's direction, units and gain, sizes and mass of \
          the piece, the window, the sampling rate), or they show too little: measure more places, or from below the first \
          resonance on; or the beam lacks something large: orthopanel trace looks for it, the plate of a wide panel among others"
     )]
     Contradiction {
+        /// Files and places of the record that misses it most.
+        record: String,
         /// Median of $|H_{cal}-H_{exp}|/|H_{exp}|$ \[%\].
         percent: f64,
     },
     /// One record that contradicts the others.
     #[error(
-        "{record}: half of its lines miss the model of all records by more than {percent:.0} %: it contradicts the others; \
-         check its file, force_at and response_at, the sensor's direction, unit and gain"
+        "{record}: half of its lines miss the model of all records by more than {percent:.0} %: it contradicts the \
+         others{}; check its file, force_at and response_at, the sensor's direction, unit and gain",
+        other_place(.fits_at)
     )]
     RecordContradiction {
-        /// Its piece and places.
+        /// Its files, piece and places.
         record: String,
         /// Median of $|H_{cal}-H_{exp}|$ over $|H_{exp}|$ or three standard deviations of it, whichever is more \[%\].
         percent: f64,
+        /// Where it would fit as the others do: `force_at` or `response_at`, and x \[m\]; `None` where no place explains it.
+        fits_at: Option<(&'static str, f64)>,
     },
     /// Weights under which eq. 23 measures nothing.
     #[error(
@@ -163,6 +189,10 @@ pub enum IdentifyError {
     Model(#[from] ModelError),
 }
 
+fn other_place(fits_at: &Option<(&'static str, f64)>) -> String {
+    fits_at.map_or(String::new(), |(key, x)| format!(", and would fit with {key} x = {x:.3} m"))
+}
+
 impl IdentifyError {
     /// A search whose start was refused, or that found no end.
     pub(crate) fn refused<E: Into<Self>>(stuck: Stuck<E>) -> Self {
@@ -172,6 +202,16 @@ impl IdentifyError {
                 Self::NotConverged { iterations: count, error_percent: 100.0 * cost.sqrt() }
             }
         }
+    }
+
+    /// Whether the records are known to end too early, so that no other constants need be looked for.
+    pub(crate) fn knows_the_band(&self) -> bool {
+        matches!(self, Self::BandTooLow { .. })
+    }
+
+    /// Whether the record that is to blame is known, so that no other constants need be looked for.
+    pub(crate) fn knows_the_place(&self) -> bool {
+        matches!(self, Self::RecordContradiction { fits_at: Some(_), .. })
     }
 
     /// Whether the model cannot be evaluated, or the records not be read, whatever the search.

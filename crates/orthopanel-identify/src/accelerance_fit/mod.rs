@@ -1,14 +1,18 @@
 //! Identification by accelerance: maximum likelihood over the whole complex band, or the paper's eq. 23.
 
+mod band;
+mod contradiction;
 mod line_block;
 mod line_noise;
 mod matching;
+mod misfit;
 mod mode_group;
 mod outcome;
 mod paper_error;
 mod pole_charge;
 mod poles;
 mod problem;
+mod record_apart;
 mod record_poles;
 mod records;
 mod resonance_fit;
@@ -58,8 +62,13 @@ pub(crate) fn identify_records(test: &ImpactTest, settings: Settings) -> Result<
     }
     let by_poles = start(&recorded).and_then(|start| by_poles(test, settings, start));
     match by_poles {
-        Err(refused) if recorded.structure == StructureKind::TimoshenkoBeam && !refused.is_of_model() => {
-            by_wide_records(test, settings, &recorded).map_err(|_| refused)
+        Err(refused)
+            if recorded.structure == StructureKind::TimoshenkoBeam
+                && !refused.is_of_model()
+                && !refused.knows_the_place() =>
+        {
+            by_wide_records(test, settings, &recorded)
+                .map_err(|wide| if wide.knows_the_band() { wide } else { refused })
         }
         other => other,
     }
@@ -122,6 +131,7 @@ fn by_wide_records(
         let start = Start::at(recorded, &problem.constants, &minimum.parameters)?;
         match outcome::outcome(test, settings, start, &mut problem, minimum) {
             Ok(found) => return Ok(found),
+            Err(error) if error.knows_the_band() => return Err(error),
             Err(error) => refused = refused.or(Some(error)),
         }
     }

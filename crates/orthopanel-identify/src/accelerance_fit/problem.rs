@@ -74,6 +74,32 @@ impl PieceProblem {
         Ok(self.pairs.iter().zip(&self.records).map(between).collect())
     }
 
+    /// The model of one record as if it had been taken between other places.
+    pub(super) fn models_between(
+        &self,
+        record: &PlaceRecord,
+        pairs: &[(Place, Place)],
+        (values, log_zetas): (&[f64], &[f64]),
+        law: DampingLaw,
+    ) -> Result<Vec<PairModel>, ModelError> {
+        let places: Vec<Place> = pairs.iter().flat_map(|&(force, response)| [force, response]).collect();
+        let modes = self.synthesis.modes(values, self.summed, &places)?;
+        let zetas = self.zetas(log_zetas);
+        let between = |index: usize| {
+            let pair = (2 * index, 2 * index + 1);
+            let flexibility = self.synthesis.flexibility(&modes, &places, pair, values);
+            PairModel::new(
+                &modes,
+                pair,
+                flexibility,
+                law,
+                (&zetas, self.free_zetas),
+                (record.decay_rate, record.band_end()),
+            )
+        };
+        Ok((0..pairs.len()).map(between).collect())
+    }
+
     /// All damping ratios of the sum: the free ones, then the last of those inside the band.
     pub(super) fn zetas(&self, log_zetas: &[f64]) -> Vec<f64> {
         let beyond = log_zetas.get(self.in_band.saturating_sub(1)).or(log_zetas.last()).copied().unwrap_or(-6.0);
@@ -170,22 +196,20 @@ impl AcceleranceProblem {
         let mut all = Vec::new();
         for (index, piece) in self.pieces.iter().enumerate() {
             let models = self.pair_models(index, parameters)?;
-            for (record, model) in piece.records.iter().zip(&models) {
-                let mut out = vec![LineBlock::ZERO; model.functions()];
-                let mut lines = Vec::with_capacity(record.value.len());
-                for from in (0..record.value.len()).step_by(BLOCK) {
-                    model.lines(&record.s_block(from), &mut out);
-                    lines.extend(out.iter().take(1).flat_map(LineBlock::values).take(record.value.len() - from));
-                }
-                all.push(lines);
-            }
+            all.extend(piece.records.iter().zip(&models).map(|(record, model)| model_lines(record, model)));
         }
         Ok(all)
     }
 
+    /// The constants of a piece and its logarithms of damping ratios.
+    pub(super) fn of_piece<'a>(&self, piece: usize, parameters: &'a [f64]) -> (Vec<f64>, &'a [f64]) {
+        let offset = self.zeta_offset(piece);
+        (self.values(parameters, piece), &parameters[offset..offset + self.pieces[piece].free_zetas])
+    }
+
     fn pair_models(&self, piece: usize, parameters: &[f64]) -> Result<Vec<PairModel>, ModelError> {
-        let (own, offset) = (&self.pieces[piece], self.zeta_offset(piece));
-        own.pair_models(&self.values(parameters, piece), &parameters[offset..offset + own.free_zetas], self.law)
+        let (values, log_zetas) = self.of_piece(piece, parameters);
+        self.pieces[piece].pair_models(&values, log_zetas, self.law)
     }
 
     /// Half the curvature of $\sum 2|H_{cal}-H_{exp}|^2/\mathrm{var}$ and of the damping priors, with gradient and value.
@@ -227,6 +251,17 @@ impl AcceleranceProblem {
         sum.mirror();
         Ok(sum)
     }
+}
+
+/// The model at the lines of a record.
+pub(super) fn model_lines(record: &PlaceRecord, model: &PairModel) -> Vec<Complex64> {
+    let mut out = vec![LineBlock::ZERO; model.functions()];
+    let mut lines = Vec::with_capacity(record.value.len());
+    for from in (0..record.value.len()).step_by(BLOCK) {
+        model.lines(&record.s_block(from), &mut out);
+        lines.extend(out.iter().take(1).flat_map(LineBlock::values).take(record.value.len() - from));
+    }
+    lines
 }
 
 /// Bounds of $\ln\zeta$: eq. 25 wants a ratio below $1/\sqrt2$.

@@ -43,6 +43,19 @@ impl PlaceRecord {
         }
     }
 
+    /// The same with every few lines only, so that no more than `most` are left.
+    pub(super) fn thinned(&self, most: usize) -> Self {
+        let stride = self.value.len().div_ceil(most.max(1)).max(1);
+        let every = |of: &[f64]| of.iter().step_by(stride).copied().collect();
+        Self {
+            frequency: every(&self.frequency),
+            value: self.value.iter().step_by(stride).copied().collect(),
+            variance: every(&self.variance),
+            worth: every(&self.worth),
+            ..*self
+        }
+    }
+
     /// Distance between lines \[Hz\]; zero of a single one.
     pub(super) fn line_step(&self) -> f64 {
         self.frequency.get(1).zip(self.frequency.first()).map_or(0.0, |(second, first)| second - first)

@@ -4,6 +4,7 @@ use orthopanel_data::ImpactTest;
 use orthopanel_model::{Boundary, Piece, Place, StructureKind};
 use rayon::prelude::*;
 
+use super::band::low_band_of_usual_panel;
 use super::matching::{Matching, PiecePoles, candidates, match_at};
 use super::mode_group::{NearMode, Overlap, group_pole};
 use super::poles::{NoisePower, Pole, alike, poles};
@@ -52,11 +53,24 @@ impl<'a> Start<'a> {
     /// Whether the starting model's resonances overlap those of the records, so that a fit line by line can pull them
     /// together. Where one lies wholly beside its peak, the misfit has no slope towards it: damping would grow instead.
     pub fn resonances_meet(&self) -> bool {
+        self.beside().all(|half_widths| half_widths.abs() <= OVERLAP)
+    }
+
+    /// How far the model's resonances lie beside those of the records, in half widths, rms; zero of none.
+    pub fn half_widths_beside(&self) -> f64 {
+        let (sum, count) = self.beside().fold((0.0, 0.0), |(sum, count), beside| (sum + beside * beside, count + 1.0));
+        if count > 0.0 { (sum / count).sqrt() } else { 0.0 }
+    }
+
+    /// How many half widths each matched pole's mode lies beside it.
+    fn beside(&self) -> impl Iterator<Item = f64> + '_ {
         let pieces = self.poles.iter().zip(&self.matching.modes).zip(&self.matching.seen);
-        let mut matched = pieces.flat_map(|((poles, modes), seen)| {
-            poles.iter().zip(modes).filter_map(|(pole, mode)| Some((pole, seen.get((*mode)?)?)))
-        });
-        matched.all(|(pole, mode)| (mode.frequency - pole.frequency).abs() <= OVERLAP * pole.zeta * pole.frequency)
+        pieces.flat_map(|((poles, modes), seen)| {
+            poles.iter().zip(modes).filter_map(|(pole, mode)| {
+                let mode = seen.get((*mode)?)?;
+                Some((mode.frequency - pole.frequency) / (pole.zeta * pole.frequency))
+            })
+        })
     }
 }
 
@@ -170,7 +184,7 @@ pub(super) fn start(recorded: &Recorded) -> Result<Start<'_>, IdentifyError> {
     let found: usize = poles.iter().map(|piece| piece.frequencies.len()).sum();
     let too_few = || IdentifyError::TooFewResonances { found, needed };
     if found < needed {
-        return Err(too_few());
+        return Err(low_band_of_usual_panel(recorded)?.unwrap_or_else(too_few));
     }
     let candidates = candidates(poles, structure, constants, tried(structure))?;
     let own_poles = poles_of(recorded);

@@ -1,4 +1,4 @@
-//! What the tests of tracing share.
+//! What tests share.
 #![allow(dead_code, reason = "each test file takes what it needs")]
 
 use std::path::{Path, PathBuf};
@@ -26,6 +26,25 @@ pub fn made(folder: &Path, set: &str, kind: &str) -> Option<(ImpactTest, Value)>
     let truth: Value = serde_json::from_str(&std::fs::read_to_string(folder.join("truth.json")).unwrap()).unwrap();
     let case = truth["cases"][0].clone();
     Some((ImpactTest::read(folder.join(case["case"].as_str().unwrap()).join("test.toml")).unwrap(), case))
+}
+
+/// Hammer records made by `tests/record_generator`, which shares no code with the crates; `None` where
+/// `ORTHOPANEL_PYTHON` names no Python for it.
+pub fn hammer_test(folder: &Path, options: &[&str]) -> Option<ImpactTest> {
+    let Some(python) = std::env::var_os("ORTHOPANEL_PYTHON") else {
+        println!("skipped: ORTHOPANEL_PYTHON names no Python with numpy and scipy");
+        return None;
+    };
+    // Tests run in the crate's folder, whatever the variable was relative to.
+    let output = Command::new(PathBuf::from(python))
+        .current_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests"))
+        .args(["-m", "record_generator"])
+        .arg(folder)
+        .args(options)
+        .output()
+        .unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    Some(ImpactTest::read(folder.join("test.toml")).unwrap())
 }
 
 /// A folder or file of the real measurements: named by `ORTHOPANEL_DATA`, or `../shared/data` beside the repository. Prints

@@ -1,0 +1,69 @@
+//! Records and test file that speak of different things.
+
+use num_complex::Complex64;
+use orthopanel_data::{ImpactTest, MeasurementData};
+
+use super::misfit::{median, record_misfit_percent};
+use super::problem::AcceleranceProblem;
+use super::record_apart::record_apart;
+use super::records::PlaceRecord;
+use super::start::pair_name;
+use crate::IdentifyError;
+
+/// Median misfit of a line \[%\] above which records and test file speak of different things. The median leaves out the
+/// peaks, where a right model with a wrong digit misses wholly, and the valleys, where noise does.
+const CONTRADICTION: f64 = 40.0;
+/// The same of one record: an effect that the model lacks may bend one by half, a wrong place, file or sign by all.
+const RECORD_CONTRADICTION: f64 = 80.0;
+
+/// Refuses records that contradict the test file; a sentence on the one that stands apart where it may be kept.
+pub(super) fn contradiction(
+    test: &ImpactTest,
+    problem: &AcceleranceProblem,
+    parameters: &[f64],
+    lines: &[Vec<Complex64>],
+) -> Result<Option<String>, IdentifyError> {
+    let records: Vec<(usize, &PlaceRecord)> =
+        problem.pieces.iter().flat_map(|piece| piece.records.iter().map(|record| (piece.piece, record))).collect();
+    let misfits = records.iter().zip(lines).map(|((_, record), model)| record_misfit_percent(record, model));
+    let worst = misfits.zip(&records).max_by(|a, b| a.0.total_cmp(&b.0));
+    let Some((worst_percent, &(piece, record))) = worst else { return Ok(None) };
+    let name = record_name(test, piece, record);
+    let apart = record_apart(problem, parameters, lines)?;
+    let fits_at = apart.as_ref().and_then(|apart| apart.fits_at());
+    let refused = IdentifyError::RecordContradiction { record: name.clone(), percent: worst_percent, fits_at };
+    if apart.as_ref().is_some_and(|apart| apart.is_misplaced()) {
+        return Err(refused);
+    }
+    let all = records.iter().zip(lines).flat_map(|((_, record), model)| model.iter().zip(&record.value));
+    let percent = 100.0 * median(all.map(|(model, measured)| (model - measured).norm() / measured.norm()));
+    if percent > CONTRADICTION {
+        return Err(IdentifyError::Contradiction { record: name, percent });
+    }
+    if worst_percent > RECORD_CONTRADICTION {
+        return Err(refused);
+    }
+    Ok(apart.map(|apart| apart.note(&name)))
+}
+
+/// A record by its files and places, and by its piece where there are several.
+fn record_name(test: &ImpactTest, piece: usize, record: &PlaceRecord) -> String {
+    let files = test.measurements.iter().filter_map(|measurement| match &measurement.data {
+        MeasurementData::TimeHistory(of) | MeasurementData::Accelerance(of) => (measurement.piece == piece
+            && (of.force_at, of.response_at) == (record.force_at, record.response_at))
+            .then(|| of.file.display().to_string()),
+        MeasurementData::NaturalFrequencies(_) => None,
+    });
+    let mut files: Vec<String> = files.collect();
+    files.dedup();
+    let more = match files.len() {
+        0 | 1 => String::new(),
+        count => format!(" and {} more", count - 1),
+    };
+    let file = files.first().map_or(String::new(), |file| format!("{file}{more}, "));
+    let of_piece = match test.pieces.get(piece) {
+        Some(piece) if test.pieces.len() > 1 => format!("piece {}, ", piece.name),
+        _ => String::new(),
+    };
+    file + &of_piece + &pair_name(record.force_at, record.response_at)
+}

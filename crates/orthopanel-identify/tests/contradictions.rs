@@ -1,0 +1,103 @@
+//! Records that contradict the test file, or do not reach far enough: refused with what is wrong, or kept with a sentence.
+//!
+//! These need Python with numpy, scipy and pyuff, named by `ORTHOPANEL_PYTHON`; without it they say so and pass.
+
+mod support;
+
+use orthopanel_data::ImpactTest;
+use orthopanel_identify::{Identification, IdentifyError, Settings, identify};
+use support::hammer_test;
+
+/// The hammer's place typed wrongly: the resonances are right, the lines between them are not.
+#[test]
+fn a_wrong_place_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let Some(_) = hammer_test(&folder.path().join("one"), &["--noise", "0.003", "--seed", "14"]) else { return };
+    let path = folder.path().join("one/test.toml");
+    let text = std::fs::read_to_string(&path).unwrap().replace("force_at = [-0.3", "force_at = [-0.02");
+    let refused = identify(&ImpactTest::from_toml(&text, &path).unwrap(), Settings::default());
+    match refused {
+        Err(IdentifyError::Contradiction { record, .. }) => {
+            assert!(record.contains("one/point-0-hit-1.csv"), "{record}")
+        }
+        other => panic!("{:?}", other.map(|found| found.constants)),
+    }
+}
+
+/// The five places at 0.3 % noise, with something in the test file written otherwise.
+struct Roving(tempfile::TempDir);
+
+impl Roving {
+    fn new() -> Option<Self> {
+        let folder = tempfile::tempdir().unwrap();
+        let options = ["--five-places", "--noise", "0.003", "--seed", "15", "--format", "uff-binary", "--hits", "3"];
+        hammer_test(&folder.path().join("five"), &options)?;
+        Some(Self(folder))
+    }
+
+    fn with(&self, written: &str, instead: &str) -> Result<Identification, IdentifyError> {
+        let path = self.0.path().join("five/test.toml");
+        let text = std::fs::read_to_string(&path).unwrap();
+        let changed = text.replace(written, instead);
+        assert_eq!(changed == text, written == instead, "{written} is not in the test file");
+        identify(&ImpactTest::from_toml(&changed, &path).unwrap(), Settings::default())
+    }
+}
+
+/// One force place of five written wrongly: by its sign, 50 mm and 30 mm beside. The others agree, so the record is named with
+/// its file, and the place at which it fits.
+#[test]
+fn one_wrong_place_among_five_is_named_with_the_right_one() {
+    let Some(test) = Roving::new() else { return };
+    assert!(test.with("", "").is_ok_and(|found| found.notes.iter().all(|note| !note.contains("orthopanel trace"))));
+    for (truth, wrong) in [(-0.21, 0.21), (0.13, 0.18), (0.13, 0.16), (-0.05, -0.08)] {
+        match test.with(&format!("force_at = [{truth},"), &format!("force_at = [{wrong},")) {
+            Err(IdentifyError::RecordContradiction { record, fits_at: Some((key, x)), .. }) => {
+                assert!(record.contains(&format!("force at ({wrong}, 0)")) && record.contains(".uff"), "{record}");
+                assert!(key == "force_at" && (x - truth).abs() < 0.002, "{wrong}: {key} {x}");
+            }
+            other => panic!("{wrong}: {:?}", other.map(|found| (found.constants, found.notes))),
+        }
+    }
+}
+
+/// A hammer that struck 6 mm beside its mark is no contradiction: constants are found, and the record is named.
+#[test]
+fn a_hammer_beside_its_mark_is_kept_and_named() {
+    let Some(test) = Roving::new() else { return };
+    let found = test.with("force_at = [0.13,", "force_at = [0.136,").unwrap();
+    assert!((found.constants[0].value / 1.067e10 - 1.0).abs() < 1e-3, "{:?}", found.constants);
+    let named = |note: &&String| note.contains("force at (0.136, 0)") && note.contains("force_at x = 0.13");
+    assert_eq!(found.notes.iter().filter(named).count(), 1, "{:?}", found.notes);
+}
+
+/// The sensor some millimetres beside its place in every record: no record stands apart, and no sentence blames the
+/// resonances, which meet.
+#[test]
+fn lines_between_resonances_are_not_laid_on_the_resonances() {
+    let Some(test) = Roving::new() else { return };
+    let found = test.with("response_at = [0.3,", "response_at = [0.285,").unwrap();
+    assert!(found.frequency_rms_percent < 0.02, "{}", found.frequency_rms_percent);
+    assert!(found.notes.iter().all(|note| !note.contains("lie beside")), "{:?}", found.notes);
+    assert!(found.notes.iter().any(|note| note.contains("the lines between them")), "{:?}", found.notes);
+}
+
+/// Sampled so slowly that no mode, or one of two, lies in the band: the flanks of higher modes do not make up for it.
+#[test]
+fn a_rate_too_low_for_the_modes_is_refused_with_the_one_needed() {
+    for (rate, pulse, held) in [("640", "0.001", 0), ("500", "0.002", 0), ("1000", "0.002", 1)] {
+        for seed in ["3", "4"] {
+            let folder = tempfile::tempdir().unwrap();
+            let options = ["--hits", "3", "--samples", "1024", "--seed", seed, "--sampling-rate", rate];
+            let options = [&options[..], &["--pulse-duration", pulse]].concat();
+            let Some(test) = hammer_test(&folder.path().join("slow"), &options) else { return };
+            match identify(&test, Settings::default()) {
+                Err(error @ IdentifyError::BandTooLow { found, needed: 2, next, .. }) => {
+                    assert_eq!(found, held, "{rate} Hz: {error}");
+                    assert!((740.0..940.0).contains(&next), "{rate} Hz: {error}");
+                }
+                other => panic!("{rate} Hz: {:?}", other.map(|found| found.constants)),
+            }
+        }
+    }
+}
