@@ -1,7 +1,10 @@
-//! Whether stated intervals hold the truth as often as they say: 400 noisy accelerances of one panel.
+//! Whether stated intervals hold the truth as often as they say: 400 noisy accelerances of one panel, whose coherence tells
+//! the true variance. `coverage_of_hits.rs` does the same from hits, where noise is read from the records.
 //!
 //! The clean accelerance comes from `tests/record_generator`, whose physics is its own; the noise is added here. Needs
 //! Python with numpy and scipy, named by `ORTHOPANEL_PYTHON`; without it the test says so and passes.
+
+mod support;
 
 use std::fmt::Write;
 use std::path::Path;
@@ -9,6 +12,7 @@ use std::process::Command;
 
 use orthopanel_data::ImpactTest;
 use orthopanel_identify::{Settings, identify};
+use support::Normal;
 
 const E_X: f64 = 1.067e10;
 const G_ZX: f64 = 5.304e8;
@@ -40,20 +44,6 @@ fn clean() -> Option<Vec<[f64; 3]>> {
         std::array::from_fn(|_| parts.next().unwrap())
     };
     Some(String::from_utf8(output.stdout).unwrap().lines().map(numbers).collect())
-}
-
-/// Normal numbers of variance one: a linear congruential generator and Box and Muller's transform.
-struct Normal(u64);
-
-impl Normal {
-    fn uniform(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        ((self.0 >> 11) as f64 + 0.5) / (1_u64 << 53) as f64
-    }
-
-    fn next(&mut self) -> f64 {
-        (-2.0 * self.uniform().ln()).sqrt() * (std::f64::consts::TAU * self.uniform()).cos()
-    }
 }
 
 #[test]

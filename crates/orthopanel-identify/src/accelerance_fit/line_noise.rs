@@ -1,6 +1,11 @@
 //! Variance of every line, told from a few hits and smoothed.
 
+use std::f64::consts::TAU;
+
+use num_complex::Complex64;
 use orthopanel_data::Accelerance;
+
+use super::records::PlaceRecord;
 
 /// Lines on either side over which the noise is taken to be even.
 const HALF_WINDOW: usize = 40;
@@ -26,18 +31,53 @@ pub(super) fn line_variance(accelerance: &Accelerance) -> Vec<f64> {
         let floor = median(&power);
         return power.iter().map(|p| 1e-6 * (p + floor)).collect();
     };
-    let typical = median(&power).max(f64::MIN_POSITIVE);
+    most_likely(&power, |shape| raw.iter().zip(shape).map(|(v, s)| v / s).collect())
+}
+
+/// The same of a record whose hits do not tell its noise by their scatter, from the misfit $e$ of a model to its lines.
+///
+/// What a model lacks runs smoothly from line to line, noise does not: of $u = e/\sqrt{1 + r|H|^2}$ the mean square of
+/// $u_k - (u_{k-1}+u_{k+1})/2$ is $\tfrac32 + \tfrac12\mathrm{Re}\rho_2 - 2\mathrm{Re}\rho_1$ of the noise's, with the correlation
+/// $\rho_m = a/(a + 2\pi jm)$ of lines under the window $e^{-\sigma t}$, $a = 2\sigma T$, and zero without one.
+pub(super) fn noise_of_misfit(record: &PlaceRecord, model: &[Complex64]) -> Vec<f64> {
+    let power: Vec<f64> = model.iter().map(|value| value.norm_sqr()).collect();
+    let misfit: Vec<Complex64> = model.iter().zip(&record.value).map(|(model, value)| model - value).collect();
+    let window = 2.0 * record.decay_rate / record.line_step();
+    let tied = |lines: f64| {
+        let (window, lines) = (window * window, (TAU * lines).powi(2));
+        if window.is_finite() { window / (window + lines) } else { 0.0 }
+    };
+    let of_noise = 1.5 + 0.5 * tied(2.0) - 2.0 * tied(1.0);
+    most_likely(&power, |shape| {
+        let even: Vec<Complex64> = misfit.iter().zip(shape).map(|(misfit, shape)| misfit / shape.sqrt()).collect();
+        let bends = even.windows(3).map(|three| match three {
+            [before, at, after] => (at - 0.5 * (before + after)).norm_sqr() / of_noise,
+            _ => f64::NAN,
+        });
+        // The first and the last line have no two neighbours.
+        std::iter::once(f64::NAN).chain(bends).chain([f64::NAN]).take(even.len()).collect()
+    })
+}
+
+/// The likeliest variance $l(1 + r|H|^2)$ with a level $l$ even over neighbours; `quotient` gives each line's own variance over
+/// such a shape.
+fn most_likely(power: &[f64], quotient: impl Fn(&[f64]) -> Vec<f64>) -> Vec<f64> {
+    let typical = median(power).max(f64::MIN_POSITIVE);
     let smooth = |step: usize| {
         let (lowest, highest, steps) = RATIOS;
         let ratio = lowest * (highest / lowest).powf(step as f64 / steps as f64);
         let shape: Vec<f64> = power.iter().map(|p| 1.0 + ratio * p / typical).collect();
-        let level = running_mean(&raw.iter().zip(&shape).map(|(v, s)| v / s).collect::<Vec<_>>());
-        level.iter().zip(&shape).map(|(l, s)| (l * s).max(f64::MIN_POSITIVE)).collect::<Vec<f64>>()
+        let quotient = quotient(&shape);
+        let level = running_mean(&quotient);
+        let variance: Vec<f64> = level.iter().zip(&shape).map(|(l, s)| (l * s).max(f64::MIN_POSITIVE)).collect();
+        let own: Vec<f64> = quotient.iter().zip(&shape).map(|(q, s)| q * s).collect();
+        (own, variance)
     };
-    // Gamma likelihood of the raw variances given the smooth ones.
+    // Gamma likelihood of the lines' own variances given the smooth ones.
     let misfit = |step: usize| -> f64 {
-        let pairs = raw.iter().zip(smooth(step)).filter(|(v, _)| v.is_finite());
-        pairs.map(|(v, smooth)| v / smooth + smooth.ln()).sum()
+        let (own, variance) = smooth(step);
+        let pairs = own.iter().zip(variance).filter(|(own, _)| own.is_finite());
+        pairs.map(|(own, smooth)| own / smooth + smooth.ln()).sum()
     };
     let least = |steps: &mut dyn Iterator<Item = usize>| {
         let scored = steps.map(|step| (misfit(step), step));
@@ -46,7 +86,7 @@ pub(super) fn line_variance(accelerance: &Accelerance) -> Vec<f64> {
     // Every few steps, then each beside the best: the misfit bends but slowly with the ratio.
     let coarse = least(&mut (0..=RATIOS.2).step_by(STRIDE));
     let nearest = coarse.saturating_sub(STRIDE - 1)..=(coarse + STRIDE - 1).min(RATIOS.2);
-    smooth(least(&mut { nearest }))
+    smooth(least(&mut { nearest })).1
 }
 
 /// Mean over the neighbours within [`HALF_WINDOW`], lines without a finite value left out.

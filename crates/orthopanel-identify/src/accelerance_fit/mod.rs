@@ -33,7 +33,7 @@ use crate::least_squares::Minimum;
 use crate::{Identification, IdentifyError, Search, Settings};
 use problem::AcceleranceProblem;
 use records::PlaceRecord;
-use sharpening::{Rough, line_by_line, problem_at, sharpened_lines};
+use sharpening::{Rough, line_by_line_with_noise, problem_at, sharpened_lines};
 use start::{Recorded, Start, start, usual_log_zeta};
 use wide_scan::rough_starts;
 
@@ -89,7 +89,7 @@ fn by_poles(test: &ImpactTest, settings: Settings, start: Start) -> Result<Ident
         // Lines tell far more than poles: what these do not show, lines may.
         let seen = problem.constants.clone();
         let all = problem.free_resting(&parameters);
-        match line_by_line(&problem, &all) {
+        match line_by_line_with_noise(&mut problem, &all) {
             Some(minimum) if !outcome::is_far_from_noise(&problem, &minimum) => {
                 return outcome::outcome(test, settings, start, &mut problem, minimum);
             }

@@ -46,7 +46,15 @@ pub(super) fn outcome(
     if !problem.usual.is_empty() {
         start.fit.not_identified = rest_unseen(problem, &mut found, covariance.as_ref());
     }
-    report(test, &start, problem, found, start.recorded.notes.clone())
+    let mut notes = start.recorded.notes.clone();
+    if likelihood && problem.noise_is_to_learn() {
+        notes.push(
+            "one hit at a place tells no scatter: noise and standard deviations are from how the misfit of neighbouring lines \
+             scatters"
+                .to_owned(),
+        );
+    }
+    report(test, &start, problem, found, notes)
 }
 
 /// Whether the misfit is the model's, and not the noise's.

@@ -7,6 +7,7 @@ use orthopanel_model::{ModelError, Piece, Place};
 use rayon::prelude::*;
 
 use super::line_block::{BLOCK, LineBlock};
+use super::line_noise::noise_of_misfit;
 use super::records::PlaceRecord;
 use super::structures::ModeSynthesis;
 use super::synthesis::{DampingLaw, PairModel};
@@ -174,6 +175,22 @@ impl AcceleranceProblem {
     /// Whether every record tells its own noise.
     pub(super) fn noise_is_known(&self) -> bool {
         self.pieces.iter().flat_map(|piece| &piece.records).all(|record| record.variance_known)
+    }
+
+    /// Whether there is a record whose noise no scatter of hits tells.
+    pub(super) fn noise_is_to_learn(&self) -> bool {
+        self.pieces.iter().flat_map(|piece| &piece.records).any(|record| !record.scatter_told)
+    }
+
+    /// Takes the noise of such records from the misfit at these parameters.
+    pub(super) fn learn_noise(&mut self, parameters: &[f64]) -> Result<(), ModelError> {
+        let mut lines = self.lines(parameters)?.into_iter();
+        let records = self.pieces.iter_mut().flat_map(|piece| &mut piece.records);
+        for (record, model) in records.zip(lines.by_ref()).filter(|(record, _)| !record.scatter_told) {
+            record.variance = noise_of_misfit(record, &model);
+            record.variance_known = true;
+        }
+        Ok(())
     }
 
     /// Where the damping of a piece begins in the parameters.

@@ -20,6 +20,9 @@ pub(super) struct PlaceRecord {
     pub variance: Vec<f64>,
     /// Whether the variance was told by the records, or assumed even.
     pub variance_known: bool,
+    /// Whether several hits tell it by their scatter. One hit tells the noise of its channels above the band at best, where a
+    /// hammer still has force and the piece modes; then it is told anew by what a fit leaves.
+    pub scatter_told: bool,
     /// $\sigma$ of $s = \sigma + j\omega$ \[1/s\].
     pub decay_rate: f64,
     /// How many independent data each line is worth, at most one: an exponential window ties neighbouring lines together.
@@ -38,6 +41,7 @@ impl PlaceRecord {
             value: usable.iter().map(|&line| accelerance.value[line]).collect(),
             variance: usable.iter().map(|&line| variance[line]).collect(),
             variance_known: accelerance.variance.is_some(),
+            scatter_told: accelerance.variance.is_some() && accelerance.hits != 1,
             decay_rate: accelerance.decay_rate,
             worth: vec![1.0; usable.len()],
         }

@@ -129,6 +129,21 @@ pub(super) fn line_by_line(problem: &AcceleranceProblem, from: &[f64]) -> Option
     (settled || near.is_reached(&minimum.at, &minimum.parameters, &bounds)).then_some(minimum)
 }
 
+/// Passes in which noise and fit follow from each other.
+const NOISE_PASSES: usize = 2;
+
+/// The same where the noise of some records follows from the fit itself: it then stands in the problem.
+pub(super) fn line_by_line_with_noise(problem: &mut AcceleranceProblem, from: &[f64]) -> Option<Minimum> {
+    let mut minimum = line_by_line(problem, from)?;
+    if problem.noise_is_to_learn() {
+        for _ in 0..NOISE_PASSES {
+            problem.learn_noise(&minimum.parameters).ok()?;
+            minimum = line_by_line(problem, &minimum.parameters)?;
+        }
+    }
+    Some(minimum)
+}
+
 /// A fit line by line from constants that are roughly right, by way of records made wide; `None` where it stays far from
 /// the noise.
 pub(super) fn sharpened_lines(
@@ -140,8 +155,9 @@ pub(super) fn sharpened_lines(
     let constants = &recorded.constants;
     let Some(rough) = sharpen(recorded, constants, rough, law, widest)? else { return Ok(None) };
     let as_they_are = (f64::INFINITY, <[PlaceRecord]>::to_vec);
-    let (problem, parameters) = problem_at(recorded, constants, &rough, law, as_they_are)?;
-    let fitted = line_by_line(&problem, &parameters).filter(|minimum| !is_far_from_noise(&problem, minimum));
+    let (mut problem, parameters) = problem_at(recorded, constants, &rough, law, as_they_are)?;
+    let fitted =
+        line_by_line_with_noise(&mut problem, &parameters).filter(|minimum| !is_far_from_noise(&problem, minimum));
     Ok(fitted.map(|minimum| (problem, minimum)))
 }
 

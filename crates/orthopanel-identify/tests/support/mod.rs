@@ -58,3 +58,17 @@ pub fn shared_data(name: &str) -> Option<PathBuf> {
     println!("skipped: {} is not there (set ORTHOPANEL_DATA)", found.display());
     None
 }
+
+/// Normal numbers of variance one: a linear congruential generator and Box and Muller's transform.
+pub struct Normal(pub u64);
+
+impl Normal {
+    fn uniform(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        ((self.0 >> 11) as f64 + 0.5) / (1_u64 << 53) as f64
+    }
+
+    pub fn next(&mut self) -> f64 {
+        (-2.0 * self.uniform().ln()).sqrt() * (std::f64::consts::TAU * self.uniform()).cos()
+    }
+}
