@@ -45,8 +45,11 @@ impl PanelModel {
     /// [`ModelError::BeyondBasis`] for more modes than can be found, [`ModelError::Unsupported`] for an effect that this
     /// version cannot solve.
     pub fn modes(&self, range: ModeRange) -> Result<Vec<PanelMode>, ModelError> {
+        if self.relaxes() { self.modes_with_core(range) } else { self.modes_without_core(range) }
+    }
+
+    fn modes_without_core(&self, range: ModeRange) -> Result<Vec<PanelMode>, ModelError> {
         match self.structure {
-            _ if self.relaxes() => self.modes_with_core(range),
             _ if !self.effects.is_empty() => self.dressed_modes(range.checked()?),
             StructureKind::TimoshenkoBeam => {
                 let modes = self.beam_modes(range)?;
@@ -234,6 +237,6 @@ impl PanelModel {
         if self.relaxes() {
             return Err(ModelError::Unsupported("viscoelastic-core in a sum of modes".into()));
         }
-        ModalModel::of_modes(&self.modes(range)?, &self.damping, forces, responses)
+        ModalModel::of_modes(&self.modes_without_core(range)?, &self.damping, forces, responses)
     }
 }
