@@ -90,6 +90,18 @@ impl ModalBase {
         terms: &[usize],
         moved: &[Moved],
     ) -> Result<Self, ModelError> {
+        Self::with_derivatives(structure, (values, values.len()), summed, terms, moved)
+    }
+
+    /// The same with derivatives by the first `constants` of the constants alone: none are asked for where a base is one side of
+    /// a difference.
+    fn with_derivatives(
+        structure: &SharedStructure,
+        (values, constants): (&[f64], usize),
+        summed: usize,
+        terms: &[usize],
+        moved: &[Moved],
+    ) -> Result<Self, ModelError> {
         let modes = all_ritz_modes(structure.as_ref(), values)?;
         let by_constants = structure.coefficient_derivatives(values)?;
         let derivatives = if terms.is_empty() { vec![] } else { structure.term_derivatives(values) };
@@ -101,7 +113,8 @@ impl ModalBase {
             let vectors = Mat::from_fn(block.size(), own.len(), |i, m| own[m].coordinates[i]);
             let in_modes =
                 |matrix: &Mat<f64>| product(vectors.transpose(), product(matrix.as_ref(), vectors.as_ref()).as_ref());
-            let stiffness: Vec<Mat<f64>> = block.stiffness.iter().map(in_modes).collect();
+            let asked = if constants > 0 { &block.stiffness[..] } else { &[] };
+            let stiffness: Vec<Mat<f64>> = asked.iter().map(in_modes).collect();
             let of_constant = |j: usize| {
                 let mut sum = Mat::zeros(own.len(), own.len());
                 for (i, matrix) in stiffness.iter().enumerate() {
@@ -109,7 +122,7 @@ impl ModalBase {
                 }
                 [sum, Mat::new()]
             };
-            let mut couplings: Vec<[Mat<f64>; 2]> = (0..values.len()).map(of_constant).collect();
+            let mut couplings: Vec<[Mat<f64>; 2]> = (0..constants).map(of_constant).collect();
             for &term in terms {
                 let Some(by) = derivatives.get(term) else { continue };
                 couplings.push([&by.stiffness, &by.mass].map(|list| list.get(index).map_or(Mat::new(), in_modes)));
@@ -125,16 +138,16 @@ impl ModalBase {
         }
         let near: Vec<_> = order.iter().take(rigid + summed).map(|&(_, block, number)| (block, number)).collect();
         blocks.iter_mut().enumerate().for_each(|(index, block)| block.part(index, &near));
-        let parameters = values.len() + terms.len();
+        let parameters = constants + terms.len();
         let mut differences = Vec::new();
         for change in moved {
             let Some(position) = terms.iter().position(|term| *term == change.term) else { continue };
             let side = |beam: &Arc<TimoshenkoBeam>| {
                 let beam: SharedStructure = beam.clone();
-                Ok::<_, ModelError>(Box::new(Self::new(&beam, values, summed, &[], &[])?))
+                Ok::<_, ModelError>(Box::new(Self::with_derivatives(&beam, (values, 0), summed, &[], &[])?))
             };
             let [back, forth] = &change.sides;
-            let (parameter, step) = (values.len() + position, change.step);
+            let (parameter, step) = (constants + position, change.step);
             differences.push(Difference { parameter, step, sides: [side(back)?, side(forth)?] });
         }
         Ok(Self {

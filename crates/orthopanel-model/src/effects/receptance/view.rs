@@ -195,7 +195,7 @@ impl View {
                 }
                 let known = whole.by_constants.iter().map(|by| Some(*by));
                 let terms = base.terms.iter().map(|term| whole.by_terms.get(*term).copied().flatten());
-                for (p, by) in known.chain(terms).enumerate() {
+                for (p, by) in known.chain(terms).enumerate().take(layout.parameters) {
                     let Some(by) = by else { continue };
                     let summed = (layout.rigid..layout.modes).map(|m| self.product_by(p, m, row, column));
                     let rest = by - summed.sum::<f64>();
