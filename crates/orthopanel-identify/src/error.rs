@@ -146,7 +146,7 @@ pub enum IdentifyError {
         "half of all lines miss the model by more than {percent:.0} %, whatever the constants, most of all in {record}: either the test file says \
          other things than the records (force_at and response_at, the sensor's direction, units and gain, sizes and mass of \
          the piece, the window, the sampling rate), or they show too little: measure more places, or from below the first \
-         resonance on; or the beam lacks something large: orthopanel trace looks for it, the plate of a wide panel among others"
+         resonance on; or the beam lacks something large: `orthopanel trace TEST.toml` looks for it, the plate of a wide panel among others"
     )]
     Contradiction {
         /// Files and places of the record that misses it most.

@@ -2,8 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
+use orthopanel_data::ImpactTest;
 use orthopanel_export::{FmiVersion, Fmu, FmuOptions};
-use orthopanel_identify::Tracing;
+use orthopanel_identify::{IdentifyError, Tracing};
 use orthopanel_model::{ModelError, PanelModel};
 use serde::Serialize;
 
@@ -12,7 +13,7 @@ use crate::driving_force::DrivingForce;
 use crate::error::{CommandError, InFile as _};
 use crate::evidence::{Evidence, PieceEvidence};
 use crate::force_file::ForceHistory;
-use crate::identified::{Answer, Identified};
+use crate::identified::{Answer, Identified, suffix};
 use crate::measured_pairs::{HitMisfit, misfit_table};
 use crate::record_options::IdentifyOptions;
 use crate::time_response::Hold;
@@ -26,7 +27,8 @@ use crate::{output, pictures, report, time_response};
 /// its own: model-NAME.json and so on.
 ///
 /// Where the test can be traced, model and FMUs are those after tracing: effects of the panel stay in them, effects of
-/// rig and measuring chain are taken out, and trace.json tells which (see `orthopanel trace --help`).
+/// rig and measuring chain are taken out, and trace.json tells which (see `orthopanel trace --help`). Records that no beam
+/// could give are traced all the same: where the trace explains them, as by a plate, its model and FMUs are written.
 ///
 /// Of records, each pair of places gets a picture of the accelerance, measured and calculated, and one of a hit with
 /// the accelerations measured and calculated under it; time-histories.json tells how far the model is from every hit.
@@ -51,7 +53,8 @@ pub struct Arguments {
 #[derive(Serialize)]
 struct RunAnswer<'a> {
     schema: &'static str,
-    identified: &'a Answer,
+    /// `null` where the records contradict a beam, and only the trace tells what they are of.
+    identified: Option<&'a Answer>,
     /// `null` where the test cannot be traced.
     trace: Option<&'a Tracing>,
     /// One entry a measured hit.
@@ -67,7 +70,12 @@ struct HitsAnswer<'a> {
 
 pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
     let Arguments { test, output, options, json } = arguments;
-    let identified = Identified::from_test(test, options)?;
+    let identified = match Identified::from_test(test, options) {
+        Err(CommandError::Identify { path, source: source @ IdentifyError::Contradiction { .. } }) => {
+            return trace_alone(arguments, CommandError::Identify { path, source });
+        }
+        identified => identified?,
+    };
     let traced = Traced::where_possible(&identified.test, test);
     let models =
         traced.as_ref().map_or_else(|| identified.models.clone(), |traced| traced.applied_to(&identified.models));
@@ -88,13 +96,10 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
         let answer = HitsAnswer { schema: "orthopanel.simulated-hits/1", hits };
         files.add("time-histories.json", output::json(&answer));
     }
-    let files = files.write_into(output)?;
-    for path in &files {
-        eprintln!("wrote {}", path.display());
-    }
+    let files = written(files, output)?;
     if *json {
         let trace = traced.as_ref().map(|traced| &traced.tracing);
-        let identified = &identified.answer;
+        let identified = Some(&identified.answer);
         output::print_json(&RunAnswer { schema: "orthopanel.run/1", identified, trace, hits, files: &files });
     } else {
         output::print(&identified.tables());
@@ -106,6 +111,43 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
         }
     }
     Ok(())
+}
+
+/// Records that no beam could give may be a plate's: the trace tells. Where it explains nothing, the refusal stands.
+fn trace_alone(arguments: &Arguments, refused: CommandError) -> Result<(), CommandError> {
+    let Arguments { test: path, output, json, .. } = arguments;
+    eprintln!("not identified: {refused}");
+    let test = ImpactTest::read(path)?;
+    let traced = Traced::from_test(&test).map_err(|source| CommandError::Identify { path: path.clone(), source })?;
+    let mut files = output::Files::default();
+    files.add("trace.json", output::json(&traced.tracing));
+    let models = traced.applied_to(&traced.tracing.panels);
+    let explained = traced.explains();
+    if explained {
+        for (named, model) in test.pieces.iter().zip(&models) {
+            add_model(&mut files, path, &suffix(&named.name, test.pieces.len()), model)?;
+        }
+    }
+    let files = written(files, output)?;
+    if *json {
+        let trace = Some(&traced.tracing);
+        output::print_json(&RunAnswer {
+            schema: "orthopanel.run/1",
+            identified: None,
+            trace,
+            hits: &[],
+            files: &files,
+        });
+    } else {
+        output::print(&traced.text());
+    }
+    if explained { Ok(()) } else { Err(refused) }
+}
+
+fn written(files: output::Files, folder: &Path) -> Result<Vec<PathBuf>, CommandError> {
+    let files = files.write_into(folder)?;
+    files.iter().for_each(|path| eprintln!("wrote {}", path.display()));
+    Ok(files)
 }
 
 /// Model, FMUs and a simulated hit of one piece.

@@ -42,6 +42,11 @@ impl Traced {
         (found && !self.tracing.effects.is_empty()).then_some(&self.tracing.panels)
     }
 
+    /// Whether effects were found that explain the data.
+    pub fn explains(&self) -> bool {
+        self.panels().is_some()
+    }
+
     /// The identified models with what the trace found: its constants, its damping and the panel's own effects. Effects
     /// of rig and measuring chain are in none of them.
     pub fn applied_to(&self, models: &[PanelModel]) -> Vec<PanelModel> {
