@@ -18,11 +18,16 @@ NOISE = 1e-2  # of each record's rms: well above what either basis leaves, 1e-4 
 
 
 @pytest.fixture(scope="module")
-def test_folder(tmp_path_factory):
+def modes():
+    # Far above the band: with 90 modes the end of the sum moved E_y by 1 to 2 %, which hardly shows in these records.
+    return shapes_at({"piece": PIECE, "constants": TRUTH}, (16, 5), 300, [RESPONSE, *FORCES])
+
+
+@pytest.fixture(scope="module", params=[7, 8, 9])
+def test_folder(request, modes, tmp_path_factory):
     folder = tmp_path_factory.mktemp("plate-records")
-    random = np.random.default_rng(7)
-    # Modes far above the band, so that the sum's end does not show at these distances between force and response.
-    frequencies, shapes = shapes_at({"piece": PIECE, "constants": TRUTH}, (16, 5), 90, [RESPONSE, *FORCES])
+    random = np.random.default_rng(request.param)
+    frequencies, shapes = modes
     zetas = 2e-3 * np.exp(0.3 * random.standard_normal(len(frequencies)))
     omega, natural = 2.0 * np.pi * LINES[:, None], 2.0 * np.pi * frequencies
     gain = -(omega**2) / (natural**2 - omega**2 + 2j * zetas * natural * omega)
@@ -52,7 +57,7 @@ def test_constants_and_damping_of_a_plate_come_from_its_accelerances(test_folder
     for name, truth in TRUTH.items():
         constant = found["constants"][name]
         assert constant["value"] == pytest.approx(truth, rel=0.01), (name, constant)
-        assert abs(constant["value"] - truth) < 5.0 * constant["std"], (name, constant)
+        assert abs(constant["value"] - truth) < 3.5 * constant["std"], (name, constant)
     modes = found["modes"]
     assert [mode["nodes"] for mode in modes] == [[2, 0], [1, 1], [3, 0], [2, 1], [4, 0], [3, 1], [5, 0], [4, 1]][: len(modes)]
     assert len(modes) >= 7
