@@ -4,10 +4,10 @@ use super::lane::{LANES, Lane};
 use super::propagator::Coefficients;
 use crate::{ModalModel, ModelError};
 
-/// The forces of springs $f_j = k_3w_j^3$ at the responses of `model` [N] under hits at its first force, and their
-/// derivatives by $k_3$ [m³].
+/// The forces of springs $f_j = k_3w_j^3$ at the responses of `model` \[N\] under hits at its first force, and their
+/// derivatives by $k_3$ \[m³\].
 ///
-/// `hits` are samples of the force [N], `step` [s] apart, each from where everything is at rest; the forces run over `samples`
+/// `hits` are samples of the force \[N\], `step` \[s\] apart, each from where everything is at rest; the forces run over `samples`
 /// of them. Each sample of a force acts as an impulse, between which modes move freely and exactly. For a load whose band ends
 /// below half the rate this leaves of a mode's motion what it is at its own frequency, and the springs' own stiffness may not be
 /// such that it swings within a few samples.
