@@ -13,20 +13,22 @@ use support::{Normal, hammer_test};
 
 const E_X: f64 = 1.067e10;
 const G_ZX: f64 = 5.304e8;
-/// So that 3e-6 of the first mode is left after 1.6 s. With table 9's damping 5e-4 would be, five deviations of the noise at its
-/// peak: such a leak is no noise, and these tests are on noise.
-const ZETAS: [&str; 6] = ["4.0e-3", "3.3e-3", "3.1e-3", "3.4e-3", "3.6e-3", "3.9e-3"];
+/// So that 3e-6 of the first mode is left after 1.6 s.
+const MUCH: [&str; 6] = ["4.0e-3", "3.3e-3", "3.1e-3", "3.4e-3", "3.6e-3", "3.9e-3"];
+
+/// Table 9: a thousandth of the first mode is left then.
+const TABLE_9: [&str; 6] = ["2.363e-3", "1.306e-3", "1.108e-3", "2.250e-3", "5.486e-3", "4.488e-3"];
 
 /// Parts of the intervals that held the truth: of E_x, of G_zx, of all damping ratios.
 #[derive(Debug)]
 struct Held([f64; 3]);
 
 /// So many tests with fresh noise of this part of each channel's rms; `None` without Python.
-fn held(options: &[&str], noise: f64, tests: usize, seed: u64) -> Option<Held> {
+fn held(options: &[&str], zetas: &[&str; 6], noise: f64, tests: usize, seed: u64) -> Option<Held> {
     let folder = tempfile::tempdir().unwrap();
     let clean = hammer_test(
         &folder.path().join("clean"),
-        &[options, &["--noise", "0", "--seed", "5", "--zeta"], &ZETAS].concat(),
+        &[options, &["--noise", "0", "--seed", "5", "--zeta"], zetas].concat(),
     )?;
     let [(_, history)] = clean.time_histories().unwrap().try_into().unwrap();
     let path = folder.path().join("test.toml");
@@ -35,7 +37,7 @@ fn held(options: &[&str], noise: f64, tests: usize, seed: u64) -> Option<Held> {
         let places = "force_at = [-0.3, 0.0]\nresponse_at = [0.3, 0.0]";
         write!(text, "[[measurement]]\nkind = \"time-history\"\nfile = \"hit-{hit}.csv\"\n{places}\n").unwrap();
     }
-    let zetas = ZETAS.map(|zeta| zeta.parse::<f64>().unwrap());
+    let zetas = zetas.map(|zeta| zeta.parse::<f64>().unwrap());
     let mut normal = Normal(seed);
     let mut counts = [0_usize; 3];
     for _ in 0..tests {
@@ -77,8 +79,20 @@ fn val_intervals_from_one_hit_hold_the_truth() {
     for (rate, samples, noise) in [("10240", "16384", 0.002), ("20480", "32768", 0.003)] {
         let options = ["--hits", "1", "--pulse", "half-sine", "--pulse-duration", "2.5e-4"];
         let options = [&options[..], &["--sampling-rate", rate, "--samples", samples]].concat();
-        let Some(Held([e_x, g_zx, zeta])) = held(&options, noise, 60, 77) else { return };
+        let Some(Held([e_x, g_zx, zeta])) = held(&options, &MUCH, noise, 60, 77) else { return };
         assert!([e_x, g_zx].iter().all(|share| (0.86..=1.0).contains(share)), "{rate} Hz: {e_x} {g_zx}");
         assert!((0.92..=0.98).contains(&zeta), "{rate} Hz: {zeta}");
     }
+}
+
+/// The response rings on, so an exponential window is taken, over the whole force: with a window of 4 ms over the force E_x was
+/// held in 82, G_zx in 74 and damping in 83 % of 100 tests.
+#[test]
+fn val_intervals_from_three_hits_of_a_piece_that_rings_on_hold_the_truth() {
+    let options = ["--hits", "3", "--pulse", "half-sine", "--pulse-duration", "2.5e-4"];
+    let options = [&options[..], &["--sampling-rate", "10240", "--samples", "16384"]].concat();
+    let Some(Held([e_x, g_zx, zeta])) = held(&options, &TABLE_9, 0.005, 400, 7) else { return };
+    // One deviation is 1.1 % for a constant, of so many tests, and half of that for six damping ratios.
+    assert!([e_x, g_zx].iter().all(|share| (0.92..=0.985).contains(share)), "{e_x} {g_zx}");
+    assert!((0.93..=0.97).contains(&zeta), "{zeta}");
 }

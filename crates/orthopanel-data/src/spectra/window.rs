@@ -12,7 +12,9 @@ pub enum Window {
     #[default]
     None,
     /// [`Window::None`] where the responses of a place have died away at the record's end, else
-    /// [`Window::ForceExponential`] with the time constant that takes what is left down to 1e-6 of the greatest.
+    /// [`Window::ForceExponential`] with the time constant that takes what is left down to 1e-6 of the greatest, and the
+    /// whole force: a window of some milliseconds ties the noise of its channel together over hundreds of lines, which moves
+    /// all lines of a resonance alike, and a fit that takes them for independent states half the deviations.
     AsNeeded,
     /// Hann's window over both channels, $\tfrac12(1 - \cos 2\pi n/N)$, as in the paper.
     Hann,
@@ -42,14 +44,13 @@ impl Window {
         match (self, left) {
             (Self::AsNeeded, None) => Self::None,
             (Self::AsNeeded, Some(left)) => {
-                // The blow must lie inside the force window, however soft; after the last of them the response falls.
-                let blows = hits.iter().map(|hit| blow(&hit.force));
-                let (last, longest) =
-                    blows.fold((0, 0), |(last, longest), (at, samples)| (last.max(at), longest.max(samples)));
-                let after = hits.first().map_or(0, |hit| hit.force.len()).saturating_sub(last);
+                // After the last blow of all hits the responses fall.
+                let last = hits.iter().map(|hit| blow(&hit.force)).max().unwrap_or(0);
+                let samples = hits.first().map_or(0, |hit| hit.force.len());
+                let after = samples.saturating_sub(last) as f64 / rate;
                 Self::ForceExponential {
-                    half_width: Self::USUAL_HALF_WIDTH.max(4.0 * longest as f64 / rate),
-                    tau: after as f64 / rate / (left / LEFT).max(std::f64::consts::E).ln(),
+                    half_width: samples as f64 / rate,
+                    tau: after / (left / LEFT).max(std::f64::consts::E).ln(),
                 }
             }
             (other, _) => other,
@@ -60,9 +61,7 @@ impl Window {
     pub(super) fn notes(self, ringing: bool) -> Vec<String> {
         let of_ringing = match self {
             Self::ForceExponential { tau, .. } => {
-                format!(
-                    "force and exponential window, tau = {tau:.3} s: the damping that it adds is known and taken out"
-                )
+                format!("exponential window, tau = {tau:.3} s: the damping that it adds is known and taken out")
             }
             _ => "what has not decayed leaks: record longer, or use the force and exponential window".into(),
         };
@@ -117,12 +116,7 @@ impl Window {
     }
 }
 
-/// Where the force peaks, and how many samples about it lie above half its height.
-fn blow(force: &[f64]) -> (usize, usize) {
-    let offset = sampled_median(force);
-    let (at, height) = peak(force, offset);
-    let high = |value: &&f64| (**value - offset) * height.signum() > 0.5 * height.abs();
-    let after = force.get(at..).unwrap_or_default().iter().take_while(high).count();
-    let before = force.get(..at).unwrap_or_default().iter().rev().take_while(high).count();
-    (at, before + after)
+/// Where the force peaks.
+fn blow(force: &[f64]) -> usize {
+    peak(force, sampled_median(force)).0
 }

@@ -75,9 +75,7 @@ impl ResonanceFit<'_> {
         let covariance = minimum.at.covariance()?;
         // Each resonance has a complex amplitude beside its two parameters, and the background has two.
         let data = 2.0 * self.lines.len() as f64 - (2 * minimum.parameters.len() + 4) as f64;
-        let left = if data > 0.0 { minimum.at.cost / data } else { 1.0 };
-        // Noise that no scatter tells may be less than what was read, too.
-        let scale = if self.record.scatter_told { left.max(1.0) } else { left };
+        let scale = if data > 0.0 { (minimum.at.cost / data).max(1.0) } else { 1.0 };
         let (frequency, zeta) = (minimum.parameters[2 * index].exp(), minimum.parameters[2 * index + 1].exp());
         let mut pole = Pole { frequency, zeta, log_zeta_std: f64::INFINITY };
         let beneath = variance_beneath_window(pole.decay_rate(), self.record.decay_rate, 1.0 / step);
