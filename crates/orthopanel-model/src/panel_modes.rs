@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::effects::{DressedPanel, Even};
+use crate::effects::{DressedPanel, Even, PanelWithEffects};
 use crate::{
     BeamConstants, BeamMode, EffectSetting, EffectState, ExactBeam, MindlinPlate, ModalModel, ModelError, Owner,
     PLATE_CONSTANTS, PanelMode, PanelModel, Place, RitzMode, Structure, StructureKind, TimoshenkoBeam, ritz_modes,
@@ -94,7 +94,14 @@ impl PanelModel {
         let setting = EffectSetting::of_panel(&self.piece, self.boundary);
         let first = |count: usize| {
             let even = self.even(&setting, count)?;
-            DressedPanel::modes(&setting, &even, &values, &effects, &self.damping, count)
+            let parts = PanelWithEffects {
+                setting: &setting,
+                even: &even,
+                values: &values,
+                effects: &effects,
+                damping: &self.damping,
+            };
+            DressedPanel::modes(parts, count)
         };
         let modes = match range {
             ModeRange::Count(count) => first(count)?,

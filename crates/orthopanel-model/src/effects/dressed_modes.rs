@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::dressed_panel::{DressedPanel, Even, elements, nodes};
+use super::dressed_panel::{DressedPanel, Even, PanelWithEffects, elements, nodes};
 use super::dressed_system::{FoundMode, System};
 use super::{EffectSetting, EffectState, ElementLaw, PointElement, RecordSetting};
 use crate::{Boundary, Damping, ModeName, ModelError, Piece, Place};
@@ -30,16 +30,9 @@ impl std::fmt::Debug for DressedMode {
 }
 
 impl DressedPanel {
-    /// The rigid modes and `count` flexible ones of a panel with these effects. `damping` belongs to the bare modes.
-    pub(crate) fn modes(
-        setting: &EffectSetting,
-        even: &Even,
-        values: &[f64],
-        effects: &[EffectState],
-        damping: &Damping,
-        count: usize,
-    ) -> Result<Vec<DressedMode>, ModelError> {
-        let (panel, system, found) = Self::solve(setting, even, values, effects, damping, count)?;
+    /// The rigid modes and `count` flexible ones of a panel with effects.
+    pub(crate) fn modes(parts: PanelWithEffects, count: usize) -> Result<Vec<DressedMode>, ModelError> {
+        let (panel, system, found) = Self::solve(parts, count)?;
         Ok(panel.dressed(&system, found, count))
     }
 
@@ -112,7 +105,8 @@ impl NaturalFrequencies {
         let Self { setting, count, beam } = self;
         let rigid = setting.boundary.rigid_modes();
         let damping = Damping { ratios: vec![], beyond: 0.0 };
-        let (panel, _, found) = DressedPanel::solve(setting, beam, values, effects, &damping, count + rigid)?;
+        let parts = PanelWithEffects { setting, even: beam, values, effects, damping: &damping };
+        let (panel, _, found) = DressedPanel::solve(parts, count + rigid)?;
         // Without springs and resonators rigid motions stay at zero; else a free beam's have no node and one.
         let stays = |element: &PointElement| matches!(element.law, ElementLaw::Mass { .. });
         let told = rigid == 0 || elements(effects, setting)?.iter().all(stays);

@@ -71,6 +71,18 @@ impl Even {
     }
 }
 
+/// What a panel with effects is made of.
+#[derive(Clone, Copy)]
+pub(crate) struct PanelWithEffects<'a> {
+    pub setting: &'a EffectSetting,
+    /// The panel where no effect acts, and its constants.
+    pub even: &'a Even,
+    pub values: &'a [f64],
+    pub effects: &'a [EffectState],
+    /// Of the bare modes.
+    pub damping: &'a Damping,
+}
+
 fn basis_terms(summed: usize) -> usize {
     2 * summed + 24
 }
@@ -85,13 +97,8 @@ pub(super) struct Dressed {
 
 impl Dressed {
     /// On the first `summed` flexible modes of the structure with what effects spread over it.
-    pub(super) fn new(
-        setting: &EffectSetting,
-        even: &Even,
-        values: &[f64],
-        effects: &[EffectState],
-        summed: usize,
-    ) -> Result<Self, ModelError> {
+    pub(super) fn new(parts: PanelWithEffects, summed: usize) -> Result<Self, ModelError> {
+        let PanelWithEffects { setting, even, values, effects, .. } = parts;
         let dressing = Dressing::of(effects, setting, 0)?;
         if dressing.plate.is_some() {
             return Err(ModelError::Unsupported(
@@ -245,19 +252,12 @@ impl DressedPanel {
     }
 
     /// The modes of the panel and its matrices, in rising order, all that there are.
-    pub(super) fn solve(
-        setting: &EffectSetting,
-        even: &Even,
-        values: &[f64],
-        effects: &[EffectState],
-        damping: &Damping,
-        count: usize,
-    ) -> Result<(Self, System, Vec<FoundMode>), ModelError> {
-        let dressed = Dressed::new(setting, even, values, effects, count + SPARE_MODES)?;
+    pub(super) fn solve(parts: PanelWithEffects, count: usize) -> Result<(Self, System, Vec<FoundMode>), ModelError> {
+        let dressed = Dressed::new(parts, count + SPARE_MODES)?;
         if dressed.core.is_some() {
             return Err(ModelError::Unsupported("viscoelastic-core in a model of modes".into()));
         }
-        let (panel, system) = dressed.with_residuals(damping)?;
+        let (panel, system) = dressed.with_residuals(parts.damping)?;
         let rigid = panel.rigid();
         let mut found = system.solve()?;
         found.truncate(rigid + count);

@@ -47,7 +47,7 @@ pub use core_fit::CoreFit;
 pub use core_modulus::{CoreLine, CoreModulus};
 pub(crate) use dressed_modes::DressedMode;
 pub use dressed_modes::{NaturalFrequencies, natural_frequencies};
-pub(crate) use dressed_panel::{DressedPanel, Even};
+pub(crate) use dressed_panel::{DressedPanel, Even, PanelWithEffects};
 pub use parameter::{EffectParameter, Reference, Scale};
 pub use point_element::{ElementLaw, ElementLine, PointElement, Seat, Share};
 pub use receptance::{LineDerivatives, LineEvaluator, ReceptanceModel, ReceptanceSetup};

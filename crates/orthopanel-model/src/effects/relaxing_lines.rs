@@ -5,9 +5,9 @@ use faer::prelude::Solve;
 use num_complex::Complex64;
 
 use super::relaxing_panel::Relaxing;
-use super::{CoreModulus, EffectSetting, EffectState, Even};
+use super::{CoreModulus, PanelWithEffects};
 use crate::structure::Motion;
-use crate::{Damping, ModelError, Place};
+use crate::{ModelError, Place};
 
 /// From a force at one place to the acceleration at another.
 ///
@@ -30,14 +30,11 @@ pub struct RelaxingLines {
 impl RelaxingLines {
     /// On `count` flexible modes at the low modulus; `None` where no effect is a core.
     pub(crate) fn new(
-        (setting, even): (&EffectSetting, &Even),
-        values: &[f64],
-        effects: &[EffectState],
-        damping: &Damping,
+        parts: PanelWithEffects,
         count: usize,
         [force, response]: [Place; 2],
     ) -> Result<Option<Self>, ModelError> {
-        let found = Relaxing::new((setting, even), values, effects, damping, count, &[force, response])?;
+        let found = Relaxing::new(parts, count, &[force, response])?;
         let Some(Relaxing { panel, system, shear, core, .. }) = found else { return Ok(None) };
         let rigid = panel.rigid();
         // Of coordinates that others hold already, none has a stiffness of its own.

@@ -4,15 +4,15 @@ use std::sync::Arc;
 
 use faer::Mat;
 
-use super::dressed_panel::{Dressed, DressedPanel, Even, Residual, row};
+use super::dressed_panel::{Dressed, DressedPanel, Even, PanelWithEffects, Residual, row};
 use super::dressed_system::System;
 use super::receptance::modal_base::Row;
 use super::receptance::view::View;
-use super::{CoreFit, CoreModulus, DressedMode, EffectSetting, EffectState, ElementLaw};
+use super::{CoreFit, CoreModulus, DressedMode, ElementLaw};
 use crate::block_pencil::BlockPencil;
 use crate::dense::{Cholesky, dot, product, symmetric_eigen};
 use crate::structure::{Motion, Structure};
-use crate::{Block, Damping, ModelError, Place};
+use crate::{Block, ModelError, Place};
 
 /// A panel on shapes that stay good while its core relaxes, at its low modulus.
 pub(super) struct Relaxing {
@@ -30,17 +30,10 @@ pub(super) struct Relaxing {
 impl Relaxing {
     /// On `count` flexible bare modes, with shapes of their own for the elements' places and for `ports`; `None` where no
     /// effect is a core.
-    pub(super) fn new(
-        (setting, even): (&EffectSetting, &Even),
-        values: &[f64],
-        effects: &[EffectState],
-        damping: &Damping,
-        count: usize,
-        ports: &[Place],
-    ) -> Result<Option<Self>, ModelError> {
-        let Dressed { mut panel, base, elements, core } = Dressed::new(setting, even, values, effects, count)?;
+    pub(super) fn new(parts: PanelWithEffects, count: usize, ports: &[Place]) -> Result<Option<Self>, ModelError> {
+        let Dressed { mut panel, base, elements, core } = Dressed::new(parts, count)?;
         let Some(core) = core else { return Ok(None) };
-        let mut system = System::new(&View::new(&base, &[], &[])?, &[], damping);
+        let mut system = System::new(&View::new(&base, &[], &[])?, &[], parts.damping);
         let of_elements: Vec<Row> = elements.iter().filter_map(row).collect();
         let mut seats: Vec<Row> = Vec::new();
         for seat in of_elements.iter().copied().chain(ports.iter().map(|port| (Motion::Deflection, *port))) {
@@ -48,7 +41,7 @@ impl Relaxing {
         }
         let rigid = panel.rigid();
         panel.add_changes(&seats)?;
-        let stiffness = panel.form(&panel.structure.coefficients(values)?, rigid);
+        let stiffness = panel.form(&panel.structure.coefficients(parts.values)?, rigid);
         let shear = panel.form(&panel.shear_coefficients()?, rigid);
         let (stiffness, shear) = panel.add_kinks(&seats, stiffness, shear)?;
         let resonators = elements.iter().filter(|element| matches!(element.law, ElementLaw::Resonator { .. })).count();
@@ -73,22 +66,16 @@ impl DressedPanel {
     /// $$\ddot z_{ik} + 2\zeta\omega_i\dot z_{ik} + \omega_i^2z_{ik} = \sqrt{a_i}\,\omega_ib_k^Tq,$$
     /// which act back alike. Modes are those of this whole without damping; dampers couple them.
     pub(crate) fn relaxing_modes(
-        setting: &EffectSetting,
-        even: &Even,
-        values: &[f64],
-        effects: &[EffectState],
-        damping: &Damping,
+        parts: PanelWithEffects,
         count: usize,
     ) -> Result<Option<(Vec<DressedMode>, CoreFit)>, ModelError> {
-        let Some(relaxing) = Relaxing::new((setting, even), values, effects, damping, count, &[])? else {
-            return Ok(None);
-        };
+        let Some(relaxing) = Relaxing::new(parts, count, &[])? else { return Ok(None) };
         let Relaxing { panel, mut system, stiffness, shear, core, seats } = relaxing;
         let frequency = |index: usize| panel.bare.get(index).map_or(0.0, |mode| mode.2.sqrt() / std::f64::consts::TAU);
         let rigid = panel.rigid();
         let fit = CoreFit::new(&core, [0.1 * frequency(rigid), frequency(rigid + count - 1)])?;
         // On a plate a wave shears both ways.
-        let ways = if matches!(even, Even::Plate) { 2 } else { 1 };
+        let ways = if matches!(parts.even, Even::Plate) { 2 } else { 1 };
         let kept = ways * (count + 2 * seats) + panel.residuals.len();
         system.relax(&shear_directions(&stiffness, &shear, kept)?, rigid, &fit);
         let found = system.solve()?;
