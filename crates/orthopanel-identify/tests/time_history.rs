@@ -37,15 +37,7 @@ fn answer(model: &ModalModel, samples: usize) -> Hit {
 
 fn history(hits: Vec<Hit>) -> TimeHistory {
     let place = Place { x: 0.0, y: 0.0 };
-    TimeHistory {
-        file: "hits.csv".into(),
-        force_at: place,
-        response_at: place,
-        rate: RATE,
-        hits,
-        further_files: Vec::new(),
-        notes: Vec::new(),
-    }
+    TimeHistory::new("hits.csv", [place, place], RATE, hits)
 }
 
 fn compared(model: &ModalModel, hit: Hit, settings: &HistorySettings) -> HitComparison {

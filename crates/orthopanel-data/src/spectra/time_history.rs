@@ -48,6 +48,12 @@ const STEP_TOLERANCE: f64 = 0.1;
 const LEAST_SAMPLES: usize = 16;
 
 impl TimeHistory {
+    /// Hits of one length at the sampling rate \[Hz\], from a force at the first place to a response at the second; `file` is
+    /// what messages call them.
+    pub fn new(file: impl Into<PathBuf>, [force_at, response_at]: [Place; 2], rate: f64, hits: Vec<Hit>) -> Self {
+        Self { file: file.into(), force_at, response_at, rate, hits, further_files: Vec::new(), notes: Vec::new() }
+    }
+
     /// A hit by its number from 1, and by its file where there are several.
     pub(super) fn hit_name(&self, index: usize) -> String {
         let Some((first, _)) = self.further_files.first() else { return format!("hit {}", index + 1) };
@@ -134,7 +140,7 @@ impl TimeHistory {
         let rate = grid.map_or(0.0, |(_, rate)| rate);
         let RecordedResponse { force_at, response_at, .. } = *measurement;
         let file = measurement.file.clone();
-        Ok(Self { file, force_at, response_at, rate, hits, further_files: Vec::new(), notes })
+        Ok(Self { notes, ..Self::new(file, [force_at, response_at], rate, hits) })
     }
 }
 

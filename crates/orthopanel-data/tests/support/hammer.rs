@@ -50,15 +50,7 @@ impl Resonator {
 
 pub fn history(hits: Vec<Hit>) -> TimeHistory {
     let place = Place { x: 0.0, y: 0.0 };
-    TimeHistory {
-        file: "hits.uff".into(),
-        force_at: place,
-        response_at: place,
-        rate: RATE,
-        hits,
-        further_files: Vec::new(),
-        notes: Vec::new(),
-    }
+    TimeHistory::new("hits.uff", [place, place], RATE, hits)
 }
 
 /// Greatest relative deviation from the resonator's transfer function.
