@@ -1,7 +1,8 @@
 //! Section 3.5's comparison on hammer records whose truth is known, made by tests/record_generator.
 
-use std::path::{Path, PathBuf};
-use std::process::Command;
+mod support;
+
+use std::path::Path;
 
 use orthopanel_data::{ImpactTest, MeasurementData, TimeHistory};
 use orthopanel_identify::{HistorySettings, compare_time_history};
@@ -9,19 +10,7 @@ use orthopanel_model::{Boundary, ModalModel, ModeRange, PanelModel, StaticFlexib
 
 /// A folder of made records and its truth; prints why and returns `None` where there is no Python for it.
 fn made_records(folder: &Path, arguments: &[&str]) -> Option<serde_json::Value> {
-    let Some(python) = std::env::var_os("ORTHOPANEL_PYTHON") else {
-        println!("skipped: ORTHOPANEL_PYTHON names no Python with numpy and scipy");
-        return None;
-    };
-    let tests = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../tests");
-    let output = Command::new(python)
-        .current_dir(tests)
-        .args(["-m", "record_generator"])
-        .arg(folder)
-        .args(arguments)
-        .output()
-        .unwrap();
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    support::hammer_test(folder, arguments)?;
     Some(serde_json::from_str(&std::fs::read_to_string(folder.join("truth.json")).unwrap()).unwrap())
 }
 
