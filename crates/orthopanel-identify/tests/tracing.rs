@@ -24,8 +24,9 @@ fn val_an_effect_put_in_is_named_and_measured() {
         assert_eq!(found.effects[0].id, kind);
         let truth = case["effects"][0]["parameters"][parameter].as_f64().unwrap();
         let (value, std) = value(&found, parameter);
-        // Five standard deviations: the generator's own solution may differ by a small part of the noise.
-        assert!((value - truth).abs() < 5.0 * std + 1e-3 * truth.abs(), "{kind}: {value} +- {std}, truth {truth}");
+        assert!((value - truth).abs() < 3.0 * std, "{kind}: {value} +- {std}, truth {truth}");
+        // Thousands of lines above their noise know a gain to 1e-6. No model is trusted to more than 3e-4 at any of ten modes.
+        assert!(kind != "record-gain" || std > 5e-5, "{kind}: {std}");
         assert!(found.error.after.held_out < 1.2 * found.error.noise_floor, "{kind}: {:?}", found.error);
     }
 }

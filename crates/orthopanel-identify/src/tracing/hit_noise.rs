@@ -2,6 +2,7 @@
 
 use num_complex::Complex64;
 
+use super::model_error::TRUSTED;
 use super::widened_lines::{HitSpectra, median};
 
 /// Variance of a line of a hit's motion about its force times the accelerance,
@@ -48,7 +49,7 @@ impl HitNoise {
         let floor = median(&weak).max(f64::MIN_POSITIVE);
         let strong = lines.iter().rev().take(tail);
         let strong: Vec<f64> = strong.map(|line| (beyond_force(line) - floor * line.floor) / line.motion).collect();
-        Self { channels: channels(floor), relative: median(&strong).max(0.0) }
+        Self { channels: channels(floor), relative: median(&strong).max(TRUSTED * TRUSTED) }
     }
 
     /// Variance of a line of the motion of one hit.

@@ -21,6 +21,7 @@ mod held_out;
 mod hit_noise;
 mod hypothesis;
 mod information;
+mod model_error;
 mod next_experiment;
 mod outcome;
 mod plate_starts;

@@ -117,11 +117,32 @@ impl RecordProblem<'_> {
     ) -> Result<Vec<Quadratic>, ModelError> {
         let state = self.state(parameters, like);
         let size = parameters.len();
-        let (model, reactions) = self.model(&state)?;
-        self.count(&state);
-        let plan = self.columns(&state);
         let all: Vec<usize> = (0..size).collect();
         let mut sums: Vec<Quadratic> = Vec::new();
+        self.rows(&state, grouping, |index, target, rows| {
+            let group = if grouping == Grouping::Hits { target } else { index };
+            if sums.len() <= group {
+                sums.resize_with(group + 1, || Quadratic::zero(size));
+            }
+            sums[group].add_products(&(rows.transpose() * rows), &all);
+        })?;
+        sums.push(self.prior(&state, size));
+        sums.iter_mut().for_each(Quadratic::mirror);
+        Ok(sums)
+    }
+
+    /// Hands on, record by record, the rows of each of its targets (all hits together, or each by itself): derivatives by all
+    /// parameters, then what is missed, all over the noise; real and imaginary part of a line follow each other.
+    pub(super) fn rows(
+        &self,
+        state: &State,
+        grouping: Grouping,
+        mut take: impl FnMut(usize, usize, &Mat<f64>),
+    ) -> Result<(), ModelError> {
+        let (model, reactions) = self.model(state)?;
+        self.count(state);
+        let plan = self.columns(state);
+        let size = plan.len();
         for (index, record) in self.records.iter().enumerate() {
             let Some(mut evaluator) = model.evaluator(index) else { continue };
             let targets: Vec<(&[Complex64], &[f64])> = match grouping {
@@ -146,17 +167,9 @@ impl RecordProblem<'_> {
                     (rows[(2 * line, size)], rows[(2 * line + 1, size)]) = (missed.re, missed.im);
                 }
             });
-            for (target, rows) in rows.iter().enumerate() {
-                let group = if grouping == Grouping::Hits { target } else { index };
-                if sums.len() <= group {
-                    sums.resize_with(group + 1, || Quadratic::zero(size));
-                }
-                sums[group].add_products(&(rows.transpose() * rows), &all);
-            }
+            rows.iter().enumerate().for_each(|(target, rows)| take(index, target, rows));
         }
-        sums.push(self.prior(&state, size));
-        sums.iter_mut().for_each(Quadratic::mirror);
-        Ok(sums)
+        Ok(())
     }
 
     /// The sum over all records.

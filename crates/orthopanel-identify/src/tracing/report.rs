@@ -1,7 +1,7 @@
 //! From the ranking to what is said.
 
-use faer::Side;
 use faer::linalg::solvers::DenseSolveCore;
+use faer::{Mat, Side};
 use orthopanel_data::ImpactTest;
 use orthopanel_model::{Estimate, Owner, PanelModel};
 
@@ -9,6 +9,7 @@ use super::bare_panel::bare_panel;
 use super::fit::{Fit, by_group};
 use super::held_out::held_out;
 use super::hypothesis::{Hypothesis, PLATE, Switched};
+use super::model_error::spread_of_gradient;
 use super::next_experiment::next_experiment;
 use super::outcome::{Candidate, FittedError, Removed, TracedEffect, TracedError, TracedParameter, Tracing};
 use super::ranking::{Ranking, Search};
@@ -77,14 +78,21 @@ pub(super) fn name(fit: &Fit, declared: usize) -> String {
     fit.state.hypothesis.name_beyond(declared)
 }
 
-/// Standard deviation of everything that a search moved: $(J^TJ)^{-1}$, widened as the likelihood is.
+/// Standard deviation of everything that a search moved: $(J^TJ)^{-1}$, widened as the likelihood is, and what a model that is
+/// wrong by a little adds, see [`spread_of_gradient`].
 fn deviations(search: &Search, ranking: &Ranking, fit: &Fit) -> Result<Vec<Option<f64>>, IdentifyError> {
     let normal = total(&by_group(search.records, fit, Grouping::Places)?).normal;
-    let covariance = normal.llt(Side::Lower).ok().map(|factor| factor.inverse());
+    let Ok(factor) = normal.llt(Side::Lower) else { return Ok(vec![None; fit.size]) };
+    let covariance = factor.inverse();
     let unit = ranking.scale.independent.recip() * fit.chi_square(search.records).max(1.0);
-    Ok((0..fit.size)
-        .map(|i| covariance.as_ref().map(|matrix| (unit * matrix[(i, i)]).sqrt()).filter(|std| std.is_finite()))
-        .collect())
+    let of_model = if fit.given_up.is_none() {
+        let spread = spread_of_gradient(search.records, fit)?;
+        &covariance * spread * &covariance
+    } else {
+        Mat::zeros(fit.size, fit.size)
+    };
+    let variance = |i: usize| unit * covariance[(i, i)] + of_model[(i, i)];
+    Ok((0..fit.size).map(|i| Some(variance(i).sqrt()).filter(|std| std.is_finite())).collect())
 }
 
 /// The effects beyond the declared ones, with the standard deviations of their parameters.
