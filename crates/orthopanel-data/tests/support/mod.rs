@@ -2,6 +2,7 @@
 #![allow(dead_code)] // Each test binary uses a part.
 
 pub mod hammer;
+pub mod recorded;
 
 use std::{fmt::Write, path::PathBuf, process::Command};
 

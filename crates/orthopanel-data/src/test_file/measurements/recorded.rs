@@ -1,7 +1,6 @@
 //! `kind = "time-history"` and `"accelerance"`: a file of records, the places, and the sensor's unit and direction.
 
-use std::fmt;
-use std::{io, path::PathBuf};
+use std::{fmt, io, path::PathBuf};
 
 use orthopanel_model::{Piece, Place};
 
