@@ -40,11 +40,8 @@ impl Identified {
         let law = settings.damping_law;
         let models =
             found.pieces.iter().enumerate().map(|(index, fit)| model(&test, &found, index, fit, law)).collect();
-        if found.pieces.iter().flat_map(|fit| &fit.modes).all(|mode| mode.damping.is_none()) {
-            eprintln!(
-                "damping: natural frequencies alone measure none; the model takes zeta = {ASSUMED_DAMPING} for every \
-                 mode, an assumption (damping.beyond in the model file)"
-            );
+        if let Some(sentence) = assumed_damping(&found) {
+            eprintln!("{sentence}");
         }
         let answer = Answer::of(&found);
         Ok(Self { test, found, models, answer })
@@ -54,6 +51,26 @@ impl Identified {
     pub fn suffix(&self, piece: &PieceFit) -> String {
         suffix(&piece.name, self.found.pieces.len())
     }
+}
+
+/// What has to be said where no mode's damping was measured.
+fn assumed_damping(found: &Identification) -> Option<String> {
+    if found.pieces.iter().flat_map(|fit| &fit.modes).any(|mode| mode.damping.is_some()) {
+        return None;
+    }
+    let every = format!(
+        "the model takes zeta = {ASSUMED_DAMPING} for every mode, an assumption (damping.beyond in the model file)"
+    );
+    Some(if found.accelerances.is_empty() {
+        format!("damping: natural frequencies alone measure none; {every}")
+    } else if found.pieces.iter().all(|fit| fit.damping.is_empty()) {
+        format!("damping: no mode lies in the band of the records; {every}")
+    } else {
+        format!(
+            "damping: no resonance stands out from the records by itself; the ratios in the model file are those with which \
+             the records as a whole fit best, and beyond them zeta = {ASSUMED_DAMPING}, an assumption (damping.beyond)"
+        )
+    })
 }
 
 /// `-NAME` of one of so many pieces, safe in file names; nothing for a single one.
