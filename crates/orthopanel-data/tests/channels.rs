@@ -173,3 +173,35 @@ fn val_hits_of_the_same_places_are_put_together() {
     let message = read(&[&one, &short]).unwrap_err().to_string();
     assert!(message.contains("c.csv: 900 samples at 1000"), "{message}");
 }
+
+/// As many forces as accelerations, but one hit has lost its response and another one was written with two: behind it every
+/// pair would be of two hits.
+#[test]
+fn val_channels_that_balance_but_do_not_pair_are_refused() {
+    let [force, acceleration] = pair();
+    let louder = |by: f64, of: &Dataset| Dataset {
+        points: of.points.iter().map(|point| point.iter().map(|value| by * value).collect()).collect(),
+        ..of.clone()
+    };
+    let (force_2, acceleration_3) = (louder(1.1, &force), louder(1.3, &acceleration));
+    let order = [&force, &acceleration, &force_2, &force, &acceleration_3, &acceleration].map(Dataset::clone);
+    let refused = history(&order, &measurement()).unwrap_err();
+    let said = "record 4: a second force where the acceleration of hit 2 is due, though there are as many of either";
+    assert!(refused.contains(said), "{refused}");
+    for kept in [[&force, &acceleration, &acceleration, &force], [&force, &force_2, &acceleration, &acceleration_3]] {
+        assert_eq!(history(&kept.map(Dataset::clone), &measurement()).unwrap().hits.len(), 2);
+    }
+}
+
+/// One channel stands for both: as numbers, whatever unit is said.
+#[test]
+fn val_one_channel_in_place_of_both_is_refused() {
+    let [force, acceleration] = pair();
+    for (as_force, as_motion) in [(&force, &force), (&acceleration, &acceleration)] {
+        let points = |of: &Dataset| of.points.iter().map(|point| point[0]).collect::<Vec<f64>>();
+        let twice = [Dataset::time(&points(as_force), (13, "N")), Dataset::time(&points(as_motion), (12, "g"))];
+        let refused = history(&twice, &measurement()).unwrap_err();
+        assert!(refused.contains("record 2") && refused.contains("sample for sample"), "{refused}");
+        assert!(refused.contains("the force times 1.000000"), "{refused}");
+    }
+}

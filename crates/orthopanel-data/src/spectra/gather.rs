@@ -27,7 +27,7 @@ impl TimeHistory {
         } else if mine.0 != theirs.0 || (mine.1 - theirs.1).abs() > 1e-6 * mine.1 {
             let file = self.file.display();
             format!(
-                "{} samples at {} Hz, {file} has {} at {} Hz: hits of one place must agree",
+                "{} samples at {:.3} Hz, {file} has {} at {:.3} Hz: hits of one place must agree",
                 theirs.0, theirs.1, mine.0, mine.1
             )
         } else {

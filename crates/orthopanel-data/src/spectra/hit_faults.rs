@@ -138,6 +138,12 @@ impl fmt::Display for HitFault {
                 100.0 * (gain - 1.0).abs(),
                 if gain > 1.0 { "above" } else { "below" }
             ),
+            Self::Elsewhere { apart, within } if apart > TURNED_ROUND => write!(
+                f,
+                "its accelerance is that of the other hits with the other sign, which agree within {:.0} %: sensor or hammer \
+                 turned round",
+                (100.0 * within).ceil()
+            ),
             Self::Elsewhere { apart, within } => write!(
                 f,
                 "its accelerance differs by {:.0} % in the median line from that of the other hits, which agree within \
@@ -151,6 +157,9 @@ impl fmt::Display for HitFault {
         }
     }
 }
+
+/// Difference of two lines over the greater of both beyond which they hardly differ but in sign: that makes two.
+const TURNED_ROUND: f64 = 1.9;
 
 /// Peak over noise below which the force spectrum is no better than a few per cent.
 pub(super) const LEAST_SIGNAL_TO_NOISE: f64 = 20.0;

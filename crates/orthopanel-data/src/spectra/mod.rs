@@ -9,6 +9,7 @@ mod extremes;
 mod gather;
 mod hit_agreement;
 mod hit_faults;
+mod misplaced_channel;
 mod node_numbers;
 mod overload;
 mod scatter;

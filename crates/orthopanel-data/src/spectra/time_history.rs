@@ -7,6 +7,7 @@ use orthopanel_model::Place;
 use super::{
     channels::{self, Quantity},
     extremes::{LANES, extremes, sampled_median},
+    misplaced_channel::{self, Ordered},
 };
 use crate::{
     DataError, Location, RecordedResponse,
@@ -56,10 +57,11 @@ impl TimeHistory {
 
     /// A hit by its number from 1, and by its file where there are several.
     pub(super) fn hit_name(&self, index: usize) -> String {
-        let Some((first, _)) = self.further_files.first() else { return format!("hit {}", index + 1) };
+        if self.further_files.is_empty() {
+            return format!("hit {}", index + 1);
+        }
         let later = self.further_files.iter().rev().find(|(from, _)| *from <= index);
         let file = later.map_or(&self.file, |(_, file)| file);
-        debug_assert!(*first > 0);
         format!("hit {} ({})", index + 1, file.file_name().unwrap_or(file.as_os_str()).display())
     }
 
@@ -80,6 +82,7 @@ impl TimeHistory {
         let RecordFile { records, mut notes } = file;
         let (mut forces, mut accelerations) = (Vec::new(), Vec::new());
         let mut untold = Vec::new();
+        let mut order: Vec<Ordered> = Vec::new();
         let Some(first) = records.first().map(|record| record.at.clone()) else {
             return Err(DataError::Contradiction {
                 at: Location::whole(&measurement.file),
@@ -88,8 +91,14 @@ impl TimeHistory {
         };
         for record in records.into_iter().filter(|record| record.kind == RecordKind::Time) {
             match channels::quantity(&record.numerator) {
-                Quantity::Force => forces.push(record),
-                Quantity::Acceleration => accelerations.push(record),
+                Quantity::Force => {
+                    order.push((record.at.clone(), true));
+                    forces.push(record);
+                }
+                Quantity::Acceleration => {
+                    order.push((record.at.clone(), false));
+                    accelerations.push(record);
+                }
                 Quantity::Untold => untold.push(record),
                 Quantity::Other(kind) => {
                     notes.push(format!(
@@ -110,6 +119,7 @@ impl TimeHistory {
             let problem = format!("{f} force and {a} acceleration records against time: one of each a hit is needed");
             return Err(DataError::Channels { at: first, problem });
         }
+        misplaced_channel::check_order(&order)?;
         let mut hits = Vec::with_capacity(forces.len());
         let mut grid: Option<(usize, f64)> = None;
         let mut times: Option<(Arc<[f64]>, f64)> = None;
@@ -128,7 +138,7 @@ impl TimeHistory {
                     if first_length != length || (first_rate - rate).abs() > 1e-6 * first_rate =>
                 {
                     let problem = format!(
-                        "hit {}: {length} samples at {rate} Hz, the hit before had {first_length} at {first_rate} Hz",
+                        "hit {}: {length} samples at {rate:.3} Hz, the hit before had {first_length} at {first_rate:.3} Hz",
                         hits.len() + 1
                     );
                     return Err(DataError::Channels { at: force.at, problem });
@@ -160,8 +170,9 @@ fn hit(
             Err(DataError::Channels { at: record.at, problem })
         }
     };
-    let force_record = force.at.clone();
+    let (force_record, motion_record) = (force.at.clone(), acceleration.at.clone());
     let mut hit = Hit { force: real(force)?, acceleration: real(acceleration)? };
+    misplaced_channel::check_apart(&hit, motion_record)?;
     if factor != 1.0 {
         hit.acceleration.iter_mut().for_each(|value| *value *= factor);
     }
