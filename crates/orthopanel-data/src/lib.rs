@@ -7,7 +7,9 @@ mod test_file;
 
 pub use error::{DataError, Location, Position};
 pub use records::{Axis, Port, Record, RecordFile, RecordKind, Samples};
-pub use spectra::{Accelerance, Channel, ChannelNoise, Estimation, Estimator, Hit, HitFault, TimeHistory, Window};
+pub use spectra::{
+    Accelerance, Channel, ChannelNoise, Estimation, Estimator, ForceNoise, Hit, HitFault, TimeHistory, Window,
+};
 pub use test_file::{
     AccelerationUnit, DeclaredEffect, Direction, ImpactTest, Measurement, MeasurementData, NamedPiece,
     NaturalFrequencies, RecordedResponse,

@@ -28,15 +28,18 @@ pub enum IdentifyError {
     },
     /// Records in which too few resonances stand out.
     #[error(
-        "{found} resonances stand out from the records, for {needed} constants: look at the accelerance; a \
+        "{found} resonances stand out from the records, for {needed} constants: {}look at the accelerance; a \
          Hann window cuts off a hit near the record's start (take none, or force-exponential), files listed under one pair \
-         of places are taken as hits of it, and the sampling rate must be more than twice the highest mode asked for"
+         of places are taken as hits of it, and the sampling rate must be more than twice the highest mode asked for",
+        much_noise(*.noise_percent)
     )]
     TooFewResonances {
         /// Resonances found.
         found: usize,
         /// Constants to find.
         needed: usize,
+        /// Standard deviation of the median line over its size \[%\]; `None` where the records do not tell it.
+        noise_percent: Option<f64>,
     },
     /// Records that end below the modes that would tell the constants.
     #[error(
@@ -143,16 +146,19 @@ pub enum IdentifyError {
     },
     /// Records that no panel of these sizes could give.
     #[error(
-        "half of all lines miss the model by more than {percent:.0} %, whatever the constants, most of all in {record}: either the test file says \
+        "half of all lines miss the model by more than {percent:.0} %, whatever the constants, most of all in {record}: {}either the test file says \
          other things than the records (force_at and response_at, the sensor's direction, units and gain, sizes and mass of \
          the piece, the window, the sampling rate), or they show too little: measure more places, or from below the first \
-         resonance on; or the beam lacks something large: `orthopanel trace TEST.toml` looks for it, the plate of a wide panel among others"
+         resonance on; or the beam lacks something large: `orthopanel trace TEST.toml` looks for it, the plate of a wide panel among others",
+        all_times(*.factor)
     )]
     Contradiction {
         /// Files and places of the record that misses it most.
         record: String,
-        /// Median of $|H_{cal}-H_{exp}|/|H_{exp}|$ \[%\].
+        /// Median of $|H_{cal}-H_{exp}|$ over $|H_{exp}|$ or three standard deviations of it, whichever is more \[%\].
         percent: f64,
+        /// The factor on all records with which they fit; `None` where there is none.
+        factor: Option<f64>,
     },
     /// One record that contradicts the others.
     #[error(
@@ -187,6 +193,31 @@ pub enum IdentifyError {
     /// What the physics refuses.
     #[error(transparent)]
     Model(#[from] ModelError),
+}
+
+/// Noise of the median line \[%\] beside which few resonances are no wonder.
+const MUCH_NOISE: f64 = 30.0;
+
+fn much_noise(percent: Option<f64>) -> String {
+    percent.filter(|&percent| percent > MUCH_NOISE).map_or(String::new(), |percent| {
+        format!(
+            "too much noise, {percent:.0} % of the line in the median line (hit harder, average more hits, mend cable and range); \
+             or "
+        )
+    })
+}
+
+fn all_times(factor: Option<f64>) -> String {
+    factor.map_or(String::new(), |factor| {
+        let cause = if (factor + 1.0).abs() < 0.1 {
+            "the sensor turned round: direction = -1 in each [[measurement]]"
+        } else if (factor / 9.806_65 - 1.0).abs() < 0.1 {
+            "an acceleration in g that the file calls m/s2: put its unit right there, in CSV the column acceleration_g"
+        } else {
+            "a gain, a unit, or the mass of the piece"
+        };
+        format!("times {factor:.3} all of them fit ({cause}); ")
+    })
 }
 
 fn other_place(fits_at: &Option<(&'static str, f64)>) -> String {

@@ -4,6 +4,7 @@ use num_complex::Complex64;
 use orthopanel_model::Place;
 
 use super::channels::{self, Quantity};
+use super::force_noise::ForceNoise;
 use crate::{
     DataError, Location, RecordedResponse,
     records::{Record, RecordFile, RecordKind, Samples},
@@ -32,6 +33,9 @@ pub struct Accelerance {
     /// The accelerance stands at $s = \sigma + j\omega$ with this $\sigma$ \[1/s\]: see
     /// [`Window::ForceExponential`](crate::Window::ForceExponential); else zero.
     pub decay_rate: f64,
+    /// What a force window leaves of the force's noise, equally long; `None` without such a window, and where the records
+    /// show no quiet stretch before the blow to read it from.
+    pub force_noise: Option<ForceNoise>,
     /// What was left out, cut, mended or assumed, a sentence each.
     pub notes: Vec<String>,
 }
@@ -47,6 +51,7 @@ impl Accelerance {
             coherence: None,
             hits: 0,
             decay_rate: 0.0,
+            force_noise: None,
             notes: Vec::new(),
         }
     }

@@ -15,10 +15,10 @@ pub struct ChannelNoise {
 }
 
 /// Force over its peak at which the blow begins.
-const TOUCH: f64 = 0.05;
+pub(super) const TOUCH: f64 = 0.05;
 
 /// Samples before that which an anti-alias filter may ring ahead.
-const AHEAD: usize = 32;
+pub(super) const AHEAD: usize = 32;
 
 /// Samples that are read at most, ...
 const MOST: usize = 1024;

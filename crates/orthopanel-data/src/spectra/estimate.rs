@@ -1,13 +1,11 @@
 //! Accelerance from hits: estimators, coherence, variance, and the band in which the hammer had force.
 
-use std::ops::Range;
-
 use num_complex::Complex64;
 
 use super::{
     accelerance::Accelerance,
     extremes::median,
-    hit_agreement::Agreement,
+    force_noise::ForceNoise,
     hit_faults::HitFault,
     overload::shared_extremes,
     spectrum::{self, Sums},
@@ -50,6 +48,9 @@ impl Default for Estimation {
 
 /// Lines over which the force spectrum is smoothed before its fall is judged: single lines scatter.
 const SMOOTHED_LINES: usize = 9;
+
+/// The force over its channel's noise below which lines are left out, in power, where windows are taken as needed.
+const OUT_OF_NOISE: f64 = 9.0;
 
 /// Lines above the band from which the noise of a single hit can be told, to a sixth.
 const LEAST_NOISE_LINES: usize = 32;
@@ -100,21 +101,27 @@ impl TimeHistory {
         let hits: Vec<&Hit> = kept.iter().map(|(_, hit)| *hit).collect();
         let window = estimation.window.resolved(left, &hits, self.rate);
         notes.extend(window.notes(left.is_some()));
+        let floor = |sums: &Sums| match estimation.window {
+            Window::AsNeeded => OUT_OF_NOISE * sums.noise_of_forces(),
+            // Who asks for a window gets all lines that it leaves.
+            _ => 0.0,
+        };
 
         let samples = hits.first().map_or(0, |hit| hit.force.len());
         let mut sums = spectrum::sums(&hits, samples, window, self.rate);
         let step = self.rate / samples as f64;
-        let mut band = self.band_end(&sums, estimation.force_drop, step);
+        let mut band = self.band_end(&sums, estimation.force_drop, floor(&sums), step)?;
         if self.heed_agreement(&sums, 1..band.0, &mut kept, &mut notes)? {
             let hits: Vec<&Hit> = kept.iter().map(|(_, hit)| *hit).collect();
             sums = spectrum::sums(&hits, samples, window, self.rate);
-            band = self.band_end(&sums, estimation.force_drop, step);
+            band = self.band_end(&sums, estimation.force_drop, floor(&sums), step)?;
         }
         let (end, cut) = band;
         notes.extend(cut);
         let noise = (kept.len() == 1).then(|| noise_above(&sums, end)).flatten();
         let mut result = Accelerance::empty(self.force_at, self.response_at);
         let (mut variance, mut coherence) = (Vec::new(), Vec::new());
+        let mut force_noise = ForceNoise::beneath(window, &sums, samples as f64 / self.rate);
         let scatter = if kept.len() > 1 { sums.variance(1..end) } else { Vec::new() };
         let lines = sums.force.iter().zip(&sums.motion).zip(&sums.cross).enumerate().take(end).skip(1);
         for (line, ((&force, &motion), &cross)) in lines {
@@ -129,6 +136,9 @@ impl TimeHistory {
             result.frequency.push(line as f64 * step);
             result.value.push(value);
             coherence.push(gamma);
+            if let Some(noise) = &mut force_noise {
+                noise.push(&sums, line, first, estimation.estimator);
+            }
             variance.push(match noise {
                 Some((force_noise, motion_noise)) => (motion_noise + first * force_noise) / force,
                 None => scatter.get(line - 1).copied().unwrap_or_default(),
@@ -140,6 +150,16 @@ impl TimeHistory {
         }
         result.hits = kept.len();
         result.decay_rate = window.decay_rate();
+        if force_noise.is_none()
+            && window.force_half_width().is_some_and(|half| 2.0 * half * self.rate < samples as f64)
+        {
+            notes.push(
+                "the force window ties the force's noise together from line to line, and no quiet stretch before the blow \
+                 tells how much: deviations stated by a fit may be too small"
+                    .into(),
+            );
+        }
+        result.force_noise = force_noise;
         if kept.len() > 1 {
             result.coherence = Some(coherence);
             result.variance = Some(variance);
@@ -158,10 +178,12 @@ impl TimeHistory {
             let location = Location { file: "settings".into(), position: Position::Whole, key: key.into() };
             Err(DataError::OutOfRange { at: Box::new(location), value, range: range.into() })
         };
-        if let Window::ForceExponential { tau, .. } = estimation.window
-            && !estimation.window.is_valid()
-        {
-            return refused("window", tau, "half width and time constant must be finite seconds, greater than zero");
+        let size = match estimation.window {
+            Window::ForceExponential { tau, .. } => tau,
+            window => window.force_half_width().unwrap_or_default(),
+        };
+        if !estimation.window.is_valid() {
+            return refused("window", size, "half width and time constant must be finite seconds, greater than zero");
         }
         let drop = estimation.force_drop;
         if drop.is_nan() || drop <= 0.0 {
@@ -170,57 +192,14 @@ impl TimeHistory {
         Ok(())
     }
 
-    /// Takes hits that stand beside the others out of `kept`, and says so; true where any was.
-    fn heed_agreement(
+    /// The first line that is left out above the band, where the force falls below `floor` too, and what to say of it.
+    fn band_end(
         &self,
         sums: &Sums,
-        band: Range<usize>,
-        kept: &mut Vec<(usize, &Hit)>,
-        notes: &mut Vec<String>,
-    ) -> Result<bool, DataError> {
-        let named = |own: usize| self.hit_name(kept[own].0);
-        match sums.agreement(band) {
-            Agreement::Alike => Ok(false),
-            Agreement::Astray(astray) => {
-                notes.extend(astray.iter().map(|(own, fault)| format!("{} left out: {fault}", named(*own))));
-                let mut own = 0..;
-                kept.retain(|_| own.next().is_none_or(|index| astray.iter().all(|(of, _)| *of != index)));
-                Ok(true)
-            }
-            Agreement::Parted { second, apart, within } => {
-                let names: Vec<String> = second.iter().map(|&own| named(own)).collect();
-                Err(DataError::NoUsableHit {
-                    file: self.file.clone(),
-                    reasons: format!(
-                        "{} differ by {:.0} % in the median line from the other hits of force [{}, {}], response [{}, {}], \
-                         and agree with one another within {:.0} %: they belong to another place; correct force_at or \
-                         response_at",
-                        names.join(", "),
-                        100.0 * apart,
-                        self.force_at.x,
-                        self.force_at.y,
-                        self.response_at.x,
-                        self.response_at.y,
-                        (100.0 * within).ceil()
-                    ),
-                })
-            }
-            Agreement::Differ { by, in_gain } => {
-                let names: Vec<String> = (0..kept.len()).map(named).collect();
-                let how = if in_gain {
-                    "over the whole band, and nothing tells which is right: a sample cut off, or another \
-                     gain"
-                } else {
-                    "in the median line: much noise, or hits at several places"
-                };
-                notes.push(format!("{} differ by {:.1} % {how}", names.join(", "), 100.0 * by));
-                Ok(false)
-            }
-        }
-    }
-
-    /// The first line that is left out above the band, and what to say of it.
-    fn band_end(&self, sums: &Sums, force_drop: f64, step: f64) -> (usize, Option<String>) {
+        force_drop: f64,
+        floor: f64,
+        step: f64,
+    ) -> Result<(usize, Option<String>), DataError> {
         let half = SMOOTHED_LINES / 2;
         let smooth = |line: usize| {
             let lines = sums.force.get(line.saturating_sub(half).max(1)..(line + half + 1).min(sums.force.len()));
@@ -229,14 +208,27 @@ impl TimeHistory {
         };
         let smoothed: Vec<f64> = (0..sums.force.len()).map(smooth).collect();
         let greatest = smoothed.iter().copied().fold(0.0, f64::max);
-        let least = greatest * 10f64.powf(-force_drop / 10.0);
+        if greatest < floor {
+            let reasons = format!(
+                "the noise of the force's channel, read before the blow, is {:.0} % of its spectrum where that is \
+                 greatest: too much noise; hit harder, or record the force with less noise",
+                100.0 * (sums.noise_of_forces() / greatest).sqrt()
+            );
+            return Err(DataError::NoUsableHit { file: self.file.clone(), reasons });
+        }
+        let fallen = greatest * 10f64.powf(-force_drop / 10.0);
         let top = smoothed.iter().position(|&value| value == greatest).unwrap_or(0);
-        let end = smoothed.iter().skip(top).position(|&value| value < least).map(|after| top + after);
+        let end = smoothed.iter().skip(top).position(|&value| value < fallen.max(floor)).map(|after| top + after);
         let cut = end.map(|end| {
             let at = end as f64 * step;
-            format!("band cut at {at:.1} Hz: above, the force is more than {force_drop} dB below its greatest line")
+            if floor > fallen {
+                let over = OUT_OF_NOISE.sqrt();
+                format!("band cut at {at:.1} Hz: above, the force is less than {over} times its channel's noise")
+            } else {
+                format!("band cut at {at:.1} Hz: above, the force is more than {force_drop} dB below its greatest line")
+            }
         });
-        (end.unwrap_or(sums.force.len()), cut)
+        Ok((end.unwrap_or(sums.force.len()), cut))
     }
 }
 

@@ -4,7 +4,13 @@ use std::ops::Range;
 
 use num_complex::Complex64;
 
-use super::{extremes::median, hit_faults::HitFault, spectrum::Sums};
+use super::{
+    extremes::median,
+    hit_faults::HitFault,
+    spectrum::Sums,
+    time_history::{Hit, TimeHistory},
+};
+use crate::DataError;
 
 /// Lines from which a median is worth taking.
 const LEAST_LINES: usize = 24;
@@ -38,6 +44,67 @@ pub(super) enum Agreement {
     Parted { second: Vec<usize>, apart: f64, within: f64 },
     /// They differ, and nothing tells which are right: the greatest median difference, and whether in gain.
     Differ { by: f64, in_gain: bool },
+    /// They differ by this in the median line, and no more than the noise before their blows explains.
+    Noisy { by: f64 },
+}
+
+impl TimeHistory {
+    /// Takes hits that stand beside the others out of `kept`, and says so; true where any was.
+    pub(super) fn heed_agreement(
+        &self,
+        sums: &Sums,
+        band: Range<usize>,
+        kept: &mut Vec<(usize, &Hit)>,
+        notes: &mut Vec<String>,
+    ) -> Result<bool, DataError> {
+        let named = |own: usize| self.hit_name(kept[own].0);
+        match sums.agreement(band) {
+            Agreement::Alike => Ok(false),
+            Agreement::Astray(astray) => {
+                notes.extend(astray.iter().map(|(own, fault)| format!("{} left out: {fault}", named(*own))));
+                let mut own = 0..;
+                kept.retain(|_| own.next().is_none_or(|index| astray.iter().all(|(of, _)| *of != index)));
+                Ok(true)
+            }
+            Agreement::Parted { second, apart, within } => {
+                let names: Vec<String> = second.iter().map(|&own| named(own)).collect();
+                Err(DataError::NoUsableHit {
+                    file: self.file.clone(),
+                    reasons: format!(
+                        "{} differ by {:.0} % in the median line from the other hits of force [{}, {}], response [{}, {}], \
+                         and agree with one another within {:.0} %: they belong to another place; correct force_at or \
+                         response_at",
+                        names.join(", "),
+                        100.0 * apart,
+                        self.force_at.x,
+                        self.force_at.y,
+                        self.response_at.x,
+                        self.response_at.y,
+                        (100.0 * within).ceil()
+                    ),
+                })
+            }
+            Agreement::Noisy { by } => {
+                notes.push(format!(
+                    "the hits differ by {:.0} % in the median line, as the noise of their channels before the blow explains: \
+                     much noise; hit harder, or average more hits",
+                    100.0 * by
+                ));
+                Ok(false)
+            }
+            Agreement::Differ { by, in_gain } => {
+                let names: Vec<String> = (0..kept.len()).map(named).collect();
+                let how = if in_gain {
+                    "over the whole band, and nothing tells which is right: a sample cut off, or another \
+                     gain"
+                } else {
+                    "in the median line: much noise, or hits at several places"
+                };
+                notes.push(format!("{} differ by {:.1} % {how}", names.join(", "), 100.0 * by));
+                Ok(false)
+            }
+        }
+    }
 }
 
 impl Sums {
@@ -51,12 +118,15 @@ impl Sums {
             _ => return Agreement::Alike,
         }
         let groups = match parted(&quotients) {
-            Ok(()) => return in_gain(&quotients),
+            Ok(()) => return in_gain(&quotients, (self.stride * sampled.len()) as f64 / self.tied),
             Err(groups) => groups,
         };
         let Some(Groups { own, others, apart, within }) = groups.filter(|groups| groups.within < TOGETHER) else {
             let by = quotients.iter().skip(1).map(|hit| difference(quotients[0], hit)).fold(0.0, f64::max);
-            return Agreement::Differ { by, in_gain: false };
+            return match (1..quotients.len()).any(|hit| self.beyond_noise(hit, 0, &sampled)) {
+                true => Agreement::Differ { by, in_gain: false },
+                false => Agreement::Noisy { by },
+            };
         };
         let alone = |hit: usize, good: usize| match self.beyond_noise(hit, good, &sampled) {
             true => Agreement::Astray(vec![(hit, HitFault::Elsewhere { apart, within })]),
@@ -115,8 +185,9 @@ fn parted(quotients: &[&[Complex64]]) -> Result<(), Option<Groups>> {
 }
 
 /// Hits whose gain stands beside that of the others over the whole band, as after one cut-off sample of the force.
-fn in_gain(quotients: &[&[Complex64]]) -> Agreement {
-    let gains: Vec<(f64, f64)> = quotients
+/// No more than `independent` lines tell of it.
+fn in_gain(quotients: &[&[Complex64]], independent: f64) -> Agreement {
+    let mut gains: Vec<(f64, f64)> = quotients
         .iter()
         .map(|hit| {
             let logarithms: Vec<f64> = hit
@@ -125,13 +196,16 @@ fn in_gain(quotients: &[&[Complex64]]) -> Agreement {
                 .map(|(own, first)| (own.norm() / first.norm()).ln())
                 .filter(|gain| gain.is_finite())
                 .collect();
-            let lines = logarithms.len().max(1) as f64;
+            let lines = (logarithms.len() as f64).min(independent).max(1.0);
             let gain = median(logarithms.clone());
             let spread = median(logarithms.iter().map(|own| (own - gain).abs()).collect()) / 0.674_49;
             // A median's own deviation is 1.25 times a mean's.
             (gain, 1.25 * spread / lines.sqrt())
         })
         .collect();
+    // Held against itself the first hit has no scatter; the others' holds its own.
+    let most = gains.iter().map(|(_, deviation)| *deviation).fold(0.0, f64::max);
+    gains.iter_mut().take(1).for_each(|first| first.1 = most);
     let middle = median(gains.iter().map(|(gain, _)| *gain).collect());
     let off = |(gain, deviation): &(f64, f64)| {
         let off = (gain - middle).abs();

@@ -2,10 +2,12 @@
 
 mod accelerance;
 mod blow;
+mod blow_window;
 mod channel_noise;
 mod channels;
 mod estimate;
 mod extremes;
+mod force_noise;
 mod gather;
 mod hit_agreement;
 mod hit_faults;
@@ -21,6 +23,7 @@ mod wrong_sample;
 pub use accelerance::Accelerance;
 pub use channel_noise::ChannelNoise;
 pub use estimate::{Estimation, Estimator};
+pub use force_noise::ForceNoise;
 pub use hit_faults::{Channel, HitFault};
 pub use time_history::{Hit, TimeHistory};
 pub use window::Window;

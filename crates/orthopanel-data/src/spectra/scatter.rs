@@ -40,6 +40,11 @@ impl NoisePower {
     pub(super) fn of_line(self, power: f64) -> f64 {
         self.acceleration + power * self.force
     }
+
+    /// $N_f$.
+    pub(super) fn of_force(self) -> f64 {
+        self.force
+    }
 }
 
 /// Sums of a noise $s_i$ over the hits, each with its share $h_i$.

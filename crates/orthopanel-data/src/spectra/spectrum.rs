@@ -22,7 +22,9 @@ pub(super) struct Sums {
     /// $A/F$ of each hit at every line whose number `stride` divides.
     pub(super) quotients: Vec<Vec<Complex64>>,
     pub(super) stride: usize,
-    /// Noise of every hit; `None` where one does not tell it, and for a single hit.
+    /// Lines over which the window ties the force's noise together.
+    pub(super) tied: f64,
+    /// Noise of every hit; `None` where one does not tell it.
     pub(super) noise: Option<Vec<NoisePower>>,
 }
 
@@ -71,6 +73,7 @@ pub(super) fn sums(hits: &[&Hit], samples: usize, window: Window, rate: f64) -> 
         weighted: (vec![0.0; lines], vec![Complex64::default(); lines]),
         quotients: Vec::with_capacity(hits.len()),
         stride: lines.div_ceil(MOST_SAMPLED).max(1),
+        tied: window.force_half_width().map_or(1.0, |half| samples as f64 / (2.0 * half * rate)).max(1.0),
         noise: None,
     };
     let mut noise = Vec::with_capacity(hits.len());
@@ -89,9 +92,9 @@ pub(super) fn sums(hits: &[&Hit], samples: usize, window: Window, rate: f64) -> 
         // It fails for other lengths than planned only; the caller has checked that all hits are of one length.
         debug_assert!(transformed.is_ok());
         sums.add(&force_spectrum, &motion_spectrum);
-        noise.push(if hits.len() > 1 { hit.noise_before(offset, (peak, height)) } else { None });
+        noise.push(hit.noise_before(offset, (peak, height)));
     }
-    if let [first, _, ..] = hits {
+    if let [first, ..] = hits {
         sums.noise = NoisePower::of(&noise, windowed(first, window, rate));
     }
     sums

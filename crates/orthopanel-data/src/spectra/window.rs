@@ -1,9 +1,6 @@
 //! Windows over the records of a hit.
 
-use super::{
-    extremes::{peak, sampled_median},
-    time_history::Hit,
-};
+use super::{blow_window::BlowWindow, time_history::Hit};
 
 /// What the records are multiplied by before the transform.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -11,13 +8,21 @@ pub enum Window {
     /// Nothing: right where the response has decayed at the record's end.
     #[default]
     None,
-    /// [`Window::None`] where the responses of a place have died away at the record's end, else
-    /// [`Window::ForceExponential`] with the time constant that takes what is left down to 1e-6 of the greatest, and the
-    /// whole force: a window of some milliseconds ties the noise of its channel together over hundreds of lines, which moves
-    /// all lines of a resonance alike, and a fit that takes them for independent states half the deviations.
+    /// [`Window::None`] where the responses of a place have died away at the record's end and the force's noise counts for
+    /// nothing. Where it counts, the force is kept near its blow, as in [`Window::Force`]: over the whole record noise of a
+    /// thousandth of the peak makes a hundredth of $S_{ff}$. Where a response rings on, an exponential as in
+    /// [`Window::ForceExponential`], with the time constant that takes what is left down to 1e-6 of the greatest.
     AsNeeded,
     /// Hann's window over both channels, $\tfrac12(1 - \cos 2\pi n/N)$, as in the paper.
     Hann,
+    /// The force kept within `half_width` \[s\] of its peak and zero elsewhere; the response as it is.
+    ///
+    /// What is left of the force's noise is tied together over $1/(2\,\text{half\_width})$ of frequency:
+    /// [`Accelerance::force_noise`](crate::Accelerance::force_noise).
+    Force {
+        /// Half the width of the force window \[s\].
+        half_width: f64,
+    },
     /// The force kept within `half_width` \[s\] of its peak and zero elsewhere; both channels times $e^{-t/\tau}$.
     ///
     /// Since both channels carry the same exponential, the quotient is the accelerance at $s = 1/\tau + j\omega$
@@ -41,19 +46,30 @@ impl Window {
     /// The window over a place's hits, of which `left` is the greatest rms at the record's end over the greatest of the
     /// record, `None` where all have died away.
     pub(super) fn resolved(self, left: Option<f64>, hits: &[&Hit], rate: f64) -> Self {
-        match (self, left) {
-            (Self::AsNeeded, None) => Self::None,
-            (Self::AsNeeded, Some(left)) => {
+        if self != Self::AsNeeded {
+            return self;
+        }
+        let blow = BlowWindow::of(hits);
+        let samples = hits.first().map_or(0, |hit| hit.force.len());
+        let half_width = blow.needed().map(|half| half as f64 / rate);
+        match left {
+            None => half_width.map_or(Self::None, |half_width| Self::Force { half_width }),
+            Some(left) => {
                 // After the last blow of all hits the responses fall.
-                let last = hits.iter().map(|hit| blow(&hit.force)).max().unwrap_or(0);
-                let samples = hits.first().map_or(0, |hit| hit.force.len());
-                let after = samples.saturating_sub(last) as f64 / rate;
+                let after = samples.saturating_sub(blow.last) as f64 / rate;
                 Self::ForceExponential {
-                    half_width: samples as f64 / rate,
+                    half_width: half_width.unwrap_or(samples as f64 / rate),
                     tau: after / (left / LEFT).max(std::f64::consts::E).ln(),
                 }
             }
-            (other, _) => other,
+        }
+    }
+
+    /// Half the width of the force window \[s\], where there is one.
+    pub(super) fn force_half_width(self) -> Option<f64> {
+        match self {
+            Self::None | Self::AsNeeded | Self::Hann => None,
+            Self::Force { half_width } | Self::ForceExponential { half_width, .. } => Some(half_width),
         }
     }
 
@@ -67,13 +83,23 @@ impl Window {
         };
         let of_hann = "Hann's window shapes the decay: damping comes out too low for a blow before the record's middle, \
                        too high after it; none or force and exponential keep it";
-        ringing.then_some(of_ringing).into_iter().chain((self == Self::Hann).then(|| of_hann.into())).collect()
+        let of_force = match self {
+            Self::Force { half_width } => Some(format!(
+                "the force is kept within {:.1} ms of its peak, for the noise of the rest counts",
+                1e3 * half_width
+            )),
+            _ => None,
+        };
+        let of_force = of_force.into_iter();
+        of_force
+            .chain(ringing.then_some(of_ringing).into_iter().chain((self == Self::Hann).then(|| of_hann.into())))
+            .collect()
     }
 
     /// The decay rate $\sigma = 1/\tau$ \[1/s\] that the window adds; zero without an exponential.
     pub fn decay_rate(self) -> f64 {
         match self {
-            Self::None | Self::AsNeeded | Self::Hann => 0.0,
+            Self::None | Self::AsNeeded | Self::Hann | Self::Force { .. } => 0.0,
             Self::ForceExponential { tau, .. } => 1.0 / tau,
         }
     }
@@ -82,6 +108,7 @@ impl Window {
     pub(super) fn is_valid(self) -> bool {
         match self {
             Self::None | Self::AsNeeded | Self::Hann => true,
+            Self::Force { half_width } => half_width.is_finite() && half_width > 0.0,
             Self::ForceExponential { half_width, tau } => {
                 [half_width, tau, 1.0 / tau].iter().all(|value| value.is_finite() && *value > 0.0)
             }
@@ -100,12 +127,9 @@ impl Window {
                     }
                 }
             }
+            Self::Force { half_width } => keep_near(force, peak, half_width * rate),
             Self::ForceExponential { half_width, tau } => {
-                for (n, value) in force.iter_mut().enumerate() {
-                    if n.abs_diff(peak) as f64 > half_width * rate {
-                        *value = 0.0;
-                    }
-                }
+                keep_near(force, peak, half_width * rate);
                 for channel in [force, acceleration] {
                     for (n, value) in channel.iter_mut().enumerate() {
                         *value *= (-(n as f64) / (rate * tau)).exp();
@@ -116,7 +140,11 @@ impl Window {
     }
 }
 
-/// Where the force peaks.
-fn blow(force: &[f64]) -> usize {
-    peak(force, sampled_median(force)).0
+/// Zeroes what is further than `reach` samples from the peak.
+fn keep_near(force: &mut [f64], peak: usize, reach: f64) {
+    for (n, value) in force.iter_mut().enumerate() {
+        if n.abs_diff(peak) as f64 > reach {
+            *value = 0.0;
+        }
+    }
 }

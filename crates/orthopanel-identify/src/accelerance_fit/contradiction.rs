@@ -3,7 +3,7 @@
 use num_complex::Complex64;
 use orthopanel_data::{ImpactTest, MeasurementData};
 
-use super::misfit::{median, record_misfit_percent};
+use super::misfit::{median, misfit_percent, record_misfit_percent, scaled_misfit_percent};
 use super::problem::AcceleranceProblem;
 use super::record_apart::record_apart;
 use super::records::PlaceRecord;
@@ -15,6 +15,9 @@ use crate::IdentifyError;
 const CONTRADICTION: f64 = 40.0;
 /// The same of one record: an effect that the model lacks may bend one by half, a wrong place, file or sign by all.
 const RECORD_CONTRADICTION: f64 = 80.0;
+
+/// Median misfit \[%\] of every record below which a factor has mended them.
+const MENDED: f64 = 10.0;
 
 /// Refuses records that contradict the test file; a sentence on the one that stands apart where it may be kept.
 pub(super) fn contradiction(
@@ -35,15 +38,22 @@ pub(super) fn contradiction(
     if apart.as_ref().is_some_and(|apart| apart.is_misplaced()) {
         return Err(refused);
     }
-    let all = records.iter().zip(lines).flat_map(|((_, record), model)| model.iter().zip(&record.value));
-    let percent = 100.0 * median(all.map(|(model, measured)| (model - measured).norm() / measured.norm()));
+    let percent = misfit_percent(records.iter().map(|(_, record)| *record).zip(lines));
     if percent > CONTRADICTION {
-        return Err(IdentifyError::Contradiction { record: name, percent });
+        return Err(IdentifyError::Contradiction { record: name, percent, factor: common_factor(&records, lines) });
     }
     if worst_percent > RECORD_CONTRADICTION {
         return Err(refused);
     }
     Ok(apart.map(|apart| apart.note(&name)))
+}
+
+/// The model over the records where one real factor on all of them mends most of what they miss.
+fn common_factor(records: &[(usize, &PlaceRecord)], lines: &[Vec<Complex64>]) -> Option<f64> {
+    let pairs = records.iter().zip(lines).flat_map(|((_, record), model)| record.value.iter().zip(model));
+    let factor = median(pairs.map(|(measured, model)| (measured / model).re));
+    let left = records.iter().zip(lines).map(|((_, record), model)| scaled_misfit_percent(record, model, factor));
+    (left.fold(0.0, f64::max) < MENDED && factor != 0.0).then_some(1.0 / factor)
 }
 
 /// A record by its files and places, and by its piece where there are several.

@@ -13,12 +13,31 @@ pub(super) fn record_misfit_percent(record: &PlaceRecord, model: &[Complex64]) -
 
 /// The same with the model's lines times a real factor.
 pub(super) fn scaled_misfit_percent(record: &PlaceRecord, model: &[Complex64], factor: f64) -> f64 {
-    let lines = model.iter().zip(&record.value).zip(&record.variance);
-    100.0
-        * median(lines.map(|((model, measured), variance)| {
-            let noise = if record.variance_known { 3.0 * variance.sqrt() } else { 0.0 };
-            (model * factor - measured).norm() / measured.norm().max(noise)
-        }))
+    100.0 * median(line_misfits(record, model, factor))
+}
+
+/// The same over the lines of several records and their models.
+pub(super) fn misfit_percent<'a>(records: impl Iterator<Item = (&'a PlaceRecord, &'a Vec<Complex64>)>) -> f64 {
+    100.0 * median(records.flat_map(|(record, model)| line_misfits(record, model, 1.0)))
+}
+
+fn line_misfits(record: &PlaceRecord, model: &[Complex64], factor: f64) -> impl Iterator<Item = f64> {
+    model.iter().zip(&record.value).zip(&record.variance).map(move |((model, measured), variance)| {
+        let noise = if record.variance_known { 3.0 * variance.sqrt() } else { 0.0 };
+        (model * factor - measured).norm() / measured.norm().max(noise)
+    })
+}
+
+/// Standard deviation of the median line over its size \[%\]; `None` where a record does not tell its noise.
+pub(super) fn noise_percent<'a>(records: impl Iterator<Item = &'a PlaceRecord>) -> Option<f64> {
+    let mut parts = Vec::new();
+    for record in records {
+        if !record.variance_known {
+            return None;
+        }
+        parts.extend(record.value.iter().zip(&record.variance).map(|(value, variance)| variance.sqrt() / value.norm()));
+    }
+    Some(100.0 * median(parts.into_iter()))
 }
 
 /// Median; zero of none.

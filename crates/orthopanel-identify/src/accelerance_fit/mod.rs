@@ -2,6 +2,7 @@
 
 mod band;
 mod contradiction;
+mod force_window;
 mod line_block;
 mod line_noise;
 mod matching;
@@ -122,6 +123,15 @@ fn by_wide_records(
     settings: Settings,
     recorded: &Recorded,
 ) -> Result<Identification, IdentifyError> {
+    let records = || recorded.pieces.iter().flat_map(|piece| &piece.records);
+    let too_few = || IdentifyError::TooFewResonances {
+        found: 0,
+        needed: recorded.constants.count(),
+        noise_percent: misfit::noise_percent(records()),
+    };
+    if records().all(PlaceRecord::is_mere_noise) {
+        return Err(too_few());
+    }
     let mut refused = None;
     for rough in rough_starts(recorded, settings.damping_law)? {
         let Some((mut problem, minimum)) = sharpened_lines(recorded, settings.damping_law, rough, wide_scan::WIDTH)?
@@ -135,7 +145,7 @@ fn by_wide_records(
             Err(error) => refused = refused.or(Some(error)),
         }
     }
-    Err(refused.unwrap_or(IdentifyError::TooFewResonances { found: 0, needed: recorded.constants.count() }))
+    Err(refused.unwrap_or_else(too_few))
 }
 
 fn by_papers_error(

@@ -7,7 +7,7 @@ use orthopanel_model::{Constant, Estimate, StructureKind};
 
 use super::band::refuse_low_band;
 use super::contradiction::contradiction;
-use super::misfit::record_misfit_percent;
+use super::misfit::{noise_percent, record_misfit_percent};
 use super::problem::AcceleranceProblem;
 use super::start::Start;
 use crate::free_constants::{FreeConstants, Rest};
@@ -19,6 +19,9 @@ use crate::{
 
 /// A misfit per datum above this is the model's, not the noise's, and line by line damping is not to be trusted.
 const FAR_FROM_NOISE: f64 = 25.0;
+/// Each parameter takes one off a sum of squares of mere noise, whatever the model; what takes off no more than so many times
+/// that has seen nothing else.
+const MORE_THAN_CHANCE: f64 = 20.0;
 /// A constant is seen where its standard deviation is below this part of what is usual.
 const SEEN: f64 = 0.5;
 /// A damping ratio known no better than to this factor's logarithm is the prior's, and is not reported.
@@ -34,7 +37,12 @@ pub(super) fn outcome(
     let Minimum { parameters, at } = minimum;
     let chi_square = problem.chi_square(at.cost);
     let noise_known = problem.noise_is_known();
-    let covariance = at.covariance();
+    if noise_known && problem.cost_of_nothing() - at.cost < MORE_THAN_CHANCE * problem.size() as f64 {
+        let records = || problem.pieces.iter().flat_map(|piece| &piece.records);
+        let needed = problem.constants.count();
+        return Err(IdentifyError::TooFewResonances { found: 0, needed, noise_percent: noise_percent(records()) });
+    }
+    let covariance = problem.covariance(&parameters, &at)?;
     let std_factor = if noise_known { chi_square.max(1.0).sqrt() } else { chi_square.sqrt() };
     let std = |i: usize| covariance.as_ref().map(|matrix| std_factor * matrix[(i, i)].sqrt());
     // Eq. 23 is no likelihood: its minimum has no standard deviation that follows from the noise.

@@ -172,6 +172,15 @@ impl AcceleranceProblem {
         cost / (self.data() - self.size() as f64).max(1.0)
     }
 
+    /// The sum of squares of no model at all.
+    pub(super) fn cost_of_nothing(&self) -> f64 {
+        let records = self.pieces.iter().flat_map(|piece| &piece.records);
+        records
+            .flat_map(|record| record.value.iter().zip(&record.variance).zip(&record.worth))
+            .map(|((value, variance), worth)| 2.0 * worth * value.norm_sqr() / variance)
+            .sum()
+    }
+
     /// Whether every record tells its own noise.
     pub(super) fn noise_is_known(&self) -> bool {
         self.pieces.iter().flat_map(|piece| &piece.records).all(|record| record.variance_known)
@@ -188,6 +197,9 @@ impl AcceleranceProblem {
         let records = self.pieces.iter_mut().flat_map(|piece| &mut piece.records);
         for (record, model) in records.zip(lines.by_ref()).filter(|(record, _)| !record.scatter_told) {
             record.variance = noise_of_misfit(record, &model);
+            // What a force window ties together runs as smoothly as what a model lacks.
+            let tied = record.tied.iter().flat_map(|noise| &noise.variance);
+            record.variance.iter_mut().zip(tied).for_each(|(all, tied)| *all += tied);
             record.variance_known = true;
         }
         Ok(())
@@ -224,6 +236,24 @@ impl AcceleranceProblem {
         (self.values(parameters, piece), &parameters[offset..offset + self.pieces[piece].free_zetas])
     }
 
+    /// What the lines of a piece's records are, and how they follow from the parameters.
+    pub(super) fn derivatives(&self, index: usize, parameters: &[f64]) -> Result<Derivatives, ModelError> {
+        let piece = &self.pieces[index];
+        let models = self.pair_models(index, parameters)?;
+        let values = self.values(parameters, index);
+        let by_constants = piece.synthesis.coefficient_derivatives(&values)?;
+        let of_constant = self.constants.parameters_of(piece.piece);
+        let mut chain = vec![vec![0.0; by_constants.nrows()]; self.constants.count()];
+        for (constant, parameter) in of_constant.iter().enumerate() {
+            if let Some(shares) = parameter.and_then(|parameter| chain.get_mut(parameter)) {
+                let slope = self.constants.slope(constant, values[constant]);
+                shares.iter_mut().enumerate().for_each(|(i, share)| *share += by_constants[(i, constant)] * slope);
+            }
+        }
+        let zetas = (0..piece.free_zetas).map(|mode| self.zeta_offset(index) + mode);
+        Ok(Derivatives { models, chain, columns: (0..self.constants.count()).chain(zetas).collect() })
+    }
+
     fn pair_models(&self, piece: usize, parameters: &[f64]) -> Result<Vec<PairModel>, ModelError> {
         let (values, log_zetas) = self.of_piece(piece, parameters);
         self.pieces[piece].pair_models(&values, log_zetas, self.law)
@@ -233,21 +263,7 @@ impl AcceleranceProblem {
     pub(super) fn linearise(&self, parameters: &[f64]) -> Result<Quadratic, ModelError> {
         let mut sum = Quadratic::zero(self.size());
         for (index, piece) in self.pieces.iter().enumerate() {
-            let models = self.pair_models(index, parameters)?;
-            let values = self.values(parameters, index);
-            let by_constants = piece.synthesis.coefficient_derivatives(&values)?;
-            let of_constant = self.constants.parameters_of(piece.piece);
-            // ∂c_i/∂p_j of the parameters; several constants may follow one.
-            let mut chain = vec![vec![0.0; by_constants.nrows()]; self.constants.count()];
-            for (constant, parameter) in of_constant.iter().enumerate() {
-                if let Some(shares) = parameter.and_then(|parameter| chain.get_mut(parameter)) {
-                    let slope = self.constants.slope(constant, values[constant]);
-                    shares.iter_mut().enumerate().for_each(|(i, share)| *share += by_constants[(i, constant)] * slope);
-                }
-            }
-            let columns: Vec<usize> = (0..self.constants.count())
-                .chain((0..piece.free_zetas).map(|mode| self.zeta_offset(index) + mode))
-                .collect();
+            let Derivatives { models, chain, columns } = self.derivatives(index, parameters)?;
             let run = |record: &PlaceRecord| (0..record.value.len()).step_by(RUN);
             let jobs: Vec<(&PlaceRecord, &PairModel, usize)> = piece
                 .records
@@ -289,19 +305,46 @@ pub(super) fn log_zeta_bounds() -> (f64, f64) {
 /// Lines summed by one task: enough to be worth a task, few enough to share out evenly.
 const RUN: usize = 32 * BLOCK;
 
-/// $[J\,r]^T[J\,r]$ of a run of lines, with the derivatives by the free constants first, then by each $\ln\zeta$.
-/// `chain` has $\partial c_i/\partial\ln p_j$, a list a free constant.
-fn run_products(record: &PlaceRecord, model: &PairModel, chain: &[Vec<f64>], from: usize) -> Mat<f64> {
-    let mut functions = vec![LineBlock::ZERO; model.functions()];
-    let coefficients = chain.first().map_or(model.coefficients(), Vec::len);
-    let zetas = model.functions() - 1 - coefficients;
-    let size = chain.len() + zetas + 1;
-    let (mut rows, mut products) = (Mat::zeros(2 * BLOCK, size), Mat::zeros(size, size));
-    for from in (from..record.value.len().min(from + RUN)).step_by(BLOCK) {
-        model.lines(&record.s_block(from), &mut functions);
+/// The models of a piece's records, and which parameters they follow.
+pub(super) struct Derivatives {
+    pub models: Vec<PairModel>,
+    /// $\partial c_i/\partial p_j$ of the constants' parameters, a list a parameter; several constants may follow one.
+    pub chain: Vec<Vec<f64>>,
+    /// The parameters: of the constants, then each $\ln\zeta$ of the piece.
+    pub columns: Vec<usize>,
+}
+
+/// $[J\,r]$ over the noise of runs of lines: derivatives by the free constants first, then by each $\ln\zeta$, then the residual.
+pub(super) struct WeightedRows<'a> {
+    record: &'a PlaceRecord,
+    model: &'a PairModel,
+    chain: &'a [Vec<f64>],
+    functions: Vec<LineBlock>,
+    rows: Mat<f64>,
+}
+
+impl<'a> WeightedRows<'a> {
+    pub(super) fn of(record: &'a PlaceRecord, model: &'a PairModel, chain: &'a [Vec<f64>]) -> Self {
+        let functions = vec![LineBlock::ZERO; model.functions()];
+        let coefficients = chain.first().map_or(model.coefficients(), Vec::len);
+        let size = chain.len() + model.functions() - coefficients;
+        Self { record, model, chain, functions, rows: Mat::zeros(2 * BLOCK, size) }
+    }
+
+    /// Columns: the derivatives, and one for the residual.
+    pub(super) fn size(&self) -> usize {
+        self.rows.ncols()
+    }
+
+    /// The [`BLOCK`] lines from this one on, real parts above imaginary ones.
+    pub(super) fn block(&mut self, from: usize) -> &Mat<f64> {
+        let Self { record, model, chain, functions, rows } = self;
+        let coefficients = chain.first().map_or(model.coefficients(), Vec::len);
+        let last = rows.ncols() - 1;
+        model.lines(&record.s_block(from), functions);
         let weights = record.weights(from);
         let (structural, by_zeta) = functions.split_at_mut(1 + coefficients);
-        let Some((value, by_coefficients)) = structural.split_first_mut() else { continue };
+        let Some((value, by_coefficients)) = structural.split_first_mut() else { return rows };
         for (column, shares) in chain.iter().enumerate() {
             let mut by = LineBlock::ZERO;
             for (by_coefficient, share) in by_coefficients.iter().zip(shares) {
@@ -313,8 +356,18 @@ fn run_products(record: &PlaceRecord, model: &PairModel, chain: &[Vec<f64>], fro
             by.write_weighted(&weights, rows.col_as_slice_mut(column));
         }
         value.subtract(&record.value[from..]);
-        value.write_weighted(&weights, rows.col_as_slice_mut(size - 1));
-        matmul(&mut products, Accum::Add, rows.transpose(), &rows, 1.0, Par::Seq);
+        value.write_weighted(&weights, rows.col_as_slice_mut(last));
+        rows
+    }
+}
+
+/// $[J\,r]^T[J\,r]$ of a run of lines.
+fn run_products(record: &PlaceRecord, model: &PairModel, chain: &[Vec<f64>], from: usize) -> Mat<f64> {
+    let mut rows = WeightedRows::of(record, model, chain);
+    let mut products = Mat::zeros(rows.size(), rows.size());
+    for from in (from..record.value.len().min(from + RUN)).step_by(BLOCK) {
+        let rows = rows.block(from);
+        matmul(&mut products, Accum::Add, rows.transpose(), rows, 1.0, Par::Seq);
     }
     products
 }

@@ -4,8 +4,12 @@ use num_complex::Complex64;
 use orthopanel_data::Accelerance;
 use orthopanel_model::Place;
 
+use super::force_window::TiedNoise;
 use super::line_block::{BLOCK, LineBlock};
 use super::line_noise::line_variance;
+
+/// Power of all lines over that of their noise, below which no signal is in them: few hits tell a variance to some per cent.
+const MERE_NOISE: f64 = 1.05;
 
 /// One accelerance of one piece.
 #[derive(Debug, Clone, PartialEq)]
@@ -27,24 +31,45 @@ pub(super) struct PlaceRecord {
     pub decay_rate: f64,
     /// How many independent data each line is worth, at most one: an exponential window ties neighbouring lines together.
     pub worth: Vec<f64>,
+    /// What of the variance a force window ties together over many lines.
+    pub tied: Option<TiedNoise>,
 }
 
 impl PlaceRecord {
     pub(super) fn of(accelerance: &Accelerance) -> Self {
-        let variance = line_variance(accelerance);
+        let mut variance = line_variance(accelerance);
+        let noise = accelerance.force_noise.as_ref();
+        // A window makes the scatter of few hits wander over its whole width: where they happen to scatter little, what is
+        // known of the force's noise stands.
+        variance
+            .iter_mut()
+            .zip(noise.iter().flat_map(|noise| &noise.variance))
+            .for_each(|(all, of)| *all = all.max(*of));
         // A line whose noise is unbounded says nothing.
         let usable: Vec<usize> = (0..accelerance.value.len()).filter(|&line| variance[line].is_finite()).collect();
+        let unbiased = |line: usize| match noise.and_then(|noise| noise.bias.get(line)) {
+            Some(bias) => accelerance.value[line] / (1.0 - bias),
+            None => accelerance.value[line],
+        };
         Self {
             force_at: accelerance.force_at,
             response_at: accelerance.response_at,
             frequency: usable.iter().map(|&line| accelerance.frequency[line]).collect(),
-            value: usable.iter().map(|&line| accelerance.value[line]).collect(),
+            value: usable.iter().map(|&line| unbiased(line)).collect(),
             variance: usable.iter().map(|&line| variance[line]).collect(),
             variance_known: accelerance.variance.is_some(),
             scatter_told: accelerance.variance.is_some() && accelerance.hits != 1,
             decay_rate: accelerance.decay_rate,
             worth: vec![1.0; usable.len()],
+            tied: noise.map(|noise| TiedNoise::of(noise, &usable)),
         }
+    }
+
+    /// Whether its lines are no greater than their noise makes them.
+    pub(super) fn is_mere_noise(&self) -> bool {
+        let lines = self.value.iter().zip(&self.variance);
+        let power: f64 = lines.map(|(value, variance)| value.norm_sqr() / variance).sum();
+        self.variance_known && power < MERE_NOISE * self.value.len() as f64
     }
 
     /// The same with every few lines only, so that no more than `most` are left.
@@ -56,6 +81,7 @@ impl PlaceRecord {
             value: self.value.iter().step_by(stride).copied().collect(),
             variance: every(&self.variance),
             worth: every(&self.worth),
+            tied: None,
             ..*self
         }
     }

@@ -52,7 +52,7 @@ pub(crate) fn resonance_starts(
     let poles = poles(&records);
     let needed = held.iter().filter(|held| held.is_none()).count().max(1);
     if poles.len() < needed {
-        return Err(IdentifyError::TooFewResonances { found: poles.len(), needed });
+        return Err(IdentifyError::TooFewResonances { found: poles.len(), needed, noise_percent: None });
     }
     let fit = BeamFit { piece, boundary, held, poles: &poles };
     let mut starts: Vec<(f64, ResonanceStart)> = Vec::new();

@@ -75,6 +75,7 @@ pub(super) fn smeared(record: &PlaceRecord, part: f64) -> Vec<PlaceRecord> {
             scatter_told: true,
             decay_rate: record.decay_rate + TAU * width,
             worth: vec![1.0; frequency.len()],
+            tied: None,
             frequency,
             value,
         });
@@ -106,6 +107,7 @@ mod tests {
             scatter_told: true,
             decay_rate: 3.0,
             worth: vec![1.0; frequency.len()],
+            tied: None,
             frequency,
         };
         for part in [0.02, 0.005] {

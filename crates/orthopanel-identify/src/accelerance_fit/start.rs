@@ -6,6 +6,7 @@ use rayon::prelude::*;
 
 use super::band::low_band_of_usual_panel;
 use super::matching::{Matching, PiecePoles, candidates, match_at};
+use super::misfit::noise_percent;
 use super::mode_group::{NearMode, Overlap, group_pole};
 use super::poles::{NoisePower, Pole, alike, poles};
 use super::records::PlaceRecord;
@@ -182,7 +183,11 @@ pub(super) fn start(recorded: &Recorded) -> Result<Start<'_>, IdentifyError> {
         StructureKind::MindlinPlate => constants.count().clamp(1, 2),
     };
     let found: usize = poles.iter().map(|piece| piece.frequencies.len()).sum();
-    let too_few = || IdentifyError::TooFewResonances { found, needed };
+    let too_few = || IdentifyError::TooFewResonances {
+        found,
+        needed,
+        noise_percent: noise_percent(pieces.iter().flat_map(|piece| &piece.records)),
+    };
     if found < needed {
         return Err(low_band_of_usual_panel(recorded)?.unwrap_or_else(too_few));
     }

@@ -92,7 +92,7 @@ impl TestRecords {
             .collect();
         let best = tried.into_iter().min_by(|a, b| a.0.total_cmp(&b.0));
         let Some((_, mut records)) = best else {
-            return Err(IdentifyError::TooFewResonances { found: 0, needed: 1 });
+            return Err(IdentifyError::TooFewResonances { found: 0, needed: 1, noise_percent: None });
         };
         let finer = WIDENINGS.iter().skip(1).map(|&widening| widened_lines(histories, widening, records.band));
         records.widened.extend(finer);
@@ -260,7 +260,7 @@ pub(super) fn base_of_histories(test: &ImpactTest) -> Result<RecordsBase, Identi
     let unit = chi_square.max(1.0) / independent_part(&residuals(&records, &base)?);
     let std = |i: usize| covariance.as_ref().map(|matrix| (unit * matrix[(i, i)]).sqrt()).filter(|std| std.is_finite());
     let starts = resonance_starts(&test.pieces[0].piece, test.boundary, records.held, &records.accelerances)?;
-    let too_few = IdentifyError::TooFewResonances { found: 0, needed: 1 };
+    let too_few = IdentifyError::TooFewResonances { found: 0, needed: 1, noise_percent: None };
     Ok(RecordsBase {
         start: starts.into_iter().next().ok_or(too_few)?,
         std: (0..base.size).map(std).collect(),

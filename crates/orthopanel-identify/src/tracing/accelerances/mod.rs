@@ -94,7 +94,7 @@ fn begin(test: &ImpactTest) -> Result<Begun, IdentifyError> {
     let constants = FreeConstants::of(test, &BEAM_CONSTANTS)?.held;
     let held = [0, 1].map(|index| constants.get(index).copied().flatten());
     let starts = resonance_starts(&piece, test.boundary, held, &accelerances)?;
-    let too_few = IdentifyError::TooFewResonances { found: 0, needed: 1 };
+    let too_few = IdentifyError::TooFewResonances { found: 0, needed: 1, noise_percent: None };
     let start = starts.into_iter().next().ok_or(too_few)?;
     let seen = resonances::resonances(&accelerances, &start);
     let usual_log_zeta = start.usual_zeta.ln();

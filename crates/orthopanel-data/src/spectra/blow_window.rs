@@ -1,0 +1,54 @@
+//! How much of the force's record holds its blow, and whether the noise of the rest counts.
+
+use super::{
+    channel_noise::{AHEAD, TOUCH},
+    extremes::{peak, sampled_median},
+    time_history::Hit,
+};
+
+/// Blow and noise of the hits of a place.
+pub(super) struct BlowWindow {
+    /// Where the last of all blows peaks.
+    pub(super) last: usize,
+    /// Samples on either side of the peak that hold the longest of the blows.
+    half: usize,
+    /// $N\sigma^2/(\sum f)^2$: what the noise of the whole record adds to $S_{ff}$ at its strongest, over that; `None` where a
+    /// hit does not tell its noise.
+    noise: Option<f64>,
+}
+
+/// The blow's own lengths that are kept on either side.
+const LENGTHS: usize = 2;
+
+/// Part of $S_{ff}$ from which noise counts: $H_1$ is too low by it, and a fit of a few hits knows damping to a thousandth.
+const COUNTS: f64 = 1e-4;
+
+impl BlowWindow {
+    pub(super) fn of(hits: &[&Hit]) -> Self {
+        let mut all = Self { last: 0, half: 0, noise: Some(0.0) };
+        let (mut noise, mut impulse) = (Some(0.0), 0.0);
+        for hit in hits {
+            let offset = sampled_median(&hit.force);
+            let (at, height) = peak(&hit.force, offset);
+            let touches = |force: &&f64| (**force - offset) * height.signum() > TOUCH * height.abs();
+            let (before, after) = hit.force.split_at(at);
+            let length = before.iter().rev().take_while(touches).count() + after.iter().take_while(touches).count();
+            let half = LENGTHS * length + AHEAD;
+            let near = at.saturating_sub(half)..(at + half + 1).min(hit.force.len());
+            let sum: f64 = hit.force.get(near).unwrap_or_default().iter().map(|force| force - offset).sum();
+            impulse += sum * sum;
+            let told = hit.noise_before(offset, (at, height));
+            let own = told.map(|noise| noise.force.powi(2) * hit.force.len() as f64);
+            noise = noise.zip(own).map(|(sum, own)| sum + own);
+            (all.last, all.half) = (all.last.max(at), all.half.max(half));
+        }
+        all.noise = noise.map(|noise: f64| noise / impulse);
+        all
+    }
+
+    /// Samples on either side of the peak that are to be kept; `None` where the noise of the rest counts for nothing, or
+    /// is not told.
+    pub(super) fn needed(&self) -> Option<usize> {
+        self.noise.is_some_and(|noise| noise > COUNTS).then_some(self.half)
+    }
+}

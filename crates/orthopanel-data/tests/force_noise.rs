@@ -1,0 +1,97 @@
+//! Noise of the force's channel: a window over the blow, what the noise makes too low, and how it ties lines together.
+
+mod support;
+
+use num_complex::Complex64;
+use orthopanel_data::{Accelerance, DataError, Estimation, Hit, Window};
+use support::hammer::{Noise, Resonator, history};
+
+const DAMPED: Resonator = Resonator { radius: 0.9, angle: 0.5 };
+const AS_NEEDED: Estimation =
+    Estimation { window: Window::AsNeeded, estimator: orthopanel_data::Estimator::H1, force_drop: 30.0 };
+/// 0.6 s of quiet before the blow.
+const SAMPLES: usize = 3000;
+
+/// Hits of several strengths with this noise of the force \[N\], and hardly any on the response.
+fn hits(noise: &mut Noise, strengths: &[f64], force: f64) -> Vec<Hit> {
+    strengths.iter().map(|&height| noise.over(&DAMPED.hit(SAMPLES, height), force, 1e-4)).collect()
+}
+
+#[test]
+fn val_the_force_is_windowed_where_its_noise_counts() {
+    let quiet = history(hits(&mut Noise(1), &[100.0, 100.0], 0.01)).accelerance(AS_NEEDED).unwrap();
+    assert_eq!((&quiet.force_noise, quiet.decay_rate), (&None, 0.0));
+    let noisy = history(hits(&mut Noise(1), &[100.0, 100.0], 1.0)).accelerance(AS_NEEDED).unwrap();
+    assert!(noisy.force_noise.is_some_and(|noise| (0.03..0.1).contains(&noise.half_width)));
+    assert!(noisy.notes.iter().any(|note| note.contains("the force is kept within")), "{:?}", noisy.notes);
+}
+
+/// The force's spectrum drowns in its noise: nothing can be divided by it.
+#[test]
+fn val_a_force_below_its_noise_is_refused_with_the_number() {
+    // A blow of one sample's width, twenty-five times its noise, over hundreds of samples of it.
+    let blow = |noise: &mut Noise| {
+        let force: Vec<f64> = (0..SAMPLES).map(|n| if n == 600 { 25.0 } else { 0.0 }).collect();
+        noise.over(&DAMPED.respond(force), 1.0, 1e-4)
+    };
+    let noise = &mut Noise(2);
+    let refused = history(vec![blow(noise), blow(noise)]).accelerance(AS_NEEDED);
+    match refused {
+        Err(DataError::NoUsableHit { reasons, .. }) => assert!(reasons.contains("too much noise"), "{reasons}"),
+        Ok(found) => assert!(found.force_noise.is_some(), "kept without a word"),
+        Err(other) => panic!("{other}"),
+    }
+}
+
+/// The quotient at a line over the truth, of many accelerances.
+fn errors(found: &[Accelerance], line: usize) -> Vec<Complex64> {
+    found.iter().map(|of| of.value[line] / DAMPED.transfer(0.0, of.frequency[line]) - 1.0).collect()
+}
+
+fn mean(values: impl Iterator<Item = f64>) -> f64 {
+    let (sum, count) = values.fold((0.0, 0.0), |(sum, count): (f64, f64), value| (sum + value, count + 1.0));
+    sum / count
+}
+
+const REPETITIONS: usize = 1000;
+
+/// Bias, variance and correlation of lines as stated, against many repetitions with three unequal hits.
+#[test]
+fn val_what_is_stated_of_the_forces_noise_is_what_repetitions_show() {
+    let noise = &mut Noise(3);
+    let window = Estimation { window: Window::Force { half_width: 0.05 }, ..AS_NEEDED };
+    let repeat = |_| history(hits(noise, &[220.0, 300.0, 400.0], 6.0)).accelerance(window).unwrap();
+    let found: Vec<Accelerance> = (0..REPETITIONS).map(repeat).collect();
+    for of in &found {
+        assert_eq!(of.hits, 3, "{:?}", of.notes);
+    }
+    let line_at = |frequency: f64| found[0].frequency.partition_point(|&line| line < frequency - 1e-6);
+    // Ten lines that the window ties together by no more than a fifth.
+    let (mut biases, mut variances, mut stated_biases, mut quotients) = (vec![], vec![], vec![], vec![]);
+    for line in (2..12).map(|ten| line_at(10.0 * f64::from(ten))) {
+        let own = errors(&found, line);
+        let noises = || found.iter().map(|of| of.force_noise.as_ref().unwrap());
+        let transfer = DAMPED.transfer(0.0, found[0].frequency[line]).norm_sqr();
+        let variance = mean(own.iter().map(|error| error.norm_sqr()));
+        quotients.push(mean(noises().map(|noise| noise.variance[line])) / transfer / variance);
+        biases.push(-mean(own.iter().map(|error| error.re)));
+        stated_biases.push(mean(noises().map(|noise| noise.bias[line])));
+        variances.push(variance);
+    }
+    let of = |values: &[f64]| mean(values.iter().copied());
+    // Ten lines of a thousand repetitions tell a variance to 1 %; the noise's second order is a hundredth or two.
+    assert!((of(&quotients) - 1.0).abs() < 0.06, "{quotients:?}");
+    let known = (of(&variances) / 2.0 / (10 * REPETITIONS) as f64).sqrt();
+    let (bias, stated) = (of(&biases), of(&stated_biases));
+    assert!(bias > 5.0 * known, "no bias to be told: {bias} +- {known}");
+    assert!((bias - stated).abs() < 4.0 * known, "{bias} +- {known}, stated {stated}");
+
+    // sinc(2 h df): 0.1 s ties lines 5 Hz apart to 2/pi, those 10 Hz apart not at all.
+    for (apart, expected) in [(5.0, std::f64::consts::FRAC_2_PI), (10.0, 0.0)] {
+        let (own, other) = (errors(&found, line_at(60.0)), errors(&found, line_at(60.0 + apart)));
+        let tied = mean(own.iter().zip(&other).map(|(a, b)| (a.conj() * b).re));
+        let size = |errors: &[Complex64]| mean(errors.iter().map(|error| error.norm_sqr())).sqrt();
+        let correlation = tied / (size(&own) * size(&other));
+        assert!((correlation - expected).abs() < 0.1, "{apart} Hz: {correlation}");
+    }
+}
