@@ -4,7 +4,7 @@
 
 mod support;
 
-use orthopanel_data::ImpactTest;
+use orthopanel_data::{Estimation, ImpactTest, Window};
 use orthopanel_identify::{Identification, IdentifyError, Settings, identify};
 use support::hammer_test;
 
@@ -99,5 +99,49 @@ fn a_rate_too_low_for_the_modes_is_refused_with_the_one_needed() {
                 other => panic!("{rate} Hz: {:?}", other.map(|found| found.constants)),
             }
         }
+    }
+}
+
+/// One fault in all records alike: the sensor turned round and not declared, and g taken for m/s2.
+#[test]
+fn a_factor_on_all_records_is_named() {
+    for (factor, said) in [(-1.0, "direction = -1"), (9.80665, "acceleration_g")] {
+        let folder = tempfile::tempdir().unwrap();
+        let Some(_) = hammer_test(&folder.path().join("one"), &["--hits", "3", "--seed", "16"]) else { return };
+        for hit in 1..=3 {
+            let file = folder.path().join(format!("one/point-0-hit-{hit}.csv"));
+            let text = std::fs::read_to_string(&file).unwrap();
+            let wrong = |line: &str| match line.rsplit_once(',').map(|(rest, last)| (rest, last.parse::<f64>())) {
+                Some((rest, Ok(value))) => format!("{rest},{}\n", value / factor),
+                _ => format!("{line}\n"),
+            };
+            std::fs::write(&file, text.lines().map(wrong).collect::<String>()).unwrap();
+        }
+        let test = ImpactTest::read(folder.path().join("one/test.toml")).unwrap();
+        let refused = identify(&test, Settings::default()).unwrap_err();
+        assert!(refused.to_string().contains(said), "{refused}");
+        match refused {
+            IdentifyError::Contradiction { factor: Some(found), .. } => {
+                assert!((found / factor - 1.0).abs() < 0.01, "{found}");
+            }
+            other => panic!("{other}"),
+        }
+    }
+}
+
+/// Records in which nothing but noise is left: no constants come out of them.
+#[test]
+fn mere_noise_gives_no_constants() {
+    let folder = tempfile::tempdir().unwrap();
+    let Some(test) = hammer_test(&folder.path().join("one"), &["--hits", "3", "--seed", "17"]) else { return };
+    // Hann's window is zero where the blow is: 256 samples after the start.
+    let estimation = Estimation { window: Window::Hann, ..Estimation::default() };
+    let refused = identify(&test, Settings { estimation, ..Settings::default() }).map(|found| found.constants);
+    match refused {
+        Err(error @ IdentifyError::TooFewResonances { noise_percent: Some(_), .. }) => {
+            let said = error.to_string();
+            assert!(said.contains("too much noise") && said.contains("Hann"), "{said}");
+        }
+        other => panic!("{other:?}"),
     }
 }

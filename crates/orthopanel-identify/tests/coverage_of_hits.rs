@@ -7,7 +7,7 @@ mod support;
 
 use std::fmt::Write;
 
-use orthopanel_data::{Hit, ImpactTest};
+use orthopanel_data::{Estimation, Hit, ImpactTest, Window};
 use orthopanel_identify::{Settings, identify};
 use support::{Normal, hammer_test};
 
@@ -23,8 +23,21 @@ const TABLE_9: [&str; 6] = ["2.363e-3", "1.306e-3", "1.108e-3", "2.250e-3", "5.4
 #[derive(Debug)]
 struct Held([f64; 3]);
 
-/// So many tests with fresh noise of this part of each channel's rms; `None` without Python.
-fn held(options: &[&str], zetas: &[&str; 6], noise: f64, tests: usize, seed: u64) -> Option<Held> {
+/// Noise as a part of what of each channel.
+#[derive(Debug, Clone, Copy)]
+enum Noise {
+    OfRms(f64),
+    OfPeak(f64),
+}
+
+/// So many tests with fresh noise; `None` without Python.
+fn held(
+    options: &[&str],
+    zetas: &[&str; 6],
+    noise: Noise,
+    (tests, seed): (usize, u64),
+    settings: Settings,
+) -> Option<Held> {
     let folder = tempfile::tempdir().unwrap();
     let clean = hammer_test(
         &folder.path().join("clean"),
@@ -45,7 +58,7 @@ fn held(options: &[&str], zetas: &[&str; 6], noise: f64, tests: usize, seed: u64
             let csv = noisy(hit, history.rate, noise, &mut normal);
             std::fs::write(folder.path().join(format!("hit-{index}.csv")), csv).unwrap();
         }
-        let found = identify(&ImpactTest::from_toml(&text, &path).unwrap(), Settings::default()).unwrap();
+        let found = identify(&ImpactTest::from_toml(&text, &path).unwrap(), settings).unwrap();
         let inside = |value: f64, std: Option<f64>, truth: f64| (value - truth).abs() < 1.96 * std.unwrap();
         for (index, truth) in [E_X, G_ZX].into_iter().enumerate() {
             counts[index] += usize::from(inside(found.constants[index].value, found.constants[index].std, truth));
@@ -55,14 +68,19 @@ fn held(options: &[&str], zetas: &[&str; 6], noise: f64, tests: usize, seed: u64
     }
     let share = |count: usize, of: usize| count as f64 / of as f64;
     let held = Held([share(counts[0], tests), share(counts[1], tests), share(counts[2], 6 * tests)]);
-    println!("{options:?}, noise {noise}: {held:?}");
+    println!("{options:?}, {noise:?}: {held:?}");
     Some(held)
 }
 
 /// A hit as CSV with noise on both channels.
-fn noisy(hit: &Hit, rate: f64, noise: f64, normal: &mut Normal) -> String {
-    let rms = |channel: &[f64]| (channel.iter().map(|value| value * value).sum::<f64>() / channel.len() as f64).sqrt();
-    let (of_force, of_motion) = (noise * rms(&hit.force), noise * rms(&hit.acceleration));
+fn noisy(hit: &Hit, rate: f64, noise: Noise, normal: &mut Normal) -> String {
+    let deviation = |channel: &[f64]| match noise {
+        Noise::OfRms(part) => {
+            part * (channel.iter().map(|value| value * value).sum::<f64>() / channel.len() as f64).sqrt()
+        }
+        Noise::OfPeak(part) => part * channel.iter().fold(0.0_f64, |peak, value| peak.max(value.abs())),
+    };
+    let (of_force, of_motion) = (deviation(&hit.force), deviation(&hit.acceleration));
     let mut csv = String::from("time_s,force_n,acceleration_m_s2\n");
     for (sample, (force, acceleration)) in hit.force.iter().zip(&hit.acceleration).enumerate() {
         let (force, acceleration) = (force + of_force * normal.next(), acceleration + of_motion * normal.next());
@@ -79,7 +97,10 @@ fn val_intervals_from_one_hit_hold_the_truth() {
     for (rate, samples, noise) in [("10240", "16384", 0.002), ("20480", "32768", 0.003)] {
         let options = ["--hits", "1", "--pulse", "half-sine", "--pulse-duration", "2.5e-4"];
         let options = [&options[..], &["--sampling-rate", rate, "--samples", samples]].concat();
-        let Some(Held([e_x, g_zx, zeta])) = held(&options, &MUCH, noise, 60, 77) else { return };
+        let Some(Held([e_x, g_zx, zeta])) = held(&options, &MUCH, Noise::OfRms(noise), (60, 77), Settings::default())
+        else {
+            return;
+        };
         assert!([e_x, g_zx].iter().all(|share| (0.86..=1.0).contains(share)), "{rate} Hz: {e_x} {g_zx}");
         assert!((0.92..=0.98).contains(&zeta), "{rate} Hz: {zeta}");
     }
@@ -91,8 +112,43 @@ fn val_intervals_from_one_hit_hold_the_truth() {
 fn val_intervals_from_three_hits_of_a_piece_that_rings_on_hold_the_truth() {
     let options = ["--hits", "3", "--pulse", "half-sine", "--pulse-duration", "2.5e-4"];
     let options = [&options[..], &["--sampling-rate", "10240", "--samples", "16384"]].concat();
-    let Some(Held([e_x, g_zx, zeta])) = held(&options, &TABLE_9, 0.005, 400, 7) else { return };
+    let Some(Held([e_x, g_zx, zeta])) = held(&options, &TABLE_9, Noise::OfRms(0.005), (400, 7), Settings::default())
+    else {
+        return;
+    };
     // One deviation is 1.1 % for a constant, of so many tests, and half of that for six damping ratios.
     assert!([e_x, g_zx].iter().all(|share| (0.92..=0.985).contains(share)), "{e_x} {g_zx}");
     assert!((0.93..=0.97).contains(&zeta), "{zeta}");
+}
+
+/// The noise of the force counts: over the whole record it would make as much of S_ff as the blow. A window over the blow leaves
+/// a 200th, tied together over 200 lines and more; what it makes too low is taken out. Of 200 tests 92 to 94 % held the truth.
+#[test]
+fn val_intervals_under_much_noise_of_the_force_hold_the_truth() {
+    let options = ["--hits", "3", "--pulse", "half-sine", "--pulse-duration", "2.5e-4"];
+    let options = [&options[..], &["--sampling-rate", "10240", "--samples", "16384"]].concat();
+    for (zetas, part) in [(&MUCH, 0.01), (&TABLE_9, 0.003)] {
+        let noise = Noise::OfPeak(part);
+        let Some(Held([e_x, g_zx, zeta])) = held(&options, zetas, noise, (120, 11), Settings::default()) else {
+            return;
+        };
+        // One deviation is 2 % for a constant, of so many tests, and a third of that for six damping ratios.
+        assert!([e_x, g_zx].iter().all(|share| (0.89..=1.0).contains(share)), "{part}: {e_x} {g_zx}");
+        assert!((0.92..=0.98).contains(&zeta), "{part}: {zeta}");
+    }
+}
+
+/// The window asked for by hand, 4 ms about the blow, on a piece that rings on. While its lines were taken as independent, E_x
+/// was held in 82, G_zx in 74 and damping in 83 % of 100 tests; of 200 now in 99, 97 and 96 %.
+#[test]
+fn val_intervals_under_a_force_window_asked_for_hold_the_truth() {
+    let options = ["--hits", "3", "--pulse", "half-sine", "--pulse-duration", "2.5e-4"];
+    let options = [&options[..], &["--sampling-rate", "10240", "--samples", "16384"]].concat();
+    let window = Window::ForceExponential { half_width: Window::USUAL_HALF_WIDTH, tau: 0.2 };
+    let settings = Settings { estimation: Estimation { window, ..Estimation::default() }, ..Settings::default() };
+    let Some(Held([e_x, g_zx, zeta])) = held(&options, &TABLE_9, Noise::OfRms(0.005), (120, 7), settings) else {
+        return;
+    };
+    assert!([e_x, g_zx].iter().all(|share| (0.89..=1.0).contains(share)), "{e_x} {g_zx}");
+    assert!((0.92..=0.98).contains(&zeta), "{zeta}");
 }

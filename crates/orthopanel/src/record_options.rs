@@ -28,8 +28,11 @@ pub struct EstimationOptions {
 enum WindowWord {
     /// Nothing: right where the response has died away at the record's end
     None,
-    /// None where the response has died away, else force-exponential with the time constant that the rest needs
+    /// None where the response has died away, else exp(-t/tau) with the time constant that the rest needs; the force kept
+    /// near its blow where its channel's noise, read before the blow, counts
     AsNeeded,
+    /// Force kept near its peak, the response as it is: for a force channel with noise
+    Force,
     /// Hann's over both channels, as in the paper: only where the blow lies well inside the record, and it widens peaks
     Hann,
     /// Force kept near its peak, exp(-t/tau) over both channels: for a response cut off while it still rings. The
@@ -57,6 +60,9 @@ impl EstimationOptions {
             (Some(WindowWord::ForceExponential), Some(tau)) => {
                 Window::ForceExponential { half_width: self.force_half_width.unwrap_or(Window::USUAL_HALF_WIDTH), tau }
             }
+            (Some(WindowWord::Force), None) => {
+                Window::Force { half_width: self.force_half_width.unwrap_or(Window::USUAL_HALF_WIDTH) }
+            }
             (window, tau) => {
                 for (option, value) in [("tau", tau), ("force-half-width", self.force_half_width)] {
                     if let Some(value) = value {
@@ -68,7 +74,7 @@ impl EstimationOptions {
                     None => unsaid,
                     Some(WindowWord::Hann) => Window::Hann,
                     Some(WindowWord::AsNeeded) => Window::AsNeeded,
-                    Some(WindowWord::None | WindowWord::ForceExponential) => Window::None,
+                    Some(WindowWord::None | WindowWord::Force | WindowWord::ForceExponential) => Window::None,
                 }
             }
         };
