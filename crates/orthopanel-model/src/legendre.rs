@@ -3,6 +3,8 @@
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex};
 
+use faer::Mat;
+
 /// $P_0(t), \dots, P_{count-1}(t)$ by the three-term recurrence.
 pub(crate) fn legendre(count: usize, t: f64) -> Vec<f64> {
     let mut values = Vec::with_capacity(count);
@@ -12,6 +14,21 @@ pub(crate) fn legendre(count: usize, t: f64) -> Vec<f64> {
         let degree = n as f64;
         let next = ((2.0 * degree + 1.0) * t * current - degree * previous) / (degree + 1.0);
         (previous, current) = (current, next);
+    }
+    values
+}
+
+/// The same at many points: a row a point, a column a polynomial.
+pub(crate) fn legendre_at(count: usize, points: &[f64]) -> Mat<f64> {
+    let mut values = Mat::zeros(points.len(), count);
+    let (mut current, mut previous) = (vec![1.0; points.len()], vec![0.0; points.len()]);
+    for n in 0..count {
+        values.col_as_slice_mut(n).copy_from_slice(&current);
+        let degree = n as f64;
+        let (ahead, behind) = ((2.0 * degree + 1.0) / (degree + 1.0), degree / (degree + 1.0));
+        for ((current, previous), t) in current.iter_mut().zip(&mut previous).zip(points) {
+            (*previous, *current) = (*current, ahead * t * *current - behind * *previous);
+        }
     }
     values
 }

@@ -59,9 +59,9 @@ pub(super) enum Grouping {
 
 /// Making a model costs as much as so many of its lines.
 const MAKING: u64 = 4000;
-/// Effects for which modes are solved at several nodes or edges, or are those of a plate, and how much more each line of these costs.
-const DEAR: [&str; 3] = ["viscoelastic-core", "stiffness-loss", PLATE];
-const DEARER: u64 = 8;
+/// Effects for which modes are solved at several nodes, on a basis with moving edges, or of a plate, and how much more each line
+/// of these costs.
+const DEARER: [(&str, u64); 3] = [("viscoelastic-core", 8), ("stiffness-loss", 4), (PLATE, 8)];
 
 impl RecordProblem<'_> {
     /// Positions of the free constants.
@@ -242,9 +242,10 @@ impl RecordProblem<'_> {
     }
 
     fn count(&self, state: &State) {
-        let dear = state.hypothesis.effects.iter().filter(|on| DEAR.contains(&on.effect.id())).count() as u32;
+        let dearer = |id: &str| DEARER.iter().find(|(dear, _)| *dear == id).map_or(1, |(_, factor)| *factor);
+        let factor: u64 = state.hypothesis.effects.iter().map(|on| dearer(on.effect.id())).product();
         let lines = MAKING + self.records.iter().map(|record| record.s.len() as u64).sum::<u64>();
-        self.work.fetch_add(lines * DEARER.pow(dear), Ordering::Relaxed);
+        self.work.fetch_add(lines * factor, Ordering::Relaxed);
     }
 
     fn prior(&self, state: &State, size: usize) -> Quadratic {

@@ -4,9 +4,9 @@ use faer::Mat;
 
 use super::beam_terms::BeamTerms;
 use super::strain_basis::{Parity, StrainFunction, end_motions, steps, strain_functions};
-use super::term_matrices::{Field, Quadrature, support_stiffness};
+use super::term_matrices::{Quadrature, series_products, support_stiffness};
 use super::{BEAM_CONSTANTS, Section, StaticFlexibility};
-use crate::legendre::{legendre, norm};
+use crate::legendre::legendre;
 use crate::structure::{Block, Flexibility, Motion, Structure, TermDerivative};
 use crate::{Boundary, Constant, ModelError, Piece, Place};
 
@@ -75,28 +75,22 @@ impl TimoshenkoBeam {
 
 fn assemble(functions: &[StrainFunction], section: Section, half_length: f64, terms: &BeamTerms) -> Block {
     let size = functions.len();
-    let matrix = |entry: &dyn Fn(&StrainFunction, &StrainFunction) -> f64| {
-        Mat::from_fn(size, size, |i, j| half_length * entry(&functions[i], &functions[j]))
-    };
     let Section { second_moment, shear_area, mass, rotary_inertia } = section;
-    let bending = matrix(&|f, g| second_moment * product(&f.curvature, &g.curvature));
-    let (shear, inertia) = if terms.losses.is_empty() {
-        let shear = matrix(&|f, g| shear_area * product(&f.shear, &g.shear));
-        let inertia = matrix(&|f, g| {
-            mass * product(&f.deflection, &g.deflection) + rotary_inertia * product(&f.rotation, &g.rotation)
-        });
-        (shear, inertia)
+    let bending = faer::Scale(second_moment) * series_products(functions, half_length, |f| &f.curvature);
+    let turning = faer::Scale(rotary_inertia) * series_products(functions, half_length, |f| &f.rotation);
+    let (strain, deflection) = if terms.losses.is_empty() {
+        let strain = series_products(functions, half_length, |f| &f.shear);
+        (strain, series_products(functions, half_length, |f| &f.deflection))
     } else {
         let quadrature = Quadrature::new(functions, half_length, &terms.losses);
-        let mut shear = faer::Scale(shear_area) * quadrature.product(Field::Shear, |_| 1.0);
+        let mut strain = quadrature.shear();
         for loss in &terms.losses {
-            shear -= faer::Scale(loss.loss * shear_area) * quadrature.span(loss);
+            strain -= faer::Scale(loss.loss) * quadrature.span(loss);
         }
-        let inertia = faer::Scale(mass) * quadrature.product(Field::Deflection, |_| 1.0)
-            + faer::Scale(rotary_inertia) * quadrature.product(Field::Rotation, |_| 1.0);
-        (shear, inertia)
+        (strain, quadrature.deflection())
     };
-    let mass = inertia;
+    let shear = faer::Scale(shear_area) * strain;
+    let mass = faer::Scale(mass) * deflection + turning;
     let mut stiffness = vec![bending, shear];
     if let Some(support) = terms.support {
         stiffness.push(support_stiffness(functions, [support.translation, support.rotation]));
@@ -112,11 +106,6 @@ fn assemble(functions: &[StrainFunction], section: Section, half_length: f64, te
         })
         .collect();
     Block { stiffness, mass, rigid }
-}
-
-/// $\int_{-1}^1 fg\,dt$ of two Legendre series.
-pub(super) fn product(f: &[f64], g: &[f64]) -> f64 {
-    f.iter().zip(g).enumerate().map(|(n, (a, b))| a * b * norm(n)).sum()
 }
 
 impl Structure for TimoshenkoBeam {
@@ -147,16 +136,7 @@ impl Structure for TimoshenkoBeam {
         let terms = functions.iter().map(|f| f.deflection.len()).max().unwrap_or(0);
         let t = place.x / self.half_length;
         let polynomials = legendre(terms, t);
-        let of = |f: &StrainFunction| {
-            let [curvature, shear, rotation, deflection] = f.at(t, &polynomials, self.half_length);
-            match motion {
-                Motion::Deflection => deflection,
-                Motion::Slope => shear - rotation,
-                Motion::Rotation => rotation,
-                Motion::Curvature => curvature,
-            }
-        };
-        Some(functions.iter().map(of).collect())
+        Some(functions.iter().map(|f| f.at(motion, t, &polynomials, self.half_length)).collect())
     }
 
     fn static_flexibility(&self, values: &[f64], motions: [(Motion, Place); 2]) -> Option<Flexibility> {
@@ -177,8 +157,7 @@ impl Structure for TimoshenkoBeam {
         let of_stiffness = |matrices: Vec<Mat<f64>>| TermDerivative { stiffness: matrices, mass: vec![] };
         let even_inertia = self.section.rotary_inertia / self.terms.rotary_factor;
         let by_rotary = |functions: &Vec<StrainFunction>| {
-            let entry = |i: usize, j: usize| product(&functions[i].rotation, &functions[j].rotation);
-            faer::Scale(even_inertia * self.half_length) * Mat::from_fn(functions.len(), functions.len(), entry)
+            faer::Scale(even_inertia) * series_products(functions, self.half_length, |f| &f.rotation)
         };
         let mut list = vec![TermDerivative { stiffness: vec![], mass: self.functions.iter().map(by_rotary).collect() }];
         for loss in &self.terms.losses {

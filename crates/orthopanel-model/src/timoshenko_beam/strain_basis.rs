@@ -8,7 +8,9 @@
 //! so the conditions of held ends touch the five coordinates $(w_0, \psi_0, k_0, k_1, g_0)$ alone. [`low_functions`]
 //! lists what remains of these for each pair of ends, chosen so that both stiffnesses stay diagonal.
 
-use crate::legendre::{antiderivative, gauss_legendre, legendre, norm};
+use crate::dense::dot;
+use crate::legendre::{antiderivative, gauss_legendre, legendre_at, norm};
+use crate::structure::Motion;
 use crate::{Boundary, End};
 
 /// One basis function by its Legendre coefficients in $t$.
@@ -38,16 +40,16 @@ pub(super) struct Step {
 }
 
 impl StrainFunction {
-    /// $\psi'$, $w'+\psi$, $\psi$ and $w$ at $t$, given the Legendre polynomials there.
-    pub(super) fn at(&self, t: f64, polynomials: &[f64], half_length: f64) -> [f64; 4] {
+    /// A motion at $t$, given the Legendre polynomials there.
+    pub(super) fn at(&self, motion: Motion, t: f64, polynomials: &[f64], half_length: f64) -> f64 {
         let sum = |series: &[f64]| -> f64 { series.iter().zip(polynomials).map(|(c, p)| c * p).sum() };
-        let mut values = [sum(&self.curvature), sum(&self.shear), sum(&self.rotation), sum(&self.deflection)];
-        if let Some(step) = self.step {
-            let [shear, deflection] = step.at(t, half_length);
-            values[1] += shear;
-            values[3] += deflection;
+        let [shear, deflection] = self.step.map_or([0.0; 2], |step| step.at(t, half_length));
+        match motion {
+            Motion::Deflection => sum(&self.deflection) + deflection,
+            Motion::Slope => sum(&self.shear) + shear - sum(&self.rotation),
+            Motion::Rotation => sum(&self.rotation),
+            Motion::Curvature => sum(&self.curvature),
         }
-        values
     }
 }
 
@@ -111,21 +113,20 @@ const JUMPS: i32 = 3;
 /// mean, so $w$ vanishes at both ends whatever holds them.
 pub(super) fn steps(half_length: f64, edges: [f64; 2], terms: usize) -> impl Iterator<Item = StrainFunction> {
     let inside = edges.into_iter().map(move |x| x / half_length).filter(|t| t.abs() < 1.0 - 1e-4);
-    inside.flat_map(move |edge| (0..JUMPS).map(move |degree| step(half_length, Step { edge, degree }, terms)))
+    inside.flat_map(move |edge| steps_at(half_length, edge, terms))
 }
 
-fn step(half_length: f64, step: Step, terms: usize) -> StrainFunction {
-    let (middle, half) = (0.5 * (step.edge + 1.0), 0.5 * (1.0 - step.edge));
-    let mut shear = vec![0.0; terms];
-    for &(t, weight) in gauss_legendre(terms + 2).iter() {
-        let along = (0.5 * (t + 1.0)).powi(step.degree);
-        for ((n, total), value) in shear.iter_mut().enumerate().zip(legendre(terms, middle + half * t)) {
-            *total -= half * weight * along * value / norm(n);
-        }
-    }
-    let mean = shear.first().copied().unwrap_or_default();
-    let balance = integrated(half_length, [half_length * mean, 0.0], vec![], shear, Parity::Neither);
-    StrainFunction { step: Some(step), ..balance }
+fn steps_at(half_length: f64, edge: f64, terms: usize) -> impl Iterator<Item = StrainFunction> {
+    let (middle, half) = (0.5 * (edge + 1.0), 0.5 * (1.0 - edge));
+    let rule = gauss_legendre(terms + 2);
+    let polynomials = legendre_at(terms, &rule.iter().map(|(t, _)| middle + half * t).collect::<Vec<_>>());
+    (0..JUMPS).map(move |degree| {
+        let strain: Vec<f64> = rule.iter().map(|(t, weight)| half * weight * (0.5 * (t + 1.0)).powi(degree)).collect();
+        let shear: Vec<f64> = (0..terms).map(|n| -dot(polynomials.col_as_slice(n), &strain) / norm(n)).collect();
+        let mean = shear.first().copied().unwrap_or_default();
+        let balance = integrated(half_length, [half_length * mean, 0.0], vec![], shear, Parity::Neither);
+        StrainFunction { step: Some(Step { edge, degree }), ..balance }
+    })
 }
 
 /// Motions of clamped ends that yield: one function deflects an end by one, one rotates it by one, and every other

@@ -1,32 +1,45 @@
-//! Matrices of an uneven beam, in the coordinates of its strain functions, by quadrature between the edges of its spans.
+//! Matrices of a beam in the coordinates of its strain functions: by their series where these say all, by quadrature between
+//! the edges of spans where strains begin at an edge.
 
 use faer::Mat;
 
 use super::beam_terms::ShearLoss;
 use super::strain_basis::StrainFunction;
 use crate::dense::product;
-use crate::legendre::{gauss_legendre, legendre};
+use crate::legendre::{gauss_legendre, legendre_at, norm};
 
-/// Values of all functions at Gauss points that no edge lies between.
-#[derive(Debug, Clone)]
-pub(super) struct Quadrature {
+/// $h\int_{-1}^1f_if_j\,dt$ of one Legendre series of each function.
+pub(super) fn series_products(
+    functions: &[StrainFunction],
+    half_length: f64,
+    series: impl Fn(&StrainFunction) -> &[f64],
+) -> Mat<f64> {
+    let terms = functions.iter().map(|f| series(f).len()).max().unwrap_or(0);
+    let root: Vec<f64> = (0..terms).map(|n| (half_length * norm(n)).sqrt()).collect();
+    // A column a function: products then run along memory.
+    let scaled = Mat::from_fn(terms, functions.len(), |n, i| {
+        series(&functions[i]).get(n).map_or(0.0, |coefficient| root[n] * coefficient)
+    });
+    product(scaled.transpose(), scaled.as_ref())
+}
+
+/// Values at Gauss points that no edge lies between.
+pub(super) struct Quadrature<'a> {
+    functions: &'a [StrainFunction],
     half_length: f64,
     /// $t$ and weight in $x$ of each point.
     points: Vec<(f64, f64)>,
-    /// $w'+\psi$, $\psi$, $w$: a row a point, a column a function.
-    values: [Mat<f64>; 3],
+    /// Legendre polynomials: a row a point.
+    polynomials: Mat<f64>,
+    /// The functions that begin at an edge.
+    steps: Vec<usize>,
+    /// Shear strain and deflection of these, a column each: what begins at the edge, and the series.
+    shear: Mat<f64>,
+    deflection: Mat<f64>,
 }
 
-/// A field of [`Quadrature`]; none asks for the curvature, whose matrix is diagonal.
-#[derive(Debug, Clone, Copy)]
-pub(super) enum Field {
-    Shear,
-    Rotation,
-    Deflection,
-}
-
-impl Quadrature {
-    pub(super) fn new(functions: &[StrainFunction], half_length: f64, losses: &[ShearLoss]) -> Self {
+impl<'a> Quadrature<'a> {
+    pub(super) fn new(functions: &'a [StrainFunction], half_length: f64, losses: &[ShearLoss]) -> Self {
         let terms = functions.iter().map(|f| f.deflection.len()).max().unwrap_or(0);
         let mut edges: Vec<f64> =
             losses.iter().flat_map(|loss| loss.edges(half_length)).map(|x| x / half_length).collect();
@@ -42,37 +55,95 @@ impl Quadrature {
                 rule.iter().map(move |(t, weight)| (middle + half * t, half_length * half * weight))
             })
             .collect();
-        let at_points: Vec<Vec<f64>> = points.iter().map(|&(t, _)| legendre(terms, t)).collect();
-        let polynomials = Mat::from_fn(points.len(), terms, |row, n| at_points[row][n]);
-        let of_series = |series: &dyn Fn(&StrainFunction) -> &[f64]| {
-            let coefficients = Mat::from_fn(terms, functions.len(), |n, column| {
-                series(&functions[column]).get(n).copied().unwrap_or_default()
+        let polynomials = legendre_at(terms, &points.iter().map(|(t, _)| *t).collect::<Vec<_>>());
+        let steps: Vec<usize> = (0..functions.len()).filter(|&column| functions[column].step.is_some()).collect();
+        let values = |series: &dyn Fn(&StrainFunction) -> &[f64], own: usize| {
+            let coefficients = Mat::from_fn(terms, steps.len(), |n, k| {
+                series(&functions[steps[k]]).get(n).copied().unwrap_or_default()
             });
-            product(polynomials.as_ref(), coefficients.as_ref())
-        };
-        let mut values = [of_series(&|f| &f.shear), of_series(&|f| &f.rotation), of_series(&|f| &f.deflection)];
-        for (column, step) in functions.iter().enumerate().filter_map(|(column, f)| Some((column, f.step?))) {
-            for (row, &(t, _)) in points.iter().enumerate() {
-                let [shear, deflection] = step.at(t, half_length);
-                values[Field::Shear as usize][(row, column)] += shear;
-                values[Field::Deflection as usize][(row, column)] += deflection;
+            let mut values = product(polynomials.as_ref(), coefficients.as_ref());
+            for (k, step) in steps.iter().enumerate().filter_map(|(k, &column)| Some((k, functions[column].step?))) {
+                for (row, &(t, _)) in points.iter().enumerate() {
+                    values[(row, k)] += step.at(t, half_length)[own];
+                }
             }
-        }
-        Self { half_length, points, values }
+            values
+        };
+        let (shear, deflection) = (values(&|f| &f.shear, 0), values(&|f| &f.deflection, 1));
+        Self { functions, half_length, points, polynomials, steps, shear, deflection }
     }
 
-    /// $\int f_if_jg\,dx$ of a field with a weight $g(x)$.
-    pub(super) fn product(&self, field: Field, weight: impl Fn(f64) -> f64) -> Mat<f64> {
-        let values = &self.values[field as usize];
-        let scale: Vec<f64> = self.points.iter().map(|(t, w)| w * weight(self.half_length * t)).collect();
-        let weighted = Mat::from_fn(values.nrows(), values.ncols(), |i, j| scale[i] * values[(i, j)]);
-        product(values.transpose(), weighted.as_ref())
+    /// $\int(w'+\psi)_i(w'+\psi)_j\,dx$. What begins at an edge is orthogonal to every polynomial of the basis.
+    pub(super) fn shear(&self) -> Mat<f64> {
+        let mut matrix = series_products(self.functions, self.half_length, |f| &f.shear);
+        for &column in &self.steps {
+            for other in 0..matrix.nrows() {
+                (matrix[(column, other)], matrix[(other, column)]) = (0.0, 0.0);
+            }
+        }
+        self.set_among_steps(&mut matrix, &self.shear);
+        matrix
+    }
+
+    /// $\int w_iw_j\,dx$.
+    pub(super) fn deflection(&self) -> Mat<f64> {
+        let mut matrix = series_products(self.functions, self.half_length, |f| &f.deflection);
+        let moments = product(self.polynomials.transpose(), self.weighted(&self.deflection).as_ref());
+        for (k, &column) in self.steps.iter().enumerate() {
+            for (other, function) in self.functions.iter().enumerate() {
+                let value = function.deflection.iter().enumerate().map(|(n, c)| c * moments[(n, k)]).sum();
+                (matrix[(column, other)], matrix[(other, column)]) = (value, value);
+            }
+        }
+        self.set_among_steps(&mut matrix, &self.deflection);
+        matrix
     }
 
     /// $\int(w'+\psi)_i(w'+\psi)_j\,dx$ over the span of a loss.
     pub(super) fn span(&self, loss: &ShearLoss) -> Mat<f64> {
-        let [low, high] = loss.edges(self.half_length);
-        self.product(Field::Shear, |x| if x > low && x < high { 1.0 } else { 0.0 })
+        let [low, high] = loss.edges(self.half_length).map(|x| x / self.half_length);
+        let inside: Vec<usize> =
+            (0..self.points.len()).filter(|&row| self.points[row].0 > low && self.points[row].0 < high).collect();
+        let strained: Vec<usize> = (0..self.functions.len())
+            .filter(|&i| self.functions[i].step.is_some() || self.functions[i].shear.iter().any(|&c| c != 0.0))
+            .collect();
+        let root: Vec<f64> = inside.iter().map(|&row| self.points[row].1.sqrt()).collect();
+        let mut values = Mat::zeros(inside.len(), strained.len());
+        for (column, &function) in strained.iter().enumerate() {
+            let values = values.col_as_slice_mut(column);
+            let mut add = |share: f64, of: &[f64]| {
+                values.iter_mut().zip(&inside).for_each(|(value, &row)| *value += share * of[row]);
+            };
+            match self.steps.iter().position(|step| *step == function) {
+                Some(k) => add(1.0, self.shear.col_as_slice(k)),
+                None => {
+                    let series = self.functions[function].shear.iter().enumerate().filter(|(_, c)| **c != 0.0);
+                    series.for_each(|(n, &share)| add(share, self.polynomials.col_as_slice(n)));
+                }
+            }
+            values.iter_mut().zip(&root).for_each(|(value, root)| *value *= root);
+        }
+        let within = product(values.transpose(), values.as_ref());
+        let mut matrix = Mat::zeros(self.functions.len(), self.functions.len());
+        for (j, &column) in strained.iter().enumerate() {
+            for (i, &row) in strained.iter().enumerate() {
+                matrix[(row, column)] = within[(i, j)];
+            }
+        }
+        matrix
+    }
+
+    fn weighted(&self, values: &Mat<f64>) -> Mat<f64> {
+        Mat::from_fn(values.nrows(), values.ncols(), |row, k| self.points[row].1 * values[(row, k)])
+    }
+
+    fn set_among_steps(&self, matrix: &mut Mat<f64>, values: &Mat<f64>) {
+        let among = product(values.transpose(), self.weighted(values).as_ref());
+        for (a, &row) in self.steps.iter().enumerate() {
+            for (b, &column) in self.steps.iter().enumerate() {
+                matrix[(row, column)] = among[(a, b)];
+            }
+        }
     }
 }
 

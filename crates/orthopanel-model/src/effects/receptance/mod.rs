@@ -8,6 +8,7 @@ mod coupling;
 pub(super) mod modal_base;
 mod model;
 mod modulus_path;
+mod moved_structure;
 mod record;
 mod setup;
 pub(super) mod view;

@@ -4,11 +4,12 @@ use std::sync::Arc;
 
 use faer::Mat;
 
+use super::moved_structure::Moved;
 use super::view::SERIES_TERMS;
 use crate::dense::product;
 use crate::ritz_modes::all_ritz_modes;
 use crate::structure::{Motion, Structure};
-use crate::{ModelError, Place, TimoshenkoBeam};
+use crate::{ModelError, Place};
 
 /// What moves, and where.
 pub(in crate::effects) type Row = (Motion, Place);
@@ -60,24 +61,8 @@ pub(in crate::effects) struct ModalBase {
     pub parameters: usize,
     /// Positions in [`Structure::term_derivatives`] of those terms.
     pub terms: Vec<usize>,
-    /// Parameters that only differences tell.
-    pub differences: Vec<Difference>,
-}
-
-/// The structure with one parameter moved back and forth.
-#[derive(Debug, Clone)]
-pub(in crate::effects) struct Moved {
-    /// Position of the parameter in [`Structure::term_derivatives`].
-    pub term: usize,
-    pub step: f64,
-    pub sides: [Arc<TimoshenkoBeam>; 2],
-}
-
-/// Modes on both sides of a parameter.
-pub(in crate::effects) struct Difference {
-    pub parameter: usize,
-    pub step: f64,
-    pub sides: [Box<ModalBase>; 2],
+    /// Parameters with which the coordinates themselves move, by their number.
+    pub moved: Vec<(usize, Moved)>,
 }
 
 impl ModalBase {
@@ -90,21 +75,11 @@ impl ModalBase {
         terms: &[usize],
         moved: &[Moved],
     ) -> Result<Self, ModelError> {
-        Self::with_derivatives(structure, (values, values.len()), summed, terms, moved)
-    }
-
-    /// The same with derivatives by the first `constants` of the constants alone: none are asked for where a base is one side of
-    /// a difference.
-    fn with_derivatives(
-        structure: &SharedStructure,
-        (values, constants): (&[f64], usize),
-        summed: usize,
-        terms: &[usize],
-        moved: &[Moved],
-    ) -> Result<Self, ModelError> {
         let modes = all_ritz_modes(structure.as_ref(), values)?;
         let by_constants = structure.coefficient_derivatives(values)?;
         let derivatives = if terms.is_empty() { vec![] } else { structure.term_derivatives(values) };
+        let coefficients = structure.coefficients(values)?;
+        let constants = values.len();
         let mut blocks = Vec::new();
         let mut order = Vec::new();
         for (index, block) in structure.blocks().iter().enumerate() {
@@ -113,8 +88,7 @@ impl ModalBase {
             let vectors = Mat::from_fn(block.size(), own.len(), |i, m| own[m].coordinates[i]);
             let in_modes =
                 |matrix: &Mat<f64>| product(vectors.transpose(), product(matrix.as_ref(), vectors.as_ref()).as_ref());
-            let asked = if constants > 0 { &block.stiffness[..] } else { &[] };
-            let stiffness: Vec<Mat<f64>> = asked.iter().map(in_modes).collect();
+            let stiffness: Vec<Mat<f64>> = block.stiffness.iter().map(in_modes).collect();
             let of_constant = |j: usize| {
                 let mut sum = Mat::zeros(own.len(), own.len());
                 for (i, matrix) in stiffness.iter().enumerate() {
@@ -124,6 +98,10 @@ impl ModalBase {
             };
             let mut couplings: Vec<[Mat<f64>; 2]> = (0..constants).map(of_constant).collect();
             for &term in terms {
+                if let Some(change) = moved.iter().find(|change| change.term == term) {
+                    couplings.push(change.matrices(index, &coefficients).map(|matrix| in_modes(&matrix)));
+                    continue;
+                }
                 let Some(by) = derivatives.get(term) else { continue };
                 couplings.push([&by.stiffness, &by.mass].map(|list| list.get(index).map_or(Mat::new(), in_modes)));
             }
@@ -139,17 +117,10 @@ impl ModalBase {
         let near: Vec<_> = order.iter().take(rigid + summed).map(|&(_, block, number)| (block, number)).collect();
         blocks.iter_mut().enumerate().for_each(|(index, block)| block.part(index, &near));
         let parameters = constants + terms.len();
-        let mut differences = Vec::new();
-        for change in moved {
-            let Some(position) = terms.iter().position(|term| *term == change.term) else { continue };
-            let side = |beam: &Arc<TimoshenkoBeam>| {
-                let beam: SharedStructure = beam.clone();
-                Ok::<_, ModelError>(Box::new(Self::with_derivatives(&beam, (values, 0), summed, &[], &[])?))
-            };
-            let [back, forth] = &change.sides;
-            let (parameter, step) = (constants + position, change.step);
-            differences.push(Difference { parameter, step, sides: [side(back)?, side(forth)?] });
-        }
+        let numbered = |change: &Moved| {
+            let position = terms.iter().position(|term| *term == change.term)?;
+            Some((constants + position, change.clone()))
+        };
         Ok(Self {
             structure: structure.clone(),
             values: values.to_vec(),
@@ -158,7 +129,7 @@ impl ModalBase {
             rigid,
             parameters,
             terms: terms.to_vec(),
-            differences,
+            moved: moved.iter().filter_map(numbered).collect(),
         })
     }
 
@@ -191,15 +162,25 @@ impl ModalBase {
     /// Values of the modes of a block in some rows: a row each, a column a mode.
     pub(in crate::effects) fn rows(&self, block: usize, rows: &[Row]) -> Result<Mat<f64>, ModelError> {
         let Some(modes) = self.blocks.get(block) else { return Ok(Mat::new()) };
-        let mut matrix = Mat::zeros(rows.len(), modes.vectors.nrows());
-        for (i, &(motion, place)) in rows.iter().enumerate() {
-            let row = self.structure.motion_row(block, motion, place).ok_or_else(|| {
-                ModelError::Unsupported(format!("an effect on the {motion:?} of this structure").to_lowercase())
-            })?;
-            row.iter().enumerate().for_each(|(j, &value)| matrix[(i, j)] = value);
-        }
+        let matrix = coordinate_rows(self.structure.as_ref(), (block, modes.vectors.nrows()), rows)?;
         Ok(product(matrix.as_ref(), modes.vectors.as_ref()))
     }
+}
+
+/// Values of a block's coordinates, `size` of them, in some rows.
+pub(super) fn coordinate_rows(
+    structure: &dyn Structure,
+    (block, size): (usize, usize),
+    rows: &[Row],
+) -> Result<Mat<f64>, ModelError> {
+    let mut matrix = Mat::zeros(rows.len(), size);
+    for (i, &(motion, place)) in rows.iter().enumerate() {
+        let row = structure.motion_row(block, motion, place).ok_or_else(|| {
+            ModelError::Unsupported(format!("an effect on the {motion:?} of this structure").to_lowercase())
+        })?;
+        row.iter().enumerate().for_each(|(j, &value)| matrix[(i, j)] = value);
+    }
+    Ok(matrix)
 }
 
 impl BlockModes {

@@ -1,6 +1,7 @@
 //! Modes at a complex shear modulus, continued from real ones.
 
-use super::modal_base::{ModalBase, Moved, Row, SharedStructure};
+use super::modal_base::{ModalBase, Row, SharedStructure};
+use super::moved_structure::Moved;
 use super::view::{Layout, View};
 use super::wide::Wide;
 use crate::ModelError;

@@ -2,15 +2,18 @@
 
 use std::sync::{Arc, Mutex};
 
-use super::modal_base::{ModalBase, Moved, SharedStructure};
+use super::modal_base::{ModalBase, SharedStructure};
 use super::model::{ReceptanceModel, RecordModel};
 use super::modulus_path::NodeBases;
+use super::moved_structure::Moved;
 use super::record::RecordPlan;
 use super::view::View;
 use super::wide_plate::WidePlates;
 use crate::effects::dressing::Dressing;
 use crate::effects::{CoreModulus, EffectSetting, EffectState, RecordSetting};
-use crate::{BEAM_CONSTANTS, Boundary, Damping, ModalModel, Mode, ModelError, Motion, Piece, Place, TimoshenkoBeam};
+use crate::{
+    BEAM_CONSTANTS, BeamTerms, Boundary, Damping, ModalModel, Mode, ModelError, Motion, Piece, Place, TimoshenkoBeam,
+};
 
 /// What stays the same while a search moves constants, damping and the parameters of effects.
 pub struct ReceptanceSetup {
@@ -160,14 +163,14 @@ impl ReceptanceSetup {
             let columns = constants.chain(column..column + ratios.len()).collect();
             return Ok(Based { bases: Bases::Real(Arc::new(base)), core: None, columns, summed: plate.summed });
         }
-        let moved = self.moved(&dressed)?;
         let is_even = dressed.terms.is_none();
-        let structure: SharedStructure = match dressed.terms {
+        let (structure, moved): (SharedStructure, Vec<Moved>) = match dressed.terms {
             Some(terms) => {
-                let order = basis_terms(self.summed);
-                Arc::new(TimoshenkoBeam::with_terms(&self.piece, self.boundary, order, terms)?)
+                let beam = Arc::new(self.uneven(terms.clone())?);
+                let moved = self.moved(&terms, &beam)?;
+                (beam, moved)
             }
-            None => Arc::clone(&self.beam),
+            None => (Arc::clone(&self.beam), vec![]),
         };
         let (numbers, columns): (Vec<usize>, Vec<usize>) = dressed.parameters.into_iter().unzip();
         let columns = constants.chain(columns).collect();
@@ -196,9 +199,12 @@ impl ReceptanceSetup {
         Ok(base)
     }
 
+    fn uneven(&self, terms: BeamTerms) -> Result<TimoshenkoBeam, ModelError> {
+        TimoshenkoBeam::with_terms(&self.piece, self.boundary, basis_terms(self.summed), terms)
+    }
+
     /// The beam with span and place of each shear loss moved.
-    fn moved(&self, dressing: &Dressing) -> Result<Vec<Moved>, ModelError> {
-        let Some(terms) = &dressing.terms else { return Ok(vec![]) };
+    fn moved(&self, terms: &BeamTerms, beam: &Arc<TimoshenkoBeam>) -> Result<Vec<Moved>, ModelError> {
         // Shapes bend over a tenth of the length: 1e-5 of it leaves 1e-7 of rounding and of curvature.
         let step = 1e-5 * self.piece.length;
         let side = |index: usize, span: f64, at: f64| {
@@ -207,16 +213,16 @@ impl ReceptanceSetup {
                 loss.span += span;
                 loss.at += at;
             }
-            TimoshenkoBeam::with_terms(&self.piece, self.boundary, basis_terms(self.summed), terms).map(Arc::new)
+            self.uneven(terms)
         };
         let mut moved = Vec::new();
         for index in 0..terms.losses.len() {
             // The rotary factor stands first; loss, span and place follow for each.
             let first = 1 + 3 * index;
             let spans = [side(index, -step, 0.0)?, side(index, step, 0.0)?];
-            moved.push(Moved { term: first + 1, step, sides: spans });
+            moved.push(Moved::new(first + 1, step, beam, spans));
             let places = [side(index, 0.0, -step)?, side(index, 0.0, step)?];
-            moved.push(Moved { term: first + 2, step, sides: places });
+            moved.push(Moved::new(first + 2, step, beam, places));
         }
         Ok(moved)
     }

@@ -81,43 +81,29 @@ impl View {
             let shapes = base.rows(index, &rows)?;
             view.add_near(block, &shapes);
             view.add_far(block, &shapes);
+            for (p, moved) in &base.moved {
+                let change = product(moved.rows(index, active)?.as_ref(), block.vectors.as_ref());
+                view.move_rows(*p, block, &shapes, &change);
+            }
         }
         view.close(base, &rows);
-        for difference in &base.differences {
-            let [back, forth] = &difference.sides;
-            let [back, forth] = [Self::new(back, active, &[])?, Self::new(forth, active, &[])?];
-            view.set_difference(difference.parameter, [back, forth], difference.step);
-        }
         Ok(view)
     }
 
-    /// Writes derivatives by parameter `p` from views that lie two steps apart.
-    fn set_difference(&mut self, p: usize, mut sides: [Self; 2], step: f64) {
-        let Layout { modes, active, .. } = self.layout;
-        for side in &mut sides {
-            (0..modes).for_each(|m| side.turn_like(self, m));
+    /// Adds to the derivatives by parameter `p` what the modes' values in the active rows change where their coordinates stay.
+    fn move_rows(&mut self, p: usize, block: &BlockModes, shapes: &Mat<f64>, change: &Mat<f64>) {
+        let active = self.layout.active;
+        for &(m, n) in &block.near {
+            let at = self.layout.shape_by(p, m);
+            (0..active).for_each(|row| self.numbers[at + row] += change[(row, n)]);
         }
-        let [back, forth] = &sides;
-        let slope = |at: usize| (forth.numbers[at] - back.numbers[at]) / (2.0 * step);
-        let layout = back.layout;
-        for m in 0..modes {
-            self.numbers[self.layout.by(p) + m] = slope(m);
-            let to = self.layout.shape_by(p, m);
-            (0..active).for_each(|row| self.numbers[to + row] = slope(layout.shape(m) + row));
-        }
+        let far = |rows: &Mat<f64>| Mat::from_fn(active, block.far.len(), |row, i| rows[(row, block.far[i])]);
+        let (shapes, change) = (far(shapes), far(change));
         for k in 0..SERIES_TERMS {
-            let to = self.layout.series_by(p, k);
-            (0..active * active).for_each(|i| self.numbers[to + i] = slope(layout.series(k) + i));
-        }
-    }
-
-    /// Gives mode `m` the sign that it has in another view.
-    fn turn_like(&mut self, other: &Self, m: usize) {
-        let (here, there) = (self.layout.shape(m), other.layout.shape(m));
-        let overlap: f64 =
-            (0..self.layout.active).map(|row| self.numbers[here + row] * other.numbers[there + row]).sum();
-        if overlap < 0.0 {
-            (0..self.layout.active).for_each(|row| self.numbers[here + row] *= -1.0);
+            let weighted = Mat::from_fn(active, block.far.len(), |row, i| shapes[(row, i)] * block.powers[(i, k)]);
+            let one_way = product(change.as_ref(), weighted.transpose());
+            let at = self.layout.series_by(p, k);
+            add(&mut self.numbers[at..], &(&one_way + one_way.transpose()));
         }
     }
 
@@ -194,7 +180,13 @@ impl View {
                     continue;
                 }
                 let known = whole.by_constants.iter().map(|by| Some(*by));
-                let terms = base.terms.iter().map(|term| whole.by_terms.get(*term).copied().flatten());
+                let terms = base.terms.iter().map(|term| {
+                    let moved = base.moved.iter().find(|(_, moved)| moved.term == *term);
+                    match moved {
+                        Some((_, moved)) => moved.static_flexibility(&base.values, [first, second]),
+                        None => whole.by_terms.get(*term).copied().flatten(),
+                    }
+                });
                 for (p, by) in known.chain(terms).enumerate().take(layout.parameters) {
                     let Some(by) = by else { continue };
                     let summed = (layout.rigid..layout.modes).map(|m| self.product_by(p, m, row, column));
