@@ -1,19 +1,26 @@
 //! How far any model of a test is trusted, and what that leaves of the parameters that are read off it.
 
 use faer::Mat;
+use num_complex::Complex64;
 use orthopanel_model::ModelError;
 
 use super::fit::{Fit, LAST};
 use super::record_problem::Grouping;
 use super::records_of_test::TestRecords;
+use super::widened_lines::WidenedLines;
 
 /// Part of the motion by which a model is wrong where nothing tells it: hits may agree to 1e-5 of a peak, but no beam, sensor
 /// or place is known that well. What is left of such a peak must not call for an effect, nor make a parameter more certain.
 pub(super) const TRUSTED: f64 = 3e-4;
+/// Part of a resonance's frequency by which a model is wrong: a tenth of a kelvin does that to aluminium.
+const TUNED: f64 = 3e-5;
 
-/// $\sum_gv_gv_g^T$ with $v_g = \epsilon J^TWh$ over the lines of one stretch: what a model that is wrong there by the part
-/// $\epsilon$ of the accelerance $h$, all its lines alike, does to the gradient. Stretches are as many to a record as it has
-/// modes, and err by size and by phase. With $N = J^TWJ$, $N^{-1}\sum_gv_gv_g^TN^{-1}$ is what that adds to the covariance.
+/// $\sum_gv_gv_g^T$ with $v_g = J^TWe_g$ of errors $e_g$ that a model may have beside the noise: what these do to the gradient.
+/// With $N = J^TWJ$, $N^{-1}\sum_gv_gv_g^TN^{-1}$ is what that adds to the covariance.
+///
+/// The lines of a record fall into as many stretches as there are modes in the band. Over each, the accelerance $h$ of each
+/// record may be wrong by the part [`TRUSTED`] in size and in phase, and that of all records together by a shift of frequency,
+/// $s\,dh/ds$ times [`TUNED`].
 ///
 /// # Errors
 /// What the model refuses.
@@ -21,29 +28,44 @@ pub(super) fn spread_of_gradient(records: &TestRecords, fit: &Fit) -> Result<Mat
     let problem = records.problem(LAST);
     let size = fit.parameters.len();
     let mut sum = Mat::zeros(size, size);
+    let mut add = |gradient: &[f64]| {
+        for (column, factor) in gradient.iter().enumerate() {
+            sum.col_as_slice_mut(column).iter_mut().zip(gradient).for_each(|(sum, value)| *sum += factor * value);
+        }
+    };
+    let mut shifts: Vec<Vec<f64>> = Vec::new();
     problem.rows(&fit.state, Grouping::Places, |index, _, rows| {
         let record = &problem.records[index];
         let lines = record.s.len();
         let stretch = lines.div_ceil(records.in_band.max(1)).max(1);
-        for from in (0..lines).step_by(stretch) {
-            let mut by_size = vec![0.0; size];
-            let mut by_phase = vec![0.0; size];
-            for line in from..(from + stretch).min(lines) {
-                let error = record.value[line] * (TRUSTED * (2.0 / record.variance[line]).sqrt());
-                for column in 0..size {
-                    let (re, im) = (rows[(2 * line, column)], rows[(2 * line + 1, column)]);
-                    by_size[column] += re * error.re + im * error.im;
-                    by_phase[column] += im * error.re - re * error.im;
+        let gradient = |lines: std::ops::Range<usize>, error: &dyn Fn(usize) -> Complex64| {
+            let mut gradient = vec![0.0; size];
+            for line in lines {
+                let error = error(line) * (2.0 / record.variance[line]).sqrt();
+                for (column, sum) in gradient.iter_mut().enumerate() {
+                    *sum += rows[(2 * line, column)] * error.re + rows[(2 * line + 1, column)] * error.im;
                 }
             }
-            for error in [by_size, by_phase] {
-                for column in 0..size {
-                    for row in 0..size {
-                        sum[(row, column)] += error[row] * error[column];
-                    }
-                }
+            gradient
+        };
+        for (number, from) in (0..lines).step_by(stretch).enumerate() {
+            let own = from..(from + stretch).min(lines);
+            add(&gradient(own.clone(), &|line| TRUSTED * record.value[line]));
+            add(&gradient(own.clone(), &|line| TRUSTED * Complex64::I * record.value[line]));
+            if shifts.len() <= number {
+                shifts.push(vec![0.0; size]);
             }
+            let shift = gradient(own, &|line| TUNED * record.s[line] * slope(record, line));
+            shifts[number].iter_mut().zip(shift).for_each(|(sum, own)| *sum += own);
         }
     })?;
+    shifts.iter().for_each(|shift| add(shift));
     Ok(sum)
+}
+
+/// $dh/ds$ at a line, from its neighbours.
+fn slope(record: &WidenedLines, line: usize) -> Complex64 {
+    let (before, after) = (line.saturating_sub(1), (line + 1).min(record.s.len() - 1));
+    let apart = record.s[after] - record.s[before];
+    if apart.norm() > 0.0 { (record.value[after] - record.value[before]) / apart } else { Complex64::ZERO }
 }
