@@ -40,12 +40,18 @@ def stiffnesses(piece, constants):
     )
 
 
-def matrices(model, cells):
+def corners(half, count, graded):
+    """Corners of the cells along one direction; graded ones crowd at the edges, where thin plates have layers."""
+    even = np.linspace(-1.0, 1.0, count + 1)
+    return half * (np.sin(0.5 * np.pi * even) if graded else even)
+
+
+def matrices(model, cells, graded=False):
     """K, M and the degrees of freedom that are free."""
     piece = model["piece"]
     d11, d22, d12, d66, a44, a55 = stiffnesses(piece, model["constants"])
     half = 0.5 * piece["length"], 0.5 * piece["width"]
-    mesh = MeshQuad.init_tensor(np.linspace(-half[0], half[0], cells[0] + 1), np.linspace(-half[1], half[1], cells[1] + 1))
+    mesh = MeshQuad.init_tensor(*(corners(side, count, graded) for side, count in zip(half, cells)))
     element = ElementComposite(*(ElementQuadP(ORDER) for _ in range(3)))
     basis = Basis(mesh, element, intorder=2 * ORDER)
 

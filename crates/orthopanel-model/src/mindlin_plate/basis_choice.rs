@@ -1,11 +1,12 @@
-//! How many polynomials a plate needs: from the nodes that its lowest modes have in each direction.
+//! How many polynomials a plate needs: from the nodes that its lowest modes have in each direction, and from the layers at its
+//! free edges.
 
 use super::law::plate_stiffnesses;
-use super::{MindlinPlate, PlateTerms};
+use super::{MindlinPlate, PlateTerms, TERMS};
 use crate::{Boundary, End, ModelError, Piece};
 
-/// Most entries of one matrix of all blocks together: 1.8 million keep a plate below 100 MB.
-const MOST_ENTRIES: usize = 1_800_000;
+/// Most entries of one matrix of all blocks together: 3.6 million keep a plate below 200 MB.
+const MOST_ENTRIES: usize = 3_600_000;
 
 /// Isotropic, with bending stiffness one and as good as no shear strain.
 const EQUAL_STIFFNESSES: [f64; 6] = [1.0, 1.0, 0.3, 0.35, 1e30, 1e30];
@@ -17,7 +18,8 @@ impl MindlinPlate {
     /// # Errors
     /// As [`MindlinPlate::with_basis_for`].
     pub fn with_default_basis(piece: &Piece, boundary: Boundary, count: usize) -> Result<Self, ModelError> {
-        let terms = Reach::new(piece, boundary, EQUAL_STIFFNESSES)?.terms(count)?;
+        let layers = Self::layer_terms(piece, boundary)?;
+        let terms = Reach { layers, ..Reach::new(piece, boundary, EQUAL_STIFFNESSES)? }.terms(count)?;
         let plate = Self::new(piece, boundary, terms)?;
         Ok(Self { resolved_modes: plate.resolved_modes.max(count), ..plate })
     }
@@ -25,8 +27,8 @@ impl MindlinPlate {
     /// A plate whose basis holds its first `count` flexible modes to about 1e-4 of their frequencies at these values of
     /// the constants (order of [`PLATE_CONSTANTS`](crate::PLATE_CONSTANTS)).
     ///
-    /// Limits: free edges of plates about a hundred times as wide as thick carry a twisting layer as thin as the
-    /// thickness, which costs up to 1e-3 in the basis chosen here.
+    /// Limits: where the layer at free edges is thinner than some 1/300 of the plate (solid plates more than a hundred times as
+    /// wide as thick), the largest basis has too few terms for it, which costs up to 6e-4 of a twisting mode's frequency.
     ///
     /// # Errors
     /// [`ModelError::BasisTooSmall`] for more modes than the largest basis resolves, and as [`MindlinPlate::new`].
@@ -47,6 +49,17 @@ impl MindlinPlate {
         let stiffnesses = plate_stiffnesses(piece.checked()?.thickness, values)?;
         let plate = Self::uneven(piece, boundary, Reach::new(piece, boundary, stiffnesses)?.terms(count)?, own)?;
         Ok(Self { resolved_modes: plate.resolved_modes.max(count), ..plate })
+    }
+
+    /// Polynomials along x and y that follow the layers at the free edges of a plate that shears as little as solid metal,
+    /// whose layers are the thinnest: for a basis that must hold before the constants are known.
+    ///
+    /// # Errors
+    /// [`ModelError::Size`] where the piece has no physical meaning.
+    pub fn layer_terms(piece: &Piece, boundary: Boundary) -> Result<[usize; 2], ModelError> {
+        let thickness = piece.checked()?.thickness;
+        let solid = plate_stiffnesses(thickness, &SOLID)?;
+        Ok(layers(piece, ends(boundary), solid))
     }
 
     /// Roughly how many flexible modes lie below `frequency` \[Hz\], within a quarter or so; at most one more than a
@@ -80,11 +93,45 @@ impl MindlinPlate {
     }
 }
 
+/// Isotropic constants; their size is all one.
+const SOLID: [f64; 6] = [2.6e9, 2.6e9, 0.3, 1e9, 1e9, 1e9];
+
+/// What holds the edges at the low and high end of x, then of y.
+fn ends(Boundary { left, right, front, back }: Boundary) -> [[End; 2]; 2] {
+    [[left, right], [front, back]]
+}
+
+/// Terms along x and y that follow the layers at free edges.
+///
+/// There the twisting moment of the plate without shear turns into shear force: the rotation along the edge $y = \pm b/2$ obeys
+/// $D_{66}\psi_{x,yy} = A_{55}\psi_x$ and falls off with the length $\lambda = \sqrt{D_{66}/A_{55}}$, which is $t/\sqrt8$ of a
+/// solid plate; at $x = \pm a/2$ it is $\sqrt{D_{66}/A_{44}}$.
+fn layers(piece: &Piece, ends: [[End; 2]; 2], [_, _, _, d_66, a_55, a_44]: [f64; 6]) -> [usize; 2] {
+    let halves = [0.5 * piece.length, 0.5 * piece.width];
+    let lengths = [(d_66 / a_44).sqrt(), (d_66 / a_55).sqrt()];
+    [0, 1].map(|axis| if ends[axis].contains(&End::Free) { terms_for_layer(lengths[axis] / halves[axis]) } else { 0 })
+}
+
+/// Polynomials that follow $e^{-(1-t)/\epsilon}$ so far that frequencies are held.
+///
+/// Its Legendre coefficients fall as $e^{-n^2\epsilon/2}$, and the layer holds a part of some $\epsilon$ of the energy of twisting:
+/// what $n$ polynomials leave of a twisting mode's frequency is $0.9\,\epsilon\,e^{-(n-1)^2\epsilon}$, by tests of plates 10 to 1000
+/// times as wide as thick. A layer that holds less needs none.
+fn terms_for_layer(epsilon: f64) -> usize {
+    let left_without = 0.9 * epsilon / LAYER_ERROR;
+    if left_without > 1.0 { 1 + (left_without.ln() / epsilon).sqrt().ceil() as usize } else { 0 }
+}
+
+/// Part of a frequency that the layers along one direction may cost.
+const LAYER_ERROR: f64 = 4e-5;
+
 /// Nodes of the flexible modes, in rising order of a one-term estimate of $\omega^2\rho t$.
 struct Reach {
     modes: Vec<(f64, [usize; 2])>,
     /// What holds the edges at the low and high end of x, then of y.
     ends: [[End; 2]; 2],
+    /// Terms along x and y that the layers at free edges want.
+    layers: [usize; 2],
 }
 
 /// Most nodes along one direction for which a basis is chosen.
@@ -109,7 +156,8 @@ impl Reach {
             }
         }
         modes.sort_by(|a, b| a.0.total_cmp(&b.0));
-        Ok(Self { modes, ends: [[left, right], [front, back]] })
+        let ends = ends(boundary);
+        Ok(Self { modes, layers: layers(&piece, ends, stiffnesses), ends })
     }
 
     /// Terms along x and y for `count` modes.
@@ -127,7 +175,14 @@ impl Reach {
             }
             terms = wider;
         }
-        Ok(terms)
+        Ok(self.with_layers(terms))
+    }
+
+    /// These terms, and as many more as the layers want and the largest basis has.
+    fn with_layers(&self, terms: [usize; 2]) -> [usize; 2] {
+        let up_to = |most: usize| [0, 1].map(|axis| terms[axis].max(self.layers[axis].min(most)));
+        let most = self.layers[0].max(self.layers[1]).min(TERMS[1]);
+        (0..=most).rev().map(up_to).find(|&wider| self.fits(wider)).unwrap_or(terms)
     }
 
     fn fits(&self, [x, y]: [usize; 2]) -> bool {
