@@ -189,22 +189,6 @@ fn in_range(what: &'static str, value: f64, low: f64, high: f64) -> Result<(), F
 
 fn solve(model: &PanelModel, range: ModeRange) -> Result<Solution, ModelError> {
     let TimeModel { modes, flexible, core } = model.time_model(range, &model.ports.forces, &model.ports.responses)?;
-    let static_remainder = static_remainder(model, &modes)?;
+    let static_remainder = model.static_remainder(&modes, &model.ports.forces, &model.ports.responses)?;
     Ok(Solution { modes, flexible, core, static_remainder })
-}
-
-/// What the flexible modes left out add at rest; zero for a panel with effects, where the sum over all is not known.
-fn static_remainder(model: &PanelModel, modes: &ModalModel) -> Result<Vec<Vec<f64>>, ModelError> {
-    let Ports { forces, responses } = &model.ports;
-    let flexible = || modes.modes().iter().filter(|mode| mode.angular_frequency > 0.0);
-    let Some(mut remainder) = model.static_flexibility(flexible().count(), forces, responses)? else {
-        return Ok(vec![vec![0.0; forces.len()]; responses.len()]);
-    };
-    for mode in flexible() {
-        let omega2 = mode.angular_frequency.powi(2);
-        for (row, response) in remainder.iter_mut().zip(&mode.at_responses) {
-            row.iter_mut().zip(&mode.at_forces).for_each(|(value, force)| *value -= response * force / omega2);
-        }
-    }
-    Ok(remainder)
 }

@@ -34,6 +34,30 @@ impl PanelModel {
         Ok(TimeModel { modes, flexible, core: None })
     }
 
+    /// What the flexible modes that these leave out add to displacements at rest, $\sum W_rW_f/\omega^2$ \[m/N\]: a row a response,
+    /// a column a force. Zero for a panel with effects, where the sum over all is not known.
+    ///
+    /// # Errors
+    /// As [`PanelModel::static_flexibility`].
+    pub fn static_remainder(
+        &self,
+        modes: &ModalModel,
+        forces: &[Place],
+        responses: &[Place],
+    ) -> Result<Vec<Vec<f64>>, ModelError> {
+        let flexible = || modes.modes().iter().filter(|mode| mode.angular_frequency > 0.0);
+        let Some(mut remainder) = self.static_flexibility(flexible().count(), forces, responses)? else {
+            return Ok(vec![vec![0.0; forces.len()]; responses.len()]);
+        };
+        for mode in flexible() {
+            let omega2 = mode.angular_frequency.powi(2);
+            for (row, response) in remainder.iter_mut().zip(&mode.at_responses) {
+                row.iter_mut().zip(&mode.at_forces).for_each(|(value, force)| *value -= response * force / omega2);
+            }
+        }
+        Ok(remainder)
+    }
+
     /// `None` for a panel without a viscoelastic core.
     fn relaxing_model(
         &self,
@@ -48,7 +72,7 @@ impl PanelModel {
             self.piece.contains(place)?;
         }
         let (values, effects) = self.with_effects()?;
-        let flexible = match range.checked()? {
+        let flexible = match range.checked(self.structure)? {
             ModeRange::Count(count) => count,
             ModeRange::UpTo(frequency) => self.bare_count(&values, frequency)?,
         };

@@ -52,13 +52,28 @@ pub fn steps(time: &[f64]) -> Vec<f64> {
 }
 
 /// Steps the model, at rest before the first sample, through the force history; one [`Motion`] a response port,
-/// at the samples.
-pub fn simulate(model: &ModalModel, driving: &DrivingForce) -> Result<Vec<Motion>, ModelError> {
+/// at the samples. Displacements follow the force by the static part of the modes left out \[m/N\], a row a response, as an
+/// FMU's do.
+pub fn simulate(
+    model: &ModalModel,
+    static_remainder: &[Vec<f64>],
+    driving: &DrivingForce,
+) -> Result<Vec<Motion>, ModelError> {
     let force = driving.stepped();
     let mut stepper = ModalStepper::new(model);
     let mut motions = vec![Motion::default(); model.response_count()];
+    let record = |stepper: &ModalStepper, forces: &[f64], motions: &mut [Motion]| {
+        for (port, motion) in motions.iter_mut().enumerate() {
+            let follows =
+                static_remainder.get(port).into_iter().flatten().zip(forces).map(|(part, force)| part * force);
+            let follows: f64 = follows.sum();
+            motion.acceleration.extend(stepper.acceleration(port));
+            motion.velocity.extend(stepper.velocity(port));
+            motion.displacement.extend(stepper.displacement(port).map(|modal| modal + follows));
+        }
+    };
     stepper.set_forces(&force.at(0))?;
-    record(&stepper, &mut motions);
+    record(&stepper, &force.at(0), &mut motions);
     for (index, step) in steps(&force.time).into_iter().enumerate() {
         let forces = force.at(index + 1);
         if driving.is_held() {
@@ -67,17 +82,9 @@ pub fn simulate(model: &ModalModel, driving: &DrivingForce) -> Result<Vec<Motion
         } else {
             stepper.advance_linear(step, &forces)?;
         }
-        record(&stepper, &mut motions);
+        record(&stepper, &forces, &mut motions);
     }
     Ok(driving.at_samples(motions))
-}
-
-fn record(stepper: &ModalStepper, motions: &mut [Motion]) {
-    for (port, motion) in motions.iter_mut().enumerate() {
-        motion.acceleration.extend(stepper.acceleration(port));
-        motion.velocity.extend(stepper.velocity(port));
-        motion.displacement.extend(stepper.displacement(port));
-    }
 }
 
 /// Picks one quantity of a motion.

@@ -170,7 +170,8 @@ fn add_model(files: &mut output::Files, test: &Path, suffix: &str, model: &Panel
         files.add(format!("panel{suffix}{ending}.fmu"), fmu.to_bytes()?);
     }
     let hit = DrivingForce::new(ForceHistory::half_sine(ports.forces.len()), Hold::Linear, test)?;
-    let motions = time_response::simulate(&seen, &hit).in_file(test)?;
+    let remainder = model.static_remainder(&seen, &ports.forces, &ports.responses).in_file(test)?;
+    let motions = time_response::simulate(&seen, &remainder, &hit).in_file(test)?;
     let hit = hit.samples;
     files.add(format!("response{suffix}.csv"), time_response::csv(&hit, &motions));
     files.add(format!("response{suffix}.svg"), pictures::response(&hit, &motions)?);
