@@ -64,7 +64,7 @@ fn origin(Origin { panel, core }: &Origin<'_>) -> String {
         None => format!("{:.4e}", estimate.value),
     };
     for (name, estimate) in &panel.constants {
-        row(&format!("{name} [{}]", if name.starts_with("nu") { "1" } else { "Pa" }), &told(estimate));
+        row(&format!("{name}{}", if name.starts_with("nu") { "" } else { " [Pa]" }), &told(estimate));
     }
     for effect in &panel.effects {
         let parameters = effect.parameters.iter().map(|(name, value)| format!("{name} {}", told(value)));

@@ -79,7 +79,7 @@ pub enum IdentifyError {
     },
     /// The best value lies on a bound, so it is none.
     #[error(
-        "{name} = {value:e} {unit} lies on its bound: these frequencies do not determine it; hold it under [constants] or measure more modes"
+        "{name} = {value:e}{} lies on its bound: these frequencies do not determine it; hold it under [constants] or measure more modes", spaced(.unit)
     )]
     OnBound {
         /// The constant.
@@ -131,8 +131,8 @@ pub enum IdentifyError {
     },
     /// A constant that the data leave open.
     #[error(
-        "{name} = {value:.3e} {unit} is known no better than to +- {std:.1e}: these data do not determine it; hold it under \
-         [constants], measure more modes, or check that no mode is missing from the list"
+        "{name} = {value:.3e}{} is known no better than to +- {std:.1e}: these data do not determine it; hold it under \
+         [constants], measure more modes, or check that no mode is missing from the list", spaced(.unit)
     )]
     NotDetermined {
         /// The constant.
@@ -218,6 +218,11 @@ fn all_times(factor: Option<f64>) -> String {
         };
         format!("times {factor:.3} all of them fit ({cause}); ")
     })
+}
+
+/// A unit behind its number; pure numbers have none.
+fn spaced(unit: &str) -> String {
+    if unit == "1" { String::new() } else { format!(" {unit}") }
 }
 
 fn other_place(fits_at: &Option<(&'static str, f64)>) -> String {

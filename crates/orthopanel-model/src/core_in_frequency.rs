@@ -30,7 +30,7 @@ impl PanelModel {
             .filter(|(_, constant)| matches!(constant.name, "g_zx" | "g_yz"))
             .map(|(index, _)| index)
             .collect();
-        let (count, highest) = match range.checked()? {
+        let (count, highest) = match range.checked(self.structure)? {
             ModeRange::Count(count) => (count, f64::INFINITY),
             // A core only stiffens: no more modes than at its low modulus.
             ModeRange::UpTo(frequency) => (self.bare_count(&values, frequency)? + self.effects.len() + 4, frequency),
@@ -78,7 +78,7 @@ impl PanelModel {
         [force, response].into_iter().try_for_each(|place| self.piece.contains(place))?;
         let (values, effects) = self.with_effects()?;
         let setting = EffectSetting::of_panel(&self.piece, self.boundary);
-        let count = match highest.checked()? {
+        let count = match highest.checked(self.structure)? {
             ModeRange::Count(count) => count,
             ModeRange::UpTo(frequency) => self.bare_count(&values, frequency)?,
         };

@@ -9,7 +9,7 @@ use crate::End;
 #[non_exhaustive]
 pub enum ModelError {
     /// A size that is zero, negative or not a number.
-    #[error("{name} = {value} {unit}: must be finite and greater than zero")]
+    #[error("{name} = {value}{}: must be finite and greater than zero", spaced(.unit))]
     Size {
         /// Name of the size.
         name: &'static str,
@@ -19,7 +19,7 @@ pub enum ModelError {
         unit: &'static str,
     },
     /// An elastic constant outside its bounds.
-    #[error("{name} = {value:e} {unit}: must lie between {low:e} and {high:e}")]
+    #[error("{name} = {value:e}{}: must lie between {low:e} and {high:e}", spaced(.unit))]
     Constant {
         /// Name of the constant.
         name: &'static str,
@@ -195,7 +195,7 @@ pub enum ModelError {
         expected: usize,
     },
     /// More modes asked than the basis resolves.
-    #[error("{asked} modes asked, but this basis resolves {available}: ask for fewer or take more terms")]
+    #[error("{asked} modes asked, but the basis resolves {available}: ask for {available} or fewer")]
     BasisTooSmall {
         /// Flexible modes asked for.
         asked: usize,
@@ -245,7 +245,7 @@ pub enum ModelError {
         expected: usize,
     },
     /// A parameter of an effect outside its bounds.
-    #[error("effect {effect}: {name} = {value:e} {unit}: must lie between {low:e} and {high:e}")]
+    #[error("effect {effect}: {name} = {value:e}{}: must lie between {low:e} and {high:e}", spaced(.unit))]
     EffectParameter {
         /// Id of the effect.
         effect: &'static str,
@@ -287,4 +287,9 @@ pub enum ModelError {
     /// What this version cannot solve.
     #[error("{0} is not supported by this version of orthopanel")]
     Unsupported(String),
+}
+
+/// A unit behind its number; pure numbers have none.
+fn spaced(unit: &str) -> String {
+    if unit == "1" { String::new() } else { format!(" {unit}") }
 }

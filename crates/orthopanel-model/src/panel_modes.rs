@@ -21,9 +21,10 @@ pub enum ModeRange {
 const MOST_MODES: usize = 1000;
 
 impl ModeRange {
-    pub(crate) fn checked(self) -> Result<Self, ModelError> {
+    /// The range, if it has a meaning. What a plate holds its basis tells.
+    pub(crate) fn checked(self, structure: StructureKind) -> Result<Self, ModelError> {
         match self {
-            Self::Count(count) if count > MOST_MODES => {
+            Self::Count(count) if count > MOST_MODES && structure != StructureKind::MindlinPlate => {
                 Err(ModelError::BasisTooSmall { asked: count, available: MOST_MODES })
             }
             Self::UpTo(frequency) if !(frequency.is_finite() && frequency > 0.0) => {
@@ -50,7 +51,7 @@ impl PanelModel {
 
     fn modes_without_core(&self, range: ModeRange) -> Result<Vec<PanelMode>, ModelError> {
         match self.structure {
-            _ if !self.effects.is_empty() => self.dressed_modes(range.checked()?),
+            _ if !self.effects.is_empty() => self.dressed_modes(range.checked(self.structure)?),
             StructureKind::TimoshenkoBeam => {
                 let modes = self.beam_modes(range)?;
                 let rigid = self.boundary.rigid_modes();
@@ -60,7 +61,7 @@ impl PanelModel {
             }
             StructureKind::MindlinPlate => {
                 self.check()?;
-                let (plate, modes) = self.plate_modes(range.checked()?)?;
+                let (plate, modes) = self.plate_modes(range.checked(self.structure)?)?;
                 let plate = Arc::new(plate);
                 Ok(modes.into_iter().map(|mode| PanelMode::of_plate(&plate, mode)).collect())
             }
@@ -218,7 +219,7 @@ impl PanelModel {
         self.check_effects()?;
         let constants = BeamConstants { e_x: self.constant("e_x")?, g_zx: self.constant("g_zx")? };
         let beam = ExactBeam::new(&self.piece, self.boundary, constants)?;
-        Ok(match range.checked()? {
+        Ok(match range.checked(self.structure)? {
             ModeRange::Count(count) => beam.modes(count),
             ModeRange::UpTo(frequency) => {
                 let flexible = beam.flexible_modes().take(MOST_MODES).take_while(|mode| mode.frequency() <= frequency);

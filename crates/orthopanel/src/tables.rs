@@ -26,6 +26,16 @@ fn set(heading: &[&str], rows: &[Vec<String>], is_left: impl Fn(usize) -> bool) 
     line(heading.to_vec()) + &body.collect::<String>()
 }
 
+/// A unit for a cell of its own; pure numbers have none.
+pub fn shown_unit(unit: &str) -> &str {
+    if unit == "1" { "" } else { unit }
+}
+
+/// A number with its unit.
+pub fn with_unit(number: &str, unit: &str) -> String {
+    format!("{number} {}", shown_unit(unit)).trim_end().to_owned()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -14,8 +14,8 @@ const CONSTANTS: [&str; 6] = ["e_x", "e_y", "nu_xy", "g_xy", "g_yz", "g_zx"];
 /// A modulus outside these \[Pa\] is a slip of unit: the softest foam core has 1e4, diamond 1e12.
 const MODULUS: (f64, f64) = (1e2, 1e13);
 
-/// Orthotropic Poisson's ratios pass 1/2 freely, since only $\nu_{xy}^2 < E_x/E_y$ binds them; past this it is a slip.
-const POISSON_LIMIT: f64 = 10.0;
+/// Orthotropic Poisson's ratios pass 1/2 freely, since only $\nu_{xy}^2 < E_x/E_y$ binds them; the plate takes them up to this.
+const POISSON_LIMIT: f64 = 0.95;
 
 /// An effect known beforehand: part of the base model.
 ///
@@ -72,7 +72,7 @@ pub(super) fn constants(
         }
         let value = *number.get_ref();
         let (low, high, unit) = match name.as_str() {
-            "nu_xy" => (-POISSON_LIMIT, POISSON_LIMIT, ""),
+            "nu_xy" => (0.0, POISSON_LIMIT, ""),
             _ => (MODULUS.0, MODULUS.1, " Pa"),
         };
         if !(low..=high).contains(&value) {
@@ -83,8 +83,8 @@ pub(super) fn constants(
     }
     if let (Some(e_x), Some(e_y), Some(&nu_xy)) = (constants.get("e_x"), constants.get("e_y"), constants.get("nu_xy")) {
         let limit = (e_x / e_y).sqrt();
-        if nu_xy.abs() >= limit {
-            let range = format!("must lie within +-{limit:.4}, the root of e_x/e_y, or the stiffness is indefinite");
+        if nu_xy >= limit {
+            let range = format!("must lie below {limit:.4}, the root of e_x/e_y, or the stiffness is indefinite");
             return Err(DataError::OutOfRange { at: source.whole("constants.nu_xy"), value: nu_xy, range });
         }
     }

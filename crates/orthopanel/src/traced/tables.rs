@@ -4,7 +4,7 @@ use orthopanel_identify::{Candidate, FittedError, TracedEffect, TracedParameter,
 use orthopanel_model::Estimate;
 
 use super::Traced;
-use crate::tables::{aligned, ending_in_words};
+use crate::tables::{aligned, ending_in_words, shown_unit, with_unit};
 
 /// Effect, owner, parameter, value, standard deviation and unit; a row a number.
 pub fn effect_rows(effects: &[TracedEffect]) -> Vec<Vec<String>> {
@@ -16,7 +16,7 @@ fn parameter_rows(effect: &TracedEffect, parameter: &TracedParameter) -> Vec<Vec
     let row = |(record, estimate): (usize, &Estimate)| {
         let name = if several { format!("{} of record {record}", parameter.name) } else { parameter.name.to_owned() };
         let std = estimate.std.map_or("held".into(), |std| format!("{std:.1e}"));
-        let unit = if parameter.unit == "1" { "" } else { parameter.unit };
+        let unit = shown_unit(parameter.unit);
         let value = format!("{:.4e}", estimate.value);
         vec![effect.id.to_owned(), effect.owner.name().to_owned(), name, value, std, unit.to_owned()]
     };
@@ -54,11 +54,10 @@ fn parameters_text(candidate: &Candidate) -> String {
     let several = candidate.effects.len() > 1;
     let text = |(id, parameter): (&str, &TracedParameter)| {
         let name = if several { format!("{id}.{}", parameter.name) } else { parameter.name.to_owned() };
-        let unit = if parameter.unit == "1" { "" } else { parameter.unit };
         match &parameter.values[..] {
             [one] => {
                 let std = one.std.map_or(String::new(), |std| format!(" +- {std:.1e}"));
-                format!("{name} {:.3e}{std} {unit}", one.value).trim_end().to_owned()
+                with_unit(&format!("{name} {:.3e}{std}", one.value), parameter.unit)
             }
             many => format!("{name} of {} records", many.len()),
         }
