@@ -76,3 +76,8 @@ fn main() -> Result<(), ModelError> {
     println!("accelerance at 100 Hz: {:.4} (m/s2)/N", model.accelerance(0, 0, 100.0));
     Ok(())
 }
+
+#[test]
+fn the_closed_form_is_met() {
+    main().unwrap();
+}
