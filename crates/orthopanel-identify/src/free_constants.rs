@@ -44,6 +44,15 @@ pub(crate) struct FreeConstants {
     pub free: Vec<FreeConstant>,
 }
 
+/// Constants of which those that rested are free too.
+pub(crate) struct RestingFreed {
+    pub constants: FreeConstants,
+    /// Those that were free first.
+    pub parameters: Vec<f64>,
+    /// Standard deviation of each that rested, by what is usual for panels alone.
+    pub usual_stds: Vec<f64>,
+}
+
 impl FreeConstants {
     /// What the test file says of the constants of a structure.
     ///
@@ -74,6 +83,23 @@ impl FreeConstants {
         Ok(Self { constants: constants.to_vec(), held, resting: Vec::new(), free })
     }
 
+    /// The value at which the test file holds a constant.
+    pub fn held_at(&self, name: &str) -> Option<f64> {
+        let index = self.constants.iter().position(|constant| constant.name == name)?;
+        self.held[index]
+    }
+
+    /// The constants that are free, each once, in the structure's order.
+    pub fn free_constants(&self) -> Vec<usize> {
+        let is_free = |constant: &usize| self.free.iter().any(|free| free.constant == *constant);
+        (0..self.constants.len()).filter(is_free).collect()
+    }
+
+    /// Whether a constant is a modulus, rather than a ratio.
+    pub fn is_modulus(&self, constant: usize) -> bool {
+        is_logarithmic(&self.constants[constant])
+    }
+
     /// Takes a constant out of the parameters; it rests.
     pub fn rest(&mut self, constant: usize, rest: Rest) {
         self.free.retain(|free| free.constant != constant);
@@ -86,24 +112,48 @@ impl FreeConstants {
     }
 
     /// The same with every resting constant free too, behind the others, and the parameters of both at the same values.
-    pub fn with_resting_freed(&self, parameters: &[f64]) -> (Self, Vec<f64>) {
+    pub fn with_resting_freed(&self, parameters: &[f64]) -> RestingFreed {
         let values = self.values(parameters, 0);
-        let (mut more, mut at) = (self.clone(), parameters.to_vec());
-        for (constant, _) in more.resting.drain(..) {
-            more.free.push(FreeConstant { constant, piece: None });
-            at.push(to_scale(&more.constants[constant], values[constant]));
+        let mut freed =
+            RestingFreed { constants: self.clone(), parameters: parameters.to_vec(), usual_stds: Vec::new() };
+        for (constant, _) in freed.constants.resting.drain(..) {
+            freed.constants.free.push(FreeConstant { constant, piece: None });
+            freed.parameters.push(to_scale(&self.constants[constant], values[constant]));
+            freed.usual_stds.push(self.usual_std(constant));
         }
-        (more, at)
+        freed
     }
 
-    /// Standard deviation of a parameter that nothing but what is usual for panels tells.
-    pub fn usual_std(&self, parameter: usize) -> f64 {
-        if is_logarithmic(self.constant(parameter)) { USUAL_LOG_STD } else { USUAL_POISSON_STD }
+    /// Standard deviation of a constant that nothing but what is usual for panels tells: its own beside the one that it
+    /// follows, and that one's where it rests too.
+    fn usual_std(&self, constant: usize) -> f64 {
+        let is_shear = |constant: usize| is_through_the_thickness(self.constants[constant].name);
+        if !self.is_modulus(constant) {
+            return USUAL_POISSON_STD;
+        }
+        let (mut last, mut variance) = (constant, 0.0);
+        for _ in 0..self.constants.len() {
+            let Some(rest) = self.resting(last) else { break };
+            let Rest::Follows { leader, .. } = rest else { return (variance + USUAL_LOG_STD.powi(2)).sqrt() };
+            let own = match [is_shear(leader), is_shear(last)] {
+                [false, false] => USUAL_LOG_STD,
+                [true, true] => CORE_LOG_STD,
+                _ => CORE_BESIDE_FACES_STD,
+            };
+            (last, variance) = (leader, variance + own * own);
+        }
+        variance.sqrt()
     }
 
     /// Whether no modulus is held: all frequencies then go with the root of a factor on all moduli.
     pub fn moduli_are_free(&self) -> bool {
         self.constants.iter().zip(&self.held).all(|(constant, held)| !is_logarithmic(constant) || held.is_none())
+    }
+
+    /// Values with a factor on every modulus that is not held.
+    pub fn free_scaled(&self, values: &[f64], factor: f64) -> Vec<f64> {
+        let scaled = self.scaled(values, factor);
+        self.held.iter().zip(scaled).map(|(held, scaled)| held.unwrap_or(scaled)).collect()
     }
 
     /// Values with a factor on every modulus.
@@ -118,7 +168,8 @@ impl FreeConstants {
         self.free.len()
     }
 
-    /// The parameter of each constant of a piece, or the one of the constant that it follows; `None` where it is held.
+    /// The parameter of each constant of a piece, or the one of the constant that it follows, straight or through others;
+    /// `None` where it is held.
     pub fn parameters_of(&self, piece: usize) -> Vec<Option<usize>> {
         let of = |constant: usize| {
             let matches = |owner: Option<usize>| {
@@ -126,11 +177,7 @@ impl FreeConstants {
             };
             matches(Some(piece)).or_else(|| matches(None))
         };
-        let own_or_leader = |constant: usize| match self.resting(constant) {
-            Some(Rest::Follows { leader, .. }) => of(leader),
-            _ => of(constant),
-        };
-        (0..self.constants.len()).map(own_or_leader).collect()
+        (0..self.constants.len()).map(|constant| of(self.leader(constant).0)).collect()
     }
 
     /// All constants of a piece at these parameters.
@@ -140,15 +187,29 @@ impl FreeConstants {
             Some(parameter) => self.value(parameter, parameters[parameter]),
             None => self.held[constant].unwrap_or(f64::NAN),
         };
-        let value = |constant: usize| match self.resting(constant) {
-            Some(Rest::Held(value)) => value,
-            Some(Rest::Follows { leader, ratio }) => {
-                let Constant { low, high, .. } = self.constants[constant];
-                (ratio * own(leader)).clamp(low, high)
+        let value = |constant: usize| {
+            let (leader, ratio) = self.leader(constant);
+            match self.resting(leader) {
+                Some(Rest::Held(value)) => ratio * value,
+                _ if leader == constant => own(constant),
+                _ => {
+                    let Constant { low, high, .. } = self.constants[constant];
+                    (ratio * own(leader)).clamp(low, high)
+                }
             }
-            None => own(constant),
         };
         (0..self.constants.len()).map(value).collect()
+    }
+
+    /// The constant at the end of those that this one follows, itself where it follows none, and the factor on it.
+    pub fn leader(&self, constant: usize) -> (usize, f64) {
+        let (mut last, mut factor) = (constant, 1.0);
+        // No chain is longer than there are constants.
+        for _ in 0..self.constants.len() {
+            let Some(Rest::Follows { leader, ratio }) = self.resting(last) else { break };
+            (last, factor) = (leader, factor * ratio);
+        }
+        (last, factor)
     }
 
     /// The constant of one parameter.
@@ -190,15 +251,14 @@ impl FreeConstants {
         at - low < 1e-6 || high - at < 1e-6
     }
 
-    /// A unit vector in the space of the parameters by the names of the constants, the largest component first and positive;
-    /// small ones are not told.
-    pub fn direction(&self, unit_vector: impl Fn(usize) -> f64) -> Vec<(&'static str, f64)> {
-        let mut components: Vec<(&'static str, f64)> =
-            (0..self.count()).map(|i| (self.constant(i).name, unit_vector(i))).collect();
-        components.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
-        let sign = components.first().map_or(1.0, |(_, component)| component.signum());
-        components.retain(|(_, component)| component.abs() > SMALL_COMPONENT);
-        components.into_iter().map(|(name, component)| (name, sign * component)).collect()
+    /// The direction of these changes of all parameters as a unit vector by the names of the constants: one parameter first
+    /// and positive, then the largest; small ones are not told.
+    pub fn direction(&self, first: usize, changes: &[f64]) -> Vec<(&'static str, f64)> {
+        let size = changes.iter().map(|change| change * change).sum::<f64>().sqrt() * changes[first].signum();
+        let mut components: Vec<(usize, f64)> = changes.iter().map(|change| change / size).enumerate().collect();
+        components.retain(|(index, component)| *index == first || component.abs() > SMALL_COMPONENT);
+        components.sort_by(|a, b| (b.0 == first).cmp(&(a.0 == first)).then(b.1.abs().total_cmp(&a.1.abs())));
+        components.into_iter().map(|(index, component)| (self.constant(index).name, component)).collect()
     }
 
     /// Correlation coefficient of each pair of parameters, the first ones of a covariance.
@@ -224,8 +284,16 @@ const SMALL_COMPONENT: f64 = 0.1;
 
 /// Moduli of panels lie within some 30 % of what is usual beside the others,
 const USUAL_LOG_STD: f64 = 0.3;
+/// the two shear moduli through the thickness within a factor of two or so, as a honeycomb has them along and across its ribbons,
+const CORE_LOG_STD: f64 = 0.5;
+/// these beside the moduli of the faces within a factor of seven: cores differ that much,
+const CORE_BESIDE_FACES_STD: f64 = 1.0;
 /// and Poisson's ratios within 0.1.
 const USUAL_POISSON_STD: f64 = 0.1;
+
+fn is_through_the_thickness(name: &str) -> bool {
+    matches!(name, "g_yz" | "g_zx")
+}
 
 fn is_logarithmic(constant: &Constant) -> bool {
     constant.unit == "Pa"

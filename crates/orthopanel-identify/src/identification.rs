@@ -16,7 +16,7 @@ pub struct Identification {
     /// Every constant of the structure, in its order; one that pieces have of their own stands once a piece, behind the
     /// shared one.
     pub constants: Vec<IdentifiedConstant>,
-    /// Constants that the data do not show, the least seen first; in `constants` they stand as held.
+    /// Constants that the data do not show; in `constants` they stand as held.
     pub not_identified: Vec<NotIdentified>,
     /// Correlation of each pair of identified constants.
     pub correlations: Vec<Correlation>,
@@ -69,8 +69,8 @@ pub struct NotIdentified {
     pub held_at: f64,
     /// What the data leave open: the 95 % interval, cut at the bounds.
     pub interval: [f64; 2],
-    /// The direction in the space of constants along which the data are blindest: components of a unit vector by name,
-    /// the largest first, in logarithms of the moduli and in Poisson's ratio itself.
+    /// Where the constants go when this one moves and the others make up for it as far as they can: components of a unit
+    /// vector by name, this one first, in logarithms of the moduli and in Poisson's ratio itself.
     pub direction: Vec<(&'static str, f64)>,
 }
 

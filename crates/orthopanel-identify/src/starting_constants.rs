@@ -3,24 +3,28 @@
 use orthopanel_model::{SHEAR_COEFFICIENT, StructureKind};
 
 use crate::free_constants::FreeConstants;
-use crate::usual_plate::usual_plate;
+use crate::usual_plate::{USUAL_SHEAR, usual_plate};
 
 /// Any value will do: a factor on all moduli puts it right.
 const GUESS: f64 = 1e9;
 
+/// $E_x/(k'G_{zx})$ of honeycomb panels, within a factor of seven or so.
+pub(crate) const USUAL_SOFTNESS: f64 = 16.0;
+
 /// All constants at one ratio $E_x/(k'G_{zx})$ of bending to shear, around those that are held.
 pub(crate) fn guess(kind: StructureKind, constants: &FreeConstants, softness: f64) -> Vec<f64> {
     let shear_ratio = softness * SHEAR_COEFFICIENT;
-    let held = |name: &str| {
-        let named = constants.constants.iter().zip(&constants.held).find(|(constant, _)| constant.name == name);
-        named.and_then(|(_, held)| *held)
-    };
-    let e_x = held("e_x").or(held("g_zx").map(|g_zx| g_zx * shear_ratio)).unwrap_or(GUESS);
-    let g_zx = held("g_zx").unwrap_or(e_x / shear_ratio);
+    let held = |name: &str| constants.held_at(name);
+    // In the plane, then through the thickness.
+    let faces = held("e_x").or(held("e_y")).or(held("g_xy").map(|g_xy| g_xy / USUAL_SHEAR));
+    let core = held("g_zx").or(held("g_yz"));
+    let e_x = faces.or(core.map(|core| core * shear_ratio)).unwrap_or(GUESS);
+    let g_zx = core.unwrap_or(e_x / shear_ratio);
     match kind {
         StructureKind::TimoshenkoBeam => vec![e_x, g_zx],
         StructureKind::MindlinPlate => {
-            usual_plate(e_x, g_zx).into_iter().map(|(name, value)| held(name).unwrap_or(value)).collect()
+            let e_y = held("e_y").unwrap_or(e_x);
+            usual_plate([e_x, e_y], g_zx).into_iter().map(|(name, value)| held(name).unwrap_or(value)).collect()
         }
     }
 }

@@ -102,3 +102,36 @@ fn an_fmu_moves_as_its_plate() {
         assert!(model.iter().zip(&fmu).all(|(model, fmu)| (model[2] - fmu[2]).abs() <= 1e-9 * peak), "FMI {fmi}");
     }
 }
+
+/// The limit told is the true one: so many modes are given.
+#[test]
+fn too_many_modes_are_refused_with_the_number_that_can_be_had() {
+    let bench = Bench::new();
+    let output = bench.run("modes plate.json --count 1001");
+    let message = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(2), "{message}");
+    let told = message.split("ask for ").nth(1).and_then(|rest| rest.split(' ').next()).expect("a number");
+    let most: usize = told.parse().expect("a number");
+    assert!((100..1000).contains(&most), "{message}");
+    assert!(!bench.run(&format!("modes plate.json --count {}", most + 1)).status.success());
+    bench.done(&format!("modes plate.json --count {most}"));
+}
+
+/// What is not identified stands in the table with its interval and its own direction; pure numbers have no unit.
+#[test]
+fn the_table_tells_what_the_data_leave_open() {
+    let bench = Bench::new();
+    let list = "structure = \"mindlin-plate\"\n[piece]\nlength = 0.8\nwidth = 0.2\nthickness = 0.03\nmass_per_area = 6.88\n\
+                [[measurement]]\nkind = \"natural-frequencies\"\nvalues = [322.5, 842.5]\n";
+    std::fs::write(bench.path("short.toml"), list).expect("a file is written");
+    let output = bench.run("identify short.toml");
+    let table = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(output.status.success(), "{table}");
+    assert!(
+        table.contains("g_xy is not identified, held at ") && table.contains(" Pa: the data leave it open from "),
+        "{table}"
+    );
+    assert!(table.contains(", along ln g_xy "), "{table}");
+    let poisson = table.lines().find(|line| line.starts_with("nu_xy ")).expect("a row");
+    assert!(poisson.trim_end().ends_with("held"), "{table}");
+}

@@ -1,6 +1,6 @@
 //! From the minimum to what is reported.
 
-use faer::{Mat, Side};
+use faer::Mat;
 use num_complex::Complex64;
 use orthopanel_data::ImpactTest;
 use orthopanel_model::{Constant, Estimate, StructureKind};
@@ -10,7 +10,7 @@ use super::contradiction::contradiction;
 use super::misfit::{noise_percent, record_misfit_percent};
 use super::problem::AcceleranceProblem;
 use super::start::Start;
-use crate::free_constants::{FreeConstants, Rest};
+use crate::free_constants::Rest;
 use crate::frequency_fit::identified_constants;
 use crate::least_squares::Minimum;
 use crate::{
@@ -77,7 +77,10 @@ fn rest_unseen(
     covariance: Option<&Mat<f64>>,
 ) -> Vec<NotIdentified> {
     let constants = problem.constants.clone();
-    let direction = covariance.map(|matrix| blind_direction(&constants, matrix)).unwrap_or_default();
+    let direction = |parameter: usize| {
+        let changes = |matrix: &Mat<f64>| (0..constants.count()).map(|i| matrix[(i, parameter)]).collect::<Vec<f64>>();
+        covariance.map(|matrix| constants.direction(parameter, &changes(matrix))).unwrap_or_default()
+    };
     let mut reports = Vec::new();
     // From the last, so that the places of those before stay.
     for usual in problem.usual.drain(..).rev() {
@@ -90,7 +93,7 @@ fn rest_unseen(
         let value = constants.value(usual.parameter, at);
         let Constant { name, unit, .. } = *constants.constant(usual.parameter);
         let interval = [end(-1.0), end(1.0)];
-        reports.push(NotIdentified { name, unit, held_at: value, interval, direction: direction.clone() });
+        reports.push(NotIdentified { name, unit, held_at: value, interval, direction: direction(usual.parameter) });
         problem.constants.rest(constants.free[usual.parameter].constant, Rest::Held(value));
         found.parameters.remove(usual.parameter);
         found.log_std.remove(usual.parameter);
@@ -98,16 +101,6 @@ fn rest_unseen(
     let resting: Vec<&str> = reports.iter().map(|unseen| unseen.name).collect();
     found.correlations.retain(|pair| !resting.contains(&pair.first) && !resting.contains(&pair.second));
     reports
-}
-
-/// The direction of the largest variance of the constants.
-fn blind_direction(constants: &FreeConstants, covariance: &Mat<f64>) -> Vec<(&'static str, f64)> {
-    let count = constants.count();
-    let own = Mat::from_fn(count, count, |i, j| covariance[(i, j)]);
-    let Ok(decomposition) = own.self_adjoint_eigen(Side::Lower) else { return Vec::new() };
-    let vectors = decomposition.U();
-    // Eigenvalues rise: the last is the greatest.
-    constants.direction(|i| vectors[(i, count - 1)])
 }
 
 /// Parameters and what is known of them.

@@ -11,7 +11,7 @@ use super::line_noise::noise_of_misfit;
 use super::records::PlaceRecord;
 use super::structures::ModeSynthesis;
 use super::synthesis::{DampingLaw, PairModel};
-use crate::free_constants::FreeConstants;
+use crate::free_constants::{FreeConstants, RestingFreed};
 use crate::least_squares::Quadratic;
 
 /// Records of one piece and what carries its model.
@@ -144,9 +144,10 @@ impl AcceleranceProblem {
     /// Frees the constants that rest, each near its usual value; the parameters of all.
     pub(super) fn free_resting(&mut self, parameters: &[f64]) -> Vec<f64> {
         let seen = self.constants.count();
-        let (constants, mut at) = self.constants.with_resting_freed(&parameters[..seen]);
-        let usual = |parameter: usize| Usual { parameter, centre: at[parameter], std: constants.usual_std(parameter) };
-        self.usual = (seen..constants.count()).map(usual).collect();
+        let RestingFreed { constants, parameters: mut at, usual_stds } =
+            self.constants.with_resting_freed(&parameters[..seen]);
+        let usual = |(index, std)| Usual { parameter: seen + index, centre: at[seen + index], std };
+        self.usual = usual_stds.into_iter().enumerate().map(usual).collect();
         self.constants = constants;
         at.extend(&parameters[seen..]);
         at

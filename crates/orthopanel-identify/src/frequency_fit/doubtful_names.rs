@@ -2,24 +2,36 @@
 
 use orthopanel_data::ImpactTest;
 use orthopanel_model::StructureKind;
+use rayon::prelude::*;
 
-use super::problem::FrequencyProblem;
+use super::problem::{FrequencyProblem, FrequencySet, Renamed};
+use super::seen_constants::minimise_what_is_seen;
+use super::starting_values::{SOFTNESS, starting_values};
 use super::structures::SpectrumLine;
 use crate::IdentifyError;
+use crate::free_constants::{FreeConstant, FreeConstants, RestingFreed};
 use crate::least_squares::{Ending, Linearised, Quadratic, descend};
+use crate::starting_constants::guess;
 
 /// A mode that misses its frequency by less is what it is called, or so near its neighbour that no list can tell.
 const LARGE_MISS: f64 = 0.01;
 /// Another mode is meant where it misses by less than this part.
 const FAR_NEARER: f64 = 0.25;
+/// Other names are told where they leave less than this part of the sum of squares: a third of the error.
+const FAR_BETTER: f64 = 1.0 / 9.0;
 /// Scatters \[1\] of good lines, in turn: from where wrong ones still pull to what a good model leaves.
 const SCATTERS: [f64; 3] = [2e-2, 1e-2, 4e-3];
+/// Pairs of lines that are tried with each other's names.
+const MOST_PAIRS: usize = 8;
+/// Relative scatter of a usual panel's frequencies about those of any other.
+const USUAL_MISS: f64 = 0.05;
 
-/// A sentence for each line of a plate's list that lies far from the mode it names and near another.
+/// A sentence for each line of a plate's list with another name, where the list with these names is met far better.
 ///
 /// The constants are found again under Cauchy's error $\sum\ln(1+r^2/s^2)$, for which a line that stands out counts for
-/// little, with those that rest held by what is usual: so some wrong names among more right ones do not hide behind the
-/// constants that they bent.
+/// little, from where they were found and from what is usual: a line that then lies far from the mode it names and near another
+/// may be that one. Where this leads to nothing, two lines are tried with each other's names, the likeliest pairs of a usual panel
+/// first. What is told has been tried: the whole identification under the new names leaves a third of the error or less.
 pub(super) fn doubtful_names(
     test: &ImpactTest,
     problem: &FrequencyProblem,
@@ -30,50 +42,177 @@ pub(super) fn doubtful_names(
     if !is_plate || at.residuals.iter().all(|residual| residual.abs() < LARGE_MISS) {
         return Ok(Vec::new());
     }
-    let (constants, start) = problem.constants.with_resting_freed(found);
+    let whole = FrequencyProblem::of(test)?;
+    let most = FAR_BETTER * at.quadratic().cost;
+    // The likeliest come first, two side by side.
+    let best = |names: Vec<Vec<Renamed>>| {
+        names.chunks(2).find_map(|few| {
+            let tried = few.par_iter().filter_map(|names| Tried::of(test, &whole, names.clone()));
+            tried.filter(|tried| tried.cost < most).min_by(|a, b| a.cost.total_cmp(&b.cost))
+        })
+    };
+    let best = match best(robust_names(problem, &whole, found)?) {
+        None => best(changed_pairs(&whole)?),
+        found => found,
+    };
+    best.map_or(Ok(Vec::new()), |tried| tried.notes(test, &whole))
+}
+
+/// Other names, and what is left under them.
+struct Tried {
+    names: Vec<Renamed>,
+    problem: FrequencyProblem,
+    values: Vec<Vec<f64>>,
+    cost: f64,
+}
+
+impl Tried {
+    fn of(test: &ImpactTest, whole: &FrequencyProblem, names: Vec<Renamed>) -> Option<Self> {
+        let mut problem = whole.renamed(test, &names).ok()?;
+        let start = starting_values(&problem).ok()?;
+        let minimum = minimise_what_is_seen(&mut problem, &start).ok()?;
+        let cost = problem.linearised(&minimum.predictions, &problem.constants).quadratic().cost;
+        let values = minimum.predictions.into_iter().map(|set| set.values).collect();
+        Some(Self { names, problem, values, cost })
+    }
+
+    fn notes(&self, test: &ImpactTest, whole: &FrequencyProblem) -> Result<Vec<String>, IdentifyError> {
+        let mut notes = Vec::new();
+        for &Renamed { set, line, nodes } in &self.names {
+            let spectrum = self.problem.sets[set].modes.spectrum(&self.values[set])?;
+            let at = |nodes: [usize; 2]| {
+                let named = spectrum.iter().find(|line| line.nodes == nodes);
+                named.map_or("elsewhere".to_owned(), |line| format!("at {:.1} Hz", line.frequency))
+            };
+            let (measured, named) = (whole.sets[set].measured[line], whole.sets[set].modes.nodes()[line]);
+            notes.push(format!(
+                "piece {}, {measured} Hz named {named:?}: the other frequencies put that mode {}, and {nodes:?} {}; look at \
+                 this mode's shape again",
+                test.pieces[whole.sets[set].piece].name,
+                at(named),
+                at(nodes),
+            ));
+        }
+        Ok(notes)
+    }
+}
+
+/// The names that lines near another mode should have, by robust searches from several starts.
+fn robust_names(
+    problem: &FrequencyProblem,
+    whole: &FrequencyProblem,
+    found: &[f64],
+) -> Result<Vec<Vec<Renamed>>, IdentifyError> {
+    let RestingFreed { constants, parameters, usual_stds } = problem.constants.with_resting_freed(found);
+    let usual = at_usual_values(&constants, &whole.constants, &starting_values(whole)?);
     let more = FrequencyProblem { structure: problem.structure, constants, sets: problem.sets.clone() };
-    let mut parameters = start.clone();
+    let mut names: Vec<Vec<Renamed>> = Vec::new();
+    for start in [parameters, usual] {
+        let Some(minimum) = robust_minimum(&more, &start, &usual_stds)? else { continue };
+        let proposed = proposed_names(&more, &minimum)?;
+        if !proposed.is_empty() && !names.contains(&proposed) {
+            names.push(proposed);
+        }
+    }
+    Ok(names)
+}
+
+/// The usual start in the order of these parameters.
+fn at_usual_values(constants: &FreeConstants, all: &FreeConstants, start: &[f64]) -> Vec<f64> {
+    let usual = |(index, free): (usize, &FreeConstant)| {
+        let at = all.free.iter().position(|other| other == free);
+        let at = at.or_else(|| all.free.iter().position(|other| other.constant == constants.free[index].constant));
+        at.map_or(f64::NAN, |at| start[at])
+    };
+    constants.free.iter().enumerate().map(usual).collect()
+}
+
+fn robust_minimum(
+    more: &FrequencyProblem,
+    start: &[f64],
+    usual_stds: &[f64],
+) -> Result<Option<Vec<f64>>, IdentifyError> {
+    let mut parameters = start.to_vec();
     for scatter in SCATTERS {
-        let nearby =
-            more.near(&more.predictions(&parameters)?)?.map_or_else(|| more.on(&more.sets), |sets| more.on(&sets));
+        let Ok(predictions) = more.predictions(&parameters) else { return Ok(None) };
+        let nearby = more.near(&predictions)?.map_or_else(|| more.on(&more.sets), |sets| more.on(&sets));
         let robust = |trial: &[f64]| -> Result<Quadratic, IdentifyError> {
-            Ok(cauchy(&nearby, &nearby.linearise(trial)?, trial, &start, found.len(), scatter))
+            Ok(cauchy(&nearby.linearise(trial)?, trial, start, usual_stds, scatter))
         };
         let Ok((minimum, _)) = descend(robust, &parameters, &more.constants.bounds(), Ending::WITH_JUMPS) else {
-            return Ok(Vec::new());
+            return Ok(None);
         };
         parameters = minimum.parameters;
     }
-    let mut notes = Vec::new();
-    for (set, predicted) in more.sets.iter().zip(more.predictions(&parameters)?) {
-        let spectrum = set.modes.spectrum(&predicted.values)?;
-        for ((measured, named), &nodes) in set.measured.iter().zip(&predicted.modes).zip(set.modes.nodes()) {
-            let miss = |frequency: f64| (frequency / measured - 1.0).abs();
-            let nearest = spectrum.iter().min_by(|a, b| miss(a.frequency).total_cmp(&miss(b.frequency)));
-            let meant = |line: &&SpectrumLine| {
-                let most = LARGE_MISS.min(FAR_NEARER * miss(named.frequency));
-                line.nodes != nodes && miss(line.frequency) < most
-            };
-            let Some(line) = nearest.filter(|_| miss(named.frequency) > LARGE_MISS).filter(meant) else { continue };
-            notes.push(format!(
-                "piece {}, {measured} Hz named {nodes:?}: the other frequencies put that mode at {:.1} Hz, and {:?} at \
-                 {:.1} Hz; look at this mode's shape again",
-                test.pieces[set.piece].name, named.frequency, line.nodes, line.frequency
-            ));
-        }
-    }
-    Ok(notes)
+    Ok(Some(parameters))
 }
 
-/// Cauchy's error of the lines, and the usual constants' own of those from `free` on.
-fn cauchy(
-    problem: &FrequencyProblem,
-    at: &Linearised,
-    parameters: &[f64],
-    usual: &[f64],
-    free: usize,
-    scatter: f64,
-) -> Quadratic {
+/// The lines that lie far from the mode they name and near another.
+fn proposed_names(more: &FrequencyProblem, parameters: &[f64]) -> Result<Vec<Renamed>, IdentifyError> {
+    let Ok(predictions) = more.predictions(parameters) else { return Ok(Vec::new()) };
+    let mut names = Vec::new();
+    for (index, (set, predicted)) in more.sets.iter().zip(predictions).enumerate() {
+        let spectrum = set.modes.spectrum(&predicted.values)?;
+        let named = set.modes.nodes();
+        for (line, (measured, own)) in set.measured.iter().zip(&predicted.modes).enumerate() {
+            let miss = |frequency: f64| (frequency / measured - 1.0).abs();
+            let nearest = spectrum.iter().min_by(|a, b| miss(a.frequency).total_cmp(&miss(b.frequency)));
+            let meant = |near: &&SpectrumLine| {
+                let most = LARGE_MISS.min(FAR_NEARER * miss(own.frequency));
+                near.nodes != named[line] && miss(near.frequency) < most
+            };
+            if let Some(near) = nearest.filter(|_| miss(own.frequency) > LARGE_MISS).filter(meant) {
+                names.push(Renamed { set: index, line, nodes: near.nodes });
+            }
+        }
+    }
+    Ok(names)
+}
+
+/// Pairs of lines of one list with each other's names: those that come nearest to a usual panel of the right size.
+fn changed_pairs(whole: &FrequencyProblem) -> Result<Vec<Vec<Renamed>>, IdentifyError> {
+    let mut pairs: Vec<(f64, Vec<Renamed>)> = Vec::new();
+    for softness in SOFTNESS {
+        let usual = guess(whole.structure, &whole.constants, softness);
+        let of_set = |set: &FrequencySet| set.modes.rough_frequencies(&usual);
+        let frequencies = whole.sets.iter().map(of_set).collect::<Result<Vec<_>, _>>()?;
+        let named = whole.sets.iter().zip(&frequencies);
+        let mut sizes: Vec<f64> =
+            named.flat_map(|(set, own)| own.iter().zip(&set.measured).map(|(f, m)| f / m)).collect();
+        sizes.sort_by(f64::total_cmp);
+        // That of most lines: wrong names stand out on either side.
+        let size = sizes[sizes.len() / 2];
+        let miss = |frequency: f64, measured: f64| ((frequency / size / measured).ln() / USUAL_MISS).powi(2).ln_1p();
+        let as_named =
+            |set: usize, line: usize, name: usize| miss(frequencies[set][name], whole.sets[set].measured[line]);
+        let lines = |set: usize| 0..whole.sets[set].measured.len();
+        let all: f64 = (0..whole.sets.len())
+            .flat_map(|set| lines(set).map(move |line| (set, line)))
+            .map(|(set, line)| as_named(set, line, line))
+            .sum();
+        for (set, own) in whole.sets.iter().enumerate() {
+            for one in lines(set) {
+                for other in one + 1..lines(set).end {
+                    let before = as_named(set, one, one) + as_named(set, other, other);
+                    let after = as_named(set, one, other) + as_named(set, other, one);
+                    let renamed = |line: usize, name: usize| Renamed { set, line, nodes: own.modes.nodes()[name] };
+                    pairs.push((all + after - before, vec![renamed(one, other), renamed(other, one)]));
+                }
+            }
+        }
+    }
+    pairs.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut likeliest: Vec<Vec<Renamed>> = Vec::new();
+    for (_, pair) in pairs {
+        if likeliest.len() < MOST_PAIRS && !likeliest.contains(&pair) {
+            likeliest.push(pair);
+        }
+    }
+    Ok(likeliest)
+}
+
+/// Cauchy's error of the lines, and of the last parameters what they lie beside the usual ones.
+fn cauchy(at: &Linearised, parameters: &[f64], usual: &[f64], usual_stds: &[f64], scatter: f64) -> Quadratic {
     let count = parameters.len();
     let mut sum = Quadratic::zero(count);
     for (i, residual) in at.residuals.iter().enumerate() {
@@ -83,8 +222,7 @@ fn cauchy(
         sum.add_row(weight * residual / scatter, &row);
         sum.cost += ratio2.ln_1p() - (weight * residual / scatter).powi(2);
     }
-    for j in free..count {
-        let std = problem.constants.usual_std(j);
+    for (j, std) in (count - usual_stds.len()..count).zip(usual_stds) {
         sum.add_row((parameters[j] - usual[j]) / std, &[(j, std.recip())]);
     }
     sum.mirror();

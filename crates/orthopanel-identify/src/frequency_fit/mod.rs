@@ -1,13 +1,17 @@
 //! Identification by natural frequencies (eqs 22 and 24).
 
 mod doubtful_names;
+mod first_constants;
+mod noise;
 mod of_poles;
+mod other_starts;
 mod problem;
 mod report;
 mod seen_constants;
 mod starting_values;
 mod structures;
 mod uncertainty;
+mod unseen_constants;
 
 #[cfg(test)]
 mod tests;
@@ -33,7 +37,8 @@ pub(crate) use structures::bending_nodes;
 ///
 /// Starting values are found here. Both searches work on the logarithms of the moduli, so eq. 24's bounds hold.
 /// Standard deviations come from $s^2(J^TJ)^{-1}$, where $s^2$ is the scatter of the residuals or the rounding to the
-/// analyser's bins, whichever is larger.
+/// analyser's bins, whichever is larger; those of a plate, which may have many constants beside few frequencies, by Student's
+/// factor more, so that 1.96 of them make a 95 % interval.
 ///
 /// A plate has constants that bending modes alone do not show. Such a one rests at its usual value and is reported as not
 /// identified.
@@ -44,19 +49,25 @@ pub(crate) use structures::bending_nodes;
 pub(crate) fn identify_frequencies(test: &ImpactTest, search: Search) -> Result<Identification, IdentifyError> {
     let mut problem = FrequencyProblem::of(test)?;
     let start = starting_values::starting_values(&problem)?;
+    let mut doubts = Vec::new();
     let (found, not_identified) = match problem.structure {
         StructureKind::TimoshenkoBeam => (minimise(&problem, &start, search)?, Vec::new()),
         StructureKind::MindlinPlate => {
-            let (seen, not_identified) = seen_constants::minimise_what_is_seen(&mut problem, &start)?;
+            let all = problem.constants.clone();
+            let seen = seen_constants::minimise_what_is_seen(&mut problem, &start)?;
+            let at = problem.linearised(&seen.predictions, &problem.constants);
+            doubts = doubtful_names::doubtful_names(test, &problem, &seen.parameters, &at)?;
+            let seen = if doubts.is_empty() { other_starts::from_other_starts(&mut problem, &all, seen) } else { seen };
+            let not_identified = unseen_constants::reports(&problem, &all, &seen);
             if search == Search::LeastSquares {
                 problem.constants.refuse_bounds(&seen.parameters)?;
-                return report::report(test, &problem, &seen.parameters, &seen.predictions, not_identified);
+                return report::report(test, &problem, &seen.parameters, &seen.predictions, (not_identified, doubts));
             }
             (minimise(&problem, &seen.parameters, search)?, not_identified)
         }
     };
     problem.constants.refuse_bounds(&found)?;
-    report::report(test, &problem, &found, &problem.predictions(&found)?, not_identified)
+    report::report(test, &problem, &found, &problem.predictions(&found)?, (not_identified, doubts))
 }
 
 /// The minimum from `start`.

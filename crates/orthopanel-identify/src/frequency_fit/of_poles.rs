@@ -5,7 +5,7 @@ use std::sync::Arc;
 use orthopanel_model::{Boundary, Piece, StructureKind};
 
 use super::problem::{FrequencyProblem, FrequencySet};
-use super::{least_squares, seen_constants, structures};
+use super::{least_squares, seen_constants, structures, unseen_constants};
 use crate::free_constants::FreeConstants;
 use crate::least_squares::Quadratic;
 use crate::{IdentifyError, NotIdentified};
@@ -65,7 +65,8 @@ pub(crate) fn fit_poles(
         StructureKind::TimoshenkoBeam if start.is_empty() => (start, Vec::new()),
         StructureKind::TimoshenkoBeam => (least_squares(&problem, &start, None)?.parameters, Vec::new()),
         StructureKind::MindlinPlate => {
-            let (seen, not_identified) = seen_constants::minimise_what_is_seen(&mut problem, &start)?;
+            let seen = seen_constants::minimise_what_is_seen(&mut problem, &start)?;
+            let not_identified = unseen_constants::reports(&problem, constants, &seen);
             (seen.parameters, not_identified)
         }
     };

@@ -25,6 +25,17 @@ pub(super) struct FrequencySet {
     pub rounding: Vec<f64>,
 }
 
+/// Another name for a line of a list.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Renamed {
+    /// Index of the list.
+    pub set: usize,
+    /// Index of the line in it.
+    pub line: usize,
+    /// Nodal lines across x and across y.
+    pub nodes: [usize; 2],
+}
+
 /// One set's modes at some constants.
 pub(super) struct SetPrediction {
     /// The constants of its piece.
@@ -60,6 +71,22 @@ impl FrequencyProblem {
             return Err(IdentifyError::TooFewFrequencies { found: problem.count(), needed, names: names.join(", ") });
         }
         Ok(problem)
+    }
+
+    /// The same lists with some lines named otherwise; an error where one name stands twice.
+    pub(super) fn renamed(&self, test: &ImpactTest, names: &[Renamed]) -> Result<Self, IdentifyError> {
+        let rename = |(index, set): (usize, &FrequencySet)| {
+            let mut nodes = set.modes.nodes().to_vec();
+            names.iter().filter(|name| name.set == index).for_each(|name| nodes[name.line] = name.nodes);
+            if (1..nodes.len()).any(|line| nodes[..line].contains(&nodes[line])) {
+                return Err(IdentifyError::Unsupported("two frequencies of one mode".to_owned()));
+            }
+            let modes = structures::of(self.structure, &test.pieces[set.piece].piece, test.boundary, nodes)?;
+            let (measured, rounding) = (set.measured.clone(), set.rounding.clone());
+            Ok(FrequencySet { piece: set.piece, modes, measured, rounding })
+        };
+        let sets = self.sets.iter().enumerate().map(rename).collect::<Result<Arc<[_]>, _>>()?;
+        Ok(Self { structure: self.structure, constants: self.constants.clone(), sets })
     }
 
     /// Number of measured frequencies.
@@ -130,6 +157,27 @@ impl FrequencyProblem {
         }
         let jacobian = Mat::from_fn(rows.len(), constants.count(), |i, j| rows[i][j]);
         Linearised { residuals, jacobian }
+    }
+
+    /// These parameters with the factor on all moduli that meets the frequencies best, where no modulus is held.
+    pub(super) fn at_right_size(&self, parameters: &[f64]) -> Result<Vec<f64>, IdentifyError> {
+        if !self.constants.moduli_are_free() {
+            return Ok(parameters.to_vec());
+        }
+        let (mut sum, mut squares) = (0.0, 0.0);
+        for set in self.sets.iter() {
+            let calculated = set.modes.rough_frequencies(&self.constants.values(parameters, set.piece))?;
+            for (calculated, measured) in calculated.iter().zip(&set.measured) {
+                let quotient = calculated / measured;
+                (sum, squares) = (sum + quotient, squares + quotient * quotient);
+            }
+        }
+        let log_factor = 2.0 * (sum / squares).ln();
+        let scaled = |(index, parameter): (usize, &f64)| {
+            let is_modulus = self.constants.is_modulus(self.constants.free[index].constant);
+            if is_modulus { parameter + log_factor } else { *parameter }
+        };
+        Ok(parameters.iter().enumerate().map(scaled).collect())
     }
 
     /// Eq. 22.

@@ -1,11 +1,13 @@
 //! From the minimum to what is reported.
 
 use orthopanel_data::ImpactTest;
+use orthopanel_model::StructureKind;
 
-use super::doubtful_names::doubtful_names;
+use super::noise::{LARGE_MISS, Noise, USUAL_SCATTER};
 use super::problem::{FrequencyProblem, SetPrediction};
-use super::uncertainty::uncertainty;
+use super::uncertainty::{residual_variance, rounding_variance, uncertainty};
 use crate::free_constants::FreeConstants;
+use crate::least_squares::Linearised;
 use crate::{Identification, IdentifiedConstant, IdentifyError, ModeFit, NotIdentified, PieceFit};
 
 pub(super) fn report(
@@ -13,10 +15,14 @@ pub(super) fn report(
     problem: &FrequencyProblem,
     found: &[f64],
     predictions: &[SetPrediction],
-    not_identified: Vec<NotIdentified>,
+    (not_identified, mut notes): (Vec<NotIdentified>, Vec<String>),
 ) -> Result<Identification, IdentifyError> {
     let at = problem.linearised(predictions, &problem.constants);
     let uncertainty = uncertainty(problem, predictions, found, &at);
+    notes.extend(assumed_scatter(problem, &at));
+    if notes.is_empty() {
+        notes.extend(large_miss(problem, &at));
+    }
     Ok(Identification {
         structure: problem.structure,
         constants: identified_constants(
@@ -34,7 +40,35 @@ pub(super) fn report(
         chi_square: None,
         accelerances: Vec::new(),
         effects: Vec::new(),
-        notes: doubtful_names(test, problem, found, &at)?,
+        notes,
+    })
+}
+
+/// What is said where a plate misses its frequencies by far more than these scatter.
+fn large_miss(problem: &FrequencyProblem, at: &Linearised) -> Option<String> {
+    let rms = (at.quadratic().cost / problem.count().max(1) as f64).sqrt();
+    let scatter = Noise::stated(problem).variance.sqrt();
+    (problem.structure == StructureKind::MindlinPlate && rms > LARGE_MISS * scatter).then(|| {
+        let told = if rounding_variance(problem) > 0.0 { "the bins stated" } else { "the usual scatter" };
+        format!(
+            "the plate misses the frequencies by {:.2} % rms, {:.0} times {told} ({:.2} %), from other starts too: a mode may \
+             be named wrongly, or the plate lacks something; its constants are in doubt",
+            100.0 * rms,
+            rms / scatter,
+            100.0 * scatter
+        )
+    })
+}
+
+/// What is said where nothing tells how far the frequencies scatter.
+fn assumed_scatter(problem: &FrequencyProblem, at: &Linearised) -> Option<String> {
+    let is_plate = problem.structure == StructureKind::MindlinPlate;
+    (is_plate && problem.constants.count() > 0 && residual_variance(problem, at) == 0.0).then(|| {
+        format!(
+            "no frequency is left over to tell how far they scatter: standard deviations take {} % of each; state the \
+             bins (resolution) or measure more modes",
+            100.0 * USUAL_SCATTER
+        )
     })
 }
 

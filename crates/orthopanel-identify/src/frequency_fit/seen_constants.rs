@@ -2,23 +2,17 @@
 
 use std::sync::Arc;
 
-use faer::{Mat, Side};
-use orthopanel_model::Constant;
-
+use super::first_constants::{Resting, first_minimum};
+use super::noise::{HALF_95, LARGE_MISS, Noise};
 use super::problem::{FrequencyProblem, FrequencySet};
-use super::uncertainty::{left_one_out_percent, residual_variance};
+use super::uncertainty::{left_one_out_percent, with_unseen};
 use super::{Minimum, least_squares};
-use crate::free_constants::{FreeConstant, FreeConstants};
+use crate::IdentifyError;
+use crate::free_constants::{FreeConstant, FreeConstants, Rest};
 use crate::least_squares::{Ending, Linearised, descend};
-use crate::usual_plate::usual_rest;
-use crate::{IdentifyError, NotIdentified};
 
-/// Half of a 95 % interval in standard deviations.
-const HALF_95: f64 = 1.96;
 /// A modulus is not seen where the standard deviation of its logarithm is above this: its interval spans a factor of 7.
 const WIDEST_LOG_STD: f64 = 0.5;
-/// Relative standard deviation of a frequency, where neither a bin is stated nor a fit has told it yet.
-const USUAL_SCATTER: f64 = 1e-3;
 /// A constant that worsens the prediction of frequencies left out by more than this factor is fitted to chance: one
 /// parameter too many costs some 5 %, a mode beside a veering that one constant moves alone twice as much and more.
 const WORSE_PREDICTION: f64 = 1.25;
@@ -28,44 +22,58 @@ const HOPELESS: f64 = 1.2;
 /// That quick search ends sooner: what has not settled by then stands at a jump.
 const LOOK: Ending = Ending { most_iterations: 12, ..Ending::WITH_JUMPS };
 
-/// The minimum over the constants that the data show, and those that they do not.
+/// The minimum over the constants that the data show; the others rest.
 ///
-/// $E_x$ and $G_{zx}$ come first, the others resting beside them as is usual for a panel. Then the one that the data would
-/// show best is freed, as long as its interval is narrower than its bounds and than a factor of seven, and the prediction
-/// of frequencies left out does not suffer. So a search never wanders along a direction that the data leave open.
-pub(super) fn minimise_what_is_seen(
-    problem: &mut FrequencyProblem,
-    start: &[f64],
-) -> Result<(Minimum, Vec<NotIdentified>), IdentifyError> {
+/// $E_x$ and $G_{zx}$ come first, the others resting beside them as is usual for a panel; where the data do not show these two,
+/// one modulus alone. Then the one that the data would show best is freed, as long as its interval is narrower than its
+/// bounds and than a factor of seven, and the prediction of frequencies left out does not suffer. So a search never wanders
+/// along a direction that the data leave open. One that the freedom of others has hidden rests again.
+pub(super) fn minimise_what_is_seen(problem: &mut FrequencyProblem, start: &[f64]) -> Result<Minimum, IdentifyError> {
     let all = problem.constants.clone();
-    let position = |name: &str| all.constants.iter().position(|constant| constant.name == name).unwrap_or(0);
-    let mut waiting: Vec<usize> = Vec::new();
-    for FreeConstant { constant, .. } in &all.free {
-        if let Some(rest) = usual_rest(all.constants[*constant].name, position).filter(|_| !waiting.contains(constant))
-        {
-            problem.constants.rest(*constant, rest);
-            waiting.push(*constant);
-        }
-    }
-    let mut minimum = least_squares(problem, &carried(&all, start, &problem.constants), None)?;
+    let mut minimum = first_minimum(problem, &all, start)?;
+    let mut waiting: Vec<usize> = problem.constants.resting.iter().map(|(constant, _)| *constant).collect();
     while let Some(next) = best_seen(problem, &all, &minimum, &waiting) {
         waiting.retain(|constant| *constant != next);
         let before = problem.constants.clone();
-        let predicted = prediction_error(&problem.linearised(&minimum.predictions, &before));
+        let reached = Reached::of(problem, &minimum);
         problem.constants = with_freed(&before, &all, next);
         let start = freed_parameters(&before, &minimum.parameters, &problem.constants);
         let trial = match quick_trial(problem, &start, minimum.quick.as_ref()) {
-            Some(quick) if !pays(problem, &quick, next, HOPELESS * predicted) => None,
+            Some(quick) if !pays(problem, &quick, next, &reached, HOPELESS * WORSE_PREDICTION) => None,
             Some(quick) => least_squares(problem, &quick.parameters, minimum.quick.as_ref()).ok(),
             None => least_squares(problem, &start, None).ok(),
         };
-        match trial.filter(|trial| pays(problem, trial, next, predicted)) {
+        match trial.filter(|trial| pays(problem, trial, next, &reached, WORSE_PREDICTION)) {
             Some(trial) => minimum = trial,
             None => problem.constants = before,
         }
     }
-    let not_identified = reports(problem, &all, &minimum);
-    Ok((minimum, not_identified))
+    let_hidden_rest(problem, &all, minimum)
+}
+
+/// The minimum without those constants that the data do not show.
+pub(super) fn let_hidden_rest(
+    problem: &mut FrequencyProblem,
+    all: &FreeConstants,
+    mut minimum: Minimum,
+) -> Result<Minimum, IdentifyError> {
+    while let Some(hidden) = worst_hidden(problem, &minimum) {
+        let before = problem.constants.clone();
+        let rest = Resting::of(problem, all).beside(&before, hidden);
+        problem.constants.rest(hidden, rest);
+        let from = carried(&before, &minimum.parameters, &problem.constants);
+        minimum = least_squares(problem, &from, None)?;
+    }
+    // The size of all is told by the last modulus, if that is told.
+    let last = problem.constants.free.first().map(|free| free.constant);
+    let stds = total_standard_deviations(problem, &minimum);
+    if let Some(last) = last.filter(|_| stds.iter().enumerate().any(|(i, std)| *std > widest(&problem.constants, i))) {
+        let piece = problem.constants.free[0].piece.unwrap_or(0);
+        let value = problem.constants.values(&minimum.parameters, piece)[last];
+        problem.constants.rest(last, Rest::Held(value));
+        minimum = least_squares(problem, &[], None)?;
+    }
+    Ok(minimum)
 }
 
 /// The minimum of a quick search alone.
@@ -77,21 +85,43 @@ fn quick_trial(problem: &FrequencyProblem, start: &[f64], quick: Option<&Arc<[Fr
     Some(Minimum { parameters: found.parameters, predictions, quick: None })
 }
 
-/// Whether a constant just freed is seen, lies inside its bounds, and does not worsen the prediction.
-fn pays(problem: &FrequencyProblem, trial: &Minimum, freed: usize, before: f64) -> bool {
+/// How well the frequencies were met and predicted before a constant was freed.
+struct Reached {
+    /// Rms error \[%\] of frequencies left out; `None` without enough of them.
+    prediction: Option<f64>,
+    /// Whether more is left than what frequencies scatter.
+    misses: bool,
+}
+
+impl Reached {
+    fn of(problem: &FrequencyProblem, at: &Minimum) -> Self {
+        let at = problem.linearised(&at.predictions, &problem.constants);
+        let mean = at.quadratic().cost / problem.count() as f64;
+        Self { prediction: prediction_error(&at), misses: mean > LARGE_MISS.powi(2) * Noise::stated(problem).variance }
+    }
+}
+
+/// Whether a constant just freed is seen, lies inside its bounds, and does not worsen the prediction by more than a factor.
+///
+/// Where no frequency can be left out, it pays if those that there are could not be met without it.
+fn pays(problem: &FrequencyProblem, trial: &Minimum, freed: usize, reached: &Reached, factor: f64) -> bool {
     let constants = &problem.constants;
     let at = problem.linearised(&trial.predictions, constants);
-    let stds = standard_deviations(&at, residual_variance(problem, &at));
+    // While constants that rest leave a large miss, this is no noise.
+    let noise = if reached.misses { Noise::stated(problem) } else { Noise::left(problem, &at) };
+    let stds = noise.standard_deviations(&at);
     let mut own = (0..constants.count()).filter(|&index| constants.free[index].constant == freed);
     let seen =
         own.all(|index| stds[index] <= widest(constants, index) && !constants.on_bound(index, trial.parameters[index]));
-    seen && prediction_error(&at) <= WORSE_PREDICTION * before
+    seen && match (reached.prediction, prediction_error(&at)) {
+        (Some(before), Some(after)) => after <= factor * before,
+        _ => reached.misses,
+    }
 }
 
-/// Rms error \[%\] of frequencies left out; without enough of them it is unbounded.
-fn prediction_error(at: &Linearised) -> f64 {
-    let covariance = at.quadratic().covariance();
-    covariance.and_then(|matrix| left_one_out_percent(at, &matrix)).unwrap_or(f64::INFINITY)
+/// Rms error \[%\] of frequencies left out; `None` without enough of them.
+pub(super) fn prediction_error(at: &Linearised) -> Option<f64> {
+    at.quadratic().covariance().and_then(|matrix| left_one_out_percent(at, &matrix))
 }
 
 /// The waiting constant that the data would show best, if they would show it.
@@ -99,8 +129,7 @@ fn best_seen(problem: &FrequencyProblem, all: &FreeConstants, at: &Minimum, wait
     let mut best: Option<(usize, f64)> = None;
     for &constant in waiting {
         let (constants, _) = as_if_freed(problem, all, &at.parameters, &[constant]);
-        let stds =
-            standard_deviations(&problem.linearised(&at.predictions, &constants), residual_variance_stated(problem));
+        let stds = Noise::stated(problem).standard_deviations(&problem.linearised(&at.predictions, &constants));
         let own = (0..constants.count()).filter(|&index| constants.free[index].constant == constant);
         let ratio = own.map(|index| stds[index] / widest(&constants, index)).fold(0.0, f64::max);
         if ratio <= 1.0 && best.is_none_or(|(_, least)| ratio < least) {
@@ -110,14 +139,8 @@ fn best_seen(problem: &FrequencyProblem, all: &FreeConstants, at: &Minimum, wait
     best.map(|(constant, _)| constant)
 }
 
-/// Variance of the relative residuals before a fit has told it.
-fn residual_variance_stated(problem: &FrequencyProblem) -> f64 {
-    let rounding = super::uncertainty::rounding_variance(problem);
-    if rounding > 0.0 { rounding } else { USUAL_SCATTER.powi(2) }
-}
-
 /// The constants with more of them free, and the parameters at the values that all have.
-fn as_if_freed(
+pub(super) fn as_if_freed(
     problem: &FrequencyProblem,
     all: &FreeConstants,
     parameters: &[f64],
@@ -134,7 +157,7 @@ fn as_if_freed(
 }
 
 /// The constants with one more free, in the order of `all`.
-fn with_freed(constants: &FreeConstants, all: &FreeConstants, freed: usize) -> FreeConstants {
+pub(super) fn with_freed(constants: &FreeConstants, all: &FreeConstants, freed: usize) -> FreeConstants {
     let mut more = constants.clone();
     more.resting.retain(|(resting, _)| *resting != freed);
     let is_free = |constant: usize| constant == freed || constants.free.iter().any(|free| free.constant == constant);
@@ -149,22 +172,34 @@ fn freed_parameters(from: &FreeConstants, parameters: &[f64], to: &FreeConstants
 }
 
 /// The parameters that are left of a list for all constants.
-fn carried(all: &FreeConstants, parameters: &[f64], left: &FreeConstants) -> Vec<f64> {
+pub(super) fn carried(all: &FreeConstants, parameters: &[f64], left: &FreeConstants) -> Vec<f64> {
     let kept = |free: &FreeConstant| left.free.contains(free);
     all.free.iter().zip(parameters).filter(|(free, _)| kept(free)).map(|(_, parameter)| *parameter).collect()
 }
 
-/// Standard deviation of each parameter; what nothing shows gets a very large one.
-fn standard_deviations(at: &Linearised, variance: f64) -> Vec<f64> {
-    let normal = at.quadratic().normal;
-    let count = normal.nrows();
-    let Ok(decomposition) = normal.self_adjoint_eigen(Side::Lower) else { return vec![f64::INFINITY; count] };
-    let (values, vectors) = (decomposition.S(), decomposition.U());
-    // Rounding leaves a direction that nothing shows some 1e-16 of the largest.
-    let floor = 1e-14 * (0..count).map(|k| values[k]).fold(f64::MIN_POSITIVE, f64::max);
-    let of =
-        |i: usize| (0..count).map(|k| variance * vectors[(i, k)].powi(2) / values[k].max(floor)).sum::<f64>().sqrt();
-    (0..count).map(of).collect()
+/// The free constant that the data show least, where they do not show it; the last modulus stays, for it has the size of all.
+pub(super) fn worst_hidden(problem: &FrequencyProblem, at: &Minimum) -> Option<usize> {
+    let constants = &problem.constants;
+    let moduli = constants.free_constants().into_iter().filter(|&constant| constants.is_modulus(constant)).count();
+    let stds = total_standard_deviations(problem, at);
+    let hidden = (0..constants.count()).filter_map(|index| {
+        let constant = constants.free[index].constant;
+        let ratio = stds[index] / widest(constants, index);
+        let is_hidden = ratio > 1.0 || constants.on_bound(index, at.parameters[index]);
+        (is_hidden && (moduli > 1 || !constants.is_modulus(constant))).then_some((constant, ratio))
+    });
+    hidden.max_by(|a, b| a.1.total_cmp(&b.1)).map(|(constant, _)| constant)
+}
+
+/// Standard deviation of each parameter: what is not known of the constants that rest is not known of these either.
+fn total_standard_deviations(problem: &FrequencyProblem, at: &Minimum) -> Vec<f64> {
+    let constants = &problem.constants;
+    let linearised = problem.linearised(&at.predictions, constants);
+    let noise = Noise::left(problem, &linearised);
+    with_unseen(problem, &at.predictions, &at.parameters, noise.wide_variance()).map_or_else(
+        || noise.standard_deviations(&linearised),
+        |covariance| (0..constants.count()).map(|index| covariance[(index, index)].sqrt()).collect(),
+    )
 }
 
 /// The widest standard deviation of a parameter that still is a result.
@@ -172,36 +207,4 @@ fn widest(constants: &FreeConstants, index: usize) -> f64 {
     let (low, high) = constants.bounds()[index];
     let range = (high - low) / (2.0 * HALF_95);
     if constants.constant(index).unit == "Pa" { range.min(WIDEST_LOG_STD) } else { range }
-}
-
-/// What is said of each constant that rests.
-fn reports(problem: &FrequencyProblem, all: &FreeConstants, minimum: &Minimum) -> Vec<NotIdentified> {
-    let Minimum { parameters, predictions, .. } = minimum;
-    let resting: Vec<usize> = problem.constants.resting.iter().map(|(constant, _)| *constant).collect();
-    let (constants, values) = as_if_freed(problem, all, parameters, &resting);
-    let at = problem.linearised(predictions, &constants);
-    let variance = residual_variance(problem, &problem.linearised(predictions, &problem.constants));
-    let stds = standard_deviations(&at, variance);
-    let direction = blind_direction(&constants, &at.quadratic().normal);
-    let report = |&constant: &usize| {
-        let index = constants.free.iter().position(|free| free.constant == constant).unwrap_or(0);
-        let Constant { name, unit, .. } = constants.constants[constant];
-        let end = |sign: f64| constants.value(index, values[index] + sign * HALF_95 * stds[index]);
-        NotIdentified {
-            name,
-            unit,
-            held_at: constants.value(index, values[index]),
-            interval: [end(-1.0), end(1.0)],
-            direction: direction.clone(),
-        }
-    };
-    resting.iter().map(report).collect()
-}
-
-/// The direction of the least eigenvalue.
-fn blind_direction(constants: &FreeConstants, normal: &Mat<f64>) -> Vec<(&'static str, f64)> {
-    let Ok(decomposition) = normal.self_adjoint_eigen(Side::Lower) else { return Vec::new() };
-    let vectors = decomposition.U();
-    // Eigenvalues rise: the first is the least.
-    constants.direction(|i| vectors[(i, 0)])
 }

@@ -1,31 +1,49 @@
 //! Starting values, from the data alone.
 
+use orthopanel_model::ModelError;
+
 use super::problem::FrequencyProblem;
 use crate::IdentifyError;
-use crate::starting_constants::guess;
+use crate::starting_constants::{USUAL_SOFTNESS, guess};
 
-/// $E_x/(k'G_{zx})$ tried: from solid metal to the softest core.
-const SOFTNESS: [f64; 4] = [2.0, 16.0, 128.0, 1024.0];
+/// $E_x/(k'G_{zx})$ tried, from solid metal to the softest core; first what is usual, for a single frequency fits them all.
+pub(super) const SOFTNESS: [f64; 4] = [USUAL_SOFTNESS, 2.0, 128.0, 1024.0];
+/// Factors tried on the free moduli where others are held.
+const BESIDE_HELD: [f64; 5] = [1.0, 0.25, 4.0, 0.0625, 16.0];
+/// A ratio must fit better by so much of eq. 22 to be another.
+const BETTER: f64 = 1e-9;
 
 /// Parameters from which a search converges.
 ///
 /// At fixed ratios of the moduli every frequency goes with their root, so the best size follows in closed form; what
-/// remains is a look at a few ratios.
+/// remains is a look at a few ratios. Where moduli are held, the free ones lie somewhere beside them.
 pub(super) fn starting_values(problem: &FrequencyProblem) -> Result<Vec<f64>, IdentifyError> {
     let constants = &problem.constants;
     let scalable = constants.moduli_are_free();
-    let mut best: Option<(f64, Vec<f64>)> = None;
-    for softness in SOFTNESS {
-        let guess = guess(problem.structure, constants, softness);
-        let scaling = Scaling::of(problem, &guess)?;
+    let sizes = if scalable { &BESIDE_HELD[..1] } else { &BESIDE_HELD[..] };
+    let mut best: Result<(f64, Vec<f64>), Option<ModelError>> = Err(None);
+    for (softness, size) in SOFTNESS.iter().flat_map(|softness| sizes.iter().map(move |size| (softness, size))) {
+        let guess = constants.free_scaled(&guess(problem.structure, constants, *softness), *size);
+        let scaling = match Scaling::of(problem, &guess) {
+            Ok(scaling) => scaling,
+            // A law that is indefinite beside what is held, say: another ratio may be none.
+            Err(error) => {
+                best = best.map_err(|first| first.or(Some(error)));
+                continue;
+            }
+        };
         let (factor, error) = if scalable { (scaling.factor(), scaling.best_error()) } else { (1.0, scaling.error()) };
-        if best.as_ref().is_none_or(|(least, _)| error < *least) {
+        if best.as_ref().map_or(true, |(least, _)| error < least - BETTER) {
             let scaled = constants.scaled(&guess, factor);
             let parameter = |index: usize| constants.parameter(index, scaled[constants.free[index].constant]);
-            best = Some((error, (0..constants.count()).map(parameter).collect()));
+            best = Ok((error, (0..constants.count()).map(parameter).collect()));
         }
     }
-    Ok(best.map(|(_, parameters)| parameters).unwrap_or_default())
+    match best {
+        Ok((_, parameters)) => Ok(parameters),
+        Err(Some(error)) => Err(error.into()),
+        Err(None) => Ok(Vec::new()),
+    }
 }
 
 /// Sums over $q = f_{cal}/f_{exp}$ at some constants.
@@ -36,7 +54,7 @@ struct Scaling {
 }
 
 impl Scaling {
-    fn of(problem: &FrequencyProblem, constants: &[f64]) -> Result<Self, IdentifyError> {
+    fn of(problem: &FrequencyProblem, constants: &[f64]) -> Result<Self, ModelError> {
         let mut scaling = Self { count: 0.0, sum: 0.0, squares: 0.0 };
         for set in problem.sets.iter() {
             for (calculated, measured) in set.modes.rough_frequencies(constants)?.iter().zip(&set.measured) {

@@ -2,9 +2,12 @@
 
 use faer::linalg::solvers::DenseSolveCore;
 use faer::{Mat, Side};
+use orthopanel_model::StructureKind;
 
+use super::noise::Noise;
 use super::problem::{FrequencyProblem, SetPrediction};
 use crate::Correlation;
+use crate::free_constants::RestingFreed;
 use crate::least_squares::Linearised;
 
 /// Of the parameters.
@@ -27,7 +30,10 @@ pub(super) fn uncertainty(
     let quadratic = at.quadratic();
     let Some(covariance) = quadratic.covariance() else { return Uncertainty::default() };
     let free = problem.constants.count();
-    let variance = residual_variance(problem, at);
+    let variance = match problem.structure {
+        StructureKind::TimoshenkoBeam => residual_variance(problem, at),
+        StructureKind::MindlinPlate => Noise::left(problem, at).wide_variance(),
+    };
     let correlations = problem.constants.correlations(&covariance);
     let std = if variance > 0.0 {
         let stated = with_unseen(problem, predictions, parameters, variance);
@@ -41,7 +47,7 @@ pub(super) fn uncertainty(
 
 /// Covariance of the parameters, then of the constants that rest, each of which may lie beside what is usual: what is not
 /// known of them is not known of the others either. `None` where none rests.
-fn with_unseen(
+pub(super) fn with_unseen(
     problem: &FrequencyProblem,
     predictions: &[SetPrediction],
     parameters: &[f64],
@@ -50,13 +56,13 @@ fn with_unseen(
     if problem.constants.resting.is_empty() {
         return None;
     }
-    let (constants, _) = problem.constants.with_resting_freed(parameters);
+    let RestingFreed { constants, usual_stds, .. } = problem.constants.with_resting_freed(parameters);
     let mut normal = problem.linearised(predictions, &constants).quadratic().normal;
     for i in 0..constants.count() {
         (0..constants.count()).for_each(|j| normal[(i, j)] /= variance);
     }
-    for index in parameters.len()..constants.count() {
-        normal[(index, index)] += constants.usual_std(index).powi(-2);
+    for (index, std) in (parameters.len()..).zip(usual_stds) {
+        normal[(index, index)] += std.powi(-2);
     }
     Some(normal.llt(Side::Lower).ok()?.inverse())
 }

@@ -45,7 +45,7 @@ struct NotIdentifiedEntry {
     unit: &'static str,
     /// What the data leave open: the 95 % interval, cut at the bounds.
     interval: [f64; 2],
-    /// The direction along which the data are blindest, such as `ln g_yz +0.98, nu_xy -0.17`.
+    /// Where the constants go when this one moves and the others make up for it, such as `ln g_yz +0.98, nu_xy -0.17`.
     direction: String,
 }
 

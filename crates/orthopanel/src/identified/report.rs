@@ -26,7 +26,7 @@ impl Identified {
                 Some(piece) => format!("{} of {piece}", constant.name),
                 None => constant.name.into(),
             };
-            vec![name, format!("{:.3e}", constant.value), std, constant.unit.into()]
+            vec![name, format!("{:.3e}", constant.value), std, tables::shown_unit(constant.unit).into()]
         };
         let rows: Vec<_> = self.found.constants.iter().map(row).collect();
         text += &tables::aligned(&["constant", "value", "std", "unit"], &rows);
@@ -35,11 +35,11 @@ impl Identified {
             text += &tables::aligned(&headings, &effect_rows(&self.found.effects));
         }
         for unseen in &self.found.not_identified {
-            let NotIdentified { name, unit, held_at, .. } = unseen;
-            let unit = if *unit == "1" { "" } else { unit };
-            let direction = unseen.direction_text();
+            let NotIdentified { name, unit, held_at, interval: [low, high], .. } = unseen;
+            let held_at = tables::with_unit(&format!("{held_at:.3e}"), unit);
             text += &format!(
-                "{name} is not identified, held at {held_at:.3e} {unit}: the data are blindest along {direction}\n"
+                "{name} is not identified, held at {held_at}: the data leave it open from {low:.2e} to {high:.2e}, along {}\n",
+                unseen.direction_text()
             );
         }
         for pair in &self.found.correlations {

@@ -4,6 +4,7 @@ use orthopanel_identify::{Identification, IdentifiedConstant};
 use orthopanel_model::StructureKind;
 
 use super::table::Table;
+use crate::tables::{shown_unit, with_unit};
 
 /// Half the width of a 95 % interval, over the standard deviation.
 const INTERVAL: f64 = 1.96;
@@ -63,7 +64,7 @@ pub fn table(found: &Identification) -> Table {
             None if *held => ("held".into(), String::new()),
             None => ("unknown".into(), String::new()),
         };
-        vec![name, format!("{value:.4e}"), deviation, interval, (*unit).to_owned()]
+        vec![name, format!("{value:.4e}"), deviation, interval, shown_unit(unit).to_owned()]
     };
     let headings = ["constant", "value", "std", "95 % interval", "unit"];
     Table::new(&headings, found.constants.iter().map(row).collect())
@@ -74,11 +75,9 @@ pub fn remarks(found: &Identification) -> Vec<String> {
     let unseen = found.not_identified.iter().map(|unseen| {
         let [low, high] = unseen.interval;
         format!(
-            "{} is not identified and held at {:.3e} {}: these data leave it open from {low:.2e} to {high:.2e}. They are \
-             blindest along {}.",
+            "{} is not identified and held at {}: these data leave it open from {low:.2e} to {high:.2e}, along {}.",
             unseen.name,
-            unseen.held_at,
-            unseen.unit,
+            with_unit(&format!("{:.3e}", unseen.held_at), unseen.unit),
             unseen.direction_text()
         )
     });

@@ -4,7 +4,7 @@ use std::borrow::Borrow;
 use std::sync::Arc;
 
 use orthopanel_model::{
-    Boundary, MindlinPlate, ModelError, Piece, ReducedStructure, RitzMode, Structure, modes_below, ritz_modes,
+    Boundary, End, MindlinPlate, ModelError, Piece, ReducedStructure, RitzMode, Structure, modes_below, ritz_modes,
     ritz_modes_near,
 };
 
@@ -30,8 +30,14 @@ const SPARE_MODES: usize = 6;
 
 impl PlateModes {
     pub(super) fn new(piece: &Piece, boundary: Boundary, nodes: Vec<[usize; 2]>) -> Result<Self, IdentifyError> {
+        if let Some([x, y]) = nodes.iter().find(|nodes| is_rigid(boundary, **nodes)) {
+            return Err(IdentifyError::Unsupported(format!(
+                "shape [{x}, {y}] is a rigid motion of a plate with these edges and has no frequency: the lowest flexible \
+                 modes of a free plate have the shapes [1, 1], [2, 0] and [0, 2]"
+            )));
+        }
         let [most_x, most_y] = [0, 1].map(|axis| nodes.iter().map(|pair| pair[axis]).max().unwrap_or(0));
-        let plate = MindlinPlate::new(piece, boundary, [most_x + 11, (most_y + 6).max(7)])?;
+        let plate = MindlinPlate::new(piece, boundary, terms(piece, boundary, [most_x, most_y])?)?;
         let reach = ((most_x + 2) * (most_y + 3) + SPARE_MODES).min(plate.resolved_modes());
         let own = Arc::new(plate.only_with_nodes(&nodes));
         let share = reach * own.blocks().len() / plate.blocks().len();
@@ -39,6 +45,26 @@ impl PlateModes {
         let rough = own.with_fewer_terms([most_x, most_y].map(|most| most + ROUGH_SPARE));
         Ok(Self { plate, nodes, reach, own, own_reach, rough })
     }
+}
+
+/// Whether a plate moves so without strain: at most once turned, for with a turn both ways it twists.
+fn is_rigid(Boundary { left, right, front, back }: Boundary, nodes: [usize; 2]) -> bool {
+    let rigid = [[left, right], [front, back]].map(|ends| match ends {
+        [End::Free, End::Free] => 2,
+        [End::Free, End::Pinned] | [End::Pinned, End::Free] => 1,
+        _ => 0,
+    });
+    let twists = nodes[0] + 1 == rigid[0] && nodes[1] + 1 == rigid[1];
+    nodes[0] < rigid[0] && nodes[1] < rigid[1] && !twists
+}
+
+/// Most polynomials along a direction for a layer at a free edge: what is left then is 4e-4 of a twisting mode's frequency.
+const MOST_FOR_LAYER: usize = 28;
+
+/// Polynomials along x and y for modes of so many nodes, whatever the constants.
+fn terms(piece: &Piece, boundary: Boundary, [most_x, most_y]: [usize; 2]) -> Result<[usize; 2], ModelError> {
+    let layers = MindlinPlate::layer_terms(piece, boundary)?.map(|layer| layer.min(MOST_FOR_LAYER));
+    Ok([(most_x + 11).max(layers[0]), (most_y + 6).max(7).max(layers[1])])
 }
 
 /// Polynomials beyond the number of nodes that hold a frequency to some per cent.
@@ -148,30 +174,54 @@ impl MeasuredModes for NearbyModes {
     }
 }
 
-/// Which modes the measured ones are: of each pair of nodes the number of the mode with the largest overlap, and that.
+/// Which modes the measured ones are: of each pair of nodes the number of its mode and the overlap with it.
+///
+/// A mode whose own largest overlap is with the pair comes before one whose overlap with it is larger, but has another name:
+/// where two modes veer, one may hold more of both products. No mode is two.
 struct Told(Vec<Option<(usize, f64)>>);
 
-/// Squares of a product's overlaps with all modes add up to one at most: beyond a half there is no larger one.
+/// Squares of a product's overlaps with all modes add up to one at most, and so do those of a mode with all products: beyond a
+/// half there is no larger one.
 const SURE_SHARE: f64 = 0.5;
+
+/// A mode that may be the one of a pair of nodes.
+struct Candidate {
+    pair: usize,
+    index: usize,
+    overlap: f64,
+    is_named: bool,
+}
 
 impl Told {
     /// From the plate's modes in rising order, rigid ones first, as far as it takes.
     fn of(plate: &MindlinPlate, nodes: &[[usize; 2]], modes: impl Iterator<Item = impl Borrow<RitzMode>>) -> Self {
-        let mut told = Self(vec![None; nodes.len()]);
+        let mut sure = vec![None; nodes.len()];
+        let mut candidates = Vec::new();
         for (index, mode) in modes.enumerate() {
             let mode = mode.borrow();
             if mode.angular_frequency == 0.0 {
                 continue;
             }
             let overlaps = plate.overlaps(mode);
-            for (&[x, y], nearest) in nodes.iter().zip(&mut told.0) {
+            let largest = overlaps.col_iter().flat_map(|column| column.iter()).copied().fold(0.0, f64::max);
+            for (pair, &[x, y]) in nodes.iter().enumerate() {
                 let overlap = if x < overlaps.nrows() && y < overlaps.ncols() { overlaps[(x, y)] } else { 0.0 };
-                if nearest.is_none_or(|(_, most)| overlap >= most) {
-                    *nearest = Some((index, overlap));
+                if overlap * overlap > SURE_SHARE {
+                    sure[pair] = Some((index, overlap));
                 }
+                candidates.push(Candidate { pair, index, overlap, is_named: overlap > 0.0 && overlap == largest });
             }
-            if told.all_sure() {
-                break;
+            if sure.iter().all(Option::is_some) {
+                return Self(sure);
+            }
+        }
+        candidates.sort_by(|a, b| b.is_named.cmp(&a.is_named).then(b.overlap.total_cmp(&a.overlap)));
+        let mut told = Self(vec![None; nodes.len()]);
+        for Candidate { pair, index, overlap, .. } in candidates {
+            let mut others = told.0.iter().zip(nodes).filter(|(_, other)| **other != nodes[pair]);
+            let is_taken = others.any(|(other, _)| other.is_some_and(|(taken, _)| taken == index));
+            if told.0[pair].is_none() && !is_taken {
+                told.0[pair] = Some((index, overlap));
             }
         }
         told
