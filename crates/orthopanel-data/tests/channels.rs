@@ -50,6 +50,24 @@ fn val_channels_that_do_not_fit_are_refused() {
 }
 
 #[test]
+fn val_a_record_without_its_partner_is_named() {
+    let [f, a] = pair();
+    let cases = [
+        (vec![&f, &a, &f, &f, &a], "record 3", "this force has no acceleration"),
+        (vec![&f, &a, &f, &a, &f], "record 5", "this force has no acceleration"),
+        (vec![&a, &f, &a, &a, &f, &a, &f], "record 3", "this acceleration has no force"),
+        (vec![&f, &f, &f, &a, &a], "record 3", "this force has no acceleration"),
+        (vec![&f, &f, &a, &a, &a], "record 5", "this acceleration has no force"),
+        (vec![&a], "record 1", "this acceleration has no force"),
+    ];
+    for (datasets, record, said) in cases {
+        let datasets: Vec<Dataset> = datasets.into_iter().cloned().collect();
+        let message = history(&datasets, &measurement()).unwrap_err();
+        assert!(message.contains(record) && message.contains(said), "{record}, {said}: {message}");
+    }
+}
+
+#[test]
 fn val_a_sensor_that_is_not_along_the_force_is_refused_unless_declared() {
     let [force, acceleration] = pair();
     let along = Some(Direction::AlongForce);

@@ -1,4 +1,4 @@
-//! A channel that is missing or stands twice, where the numbers of forces and accelerations do not tell.
+//! A channel that is missing or stands twice.
 
 use super::time_history::Hit;
 use crate::{DataError, Location};
@@ -24,6 +24,22 @@ pub(super) fn check_order(order: &[Ordered]) -> Result<(), DataError> {
         hit + 1
     );
     Err(DataError::Channels { at: at.clone(), problem })
+}
+
+/// Where numbers of forces and accelerations differ: names the first record that has no partner, in pairs or in two blocks;
+/// `first` is the file's first record.
+pub(super) fn alone(order: &[Ordered], problem: String, first: Box<Location>) -> DataError {
+    let changes = order.windows(2).filter(|pair| pair[0].1 != pair[1].1).count();
+    let index = if changes <= 1 && order.len() > 3 {
+        let one = order.iter().take_while(|record| record.1 == order[0].1).count();
+        let other = order.len() - one;
+        if one > other { other } else { 2 * one }
+    } else {
+        order.chunks(2).take_while(|pair| matches!(pair, [a, b] if a.1 != b.1)).count() * 2
+    };
+    let Some((at, is_force)) = order.get(index) else { return DataError::Channels { at: first, problem } };
+    let (own, other) = if *is_force { ("force", "acceleration") } else { ("acceleration", "force") };
+    DataError::Channels { at: at.clone(), problem: format!("{problem}; this {own} has no {other}") }
 }
 
 /// Refuses a hit whose acceleration is its force, but for a factor; `at` is where the acceleration stands.

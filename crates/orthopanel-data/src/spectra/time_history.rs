@@ -117,7 +117,7 @@ impl TimeHistory {
         if forces.len() != accelerations.len() || forces.is_empty() {
             let (f, a) = (forces.len(), accelerations.len());
             let problem = format!("{f} force and {a} acceleration records against time: one of each a hit is needed");
-            return Err(DataError::Channels { at: first, problem });
+            return Err(misplaced_channel::alone(&order, problem, first));
         }
         misplaced_channel::check_order(&order)?;
         let mut hits = Vec::with_capacity(forces.len());
