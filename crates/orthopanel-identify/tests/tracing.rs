@@ -5,7 +5,7 @@
 mod support;
 
 use orthopanel_identify::{Tracing, Verdict, trace};
-use support::made;
+use support::{hammer_test, made};
 
 fn value(found: &Tracing, parameter: &str) -> (f64, f64) {
     let estimate = found.effects[0].parameters.iter().find(|known| known.name == parameter).unwrap().values[0];
@@ -43,4 +43,18 @@ fn val_nothing_is_missing_where_nothing_was_put_in() {
     // A free piece has no clamp that could yield.
     let reason = found.not_tested.iter().find(|known| known.id == "support-compliance").unwrap();
     assert!(reason.reason.contains("clamped"), "{}", reason.reason);
+}
+
+/// A second touch and an overload would look like a gain, and like damping.
+#[test]
+fn val_hits_that_are_left_out_are_left_out_of_the_trace() {
+    let folder = tempfile::tempdir().unwrap();
+    let Some(test) = hammer_test(&folder.path().join("set"), &["--double-hit", "2", "--overload", "4"]) else { return };
+    let found = trace(&test).unwrap();
+    assert_eq!(found.verdict, Verdict::NothingMissing, "{:?}", found.error);
+    assert!(found.error.after.fitted < 1.1 * found.error.noise_floor.max(1.0), "{:?}", found.error);
+    for hit in ["hit 2 ", "hit 4 "] {
+        let told = |note: &String| note.contains(hit) && note.contains("left out");
+        assert!(found.notes.iter().any(told), "{hit}: {:?}", found.notes);
+    }
 }

@@ -36,7 +36,7 @@ enum WindowWord {
     /// Hann's over both channels, as in the paper: only where the blow lies well inside the record, and it widens peaks
     Hann,
     /// Force kept near its peak, exp(-t/tau) over both channels: for a response cut off while it still rings. The
-    /// damping that the exponential adds is known and taken out again, so nothing is biased; needs --tau
+    /// damping that the exponential adds is known, and `identify` takes it out; a CSV of lines cannot. Needs --tau
     ForceExponential,
 }
 

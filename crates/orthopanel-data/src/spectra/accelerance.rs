@@ -30,6 +30,8 @@ pub struct Accelerance {
     pub coherence: Option<Vec<f64>>,
     /// Hits averaged; 0 where the file does not tell. The variance is estimated with `2 (hits - 1)` degrees of freedom.
     pub hits: usize,
+    /// Which hits of the history these are, by their number from zero; empty where the file gives the accelerance itself.
+    pub kept: Vec<usize>,
     /// The accelerance stands at $s = \sigma + j\omega$ with this $\sigma$ \[1/s\]: see
     /// [`Window::ForceExponential`](crate::Window::ForceExponential); else zero.
     pub decay_rate: f64,
@@ -50,6 +52,7 @@ impl Accelerance {
             variance: None,
             coherence: None,
             hits: 0,
+            kept: Vec::new(),
             decay_rate: 0.0,
             force_noise: None,
             notes: Vec::new(),

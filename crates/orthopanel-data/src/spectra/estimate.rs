@@ -149,6 +149,7 @@ impl TimeHistory {
             return Err(DataError::NoUsableHit { file: self.file.clone(), reasons });
         }
         result.hits = kept.len();
+        result.kept = kept.iter().map(|(index, _)| *index).collect();
         result.decay_rate = window.decay_rate();
         if force_noise.is_none()
             && window.force_half_width().is_some_and(|half| 2.0 * half * self.rate < samples as f64)

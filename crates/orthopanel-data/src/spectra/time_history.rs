@@ -5,6 +5,7 @@ use std::{path::PathBuf, sync::Arc};
 use orthopanel_model::Place;
 
 use super::{
+    accelerance::Accelerance,
     channels::{self, Quantity},
     extremes::{LANES, extremes, sampled_median},
     misplaced_channel::{self, Ordered},
@@ -63,6 +64,18 @@ impl TimeHistory {
         let later = self.further_files.iter().rev().find(|(from, _)| *from <= index);
         let file = later.map_or(&self.file, |(_, file)| file);
         format!("hit {} ({})", index + 1, file.file_name().unwrap_or(file.as_os_str()).display())
+    }
+
+    /// The hits that an accelerance of this history stands on: what it left out helps nobody else either.
+    #[must_use]
+    pub fn kept_in(&self, accelerance: &Accelerance) -> Self {
+        let kept = &accelerance.kept;
+        let hits = kept.iter().filter_map(|&index| self.hits.get(index).cloned()).collect();
+        let files = self
+            .further_files
+            .iter()
+            .map(|(from, file)| (kept.iter().take_while(|index| *index < from).count(), file.clone()));
+        Self { hits, further_files: files.collect(), ..self.clone() }
     }
 
     /// Reads the file of a time-history measurement.

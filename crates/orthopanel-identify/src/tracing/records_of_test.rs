@@ -47,6 +47,8 @@ pub(super) struct TestRecords {
     /// As the analyser shows the records.
     accelerances: Vec<Accelerance>,
     reactions: Option<Reactions>,
+    /// Hits that were left out, and why.
+    pub notes: Vec<String>,
 }
 
 /// The band ends where the force has fallen by this much \[dB\].
@@ -79,6 +81,15 @@ impl TestRecords {
         let estimation = Estimation { force_drop: FORCE_DROP, ..Estimation::default() };
         let accelerances = histories.par_iter().map(|history| Ok(history.accelerance(estimation)?));
         let accelerances = accelerances.collect::<Result<Vec<_>, IdentifyError>>()?;
+        let mut notes = Vec::new();
+        for (history, accelerance) in histories.iter().zip(&accelerances) {
+            let left_out = accelerance.notes.iter().filter(|note| note.contains("left out"));
+            let [force, response] = [history.force_at, history.response_at].map(|place| place.x);
+            notes.extend(left_out.map(|note| format!("force at x = {force} m, response at {response} m: {note}")));
+        }
+        let kept: Vec<TimeHistory> =
+            histories.iter().zip(&accelerances).map(|(history, accelerance)| history.kept_in(accelerance)).collect();
+        let histories = &kept[..];
         let tops = accelerances.iter().filter_map(|accelerance| accelerance.frequency.last().copied());
         let hit = tops.fold(f64::INFINITY, f64::min);
         let flat = histories.iter().map(|history| FLAT * history.rate).fold(f64::INFINITY, f64::min);
@@ -97,6 +108,7 @@ impl TestRecords {
         let finer = WIDENINGS.iter().skip(1).map(|&widening| widened_lines(histories, widening, records.band));
         records.widened.extend(finer);
         records.accelerances = accelerances;
+        records.notes = notes;
         records.reactions = Reactions::new(test, histories, (records.summed, records.band))?;
         Ok(records)
     }
@@ -154,6 +166,7 @@ impl TestRecords {
             strange_poles,
             accelerances: vec![],
             reactions: None,
+            notes: vec![],
         };
         let problem = records.problem(0);
         let from = problem.parameters(&records.start);

@@ -69,7 +69,7 @@ pub(super) fn report(test: &ImpactTest, search: &Search, ranking: &Ranking) -> R
         panels: vec![panel],
         removed,
         accelerances: records.curves(chosen)?,
-        notes: if ranking.unfinished { vec![UNFINISHED.to_owned()] } else { vec![] },
+        notes: records.notes.iter().cloned().chain(ranking.unfinished.then(|| UNFINISHED.to_owned())).collect(),
     })
 }
 

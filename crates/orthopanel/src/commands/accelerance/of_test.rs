@@ -81,6 +81,16 @@ pub fn execute(
         notes::say(&format!("{pair}: "), &entry.notes);
     }
     written.iter().for_each(|path| eprintln!("wrote {}", path.display()));
+    if let Some(widest) = accelerances.iter().map(|entry| entry.decay_rate).max_by(f64::total_cmp)
+        && widest > 0.0
+        && !written.is_empty()
+    {
+        eprintln!(
+            "note: these lines hold the exponential window's damping, {widest:.3} 1/s, and a CSV file does not carry that number: \
+             every damping ratio read off it comes out too great by {widest:.3} / omega. `identify` on the hits themselves takes \
+             it out"
+        );
+    }
     if json {
         output::print_json(&Answer { schema: "orthopanel.accelerances/1", accelerances });
     } else {
