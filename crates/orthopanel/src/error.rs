@@ -57,6 +57,11 @@ pub enum CommandError {
     #[error("{}: an FMU, where a model file (JSON) is wanted: name the one that the FMU was made from", .path.display())]
     FmuForModel { path: PathBuf },
     #[error(
+        "{}: a test file, where a model file (JSON) is wanted: `orthopanel identify {} -o model.json` makes one of it",
+        .path.display(), .path.display()
+    )]
+    TestForModel { path: PathBuf },
+    #[error(
         "{}: modes and places are fixed inside an FMU: leave out --modes, --up-to, --force and --response, or give them \
          to `orthopanel export`", .path.display()
     )]

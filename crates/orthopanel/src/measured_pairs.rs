@@ -161,7 +161,7 @@ impl From<Misfit> for MisfitEntry {
     }
 }
 
-/// A row a hit.
+/// A row a hit, and below them what is wrong with hits.
 pub fn misfit_table(misfits: &[&HitMisfit]) -> String {
     let with_band = misfits.iter().any(|misfit| misfit.in_band.is_some());
     let row = |misfit: &&HitMisfit| {
@@ -199,7 +199,13 @@ pub fn misfit_table(misfits: &[&HitMisfit]) -> String {
     if with_band {
         heading.push("in the band");
     }
-    tables::aligned(&heading, &misfits.iter().map(row).collect::<Vec<_>>())
+    let mut table = tables::aligned(&heading, &misfits.iter().map(row).collect::<Vec<_>>());
+    for misfit in misfits {
+        if let Some(said) = misfit.verdict.said() {
+            table += &format!("{} to {}: {said}\n", place_text(misfit.force), place_text(misfit.response));
+        }
+    }
+    table
 }
 
 /// Measured and calculated acceleration of every hit, one below the other.

@@ -5,11 +5,15 @@ use std::path::Path;
 use orthopanel_model::PanelModel;
 
 use crate::error::{CommandError, InFile as _};
+use crate::measured_pairs::is_test_file;
 use crate::{importer, output};
 
 pub fn read(path: &Path) -> Result<PanelModel, CommandError> {
     if importer::is_fmu(path)? {
         return Err(CommandError::FmuForModel { path: path.into() });
+    }
+    if is_test_file(path) {
+        return Err(CommandError::TestForModel { path: path.into() });
     }
     let text =
         std::fs::read_to_string(path).map_err(|source| CommandError::Unreadable { path: path.into(), source })?;

@@ -6,7 +6,7 @@
 mod support;
 
 use serde_json::Value;
-use support::{Bench, made_records, number};
+use support::{Bench, made_records, number, refused};
 
 /// Constants within 0.1 and 0.3 %, damping of the modes shown within `zeta_percent` of the truth.
 fn assert_truth(answer: &Value, truth: &Value, least_modes: usize, zeta_percent: f64) {
@@ -101,7 +101,12 @@ fn val_bad_hits_are_left_out_and_said() {
     let rows = bench.rows("h.csv");
     assert_eq!(rows.len() as f64, number(of, "/lines"));
     assert!(rows.iter().all(|row| (0.0..=1.0).contains(&row[3]) && row[4] >= 0.0));
-    assert_truth(&bench.json("identify bad/test.toml"), &truth, 3, 3.0);
+    assert_truth(&bench.json("identify bad/test.toml -o bad.json"), &truth, 3, 3.0);
+
+    let compared = bench.run("simulate bad.json --force-file bad/test.toml");
+    let table = String::from_utf8_lossy(&compared.stdout);
+    assert!(table.contains("hit 2 left out: double hit") && table.contains("hit 4 left out"), "{table}");
+    refused(&bench, "modes bad/test.toml", 2, &["bad/test.toml: a test file, where a model file (JSON) is wanted"]);
 }
 
 /// Several pairs of places from one test: numbered files beside a name that ends in .csv, else a folder.
