@@ -86,6 +86,12 @@ fn assert_truth(case: &Case) {
             let Some(zeta) = mode.damping else { continue };
             assert!((zeta.value / case.zeta - 1.0).abs() < 0.03, "{named}: mode {}: {}", mode.mode, zeta.value);
         }
+        let fit = &found.pieces[0];
+        let untold = (1..=fit.damping.len()).filter(|mode| fit.modes.iter().all(|listed| listed.mode != *mode));
+        for mode in untold {
+            let said = format!("mode {mode}: zeta");
+            assert!(found.notes.iter().any(|note| note.contains(&said)), "{named}: {said}: {:?}", found.notes);
+        }
     }
 }
 

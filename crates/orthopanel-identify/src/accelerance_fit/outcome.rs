@@ -172,6 +172,7 @@ fn report(
     refuse_low_band(start.recorded, &problem.constants, &parameters)?;
     let (fits, accelerance_rms_percent) = accelerance_fits(problem, lines);
     let pieces = piece_fits(test, start, problem, &parameters, &log_std)?;
+    notes.extend(pieces.iter().filter_map(without_resonance));
     let errors = pieces.iter().flat_map(|piece| &piece.modes).map(|mode| mode.error_percent().powi(2));
     // The sum of nothing is minus zero.
     let errors = errors.fold(0.0, std::ops::Add::add);
@@ -243,6 +244,22 @@ fn accelerance_fits(problem: &AcceleranceProblem, lines: Vec<Vec<Complex64>>) ->
     let missed: f64 = pairs().map(|(model, measured)| (model - measured).norm_sqr()).sum();
     let total: f64 = pairs().map(|(_, measured)| measured.norm_sqr()).sum();
     (fits, 100.0 * (missed / total).sqrt())
+}
+
+/// Modes in the band that no row of the table tells, for no resonance of their own stands out, with their damping.
+fn without_resonance(fit: &PieceFit) -> Option<String> {
+    let is_listed = |mode: usize| fit.modes.iter().any(|listed| listed.mode == mode);
+    let told = |(index, damping): (usize, &Estimate)| {
+        let (mode, value) = (index + 1, damping.value);
+        let seen = damping.std.filter(|std| *std < DAMPING_UNSEEN * value);
+        match seen {
+            _ if is_listed(mode) => None,
+            Some(std) => Some(format!("mode {mode}: zeta {value:.3e} +- {std:.1e}")),
+            None => Some(format!("mode {mode}: zeta is not told, {value:.3e} in the model is a usual one")),
+        }
+    };
+    let told: Vec<String> = fit.damping.iter().enumerate().filter_map(told).collect();
+    (!told.is_empty()).then(|| format!("no resonance of its own stands out of {}", told.join("; ")))
 }
 
 /// The modes that the records show, and the damping of all modes inside the band.
