@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use num_complex::Complex64;
 
-use crate::effects::{Action, CoreModulus, DressedMode, DressedPanel, PanelWithEffects, RelaxingLines};
+use crate::effects::{Action, CoreModulus, DressedMode, DressedPanel, RelaxingLines};
 use crate::panel_modes::ModeRange;
 use crate::time_model::CORE;
 use crate::{EffectSetting, EffectState, ModelError, PanelMode, PanelModel, Place};
@@ -39,13 +39,7 @@ impl PanelModel {
         let at = |factor: f64| {
             let mut values = values.clone();
             moduli.iter().for_each(|&index| values[index] *= factor);
-            let parts = PanelWithEffects {
-                setting: &setting,
-                even: &even,
-                values: &values,
-                effects: &elastic,
-                damping: &self.damping,
-            };
+            let parts = self.on_even(&setting, &even, &values, &elastic);
             DressedPanel::modes(parts, count)
         };
         let low = at(1.0)?;
@@ -84,13 +78,7 @@ impl PanelModel {
         };
         let count = count.max(1);
         let even = self.even(&setting, count)?;
-        let parts = PanelWithEffects {
-            setting: &setting,
-            even: &even,
-            values: &values,
-            effects: &effects,
-            damping: &self.damping,
-        };
+        let parts = self.on_even(&setting, &even, &values, &effects);
         RelaxingLines::new(parts, count, [force, response])
     }
 }

@@ -95,13 +95,7 @@ impl PanelModel {
         let setting = EffectSetting::of_panel(&self.piece, self.boundary);
         let first = |count: usize| {
             let even = self.even(&setting, count)?;
-            let parts = PanelWithEffects {
-                setting: &setting,
-                even: &even,
-                values: &values,
-                effects: &effects,
-                damping: &self.damping,
-            };
+            let parts = self.on_even(&setting, &even, &values, &effects);
             DressedPanel::modes(parts, count)
         };
         let modes = match range {
@@ -128,6 +122,17 @@ impl PanelModel {
             StructureKind::TimoshenkoBeam => Even::beam(setting, count),
             StructureKind::MindlinPlate => Ok(Even::Plate),
         }
+    }
+
+    /// The panel with these effects on what vibrates without them, at these values of its constants.
+    pub(crate) fn on_even<'a>(
+        &'a self,
+        setting: &'a EffectSetting,
+        even: &'a Even,
+        values: &'a [f64],
+        effects: &'a [EffectState],
+    ) -> PanelWithEffects<'a> {
+        PanelWithEffects { setting, even, values, effects, damping: &self.damping }
     }
 
     /// Flexible modes without effects up to a frequency \[Hz\]: of a plate roughly.

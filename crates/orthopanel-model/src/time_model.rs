@@ -1,6 +1,6 @@
 //! What a time stepper needs of a panel: its modes, and the internal variables of a core that relaxes.
 
-use crate::effects::{CoreFit, DressedPanel, PanelWithEffects};
+use crate::effects::{CoreFit, DressedPanel};
 use crate::{EffectSetting, ModalModel, ModeRange, ModelError, PanelModel, Place};
 
 /// Modes as seen from ports, ready to be stepped.
@@ -84,13 +84,7 @@ impl PanelModel {
         }
         let setting = EffectSetting::of_panel(&self.piece, self.boundary);
         let even = self.even(&setting, flexible)?;
-        let parts = PanelWithEffects {
-            setting: &setting,
-            even: &even,
-            values: &values,
-            effects: &effects,
-            damping: &self.damping,
-        };
+        let parts = self.on_even(&setting, &even, &values, &effects);
         let found = DressedPanel::relaxing_modes(parts, flexible)?;
         let Some((modes, fit)) = found else { return Ok(None) };
         let modes: Vec<_> = modes.into_iter().map(crate::PanelMode::of_dressed).collect();
