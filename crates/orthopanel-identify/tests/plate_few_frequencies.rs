@@ -1,39 +1,20 @@
 //! Short lists of a plate's frequencies: what they do not show is held and said, never printed as a result.
 
-use orthopanel_data::ImpactTest;
-use orthopanel_identify::{Identification, Search, identify};
+mod support;
 
-/// A free plate of 0.8 x 0.2 x 0.03 m with the constants of [`TRUTH`]: frequencies by scikit-fem, nodal lines by its changes of
-/// sign (`fmpy-checks/plate_by_scikit_fem.py`).
-const FREE: [(f64, [usize; 2]); 10] = [
-    (321.8, [2, 0]),
-    (631.0, [1, 1]),
-    (840.3, [3, 0]),
-    (1254.6, [2, 1]),
-    (1529.4, [4, 0]),
-    (1876.5, [3, 1]),
-    (2316.8, [5, 0]),
-    (2515.8, [4, 1]),
-    (3144.8, [6, 0]),
-    (3191.4, [5, 1]),
-];
-/// The same plate with all edges pinned, by Navier's series, and clamped, by scikit-fem: modes without nodes along y come first.
+use orthopanel_identify::{Identification, Search, identify};
+use support::plate::{FREE, TRUTH, listed};
+
+/// The plate of [`FREE`] with all edges pinned, by Navier's series, and clamped, by scikit-fem: modes without nodes along y come first.
 const PINNED: [(f64, [usize; 2]); 5] =
     [(1711.2, [0, 0]), (1974.2, [1, 0]), (2391.5, [2, 0]), (2932.8, [3, 0]), (3565.3, [4, 0])];
 const CLAMPED: [(f64, [usize; 2]); 5] =
     [(2159.0, [0, 0]), (2341.9, [1, 0]), (2674.8, [2, 0]), (3147.4, [3, 0]), (3728.4, [4, 0])];
 
-const TRUTH: [(&str, f64); 6] =
-    [("e_x", 1.07e10), ("e_y", 9.6e9), ("nu_xy", 0.31), ("g_xy", 3.7e9), ("g_yz", 2.9e8), ("g_zx", 5.363e8)];
-
 fn identified(edges: &str, lines: &[(f64, [usize; 2])], held: &str) -> Identification {
-    let (values, shapes): (Vec<f64>, Vec<[usize; 2]>) = lines.iter().copied().unzip();
-    let text = format!(
-        "structure = \"mindlin-plate\"\n[piece]\nlength = 0.8\nwidth = 0.2\nthickness = 0.03\nmass_per_area = 6.88\n\
-         [boundary]\nleft = \"{edges}\"\nright = \"{edges}\"\nfront = \"{edges}\"\nback = \"{edges}\"\n{held}\n\
-         [[measurement]]\nkind = \"natural-frequencies\"\nvalues = {values:?}\nshape = {shapes:?}\n"
-    );
-    let test = ImpactTest::from_toml(&text, "test.toml").unwrap();
+    let boundary =
+        format!("[boundary]\nleft = \"{edges}\"\nright = \"{edges}\"\nfront = \"{edges}\"\nback = \"{edges}\"\n{held}");
+    let test = listed(lines, &boundary, "");
     identify(&test, Search::LeastSquares).unwrap_or_else(|error| panic!("{edges} {lines:?}: {error}"))
 }
 

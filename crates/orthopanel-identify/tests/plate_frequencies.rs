@@ -1,7 +1,10 @@
 //! The plate on the paper's own frequencies, and constants that pieces share or have of their own.
 
+mod support;
+
 use orthopanel_data::ImpactTest;
 use orthopanel_identify::{Identification, IdentifyError, Search, identify};
+use support::plate::{FREE, listed};
 
 /// Measured columns of tables 5 to 8.
 const MEASURED: [&str; 4] = [
@@ -133,33 +136,13 @@ fn a_beam_refuses_nodal_lines_along_its_length_with_the_way_out() {
     assert!(message.contains("shape [1, 1]") && message.contains("mindlin-plate"), "{message}");
 }
 
-/// A plate of 0.8 x 0.2 x 0.03 m with e_x 1.07e10, e_y 9.6e9, nu_xy 0.31, g_xy 3.7e9, g_yz 2.9e8, g_zx 5.363e8 Pa:
-/// frequencies by scikit-fem, nodal lines by its changes of sign (`fmpy-checks/plate_by_scikit_fem.py`).
-const MADE: [(f64, [usize; 2]); 10] = [
-    (321.8, [2, 0]),
-    (631.0, [1, 1]),
-    (840.3, [3, 0]),
-    (1254.6, [2, 1]),
-    (1529.4, [4, 0]),
-    (1876.5, [3, 1]),
-    (2316.8, [5, 0]),
-    (2515.8, [4, 1]),
-    (3144.8, [6, 0]),
-    (3191.4, [5, 1]),
-];
-
-/// Notes on the made plate without the lines in `left_out`, some lines named otherwise.
+/// Notes on the plate of [`FREE`] without the lines in `left_out`, some lines named otherwise.
 fn notes(left_out: &[usize], renamed: &[(usize, [usize; 2])]) -> Vec<String> {
-    let kept = MADE.iter().enumerate().filter(|(line, _)| !left_out.contains(line));
+    let kept = FREE.iter().enumerate().filter(|(line, _)| !left_out.contains(line));
     let named = kept.map(|(line, &(value, nodes))| {
         (value, renamed.iter().find(|(renamed, _)| *renamed == line).map_or(nodes, |(_, nodes)| *nodes))
     });
-    let (values, shapes): (Vec<f64>, Vec<[usize; 2]>) = named.unzip();
-    let text = format!(
-        "{PLATE}\n[piece]\nlength = 0.8\nwidth = 0.2\nthickness = 0.03\nmass_per_area = 6.88\n\
-         [[measurement]]\nkind = \"natural-frequencies\"\nvalues = {values:?}\nshape = {shapes:?}\n"
-    );
-    let test = ImpactTest::from_toml(&text, "test.toml").unwrap();
+    let test = listed(&named.collect::<Vec<_>>(), "", "");
     identify(&test, Search::LeastSquares).unwrap_or_else(|error| panic!("{error}")).notes
 }
 
@@ -195,13 +178,8 @@ fn two_modes_that_changed_their_names_are_both_told() {
 #[test]
 fn a_rigid_name_is_refused() {
     for (rigid, line) in [([0, 0], 0), ([0, 1], 1), ([1, 0], 2)] {
-        let renamed = MADE.map(|(value, nodes)| if nodes == MADE[line].1 { (value, rigid) } else { (value, nodes) });
-        let (values, shapes): (Vec<f64>, Vec<[usize; 2]>) = renamed.into_iter().unzip();
-        let text = format!(
-            "{PLATE}\n[piece]\nlength = 0.8\nwidth = 0.2\nthickness = 0.03\nmass_per_area = 6.88\n\
-             [[measurement]]\nkind = \"natural-frequencies\"\nvalues = {values:?}\nshape = {shapes:?}\n"
-        );
-        let refused = identify(&ImpactTest::from_toml(&text, "test.toml").unwrap(), Search::LeastSquares).unwrap_err();
+        let renamed = FREE.map(|(value, nodes)| if nodes == FREE[line].1 { (value, rigid) } else { (value, nodes) });
+        let refused = identify(&listed(&renamed, "", ""), Search::LeastSquares).unwrap_err();
         assert!(refused.is_bad_input() && refused.to_string().contains("rigid"), "{refused}");
     }
 }
@@ -210,7 +188,7 @@ fn a_rigid_name_is_refused() {
 #[test]
 fn pairs_that_changed_their_names_are_told() {
     for (one, other) in [(0, 1), (1, 9), (2, 5), (3, 8), (6, 7)] {
-        let line = |at: usize| MADE[at];
+        let line = |at: usize| FREE[at];
         let told = notes(&[], &[(one, line(other).1), (other, line(one).1)]);
         assert_eq!(told.len(), 2, "{one} {other}: {told:?}");
         for (note, (own, wrong)) in told.iter().zip([(line(one), line(other)), (line(other), line(one))]) {
@@ -245,14 +223,10 @@ fn val_exact_frequencies_of_modes_that_veer_are_met() {
 /// What no other start mends is said.
 #[test]
 fn a_plate_that_misses_its_frequencies_says_so() {
-    let (values, shapes): (Vec<f64>, Vec<[usize; 2]>) = MADE.into_iter().unzip();
     // Two bending modes that no plate puts there.
-    let moved = |(line, value): (usize, f64)| value * [1.02, 1.0, 1.0, 1.0, 0.985].get(line).unwrap_or(&1.0);
-    let values: Vec<f64> = values.into_iter().enumerate().map(moved).collect();
-    let text = format!(
-        "{PLATE}\n[piece]\nlength = 0.8\nwidth = 0.2\nthickness = 0.03\nmass_per_area = 6.88\n\
-         [[measurement]]\nkind = \"natural-frequencies\"\nvalues = {values:?}\nshape = {shapes:?}\nresolution = 0.5\n"
-    );
-    let found = identify(&ImpactTest::from_toml(&text, "test.toml").unwrap(), Search::LeastSquares).unwrap();
+    let mut moved = FREE;
+    moved[0].0 *= 1.02;
+    moved[4].0 *= 0.985;
+    let found = identify(&listed(&moved, "", "resolution = 0.5"), Search::LeastSquares).unwrap();
     assert!(found.notes.iter().any(|note| note.contains("misses the frequencies")), "{:?}", found.notes);
 }

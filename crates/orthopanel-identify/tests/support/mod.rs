@@ -1,6 +1,8 @@
 //! What tests share.
 #![allow(dead_code, reason = "each test file takes what it needs")]
 
+pub mod plate;
+
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
