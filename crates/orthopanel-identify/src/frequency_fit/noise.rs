@@ -11,7 +11,7 @@ pub(super) const HALF_95: f64 = 1.96;
 /// Relative standard deviation of a frequency, where neither a bin is stated nor a fit has told it.
 pub(super) const USUAL_SCATTER: f64 = 1e-3;
 /// Frequencies that are missed by more scatters than these are not missed by chance.
-pub(super) const LARGE_MISS: f64 = 5.0;
+pub(super) const BEYOND_CHANCE: f64 = 5.0;
 /// Student's half of a 95 % interval, where the scatter is that of 1, 2, ... residuals beyond the constants.
 const STUDENT: [f64; 9] = [12.71, 4.30, 3.18, 2.78, 2.57, 2.45, 2.36, 2.31, 2.26];
 

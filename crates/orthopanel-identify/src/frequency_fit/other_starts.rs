@@ -1,7 +1,7 @@
 //! Other starts where a fit misses: of two modes that veer each holds part of both shapes, and a search that comes from the
 //! wrong side stays on a side minimum.
 
-use super::noise::{LARGE_MISS, Noise};
+use super::noise::{BEYOND_CHANCE, Noise};
 use super::problem::FrequencyProblem;
 use super::seen_constants::{let_hidden_rest, prediction_error};
 use super::{Minimum, least_squares};
@@ -22,13 +22,13 @@ fn cost(problem: &FrequencyProblem, at: &Minimum) -> f64 {
 /// The best of the minima over all constants that other starts lead to, where the one found misses and that one does not.
 pub(super) fn from_other_starts(problem: &mut FrequencyProblem, all: &FreeConstants, found: Minimum) -> Minimum {
     let miss = (cost(problem, &found) / problem.count().max(1) as f64).sqrt();
-    let least = LARGE_MISS * Noise::stated(problem).variance.sqrt();
+    let least = BEYOND_CHANCE * Noise::stated(problem).variance.sqrt();
     if problem.count() <= all.count() || !(least..HOPELESS).contains(&miss) {
         return found;
     }
     let most = FAR_BETTER * cost(problem, &found);
     let mut best: Option<(f64, FreeConstants, Minimum)> = None;
-    let (constants, least) = (problem.constants.clone(), Noise::stated(problem).variance * problem.count() as f64);
+    let (constants, noise) = (problem.constants.clone(), Noise::stated(problem).variance * problem.count() as f64);
     for start in starts(&constants, all, &found.parameters) {
         problem.constants = all.clone();
         let Ok(free) = least_squares(problem, &start, None) else { continue };
@@ -38,7 +38,7 @@ pub(super) fn from_other_starts(problem: &mut FrequencyProblem, all: &FreeConsta
         if predicts && reached < best.as_ref().map_or(most, |(least, ..)| *least) {
             best = Some((reached, problem.constants.clone(), seen));
         }
-        if best.as_ref().is_some_and(|(reached, ..)| *reached < least) {
+        if best.as_ref().is_some_and(|(reached, ..)| *reached < noise) {
             break;
         }
     }

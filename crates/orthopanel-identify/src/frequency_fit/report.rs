@@ -3,7 +3,7 @@
 use orthopanel_data::ImpactTest;
 use orthopanel_model::StructureKind;
 
-use super::noise::{LARGE_MISS, Noise, USUAL_SCATTER};
+use super::noise::{BEYOND_CHANCE, Noise, USUAL_SCATTER};
 use super::problem::{FrequencyProblem, SetPrediction};
 use super::uncertainty::{residual_variance, rounding_variance, uncertainty};
 use crate::free_constants::FreeConstants;
@@ -48,7 +48,7 @@ pub(super) fn report(
 fn large_miss(problem: &FrequencyProblem, at: &Linearised) -> Option<String> {
     let rms = (at.quadratic().cost / problem.count().max(1) as f64).sqrt();
     let scatter = Noise::stated(problem).variance.sqrt();
-    (problem.structure == StructureKind::MindlinPlate && rms > LARGE_MISS * scatter).then(|| {
+    (problem.structure == StructureKind::MindlinPlate && rms > BEYOND_CHANCE * scatter).then(|| {
         let told = if rounding_variance(problem) > 0.0 { "the bins stated" } else { "the usual scatter" };
         format!(
             "the plate misses the frequencies by {:.2} % rms, {:.0} times {told} ({:.2} %), from other starts too: a mode may \

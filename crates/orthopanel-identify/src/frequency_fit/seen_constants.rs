@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::first_constants::{Resting, first_minimum};
-use super::noise::{HALF_95, LARGE_MISS, Noise};
+use super::noise::{BEYOND_CHANCE, HALF_95, Noise};
 use super::problem::{FrequencyProblem, FrequencySet};
 use super::uncertainty::{left_one_out_percent, with_unseen};
 use super::{Minimum, least_squares};
@@ -97,7 +97,10 @@ impl Reached {
     fn of(problem: &FrequencyProblem, at: &Minimum) -> Self {
         let at = problem.linearised(&at.predictions, &problem.constants);
         let mean = at.quadratic().cost / problem.count() as f64;
-        Self { prediction: prediction_error(&at), misses: mean > LARGE_MISS.powi(2) * Noise::stated(problem).variance }
+        Self {
+            prediction: prediction_error(&at),
+            misses: mean > BEYOND_CHANCE.powi(2) * Noise::stated(problem).variance,
+        }
     }
 }
 
