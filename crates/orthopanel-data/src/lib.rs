@@ -8,7 +8,8 @@ mod test_file;
 pub use error::{DataError, Location, Position};
 pub use records::{Axis, Port, Record, RecordFile, RecordKind, Samples};
 pub use spectra::{
-    Accelerance, Channel, ChannelNoise, Estimation, Estimator, ForceNoise, Hit, HitFault, TimeHistory, Window,
+    Accelerance, Channel, ChannelNoise, Estimation, Estimator, ForceNoise, Hit, HitFault, HitVerdict, TimeHistory,
+    Window,
 };
 pub use test_file::{
     AccelerationUnit, DeclaredEffect, Direction, ImpactTest, Measurement, MeasurementData, NamedPiece,

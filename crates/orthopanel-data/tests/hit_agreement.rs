@@ -2,7 +2,7 @@
 
 mod support;
 
-use orthopanel_data::{Estimation, Hit, TimeHistory};
+use orthopanel_data::{Estimation, Hit, HitVerdict, TimeHistory};
 use support::hammer::{Noise, Resonator, history};
 
 const PIECE: Resonator = Resonator { radius: 0.97, angle: 0.5 };
@@ -79,4 +79,21 @@ fn val_a_hit_of_another_place_is_left_out_and_two_groups_are_refused() {
     let said = all.accelerance(Estimation::default()).unwrap_err().to_string();
     assert!(said.contains("hit 3 (other.csv), hit 4 (other.csv) differ by"), "{said}");
     assert!(said.contains("they belong to another place; correct force_at or response_at"), "{said}");
+}
+
+/// What a hit is told to be is what became of it in the accelerance, whatever found its fault.
+#[test]
+fn verdicts_are_those_that_the_accelerance_stands_on() {
+    let (here, there) = (|seed| hit(PIECE, 100.0, seed), hit(ELSEWHERE, 100.0, 1));
+    let of = history(vec![here(2), there.clone(), here(3)]);
+    let kept = |verdicts: Vec<HitVerdict>| verdicts.iter().map(HitVerdict::is_kept).collect::<Vec<_>>();
+    assert_eq!(kept(of.verdicts()), [true, false, true]);
+    let accelerance = of.accelerance(Estimation::default()).unwrap();
+    assert_eq!(of.kept_in(&accelerance).hits, [here(2), here(3)]);
+    let [left_out] = &of.left_out_of(&accelerance.verdicts)[..] else { panic!("{accelerance:?}") };
+    assert!(left_out.starts_with("hit 2 left out: its accelerance differs by"), "{left_out}");
+    assert_eq!(kept(accelerance.verdicts), [true, false, true]);
+    // Two groups make no accelerance; each hit by itself is without fault.
+    let parted = history(vec![here(2), here(3), there, hit(ELSEWHERE, 100.0, 4)]);
+    assert_eq!(kept(parted.verdicts()), [true; 4]);
 }

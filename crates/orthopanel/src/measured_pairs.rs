@@ -3,7 +3,7 @@
 use std::ops::RangeInclusive;
 use std::path::Path;
 
-use orthopanel_data::{Hit, TimeHistory};
+use orthopanel_data::{Hit, HitVerdict, TimeHistory};
 use orthopanel_identify::{
     ForceBetweenSamples, HistorySettings, HitComparison, IdentifyError, Misfit, compare_time_history,
 };
@@ -25,14 +25,14 @@ pub fn place_text(place: Place) -> String {
 
 /// What became of one hit.
 #[derive(Serialize)]
-pub struct HitVerdict {
+pub struct ToldHit {
     /// From 1.
     hit: usize,
     pub kept: bool,
     faults: Vec<String>,
 }
 
-impl HitVerdict {
+impl ToldHit {
     /// Faults and what became of the hit; `None` for one without fault.
     pub fn said(&self) -> Option<String> {
         let verdict = if self.kept { "kept" } else { "left out" };
@@ -40,16 +40,14 @@ impl HitVerdict {
     }
 }
 
-pub fn verdicts(history: &TimeHistory) -> Vec<HitVerdict> {
-    let verdict = |(index, hit): (usize, &orthopanel_data::Hit)| {
-        let faults = hit.faults(history.rate);
-        HitVerdict {
-            hit: index + 1,
-            kept: !faults.iter().any(|fault| fault.is_fatal()),
-            faults: faults.iter().map(ToString::to_string).collect(),
-        }
+/// In the order of the hits.
+pub fn told(verdicts: &[HitVerdict]) -> Vec<ToldHit> {
+    let told = |(index, verdict): (usize, &HitVerdict)| ToldHit {
+        hit: index + 1,
+        kept: verdict.is_kept(),
+        faults: verdict.faults.iter().map(ToString::to_string).collect(),
     };
-    history.hits.iter().enumerate().map(verdict).collect()
+    verdicts.iter().enumerate().map(told).collect()
 }
 
 /// A pair of places whose measured forces drove a model.
@@ -85,11 +83,11 @@ impl ComparedPair {
 
     /// The hit to draw: the first without a fault that spoils it, else the first.
     pub fn shown(&self) -> usize {
-        verdicts(&self.history).iter().position(|hit| hit.kept).unwrap_or(0)
+        self.history.verdicts().iter().position(HitVerdict::is_kept).unwrap_or(0)
     }
 
     pub fn misfits(&self) -> Vec<HitMisfit> {
-        let hits = self.hits.iter().zip(verdicts(&self.history));
+        let hits = self.hits.iter().zip(told(&self.history.verdicts()));
         let peak = |hit: &Hit| hit.force.iter().fold(0.0_f64, |peak, force| peak.max(force.abs()));
         hits.zip(&self.history.hits)
             .map(|((compared, verdict), hit)| HitMisfit {
@@ -111,7 +109,7 @@ pub struct HitMisfit {
     force: Place,
     response: Place,
     #[serde(flatten)]
-    verdict: HitVerdict,
+    verdict: ToldHit,
     pub peak_force_n: f64,
     whole: MisfitEntry,
     /// With every line outside the band of the identification taken out; `null` where there was none.

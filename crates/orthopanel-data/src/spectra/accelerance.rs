@@ -5,6 +5,7 @@ use orthopanel_model::Place;
 
 use super::channels::{self, Quantity};
 use super::force_noise::ForceNoise;
+use super::hit_verdict::HitVerdict;
 use crate::{
     DataError, Location, RecordedResponse,
     records::{Record, RecordFile, RecordKind, Samples},
@@ -30,8 +31,8 @@ pub struct Accelerance {
     pub coherence: Option<Vec<f64>>,
     /// Hits averaged; 0 where the file does not tell. The variance is estimated with `2 (hits - 1)` degrees of freedom.
     pub hits: usize,
-    /// Which hits of the history these are, by their number from zero; empty where the file gives the accelerance itself.
-    pub kept: Vec<usize>,
+    /// What became of each hit of the history; empty where the file gives the accelerance itself.
+    pub verdicts: Vec<HitVerdict>,
     /// The accelerance stands at $s = \sigma + j\omega$ with this $\sigma$ \[1/s\]: see
     /// [`Window::ForceExponential`](crate::Window::ForceExponential); else zero.
     pub decay_rate: f64,
@@ -52,7 +53,7 @@ impl Accelerance {
             variance: None,
             coherence: None,
             hits: 0,
-            kept: Vec::new(),
+            verdicts: Vec::new(),
             decay_rate: 0.0,
             force_noise: None,
             notes: Vec::new(),

@@ -7,7 +7,6 @@ use super::{
     extremes::median,
     force_noise::ForceNoise,
     hit_faults::HitFault,
-    overload::shared_extremes,
     spectrum::{self, Sums},
     time_history::{Hit, TimeHistory},
     window::Window,
@@ -70,33 +69,18 @@ impl TimeHistory {
     pub fn accelerance(&self, estimation: Estimation) -> Result<Accelerance, DataError> {
         self.check(estimation)?;
         let mut notes = self.notes.clone();
-        let mut kept: Vec<(usize, &Hit)> = Vec::new();
-        let mut reasons = Vec::new();
-        let mut left: Option<f64> = None;
-        let shared = shared_extremes(&self.hits);
-        for (index, hit) in self.hits.iter().enumerate() {
-            let mut faults = hit.faults(self.rate);
-            let own = |fault: &HitFault| matches!(fault, HitFault::Overload { .. });
-            if !faults.iter().any(own) {
-                faults.extend(shared.iter().filter(|(of, _)| *of == index).map(|(_, fault)| *fault));
-            }
-            let fatal = faults.iter().any(|fault| fault.is_fatal());
-            for fault in &faults {
-                let verdict = if fault.is_fatal() { "left out" } else { "kept" };
-                reasons.push(format!("{} {verdict}: {fault}", self.hit_name(index)));
-            }
-            if !fatal {
-                kept.push((index, hit));
-                let ringing = faults.iter().filter_map(|fault| match fault {
-                    HitFault::NotDecayed { ratio } => Some(*ratio),
-                    _ => None,
-                });
-                left = ringing.chain(left).reduce(f64::max);
-            }
-        }
+        let mut verdicts = self.first_verdicts();
+        let mut reasons: Vec<String> =
+            verdicts.iter().enumerate().flat_map(|(index, verdict)| verdict.notes(&self.hit_name(index))).collect();
+        let mut kept = self.kept(&verdicts);
         if kept.is_empty() {
             return Err(DataError::NoUsableHit { file: self.file.clone(), reasons: reasons.join("; ") });
         }
+        let ringing = kept.iter().flat_map(|(index, _)| &verdicts[*index].faults).filter_map(|fault| match fault {
+            HitFault::NotDecayed { ratio } => Some(*ratio),
+            _ => None,
+        });
+        let left = ringing.reduce(f64::max);
         notes.append(&mut reasons);
         let hits: Vec<&Hit> = kept.iter().map(|(_, hit)| *hit).collect();
         let window = estimation.window.resolved(left, &hits, self.rate);
@@ -111,7 +95,8 @@ impl TimeHistory {
         let mut sums = spectrum::sums(&hits, samples, window, self.rate);
         let step = self.rate / samples as f64;
         let mut band = self.band_end(&sums, estimation.force_drop, floor(&sums), step)?;
-        if self.heed_agreement(&sums, 1..band.0, &mut kept, &mut notes)? {
+        if self.heed_agreement(&sums, 1..band.0, &mut verdicts, &mut notes)? {
+            kept = self.kept(&verdicts);
             let hits: Vec<&Hit> = kept.iter().map(|(_, hit)| *hit).collect();
             sums = spectrum::sums(&hits, samples, window, self.rate);
             band = self.band_end(&sums, estimation.force_drop, floor(&sums), step)?;
@@ -149,7 +134,7 @@ impl TimeHistory {
             return Err(DataError::NoUsableHit { file: self.file.clone(), reasons });
         }
         result.hits = kept.len();
-        result.kept = kept.iter().map(|(index, _)| *index).collect();
+        result.verdicts = verdicts;
         result.decay_rate = window.decay_rate();
         if force_noise.is_none()
             && window.force_half_width().is_some_and(|half| 2.0 * half * self.rate < samples as f64)

@@ -5,10 +5,7 @@ use std::ops::Range;
 use num_complex::Complex64;
 
 use super::{
-    extremes::median,
-    hit_faults::HitFault,
-    spectrum::Sums,
-    time_history::{Hit, TimeHistory},
+    extremes::median, hit_faults::HitFault, hit_verdict::HitVerdict, spectrum::Sums, time_history::TimeHistory,
 };
 use crate::DataError;
 
@@ -49,21 +46,24 @@ pub(super) enum Agreement {
 }
 
 impl TimeHistory {
-    /// Takes hits that stand beside the others out of `kept`, and says so; true where any was.
+    /// Leaves out hits that stand beside the others, and says so; true where any does. The sums are those of the hits kept so far.
     pub(super) fn heed_agreement(
         &self,
         sums: &Sums,
         band: Range<usize>,
-        kept: &mut Vec<(usize, &Hit)>,
+        verdicts: &mut [HitVerdict],
         notes: &mut Vec<String>,
     ) -> Result<bool, DataError> {
-        let named = |own: usize| self.hit_name(kept[own].0);
+        let kept: Vec<usize> = self.kept(verdicts).into_iter().map(|(index, _)| index).collect();
+        let named = |own: usize| self.hit_name(kept[own]);
         match sums.agreement(band) {
             Agreement::Alike => Ok(false),
             Agreement::Astray(astray) => {
-                notes.extend(astray.iter().map(|(own, fault)| format!("{} left out: {fault}", named(*own))));
-                let mut own = 0..;
-                kept.retain(|_| own.next().is_none_or(|index| astray.iter().all(|(of, _)| *of != index)));
+                for (own, fault) in astray {
+                    let beside = HitVerdict { faults: vec![fault] };
+                    notes.extend(beside.notes(&named(own)));
+                    verdicts[kept[own]].faults.extend(beside.faults);
+                }
                 Ok(true)
             }
             Agreement::Parted { second, apart, within } => {

@@ -69,8 +69,8 @@ impl TimeHistory {
     /// The hits that an accelerance of this history stands on: what it left out helps nobody else either.
     #[must_use]
     pub fn kept_in(&self, accelerance: &Accelerance) -> Self {
-        let kept = &accelerance.kept;
-        let hits = kept.iter().filter_map(|&index| self.hits.get(index).cloned()).collect();
+        let (kept, hits): (Vec<usize>, Vec<Hit>) =
+            self.kept(&accelerance.verdicts).into_iter().map(|(index, hit)| (index, hit.clone())).unzip();
         let files = self
             .further_files
             .iter()

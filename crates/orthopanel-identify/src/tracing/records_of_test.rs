@@ -83,9 +83,11 @@ impl TestRecords {
         let accelerances = accelerances.collect::<Result<Vec<_>, IdentifyError>>()?;
         let mut notes = Vec::new();
         for (history, accelerance) in histories.iter().zip(&accelerances) {
-            let left_out = accelerance.notes.iter().filter(|note| note.contains("left out"));
+            let left_out = history.left_out_of(&accelerance.verdicts);
             let [force, response] = [history.force_at, history.response_at].map(|place| place.x);
-            notes.extend(left_out.map(|note| format!("force at x = {force} m, response at {response} m: {note}")));
+            notes.extend(
+                left_out.into_iter().map(|note| format!("force at x = {force} m, response at {response} m: {note}")),
+            );
         }
         let kept: Vec<TimeHistory> =
             histories.iter().zip(&accelerances).map(|(history, accelerance)| history.kept_in(accelerance)).collect();

@@ -3,7 +3,7 @@
 use orthopanel_data::{Accelerance, TimeHistory};
 use orthopanel_model::Place;
 
-use crate::measured_pairs::verdicts;
+use crate::measured_pairs::told;
 
 pub struct RecordRow {
     pub force: Place,
@@ -22,7 +22,7 @@ impl RecordRow {
         let samples = history.hits.first().map_or(0, |hit| hit.force.len());
         let seconds = samples as f64 / history.rate;
         let count = history.hits.len();
-        let faults = verdicts(history).into_iter().filter_map(|hit| hit.said());
+        let faults = told(&accelerance.verdicts).into_iter().filter_map(|hit| hit.said());
         Self {
             force: history.force_at,
             response: history.response_at,

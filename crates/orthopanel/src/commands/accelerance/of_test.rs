@@ -7,7 +7,7 @@ use orthopanel_model::Place;
 use serde::Serialize;
 
 use crate::error::CommandError;
-use crate::measured_pairs::{HitVerdict, place_text, verdicts};
+use crate::measured_pairs::{ToldHit, place_text, told};
 use crate::record_options::EstimationOptions;
 use crate::{notes, output, progress, tables};
 
@@ -24,7 +24,7 @@ struct Entry {
     response: Place,
     /// Hits averaged; 0 where an accelerance file does not tell.
     hits_kept: usize,
-    hits: Vec<HitVerdict>,
+    hits: Vec<ToldHit>,
     from_hz: f64,
     to_hz: f64,
     lines: usize,
@@ -104,24 +104,24 @@ fn estimated(test: &ImpactTest, estimation: Estimation) -> Result<Vec<(Entry, Ac
     let mut all = Vec::new();
     for (piece, history) in test.time_histories()? {
         let accelerance = history.accelerance(estimation)?;
-        all.push((entry(test, piece, &accelerance, verdicts(&history)), accelerance));
+        all.push((entry(test, piece, &accelerance), accelerance));
     }
     for measurement in &test.measurements {
         if let MeasurementData::Accelerance(recorded) = &measurement.data {
             let accelerance = Accelerance::read(recorded)?;
-            all.push((entry(test, measurement.piece, &accelerance, Vec::new()), accelerance));
+            all.push((entry(test, measurement.piece, &accelerance), accelerance));
         }
     }
     Ok(all)
 }
 
-fn entry(test: &ImpactTest, piece: usize, of: &Accelerance, hits: Vec<HitVerdict>) -> Entry {
+fn entry(test: &ImpactTest, piece: usize, of: &Accelerance) -> Entry {
     Entry {
         piece: test.pieces.get(piece).map_or(String::new(), |piece| piece.name.clone()),
         force: of.force_at,
         response: of.response_at,
         hits_kept: of.hits,
-        hits,
+        hits: told(&of.verdicts),
         from_hz: of.frequency.first().copied().unwrap_or(0.0),
         to_hz: of.frequency.last().copied().unwrap_or(0.0),
         lines: of.frequency.len(),
