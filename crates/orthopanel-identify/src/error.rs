@@ -160,6 +160,19 @@ pub enum IdentifyError {
         /// The factor on all records with which they fit; `None` where there is none.
         factor: Option<f64>,
     },
+    /// Records that contradict the test file under the law of damping asked for, and meet it under the other.
+    #[error(
+        "with {asked} damping no panel meets the records; with {other} damping one does, chi-square per datum \
+         {chi_square:.2} (1: all that is left is noise): give --damping {other}"
+    )]
+    OtherDamping {
+        /// The law asked for.
+        asked: &'static str,
+        /// The law under which they meet.
+        other: &'static str,
+        /// Misfit per datum under that one.
+        chi_square: f64,
+    },
     /// One record that contradicts the others.
     #[error(
         "{record}: half of its lines miss the model of all records by more than {percent:.0} %: it contradicts the \
@@ -250,6 +263,16 @@ impl IdentifyError {
         matches!(self, Self::RecordContradiction { fits_at: Some(_), .. })
     }
 
+    /// Whether another law of damping may explain what was refused.
+    pub(crate) fn may_be_of_damping(&self) -> bool {
+        match self {
+            Self::Contradiction { factor, .. } => factor.is_none(),
+            Self::RecordContradiction { fits_at, .. } => fits_at.is_none(),
+            Self::OnBound { .. } | Self::TooFewResonances { .. } => true,
+            _ => false,
+        }
+    }
+
     /// Whether the model cannot be evaluated, or the records not be read, whatever the search.
     pub(crate) fn is_of_model(&self) -> bool {
         matches!(self, Self::Data(_) | Self::Model(_) | Self::Unsupported(_) | Self::UnknownConstant { .. })
@@ -263,6 +286,7 @@ impl IdentifyError {
                 | Self::OnBound { .. }
                 | Self::NotDetermined { .. }
                 | Self::Contradiction { .. }
+                | Self::OtherDamping { .. }
                 | Self::RecordContradiction { .. }
         )
     }

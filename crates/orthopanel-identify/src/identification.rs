@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::{IdentifyError, TracedEffect};
 use num_complex::Complex64;
+use orthopanel_data::NamedPiece;
 use orthopanel_model::{
     Boundary, Damping, Estimate, MODEL_SCHEMA, Owner, PanelModel, Piece, Place, Ports, StructureKind,
 };
@@ -105,8 +106,24 @@ pub struct PieceFit {
     pub piece: Piece,
     /// The modes that the test shows.
     pub modes: Vec<ModeFit>,
+    /// Modes inside the band of the records of which no resonance stands out.
+    pub hidden: Vec<HiddenMode>,
     /// Damping ratio of every flexible mode inside the band, in order; empty where the test measures none.
     pub damping: Vec<Estimate>,
+}
+
+impl PieceFit {
+    /// Of a piece, before any mode is held against it.
+    pub(crate) fn of(named: &NamedPiece) -> Self {
+        let name = named.name.clone();
+        Self { name, piece: named.piece, modes: vec![], hidden: vec![], damping: vec![] }
+    }
+
+    /// The damping ratios that the records tell, with a resonance of their own or without.
+    pub fn measured_damping(&self) -> impl Iterator<Item = Estimate> + '_ {
+        let seen = self.modes.iter().map(|mode| mode.damping);
+        seen.chain(self.hidden.iter().map(|mode| mode.damping)).flatten()
+    }
 }
 
 /// Accelerance of one pair of places, measured and of the model.
@@ -140,9 +157,25 @@ pub struct ModeFit {
     pub nodes: [usize; 2],
     /// Measured natural frequency \[Hz\].
     pub measured: f64,
+    /// Standard deviation of the same \[Hz\]: from the noise of the records and what these differ by among each other,
+    /// or from the bins stated beside a list of frequencies; `None` where neither is told.
+    pub measured_std: Option<f64>,
     /// The model's \[Hz\].
     pub model: f64,
     /// Modal damping ratio, where the test measures it.
+    pub damping: Option<Estimate>,
+}
+
+/// A mode inside the band of the records that stands out of none of them, as where its neighbours or a node hide it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct HiddenMode {
+    /// Flexible mode, from 1.
+    pub mode: usize,
+    /// Nodal lines across x and across y.
+    pub nodes: [usize; 2],
+    /// The model's natural frequency \[Hz\].
+    pub model: f64,
+    /// Modal damping ratio, where the lines of all records tell it together; else the model has a usual one.
     pub damping: Option<Estimate>,
 }
 

@@ -18,7 +18,7 @@ pub use accelerance_fit::DampingLaw;
 pub use entry::identify;
 pub use error::IdentifyError;
 pub use identification::{
-    AcceleranceFit, Correlation, Identification, IdentifiedConstant, ModeFit, NotIdentified, PieceFit,
+    AcceleranceFit, Correlation, HiddenMode, Identification, IdentifiedConstant, ModeFit, NotIdentified, PieceFit,
 };
 pub use settings::{PaperWeights, Search, Settings};
 pub use time_history::{

@@ -87,10 +87,12 @@ fn assert_truth(case: &Case) {
             assert!((zeta.value / case.zeta - 1.0).abs() < 0.03, "{named}: mode {}: {}", mode.mode, zeta.value);
         }
         let fit = &found.pieces[0];
-        let untold = (1..=fit.damping.len()).filter(|mode| fit.modes.iter().all(|listed| listed.mode != *mode));
-        for mode in untold {
-            let said = format!("mode {mode}: zeta");
-            assert!(found.notes.iter().any(|note| note.contains(&said)), "{named}: {said}: {:?}", found.notes);
+        for mode in (1..=fit.damping.len()).filter(|mode| fit.modes.iter().all(|listed| listed.mode != *mode)) {
+            let hidden = fit.hidden.iter().find(|hidden| hidden.mode == mode);
+            let hidden = hidden.unwrap_or_else(|| panic!("{named}: mode {mode} is nowhere"));
+            let Some(zeta) = hidden.damping.filter(|_| hidden.model > case.band[0]) else { continue };
+            let within = f64::max(0.03, 3.0 * zeta.std.unwrap() / case.zeta);
+            assert!((zeta.value / case.zeta - 1.0).abs() < within, "{named}: mode {mode}: {zeta:?}");
         }
     }
 }
@@ -162,4 +164,32 @@ fn val_intervals_of_a_crowd_that_the_model_does_not_meet() {
         }
     }
     assert!(all > 130 && inside * 100 >= 87 * all, "{inside} of {all}");
+}
+
+/// The deviation of a measured frequency is that of the noise: against the model, whose frequencies all records tell
+/// together ten times better, misses stand to it as normal numbers do.
+#[test]
+fn val_measured_frequencies_scatter_as_they_say() {
+    let (mut squares, mut count) = (0.0, 0.0);
+    for seed in 21..27 {
+        let Some(found) = found(&USUAL, 0.01, seed) else { return };
+        for mode in found.pieces[0].modes.iter().take(6) {
+            squares += ((mode.measured - mode.model) / mode.measured_std.unwrap()).powi(2);
+            count += 1.0;
+        }
+    }
+    let rms = (squares / count).sqrt();
+    assert!((0.7..1.4).contains(&rms), "rms of {count} misses in deviations: {rms}");
+}
+
+/// Ten times the paper's damping leaves few resonances; the ratios of the other modes are as well told.
+#[test]
+fn val_modes_without_a_resonance_are_listed() {
+    let case = Case { name: "damping 4 %", zeta: 0.04, ..USUAL };
+    let Some(found) = found(&case, 0.001, 3) else { return };
+    let fit = &found.pieces[0];
+    assert!(fit.hidden.len() >= 3, "{:?}", fit.hidden);
+    let told = fit.hidden.iter().filter_map(|hidden| hidden.damping).count();
+    assert_eq!(fit.measured_damping().count(), fit.modes.iter().filter(|mode| mode.damping.is_some()).count() + told);
+    assert!(told >= 2 && fit.hidden.len() + fit.modes.len() >= fit.damping.len(), "{fit:?}");
 }

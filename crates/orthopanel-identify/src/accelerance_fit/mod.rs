@@ -8,6 +8,7 @@ mod line_noise;
 mod matching;
 mod misfit;
 mod mode_group;
+mod other_law;
 mod outcome;
 mod paper_error;
 mod pole_charge;
@@ -38,6 +39,7 @@ use sharpening::{Rough, line_by_line_with_noise, problem_at, sharpened_lines};
 use start::{Recorded, Start, start, usual_log_zeta};
 use wide_scan::rough_starts;
 
+pub(crate) use outcome::is_told;
 pub(crate) use pole_charge::pole_charge;
 pub(crate) use record_poles::{RecordPole, record_poles};
 pub(crate) use resonance_start::{ResonanceStart, resonance_starts};
@@ -56,20 +58,25 @@ pub use synthesis::DampingLaw;
 /// Standard deviations are $(J^TJ)^{-1}$, widened by the misfit per datum where that is above one. Where the model
 /// misses the records by far more than their noise, a line by line fit would bend damping to make up for a wrong
 /// frequency; then the constants come from the poles' frequencies, the damping from the poles, and a note says so.
+/// Where the other law of damping meets the records clearly better, a note or the refusal names it.
 pub(crate) fn identify_records(test: &ImpactTest, settings: Settings) -> Result<Identification, IdentifyError> {
     let recorded = start::recorded(test, settings)?;
     if settings.search == Search::Simplex {
         return by_papers_error(test, settings, &recorded);
     }
-    let by_poles = start(&recorded).and_then(|start| by_poles(test, settings, start));
-    match by_poles {
+    other_law::beside_other_law(&recorded, settings.damping_law, |damping_law| {
+        by_likelihood(test, Settings { damping_law, ..settings }, &recorded)
+    })
+}
+
+fn by_likelihood(test: &ImpactTest, settings: Settings, recorded: &Recorded) -> Result<Identification, IdentifyError> {
+    match start(recorded).and_then(|start| by_poles(test, settings, start)) {
         Err(refused)
             if recorded.structure == StructureKind::TimoshenkoBeam
                 && !refused.is_of_model()
                 && !refused.knows_the_place() =>
         {
-            by_wide_records(test, settings, &recorded)
-                .map_err(|wide| if wide.knows_the_band() { wide } else { refused })
+            by_wide_records(test, settings, recorded).map_err(|wide| if wide.knows_the_band() { wide } else { refused })
         }
         other => other,
     }

@@ -14,7 +14,8 @@ use crate::free_constants::Rest;
 use crate::frequency_fit::identified_constants;
 use crate::least_squares::Minimum;
 use crate::{
-    AcceleranceFit, Correlation, Identification, IdentifyError, ModeFit, NotIdentified, PieceFit, Search, Settings,
+    AcceleranceFit, Correlation, HiddenMode, Identification, IdentifyError, ModeFit, NotIdentified, PieceFit, Search,
+    Settings,
 };
 
 /// A misfit per datum above this is the model's, not the noise's, and line by line damping is not to be trusted.
@@ -246,20 +247,26 @@ fn accelerance_fits(problem: &AcceleranceProblem, lines: Vec<Vec<Complex64>>) ->
     (fits, 100.0 * (missed / total).sqrt())
 }
 
-/// Modes in the band that no row of the table tells, for no resonance of their own stands out, with their damping.
+/// Modes in the band without a resonance of their own, and which of them have no damping of their own either.
 fn without_resonance(fit: &PieceFit) -> Option<String> {
-    let is_listed = |mode: usize| fit.modes.iter().any(|listed| listed.mode == mode);
-    let told = |(index, damping): (usize, &Estimate)| {
-        let (mode, value) = (index + 1, damping.value);
-        let seen = damping.std.filter(|std| *std < DAMPING_UNSEEN * value);
-        match seen {
-            _ if is_listed(mode) => None,
-            Some(std) => Some(format!("mode {mode}: zeta {value:.3e} +- {std:.1e}")),
-            None => Some(format!("mode {mode}: zeta is not told, {value:.3e} in the model is a usual one")),
-        }
+    let numbers = |modes: &mut dyn Iterator<Item = &HiddenMode>| {
+        modes.map(|hidden| hidden.mode.to_string()).collect::<Vec<_>>().join(", ")
     };
-    let told: Vec<String> = fit.damping.iter().enumerate().filter_map(told).collect();
-    (!told.is_empty()).then(|| format!("no resonance of its own stands out of {}", told.join("; ")))
+    let [told, untold] =
+        [true, false].map(|told| numbers(&mut fit.hidden.iter().filter(|hidden| hidden.damping.is_some() == told)));
+    let mut says = Vec::new();
+    if !told.is_empty() {
+        says.push(format!("damping of mode {told} is from the lines of all records together"));
+    }
+    if !untold.is_empty() {
+        says.push(format!("damping of mode {untold} is not told, the model has a usual one"));
+    }
+    (!says.is_empty()).then(|| format!("modes in the band without a resonance of their own: {}", says.join("; ")))
+}
+
+/// Whether the records tell a damping ratio for which no resonance speaks: what has no deviation was put in.
+pub(crate) fn is_told(ratio: &Estimate) -> bool {
+    ratio.std.is_some_and(|std| std < DAMPING_UNSEEN * ratio.value)
 }
 
 /// The modes that the records show, and the damping of all modes inside the band.
@@ -272,7 +279,7 @@ fn piece_fits(
 ) -> Result<Vec<PieceFit>, IdentifyError> {
     let mut fits = Vec::new();
     for (index, named) in test.pieces.iter().enumerate() {
-        let mut fit = PieceFit { name: named.name.clone(), piece: named.piece, modes: vec![], damping: vec![] };
+        let mut fit = PieceFit::of(named);
         let own = start.recorded.pieces.iter().position(|piece| piece.index == index);
         if let Some(own) = own {
             let piece = &problem.pieces[own];
@@ -289,9 +296,25 @@ fn piece_fits(
                 let Some((mode, found)) = mode.and_then(|mode| Some((mode, seen.get(mode)?))) else { continue };
                 let told = mode < piece.free_zetas && log_std[offset + mode].is_none_or(|std| std < DAMPING_UNSEEN);
                 let damping = told.then(|| estimate(mode));
-                let (nodes, model) = (found.nodes, found.frequency);
-                fit.modes.push(ModeFit { mode: mode + 1, nodes, measured: pole.frequency, model, damping });
+                fit.modes.push(ModeFit {
+                    mode: mode + 1,
+                    nodes: found.nodes,
+                    measured: pole.frequency,
+                    measured_std: Some(pole.frequency_std()).filter(|std| std.is_finite()),
+                    model: found.frequency,
+                    damping,
+                });
             }
+            let matched = &start.matching.modes[own];
+            let without = seen.iter().zip(&fit.damping).enumerate().filter(|(mode, _)| !matched.contains(&Some(*mode)));
+            fit.hidden = without
+                .map(|(mode, (found, damping))| HiddenMode {
+                    mode: mode + 1,
+                    nodes: found.nodes,
+                    model: found.frequency,
+                    damping: Some(*damping).filter(is_told),
+                })
+                .collect();
         }
         fits.push(fit);
     }

@@ -15,12 +15,19 @@ use crate::least_squares::levenberg_marquardt;
 pub(super) struct Pole {
     /// Natural frequency \[Hz\].
     pub frequency: f64,
+    /// Standard deviation of the frequency's logarithm.
+    pub log_frequency_std: f64,
     /// Damping ratio and the standard deviation of its logarithm.
     pub zeta: f64,
     pub log_zeta_std: f64,
 }
 
 impl Pole {
+    /// Standard deviation of the frequency \[Hz\].
+    pub(super) fn frequency_std(&self) -> f64 {
+        self.frequency * self.log_frequency_std
+    }
+
     /// $\zeta\omega$ \[1/s\].
     pub(super) fn decay_rate(&self) -> f64 {
         self.zeta * std::f64::consts::TAU * self.frequency
@@ -127,11 +134,17 @@ pub(super) fn mean_pole(own: &[Pole]) -> Option<Pole> {
     let mean = |value: &dyn Fn(&Pole) -> f64| {
         own.iter().zip(weights.clone()).map(|(pole, weight)| weight * value(pole)).sum::<f64>() / total
     };
-    let log_zeta = mean(&|pole| pole.zeta.ln());
+    let (log_zeta, frequency) = (mean(&|pole| pole.zeta.ln()), mean(&|pole| pole.frequency));
     // Records that disagree by more than each states say how well their mean is known.
-    let scatter = mean(&|pole| (pole.zeta.ln() - log_zeta).powi(2)) / (own.len().max(2) - 1) as f64;
-    let log_zeta_std = (1.0 / total).max(if own.len() > 1 { scatter } else { 0.0 }).sqrt();
-    (!own.is_empty()).then(|| Pole { frequency: mean(&|pole| pole.frequency), zeta: log_zeta.exp(), log_zeta_std })
+    let scatter = |square: &dyn Fn(&Pole) -> f64| mean(square) / (own.len().max(2) - 1) as f64;
+    let log_zeta_std = (1.0 / total).max(scatter(&|pole| (pole.zeta.ln() - log_zeta).powi(2))).sqrt();
+    let own_noise = own
+        .iter()
+        .zip(weights.clone())
+        .map(|(pole, weight)| (weight / total * pole.log_frequency_std).powi(2))
+        .sum::<f64>();
+    let log_frequency_std = own_noise.max(scatter(&|pole| (pole.frequency / frequency - 1.0).powi(2))).sqrt();
+    (!own.is_empty()).then(|| Pole { frequency, log_frequency_std, zeta: log_zeta.exp(), log_zeta_std })
 }
 
 /// The pole of one record at a peak of `power`, and the lines it was read from.

@@ -77,9 +77,10 @@ impl ResonanceFit<'_> {
         let data = 2.0 * self.lines.len() as f64 - (2 * minimum.parameters.len() + 4) as f64;
         let scale = if data > 0.0 { (minimum.at.cost / data).max(1.0) } else { 1.0 };
         let (frequency, zeta) = (minimum.parameters[2 * index].exp(), minimum.parameters[2 * index + 1].exp());
-        let mut pole = Pole { frequency, zeta, log_zeta_std: f64::INFINITY };
+        let mut pole = Pole { frequency, log_frequency_std: f64::INFINITY, zeta, log_zeta_std: f64::INFINITY };
         let beneath = variance_beneath_window(pole.decay_rate(), self.record.decay_rate, 1.0 / step);
-        pole.log_zeta_std = (scale * beneath * covariance[(2 * index + 1, 2 * index + 1)]).sqrt();
+        let std = |parameter: usize| (scale * beneath * covariance[(parameter, parameter)]).sqrt();
+        (pole.log_frequency_std, pole.log_zeta_std) = (std(2 * index), std(2 * index + 1));
         Some(pole)
     }
 }

@@ -17,6 +17,8 @@ pub(crate) struct ResonanceStart {
     pub constants: [f64; 2],
     /// Natural frequency \[Hz\] and damping ratio of each flexible mode; `None` for one without a resonance.
     pub modes: Vec<Option<(f64, f64)>>,
+    /// Standard deviation of each of these frequencies \[Hz\].
+    pub frequency_stds: Vec<Option<f64>>,
     /// Geometric mean of the damping ratios.
     pub usual_zeta: f64,
     /// Frequencies \[Hz\] of all resonances, whether a mode was found for them or not.
@@ -175,11 +177,14 @@ impl BeamFit<'_> {
 
     fn start(&self, constants: [f64; 2], modes: &[Option<usize>]) -> ResonanceStart {
         let poles = self.poles.iter().map(|pole| pole.frequency).collect();
-        let mut found = ResonanceStart { constants, modes: vec![], usual_zeta: UNTOLD_ZETA, poles };
-        found.modes.resize(modes.iter().flatten().max().map_or(0, |mode| mode + 1), None);
+        let count = modes.iter().flatten().max().map_or(0, |mode| mode + 1);
+        let (modes_found, frequency_stds) = (vec![None; count], vec![None; count]);
+        let mut found =
+            ResonanceStart { constants, modes: modes_found, frequency_stds, usual_zeta: UNTOLD_ZETA, poles };
         for (pole, mode) in self.poles.iter().zip(modes) {
-            if let Some(mode) = mode.and_then(|mode| found.modes.get_mut(mode)) {
-                *mode = Some((pole.frequency, pole.zeta));
+            if let Some(mode) = mode.filter(|&mode| mode < count) {
+                found.modes[mode] = Some((pole.frequency, pole.zeta));
+                found.frequency_stds[mode] = Some(pole.frequency_std());
             }
         }
         if !self.poles.is_empty() {

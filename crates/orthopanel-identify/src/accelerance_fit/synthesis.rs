@@ -17,6 +17,21 @@ pub enum DampingLaw {
 }
 
 impl DampingLaw {
+    /// `viscous` or `hysteretic`.
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::Viscous => "viscous",
+            Self::Hysteretic => "hysteretic",
+        }
+    }
+
+    pub(super) fn other(self) -> Self {
+        match self {
+            Self::Viscous => Self::Hysteretic,
+            Self::Hysteretic => Self::Viscous,
+        }
+    }
+
     /// $(\alpha, \beta)$ of the damping term $\alpha s + j\beta$ of $d_m$.
     fn loss(self, omega: f64, zeta: f64) -> (f64, f64) {
         match self {

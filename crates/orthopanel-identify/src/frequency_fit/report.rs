@@ -110,17 +110,15 @@ fn piece_fits(
     problem: &FrequencyProblem,
     predictions: &[SetPrediction],
 ) -> Result<Vec<PieceFit>, IdentifyError> {
-    let named = test.pieces.iter();
-    let mut fits: Vec<PieceFit> = named
-        .map(|named| PieceFit { name: named.name.clone(), piece: named.piece, modes: vec![], damping: vec![] })
-        .collect();
+    let mut fits: Vec<PieceFit> = test.pieces.iter().map(PieceFit::of).collect();
     for (set, predicted) in problem.sets.iter().zip(predictions) {
         let frequencies: Vec<f64> = predicted.modes.iter().map(|mode| mode.frequency).collect();
         let numbers = set.modes.numbers(&predicted.values, &frequencies)?;
-        for (((&measured, model), mode), &nodes) in
-            set.measured.iter().zip(frequencies).zip(numbers).zip(set.modes.nodes())
+        for (index, (((&measured, model), mode), &nodes)) in
+            set.measured.iter().zip(frequencies).zip(numbers).zip(set.modes.nodes()).enumerate()
         {
-            fits[set.piece].modes.push(ModeFit { mode, nodes, measured, model, damping: None });
+            let measured_std = set.rounding.get(index).copied();
+            fits[set.piece].modes.push(ModeFit { mode, nodes, measured, measured_std, model, damping: None });
         }
     }
     Ok(fits)

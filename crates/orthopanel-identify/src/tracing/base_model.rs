@@ -13,10 +13,10 @@ use super::hypothesis::Hypothesis;
 use super::record_problem::State;
 use super::records_of_test::base_of_histories;
 use super::report::effects_of;
-use crate::accelerance_fit::ResonanceStart;
+use crate::accelerance_fit::{ResonanceStart, is_told};
 use crate::free_constants::FreeConstants;
 use crate::frequency_fit::{bending_nodes, identified_constants};
-use crate::{DampingLaw, Identification, IdentifyError, ModeFit, PieceFit, Search, Settings};
+use crate::{DampingLaw, HiddenMode, Identification, IdentifyError, ModeFit, PieceFit, Search, Settings};
 
 /// The base model fitted to records.
 pub(super) struct RecordsBase {
@@ -88,7 +88,7 @@ impl RecordsBase {
             })
             .collect();
         let named = &test.pieces[0];
-        let modes = self.modes(test, &damping)?;
+        let (modes, hidden) = self.modes(test, &damping)?;
         let errors: f64 = modes.iter().map(|mode| mode.error_percent().powi(2)).sum();
         let shown: Vec<Accelerance> =
             test.accelerances(estimation)?.into_iter().map(|(_, accelerance)| accelerance).collect();
@@ -107,13 +107,14 @@ impl RecordsBase {
             chi_square: self.chi_square,
             effects: effects_of(&self.state.hypothesis, of_effects),
             notes: self.accelerances.iter().flat_map(|record| record.notes.iter().cloned()).collect(),
-            pieces: vec![PieceFit { name: named.name.clone(), piece: named.piece, modes, damping }],
+            pieces: vec![PieceFit { modes, hidden, damping, ..PieceFit::of(named) }],
             accelerances,
         })
     }
 
-    /// The resonances that the records show, beside those of the model; none where the model's are no plain modes.
-    fn modes(&self, test: &ImpactTest, damping: &[Estimate]) -> Result<Vec<ModeFit>, IdentifyError> {
+    /// The resonances that the records show, beside those of the model, and the modes in the band without one; none where
+    /// the model's are no plain modes.
+    fn modes(&self, test: &ImpactTest, damping: &[Estimate]) -> Result<(Vec<ModeFit>, Vec<HiddenMode>), IdentifyError> {
         let setting = EffectSetting {
             piece: test.pieces[0].piece,
             boundary: test.boundary,
@@ -128,15 +129,24 @@ impl RecordsBase {
         let count = self.start.modes.len();
         let found = match NaturalFrequencies::new(&setting, count)?.at(&self.state.constants.map(f64::exp), &states) {
             Ok(found) => found,
-            Err(ModelError::Unsupported(_)) => return Ok(vec![]),
+            Err(ModelError::Unsupported(_)) => return Ok((vec![], vec![])),
             Err(error) => return Err(error.into()),
         };
         let nodes = bending_nodes(test.boundary, count);
-        let seen = self.start.modes.iter().zip(found).zip(nodes).enumerate();
-        let fit = seen.filter_map(|(mode, ((seen, model), nodes))| {
-            let (measured, _) = (*seen)?;
-            Some(ModeFit { mode: mode + 1, nodes, measured, model, damping: damping.get(mode).copied() })
-        });
-        Ok(fit.collect())
+        let (mut modes, mut hidden) = (vec![], vec![]);
+        for (index, ((seen, model), nodes)) in self.start.modes.iter().zip(found).zip(nodes).enumerate() {
+            let (mode, told) = (index + 1, damping.get(index).copied());
+            match seen {
+                Some((measured, _)) => {
+                    let measured_std = self.start.frequency_stds.get(index).copied().flatten();
+                    modes.push(ModeFit { mode, nodes, measured: *measured, measured_std, model, damping: told });
+                }
+                None if index < damping.len() => {
+                    hidden.push(HiddenMode { mode, nodes, model, damping: told.filter(is_told) });
+                }
+                None => {}
+            }
+        }
+        Ok((modes, hidden))
     }
 }

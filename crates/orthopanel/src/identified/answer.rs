@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use orthopanel_identify::{
-    Identification, IdentifiedConstant, ModeFit, NotIdentified, PieceFit, TracedEffect, TracedParameter,
+    HiddenMode, Identification, IdentifiedConstant, ModeFit, NotIdentified, PieceFit, TracedEffect, TracedParameter,
 };
 use orthopanel_model::StructureKind;
 use serde::Serialize;
@@ -24,6 +24,9 @@ pub struct Answer {
     #[serde(skip_serializing_if = "Vec::is_empty")]
     effects: Vec<EffectEntry>,
     modes: Vec<ModeEntry>,
+    /// Modes in the band of the records of which no resonance stands out.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    modes_without_resonance: Vec<HiddenEntry>,
     error: ErrorEntry,
     /// What was left out, cut or found wanting.
     notes: Vec<String>,
@@ -79,8 +82,22 @@ struct ModeEntry {
     /// Nodal lines crossed along x and along y.
     nodes: [usize; 2],
     measured_hz: f64,
+    /// `null` where neither records nor bins tell it.
+    measured_std_hz: Option<f64>,
     model_hz: f64,
     error_percent: f64,
+    zeta: Option<f64>,
+    zeta_std: Option<f64>,
+}
+
+#[derive(Serialize)]
+struct HiddenEntry {
+    piece: String,
+    mode: usize,
+    /// Nodal lines crossed along x and along y.
+    nodes: [usize; 2],
+    model_hz: f64,
+    /// `null` where no line tells it either; the model file then has a usual one.
     zeta: Option<f64>,
     zeta_std: Option<f64>,
 }
@@ -128,8 +145,17 @@ impl Answer {
             mode: mode.mode,
             nodes: mode.nodes,
             measured_hz: mode.measured,
+            measured_std_hz: mode.measured_std,
             model_hz: mode.model,
             error_percent: mode.error_percent(),
+            zeta: mode.damping.map(|ratio| ratio.value),
+            zeta_std: mode.damping.and_then(|ratio| ratio.std),
+        };
+        let hidden = |fit: &PieceFit, mode: &HiddenMode| HiddenEntry {
+            piece: fit.name.clone(),
+            mode: mode.mode,
+            nodes: mode.nodes,
+            model_hz: mode.model,
             zeta: mode.damping.map(|ratio| ratio.value),
             zeta_std: mode.damping.and_then(|ratio| ratio.std),
         };
@@ -145,6 +171,11 @@ impl Answer {
                 .collect(),
             effects: found.effects.iter().map(effect).collect(),
             modes: found.pieces.iter().flat_map(|fit| fit.modes.iter().map(move |of| mode(fit, of))).collect(),
+            modes_without_resonance: found
+                .pieces
+                .iter()
+                .flat_map(|fit| fit.hidden.iter().map(move |of| hidden(fit, of)))
+                .collect(),
             error: ErrorEntry {
                 frequency_rms_percent: found.frequency_rms_percent,
                 left_one_out_percent: found.left_one_out_percent,

@@ -1,6 +1,7 @@
 //! What an identification found, as JSON (`orthopanel.identified/1`), as tables, and as one model a piece.
 
 mod answer;
+mod mode_rows;
 mod models;
 mod report;
 
@@ -14,6 +15,7 @@ use crate::error::CommandError;
 use crate::record_options::IdentifyOptions;
 use crate::{notes, progress};
 pub use answer::Answer;
+pub use mode_rows::{Digits, ModeRows};
 use models::{ASSUMED_DAMPING, model};
 
 /// A test, what was identified from it, and a model of each of its pieces.
@@ -55,7 +57,7 @@ impl Identified {
 
 /// What has to be said where no mode's damping was measured.
 fn assumed_damping(found: &Identification) -> Option<String> {
-    if found.pieces.iter().flat_map(|fit| &fit.modes).any(|mode| mode.damping.is_some()) {
+    if found.pieces.iter().any(|fit| fit.measured_damping().next().is_some()) {
         return None;
     }
     let every = format!(

@@ -17,7 +17,7 @@ pub(super) fn model(
     let mut model = found.panel_model(fit, test.boundary, ports(test, index, &fit.piece, found.structure));
     let (beyond, origin) = match usual_damping(fit) {
         None => (ASSUMED_DAMPING, "assumed, not measured".to_owned()),
-        Some(usual) => (usual, "measured inside the band; beyond it assumed, the median of the measured".to_owned()),
+        Some(usual) => (usual, measured_damping(fit)),
     };
     model.damping.beyond = beyond;
     model.provenance.insert("damping".into(), origin.into());
@@ -36,12 +36,26 @@ pub(super) fn model(
     model
 }
 
-/// Median of the damping ratios that the piece's records show.
+/// Which of a piece's ratios were measured.
+fn measured_damping(fit: &PieceFit) -> String {
+    let untold = (1..=fit.damping.len()).filter(|number| {
+        let seen = fit.modes.iter().any(|mode| mode.mode == *number && mode.damping.is_some());
+        !seen && !fit.hidden.iter().any(|mode| mode.mode == *number && mode.damping.is_some())
+    });
+    let untold: Vec<String> = untold.map(|mode| mode.to_string()).collect();
+    let but = match untold.is_empty() {
+        true => String::new(),
+        false => format!(" but for mode {}, which the records do not tell: there a usual one", untold.join(", ")),
+    };
+    format!("measured inside the band{but}; beyond it assumed, the median of the measured")
+}
+
+/// Median of the damping ratios that the piece's records tell.
 ///
 /// Ratios scatter by factors of five from mode to mode (the paper's table 9), and the median is not carried away by one
 /// of them as the last one or the mean would be.
 fn usual_damping(fit: &PieceFit) -> Option<f64> {
-    let mut ratios: Vec<f64> = fit.modes.iter().filter_map(|mode| Some(mode.damping?.value)).collect();
+    let mut ratios: Vec<f64> = fit.measured_damping().map(|ratio| ratio.value).collect();
     ratios.sort_by(f64::total_cmp);
     ratios.get(ratios.len() / 2).copied()
 }

@@ -1,9 +1,9 @@
 //! What an identification found, as tables for people.
 
-use orthopanel_identify::{IdentifiedConstant, ModeFit, NotIdentified, PieceFit};
+use orthopanel_identify::{IdentifiedConstant, NotIdentified, PieceFit};
 use orthopanel_model::Piece;
 
-use super::Identified;
+use super::{Digits, Identified, ModeRows};
 use crate::tables;
 use crate::traced::effect_rows;
 
@@ -11,7 +11,7 @@ impl Identified {
     /// Measured against model, mode by mode, then the constants.
     pub fn tables(&self) -> String {
         let mut text = String::new();
-        for fit in self.found.pieces.iter().filter(|fit| !fit.modes.is_empty()) {
+        for fit in self.found.pieces.iter().filter(|fit| !fit.modes.is_empty() || !fit.hidden.is_empty()) {
             let Piece { length, width, thickness, mass_per_area } = fit.piece;
             text += &format!("piece {}: {length} x {width} x {thickness} m, {mass_per_area:.4} kg/m2\n", fit.name);
             text += &(mode_table(fit) + "\n");
@@ -63,22 +63,8 @@ impl Identified {
 
 /// A row a mode; with the damping where the test measures it.
 fn mode_table(fit: &PieceFit) -> String {
-    let with_damping = fit.modes.iter().any(|mode| mode.damping.is_some());
-    let row = |mode: &ModeFit| {
-        let mut row = vec![
-            mode.mode.to_string(),
-            format!("{:.1}", mode.measured),
-            format!("{:.1}", mode.model),
-            format!("{:+.2}", mode.error_percent()),
-        ];
-        if with_damping {
-            let std = mode.damping.and_then(|zeta| zeta.std);
-            row.push(mode.damping.map_or("not seen".into(), |zeta| format!("{:.3e}", zeta.value)));
-            row.push(std.map_or("unknown".into(), |std| format!("{std:.1e}")));
-        }
-        row
-    };
-    let heading = ["mode", "measured [Hz]", "model [Hz]", "error [%]", "zeta", "std"];
-    let columns = if with_damping { heading.len() } else { heading.len() - 2 };
-    tables::aligned(&heading[..columns], &fit.modes.iter().map(row).collect::<Vec<_>>())
+    let rows = ModeRows::of(fit, &Digits { frequency: 1, error: 2 });
+    let (headings, rows) =
+        rows.shown(["mode", "", "measured [Hz]", "std [Hz]", "model [Hz]", "error [%]", "zeta", "std of zeta"]);
+    tables::aligned(&headings, &rows)
 }

@@ -1,11 +1,12 @@
 //! One piece of the test: its records, the fit, and what the model leaves.
 
-use orthopanel_identify::{ModeFit, PieceFit};
+use orthopanel_identify::PieceFit;
 
 use super::Figure;
 use super::table::Table;
 use crate::error::CommandError;
 use crate::evidence::{PairResidual, PieceEvidence, RecordRow, ResidualUnit};
+use crate::identified::{Digits, ModeRows};
 use crate::measured_pairs::{HitMisfit, place_text};
 use crate::pictures;
 
@@ -57,7 +58,7 @@ impl PieceSection {
             ),
             records: (!shown.records.is_empty()).then(|| records(&shown.records)),
             coherence: shown.coherence.as_ref().map(|picture| Figure::new(picture, COHERENCE_CAPTION)),
-            modes: (!fit.modes.is_empty()).then(|| modes(&fit.modes)),
+            modes: (!fit.modes.is_empty() || !fit.hidden.is_empty()).then(|| modes(fit)),
             frequencies: shown.frequencies.as_ref().map(|picture| Figure::new(picture, FREQUENCIES_CAPTION)),
             galleries: galleries.into_iter().flatten().collect(),
             residual: residual(&shown.residuals, &shown.hits)?,
@@ -85,26 +86,19 @@ fn records(rows: &[RecordRow]) -> Table {
     Table::new(&headings, rows.iter().map(row).collect())
 }
 
-fn modes(modes: &[ModeFit]) -> Table {
-    let with_damping = modes.iter().any(|mode| mode.damping.is_some());
-    let row = |mode: &ModeFit| {
-        let mut row = vec![
-            mode.mode.to_string(),
-            format!("{}, {}", mode.nodes[0], mode.nodes[1]),
-            format!("{:.2}", mode.measured),
-            format!("{:.2}", mode.model),
-            format!("{:+.4}", mode.error_percent()),
-        ];
-        if with_damping {
-            let std = mode.damping.and_then(|zeta| zeta.std);
-            row.push(mode.damping.map_or("not seen".into(), |zeta| format!("{:.3e}", zeta.value)));
-            row.push(std.map_or("unknown".into(), |std| format!("{std:.1e}")));
-        }
-        row
-    };
-    let headings = ["mode", "nodes along x, y", "measured [Hz]", "model [Hz]", "error [%]", "zeta", "std of zeta"];
-    let columns = if with_damping { headings.len() } else { headings.len() - 2 };
-    Table::new(&headings[..columns], modes.iter().map(row).collect())
+fn modes(fit: &PieceFit) -> Table {
+    let rows = ModeRows::of(fit, &Digits { frequency: 2, error: 4 });
+    let (headings, rows) = rows.shown([
+        "mode",
+        "nodes along x, y",
+        "measured [Hz]",
+        "std [Hz]",
+        "model [Hz]",
+        "error [%]",
+        "zeta",
+        "std of zeta",
+    ]);
+    Table::new(&headings, rows)
 }
 
 fn residual(residuals: &[PairResidual], hits: &[HitMisfit]) -> Result<Vec<Figure>, CommandError> {

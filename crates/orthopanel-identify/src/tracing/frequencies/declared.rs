@@ -24,18 +24,16 @@ pub(in crate::tracing) fn identify_lists(
     problem.constants.refuse_bounds(constants)?;
     let std: Vec<Option<f64>> = found.std.iter().map(|std| Some(*std).filter(|std| std.is_finite())).collect();
     let (of_constants, of_effects) = std.split_at(constants.len());
-    let pieces = test.pieces.iter();
-    let mut pieces: Vec<PieceFit> = pieces
-        .map(|named| PieceFit { name: named.name.clone(), piece: named.piece, modes: vec![], damping: vec![] })
-        .collect();
+    let mut pieces: Vec<PieceFit> = test.pieces.iter().map(PieceFit::of).collect();
     let mut errors = found.residuals.iter();
     for list in &problem.lists {
         let nodes = bending_nodes(test.boundary, list.measured.len());
-        let modes = (1..).zip(list.measured.iter().zip(nodes)).zip(errors.by_ref());
-        pieces[list.piece].modes.extend(modes.map(|((mode, (&measured, nodes)), error)| ModeFit {
-            mode,
+        let modes = (0..).zip(list.measured.iter().zip(nodes)).zip(errors.by_ref());
+        pieces[list.piece].modes.extend(modes.map(|((index, (&measured, nodes)), error)| ModeFit {
+            mode: index + 1,
             nodes,
             measured,
+            measured_std: list.rounding.get(index).map(|std| std * measured),
             model: measured * (1.0 + error),
             damping: None,
         }));
