@@ -22,7 +22,8 @@ fn val_runge_kutta_on_finite_elements_stands_beside_the_exact_stepper() {
     bench.write("true.json", &model.to_string());
     let line = "simulate true.json --force-file made/test.toml";
     let (exact, linear) = (bench.json(line), bench.json(&format!("{line} --hold linear")));
-    let answer = bench.json(&format!("{line} --method runge-kutta -o rk.csv"));
+    let by_lines = format!("{line} --method runge-kutta --hold linear");
+    let answer = bench.json(&format!("{by_lines} -o rk.csv"));
     assert_eq!((exact["method"].as_str(), answer["method"].as_str()), (Some("exact"), Some("runge-kutta")));
     assert_eq!(hits(&answer).len(), 4);
     for (hit, linear) in hits(&answer).iter().zip(hits(&linear)) {
@@ -36,18 +37,34 @@ fn val_runge_kutta_on_finite_elements_stands_beside_the_exact_stepper() {
         assert!((own - exact).abs() < 1e-4, "{own} {exact}");
     }
     // What straight lines lose, the band-limited force keeps: noise is all that is left.
-    let smooth = bench.json(&format!("{line} --method runge-kutta --hold band-limited"));
+    let smooth = bench.json(&format!("{line} --method runge-kutta"));
     for (hit, linear) in hits(&smooth).iter().zip(hits(&answer)) {
         let own = |hit| number(hit, "/whole/variance_explained");
         assert!(own(hit) > 0.9999 && own(linear) < 0.99, "{} {}", own(hit), own(linear));
     }
     // A quarter of the steps errs 256 times as much; at the default they hardly err beside the elements.
     let steps = number(&answer, "/integrations/0/steps");
-    let coarse = bench.json(&format!("{line} --method runge-kutta --steps {}", (steps / 4.0).ceil()));
+    let coarse = bench.json(&format!("{by_lines} --steps {}", (steps / 4.0).ceil()));
     for (hit, coarse) in hits(&answer).iter().zip(hits(&coarse)) {
         let apart = |hit| number(hit, "/exact/apart_percent_of_peak");
         assert!(apart(coarse) > 4.0 * apart(hit), "{} {}", apart(coarse), apart(hit));
     }
+    // The steps that are said to bring 1e-8 do, and those before do not.
+    let of_steps = |answer: &Value| -> Vec<(f64, f64)> {
+        let each = answer["integrations"].as_array().expect("integrations").iter();
+        each.map(|of| (number(of, "/step_error_of_peak"), number(of, "/steps_to_1e_8"))).collect()
+    };
+    let said = of_steps(&answer);
+    assert!(said.len() == 2 && said.iter().all(|(error, _)| (1e-7..1e-3).contains(error)), "{said:?}");
+    let enough = said.iter().map(|(_, steps)| *steps).fold(0.0, f64::max);
+    let fine = of_steps(&bench.json(&format!("{by_lines} --steps {enough}")));
+    assert!(fine.iter().all(|(error, _)| (1e-10..=1e-8).contains(error)), "{fine:?}");
+    let words = String::from_utf8_lossy(&bench.run(&by_lines).stderr).into_owned();
+    assert!(words.contains("-0.05 to 0.3: ") && words.contains("brings 1e-8"), "{words}");
+    // What straight lines lose is said, and nothing where they are not taken.
+    assert!(words.contains("with --hold band-limited"), "{words}");
+    let words = String::from_utf8_lossy(&bench.run(line).stderr).into_owned();
+    assert!(!words.contains("straight lines"), "{words}");
     assert_eq!(bench.rows("rk.csv").len(), 4 * 8192);
     let table = bench.done(&format!("{line} --method runge-kutta"));
     assert!(table.lines().next().expect("a heading").ends_with("variance explained  apart [% of peak]"), "{table}");
@@ -64,7 +81,12 @@ fn what_does_not_fit_section_3_5_is_refused() {
         2,
         &["--method", "measured hits"],
     );
-    refused(&bench, &format!("simulate model.json {hits} --method runge-kutta --steps 1"), 2, &["steps", "mode"]);
+    refused(
+        &bench,
+        &format!("simulate model.json {hits} --method runge-kutta --hold linear --steps 1"),
+        2,
+        &["steps", "mode"],
+    );
     let model = std::fs::read_to_string(bench.path("model.json")).expect("a model");
     let effect = r#""effects": [{"id": "edge-mass", "owner": "panel", "mass": 0.01}], "ports""#;
     bench.write("dressed.json", &changed(&model, r#""ports""#, effect));

@@ -29,10 +29,11 @@ use crate::{importer, model_file, output, time_response};
 /// test file, else the model's ports or --force and --response.
 ///
 /// --method runge-kutta does the paper's section 3.5 on the same hits: beam elements with modal damping (eqs 26 to 28),
-/// integrated by the classic Runge-Kutta method, the force in straight lines between its samples. The exact modes and
-/// stepper under the same force stand beside it, each with its error against the record, and how far the two are apart:
-/// the step's error, which --steps more takes down with the fourth power, and below it that of the elements' frequencies.
-/// With the same modes the two meet within 1e-8 of the peak.
+/// integrated by the classic Runge-Kutta method under the measured force, interpolated. The exact modes and stepper
+/// under the same force stand beside it, each with its error against the record, and how far the two are apart: that is
+/// what the elements' frequencies and the steps err. What the steps alone err, against the exact stepper on the same
+/// elements, is said for each pair of places, with the --steps that take it down to 1e-8 of the peak: it falls with the
+/// fourth power of their number.
 ///
 /// Examples: orthopanel simulate out/panel.fmu --force-file examples/half-sine.csv -o response.csv
 ///           orthopanel simulate out/model.json --force-file examples/made-hits/test.toml
@@ -46,7 +47,7 @@ pub struct Arguments {
     /// Force against time (CSV), or measured hits (test.toml, UFF, CSV)
     #[arg(long, value_name = "X.csv|X.uff|TEST.toml")]
     force_file: PathBuf,
-    /// How the force runs between samples [default: linear; of measured hits band-limited, by Runge-Kutta linear]
+    /// How the force runs between samples [default: linear; of measured hits band-limited]
     #[arg(long, value_enum)]
     hold: Option<Hold>,
     /// How measured hits are followed
