@@ -77,6 +77,44 @@ pub enum IdentifyError {
         /// Error of the last one \[% rms\].
         error_percent: f64,
     },
+    /// A mode that lies far above its line on every panel.
+    #[error(
+        "piece {piece}, {frequency} Hz named [{}, {}]: beside the other frequencies that mode lies at about {least:.0} Hz or above, from \
+         solid metal to the softest core; look at this mode's shape again", nodes[0], nodes[1]
+    )]
+    ImpossibleShape {
+        /// Name of the piece.
+        piece: String,
+        /// Nodal lines across x and across y.
+        nodes: [usize; 2],
+        /// Of the line \[Hz\].
+        frequency: f64,
+        /// The lowest frequency of such a mode \[Hz\].
+        least: f64,
+    },
+    /// A mode that no basis follows.
+    #[error(
+        "shape [{}, {}]: a plate of {} x {} polynomials would be needed, more than fit; with these edges shapes up to [{}, {}] can be named",
+        nodes[0], nodes[1], terms[0], terms[1], most[0], most[1]
+    )]
+    ShapeBeyondBasis {
+        /// Most nodal lines across x and across y of all shapes named.
+        nodes: [usize; 2],
+        /// Polynomials along x and y for them.
+        terms: [usize; 2],
+        /// As many nodal lines in the same proportion as a basis follows.
+        most: [usize; 2],
+    },
+    /// The search came to no end, and would under other names of the modes.
+    #[error("no minimum after {iterations} iterations; the last error was {error_percent:.3} % rms: {names}")]
+    DoubtfulNames {
+        /// Iterations done.
+        iterations: usize,
+        /// Error of the last one \[% rms\].
+        error_percent: f64,
+        /// The lines with the names that they should have.
+        names: String,
+    },
     /// The best value lies on a bound, so it is none.
     #[error(
         "{name} = {value:e}{} lies on its bound: these frequencies do not determine it; hold it under [constants] or measure more modes", spaced(.unit)
@@ -283,6 +321,7 @@ impl IdentifyError {
         !matches!(
             self,
             Self::NotConverged { .. }
+                | Self::DoubtfulNames { .. }
                 | Self::OnBound { .. }
                 | Self::NotDetermined { .. }
                 | Self::Contradiction { .. }

@@ -4,14 +4,15 @@ use orthopanel_data::ImpactTest;
 use orthopanel_model::StructureKind;
 use rayon::prelude::*;
 
-use super::problem::{FrequencyProblem, FrequencySet, Renamed};
+use super::changed_pairs::{changed_pairs, near_pairs};
+use super::noise::{self, Noise};
+use super::problem::{FrequencyProblem, Renamed};
 use super::seen_constants::minimise_what_is_seen;
-use super::starting_values::{SOFTNESS, starting_values};
+use super::starting_values::starting_values;
 use super::structures::SpectrumLine;
 use crate::IdentifyError;
 use crate::free_constants::{FreeConstant, FreeConstants, RestingFreed};
 use crate::least_squares::{Ending, Linearised, Quadratic, descend};
-use crate::starting_constants::guess;
 
 /// A mode that misses its frequency by less is what it is called, or so near its neighbour that no list can tell.
 const LARGE_MISS: f64 = 0.01;
@@ -21,41 +22,53 @@ const FAR_NEARER: f64 = 0.25;
 const FAR_BETTER: f64 = 1.0 / 9.0;
 /// Scatters \[1\] of good lines, in turn: from where wrong ones still pull to what a good model leaves.
 const SCATTERS: [f64; 3] = [2e-2, 1e-2, 4e-3];
-/// Pairs of lines that are tried with each other's names.
-const MOST_PAIRS: usize = 8;
-/// Relative scatter of a usual panel's frequencies about those of any other.
-const USUAL_MISS: f64 = 0.05;
 
 /// A sentence for each line of a plate's list with another name, where the list with these names is met far better.
 ///
 /// The constants are found again under Cauchy's error $\sum\ln(1+r^2/s^2)$, for which a line that stands out counts for
 /// little, from where they were found and from what is usual: a line that then lies far from the mode it names and near another
 /// may be that one. Where this leads to nothing, two lines are tried with each other's names, the likeliest pairs of a usual panel
-/// first. What is told has been tried: the whole identification under the new names leaves a third of the error or less.
+/// first. Where the list is missed, but no line by much, two that are neighbours may have changed their names. What is told has
+/// been tried: the whole identification under the new names leaves a third of the error or less.
 pub(super) fn doubtful_names(
     test: &ImpactTest,
     problem: &FrequencyProblem,
     found: &[f64],
     at: &Linearised,
 ) -> Result<Vec<String>, IdentifyError> {
+    let least = noise::LARGE_MISS.powi(2) * Noise::stated(problem).variance * problem.count() as f64;
+    let stands_out = at.residuals.iter().any(|residual| residual.abs() >= LARGE_MISS);
     let is_plate = problem.structure == StructureKind::MindlinPlate;
-    if !is_plate || at.residuals.iter().all(|residual| residual.abs() < LARGE_MISS) {
+    let cost = at.quadratic().cost;
+    if !is_plate || !(stands_out || cost > least) {
         return Ok(Vec::new());
     }
     let whole = FrequencyProblem::of(test)?;
-    let most = FAR_BETTER * at.quadratic().cost;
-    // The likeliest come first, two side by side.
-    let best = |names: Vec<Vec<Renamed>>| {
-        names.chunks(2).find_map(|few| {
-            let tried = few.par_iter().filter_map(|names| Tried::of(test, &whole, names.clone()));
-            tried.filter(|tried| tried.cost < most).min_by(|a, b| a.cost.total_cmp(&b.cost))
-        })
-    };
-    let best = match best(robust_names(problem, &whole, found)?) {
-        None => best(changed_pairs(&whole)?),
-        found => found,
-    };
-    best.map_or(Ok(Vec::new()), |tried| tried.notes(test, &whole))
+    let best = |names: Vec<Vec<Renamed>>| best_of(test, &whole, names, FAR_BETTER * cost);
+    let mut told = None;
+    if stands_out {
+        told = best(robust_names(problem, &whole, found)?);
+        if told.is_none() {
+            told = best(changed_pairs(&whole)?);
+        }
+    }
+    told.or_else(|| best(near_pairs(&whole))).map_or(Ok(Vec::new()), |tried| tried.notes(test, &whole))
+}
+
+/// The same where no search ended under the names that the test has: `error` \[% rms\] is that of the last step.
+pub(super) fn names_with_a_minimum(test: &ImpactTest, error: f64) -> Result<Vec<String>, IdentifyError> {
+    let whole = FrequencyProblem::of(test)?;
+    let cost = (0.01 * error).powi(2) * whole.count() as f64;
+    let told = best_of(test, &whole, changed_pairs(&whole)?, FAR_BETTER * cost);
+    told.map_or(Ok(Vec::new()), |tried| tried.notes(test, &whole))
+}
+
+/// The first names that leave less than `most` of the sum of squares: the likeliest come first, two side by side.
+fn best_of(test: &ImpactTest, whole: &FrequencyProblem, names: Vec<Vec<Renamed>>, most: f64) -> Option<Tried> {
+    names.chunks(2).find_map(|few| {
+        let tried = few.par_iter().filter_map(|names| Tried::of(test, whole, names.clone()));
+        tried.filter(|tried| tried.cost < most).min_by(|a, b| a.cost.total_cmp(&b.cost))
+    })
 }
 
 /// Other names, and what is left under them.
@@ -167,48 +180,6 @@ fn proposed_names(more: &FrequencyProblem, parameters: &[f64]) -> Result<Vec<Ren
         }
     }
     Ok(names)
-}
-
-/// Pairs of lines of one list with each other's names: those that come nearest to a usual panel of the right size.
-fn changed_pairs(whole: &FrequencyProblem) -> Result<Vec<Vec<Renamed>>, IdentifyError> {
-    let mut pairs: Vec<(f64, Vec<Renamed>)> = Vec::new();
-    for softness in SOFTNESS {
-        let usual = guess(whole.structure, &whole.constants, softness);
-        let of_set = |set: &FrequencySet| set.modes.rough_frequencies(&usual);
-        let frequencies = whole.sets.iter().map(of_set).collect::<Result<Vec<_>, _>>()?;
-        let named = whole.sets.iter().zip(&frequencies);
-        let mut sizes: Vec<f64> =
-            named.flat_map(|(set, own)| own.iter().zip(&set.measured).map(|(f, m)| f / m)).collect();
-        sizes.sort_by(f64::total_cmp);
-        // That of most lines: wrong names stand out on either side.
-        let size = sizes[sizes.len() / 2];
-        let miss = |frequency: f64, measured: f64| ((frequency / size / measured).ln() / USUAL_MISS).powi(2).ln_1p();
-        let as_named =
-            |set: usize, line: usize, name: usize| miss(frequencies[set][name], whole.sets[set].measured[line]);
-        let lines = |set: usize| 0..whole.sets[set].measured.len();
-        let all: f64 = (0..whole.sets.len())
-            .flat_map(|set| lines(set).map(move |line| (set, line)))
-            .map(|(set, line)| as_named(set, line, line))
-            .sum();
-        for (set, own) in whole.sets.iter().enumerate() {
-            for one in lines(set) {
-                for other in one + 1..lines(set).end {
-                    let before = as_named(set, one, one) + as_named(set, other, other);
-                    let after = as_named(set, one, other) + as_named(set, other, one);
-                    let renamed = |line: usize, name: usize| Renamed { set, line, nodes: own.modes.nodes()[name] };
-                    pairs.push((all + after - before, vec![renamed(one, other), renamed(other, one)]));
-                }
-            }
-        }
-    }
-    pairs.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let mut likeliest: Vec<Vec<Renamed>> = Vec::new();
-    for (_, pair) in pairs {
-        if likeliest.len() < MOST_PAIRS && !likeliest.contains(&pair) {
-            likeliest.push(pair);
-        }
-    }
-    Ok(likeliest)
 }
 
 /// Cauchy's error of the lines, and of the last parameters what they lie beside the usual ones.

@@ -1,7 +1,9 @@
 //! Identification by natural frequencies (eqs 22 and 24).
 
+mod changed_pairs;
 mod doubtful_names;
 mod first_constants;
+mod impossible_names;
 mod noise;
 mod of_poles;
 mod other_starts;
@@ -54,7 +56,8 @@ pub(crate) fn identify_frequencies(test: &ImpactTest, search: Search) -> Result<
         StructureKind::TimoshenkoBeam => (minimise(&problem, &start, search)?, Vec::new()),
         StructureKind::MindlinPlate => {
             let all = problem.constants.clone();
-            let seen = seen_constants::minimise_what_is_seen(&mut problem, &start)?;
+            let seen =
+                seen_constants::minimise_what_is_seen(&mut problem, &start).map_err(|error| named(test, error))?;
             let at = problem.linearised(&seen.predictions, &problem.constants);
             doubts = doubtful_names::doubtful_names(test, &problem, &seen.parameters, &at)?;
             let seen = if doubts.is_empty() { other_starts::from_other_starts(&mut problem, &all, seen) } else { seen };
@@ -68,6 +71,17 @@ pub(crate) fn identify_frequencies(test: &ImpactTest, search: Search) -> Result<
     };
     problem.constants.refuse_bounds(&found)?;
     report::report(test, &problem, &found, &problem.predictions(&found)?, (not_identified, doubts))
+}
+
+/// A search without end, with the names of the lines that would have one.
+fn named(test: &ImpactTest, error: IdentifyError) -> IdentifyError {
+    let IdentifyError::NotConverged { iterations, error_percent } = error else { return error };
+    match doubtful_names::names_with_a_minimum(test, error_percent) {
+        Ok(names) if !names.is_empty() => {
+            IdentifyError::DoubtfulNames { iterations, error_percent, names: names.join("; ") }
+        }
+        _ => error,
+    }
 }
 
 /// The minimum from `start`.

@@ -3,10 +3,11 @@
 use std::sync::Arc;
 
 use faer::Mat;
-use orthopanel_data::{ImpactTest, MeasurementData};
+use orthopanel_data::{ImpactTest, MeasurementData, NaturalFrequencies};
 use orthopanel_model::{RitzMode, StructureKind};
 use rayon::prelude::*;
 
+use super::impossible_names::{NamedLine, refuse_impossible_names};
 use super::structures::{self, MeasuredModes, Prediction, Solved, bending_nodes};
 use crate::IdentifyError;
 use crate::free_constants::FreeConstants;
@@ -58,6 +59,9 @@ impl FrequencyProblem {
     pub(super) fn of(test: &ImpactTest) -> Result<Self, IdentifyError> {
         let structure = test.structure.unwrap_or(StructureKind::TimoshenkoBeam);
         let constants = FreeConstants::of(test, structure.constants())?;
+        if structure == StructureKind::MindlinPlate {
+            refuse_impossible_names(test, &constants, &named_lines(test))?;
+        }
         let sets = frequency_sets(test, structure)?.into();
         let problem = Self { structure, constants, sets };
         // A plate may hold what its frequencies do not show; a beam has nothing to hold.
@@ -192,14 +196,29 @@ impl FrequencyProblem {
     }
 }
 
+/// Nodal lines of a list of frequencies: those given, else bending modes in order.
+fn nodes_of(test: &ImpactTest, data: &NaturalFrequencies) -> Vec<[usize; 2]> {
+    match &data.shape[..] {
+        [] => bending_nodes(test.boundary, data.values.len()),
+        shape => shape.iter().map(|pair| pair.map(|count| count as usize)).collect(),
+    }
+}
+
+fn named_lines(test: &ImpactTest) -> Vec<NamedLine> {
+    let mut lines = Vec::new();
+    for measurement in &test.measurements {
+        let MeasurementData::NaturalFrequencies(data) = &measurement.data else { continue };
+        let named = data.values.iter().zip(nodes_of(test, data));
+        lines.extend(named.map(|(&measured, nodes)| NamedLine { piece: measurement.piece, measured, nodes }));
+    }
+    lines
+}
+
 fn frequency_sets(test: &ImpactTest, structure: StructureKind) -> Result<Vec<FrequencySet>, IdentifyError> {
     let mut sets = Vec::new();
     for measurement in &test.measurements {
         let MeasurementData::NaturalFrequencies(data) = &measurement.data else { continue };
-        let nodes = match &data.shape[..] {
-            [] => bending_nodes(test.boundary, data.values.len()),
-            shape => shape.iter().map(|pair| pair.map(|count| count as usize)).collect(),
-        };
+        let nodes = nodes_of(test, data);
         sets.push(FrequencySet {
             piece: measurement.piece,
             modes: structures::of(structure, &test.pieces[measurement.piece].piece, test.boundary, nodes)?,

@@ -20,6 +20,7 @@ pub(super) fn report(
     let at = problem.linearised(predictions, &problem.constants);
     let uncertainty = uncertainty(problem, predictions, found, &at);
     notes.extend(assumed_scatter(problem, &at));
+    notes.extend(other_modes(test, problem, predictions)?);
     if notes.is_empty() {
         notes.extend(large_miss(problem, &at));
     }
@@ -58,6 +59,33 @@ fn large_miss(problem: &FrequencyProblem, at: &Linearised) -> Option<String> {
             100.0 * scatter
         )
     })
+}
+
+/// A mode with a smaller share of the nodal lines by which it is told is another one.
+const LEAST_SHARE: f64 = 0.1;
+
+/// A sentence for each line that is met by a mode of other nodal lines, for none of its own is near.
+fn other_modes(
+    test: &ImpactTest,
+    problem: &FrequencyProblem,
+    predictions: &[SetPrediction],
+) -> Result<Vec<String>, IdentifyError> {
+    let mut notes = Vec::new();
+    for (set, predicted) in problem.sets.iter().zip(predictions) {
+        let lines = set.measured.iter().zip(set.modes.nodes()).zip(&predicted.modes);
+        for ((measured, nodes), mode) in lines.filter(|(_, mode)| mode.share < LEAST_SHARE) {
+            let spectrum = set.modes.spectrum(&predicted.values)?;
+            let apart = |frequency: f64| (frequency - mode.frequency).abs();
+            let met = spectrum.iter().min_by(|a, b| apart(a.frequency).total_cmp(&apart(b.frequency)));
+            notes.push(format!(
+                "piece {}, {measured} Hz named {nodes:?}: no mode near it has these nodal lines, it is held against one{}; look at \
+                 this mode's shape again, its constants are in doubt",
+                test.pieces[set.piece].name,
+                met.map_or(String::new(), |line| format!(" with {:?}", line.nodes)),
+            ));
+        }
+    }
+    Ok(notes)
 }
 
 /// What is said where nothing tells how far the frequencies scatter.

@@ -62,6 +62,28 @@ impl MindlinPlate {
         Ok(layers(piece, ends(boundary), solid))
     }
 
+    /// Natural frequency \[Hz\] of the mode with these nodes along x and y, within a quarter or so, by one product of beam functions:
+    /// with the mean squares of their slopes and curvatures, bending and shear yield one after the other. Zero for a rigid motion.
+    ///
+    /// # Errors
+    /// [`ModelError::Size`] and what [`Structure::coefficients`](crate::Structure::coefficients) refuses of the constants.
+    pub fn estimated_frequency(
+        piece: &Piece,
+        boundary: Boundary,
+        values: &[f64],
+        nodes: [usize; 2],
+    ) -> Result<f64, ModelError> {
+        let piece = piece.checked()?;
+        let estimate = one_term(&piece, ends(boundary), plate_stiffnesses(piece.thickness, values)?, nodes);
+        Ok((estimate.unwrap_or(0.0) / piece.mass_per_area).sqrt() / std::f64::consts::TAU)
+    }
+
+    /// Whether a plate with so many polynomials along x and y is small enough to be built: 80 each way at most, and no more
+    /// coordinates than some 200 MB of matrices hold.
+    pub fn can_have(boundary: Boundary, terms: [usize; 2]) -> bool {
+        terms.iter().all(|count| (TERMS[0]..=TERMS[1]).contains(count)) && fits(ends(boundary), terms)
+    }
+
     /// Roughly how many flexible modes lie below `frequency` \[Hz\], within a quarter or so; at most one more than a
     /// basis can resolve.
     ///
@@ -140,23 +162,12 @@ const MOST_NODES: usize = 50;
 impl Reach {
     fn new(piece: &Piece, boundary: Boundary, stiffnesses: [f64; 6]) -> Result<Self, ModelError> {
         let piece = piece.checked()?;
-        let Boundary { left, right, front, back } = boundary;
-        let along_x: Vec<_> = (0..=MOST_NODES).map(|m| mean_squares(m, [left, right], piece.length)).collect();
-        let along_y: Vec<_> = (0..=MOST_NODES).map(|n| mean_squares(n, [front, back], piece.width)).collect();
-        let [d_11, d_22, d_12, d_66, a_55, a_44] = stiffnesses;
-        let mut modes = Vec::with_capacity(along_x.len() * along_y.len());
-        for (m, [slope_x, curvature_x]) in along_x.iter().enumerate() {
-            for (n, [slope_y, curvature_y]) in along_y.iter().enumerate() {
-                let bending = d_11 * curvature_x + d_22 * curvature_y + (2.0 * d_12 + 4.0 * d_66) * slope_x * slope_y;
-                let shear = a_55 * slope_x + a_44 * slope_y;
-                // Bending and shear yield one after the other.
-                if bending > 0.0 {
-                    modes.push((1.0 / (1.0 / bending + 1.0 / shear), [m, n]));
-                }
-            }
+        let ends = ends(boundary);
+        let mut modes = Vec::with_capacity((MOST_NODES + 1).pow(2));
+        for nodes in (0..=MOST_NODES).flat_map(|m| (0..=MOST_NODES).map(move |n| [m, n])) {
+            modes.extend(one_term(&piece, ends, stiffnesses, nodes).map(|estimate| (estimate, nodes)));
         }
         modes.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let ends = ends(boundary);
         Ok(Self { modes, layers: layers(&piece, ends, stiffnesses), ends })
     }
 
@@ -185,11 +196,26 @@ impl Reach {
         (0..=most).rev().map(up_to).find(|&wider| self.fits(wider)).unwrap_or(terms)
     }
 
-    fn fits(&self, [x, y]: [usize; 2]) -> bool {
-        let coordinates = 3 * x * y;
-        let blocks: usize = self.ends.iter().map(|[low, high]| if low == high { 2 } else { 1 }).product();
-        coordinates * coordinates / blocks <= MOST_ENTRIES
+    fn fits(&self, terms: [usize; 2]) -> bool {
+        fits(self.ends, terms)
     }
+}
+
+fn fits(ends: [[End; 2]; 2], [x, y]: [usize; 2]) -> bool {
+    let coordinates = 3 * x * y;
+    let blocks: usize = ends.iter().map(|[low, high]| if low == high { 2 } else { 1 }).product();
+    coordinates * coordinates / blocks <= MOST_ENTRIES
+}
+
+/// $\omega^2\rho t$ of the product of beam functions with these nodes; `None` where it is a rigid motion.
+fn one_term(piece: &Piece, ends: [[End; 2]; 2], stiffnesses: [f64; 6], [m, n]: [usize; 2]) -> Option<f64> {
+    let [slope_x, curvature_x] = mean_squares(m, ends[0], piece.length);
+    let [slope_y, curvature_y] = mean_squares(n, ends[1], piece.width);
+    let [d_11, d_22, d_12, d_66, a_55, a_44] = stiffnesses;
+    let bending = d_11 * curvature_x + d_22 * curvature_y + (2.0 * d_12 + 4.0 * d_66) * slope_x * slope_y;
+    let shear = a_55 * slope_x + a_44 * slope_y;
+    // Bending and shear yield one after the other.
+    (bending > 0.0).then(|| 1.0 / (1.0 / bending + 1.0 / shear))
 }
 
 /// Half-waves of the beam function with `nodes` between these ends, far from them.

@@ -37,7 +37,12 @@ impl PlateModes {
             )));
         }
         let [most_x, most_y] = [0, 1].map(|axis| nodes.iter().map(|pair| pair[axis]).max().unwrap_or(0));
-        let plate = MindlinPlate::new(piece, boundary, terms(piece, boundary, [most_x, most_y])?)?;
+        let terms = terms(piece, boundary, [most_x, most_y])?;
+        if !MindlinPlate::can_have(boundary, terms) {
+            let most = most_nodes(piece, boundary, [most_x, most_y])?;
+            return Err(IdentifyError::ShapeBeyondBasis { nodes: [most_x, most_y], terms, most });
+        }
+        let plate = MindlinPlate::new(piece, boundary, terms)?;
         let reach = ((most_x + 2) * (most_y + 3) + SPARE_MODES).min(plate.resolved_modes());
         let own = Arc::new(plate.only_with_nodes(&nodes));
         let share = reach * own.blocks().len() / plate.blocks().len();
@@ -65,6 +70,18 @@ const MOST_FOR_LAYER: usize = 28;
 fn terms(piece: &Piece, boundary: Boundary, [most_x, most_y]: [usize; 2]) -> Result<[usize; 2], ModelError> {
     let layers = MindlinPlate::layer_terms(piece, boundary)?.map(|layer| layer.min(MOST_FOR_LAYER));
     Ok([(most_x + 11).max(layers[0]), (most_y + 6).max(7).max(layers[1])])
+}
+
+/// The most nodes, in the proportion of these, for which a plate can be built.
+fn most_nodes(piece: &Piece, boundary: Boundary, [x, y]: [usize; 2]) -> Result<[usize; 2], ModelError> {
+    let longest = x.max(y);
+    for length in (0..longest).rev() {
+        let fewer = [x * length / longest, y * length / longest];
+        if MindlinPlate::can_have(boundary, terms(piece, boundary, fewer)?) {
+            return Ok(fewer);
+        }
+    }
+    Ok([0, 0])
 }
 
 /// Polynomials beyond the number of nodes that hold a frequency to some per cent.
@@ -248,7 +265,8 @@ impl Told {
     ) -> Result<Vec<Prediction>, ModelError> {
         let by_constants = structure.coefficient_derivatives(values)?;
         let prediction = |nearest: &Option<(usize, f64)>| {
-            let mode = &modes[(*nearest)?.0];
+            let (index, overlap) = (*nearest)?;
+            let mode = &modes[index];
             let by_coefficient = mode.coefficient_sensitivity(structure);
             let twice_omega2 = 2.0 * mode.angular_frequency.powi(2);
             let by = |constant: usize| {
@@ -256,7 +274,7 @@ impl Told {
                 sum / twice_omega2
             };
             let frequency = mode.angular_frequency / std::f64::consts::TAU;
-            Some(Prediction { frequency, by_constant: (0..values.len()).map(by).collect() })
+            Some(Prediction { frequency, by_constant: (0..values.len()).map(by).collect(), share: overlap * overlap })
         };
         let predictions: Option<Vec<Prediction>> = self.0.iter().map(prediction).collect();
         predictions.ok_or(ModelError::BasisTooSmall { asked: self.0.len(), available: modes.len() })

@@ -16,6 +16,8 @@ pub(super) struct Prediction {
     pub frequency: f64,
     /// $\partial\ln f/\partial c_j$ for each constant.
     pub by_constant: Vec<f64>,
+    /// Share of its motion, 0 to 1, that the nodal lines by which it is told have.
+    pub share: f64,
 }
 
 /// The measured modes at given constants, and the shapes that they were found among, where these help to solve again.

@@ -60,6 +60,7 @@ impl MeasuredModes for BeamModes {
             Prediction {
                 frequency: mode.frequency(),
                 by_constant: mode.sensitivity().iter().map(|by| by / twice_omega2).collect(),
+                share: 1.0,
             }
         };
         Ok(self.positions.iter().map(prediction).collect())

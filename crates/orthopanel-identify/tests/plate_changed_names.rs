@@ -1,0 +1,132 @@
+//! Lists of a plate's modes in which two lines next to each other have changed their names. `fmpy-checks/test_plate_names.py` changes
+//! every two of a list.
+
+use orthopanel_data::ImpactTest;
+use orthopanel_identify::{Search, identify};
+use orthopanel_model::{Boundary, MindlinPlate, Piece, ritz_modes};
+
+/// A plate of 0.8 x 0.2 x 0.03 m with e_x 1.07e10, e_y 9.6e9, nu_xy 0.31, g_xy 3.7e9, g_yz 2.9e8, g_zx 5.363e8 Pa:
+/// frequencies by scikit-fem, nodal lines by its changes of sign (`fmpy-checks/plate_by_scikit_fem.py`).
+const MADE: [(f64, [usize; 2]); 10] = [
+    (321.8, [2, 0]),
+    (631.0, [1, 1]),
+    (840.3, [3, 0]),
+    (1254.6, [2, 1]),
+    (1529.4, [4, 0]),
+    (1876.5, [3, 1]),
+    (2316.8, [5, 0]),
+    (2515.8, [4, 1]),
+    (3144.8, [6, 0]),
+    (3191.4, [5, 1]),
+];
+
+/// What is said of the list with two names changed: the notes, or the error where no search ends.
+fn told(one: usize, other: usize) -> String {
+    let (values, mut shapes): (Vec<f64>, Vec<[usize; 2]>) = MADE.into_iter().unzip();
+    shapes.swap(one, other);
+    let text = format!(
+        "structure = \"mindlin-plate\"\n[piece]\nlength = 0.8\nwidth = 0.2\nthickness = 0.03\nmass_per_area = 6.88\n\
+         [[measurement]]\nkind = \"natural-frequencies\"\nvalues = {values:?}\nshape = {shapes:?}\n"
+    );
+    match identify(&ImpactTest::from_toml(&text, "test.toml").unwrap(), Search::LeastSquares) {
+        Ok(found) => found.notes.join("; "),
+        Err(error) => error.to_string(),
+    }
+}
+
+fn assert_told(one: usize, other: usize) {
+    let told = told(one, other);
+    for (own, wrong) in [(MADE[one], MADE[other]), (MADE[other], MADE[one])] {
+        assert!(told.contains(&format!("{} Hz named {:?}", own.0, wrong.1)), "{one} {other}: {told}");
+        assert!(told.contains(&format!("and {:?} at", own.1)), "{one} {other}: {told}");
+    }
+}
+
+/// Where the names that the file has lead to no minimum, the error tells the others.
+#[test]
+fn names_without_a_minimum_are_told_with_the_error() {
+    assert_told(4, 5);
+    assert!(told(4, 5).starts_with("no minimum"));
+}
+
+/// 3144.8 and 3191.4 Hz: with each other's names no line misses by 1 %.
+#[test]
+fn near_lines_that_changed_their_names_are_told() {
+    assert_told(8, 9);
+}
+
+#[test]
+fn neighbours_that_changed_their_names_are_told() {
+    for one in [0, 1, 2, 3, 5, 6, 7] {
+        assert_told(one, one + 1);
+    }
+}
+
+/// The refusal of the list with one line named otherwise.
+fn refusal(line: usize, nodes: [usize; 2]) -> String {
+    let (values, mut shapes): (Vec<f64>, Vec<[usize; 2]>) = MADE.into_iter().unzip();
+    shapes[line] = nodes;
+    let text = format!(
+        "structure = \"mindlin-plate\"\n[piece]\nlength = 0.8\nwidth = 0.2\nthickness = 0.03\nmass_per_area = 6.88\n\
+         [[measurement]]\nkind = \"natural-frequencies\"\nvalues = {values:?}\nshape = {shapes:?}\n"
+    );
+    let error = identify(&ImpactTest::from_toml(&text, "test.toml").unwrap(), Search::LeastSquares).unwrap_err();
+    assert!(error.is_bad_input(), "{error}");
+    error.to_string()
+}
+
+/// A mode that lies far above its line on every panel: no basis is built for it. This took up to 42 s, and memory without limit.
+#[test]
+fn a_name_that_no_panel_has_there_is_refused_at_once() {
+    for (line, nodes) in [(9, [9, 9]), (0, [9, 9]), (4, [40, 40]), (9, [0, 30]), (9, [400, 0])] {
+        let said = refusal(line, nodes);
+        assert!(said.contains(&format!("{} Hz named {nodes:?}", MADE[line].0)) && said.contains("or above"), "{said}");
+    }
+}
+
+/// The plate has no such mode among those that its basis resolves: it is held against another, which the note names.
+#[test]
+fn a_line_met_by_a_mode_of_other_nodal_lines_is_told() {
+    let (values, mut shapes): (Vec<f64>, Vec<[usize; 2]>) = MADE.into_iter().unzip();
+    shapes[9] = [30, 0];
+    let text = format!(
+        "structure = \"mindlin-plate\"\n[piece]\nlength = 0.8\nwidth = 0.2\nthickness = 0.03\nmass_per_area = 6.88\n\
+         [[measurement]]\nkind = \"natural-frequencies\"\nvalues = {values:?}\nshape = {shapes:?}\n"
+    );
+    let found = identify(&ImpactTest::from_toml(&text, "test.toml").unwrap(), Search::LeastSquares).unwrap();
+    assert!(
+        found.notes.iter().any(|note| note.contains("3191.4 Hz named [30, 0]: no mode near it")),
+        "{:?}",
+        found.notes
+    );
+}
+
+/// A single line may be any mode that a basis follows.
+#[test]
+fn a_name_beyond_the_basis_is_refused_with_the_limit() {
+    let text = "structure = \"mindlin-plate\"\n[piece]\nlength = 0.8\nwidth = 0.2\nthickness = 0.03\nmass_per_area = 6.88\n\
+                [[measurement]]\nkind = \"natural-frequencies\"\nvalues = [68000.0]\nshape = [[60, 45]]\n";
+    let refused = identify(&ImpactTest::from_toml(text, "test.toml").unwrap(), Search::LeastSquares).unwrap_err();
+    let said = refused.to_string();
+    assert!(refused.is_bad_input() && said.contains("shape [60, 45]") && said.contains("71 x 51"), "{said}");
+    assert!(said.contains("shapes up to [31, 23]"), "{said}");
+}
+
+/// Wood: its second bending mode across the grain lies low, and is no wrong name.
+#[test]
+fn modes_across_the_grain_are_not_refused() {
+    let piece = Piece { length: 0.8, width: 0.3, thickness: 0.02, mass_per_area: 9.0 };
+    let wood = [1.2e10, 4e8, 0.35, 7e8, 5e7, 7e8];
+    let plate = MindlinPlate::with_basis_for(&piece, Boundary::FREE, &wood, 8).unwrap();
+    let modes = ritz_modes(&plate, &wood, 8).unwrap();
+    let flexible = modes.iter().filter(|mode| mode.angular_frequency > 0.0);
+    let named = flexible.map(|mode| (mode.angular_frequency / std::f64::consts::TAU, plate.mode_name(mode).nodes));
+    let (values, shapes): (Vec<f64>, Vec<[usize; 2]>) = named.unzip();
+    assert!(shapes.contains(&[0, 2]) && shapes.contains(&[2, 0]), "{shapes:?}");
+    let text = format!(
+        "structure = \"mindlin-plate\"\n[piece]\nlength = 0.8\nwidth = 0.3\nthickness = 0.02\nmass_per_area = 9.0\n\
+         [[measurement]]\nkind = \"natural-frequencies\"\nvalues = {values:?}\nshape = {shapes:?}\n"
+    );
+    let found = identify(&ImpactTest::from_toml(&text, "test.toml").unwrap(), Search::LeastSquares).unwrap();
+    assert!(found.frequency_rms_percent < 0.05, "{} %", found.frequency_rms_percent);
+}
