@@ -68,7 +68,7 @@ impl WideStepper {
     both_versions! {
         [mut] set_forces(forces: &[f64]) -> Result<(), ModelError>;
         [mut] advance_held(step: f64) -> Result<(), ModelError>;
-        [mut] advance_under(forces: &[f64], step: f64) -> Result<(), ModelError>;
+        [mut] advance_under_one(force: f64, step: f64) -> Result<(), ModelError>;
         [mut] advance_linear(step: f64, forces: &[f64]) -> Result<(), ModelError>;
         [] displacement(response: usize) -> Option<f64>;
         [] velocity(response: usize) -> Option<f64>;
@@ -81,6 +81,10 @@ mod tests {
     use orthopanel_model::Mode;
 
     use super::*;
+
+    fn of_one_force(mode: &Mode) -> Mode {
+        Mode { at_forces: vec![1.0], ..mode.clone() }
+    }
 
     #[test]
     fn val_both_versions_give_the_same_bits() {
@@ -102,6 +106,13 @@ mod tests {
             assert_eq!(wide.state(), plain.state());
             let outputs = [wide.displacement(0), wide.velocity(0), wide.acceleration(0)];
             assert_eq!(outputs, [plain.displacement(0), plain.velocity(0), plain.acceleration(0)]);
+        }
+        let one = ModalModel::new(1, 1, model.modes().iter().map(of_one_force).collect()).expect("a sound model");
+        let (mut wide, mut plain) = (WideStepper::new(&one), ModalStepper::new(&one));
+        for n in 0..50 {
+            wide.advance_under_one(f64::from(n % 7), 1e-4).expect("a step");
+            plain.advance_under_one(f64::from(n % 7), 1e-4).expect("a step");
+            assert_eq!(wide.state(), plain.state());
         }
     }
 }

@@ -15,12 +15,13 @@ impl Component {
     /// The force over the step: with `force_linear` from its value at the end of the last step to the value set;
     /// with input derivatives from the value set at that rate; else held at the value set. Where the step is
     /// refused, everything stays as it was.
+    #[inline(always)]
     pub(crate) fn do_step(&mut self, start: f64, step: f64) -> Result<(), FmuError> {
         self.require(Phase::STEP)?;
         let end = start + step;
         let slack = TIME_SLACK * step + TIME_ROUNDING * start.abs();
-        // Each comparison fails for what is not a number.
-        let sound = step > 0.0 && (start - self.now.time).abs() <= slack && slack.is_finite() && end.is_finite();
+        // Each comparison fails for what is not a number; a finite end has a finite start and step.
+        let sound = step > 0.0 && (start - self.now.time).abs() <= slack && end.is_finite();
         if !sound || self.now.stop_time.is_some_and(|stop| end > stop + slack) {
             return Err(self.refused_step(start, step, slack));
         }
@@ -32,11 +33,15 @@ impl Component {
             if self.parameters_changed {
                 self.apply()?;
             }
-            // Forces are told with the step, in one pass over the modes.
-            if std::mem::take(&mut self.forces_changed) {
-                self.stepper.advance_under(&self.now.forces, step).inspect_err(|_| self.forces_changed = true)?;
-            } else {
-                self.stepper.advance_held(step)?;
+            match self.now.forces[..] {
+                // One force is told with the step, in one pass over the modes.
+                [force] if std::mem::take(&mut self.forces_changed) => {
+                    self.stepper.advance_under_one(force, step).inspect_err(|_| self.forces_changed = true)?;
+                }
+                _ => {
+                    self.apply()?;
+                    self.stepper.advance_held(step)?;
+                }
             }
             self.now.slopes_given = false;
         }

@@ -2,9 +2,11 @@
 
 use super::lane::Lane;
 
-/// What is known of a group of modes beside its state.
+/// What is known of a group of modes, all that a step reads in one place.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Group {
+    /// The state now and the one after the step, in turns: [`Turn`] tells which is which.
+    pub states: [State; 2],
     /// $\omega^2$ and $2\zeta\omega$.
     pub stiffness: Lane,
     pub damping: Lane,
@@ -18,6 +20,29 @@ pub(super) struct Group {
     /// Modal force now, and at the end of a linear step while that is computed.
     pub force: Lane,
     pub force_after: Lane,
+}
+
+/// Which of the two states of all groups is the one now. To pass a step on is to turn, and to refuse it is not to.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Turn(bool);
+
+impl Turn {
+    #[inline(always)]
+    pub fn next(self) -> Self {
+        Self(!self.0)
+    }
+}
+
+impl Group {
+    #[inline(always)]
+    pub fn state(&self, turn: Turn) -> &State {
+        &self.states[usize::from(turn.0)]
+    }
+
+    #[inline(always)]
+    pub fn state_mut(&mut self, turn: Turn) -> &mut State {
+        &mut self.states[usize::from(turn.0)]
+    }
 }
 
 /// Modal coordinates and their rates of one group.
@@ -64,7 +89,7 @@ pub(super) fn project(
 
 /// $\sum_m W_m q_m$ with `quantity` giving $q$ of a group.
 #[inline(always)]
-pub(super) fn sum<T>(shape: &[Lane], groups: impl IntoIterator<Item = T>, quantity: impl Fn(T) -> Lane) -> f64 {
+pub(super) fn sum(shape: &[Lane], groups: &[Group], quantity: impl Fn(&Group) -> Lane) -> f64 {
     let mut sums = Lane::default();
     for (&w, group) in shape.iter().zip(groups) {
         sums = sums + w * quantity(group);

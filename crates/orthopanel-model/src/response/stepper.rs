@@ -2,7 +2,7 @@
 
 use super::coupled::Coupled;
 use super::lane::{LANES, Lane};
-use super::mode_group::{Group, State, project, sum};
+use super::mode_group::{Group, Turn, project, sum};
 use super::propagator::Coefficients;
 use crate::{ModalModel, Mode, ModelError};
 
@@ -27,8 +27,7 @@ pub struct ModalStepper {
     at_responses: Vec<Vec<Lane>>,
     /// Largest $|W|$ at each force port: bounds every modal force.
     largest_at_forces: Vec<f64>,
-    state: Vec<State>,
-    state_after: Vec<State>,
+    now: Turn,
     step: f64,
     /// Where damping couples the modes: their step together, in place of each mode's own.
     coupled: Option<Box<Coupled>>,
@@ -63,8 +62,7 @@ impl ModalStepper {
             largest_at_forces: at_forces.iter().map(largest).collect(),
             at_forces,
             at_responses,
-            state: vec![State::default(); count],
-            state_after: vec![State::default(); count],
+            now: Turn::default(),
             step: 0.0,
             coupled: Coupled::new(model).map(Box::new),
         }
@@ -92,21 +90,45 @@ impl ModalStepper {
         self.advance_prepared::<false>()
     }
 
-    /// [`ModalStepper::set_forces`] and [`ModalStepper::advance_held`] in one pass over the modes.
+    /// [`ModalStepper::set_forces`] and [`ModalStepper::advance_held`] of a model with one force port, in one pass over the
+    /// modes.
     ///
     /// # Errors
-    /// As these two. The state stays as it was; the forces may be told or not.
+    /// As these two. The state stays as it was; the force may be told or not.
     #[inline(always)]
-    pub fn advance_under(&mut self, forces: &[f64], step: f64) -> Result<(), ModelError> {
-        if let [force] = forces
-            && self.coupled.is_none()
-        {
-            self.check_forces(forces)?;
-            self.prepare(step)?;
-            return self.advance_told(*force);
+    pub fn advance_under_one(&mut self, force: f64, step: f64) -> Result<(), ModelError> {
+        let ([shape], [largest]) = (&self.at_forces[..], &self.largest_at_forces[..]) else {
+            return Err(self.not_one_force());
+        };
+        let bound = force.abs() * largest;
+        if !bound.is_finite() {
+            return Err(not_finite(&[force], bound));
         }
-        self.set_forces(forces)?;
+        if self.coupled.is_some() {
+            return self.advance_in_two(force, step);
+        }
+        if step != self.step {
+            return self.advance_in_two(force, step);
+        }
+        let mut all = Lane::default();
+        for (group, &w) in self.groups.iter_mut().zip(shape) {
+            group.force = w * Lane::all(force);
+            let after = group.state(self.now).stepped::<false>(group);
+            *group.state_mut(self.now.next()) = after;
+            all = all + (after.position + after.velocity);
+        }
+        self.arrive(all)
+    }
+
+    #[cold]
+    fn advance_in_two(&mut self, force: f64, step: f64) -> Result<(), ModelError> {
+        self.set_forces(&[force])?;
         self.advance_held(step)
+    }
+
+    #[cold]
+    fn not_one_force(&self) -> ModelError {
+        ModelError::ForceCount { found: 1, expected: self.at_forces.len() }
     }
 
     /// Advances by `step` \[s\] under a force that runs linearly from the force now to `forces` \[N\], which is then
@@ -130,21 +152,22 @@ impl ModalStepper {
     #[inline(always)]
     pub fn displacement(&self, response: usize) -> Option<f64> {
         let shape = self.at_responses.get(response)?;
-        Some(sum(shape, &self.state, |state| state.position))
+        Some(sum(shape, &self.groups, |group| group.state(self.now).position))
     }
 
     /// Velocity \[m/s\] at a response port, counted from 0.
     #[inline(always)]
     pub fn velocity(&self, response: usize) -> Option<f64> {
         let shape = self.at_responses.get(response)?;
-        Some(sum(shape, &self.state, |state| state.velocity))
+        Some(sum(shape, &self.groups, |group| group.state(self.now).velocity))
     }
 
     /// Acceleration $\sum W(p - 2\zeta\omega\dot a - \omega^2 a)$ \[m/s²\] at a response port under the force now.
     #[inline(always)]
     pub fn acceleration(&self, response: usize) -> Option<f64> {
         let shape = self.at_responses.get(response)?;
-        let by_itself = sum(shape, self.state.iter().zip(&self.groups), |(state, group)| {
+        let by_itself = sum(shape, &self.groups, |group| {
+            let state = group.state(self.now);
             group.force - group.damping * state.velocity - group.stiffness * state.position
         });
         Some(match &self.coupled {
@@ -160,8 +183,8 @@ impl ModalStepper {
 
     /// $a$ and $\dot a$ of one mode, counted from 0; `None` where there is no such mode.
     pub fn mode_state(&self, mode: usize) -> Option<[f64; 2]> {
-        let (group, i) = (self.state.get(mode / LANES)?, mode % LANES);
-        (mode < self.mode_count).then(|| [group.position.0[i], group.velocity.0[i]])
+        let (state, i) = (self.groups.get(mode / LANES)?.state(self.now), mode % LANES);
+        (mode < self.mode_count).then(|| [state.position.0[i], state.velocity.0[i]])
     }
 
     /// $\dot a$ and $\ddot a = p - 2\zeta\omega\dot a - \omega^2 a$ of one mode under the force now, counted from 0;
@@ -176,7 +199,7 @@ impl ModalStepper {
     }
 
     fn velocity_of(&self, mode: usize) -> f64 {
-        self.state.get(mode / LANES).map_or(0.0, |group| group.velocity.0[mode % LANES])
+        self.groups.get(mode / LANES).map_or(0.0, |group| group.state(self.now).velocity.0[mode % LANES])
     }
 
     #[cold]
@@ -199,9 +222,10 @@ impl ModalStepper {
         if let Some(&value) = state.iter().flatten().find(|value| !value.is_finite()) {
             return Err(ModelError::NotFinite { what: "modal state", value });
         }
-        for (group, modes) in self.state.iter_mut().zip(state.chunks(LANES)) {
+        for (group, modes) in self.groups.iter_mut().zip(state.chunks(LANES)) {
+            let state = group.state_mut(self.now);
             for (i, mode) in modes.iter().enumerate() {
-                [group.position.0[i], group.velocity.0[i]] = *mode;
+                [state.position.0[i], state.velocity.0[i]] = *mode;
             }
         }
         Ok(())
@@ -215,9 +239,10 @@ impl ModalStepper {
         if let Some(&value) = state.iter().find(|value| !value.is_finite()) {
             return Err(ModelError::NotFinite { what: "modal state", value });
         }
-        let group = self.state.get_mut(mode / LANES).filter(|_| mode < self.mode_count);
+        let group = self.groups.get_mut(mode / LANES).filter(|_| mode < self.mode_count);
         let group = group.ok_or(ModelError::StateCount { found: mode.saturating_add(1), expected: self.mode_count })?;
-        [group.position.0[mode % LANES], group.velocity.0[mode % LANES]] = state;
+        let of_group = group.state_mut(self.now);
+        [of_group.position.0[mode % LANES], of_group.velocity.0[mode % LANES]] = state;
         Ok(())
     }
 
@@ -269,17 +294,20 @@ impl ModalStepper {
     #[cold]
     fn advance_coupled(&mut self, linear: bool) -> Result<(), ModelError> {
         let Some(coupled) = &mut self.coupled else { return Ok(()) };
-        let numbers = self.state.iter().zip(&self.groups).flat_map(|(state, group)| {
+        let now = self.now;
+        let numbers = self.groups.iter().flat_map(|group| {
+            let state = group.state(now);
             (0..LANES).map(move |i| {
-                let (now, then) = (group.force.0[i], group.force_after.0[i]);
-                [state.position.0[i], state.velocity.0[i], now, if linear { then - now } else { 0.0 }]
+                let (from, to) = (group.force.0[i], group.force_after.0[i]);
+                [state.position.0[i], state.velocity.0[i], from, if linear { to - from } else { 0.0 }]
             })
         });
         let after = coupled.advance(numbers);
         if let Some(&value) = after.iter().flatten().find(|value| !value.is_finite()) {
             return Err(ModelError::NotFinite { what: "modal state after the step", value });
         }
-        for (state, modes) in self.state.iter_mut().zip(after.chunks(LANES)) {
+        for (group, modes) in self.groups.iter_mut().zip(after.chunks(LANES)) {
+            let state = group.state_mut(now);
             for (i, mode) in modes.iter().enumerate() {
                 [state.position.0[i], state.velocity.0[i]] = *mode;
             }
@@ -287,7 +315,7 @@ impl ModalStepper {
         Ok(())
     }
 
-    /// The step itself, from `state` to `state_after`, which then change places. Where the force is not `LINEAR` it
+    /// The step itself, into the state after it, which then becomes the one now. Where the force is not `LINEAR` it
     /// stays, `force_after` is not read, and the compiler leaves its loads out.
     #[inline(always)]
     fn advance_prepared<const LINEAR: bool>(&mut self) -> Result<(), ModelError> {
@@ -295,22 +323,9 @@ impl ModalStepper {
             return self.advance_coupled(LINEAR);
         }
         let mut all = Lane::default();
-        for ((before, after), group) in self.state.iter().zip(&mut self.state_after).zip(&self.groups) {
-            *after = before.stepped::<LINEAR>(group);
-            all = all + (after.position + after.velocity);
-        }
-        self.arrive(all)
-    }
-
-    /// The same under one force, told on the way.
-    #[inline(always)]
-    fn advance_told(&mut self, force: f64) -> Result<(), ModelError> {
-        let mut all = Lane::default();
-        let shape = self.at_forces.first().into_iter().flatten();
-        let states = self.state.iter().zip(&mut self.state_after);
-        for (((before, after), group), &w) in states.zip(&mut self.groups).zip(shape) {
-            group.force = w * Lane::all(force);
-            *after = before.stepped::<false>(group);
+        for group in &mut self.groups {
+            let after = group.state(self.now).stepped::<LINEAR>(group);
+            *group.state_mut(self.now.next()) = after;
             all = all + (after.position + after.velocity);
         }
         self.arrive(all)
@@ -321,11 +336,16 @@ impl ModalStepper {
     #[inline(always)]
     fn arrive(&mut self, all: Lane) -> Result<(), ModelError> {
         if !all.is_finite() {
-            return Err(ModelError::NotFinite { what: "modal state after the step", value: all.sum() });
+            return Err(overflown(all.sum()));
         }
-        std::mem::swap(&mut self.state, &mut self.state_after);
+        self.now = self.now.next();
         Ok(())
     }
+}
+
+#[cold]
+fn overflown(value: f64) -> ModelError {
+    ModelError::NotFinite { what: "modal state after the step", value }
 }
 
 /// Which force, or with these forces which modal force, is not finite.

@@ -246,4 +246,44 @@ proptest! {
         prop_assert_eq!(stepper.state(), other.state());
         prop_assert_eq!(outputs(&stepper), outputs(&other));
     }
+
+    /// A force told with the step is the force told before it, bit for bit; damping may couple the modes.
+    #[test]
+    fn a_force_told_with_the_step_is_one_told_before(
+        omegas in prop::collection::vec(0.0..5000.0_f64, 1..10),
+        steps in prop::collection::vec((1e-4..2e-3_f64, -9.0..9.0_f64), 1..6),
+        coupled: bool,
+    ) {
+        let modes = omegas.iter().map(|&omega| Mode {
+            angular_frequency: omega, damping_ratio: 0.01, at_forces: vec![1.0], at_responses: vec![1.0] });
+        let mut model = ModalModel::new(1, 1, modes.collect()).expect("sound");
+        if coupled {
+            let row = |i| (0..omegas.len()).map(|j| if i == j { 2.0 } else { 0.1 }).collect();
+            model = model.with_damping_coupling((0..omegas.len()).map(row).collect()).expect("sound");
+        }
+        let mut together = ModalStepper::new(&model);
+        let mut apart = together.clone();
+        for (step, force) in steps {
+            for _ in 0..2 {
+                together.advance_under_one(force, step).expect("a step");
+                apart.set_forces(&[force]).and_then(|()| apart.advance_held(step)).expect("a step");
+                prop_assert_eq!(together.state(), apart.state());
+                prop_assert_eq!(outputs(&together), outputs(&apart));
+            }
+        }
+    }
+}
+
+#[test]
+fn a_force_told_with_the_step_is_refused_where_it_is_not_one_or_not_finite() {
+    let mut stepper = oscillator(10.0, 0.1);
+    stepper.advance_under_one(3.0, 0.1).expect("a step");
+    let before = stepper.state();
+    assert!(matches!(stepper.advance_under_one(f64::NAN, 0.1), Err(ModelError::NotFinite { what: "force", .. })));
+    assert!(matches!(stepper.advance_under_one(1.0, 0.0), Err(ModelError::Size { .. })));
+    assert_eq!(stepper.state(), before);
+    let mode = Mode { angular_frequency: 1.0, damping_ratio: 0.0, at_forces: vec![1.0; 2], at_responses: vec![1.0] };
+    let mut two = ModalStepper::new(&ModalModel::new(2, 1, vec![mode]).expect("a sound model"));
+    let refused = two.advance_under_one(1.0, 0.1);
+    assert!(matches!(refused, Err(ModelError::ForceCount { found: 1, expected: 2 })), "{refused:?}");
 }
