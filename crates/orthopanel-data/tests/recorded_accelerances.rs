@@ -91,3 +91,18 @@ fn val_the_measured_beam_is_read() {
         assert!(modes.iter().any(|mode| (found.frequency[peak] - mode).abs() < 0.1), "{}", found.frequency[peak]);
     }
 }
+
+#[test]
+fn val_an_accelerance_csv_carries_the_decay_rate_of_its_window() {
+    let read = |text: &str| {
+        let file = RecordFile::from_bytes(text.as_bytes(), "a.csv").unwrap();
+        Accelerance::from_records(file, &measurement()).map_err(|error| error.to_string())
+    };
+    assert_eq!(read("frequency_hz,real,imag,decay_rate_1_s\n1,2,3,12.5\n2,4,5,12.5\n").unwrap().decay_rate, 12.5);
+    assert_eq!(read("frequency_hz,real,imag\n1,2,3\n").unwrap().decay_rate, 0.0);
+    for (wrong, value) in [("1,2,3,12.5\n2,4,5,13\n", 13.0), ("1,2,3,1\n2,4,5,-1\n", -1.0)] {
+        let refused = read(&format!("frequency_hz,real,imag,decay_rate_1_s\n{wrong}")).unwrap_err();
+        let said = format!("a.csv:3: decay_rate_1_s: decay rate {value} at point 2: must be zero or more, the same");
+        assert!(refused.contains(&said), "{refused}");
+    }
+}

@@ -196,3 +196,33 @@ fn val_measured_hits_agree_with_pyfrf() {
         assert!((coherence[line] - expected[2]).abs() < 1e-9, "line {line}: {} {}", coherence[line], expected[2]);
     }
 }
+
+/// A soft blow of 2 ms (standard deviation): a force window that cuts it is refused with the width that holds it, one that
+/// cuts a little is told, and the width named is enough.
+#[test]
+fn val_a_force_window_narrower_than_the_blow_is_told() {
+    let history = noisy(&DAMPED.soft_hit(1000, 100.0), 7, 3, 0.0, 0.1);
+    let under = |half_width| history.accelerance(Estimation { window: Window::Force { half_width }, ..ALL_LINES });
+    let refused = under(1e-5).unwrap_err().to_string();
+    assert!(refused.contains("% of the blow (rms): half its width is 0.010 ms, and"), "{refused}");
+    let named: f64 = refused.split("a half width of ").nth(1).unwrap().split(' ').next().unwrap().parse().unwrap();
+    // What a normal pulse has beyond x is erfc(x/s) of its energy: 2.5e-5 at 3 standard deviations.
+    assert!((0.005..0.0075).contains(&named), "{named}");
+    let said = |half_width| under(half_width).unwrap().notes.iter().any(|note| note.contains("cuts off"));
+    assert!(!said(named) && said(0.7 * named));
+}
+
+/// Hann's window leaves damping in doubt by its slope at the blow: nothing else does.
+#[test]
+fn val_hanns_window_tells_what_it_leaves_in_doubt() {
+    let history = noisy(&DAMPED.soft_hit(1000, 100.0), 1, 2, 0.0, 0.1);
+    let of = |window| history.accelerance(Estimation { window, ..ALL_LINES }).unwrap().decay_rate_in_doubt;
+    assert_eq!(of(Window::None), 0.0);
+    assert_eq!(of(Window::ForceExponential { half_width: 0.004, tau: 0.2 }), 0.0);
+    let length = history.hits[0].force.len() as f64;
+    let force = &history.hits[0].force;
+    let blow = (0..force.len()).max_by(|&a, &b| force[a].total_cmp(&force[b])).unwrap() as f64;
+    let slope = 1.0 / (std::f64::consts::PI * blow / length).tan().abs();
+    let expected = std::f64::consts::TAU * history.rate / length * slope.max(1.0);
+    assert!((of(Window::Hann) / expected - 1.0).abs() < 1e-9, "{} {expected}", of(Window::Hann));
+}

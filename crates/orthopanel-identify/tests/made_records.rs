@@ -4,6 +4,7 @@
 
 mod support;
 
+use orthopanel_data::{Estimation, Window};
 use orthopanel_identify::{Identification, PaperWeights, Search, Settings, identify};
 use support::hammer_test;
 
@@ -74,4 +75,28 @@ fn val_weights_of_the_papers_error_are_heeded() {
     assert_truth(&found, 0.03, "frequencies alone");
     // Frequencies are known to a part of a line, so they meet far closer than where magnitudes have a say.
     assert!(found.frequency_rms_percent < 0.01, "{} %", found.frequency_rms_percent);
+}
+
+/// Under Hann's window damping is moved by up to its slope, and its deviation says so: every interval of two deviations
+/// holds the truth, though the lines themselves would tell a ratio to a part in a thousand.
+#[test]
+fn val_hanns_window_leaves_damping_as_open_as_it_is() {
+    for at in ["9830", "16384", "22938"] {
+        let folder = tempfile::tempdir().unwrap();
+        let options =
+            ["--noise", "0.003", "--seed", "31", "--format", "uff-binary", "--hits", "3", "--pre-trigger", at];
+        let Some(test) = hammer_test(&folder.path().join("hann"), &options) else { return };
+        let estimation = Estimation { window: Window::Hann, ..Estimation::default() };
+        let found = identify(&test, Settings { estimation, ..Settings::default() }).unwrap();
+        let told =
+            found.pieces[0].damping.iter().zip(ZETAS).filter_map(|(zeta, truth)| Some((zeta.value, zeta.std?, truth)));
+        for (zeta, std, truth) in told {
+            assert!(
+                (zeta - truth).abs() < 2.0 * std,
+                "blow at sample {at} of 32768: {zeta:e} +- {std:e}, truth {truth:e}"
+            );
+        }
+        let last = found.pieces[0].damping[5];
+        assert!(last.std.unwrap() > 0.01 * last.value, "{last:?}");
+    }
 }

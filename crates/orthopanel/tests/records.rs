@@ -129,3 +129,25 @@ fn accelerances_of_several_pairs_are_numbered() {
     assert_eq!(answer["accelerances"][1]["file"], "folder/accelerance-2.csv");
     assert!(bench.path("folder/accelerance-1.csv").exists());
 }
+
+/// An exponential window's damping is carried by the file, and taken out of what is read off it: the fit gives the truth, and a
+/// trace misses nothing where it named a window before.
+#[test]
+fn val_a_csv_under_an_exponential_window_carries_its_decay_rate() {
+    let bench = Bench::new();
+    let Some(truth) = made_records(&bench, "one", "--noise 0.003 --seed 7 --hits 3 --format uff-binary") else {
+        return;
+    };
+    bench.done("accelerance one/test.toml --window force-exponential --tau 0.1 -o one/h.csv");
+    let text = std::fs::read_to_string(bench.path("one/h.csv")).expect("a CSV file");
+    assert!(text.starts_with("frequency_hz,real,imag,coherence,variance,decay_rate_1_s\n"));
+    let test = std::fs::read_to_string(bench.path("one/test.toml")).expect("a test");
+    let before = test.split("[[measurement]]").next().expect("a piece");
+    let measurement =
+        "[[measurement]]\nkind = \"accelerance\"\nfile = \"h.csv\"\nforce_at = [-0.3, 0.0]\nresponse_at = [0.3, 0.0]\n";
+    bench.write("one/lines.toml", &format!("{before}{measurement}"));
+    let found = bench.json("identify one/lines.toml");
+    assert_truth(&found, &truth, 6, 3.0);
+    let traced = bench.json("trace one/lines.toml");
+    assert_eq!(traced["verdict"], "nothing-missing", "{traced}");
+}

@@ -1,4 +1,5 @@
-//! CSV of an accelerance: columns `frequency_hz,real,imag` and, where known, `coherence` and `variance`.
+//! CSV of an accelerance: columns `frequency_hz,real,imag` and, where known, `coherence` and `variance`; under an
+//! exponential window `decay_rate_1_s` too, the same number in every row.
 
 use std::{path::Path, sync::Arc};
 
@@ -8,14 +9,18 @@ use super::{Axis, Format, Port, Record, RecordFile, RecordKind, Samples, csv_col
 use crate::{DataError, Location};
 
 pub(super) const FORMAT: Format = Format {
-    name: "CSV with the columns frequency_hz,real,imag[,coherence][,variance]",
+    name: "CSV with the columns frequency_hz,real,imag[,coherence][,variance][,decay_rate_1_s]",
     recognises: |bytes| csv_columns::starts_with_column(bytes, "frequency_hz"),
     read,
 };
 
 fn read(bytes: &[u8], path: &Path) -> Result<RecordFile, DataError> {
-    let csv_columns::Columns { values, names_at, lines } =
-        csv_columns::read(bytes, path, &["frequency_hz", "real", "imag"], &["coherence", "variance"])?;
+    let csv_columns::Columns { values, names_at, lines } = csv_columns::read(
+        bytes,
+        path,
+        &["frequency_hz", "real", "imag"],
+        &["coherence", "variance", "decay_rate_1_s"],
+    )?;
     let mut columns = values.into_iter();
     let mut next = || columns.next().flatten();
     let (frequency, re, im) = (next().unwrap_or_default(), next().unwrap_or_default(), next().unwrap_or_default());
@@ -38,7 +43,12 @@ fn read(bytes: &[u8], path: &Path) -> Result<RecordFile, DataError> {
     let (motion, force) = (axis(record::ACCELERATION, ""), axis(record::FORCE, "N"));
     let frf = RecordKind::FrequencyResponse;
     records.push(record(frf, "accelerance", frequency.clone(), Samples::Complex(value), motion, force));
-    for (kind, title) in [(RecordKind::Coherence, "coherence"), (RecordKind::Variance, "variance")] {
+    let beside = [
+        (RecordKind::Coherence, "coherence"),
+        (RecordKind::Variance, "variance"),
+        (RecordKind::DecayRate, "decay_rate_1_s"),
+    ];
+    for (kind, title) in beside {
         if let Some(values) = next() {
             let (abscissa, values) = (Arc::clone(&frequency), Samples::Real(values));
             records.push(record(kind, title, abscissa, values, Axis::default(), Axis::default()));

@@ -66,6 +66,9 @@ pub enum RecordKind {
     Coherence,
     /// Variance $E|\hat H - H|^2$ of a frequency response; universal files have no number for it.
     Variance,
+    /// Decay rate $\sigma$ \[1/s\] of $s = \sigma + j\omega$ at which a frequency response stands, the same at every line;
+    /// universal files have no number for it.
+    DecayRate,
     /// Any other number, and 0 for a kind that the file does not tell.
     Other(i64),
 }

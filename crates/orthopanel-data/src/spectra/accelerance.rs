@@ -36,6 +36,10 @@ pub struct Accelerance {
     /// The accelerance stands at $s = \sigma + j\omega$ with this $\sigma$ \[1/s\]: see
     /// [`Window::ForceExponential`](crate::Window::ForceExponential); else zero.
     pub decay_rate: f64,
+    /// By how much a window may have moved the decay rate of a resonance \[1/s\], where that cannot be taken out: under
+    /// [`Window::Hann`](crate::Window::Hann) $\frac{2\pi}{T}\max(1, |\cot(\pi t_0/T)|)$ with the blow at $t_0$ of a record
+    /// of length $T$; else zero.
+    pub decay_rate_in_doubt: f64,
     /// What a force window leaves of the force's noise, equally long; `None` without such a window, and where the records
     /// show no quiet stretch before the blow to read it from.
     pub force_noise: Option<ForceNoise>,
@@ -55,6 +59,7 @@ impl Accelerance {
             hits: 0,
             verdicts: Vec::new(),
             decay_rate: 0.0,
+            decay_rate_in_doubt: 0.0,
             force_noise: None,
             notes: Vec::new(),
         }
@@ -156,8 +161,28 @@ impl Accelerance {
             let factor = factor * factor;
             result.variance = Some(variance.into_iter().skip(positive).map(|variance| variance * factor).collect());
         }
+        if let Some(record) = of_kind(RecordKind::DecayRate).next() {
+            result.decay_rate = one_decay_rate(record)?;
+        }
         result.notes = notes;
         Ok(result)
+    }
+}
+
+/// The decay rate of all lines, checked.
+fn one_decay_rate(of: &Record) -> Result<f64, DataError> {
+    let Samples::Real(values) = &of.ordinate else {
+        return Err(DataError::Channels { at: of.at.clone(), problem: "a decay rate must be real".into() });
+    };
+    let first = values.first().copied().unwrap_or_default();
+    match values.iter().position(|value| *value != first || *value < 0.0) {
+        None => Ok(first),
+        Some(line) => {
+            let value = values[line];
+            let problem =
+                format!("decay rate {value} at point {}: must be zero or more, the same in every row", line + 1);
+            Err(DataError::Channels { at: of.at_point(line), problem })
+        }
     }
 }
 

@@ -6,6 +6,54 @@ use super::{
     time_history::Hit,
 };
 
+/// What a force window cuts off the blows.
+pub(super) struct CutBlow {
+    /// Root of the part of $\sum f^2$ outside the window, less what noise makes of it, of the hit that loses most \[1\].
+    pub(super) lost: f64,
+    /// Samples on either side of the peak that are to be kept, so that no blow loses more than [`WHOLE`].
+    pub(super) needed: usize,
+}
+
+/// Part of a blow, rms, whose loss goes unsaid.
+pub(super) const WHOLE: f64 = 0.005;
+
+impl CutBlow {
+    /// Of hits under a window of `reach` samples on either side of the peak.
+    pub(super) fn of(hits: &[&Hit], reach: f64) -> Self {
+        let mut all = Self { lost: 0.0, needed: 0 };
+        for hit in hits {
+            let offset = sampled_median(&hit.force);
+            let (at, height) = peak(&hit.force, offset);
+            let noise = hit.noise_before(offset, (at, height)).map_or(0.0, |noise| noise.force.powi(2));
+            let half = length(hit, offset, (at, height));
+            let near = at.saturating_sub(half)..(at + half + 1).min(hit.force.len());
+            let square = |n: usize| (hit.force[n] - offset).powi(2);
+            let whole: f64 = near.clone().map(square).sum();
+            let outside = |reach: f64| {
+                let cut = near.clone().filter(|n| n.abs_diff(at) as f64 > reach);
+                // Noise scatters about its own power by the root of twice the samples.
+                let (power, count) = cut.fold((0.0, 0.0), |(power, count), n| (power + square(n), count + 1.0));
+                let of_noise = noise * (count + SURELY * f64::sqrt(2.0 * count));
+                (f64::max(power - of_noise, 0.0) / whole).sqrt()
+            };
+            let needed = (0..half).find(|&reach| outside(reach as f64) <= WHOLE).unwrap_or(half);
+            (all.lost, all.needed) = (all.lost.max(outside(reach)), all.needed.max(needed));
+        }
+        all
+    }
+}
+
+/// Standard deviations that noise may stand above its usual power.
+const SURELY: f64 = 3.0;
+
+/// Samples on either side of a hit's peak that hold its blow and what a filter makes of it.
+fn length(hit: &Hit, offset: f64, (at, height): (usize, f64)) -> usize {
+    let touches = |force: &&f64| (**force - offset) * height.signum() > TOUCH * height.abs();
+    let (before, after) = hit.force.split_at(at);
+    let length = before.iter().rev().take_while(touches).count() + after.iter().take_while(touches).count();
+    LENGTHS * length + AHEAD
+}
+
 /// Blow and noise of the hits of a place.
 pub(super) struct BlowWindow {
     /// Where the last of all blows peaks.
@@ -30,10 +78,7 @@ impl BlowWindow {
         for hit in hits {
             let offset = sampled_median(&hit.force);
             let (at, height) = peak(&hit.force, offset);
-            let touches = |force: &&f64| (**force - offset) * height.signum() > TOUCH * height.abs();
-            let (before, after) = hit.force.split_at(at);
-            let length = before.iter().rev().take_while(touches).count() + after.iter().take_while(touches).count();
-            let half = LENGTHS * length + AHEAD;
+            let half = length(hit, offset, (at, height));
             let near = at.saturating_sub(half)..(at + half + 1).min(hit.force.len());
             let sum: f64 = hit.force.get(near).unwrap_or_default().iter().map(|force| force - offset).sum();
             impulse += sum * sum;

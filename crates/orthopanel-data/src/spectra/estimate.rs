@@ -4,12 +4,13 @@ use num_complex::Complex64;
 
 use super::{
     accelerance::Accelerance,
+    blow_window::{CutBlow, WHOLE},
     extremes::median,
     force_noise::ForceNoise,
     hit_faults::HitFault,
     spectrum::{self, Sums},
     time_history::{Hit, TimeHistory},
-    window::Window,
+    window::{Window, milliseconds},
 };
 use crate::{DataError, Location, Position};
 
@@ -51,6 +52,9 @@ const SMOOTHED_LINES: usize = 9;
 /// The force over its channel's noise below which lines are left out, in power, where windows are taken as needed.
 const OUT_OF_NOISE: f64 = 9.0;
 
+/// Part of a blow, rms, from which a force window is refused: it is no accelerance that is left.
+const MOST_LOST: f64 = 0.2;
+
 /// Lines above the band from which the noise of a single hit can be told, to a sixth.
 const LEAST_NOISE_LINES: usize = 32;
 
@@ -85,6 +89,7 @@ impl TimeHistory {
         let hits: Vec<&Hit> = kept.iter().map(|(_, hit)| *hit).collect();
         let window = estimation.window.resolved(left, &hits, self.rate);
         notes.extend(window.notes(left.is_some()));
+        notes.extend(self.cut_blow(estimation.window, &hits)?);
         let floor = |sums: &Sums| match estimation.window {
             Window::AsNeeded => OUT_OF_NOISE * sums.noise_of_forces(),
             // Who asks for a window gets all lines that it leaves.
@@ -136,6 +141,8 @@ impl TimeHistory {
         result.hits = kept.len();
         result.verdicts = verdicts;
         result.decay_rate = window.decay_rate();
+        let doubts = kept.iter().map(|(_, hit)| window.decay_rate_in_doubt(hit, self.rate));
+        result.decay_rate_in_doubt = doubts.fold(0.0, f64::max);
         if force_noise.is_none()
             && window.force_half_width().is_some_and(|half| 2.0 * half * self.rate < samples as f64)
         {
@@ -176,6 +183,25 @@ impl TimeHistory {
             return refused("force_drop", drop, "must be greater than zero dB");
         }
         Ok(())
+    }
+
+    /// Refuses a force window that cuts off much of a blow; a sentence where it cuts off some of it.
+    fn cut_blow(&self, window: Window, hits: &[&Hit]) -> Result<Option<String>, DataError> {
+        let Some(half_width) = window.force_half_width() else { return Ok(None) };
+        let CutBlow { lost, needed } = CutBlow::of(hits, half_width * self.rate);
+        let needed = 1e-6 * (1e6 * (needed + 1) as f64 / self.rate).ceil();
+        let cut = format!(
+            "the force window cuts off {:.1} % of the blow (rms): half its width is {}, and {} would hold it",
+            100.0 * lost,
+            milliseconds(half_width),
+            milliseconds(needed)
+        );
+        if lost > MOST_LOST {
+            let location = Location { file: self.file.clone(), position: Position::Whole, key: "window".into() };
+            let problem = format!("{cut}: give a half width of {needed:.6} s or more, or none");
+            return Err(DataError::Contradiction { at: Box::new(location), problem });
+        }
+        Ok((lost > WHOLE).then(|| format!("{cut}: the lines are wrong by as much, and what is read off them")))
     }
 
     /// The first line that is left out above the band, where the force falls below `floor` too, and what to say of it.

@@ -1,6 +1,10 @@
 //! Windows over the records of a hit.
 
-use super::{blow_window::BlowWindow, time_history::Hit};
+use super::{
+    blow_window::BlowWindow,
+    extremes::{peak, sampled_median},
+    time_history::Hit,
+};
 
 /// What the records are multiplied by before the transform.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -85,8 +89,8 @@ impl Window {
                        too high after it; none or force and exponential keep it";
         let of_force = match self {
             Self::Force { half_width } => Some(format!(
-                "the force is kept within {:.1} ms of its peak, for the noise of the rest counts",
-                1e3 * half_width
+                "the force is kept within {} of its peak, for the noise of the rest counts",
+                milliseconds(half_width)
             )),
             _ => None,
         };
@@ -102,6 +106,20 @@ impl Window {
             Self::None | Self::AsNeeded | Self::Hann | Self::Force { .. } => 0.0,
             Self::ForceExponential { tau, .. } => 1.0 / tau,
         }
+    }
+
+    /// By how much the window may have moved the decay rate of a resonance under a hit \[1/s\], where that is not known.
+    ///
+    /// Over a response that dies away soon Hann's window acts by its slope, $-w'/w = -\frac{2\pi}{T}\cot(\pi t_0/T)$ at the
+    /// blow's $t_0$; one that does not is smeared over the window's own width, $2\pi/T$.
+    pub(super) fn decay_rate_in_doubt(self, hit: &Hit, rate: f64) -> f64 {
+        if self != Self::Hann {
+            return 0.0;
+        }
+        let length = hit.force.len() as f64;
+        let (at, _) = peak(&hit.force, sampled_median(&hit.force));
+        let slope = (std::f64::consts::PI * at as f64 / length).tan().recip().abs();
+        std::f64::consts::TAU * rate / length * slope.clamp(1.0, length)
     }
 
     /// True where the window's numbers are finite and greater than zero.
@@ -138,6 +156,13 @@ impl Window {
             }
         }
     }
+}
+
+/// A time \[s\] in ms, to two significant digits at least.
+pub(super) fn milliseconds(time: f64) -> String {
+    let value = 1e3 * time;
+    let digits = (1.0 - value.abs().log10().floor()).clamp(0.0, 12.0);
+    format!("{value:.0$} ms", if digits.is_finite() { digits as usize } else { 0 })
 }
 
 /// Zeroes what is further than `reach` samples from the peak.

@@ -8,7 +8,7 @@ const SUSPECT: f64 = 1.2;
 /// The other law is clearly better where it leaves less than this part of the misfit,
 const HALF: f64 = 0.5;
 /// or little beside noise and less than this part.
-const NEAR_NOISE: (f64, f64) = (1.5, 0.8);
+const NEAR_NOISE: (f64, f64) = (1.2, 0.8);
 /// Misfit per datum at which records that the law asked for contradicts are explained.
 const EXPLAINED: f64 = 4.0;
 /// The laws part between the peaks by the order of the damping ratio: records with less than this contradict a test file

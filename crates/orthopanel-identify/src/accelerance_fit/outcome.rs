@@ -1,5 +1,7 @@
 //! From the minimum to what is reported.
 
+use std::f64::consts::TAU;
+
 use faer::Mat;
 use num_complex::Complex64;
 use orthopanel_data::ImpactTest;
@@ -284,17 +286,23 @@ fn piece_fits(
         if let Some(own) = own {
             let piece = &problem.pieces[own];
             let offset = problem.zeta_offset(own);
-            let estimate = |mode: usize| {
-                let value = parameters[offset + mode].exp();
-                Estimate { value, std: log_std[offset + mode].map(|std| std * value) }
-            };
-            fit.damping = (0..piece.in_band).map(estimate).collect();
             let structure = &start.recorded.poles[own].structure;
             let limit = 1.3 * start.recorded.poles[own].band;
             let seen = structure.modes_below(&problem.values(parameters, own), limit, &[])?;
+            let in_doubt = piece.records.iter().map(|record| record.decay_rate_in_doubt).fold(0.0, f64::max);
+            let log_std = |mode: usize| {
+                let own = log_std[offset + mode]?;
+                let decay = parameters[offset + mode].exp() * TAU * seen.get(mode).map_or(0.0, |mode| mode.frequency);
+                Some(if in_doubt > 0.0 { own.hypot(in_doubt / decay) } else { own })
+            };
+            let estimate = |mode: usize| {
+                let value = parameters[offset + mode].exp();
+                Estimate { value, std: log_std(mode).map(|std| std * value) }
+            };
+            fit.damping = (0..piece.in_band).map(estimate).collect();
             for (pole, mode) in start.poles[own].iter().zip(&start.matching.modes[own]) {
                 let Some((mode, found)) = mode.and_then(|mode| Some((mode, seen.get(mode)?))) else { continue };
-                let told = mode < piece.free_zetas && log_std[offset + mode].is_none_or(|std| std < DAMPING_UNSEEN);
+                let told = mode < piece.free_zetas && log_std(mode).is_none_or(|std| std < DAMPING_UNSEEN);
                 let damping = told.then(|| estimate(mode));
                 fit.modes.push(ModeFit {
                     mode: mode + 1,

@@ -29,6 +29,8 @@ pub(super) struct PlaceRecord {
     pub scatter_told: bool,
     /// $\sigma$ of $s = \sigma + j\omega$ \[1/s\].
     pub decay_rate: f64,
+    /// By how much a window may have moved the decay rate of a resonance \[1/s\].
+    pub decay_rate_in_doubt: f64,
     /// How many independent data each line is worth, at most one: an exponential window ties neighbouring lines together.
     pub worth: Vec<f64>,
     /// What of the variance a force window ties together over many lines.
@@ -60,6 +62,7 @@ impl PlaceRecord {
             variance_known: accelerance.variance.is_some(),
             scatter_told: accelerance.variance.is_some() && accelerance.hits != 1,
             decay_rate: accelerance.decay_rate,
+            decay_rate_in_doubt: accelerance.decay_rate_in_doubt,
             worth: vec![1.0; usable.len()],
             tied: noise.map(|noise| TiedNoise::of(noise, &usable)),
         }

@@ -9,6 +9,8 @@ use crate::tracing::widened_lines::median;
 /// Accelerances at a few frequencies between each two resonances.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct BetweenPeaks {
+    /// Decay rate $\sigma$ \[1/s\] of $s = \sigma + j\omega$ at which each record stands.
+    pub decay_rate: Vec<f64>,
     /// Of each record \[Hz\]: those of a record's own lines.
     pub frequency: Vec<Vec<f64>>,
     /// Of each record \[(m/s²)/N\].
@@ -51,6 +53,7 @@ impl BetweenPeaks {
             .collect();
         peaks.sort_by(|a, b| a.0.total_cmp(&b.0));
         let mut found = Self {
+            decay_rate: accelerances.iter().map(|record| record.decay_rate).collect(),
             frequency: vec![vec![]; accelerances.len()],
             value: vec![vec![]; accelerances.len()],
             noise: vec![vec![]; accelerances.len()],

@@ -117,10 +117,11 @@ impl AccelerancesProblem {
         let lines = records.filter_map(|(index, ((frequency, value), noise))| {
             let record = self.setup.setting(index)?.record;
             let variance = between.level.iter().zip(noise);
+            let decay_rate = between.decay_rate.get(index).copied().unwrap_or_default();
             Some(WidenedLines {
                 force_at: record.force_at?,
                 response_at: record.response_at?,
-                s: frequency.iter().map(|f| Complex64::new(0.0, f * std::f64::consts::TAU)).collect(),
+                s: frequency.iter().map(|f| Complex64::new(decay_rate, f * std::f64::consts::TAU)).collect(),
                 value: value.clone(),
                 variance: variance.map(|(level, noise)| weighing.relative.powi(2) * level + noise).collect(),
                 scatter: None,

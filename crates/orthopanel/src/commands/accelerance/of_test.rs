@@ -86,9 +86,9 @@ pub fn execute(
         && !written.is_empty()
     {
         eprintln!(
-            "note: these lines hold the exponential window's damping, {widest:.3} 1/s, and a CSV file does not carry that number: \
-             every damping ratio read off it comes out too great by {widest:.3} / omega. `identify` on the hits themselves takes \
-             it out"
+            "note: these lines hold the exponential window's damping, {widest:.3} 1/s: the column decay_rate_1_s carries it, and \
+             identify and trace take it out; a damping ratio read off the lines by other means comes out too great by \
+             {widest:.3} / omega"
         );
     }
     if json {
@@ -131,7 +131,7 @@ fn entry(test: &ImpactTest, piece: usize, of: &Accelerance) -> Entry {
     }
 }
 
-/// `frequency_hz,real,imag`, and `coherence`, `variance` where they are known.
+/// `frequency_hz,real,imag`, and `coherence`, `variance` where they are known, `decay_rate_1_s` where it is not zero.
 fn csv(of: &Accelerance) -> String {
     let (real, imag): (Vec<f64>, Vec<f64>) = of.value.iter().map(|value| (value.re, value.im)).unzip();
     let mut names: Vec<String> = ["frequency_hz", "real", "imag"].map(String::from).into();
@@ -141,6 +141,11 @@ fn csv(of: &Accelerance) -> String {
             names.push(name.into());
             columns.push(column);
         }
+    }
+    let decay_rate = vec![of.decay_rate; of.frequency.len()];
+    if of.decay_rate > 0.0 {
+        names.push("decay_rate_1_s".into());
+        columns.push(&decay_rate);
     }
     output::csv(&names, &columns)
 }
