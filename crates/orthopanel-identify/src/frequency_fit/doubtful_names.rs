@@ -36,7 +36,7 @@ pub(super) fn doubtful_names(
     found: &[f64],
     at: &Linearised,
 ) -> Result<Vec<String>, IdentifyError> {
-    let least = noise::LARGE_MISS.powi(2) * Noise::stated(problem).variance * problem.count() as f64;
+    let least = noise::BEYOND_CHANCE.powi(2) * Noise::stated(problem).variance * problem.count() as f64;
     let stands_out = at.residuals.iter().any(|residual| residual.abs() >= LARGE_MISS);
     let is_plate = problem.structure == StructureKind::MindlinPlate;
     let cost = at.quadratic().cost;
