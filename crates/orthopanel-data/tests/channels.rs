@@ -2,11 +2,13 @@
 
 mod support;
 
-use orthopanel_data::{Accelerance, AccelerationUnit, Direction, RecordFile, RecordedResponse, TimeHistory};
+use orthopanel_data::{
+    Accelerance, AccelerationUnit, Direction, Estimation, Hit, RecordFile, RecordedResponse, TimeHistory,
+};
 use support::{
     Dataset,
-    hammer::RATE,
-    recorded::{good, history, measurement, pair},
+    hammer::{Noise, RATE},
+    recorded::{DAMPED, good, history, measurement, pair},
 };
 
 #[test]
@@ -168,7 +170,10 @@ fn hit_csv_swapped() -> String {
 fn csv_measurement(folder: &std::path::Path, name: &str, samples: usize) -> String {
     let hit = good();
     let rows = hit.force.iter().zip(&hit.acceleration).take(samples).enumerate();
-    let rows: String = rows.map(|(n, (force, motion))| format!("{},{force},{motion}\n", n as f64 / RATE)).collect();
+    // No two hits are equally hard.
+    let by = f64::from(name.as_bytes()[0]);
+    let rows: String =
+        rows.map(|(n, (force, motion))| format!("{},{},{}\n", n as f64 / RATE, by * force, by * motion)).collect();
     std::fs::write(folder.join(name), format!("time_s,force_n,acceleration_m_s2\n{rows}")).unwrap();
     format!("[[measurement]]\nkind = \"time-history\"\nfile = \"{name}\"\nforce_at = [0, 0]\nresponse_at = [0.1, 0]\n")
 }
@@ -222,4 +227,40 @@ fn val_one_channel_in_place_of_both_is_refused() {
         assert!(refused.contains("record 2") && refused.contains("sample for sample"), "{refused}");
         assert!(refused.contains("the force times 1.000000"), "{refused}");
     }
+}
+
+/// A channel without type and unit beside one that is told is the other; one of another type is named.
+#[test]
+fn val_an_untold_channel_beside_a_told_one_is_the_other() {
+    let [force, motion] = pair();
+    let untold = |dataset: &Dataset| Dataset { numerator: (0, "NONE".into()), ..dataset.clone() };
+    let truth = history(&[force.clone(), motion.clone()], &measurement()).unwrap();
+    for (pair, name) in
+        [([force.clone(), untold(&motion)], "acceleration"), ([untold(&force), motion.clone()], "force")]
+    {
+        let found = history(&pair, &measurement()).unwrap();
+        assert_eq!(found.hits, truth.hits);
+        let note = format!("tells neither type nor unit, taken as {name}");
+        assert!(found.notes.iter().any(|said| said.contains(&note)), "{:?}", found.notes);
+    }
+    let velocity = Dataset { numerator: (11, "m/s".into()), ..motion };
+    let refused = history(&[force, velocity], &measurement()).unwrap_err();
+    assert!(refused.contains("(record 2: data type 11 (velocity) is neither force nor acceleration"), "{refused}");
+}
+
+/// A hit that stands twice counts once.
+#[test]
+fn val_a_copy_of_a_hit_is_left_out() {
+    let other = Noise(4).over(&DAMPED.soft_hit(1000, 80.0), 0.01, 0.01);
+    let of = |hit: &Hit| [Dataset::time(&hit.force, (13, "N")), Dataset::time(&hit.acceleration, (12, "m/s^2"))];
+    let [first, second] = [good(), other].map(|hit| of(&hit));
+    let twice = history(&[first.clone(), second.clone(), first.clone()].concat(), &measurement()).unwrap();
+    let once = history(&[first, second].concat(), &measurement()).unwrap();
+    let [twice, once] = [twice, once].map(|history| history.accelerance(Estimation::default()).unwrap());
+    assert_eq!((twice.hits, &twice.value, &twice.variance), (2, &once.value, &once.variance));
+    assert!(
+        twice.notes.iter().any(|note| note.contains("hit 3 left out: sample by sample hit 1 again")),
+        "{:?}",
+        twice.notes
+    );
 }

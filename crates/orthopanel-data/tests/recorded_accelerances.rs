@@ -106,3 +106,22 @@ fn val_an_accelerance_csv_carries_the_decay_rate_of_its_window() {
         assert!(refused.contains(&said), "{refused}");
     }
 }
+
+/// Lines that an analyser filled with zeros are no measurement; where hardly another is there, the file is refused.
+#[test]
+fn val_lines_that_are_exactly_zero_are_left_out_and_said() {
+    let read = |text: &str| {
+        let file =
+            RecordFile::from_bytes(format!("frequency_hz,real,imag,variance\n{text}").as_bytes(), "a.csv").unwrap();
+        Accelerance::from_records(file, &measurement()).map_err(|error| error.to_string())
+    };
+    let found = read("1,2,3,0.1\n2,0,0,0\n3,4,5,0.3\n4,0,5,0.4\n5,0,0,0\n").unwrap();
+    assert_eq!((found.frequency, found.variance.unwrap()), (vec![1.0, 3.0, 4.0], vec![0.1, 0.3, 0.4]));
+    assert!(
+        found.notes.iter().any(|note| note.contains("2 of 5 lines are exactly zero, the first at 2 Hz")),
+        "{:?}",
+        found.notes
+    );
+    let refused = read("1,2,3,0.1\n2,0,0,0\n3,0,0,0\n").unwrap_err();
+    assert!(refused.contains("2 of 3 lines are exactly zero: nothing was measured"), "{refused}");
+}

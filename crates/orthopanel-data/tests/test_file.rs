@@ -350,3 +350,25 @@ proptest! {
         }
     }
 }
+
+/// Sizes in millimetres or centimetres make a solid lighter than any foam.
+#[test]
+fn val_sizes_in_another_unit_are_told() {
+    let read = |sizes: &str| {
+        let text = format!(
+            "[piece]\n{sizes}\n[[measurement]]\nkind = \"natural-frequencies\"\nvalues = [320.0, 830.0, 1500.0]\n"
+        );
+        ImpactTest::from_toml(&text, "test.toml").map_err(|error| error.to_string())
+    };
+    let piece = |[length, width, thickness]: [f64; 3], mass: f64| {
+        read(&format!("length = {length:?}\nwidth = {width:?}\nthickness = {thickness:?}\nmass_per_area = {mass:?}"))
+    };
+    assert!(piece([0.8, 0.1, 0.03], 6.88).is_ok() && piece([0.8, 0.1, 0.03], 0.9).is_ok());
+    for (sizes, density) in
+        [([800.0, 100.0, 30.0], "0.229"), ([80.0, 10.0, 3.0], "2.293"), ([0.8, 0.1, 3e-5], "229333.333")]
+    {
+        let refused = piece(sizes, 6.88).unwrap_err();
+        assert!(refused.contains("piece.thickness") && refused.contains(&format!("make {density} kg/m3")), "{refused}");
+        assert!(refused.contains("sizes are in metres"), "{refused}");
+    }
+}

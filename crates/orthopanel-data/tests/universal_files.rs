@@ -341,3 +341,16 @@ fn val_measured_files_are_read() {
         assert!(file.notes.is_empty(), "{:?}", file.notes);
     }
 }
+
+/// A number that is none, among binary data: its own byte is named.
+#[test]
+fn val_a_value_that_is_no_number_is_told_with_its_byte() {
+    for (double, width) in [(false, 4), (true, 8)] {
+        let values: Vec<f64> = (0..9).map(|index| if index == 6 { f64::NAN } else { f64::from(index) }).collect();
+        let bytes = Dataset { double, ..Dataset::time(&values, (12, "m/s^2")) }.binary(false);
+        let refused = RecordFile::from_bytes(&bytes, "a.uff").unwrap_err().to_string();
+        let data = bytes.len() - "\n    -1\n".len() - 9 * width;
+        assert!(refused.contains(&format!("a.uff, byte {}: ", data + 6 * width)), "{refused}, data from {data}");
+        assert!(refused.contains("point 7 is not a finite number"), "{refused}");
+    }
+}

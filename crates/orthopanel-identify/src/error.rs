@@ -128,7 +128,7 @@ pub enum IdentifyError {
         unit: &'static str,
     },
     /// A band that a record cannot show.
-    #[error("band from {from} to {to} Hz: give 0 <= from < to <= {half_rate} Hz, half the sampling rate")]
+    #[error("band from {from} to {to} Hz: give 0 <= from < to <= {half_rate:.3} Hz, half the sampling rate")]
     HistoryBand {
         /// Lower end \[Hz\].
         from: f64,
@@ -197,6 +197,23 @@ pub enum IdentifyError {
         percent: f64,
         /// The factor on all records with which they fit; `None` where there is none.
         factor: Option<f64>,
+    },
+    /// A piece so large that no material would put its modes where the records are.
+    #[error(
+        "a piece {length} m long and {thickness} m thick with {mass_per_area} kg/m2 begins at {first:.2} Hz or lower, even with \
+         E = 1e12 Pa, and these records go to {to:.0} Hz: sizes are in metres"
+    )]
+    PieceTooLarge {
+        /// \[m\].
+        length: f64,
+        /// \[m\].
+        thickness: f64,
+        /// \[kg/m²\].
+        mass_per_area: f64,
+        /// Its first natural frequency, of the stiffest \[Hz\].
+        first: f64,
+        /// The highest line \[Hz\].
+        to: f64,
     },
     /// Records that contradict the test file under the law of damping asked for, and meet it under the other.
     #[error(

@@ -145,3 +145,18 @@ fn mere_noise_gives_no_constants() {
         other => panic!("{other:?}"),
     }
 }
+
+/// A length in another unit, with a thickness that is right: told at once, and not searched for among thousands of modes.
+#[test]
+fn a_piece_too_large_for_its_records_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let Some(_) = hammer_test(&folder.path().join("one"), &["--noise", "0.003", "--seed", "14"]) else { return };
+    let path = folder.path().join("one/test.toml");
+    let text = std::fs::read_to_string(&path).unwrap().replace("length = 0.8", "length = 80");
+    match identify(&ImpactTest::from_toml(&text, &path).unwrap(), Settings::default()) {
+        Err(refused @ IdentifyError::PieceTooLarge { .. }) => {
+            assert!(refused.to_string().contains("a piece 80 m long"), "{refused}")
+        }
+        other => panic!("{:?}", other.map(|found| found.constants)),
+    }
+}

@@ -70,6 +70,22 @@ fn val_runge_kutta_on_finite_elements_stands_beside_the_exact_stepper() {
     assert!(table.lines().next().expect("a heading").ends_with("variance explained  apart [% of peak]"), "{table}");
 }
 
+/// A sensor turned round on a file of hits, which no test file declares: said with the correlation.
+#[test]
+fn val_a_sensor_turned_round_is_said() {
+    let bench = Bench::new();
+    bench.done("simulate model.json --force-file examples/half-sine.csv --force -0.3 --response 0.3 -o moved.csv");
+    let words = |sign: f64| {
+        let rows = bench.rows("moved.csv").into_iter();
+        let rows: String = rows.map(|row| format!("{},{},{}\n", row[0], row[1], sign * row[2])).collect();
+        bench.write("hit.csv", &format!("time_s,force_n,acceleration_m_s2\n{rows}"));
+        let line = "simulate model.json --force-file hit.csv --force -0.3 --response 0.3";
+        String::from_utf8_lossy(&bench.run(line).stderr).into_owned()
+    };
+    assert!(words(-1.0).contains("run against each other (correlation -"), "{}", words(-1.0));
+    assert!(!words(1.0).contains("run against each other"), "{}", words(1.0));
+}
+
 #[test]
 fn what_does_not_fit_section_3_5_is_refused() {
     let bench = Bench::new();

@@ -165,9 +165,39 @@ impl Accelerance {
             result.decay_rate = one_decay_rate(record)?;
         }
         result.notes = notes;
+        result.leave_out_zeros(record)?;
         Ok(result)
     }
+
+    /// Leaves out the lines that are exactly zero: no measurement gives one, but where an analyser fills what it did not take.
+    fn leave_out_zeros(&mut self, record: &Record) -> Result<(), DataError> {
+        let is_told = |line: usize| self.value[line] != Complex64::default();
+        let told: Vec<usize> = (0..self.value.len()).filter(|&line| is_told(line)).collect();
+        let (all, zeros) = (self.value.len(), self.value.len() - told.len());
+        if zeros == 0 {
+            return Ok(());
+        }
+        let first = (0..all).find(|&line| !is_told(line)).map_or(0.0, |line| self.frequency[line]);
+        if told.len() < LEAST_LINES {
+            let problem =
+                format!("{zeros} of {all} lines are exactly zero: nothing was measured, or it was lost on export");
+            return Err(DataError::Channels { at: record.at.clone(), problem });
+        }
+        self.notes.push(format!(
+            "{}: {zeros} of {all} lines are exactly zero, the first at {first} Hz, as no measurement is: left out",
+            record.at.key
+        ));
+        let kept = |values: &[f64]| told.iter().map(|&line| values[line]).collect::<Vec<f64>>();
+        self.value = told.iter().map(|&line| self.value[line]).collect();
+        self.frequency = kept(&self.frequency);
+        self.variance = self.variance.as_deref().map(kept);
+        self.coherence = self.coherence.as_deref().map(kept);
+        Ok(())
+    }
 }
+
+/// Fewer lines than these show no resonance.
+const LEAST_LINES: usize = 3;
 
 /// The decay rate of all lines, checked.
 fn one_decay_rate(of: &Record) -> Result<f64, DataError> {

@@ -32,6 +32,18 @@ pub(super) fn quantity(axis: &Axis) -> Quantity {
     }
 }
 
+/// What a specific data type of a universal file is called, in brackets; nothing for a rare one.
+pub(super) fn type_name(kind: i64) -> &'static str {
+    match kind {
+        2 => " (stress)",
+        3 => " (strain)",
+        8 => " (displacement)",
+        11 => " (velocity)",
+        15 => " (pressure)",
+        _ => "",
+    }
+}
+
 /// Checks that a force is in newtons, or that its unit is not told.
 ///
 /// # Errors

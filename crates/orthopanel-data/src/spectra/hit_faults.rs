@@ -70,6 +70,11 @@ pub enum HitFault {
         /// Peak over the noise's standard deviation \[1\].
         signal_to_noise: f64,
     },
+    /// The samples of an earlier hit, to the last digit: a file or record that stands twice.
+    Copy {
+        /// The earlier hit, from 1.
+        of: usize,
+    },
     /// An accelerance beside that of the other hits over the whole band.
     Astray {
         /// Its magnitude over theirs \[1\].
@@ -131,6 +136,7 @@ impl fmt::Display for HitFault {
             Self::WeakForce { signal_to_noise } => {
                 write!(f, "force only {signal_to_noise:.1} times its noise, {LEAST_SIGNAL_TO_NOISE} needed")
             }
+            Self::Copy { of } => write!(f, "sample by sample hit {of} again: a copy, which would count twice"),
             Self::Astray { gain } => write!(
                 f,
                 "its accelerance is {:.1} % {} that of the other hits over the whole band, which agree: a sample cut off at \

@@ -50,6 +50,8 @@ impl TimeHistory {
             if !faults.iter().any(|fault| matches!(fault, HitFault::Overload { .. })) {
                 faults.extend(shared.iter().filter(|(of, _)| *of == index).map(|(_, fault)| *fault));
             }
+            let original = self.hits.iter().take(index).position(|earlier| earlier == hit);
+            faults.extend(original.map(|of| HitFault::Copy { of: of + 1 }));
             HitVerdict { faults }
         };
         self.hits.iter().enumerate().map(verdict).collect()

@@ -102,8 +102,24 @@ impl TimeHistory {
                 problem: "no record is given".into(),
             });
         };
+        let mut others = Vec::new();
+        let in_time = || records.iter().filter(|record| record.kind == RecordKind::Time);
+        let is_there = |quantity| in_time().any(|record| channels::quantity(&record.numerator) == quantity);
+        // Beside one channel that is told, what tells nothing is the other.
+        let beside = match (is_there(Quantity::Force), is_there(Quantity::Acceleration)) {
+            (true, false) => Some((Quantity::Acceleration, "acceleration")),
+            (false, true) => Some((Quantity::Force, "force")),
+            _ => None,
+        };
         for record in records.into_iter().filter(|record| record.kind == RecordKind::Time) {
-            match channels::quantity(&record.numerator) {
+            let quantity = match (channels::quantity(&record.numerator), beside) {
+                (Quantity::Untold, Some((quantity, name))) => {
+                    notes.push(format!("{}: tells neither type nor unit, taken as {name}", record.at.key));
+                    quantity
+                }
+                (told, _) => told,
+            };
+            match quantity {
                 Quantity::Force => {
                     order.push((record.at.clone(), true));
                     forces.push(record);
@@ -114,10 +130,13 @@ impl TimeHistory {
                 }
                 Quantity::Untold => untold.push(record),
                 Quantity::Other(kind) => {
-                    notes.push(format!(
-                        "{}: data type {kind} is neither force nor acceleration: left out",
+                    let name = channels::type_name(kind);
+                    let note = format!(
+                        "{}: data type {kind}{name} is neither force nor acceleration: left out",
                         record.at.key
-                    ));
+                    );
+                    others.push(note.clone());
+                    notes.push(note);
                 }
             }
         }
@@ -130,6 +149,7 @@ impl TimeHistory {
         if forces.len() != accelerations.len() || forces.is_empty() {
             let (f, a) = (forces.len(), accelerations.len());
             let problem = format!("{f} force and {a} acceleration records against time: one of each a hit is needed");
+            let problem = others.first().map_or(problem.clone(), |other| format!("{problem} ({other})"));
             return Err(misplaced_channel::alone(&order, problem, first));
         }
         misplaced_channel::check_order(&order)?;

@@ -41,6 +41,11 @@ pub(super) fn pieces(source: &Source, pieces: Option<syntax::Pieces>) -> Result<
     Ok(read)
 }
 
+/// Densities of solids \[kg/m³\]: no foam is lighter, no metal heavier. Between are all panels; one in centimetres or
+/// millimetres is not.
+const LIGHTEST: f64 = 5.0;
+const HEAVIEST: f64 = 23_000.0;
+
 fn one(source: &Source, piece: syntax::Piece, key: &str, default_name: Option<&str>) -> Result<NamedPiece, DataError> {
     let size = |number: &Option<Spanned<f64>>, name: &str| {
         let key = format!("{key}.{name}");
@@ -50,6 +55,17 @@ fn one(source: &Source, piece: syntax::Piece, key: &str, default_name: Option<&s
     let (length, width) = (size(&piece.length, "length")?, size(&piece.width, "width")?);
     let thickness = size(&piece.thickness, "thickness")?;
     let mass_per_area = mass_per_area(source, &piece, key)?;
+    let density = mass_per_area / thickness;
+    let solid = LIGHTEST..HEAVIEST;
+    if !solid.contains(&density) {
+        let spans = [&piece.thickness, &piece.length].into_iter().flatten().next();
+        let at = spans.map_or_else(|| source.whole(key), |number| source.at(number.span(), format!("{key}.thickness")));
+        let problem = format!(
+            "a thickness of {thickness} m and {mass_per_area} kg/m2 make {density:.3} kg/m3, and solids have {LIGHTEST} to \
+             {HEAVIEST}: sizes are in metres, mass_per_area in kg/m2, weighings in m, m and kg"
+        );
+        return Err(DataError::Contradiction { at, problem });
+    }
     let name = match &piece.name {
         Some(name) if !name.get_ref().trim().is_empty() => name.get_ref().clone(),
         given => default_name.filter(|_| given.is_none()).map(str::to_owned).ok_or_else(|| DataError::Missing {

@@ -1,6 +1,6 @@
 //! Whether the records reach far enough: as many modes as constants must lie within their band.
 
-use orthopanel_model::StructureKind;
+use orthopanel_model::{Piece, StructureKind};
 
 use super::records::PlaceRecord;
 use super::start::{Recorded, StartPiece};
@@ -11,6 +11,27 @@ use crate::free_constants::FreeConstants;
 const USUAL: [f64; 2] = [1e10, 5e8];
 /// Bands are doubled so often in looking for the next mode.
 const DOUBLINGS: usize = 12;
+
+/// Young's modulus beyond all materials \[Pa\].
+const STIFFEST: f64 = 1e12;
+/// Band end over the first natural frequency of the stiffest beyond which hundreds of modes would lie in the band.
+const TOO_MANY: f64 = 3000.0;
+
+/// Refuses a piece whose modes would crowd the band by thousands: its sizes are in another unit.
+///
+/// A free beam's first frequency is $\frac{22.37}{2\pi l^2}\sqrt{Et^3/12\rho t}$; another boundary's is not ten times higher.
+pub(super) fn refuse_large_pieces(pieces: &[StartPiece]) -> Result<(), IdentifyError> {
+    for piece in pieces {
+        let Piece { length, thickness, mass_per_area, .. } = piece.sizes;
+        let (_, to) = band(piece);
+        let bending = STIFFEST * thickness.powi(3) / 12.0;
+        let first = 22.37 / (std::f64::consts::TAU * length * length) * (bending / mass_per_area).sqrt();
+        if first * TOO_MANY < to {
+            return Err(IdentifyError::PieceTooLarge { length, thickness, mass_per_area, first, to });
+        }
+    }
+    Ok(())
+}
 
 /// Refuses a band that holds fewer modes of these constants than `free` ones are wanted.
 ///

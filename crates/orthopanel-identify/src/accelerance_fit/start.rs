@@ -4,7 +4,7 @@ use orthopanel_data::ImpactTest;
 use orthopanel_model::{Boundary, Piece, Place, StructureKind};
 use rayon::prelude::*;
 
-use super::band::low_band_of_usual_panel;
+use super::band::{low_band_of_usual_panel, refuse_large_pieces};
 use super::matching::{Matching, PiecePoles, candidates, match_at};
 use super::misfit::noise_percent;
 use super::mode_group::{NearMode, Overlap, group_pole};
@@ -165,6 +165,7 @@ pub(super) fn recorded(test: &ImpactTest, settings: Settings) -> Result<Recorded
             }
         }
     }
+    refuse_large_pieces(&pieces)?;
     for piece in &mut pieces {
         piece.poles = poles(&piece.records);
         let decays: Vec<(f64, f64)> = piece.poles.iter().map(|pole| (pole.decay_rate(), pole.frequency)).collect();

@@ -20,7 +20,7 @@ impl Widths {
     }
 }
 
-/// Reads the values of all points, in the order of the file.
+/// Reads the values of all points, in the order of the file, and how many bytes a point takes.
 ///
 /// Where the closing mark stands decides the length of the data, for the announced count cannot be trusted: writers
 /// give the bytes of real values for complex ones, of single for double, or add the line end.
@@ -30,7 +30,7 @@ pub(super) fn values(
     big_endian: bool,
     key: &str,
     notes: &mut Vec<String>,
-) -> Result<Vec<f64>, DataError> {
+) -> Result<(Vec<f64>, usize), DataError> {
     let start = cursor.position();
     let rest = cursor.rest();
     let declared = declared(header);
@@ -77,7 +77,7 @@ pub(super) fn values(
     cursor.advance(count);
 
     let data = rest.get(..needed).unwrap_or_default();
-    Ok(match (widths.ordinate, header.layout.even || widths.abscissa == widths.ordinate) {
+    let values = match (widths.ordinate, header.layout.even || widths.abscissa == widths.ordinate) {
         (4, true) if big_endian => decode(data, f32::from_be_bytes),
         (4, true) => decode(data, f32::from_le_bytes),
         (_, true) if big_endian => decode(data, f64::from_be_bytes),
@@ -89,7 +89,8 @@ pub(super) fn values(
             let double = if big_endian { f64::from_be_bytes } else { f64::from_le_bytes };
             parts.flat_map(|(abscissa, rest)| [decode(abscissa, single), decode(rest, double)].concat()).collect()
         }
-    })
+    };
+    Ok((values, widths.point(header)))
 }
 
 /// All numbers in `bytes`, one every `N` bytes.

@@ -79,8 +79,9 @@ fn record(
     let key = format!("record {number}");
     let mut header = Header::read(cursor, first_line, &key)?;
     let data_start = cursor.position();
-    let values = match header.encoding {
-        Encoding::Text => ascii::values(cursor, &header, &key, notes)?,
+    // Of binary data every point has its byte.
+    let (values, point_width) = match header.encoding {
+        Encoding::Text => (ascii::values(cursor, &header, &key, notes)?, 0),
         Encoding::Binary { big_endian, .. } => binary::values(cursor, &header, big_endian, &key, notes)?,
     };
     let layout = header.layout;
@@ -125,7 +126,7 @@ fn record(
     }
     let ordinate = if layout.complex { Samples::Complex(complex) } else { Samples::Real(real) };
     let abscissa = if layout.even { even(&header, before) } else { listed.into() };
-    check_numbers(cursor, data_start, &key, &abscissa, &ordinate, layout.even)?;
+    check_numbers(cursor, (data_start, point_width), &key, &abscissa, &ordinate, layout.even)?;
     let Header { title, response, reference, numerator, denominator, .. } = header;
     let at = cursor.at(start, &key);
     Ok(Record { kind, title, at, lines: None, response, reference, abscissa, ordinate, numerator, denominator })
@@ -155,7 +156,7 @@ fn complex_number(parts: &[f64]) -> Option<Complex64> {
 
 fn check_numbers(
     cursor: &Cursor,
-    data_start: usize,
+    (data_start, point_width): (usize, usize),
     key: &str,
     abscissa: &[f64],
     ordinate: &Samples,
@@ -173,7 +174,7 @@ fn check_numbers(
         _ => first_not_finite(abscissa),
     };
     if let Some(point) = bad.or_else(bad_abscissa) {
-        return Err(DataError::NotFinite { at: cursor.at(data_start, key), point: point + 1 });
+        return Err(DataError::NotFinite { at: cursor.at(data_start + point * point_width, key), point: point + 1 });
     }
     if even && ends_rise(abscissa) {
         return Ok(());

@@ -99,6 +99,7 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
         eprintln!("{}", integration.said());
     }
     notes::say("", &lost);
+    notes::say("", &pairs.iter().filter_map(turned_round).collect::<Vec<_>>());
     for ComparedPair { history, .. } in &pairs {
         notes::say(&format!("{}: ", history.file.display()), &history.notes);
     }
@@ -136,6 +137,29 @@ fn lost_by_straight_lines(model: &PanelModel, linear: &ComparedPair) -> Result<O
              {by_lines:.5} is explained, {by_band:.5} with --hold band-limited (the least of the hits, by the exact stepper)"
         )
     }))
+}
+
+/// Correlation of measured and calculated acceleration below which one of them is turned round.
+const AGAINST: f64 = -0.5;
+
+/// What is said where the measured acceleration runs against the calculated one.
+fn turned_round(pair: &ComparedPair) -> Option<String> {
+    let signals = || pair.hits.iter().flat_map(|hit| hit.whole.measured.iter().zip(&hit.whole.calculated));
+    let (mut both, mut measured, mut calculated) = (0.0, 0.0, 0.0);
+    for (one, other) in signals() {
+        both += one * other;
+        measured += one * one;
+        calculated += other * other;
+    }
+    let correlation = both / (measured * calculated).sqrt();
+    (correlation < AGAINST).then(|| {
+        format!(
+            "{} to {}: measured and calculated acceleration run against each other (correlation {correlation:.3}): sensor or \
+             hammer is turned round; direction = -1 in the [[measurement]] of a test file puts it right",
+            place_text(pair.history.force_at),
+            place_text(pair.history.response_at)
+        )
+    })
 }
 
 /// The hits of the force file, each pair of places by itself.
