@@ -1,6 +1,9 @@
 //! The axes of an accelerance: magnitude above, phase below, both over frequency.
 
+use std::ops::Range;
+
 use plotters::coord::combinators::LogCoord;
+use plotters::coord::ranged1d::{DefaultFormatting, KeyPointHint};
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 
@@ -28,18 +31,40 @@ pub fn magnitude<'a, 'b>(area: &'b Area<'a>, highest: f64, low: f64, high: f64) 
     Ok(chart)
 }
 
+/// Quarters of a turn, where ticks stand \[degrees\].
+const QUARTERS: [f64; 5] = [-90.0, 0.0, 90.0, 180.0, 270.0];
+
+/// An axis of degrees with its ticks at [`QUARTERS`]: plotters would put them at round hundreds.
+pub struct Phases(RangedCoordf64);
+
+impl Ranged for Phases {
+    type FormatOption = DefaultFormatting;
+    type ValueType = f64;
+
+    fn map(&self, value: &f64, limit: (i32, i32)) -> i32 {
+        self.0.map(value, limit)
+    }
+
+    fn key_points<Hint: KeyPointHint>(&self, _: Hint) -> Vec<f64> {
+        QUARTERS.to_vec()
+    }
+
+    fn range(&self) -> Range<f64> {
+        self.0.range()
+    }
+}
+
 /// Phases as [`degrees`] gives them, up to the frequency `highest` \[Hz\].
-pub fn phase<'a, 'b>(area: &'b Area<'a>, highest: f64) -> Built<Chart<'a, 'b, RangedCoordf64>> {
+pub fn phase<'a, 'b>(area: &'b Area<'a>, highest: f64) -> Built<Chart<'a, 'b, Phases>> {
     let mut chart = ChartBuilder::on(area)
         .margin(12)
         .x_label_area_size(45)
         .y_label_area_size(70)
-        .build_cartesian_2d(0.0..highest, -100.0..280.0)?;
+        .build_cartesian_2d(0.0..highest, Phases((-100.0..280.0).into()))?;
     chart
         .configure_mesh()
         .light_line_style(TRANSPARENT)
         .bold_line_style(GRID)
-        .y_labels(5)
         .x_label_formatter(&|frequency| format!("{frequency:.0}"))
         .y_label_formatter(&|phase| format!("{phase:.0}"))
         .x_desc("frequency [Hz]")
