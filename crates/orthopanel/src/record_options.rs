@@ -36,7 +36,7 @@ enum WindowWord {
     /// Hann's over both channels, as in the paper: only where the blow lies well inside the record, and it widens peaks
     Hann,
     /// Force kept near its peak, exp(-t/tau) over both channels: for a response cut off while it still rings. The
-    /// damping that the exponential adds is known, and `identify` takes it out; a CSV of lines cannot. Needs --tau
+    /// damping that the exponential adds is known, a CSV of lines carries it, and `identify` takes it out. Needs --tau
     ForceExponential,
 }
 
@@ -64,9 +64,13 @@ impl EstimationOptions {
                 Window::Force { half_width: self.force_half_width.unwrap_or(Window::USUAL_HALF_WIDTH) }
             }
             (window, tau) => {
-                for (option, value) in [("tau", tau), ("force-half-width", self.force_half_width)] {
+                let needs = [
+                    ("tau", tau, "--window force-exponential"),
+                    ("force-half-width", self.force_half_width, "--window force or force-exponential"),
+                ];
+                for (option, value, needed) in needs {
                     if let Some(value) = value {
-                        let remedy = "it has no effect without --window force-exponential: give both or neither".into();
+                        let remedy = format!("it has no effect without {needed}: give both or neither");
                         return Err(CommandError::Option { option, value: value.to_string(), remedy });
                     }
                 }
