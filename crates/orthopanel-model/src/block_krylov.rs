@@ -9,22 +9,103 @@ use faer::{Mat, MatMut, MatRef};
 use crate::block_pencil::{BlockPencil, Eigenpair};
 use crate::dense::{norm, product, symmetric_eigen};
 
-/// Vectors a step; modes that coincide in this number are found together. Products of fewer columns waste the machine.
-const WIDTH: usize = 4;
+/// Vectors a step; modes that coincide in this number are found together. More would find the space of as many vectors poorer.
+const WIDTH: usize = 2;
 /// Residual, over its eigenvalue, at which a vector has converged: its frequency is then exact to rounding.
-const CONVERGED: f64 = 1e-9;
+const CONVERGED: f64 = 1e-8;
 /// Vectors for each mode wanted from which on convergence is likely, where nothing is known.
-const LIKELY: usize = 5;
+const LIKELY: usize = 6;
+/// What a step takes off a residual, on the quick side.
+const GAIN: f64 = 15.0;
 /// Residual at which a vector that began near its mode has converged: an eigenvalue errs by its square.
 const NEARLY_CONVERGED: f64 = 1e-6;
 
-/// The lowest `wanted` flexible modes, rising; `None` where a dense solution is the cheaper or the surer way.
-pub(crate) fn lowest_modes(pencil: &BlockPencil<'_>, wanted: usize) -> Option<Vec<Eigenpair>> {
-    let capacity = pencil.size() - pencil.rigid_count();
-    if (LIKELY + 1) * wanted > capacity || wanted == 0 {
-        return None;
+/// The Krylov space of a block, which grows until the modes asked for have converged.
+pub(crate) struct BlockKrylov {
+    /// Orthonormal columns: the rigid modes, then the space.
+    basis: Mat<f64>,
+    /// $A$ times the space.
+    images: Mat<f64>,
+    /// With what the space grows next.
+    next: Option<Mat<f64>>,
+    rigid: usize,
+    /// Residual at which a vector has converged.
+    least: f64,
+    /// Largest first: the eigenvalues of the projection, of which the first few have shapes.
+    thetas: Vec<f64>,
+    shapes: Mat<f64>,
+    converged: usize,
+}
+
+impl BlockKrylov {
+    /// From columns without preference.
+    pub(crate) fn new(pencil: &BlockPencil<'_>) -> Self {
+        Self::from_columns(pencil, start(pencil.size()), CONVERGED)
     }
-    modes_from(pencil, wanted, start(pencil.size()), LIKELY * wanted, CONVERGED)
+
+    fn from_columns(pencil: &BlockPencil<'_>, start: Mat<f64>, least: f64) -> Self {
+        let basis = pencil.rigid_vectors();
+        let images = Mat::zeros(pencil.size(), 0);
+        let (rigid, next) = (basis.ncols(), orthonormal(&basis, start));
+        Self { basis, images, next, rigid, least, thetas: Vec::new(), shapes: Mat::zeros(0, 0), converged: 0 }
+    }
+
+    /// How many of the lowest flexible modes have converged.
+    pub(crate) fn converged(&self) -> usize {
+        self.converged
+    }
+
+    /// $\omega^2$ of the lowest flexible modes, rising: those that have converged, then others from above.
+    pub(crate) fn omega2s(&self, pencil: &BlockPencil<'_>) -> impl Iterator<Item = f64> {
+        self.thetas.iter().take_while(|theta| **theta > 0.0).map(|&theta| pencil.omega2(theta))
+    }
+
+    /// The lowest flexible modes that have converged, rising.
+    pub(crate) fn modes(&self, pencil: &BlockPencil<'_>) -> Vec<Eigenpair> {
+        pencil.modes(&self.thetas[..self.converged], self.shapes.subcols(0, self.converged).to_owned())
+    }
+
+    /// Grows until the lowest `wanted` flexible modes have converged; whether they have before a dense solution is cheaper.
+    pub(crate) fn grow(&mut self, pencil: &BlockPencil<'_>, wanted: usize) -> bool {
+        let capacity = pencil.size() - self.rigid;
+        let mut look_at = (LIKELY * wanted).max(self.images.ncols() + 1);
+        while self.converged < wanted {
+            if 2 * self.images.ncols() >= capacity || 2 * wanted > capacity {
+                return false;
+            }
+            let Some(next) = self.next.take() else { return false };
+            let image = pencil.apply(&next);
+            self.basis = beside(&self.basis, &next);
+            self.images = beside(&self.images, &image);
+            // The projection costs more than a step: look only where convergence is likely.
+            if self.images.ncols() >= look_at {
+                let Some(worst) = self.look(wanted) else { return false };
+                let steps = ((worst / self.least).ln() / GAIN.ln()).ceil().max(1.0);
+                look_at = self.images.ncols() + image.ncols() * steps.min(wanted as f64) as usize;
+            }
+            self.next = orthonormal(&self.basis, image);
+        }
+        true
+    }
+
+    /// Counts the modes that have converged, `wanted` at most; the largest residual of these.
+    fn look(&mut self, wanted: usize) -> Option<f64> {
+        let found = self.images.ncols();
+        let space = self.basis.subcols(self.rigid, found);
+        let projection = product(space.transpose(), self.images.as_ref());
+        let (thetas, vectors) = symmetric_eigen(&projection)?;
+        let wanted = wanted.min(found);
+        self.thetas = thetas.into_iter().rev().collect();
+        let vectors = Mat::from_fn(found, wanted, |i, j| vectors[(i, found - 1 - j)]);
+        self.shapes = product(space, vectors.as_ref());
+        let mut residual = product(self.images.as_ref(), vectors.as_ref());
+        residual -= along(self.basis.subcols(0, self.rigid), residual.as_ref());
+        residual -= Mat::from_fn(self.shapes.nrows(), wanted, |i, j| self.thetas[j] * self.shapes[(i, j)]);
+        let residuals: Vec<f64> =
+            residual.col_iter().map(norm).zip(&self.thetas).map(|(norm, theta)| norm / theta).collect();
+        self.converged = residuals.iter().take_while(|residual| **residual <= self.least).count();
+        Some(residuals.into_iter().fold(0.0, f64::max))
+    }
 }
 
 /// The lowest `wanted` flexible modes, rising, from shapes that nearly are some more of them; their frequencies are exact
@@ -36,63 +117,8 @@ pub(crate) fn lowest_modes_near(pencil: &BlockPencil<'_>, wanted: usize, shapes:
     if wanted == 0 {
         return Some(Vec::new());
     }
-    modes_from(pencil, wanted, pencil.unit_vectors(shapes), 2 * shapes.len(), NEARLY_CONVERGED)
-}
-
-/// From the columns of `start`; looks for convergence once there are `likely` vectors.
-fn modes_from(
-    pencil: &BlockPencil<'_>,
-    wanted: usize,
-    start: Mat<f64>,
-    likely: usize,
-    residual: f64,
-) -> Option<Vec<Eigenpair>> {
-    let size = pencil.size();
-    let rigid = pencil.rigid_vectors();
-    let capacity = size - rigid.ncols();
-    // Orthonormal columns: the rigid modes, then the Krylov space; images are those of the latter.
-    let mut basis = rigid.clone();
-    let mut images = Mat::<f64>::zeros(size, 0);
-    let mut next = orthonormal(&basis, start)?;
-    while 2 * images.ncols() < capacity {
-        let image = pencil.apply(&next);
-        basis = beside(&basis, &next);
-        images = beside(&images, &image);
-        let found = images.ncols();
-        // The projection costs more than a step: look only where convergence is likely.
-        if found >= likely
-            && let Some(modes) = converged(pencil, &basis, rigid.ncols(), &images, wanted, residual)
-        {
-            return Some(modes);
-        }
-        next = orthonormal(&basis, image)?;
-    }
-    None
-}
-
-/// The modes of the projection on the Krylov space, where all that are wanted have small residuals.
-fn converged(
-    pencil: &BlockPencil<'_>,
-    basis: &Mat<f64>,
-    rigid: usize,
-    images: &Mat<f64>,
-    wanted: usize,
-    least: f64,
-) -> Option<Vec<Eigenpair>> {
-    let found = images.ncols();
-    let space = basis.subcols(rigid, found);
-    let projection = product(space.transpose(), images.as_ref());
-    let (thetas, vectors) = symmetric_eigen(&projection)?;
-    let highest = |column: usize| found - 1 - column;
-    let thetas: Vec<f64> = (0..wanted).map(|column| thetas[highest(column)]).collect();
-    let vectors = Mat::from_fn(found, wanted, |i, j| vectors[(i, highest(j))]);
-    let shapes = product(space, vectors.as_ref());
-    let mut residual = product(images.as_ref(), vectors.as_ref());
-    let along_rigid = basis.subcols(0, rigid);
-    residual -= along(along_rigid, residual.as_ref());
-    residual -= Mat::from_fn(shapes.nrows(), wanted, |i, j| thetas[j] * shapes[(i, j)]);
-    let mut norms = residual.col_iter().map(norm).zip(&thetas);
-    norms.all(|(norm, theta)| norm <= least * theta).then(|| pencil.modes(&thetas, shapes))
+    let mut krylov = BlockKrylov::from_columns(pencil, pencil.unit_vectors(shapes), NEARLY_CONVERGED);
+    krylov.grow(pencil, wanted).then(|| krylov.modes(pencil))
 }
 
 /// Columns without preference for any coordinate, the same in every run.

@@ -13,11 +13,19 @@ use crate::structure::Block;
 /// rounding, however stiff the highest are.
 pub(crate) struct BlockPencil<'a> {
     block: &'a Block,
-    stiffness: Mat<f64>,
     sigma: f64,
     scale: Vec<f64>,
+    /// $S(K+\sigma M)S$, its lower triangle.
+    shifted: Mat<f64>,
     factor: Cholesky,
-    mass: Mat<f64>,
+    /// $SMS$.
+    mass: Mass,
+}
+
+/// A mass matrix: that of orthogonal functions has a diagonal alone.
+enum Mass {
+    Diagonal(Vec<f64>),
+    Whole(Mat<f64>),
 }
 
 /// One mode of a block: $\omega^2$ and its mass-normalised coordinates.
@@ -28,22 +36,27 @@ impl<'a> BlockPencil<'a> {
     /// [`ModelError::Eigenproblem`] where stiffness or mass is not positive.
     pub(crate) fn new(block: &'a Block, coefficients: &[f64]) -> Result<Self, ModelError> {
         let size = block.size();
-        let mut stiffness = Mat::<f64>::zeros(size, size);
-        for (matrix, &coefficient) in block.stiffness.iter().zip(coefficients) {
-            add_scaled(&mut stiffness, coefficient, matrix);
+        let mut shifted = Mat::<f64>::zeros(size, size);
+        for column in 0..size {
+            let sum = &mut shifted.col_as_slice_mut(column)[column..];
+            for (matrix, &coefficient) in block.stiffness.iter().zip(coefficients) {
+                if matrix.ncols() == size {
+                    add(sum, coefficient, &matrix.col_as_slice(column)[column..]);
+                }
+            }
         }
-        let sigma = shift(&stiffness, &block.mass);
+        let sigma = shift(&shifted, &block.mass);
         // Unit diagonal first: Cholesky then keeps the digits of soft and stiff coordinates alike.
-        let diagonal = |i: usize| stiffness[(i, i)] + sigma * block.mass[(i, i)];
+        let diagonal = |i: usize| shifted[(i, i)] + sigma * block.mass[(i, i)];
         let scale: Vec<f64> = (0..size).map(|i| diagonal(i).sqrt().recip()).collect();
         if scale.iter().any(|value| !value.is_finite()) {
             return Err(ModelError::Eigenproblem);
         }
-        let mass = scaled(&block.mass, &scale);
-        let mut shifted = scaled(&stiffness, &scale);
-        add_scaled(&mut shifted, sigma, &mass);
+        let mass = Mass::of(&block.mass, &scale);
+        scale_both(&mut shifted, &scale);
+        mass.add_to(&mut shifted, sigma);
         let factor = Cholesky::new(&shifted).ok_or(ModelError::Eigenproblem)?;
-        Ok(Self { block, stiffness, sigma, scale, factor, mass })
+        Ok(Self { block, sigma, scale, shifted, factor, mass })
     }
 
     pub(crate) fn size(&self) -> usize {
@@ -74,7 +87,7 @@ impl<'a> BlockPencil<'a> {
     pub(crate) fn apply(&self, vectors: &Mat<f64>) -> Mat<f64> {
         let mut half = vectors.clone();
         self.factor.solve_upper(&mut half);
-        let mut image = product(self.mass.as_ref(), half.as_ref());
+        let mut image = self.mass.times(half);
         self.factor.solve_lower(&mut image);
         image
     }
@@ -133,9 +146,52 @@ impl<'a> BlockPencil<'a> {
     /// Number of modes, rigid ones included, with $\omega^2$ below `limit`: the negative pivots of $K - \text{limit}\,M$
     /// (Sylvester's law of inertia). `None` where a pivot vanishes.
     pub(crate) fn count_below(&self, limit: f64) -> Option<usize> {
-        let mut shifted = scaled(&self.stiffness, &self.scale);
-        add_scaled(&mut shifted, -limit, &self.mass);
+        let mut shifted = self.shifted.clone();
+        self.mass.add_to(&mut shifted, -self.sigma - limit);
         negative_pivots(&shifted)
+    }
+}
+
+impl Mass {
+    /// $SMS$.
+    fn of(mass: &Mat<f64>, scale: &[f64]) -> Self {
+        let is_diagonal = |column: usize| {
+            let [before, after] = [&mass.col_as_slice(column)[..column], &mass.col_as_slice(column)[column + 1..]];
+            before.iter().chain(after).all(|value| *value == 0.0)
+        };
+        if (0..mass.ncols()).all(is_diagonal) {
+            return Self::Diagonal((0..mass.ncols()).map(|i| scale[i] * scale[i] * mass[(i, i)]).collect());
+        }
+        let mut whole = mass.clone();
+        scale_both(&mut whole, scale);
+        Self::Whole(whole)
+    }
+
+    /// $MV$.
+    fn times(&self, mut vectors: Mat<f64>) -> Mat<f64> {
+        match self {
+            Self::Diagonal(diagonal) => {
+                for column in 0..vectors.ncols() {
+                    vectors.col_as_slice_mut(column).iter_mut().zip(diagonal).for_each(|(value, mass)| *value *= mass);
+                }
+                vectors
+            }
+            Self::Whole(mass) => product(mass.as_ref(), vectors.as_ref()),
+        }
+    }
+
+    /// Adds $cM$ to the lower triangle of a matrix.
+    fn add_to(&self, sum: &mut Mat<f64>, coefficient: f64) {
+        match self {
+            Self::Diagonal(diagonal) => {
+                diagonal.iter().enumerate().for_each(|(i, mass)| sum[(i, i)] += coefficient * mass);
+            }
+            Self::Whole(mass) => {
+                for column in 0..mass.ncols() {
+                    add(&mut sum.col_as_slice_mut(column)[column..], coefficient, &mass.col_as_slice(column)[column..]);
+                }
+            }
+        }
     }
 }
 
@@ -146,22 +202,16 @@ pub(crate) fn shift(stiffness: &Mat<f64>, mass: &Mat<f64>) -> f64 {
     quotients.filter(|&quotient| quotient > 1e-14 * greatest).fold(greatest, f64::min)
 }
 
-/// $A \mathrel{+}= cB$, by columns.
-fn add_scaled(sum: &mut Mat<f64>, coefficient: f64, matrix: &Mat<f64>) {
-    for column in 0..sum.ncols().min(matrix.ncols()) {
-        for (total, value) in sum.col_as_slice_mut(column).iter_mut().zip(matrix.col_as_slice(column)) {
-            *total += coefficient * value;
-        }
-    }
+/// $a \mathrel{+}= cb$.
+fn add(sum: &mut [f64], coefficient: f64, values: &[f64]) {
+    sum.iter_mut().zip(values).for_each(|(total, value)| *total += coefficient * value);
 }
 
-/// $SAS$ with a diagonal $S$.
-fn scaled(matrix: &Mat<f64>, scale: &[f64]) -> Mat<f64> {
-    let mut product = matrix.clone();
+/// $SAS$ with a diagonal $S$, in the place of $A$.
+fn scale_both(matrix: &mut Mat<f64>, scale: &[f64]) {
     for (column, own) in scale.iter().enumerate() {
-        for (value, row) in product.col_as_slice_mut(column).iter_mut().zip(scale) {
+        for (value, row) in matrix.col_as_slice_mut(column).iter_mut().zip(scale) {
             *value *= own * row;
         }
     }
-    product
 }

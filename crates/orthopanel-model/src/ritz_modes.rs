@@ -1,6 +1,6 @@
 //! Modes of any [`Structure`]: one symmetric eigenproblem a block, the blocks side by side.
 
-use crate::block_krylov::{lowest_modes, lowest_modes_near};
+use crate::block_krylov::{BlockKrylov, lowest_modes_near};
 use crate::block_pencil::{BlockPencil, Eigenpair};
 use crate::structure::{Block, RitzMode, Structure};
 use crate::{Constant, ModelError, side_by_side};
@@ -22,20 +22,19 @@ pub fn ritz_modes(structure: &dyn Structure, values: &[f64], count: usize) -> Re
     let coefficients = checked_coefficients(structure, values)?;
     let blocks = structure.blocks();
     // Blocks share the modes evenly but for a few.
-    let wanted = count / blocks.len().max(1) + 2;
+    let wanted = count.div_ceil(blocks.len().max(1));
     let solve = |block| SolvedBlock::new(BlockPencil::new(block, &coefficients)?, wanted);
     let mut solved: Vec<SolvedBlock> = side_by_side::map(blocks, solve).into_iter().collect::<Result<_, _>>()?;
     let limit = loop {
         let limit = limit_above(&solved, count);
-        let short = |block: &SolvedBlock| !block.whole && block.modes.last().is_none_or(|last| last.0 < limit);
-        if !solved.iter().any(short) {
+        if solved.iter().all(|block| block.knows_below(limit)) {
             break limit;
         }
-        side_by_side::try_each(&mut solved, |block| if short(block) { block.solve_more() } else { Ok(()) })?;
+        side_by_side::try_each(&mut solved, |block| block.solve_below(limit))?;
     };
-    side_by_side::try_each(&mut solved, |block| if block.whole { Ok(()) } else { block.prove_below(limit) })?;
+    side_by_side::try_each(&mut solved, |block| block.prove_below(limit))?;
 
-    let mut modes = flexible(solved.into_iter().map(|block| block.modes));
+    let mut modes = flexible(solved.into_iter().map(SolvedBlock::modes));
     modes.truncate(count);
     Ok(rigid(blocks).chain(modes).collect())
 }
@@ -134,48 +133,76 @@ pub fn modes_below(
 /// The modes known of one block.
 struct SolvedBlock<'a> {
     pencil: BlockPencil<'a>,
-    /// The lowest flexible ones, rising.
-    modes: Vec<Eigenpair>,
-    /// Whether these are all of them.
-    whole: bool,
+    known: Known,
+}
+
+/// The lowest flexible modes, or all of them.
+enum Known {
+    Lowest(Box<BlockKrylov>),
+    All(Vec<Eigenpair>),
 }
 
 impl<'a> SolvedBlock<'a> {
     fn new(pencil: BlockPencil<'a>, wanted: usize) -> Result<Self, ModelError> {
-        let mut block = Self { pencil, modes: Vec::new(), whole: false };
+        let known = Known::Lowest(Box::new(BlockKrylov::new(&pencil)));
+        let mut block = Self { pencil, known };
         block.solve(wanted)?;
         Ok(block)
     }
 
     fn solve(&mut self, wanted: usize) -> Result<(), ModelError> {
-        match lowest_modes(&self.pencil, wanted) {
-            Some(modes) => self.modes = modes,
-            None => {
-                self.modes = self.pencil.all_modes()?;
-                self.whole = true;
-            }
+        if let Known::Lowest(krylov) = &mut self.known
+            && !krylov.grow(&self.pencil, wanted)
+        {
+            self.known = Known::All(self.pencil.all_modes()?);
         }
         Ok(())
     }
 
-    fn solve_more(&mut self) -> Result<(), ModelError> {
-        self.solve(2 * self.modes.len())
+    /// Rising; of modes that have not converged from above.
+    fn omega2s(&self) -> Vec<f64> {
+        match &self.known {
+            Known::Lowest(krylov) => krylov.omega2s(&self.pencil).collect(),
+            Known::All(modes) => modes.iter().map(|mode| mode.0).collect(),
+        }
+    }
+
+    fn count_below(&self, limit: f64) -> usize {
+        self.omega2s().iter().filter(|omega2| **omega2 < limit).count()
+    }
+
+    fn knows_below(&self, limit: f64) -> bool {
+        match &self.known {
+            Known::Lowest(krylov) => self.count_below(limit) <= krylov.converged(),
+            Known::All(_) => true,
+        }
+    }
+
+    fn solve_below(&mut self, limit: f64) -> Result<(), ModelError> {
+        self.solve(self.count_below(limit))
     }
 
     /// Makes sure that no mode with $\omega^2$ below `limit` is missing.
     fn prove_below(&mut self, limit: f64) -> Result<(), ModelError> {
-        let known = self.modes.iter().filter(|mode| mode.0 < limit).count() + self.pencil.rigid_count();
-        if self.pencil.count_below(limit) != Some(known) {
-            self.modes = self.pencil.all_modes()?;
-            self.whole = true;
+        let Known::Lowest(krylov) = &self.known else { return Ok(()) };
+        let known = krylov.omega2s(&self.pencil).take(krylov.converged()).filter(|omega2| *omega2 < limit).count();
+        if self.pencil.count_below(limit) != Some(known + self.pencil.rigid_count()) {
+            self.known = Known::All(self.pencil.all_modes()?);
         }
         Ok(())
+    }
+
+    fn modes(self) -> Vec<Eigenpair> {
+        match self.known {
+            Known::Lowest(krylov) => krylov.modes(&self.pencil),
+            Known::All(modes) => modes,
+        }
     }
 }
 
 /// An $\omega^2$ between the mode of number `count` and the next that clearly lies above it.
 fn limit_above(solved: &[SolvedBlock], count: usize) -> f64 {
-    let mut all: Vec<f64> = solved.iter().flat_map(|block| block.modes.iter().map(|mode| mode.0)).collect();
+    let mut all: Vec<f64> = solved.iter().flat_map(SolvedBlock::omega2s).collect();
     all.sort_by(f64::total_cmp);
     let last = count.checked_sub(1).and_then(|index| all.get(index)).copied().unwrap_or(0.0);
     let clear = all.iter().find(|&&omega2| omega2 > last * (1.0 + CLOSE));

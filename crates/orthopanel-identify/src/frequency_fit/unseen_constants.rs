@@ -17,7 +17,12 @@ pub(super) fn reports(problem: &FrequencyProblem, all: &FreeConstants, minimum: 
     resting.sort_unstable();
     let (constants, values) = as_if_freed(problem, all, parameters, &resting);
     let at = problem.linearised(predictions, &constants);
-    let noise = Noise::left(problem, &problem.linearised(predictions, &problem.constants));
+    let mut noise = Noise::left(problem, &problem.linearised(predictions, &problem.constants));
+    let stated = Noise::stated(problem);
+    // A constant that rests where it was found has taken up the scatter of what was left.
+    if problem.constants.count() == 0 && noise.variance < stated.variance {
+        noise = stated;
+    }
     let stds = noise.standard_deviations(&at);
     let normal = at.quadratic().normal;
     let report = |&constant: &usize| {

@@ -17,6 +17,25 @@ pub(super) struct Coordinate {
     pub y: usize,
 }
 
+/// Which products of the functions along x and along y are coordinates.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Products {
+    /// All of them.
+    All,
+    /// Those within the quarter of an ellipse, $(i/n_x)^2+(j/n_y)^2\le1$ with $n$ the last of each direction. Whoever is in has the
+    /// slopes that it needs in too. What is left out, a fifth of all and more, has many nodes both ways, which no low mode has.
+    WithinEllipse,
+}
+
+impl Products {
+    /// Whether a product of these two functions is a coordinate.
+    pub(super) fn hold(self, [x, y]: [usize; 2], [count_x, count_y]: [usize; 2]) -> bool {
+        let part = |number: usize, count: usize| (number as f64 / count.saturating_sub(1).max(1) as f64).powi(2);
+        // The last function along a side must not be lost to rounding.
+        self == Self::All || part(x, count_x) + part(y, count_y) < 1.0 + 1e-9
+    }
+}
+
 /// A field with its orders of differentiation along x and y.
 type Term = (Field, usize, usize);
 
@@ -33,12 +52,13 @@ pub(super) fn assemble(
     along: &[EdgeBasis; 2],
     rotary_factor: f64,
     edge_mass: f64,
+    products: Products,
 ) -> (Vec<Vec<Coordinate>>, Vec<Block>) {
     let [x, y] = along;
     let mut coordinates = Vec::new();
     for &odd_y in y.parities() {
         for &odd_x in x.parities() {
-            coordinates.push(block_coordinates(along, [odd_x, odd_y]));
+            coordinates.push(block_coordinates(along, [odd_x, odd_y], products));
         }
     }
     let blocks = side_by_side::map(&coordinates, |list| {
@@ -52,13 +72,15 @@ pub(super) fn assemble(
 }
 
 /// Each rotation has the parity of the slope of $w$ along its own direction.
-fn block_coordinates([x, y]: &[EdgeBasis; 2], [odd_x, odd_y]: [bool; 2]) -> Vec<Coordinate> {
+fn block_coordinates([x, y]: &[EdgeBasis; 2], [odd_x, odd_y]: [bool; 2], products: Products) -> Vec<Coordinate> {
     let mut list = Vec::new();
     for field in Field::ALL {
         let flips_x = field == Field::RotationX;
         let flips_y = field == Field::RotationY;
         for i in x.of_parity(field, odd_x != flips_x) {
-            list.extend(y.of_parity(field, odd_y != flips_y).map(|j| Coordinate { field, x: i, y: j }));
+            let counts = [x.count(field), y.count(field)];
+            let own = y.of_parity(field, odd_y != flips_y).filter(|&j| products.hold([i, j], counts));
+            list.extend(own.map(|j| Coordinate { field, x: i, y: j }));
         }
     }
     list

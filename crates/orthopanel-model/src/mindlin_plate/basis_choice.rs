@@ -1,6 +1,7 @@
 //! How many polynomials a plate needs: from the nodes that its lowest modes have in each direction, and from the layers at its
 //! free edges.
 
+use super::assembly::Products;
 use super::law::plate_stiffnesses;
 use super::{MindlinPlate, PlateTerms, TERMS};
 use crate::{Boundary, End, ModelError, Piece};
@@ -20,7 +21,7 @@ impl MindlinPlate {
     pub fn with_default_basis(piece: &Piece, boundary: Boundary, count: usize) -> Result<Self, ModelError> {
         let layers = Self::layer_terms(piece, boundary)?;
         let terms = Reach { layers, ..Reach::new(piece, boundary, EQUAL_STIFFNESSES)? }.terms(count)?;
-        let plate = Self::new(piece, boundary, terms)?;
+        let plate = Self::within_ellipse(piece, boundary, terms)?;
         Ok(Self { resolved_modes: plate.resolved_modes.max(count), ..plate })
     }
 
@@ -47,7 +48,10 @@ impl MindlinPlate {
         own: &PlateTerms,
     ) -> Result<Self, ModelError> {
         let stiffnesses = plate_stiffnesses(piece.checked()?.thickness, values)?;
-        let plate = Self::uneven(piece, boundary, Reach::new(piece, boundary, stiffnesses)?.terms(count)?, own)?;
+        let terms = Reach::new(piece, boundary, stiffnesses)?.terms(count)?;
+        // At the edges of a span functions with kinks join in, which have no degree.
+        let products = if own.spread.losses.is_empty() { Products::WithinEllipse } else { Products::All };
+        let plate = Self::uneven(piece, boundary, terms, products, own)?;
         Ok(Self { resolved_modes: plate.resolved_modes.max(count), ..plate })
     }
 
@@ -145,7 +149,7 @@ fn terms_for_layer(epsilon: f64) -> usize {
 }
 
 /// Part of a frequency that the layers along one direction may cost.
-const LAYER_ERROR: f64 = 4e-5;
+const LAYER_ERROR: f64 = 2.5e-5;
 
 /// Nodes of the flexible modes, in rising order of a one-term estimate of $\omega^2\rho t$.
 struct Reach {

@@ -12,7 +12,7 @@
 //! Limits: the rotation $\psi_x$ is taken as held in the waves that the series lacks, which leaves
 //! $A_{55}/D_{11}k_x^2$ of $\Delta R$.
 
-use faer::Mat;
+use faer::{Mat, MatRef};
 
 use super::Field;
 use super::edge_basis::EdgeBasis;
@@ -26,7 +26,10 @@ pub(crate) struct Membrane {
     half_length: f64,
     /// Sign of the wave that comes back from either end: of a free one as it came, of a held one turned round.
     returned: [f64; 2],
-    along: Modes,
+    /// Of each length that the series along x have.
+    along: Vec<Modes>,
+    /// Which of these each mode across has.
+    along_of: Vec<usize>,
     across: Modes,
 }
 
@@ -40,12 +43,14 @@ struct Modes {
 }
 
 impl Modes {
-    fn of(basis: &EdgeBasis) -> Option<Self> {
+    /// Of the first `count` functions.
+    fn of(basis: &EdgeBasis, count: usize) -> Option<Self> {
         let w = Field::Deflection;
-        let (mass, stiffness) = (basis.integrals((w, 0), (w, 0)), basis.integrals((w, 1), (w, 1)));
-        let (sizes, turns) = symmetric_eigen(&mass.to_owned())?;
+        let first = |integrals: MatRef<'_, f64>| integrals.submatrix(0, 0, count, count).to_owned();
+        let (mass, stiffness) = (first(basis.integrals((w, 0), (w, 0))), first(basis.integrals((w, 1), (w, 1))));
+        let (sizes, turns) = symmetric_eigen(&mass)?;
         let unit = Mat::from_fn(mass.nrows(), mass.nrows(), |i, m| turns[(i, m)] / sizes[m].sqrt());
-        let whole = product(unit.transpose(), product(stiffness, unit.as_ref()).as_ref());
+        let whole = product(unit.transpose(), product(stiffness.as_ref(), unit.as_ref()).as_ref());
         let whole = Mat::from_fn(whole.nrows(), whole.nrows(), |i, j| 0.5 * (whole[(i, j)] + whole[(j, i)]));
         let (slopes, turns) = symmetric_eigen(&whole)?;
         Some(Self {
@@ -56,6 +61,7 @@ impl Modes {
 
     /// Values of the modes from those of the basis.
     fn at(&self, values: &[f64]) -> Vec<f64> {
+        let values = &values[..values.len().min(self.shares.nrows())];
         let value = |m: usize| values.iter().enumerate().map(|(i, value)| value * self.shares[(i, m)]).sum();
         (0..self.slopes.len()).map(value).collect()
     }
@@ -65,10 +71,16 @@ impl Modes {
 type Side = (usize, f64);
 
 impl Membrane {
-    /// `None` where the basis has no such modes.
-    pub(super) fn new([x, y]: &[EdgeBasis; 2], half_length: f64, ends: [End; 2]) -> Option<Self> {
+    /// `None` where the basis has no such modes. `lengths` is how many functions along x each one across has: rising modes across
+    /// are taken to have those of its functions in order.
+    pub(super) fn new([x, y]: &[EdgeBasis; 2], half_length: f64, ends: [End; 2], lengths: &[usize]) -> Option<Self> {
         let returned = ends.map(|end| if end == End::Free { 1.0 } else { -1.0 });
-        Some(Self { half_length, returned, along: Modes::of(x)?, across: Modes::of(y)? })
+        let mut counts = lengths.to_vec();
+        counts.sort_unstable();
+        counts.dedup();
+        let along = counts.iter().map(|&count| Modes::of(x, count)).collect::<Option<Vec<_>>>()?;
+        let along_of = lengths.iter().map(|length| counts.partition_point(|count| count < length)).collect();
+        Some(Self { half_length, returned, along, along_of, across: Modes::of(y, y.count(Field::Deflection))? })
     }
 
     /// $\Delta R$ and its derivatives by $D_{22}$, $A_{55}$, $A_{44}$; `None` for a rotation, which has no kink.
@@ -78,15 +90,15 @@ impl Membrane {
         [d_22, a_55, a_44]: [f64; 3],
         motions: [(Motion, crate::Place); 2],
     ) -> Option<[f64; 4]> {
-        let mut sides: [(Side, Vec<f64>, Vec<f64>); 2] = Default::default();
+        let mut sides: [(Side, Vec<Vec<f64>>, Vec<f64>); 2] = Default::default();
         for (side, (motion, place)) in sides.iter_mut().zip(motions) {
             let (order, values) = match motion {
                 Motion::Deflection => (0, x.values_at(Field::Deflection, place.x)),
                 Motion::Slope => (1, x.slopes_at(Field::Deflection, place.x)),
                 Motion::Rotation | Motion::Curvature => return None,
             };
-            *side =
-                ((order, place.x), self.along.at(&values), self.across.at(&y.values_at(Field::Deflection, place.y)));
+            let along = self.along.iter().map(|modes| modes.at(&values)).collect();
+            *side = ((order, place.x), along, self.across.at(&y.values_at(Field::Deflection, place.y)));
         }
         let [(first, u, v), (second, other_u, other_v)] = &sides;
         // A membrane that nothing holds answers a force without end; what its series lacks is finite.
@@ -102,9 +114,10 @@ impl Membrane {
             let held = a.max(least);
             let (exact, exact_by) = self.exact([a_55, held], *first, *second);
             let mut lacking = [exact, exact_by[0], exact_by[1]];
-            for (k, sigma) in self.along.slopes.iter().enumerate() {
+            let along = self.along_of[m];
+            for (sigma, (u, other_u)) in self.along[along].slopes.iter().zip(u[along].iter().zip(&other_u[along])) {
                 let inverse = (a_55 * sigma + held).recip();
-                let term = u[k] * other_u[k] * inverse;
+                let term = u * other_u * inverse;
                 lacking[0] -= term;
                 lacking[1] += term * inverse * sigma;
                 lacking[2] += term * inverse;

@@ -31,7 +31,7 @@ pub use mode_names::{ModeKind, ModeName};
 
 use crate::structure::{Block, Motion, Structure};
 use crate::{BeamTerms, Boundary, Constant, ModelError, Piece, Place};
-use assembly::{Coordinate, assemble};
+use assembly::{Coordinate, Products, assemble};
 use edge_basis::EdgeBasis;
 pub(crate) use kink::Membrane;
 use law::{plate_stiffness_derivatives, plate_stiffnesses};
@@ -66,6 +66,7 @@ pub struct MindlinPlate {
     piece: Piece,
     boundary: Boundary,
     terms: [usize; 2],
+    products: Products,
     resolved_modes: usize,
     along: [EdgeBasis; 2],
     coordinates: Vec<Vec<Coordinate>>,
@@ -96,10 +97,25 @@ impl MindlinPlate {
     /// [`ModelError::Size`] where the piece has no physical meaning, [`ModelError::TermCount`] for other numbers of
     /// terms.
     pub fn new(piece: &Piece, boundary: Boundary, terms: [usize; 2]) -> Result<Self, ModelError> {
-        Self::uneven(piece, boundary, terms, &PlateTerms::default())
+        Self::uneven(piece, boundary, terms, Products::All, &PlateTerms::default())
     }
 
-    fn uneven(piece: &Piece, boundary: Boundary, terms: [usize; 2], own: &PlateTerms) -> Result<Self, ModelError> {
+    /// The same without those products of two polynomials that have many nodes both ways: three quarters of the coordinates, with
+    /// which the low modes err little more.
+    ///
+    /// # Errors
+    /// As [`MindlinPlate::new`].
+    pub fn within_ellipse(piece: &Piece, boundary: Boundary, terms: [usize; 2]) -> Result<Self, ModelError> {
+        Self::uneven(piece, boundary, terms, Products::WithinEllipse, &PlateTerms::default())
+    }
+
+    fn uneven(
+        piece: &Piece,
+        boundary: Boundary,
+        terms: [usize; 2],
+        products: Products,
+        own: &PlateTerms,
+    ) -> Result<Self, ModelError> {
         let piece = piece.checked()?;
         let PlateTerms { spread: own, edge_mass } = own;
         own.check()?;
@@ -119,7 +135,7 @@ impl MindlinPlate {
         let beam_functions =
             [beam_functions(&x, piece.length, [left, right])?, beam_functions(&y, piece.width, [front, back])?];
         let (along, is_even) = ([x, y], own.losses.is_empty());
-        let (coordinates, blocks) = assemble(&piece, &along, own.rotary_factor, *edge_mass);
+        let (coordinates, blocks) = assemble(&piece, &along, own.rotary_factor, *edge_mass, products);
         // In each direction n polynomials follow 2n/π half-waves; some nx ny/3 products lie within the ellipse that both
         // span, and the lower half of these hold 1e-4.
         let resolved_modes = terms[0] * terms[1] / 6;
@@ -127,6 +143,7 @@ impl MindlinPlate {
             piece,
             boundary,
             terms,
+            products,
             resolved_modes,
             along,
             coordinates,
@@ -213,7 +230,10 @@ impl MindlinPlate {
     /// What tells the kinks that this basis lacks; `None` where its functions cannot be told apart.
     pub(crate) fn membrane(&self) -> Option<Membrane> {
         let Boundary { left, right, .. } = self.boundary;
-        Membrane::new(&self.along, 0.5 * self.piece.length, [left, right])
+        let counts = [0, 1].map(|axis| self.along[axis].count(Field::Deflection));
+        let length = |j: usize| (0..counts[0]).filter(|&i| self.products.hold([i, j], counts)).count();
+        let lengths: Vec<usize> = (0..counts[1]).map(length).collect();
+        Membrane::new(&self.along, 0.5 * self.piece.length, [left, right], &lengths)
     }
 
     /// What the basis lacks of the static flexibility between two motions, and its derivatives by the coefficients; `None`

@@ -42,7 +42,7 @@ impl PlateModes {
             let most = most_nodes(piece, boundary, [most_x, most_y])?;
             return Err(IdentifyError::ShapeBeyondBasis { nodes: [most_x, most_y], terms, most });
         }
-        let plate = MindlinPlate::new(piece, boundary, terms)?;
+        let plate = MindlinPlate::within_ellipse(piece, boundary, terms)?;
         let reach = ((most_x + 2) * (most_y + 3) + SPARE_MODES).min(plate.resolved_modes());
         let own = Arc::new(plate.only_with_nodes(&nodes));
         let share = reach * own.blocks().len() / plate.blocks().len();
