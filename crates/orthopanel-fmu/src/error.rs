@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use orthopanel_model::ModelError;
+use orthopanel_model::{ModelError, Readable};
 use thiserror::Error;
 
 /// Errors of this crate.
@@ -79,6 +79,19 @@ pub enum FmuError {
         /// Its value.
         value: f64,
     },
+    /// A result that no number holds.
+    #[error(
+        "{what} = {value} under the forces, states and derivatives now set: these are too large together, set smaller ones"
+    )]
+    Overflow {
+        /// What was asked for.
+        what: String,
+        /// What came out.
+        value: f64,
+    },
+    /// A call of the other interface.
+    #[error("the call is of <ModelExchange>: this instance is co-simulation, which advances its states itself")]
+    ModelExchangeOnly,
     /// A call in the wrong order.
     #[error("not allowed in the state {state}: allowed in {allowed}")]
     Order {
@@ -88,7 +101,10 @@ pub enum FmuError {
         allowed: String,
     },
     /// A step that does not start where the last one ended.
-    #[error("the communication point is {given} s, the instance stands at {time} s: go on from there")]
+    #[error(
+        "the communication point is {} s, the instance stands at {} s: go on from there",
+        Readable(*.given), Readable(*.time)
+    )]
     CommunicationPoint {
         /// The point given.
         given: f64,
@@ -96,7 +112,10 @@ pub enum FmuError {
         time: f64,
     },
     /// A step that ends behind the stop time that was set.
-    #[error("the step ends at {end} s, behind the stop time {stop} s: set a later stop time, or none")]
+    #[error(
+        "the step ends at {} s, behind the stop time {} s: set a later stop time, or none",
+        Readable(*.end), Readable(*.stop)
+    )]
     PastStop {
         /// End of the step.
         end: f64,
@@ -104,7 +123,7 @@ pub enum FmuError {
         stop: f64,
     },
     /// A stop time before the start time.
-    #[error("the stop time {stop} s lies before the start time {start} s")]
+    #[error("the stop time {} s lies before the start time {} s", Readable(*.stop), Readable(*.start))]
     StopBeforeStart {
         /// Start time.
         start: f64,
@@ -142,7 +161,9 @@ pub enum FmuError {
         expected: usize,
     },
     /// Parameters that together are those of no panel.
-    #[error("{what} = {value}: must lie between {low} and {high}; set the parameters it is made of")]
+    #[error(
+        "{what} = {}: must lie between {low} and {high}; set the parameters it is made of", Readable(*.value)
+    )]
     OutOfRange {
         /// The ratio.
         what: &'static str,
@@ -185,11 +206,13 @@ pub enum FmuError {
     #[error("{0} is not UTF-8 text")]
     Text(&'static str),
     /// Lists whose lengths do not fit.
-    #[error("{values} values for {references} value references: all variables are scalars, give one value each")]
+    #[error(
+        "{values} values for {references} variables, each element of an array counted: give one value for each of these"
+    )]
     Count {
         /// Number of values.
         values: usize,
-        /// Number of references.
+        /// Number of scalars and elements of arrays.
         references: usize,
     },
     /// A log category that the FMU does not have.

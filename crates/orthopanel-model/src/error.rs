@@ -9,7 +9,7 @@ use crate::End;
 #[non_exhaustive]
 pub enum ModelError {
     /// A size that is zero, negative or not a number.
-    #[error("{name} = {value}{}: must be finite and greater than zero", spaced(.unit))]
+    #[error("{name} = {}{}: must be finite and greater than zero", Readable(*.value), spaced(.unit))]
     Size {
         /// Name of the size.
         name: &'static str,
@@ -81,7 +81,10 @@ pub enum ModelError {
         most: usize,
     },
     /// A place outside the piece.
-    #[error("place ({x}, {y}) m lies off the piece: |x| <= {x_limit} m and |y| <= {y_limit} m, from its centre")]
+    #[error(
+        "place ({}, {}) m lies off the piece: |x| <= {} m and |y| <= {} m, from its centre",
+        Readable(*.x), Readable(*.y), Readable(*.x_limit), Readable(*.y_limit)
+    )]
     OffPiece {
         /// x of the place.
         x: f64,
@@ -93,7 +96,7 @@ pub enum ModelError {
         y_limit: f64,
     },
     /// A modal damping ratio outside $0 \le \zeta < 1/\sqrt 2$ (eq. 25).
-    #[error("mode {mode}: damping ratio {value} must satisfy 0 <= zeta < 0.7071 (eq. 25)")]
+    #[error("mode {mode}: damping ratio {} must satisfy 0 <= zeta < 0.7071 (eq. 25)", Readable(*.value))]
     Damping {
         /// Flexible mode, from 1; 0 stands for the ratio of all modes beyond.
         mode: usize,
@@ -111,6 +114,25 @@ pub enum ModelError {
         found: usize,
         /// Number expected.
         expected: usize,
+    },
+    /// An angular frequency that no mode has.
+    #[error("mode {mode}: angular frequency {} rad/s must be finite, and zero (rigid) or greater", Readable(*.value))]
+    Frequency {
+        /// Position of the mode in the list, from 1.
+        mode: usize,
+        /// Its angular frequency \[rad/s\].
+        value: f64,
+    },
+    /// A step over which the motion cannot be computed.
+    #[error(
+        "step = {} s: too long for numbers to hold the motion of a mode of {} rad/s: take a shorter one",
+        Readable(*.step), Readable(*.angular_frequency)
+    )]
+    LongStep {
+        /// The step \[s\].
+        step: f64,
+        /// Angular frequency of the mode \[rad/s\].
+        angular_frequency: f64,
     },
     /// A number that is not finite where one is needed.
     #[error("{what} = {value}: must be a finite number")]
@@ -287,6 +309,18 @@ pub enum ModelError {
     /// What this version cannot solve.
     #[error("{0} is not supported by this version of orthopanel")]
     Unsupported(String),
+}
+
+/// A number for people: in exponent form where it is huge or tiny.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Readable(pub f64);
+
+impl std::fmt::Display for Readable {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let size = self.0.abs();
+        let plain = size == 0.0 || !size.is_finite() || (1e-6..1e9).contains(&size);
+        if plain { write!(f, "{}", self.0) } else { write!(f, "{:e}", self.0) }
+    }
 }
 
 /// A unit behind its number; pure numbers have none.

@@ -37,7 +37,7 @@ pub use effects::{
     PointElement, ReceptanceModel, ReceptanceSetup, RecordSetting, Reference, RelaxingLines, Scale, Seat, Share, Shift,
     SuspensionMotion, catalogue, effect, natural_frequencies,
 };
-pub use error::ModelError;
+pub use error::{ModelError, Readable};
 pub use mindlin_plate::{MindlinPlate, ModeKind, ModeName, PLATE_CONSTANTS};
 pub use modal_model::{ModalModel, Mode};
 pub use modal_sensitivity::{ModeSensitivity, SensitiveModes, sensitive_modes};

@@ -41,8 +41,8 @@ impl ModalModel {
     /// Joins modes into a model with `force_count` force ports and `response_count` response ports.
     ///
     /// # Errors
-    /// [`ModelError::PortCount`] where a mode's lists have another length, [`ModelError::NotFinite`] and
-    /// [`ModelError::Damping`] where a number has no physical meaning.
+    /// [`ModelError::PortCount`] where a mode's lists have another length, [`ModelError::Frequency`],
+    /// [`ModelError::NotFinite`] and [`ModelError::Damping`] where a number has no physical meaning.
     pub fn new(force_count: usize, response_count: usize, modes: Vec<Mode>) -> Result<Self, ModelError> {
         Self { force_count, response_count, modes, damping_coupling: vec![] }.checked()
     }
@@ -77,7 +77,7 @@ impl ModalModel {
                 }
             }
             if !(mode.angular_frequency.is_finite() && mode.angular_frequency >= 0.0) {
-                return Err(ModelError::NotFinite { what: "angular frequency", value: mode.angular_frequency });
+                return Err(ModelError::Frequency { mode: index + 1, value: mode.angular_frequency });
             }
             if !(0.0..1.0).contains(&mode.damping_ratio) {
                 return Err(ModelError::Damping { mode: index + 1, value: mode.damping_ratio });

@@ -28,9 +28,9 @@ pub struct ModalStepper {
     /// Largest $|W|$ at each force port: bounds every modal force.
     largest_at_forces: Vec<f64>,
     now: Turn,
-    step: f64,
+    pub(super) step: f64,
     /// Where damping couples the modes: their step together, in place of each mode's own.
-    coupled: Option<Box<Coupled>>,
+    pub(super) coupled: Option<Box<Coupled>>,
 }
 
 impl ModalStepper {
@@ -276,7 +276,7 @@ impl ModalStepper {
             for (i, &[omega, zeta]) in modes.iter().enumerate() {
                 let new = Coefficients::new(omega, zeta, step);
                 if !new.is_finite() {
-                    return Err(ModelError::NotFinite { what: "angular frequency times step", value: omega * step });
+                    return Err(ModelError::LongStep { step, angular_frequency: omega });
                 }
                 (group.impulse.0[i], group.held.0[i]) = (new.impulse, new.held);
                 group.held_stiffness.0[i] = group.stiffness.0[i] * new.held;
