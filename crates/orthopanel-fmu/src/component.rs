@@ -142,4 +142,6 @@ fn finite(what: &str, value: f64) -> Result<(), FmuError> {
 }
 
 #[cfg(test)]
+mod panel_tests;
+#[cfg(test)]
 mod tests;

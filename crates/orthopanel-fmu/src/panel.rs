@@ -5,6 +5,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::FmuError;
 
+/// Most flexible modes that an FMU keeps.
+const MOST_MODES: usize = 1000;
+
 /// A panel as identified, with the number of flexible modes that its FMU keeps.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -61,6 +64,42 @@ impl Panel {
         Ok((Self { model, flexible_modes }, solution))
     }
 
+    /// Checks what a file says of the panel against the modes and ports beside it: lists are made by these numbers.
+    ///
+    /// # Errors
+    /// [`FmuError::ResourceText`] with the numbers, [`FmuError::Model`] for a panel without physical meaning.
+    pub(crate) fn check_resource(&self, modes: &ModalModel, ports: &Ports) -> Result<(), FmuError> {
+        let refused = |message: String| Err(FmuError::ResourceText(message));
+        let flexible = modes.modes().iter().filter(|mode| mode.angular_frequency > 0.0).count();
+        let asked = self.flexible_modes;
+        // A core brings internal variables that vibrate too.
+        let fits = if self.model.relaxes() { asked <= flexible } else { asked == flexible };
+        if asked > MOST_MODES || !fits {
+            return refused(format!(
+                "panel.flexible_modes = {asked}: the model has {flexible} flexible modes, and at most {MOST_MODES} can be kept"
+            ));
+        }
+        let damped = self.model.damping.ratios.len();
+        if damped != asked {
+            return refused(format!("panel.model.damping: {damped} ratios for {asked} flexible modes"));
+        }
+        if self.model.ports != *ports {
+            let own = &self.model.ports;
+            return refused(format!(
+                "panel.model.ports: {} forces and {} responses, not the same places as the {} and {} of the FMU",
+                own.forces.len(),
+                own.responses.len(),
+                ports.forces.len(),
+                ports.responses.len()
+            ));
+        }
+        self.model.check()?;
+        for constant in self.model.structure.constants() {
+            constant.check(self.model.constant(constant.name)?)?;
+        }
+        Ok(())
+    }
+
     /// Everything that may be set, with the values it was exported with.
     pub(crate) fn parameters(&self) -> Vec<PanelParameter> {
         let named = self.parts().into_iter().map(|part| {
@@ -79,6 +118,10 @@ impl Panel {
             Some(Part::MassPerArea) => positive("mass_per_area", value, "kg/m2"),
             Some(Part::Damping(mode)) if !(0.0..std::f64::consts::FRAC_1_SQRT_2).contains(&value) => {
                 Err(ModelError::Damping { mode: mode + 1, value })
+            }
+            Some(Part::Constant(name)) => {
+                let known = self.model.structure.constants().iter().find(|constant| constant.name == name);
+                known.map_or(Ok(()), |constant| constant.check(value))
             }
             _ => Ok(()),
         }

@@ -142,6 +142,9 @@ impl Resource {
         if !fits {
             return Err(FmuError::ResourceText("static_remainder: needs a number for each response and force".into()));
         }
+        if let Some(panel) = &self.panel {
+            panel.check_resource(&model, &self.ports)?;
+        }
         Ok(Self { model, ..self })
     }
 }

@@ -16,7 +16,7 @@ pub struct TimeModel {
 
 impl PanelModel {
     /// Whether a viscoelastic core is among the effects.
-    pub(crate) fn relaxes(&self) -> bool {
+    pub fn relaxes(&self) -> bool {
         self.effects.iter().any(|entry| entry.id == CORE)
     }
 
