@@ -21,11 +21,30 @@ pub(super) struct Coupled {
     /// $\omega$ and $2\zeta\omega$.
     modes: Vec<[f64; 2]>,
     damping: Vec<Vec<f64>>,
-    /// A row an increment of $a$, then of $\dot a$; columns $a$, $\dot a$, $p_0$, $\Delta p$.
-    step: Vec<Vec<f64>>,
+    /// Matrices of the last step sizes, the present one first.
+    steps: Vec<StepMatrix>,
+    /// How many matrices were made.
+    #[cfg(test)]
+    made: usize,
     /// State and forces of all modes.
     before: Vec<f64>,
     after: Vec<[f64; 2]>,
+}
+
+/// Step sizes whose matrices are kept. An importer that subtracts times passes steps that differ in the last bits: a handful
+/// of values while the time stays within a factor of two. Each has its own matrix, so that no error is made.
+const KEPT: usize = 8;
+
+/// Numbers that all kept matrices together may have, unless two of them have more: 64 MiB.
+const KEPT_NUMBERS: usize = 1 << 23;
+
+/// What leads over one size of step.
+#[derive(Debug, Clone)]
+struct StepMatrix {
+    /// \[s\]
+    size: f64,
+    /// A row an increment of $a$, then of $\dot a$; columns $a$, $\dot a$, $p_0$, $\Delta p$.
+    rows: Vec<Vec<f64>>,
 }
 
 impl Coupled {
@@ -35,7 +54,15 @@ impl Coupled {
         let of_mode = |mode: &crate::Mode| [mode.angular_frequency, 2.0 * mode.damping_ratio * mode.angular_frequency];
         let modes: Vec<_> = model.modes().iter().map(of_mode).collect();
         let (before, after) = (vec![0.0; 4 * modes.len()], vec![[0.0; 2]; modes.len()]);
-        (!damping.is_empty()).then(|| Self { modes, damping, step: vec![], before, after })
+        (!damping.is_empty()).then(|| Self {
+            modes,
+            damping,
+            steps: vec![],
+            #[cfg(test)]
+            made: 0,
+            before,
+            after,
+        })
     }
 
     /// $\sum_nc_{mn}\dot a_n$ of mode `mode`.
@@ -44,11 +71,25 @@ impl Coupled {
         row.enumerate().map(|(other, damping)| damping * velocity(other)).sum()
     }
 
-    /// Makes the step's matrix.
+    /// Makes the step's matrix, unless it is among those kept.
     ///
     /// # Errors
-    /// [`ModelError::NotFinite`] for a step too long to be computed.
+    /// [`ModelError::LongStep`] for a step too long to be computed.
     pub(super) fn prepare(&mut self, step: f64) -> Result<(), ModelError> {
+        if let Some(place) = self.steps.iter().position(|kept| kept.size == step) {
+            self.steps[..=place].rotate_right(1);
+            return Ok(());
+        }
+        let made = StepMatrix { size: step, rows: self.matrix(step)? };
+        let numbers = 8 * self.modes.len() * self.modes.len();
+        self.steps.truncate((KEPT_NUMBERS / numbers.max(1)).clamp(2, KEPT) - 1);
+        self.steps.insert(0, made);
+        #[cfg(test)]
+        (self.made += 1);
+        Ok(())
+    }
+
+    fn matrix(&self, step: f64) -> Result<Vec<Vec<f64>>, ModelError> {
         let count = self.modes.len();
         // A rigid mode is not scaled: it has no frequency.
         let scale: Vec<f64> = self.modes.iter().map(|&[omega, _]| if omega > 0.0 { omega } else { 1.0 }).collect();
@@ -64,7 +105,7 @@ impl Coupled {
         let columns = generator.col_iter().map(|column| column.iter().map(|value| value.abs()).sum::<f64>());
         let size = step * columns.fold(0.0, f64::max);
         if !size.is_finite() {
-            return Err(ModelError::NotFinite { what: "angular frequency times step", value: size });
+            return Err(self.too_long(step));
         }
         let doublings = (size / SERIES_UP_TO).log2().ceil().max(0.0) as i32;
         let mut part = step * (-f64::from(doublings)).exp2();
@@ -97,13 +138,12 @@ impl Coupled {
             own.chain(forces).chain(changes).collect()
         };
         let rows: Vec<Vec<f64>> = (0..2 * count).map(row).collect();
-        match rows.iter().flatten().find(|value| !value.is_finite()) {
-            Some(&value) => Err(ModelError::NotFinite { what: "angular frequency times step", value }),
-            None => {
-                self.step = rows;
-                Ok(())
-            }
-        }
+        if rows.iter().flatten().all(|value| value.is_finite()) { Ok(rows) } else { Err(self.too_long(step)) }
+    }
+
+    fn too_long(&self, step: f64) -> ModelError {
+        let angular_frequency = self.modes.iter().fold(0.0, |most: f64, &[omega, _]| most.max(omega));
+        ModelError::LongStep { step, angular_frequency }
     }
 
     /// State of all modes after the step, from $a$, $\dot a$, $p_0$ and $\Delta p$ of each.
@@ -112,9 +152,10 @@ impl Coupled {
         for (m, values) in modes.take(count).enumerate() {
             values.into_iter().enumerate().for_each(|(kind, value)| self.before[kind * count + m] = value);
         }
+        let rows = self.steps.first().map(|kept| kept.rows.as_slice()).unwrap_or_default();
         let change = |row: &Vec<f64>| dot(row, &self.before);
         for (m, after) in self.after.iter_mut().enumerate() {
-            let changes = [m, count + m].map(|i| self.step.get(i).map_or(f64::NAN, change));
+            let changes = [m, count + m].map(|i| rows.get(i).map_or(f64::NAN, change));
             *after = [self.before[m] + changes[0], self.before[count + m] + changes[1]];
         }
         &self.after
@@ -197,6 +238,51 @@ mod tests {
             let (found, expected) = (coupled.accelerance(0, 0, frequency), apart.accelerance(0, 0, frequency));
             assert!((found - expected).norm() < 1e-12 * expected.norm(), "{frequency}: {found} {expected}");
         }
+    }
+
+    fn coupled_pair() -> ModalModel {
+        let modes = vec![mode(900.0, 0.002, 1.0), mode(2500.0, 0.002, -0.6)];
+        let coupling = vec![vec![9.0, 4.0], vec![4.0, 25.0]];
+        ModalModel::new(1, 1, modes).unwrap().with_damping_coupling(coupling).unwrap()
+    }
+
+    /// Steps as an importer passes that subtracts one communication point from the next: each size costs one matrix, and the
+    /// motion is that of a stepper which makes every matrix anew.
+    #[test]
+    fn regress_steps_of_few_sizes_cost_few_matrices() {
+        let mut stepper = ModalStepper::new(&coupled_pair());
+        let mut fresh = stepper.clone();
+        let mut sizes = std::collections::BTreeSet::new();
+        let mut changes = 0;
+        let mut last = 0.0;
+        for n in 0..20_000 {
+            let step = f64::from(n + 1) * 1e-4 - f64::from(n) * 1e-4;
+            sizes.insert(step.to_bits());
+            changes += usize::from(step != last);
+            last = step;
+            let force = f64::from(n % 7) - 3.0;
+            for stepper in [&mut stepper, &mut fresh] {
+                stepper.set_forces(&[force]).and_then(|()| stepper.advance_held(step)).unwrap();
+            }
+            if let Some(coupled) = &mut fresh.coupled {
+                coupled.steps.clear();
+                fresh.step = 0.0;
+            }
+        }
+        let made = stepper.coupled.as_ref().map_or(0, |coupled| coupled.made);
+        let made_fresh = fresh.coupled.as_ref().map_or(0, |coupled| coupled.made);
+        assert_eq!(stepper.state(), fresh.state());
+        assert_eq!(made_fresh, 20_000);
+        assert!(changes > 4_000, "{changes} changes among {} sizes", sizes.len());
+        assert!(made < 200, "{made} matrices for {changes} changes among {} sizes", sizes.len());
+    }
+
+    #[test]
+    fn steps_too_long_are_refused_with_their_size() {
+        let mut stepper = ModalStepper::new(&coupled_pair());
+        let refused = stepper.advance_held(1e307).unwrap_err().to_string();
+        assert!(refused.starts_with("step = 1e307 s: too long"), "{refused}");
+        stepper.advance_held(1e-4).unwrap();
     }
 
     #[test]
