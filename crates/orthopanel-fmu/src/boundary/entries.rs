@@ -106,7 +106,8 @@ pub(crate) use fmu_state_entries;
 
 /// Defines the calls of model exchange that both versions have.
 macro_rules! model_exchange_entries {
-    ($time:ident, $set:ident, $get:ident, $derivatives:ident, $nominals:ident, $indicators:ident, $completed:ident) => {
+    ($time:ident, $set:ident, $get:ident, $derivatives:ident, $nominals:ident once_instantiated $early:literal,
+     $indicators:ident, $completed:ident) => {
         $crate::boundary::entries! {
             $time(time: f64) |instance| instance.component.set_time(time);
             $set(states: *const f64, count: usize) |instance| {
@@ -119,12 +120,9 @@ macro_rules! model_exchange_entries {
                 instance.component.get_state_derivatives(array_mut(derivatives, count, "derivatives")?)
             };
             $nominals(nominals: *mut f64, count: usize) |instance| {
-                instance.component.get_nominals(array_mut(nominals, count, "nominals")?)
+                instance.component.get_nominals(array_mut(nominals, count, "nominals")?, $early)
             };
-            $indicators(_indicators: *mut f64, count: usize) |_instance| match count {
-                0 => Ok(()),
-                _ => Err($crate::FmuError::NotOffered("no event indicators: ask for 0")),
-            };
+            $indicators(_indicators: *mut f64, count: usize) |instance| instance.component.get_event_indicators(count);
             $completed(_no_state_before: Boolean, enter_event_mode: *mut Boolean, terminate: *mut Boolean) |instance| {
                 let answers = [place(enter_event_mode, "enterEventMode")?, place(terminate, "terminateSimulation")?];
                 instance.component.completed_integrator_step()?;

@@ -69,3 +69,19 @@ fn regress_a_step_too_long_is_told_with_its_size() {
     assert!(refused.starts_with("step = 1e300 s: too long"), "{refused}");
     assert_eq!(component.time(), 0.0);
 }
+
+#[test]
+fn regress_nominals_follow_the_parameters_in_initialization_mode() {
+    let mut component = instance(BEAM, Interface::ModelExchange);
+    component.enter_initialization().expect("enter");
+    let nominals = |component: &mut Component| {
+        let mut values = vec![0.0; component.state_count()];
+        component.get_nominals(&mut values, false).map(|()| values).expect("nominals")
+    };
+    let before = nominals(&mut component);
+    set(&mut component, "length", 0.65).expect("a length");
+    let set_now = nominals(&mut component);
+    component.exit_initialization().expect("exit");
+    assert_ne!(before, set_now);
+    assert_eq!(set_now, nominals(&mut component));
+}

@@ -62,6 +62,7 @@ impl Phase {
         Phases::of(&[Self::Instantiated, Self::Initialization, Self::Step, Self::Event, Self::ContinuousTime]);
     pub(super) const READABLE: Phases =
         Phases::of(&[Self::Initialization, Self::Step, Self::Event, Self::ContinuousTime, Self::Terminated]);
+    pub(super) const ANY: Phases = Phases::of(&Self::ALL);
     /// Until here parameters and the initial state are set.
     pub(super) const BEFORE_START: Phases = Phases::of(&[Self::Instantiated, Self::Initialization]);
 
@@ -113,21 +114,23 @@ impl Component {
     }
 
     pub(crate) fn enter_event_mode(&mut self) -> Result<(), FmuError> {
+        self.require_model_exchange(Phase::CONTINUOUS_TIME)?;
         self.change(Phase::CONTINUOUS_TIME, Phase::Event)
     }
 
     pub(crate) fn enter_continuous_time_mode(&mut self) -> Result<(), FmuError> {
+        self.require_model_exchange(Phase::EVENT)?;
         self.change(Phase::EVENT, Phase::ContinuousTime)
     }
 
     /// An event needs nothing of a linear panel: this only asks whether it is allowed now.
     pub(crate) fn update_discrete_states(&self) -> Result<(), FmuError> {
-        self.require(Phase::EVENT)
+        self.require_model_exchange(Phase::EVENT)
     }
 
     /// As [`Component::update_discrete_states`], after a step of the importer's integrator.
     pub(crate) fn completed_integrator_step(&self) -> Result<(), FmuError> {
-        self.require(Phase::CONTINUOUS_TIME)
+        self.require_model_exchange(Phase::CONTINUOUS_TIME)
     }
 
     pub(crate) fn terminate(&mut self) -> Result<(), FmuError> {

@@ -62,6 +62,9 @@ impl Component {
             for (&unknown, weight) in unknowns.iter().zip(seed) {
                 sum += weight * self.probe_output(unknown)?;
             }
+            if !sum.is_finite() {
+                return Err(self.overflow(known, sum));
+            }
             *value = sum;
         }
         Ok(())
@@ -152,7 +155,8 @@ impl Component {
 
     fn probe_output(&self, reference: u32) -> Result<f64, FmuError> {
         let value = self.panel_value(self.quantity(reference)?, &self.probe.stepper, &self.probe.forces);
-        Ok(value.unwrap_or(f64::NAN))
+        let value = value.unwrap_or(f64::NAN);
+        if value.is_finite() { Ok(value) } else { Err(self.overflow(reference, value)) }
     }
 
     fn not_differentiable(&self, reference: u32, reason: &'static str) -> FmuError {

@@ -177,6 +177,43 @@ fn the_stop_time_bounds_the_steps() {
     assert!(matches!(component.do_step(0.3, 0.1), Err(FmuError::PastStop { .. })));
 }
 
+/// Modal forces of 1.05e308 are numbers; the acceleration that they add up to is none.
+#[test]
+fn regress_results_that_are_no_number_are_refused() {
+    let mut component = initialized(false);
+    component.set_reals(&[FORCE], &[1.5e308]).expect("finite");
+    let before = component.snapshot();
+    let mut values = [0.0; 2];
+    for references in [&[ACCELERATION][..], &[DISPLACEMENT, ACCELERATION]] {
+        // Once before the force is told to the modes, once after.
+        for _ in 0..2 {
+            let refused = component.get_reals(references, &mut values[..references.len()]).expect_err("overflows");
+            assert!(refused.to_string().starts_with("acceleration_1 = -inf under"), "{refused}");
+        }
+    }
+    let mut sensitivity = [0.0];
+    let refused = component.directional_derivative(&[ACCELERATION], &[FORCE], &[1.5e308], &mut sensitivity);
+    assert!(matches!(refused, Err(FmuError::Overflow { .. })));
+    let refused = component.adjoint_derivative(&[ACCELERATION], &[FORCE], &[1.5e308], &mut sensitivity);
+    assert!(matches!(refused, Err(FmuError::Overflow { .. })));
+    assert_eq!(component.snapshot(), before);
+    component.set_reals(&[FORCE], &[1.0]).expect("finite");
+    assert!(outputs(&mut component).iter().all(|value| value.is_finite()));
+}
+
+#[test]
+fn regress_state_derivatives_that_are_no_number_are_refused() {
+    let mut component = Component::new(&resource(), Interface::ModelExchange, "");
+    component.enter_initialization().and_then(|()| component.exit_initialization()).expect("initialized");
+    component.enter_continuous_time_mode().expect("continuous time");
+    let mut values = [1e308; 4];
+    component.set_continuous_states(&values).expect("finite");
+    let refused = component.get_state_derivatives(&mut values).expect_err("overflows").to_string();
+    assert!(refused.starts_with("derivative of the state of mode 2 = -inf"), "{refused}");
+    let refused = component.get_reals(&[VELOCITY], &mut [0.0]).expect_err("overflows").to_string();
+    assert!(refused.starts_with("velocity_1 = -inf"), "{refused}");
+}
+
 /// One call of an importer that knows nothing of the order.
 #[derive(Debug, Clone)]
 enum Call {

@@ -14,8 +14,11 @@ impl Component {
             && !self.forces_changed
         {
             // The table has the ports of the stepper: none is ever missing.
-            *value = self.stepper.acceleration(port).unwrap_or(f64::NAN);
-            return Ok(());
+            let found = self.stepper.acceleration(port).unwrap_or(f64::NAN);
+            if found.is_finite() {
+                *value = found;
+                return Ok(());
+            }
         }
         self.get_several(references, values)
     }
@@ -30,8 +33,18 @@ impl Component {
                 Some(Quantity::Acceleration(port)) => self.stepper.acceleration(port).unwrap_or(f64::NAN),
                 quantity => self.other_real(reference, quantity)?,
             };
+            if !value.is_finite() {
+                return Err(self.overflow(reference, *value));
+            }
         }
         Ok(())
+    }
+
+    /// Forces and states are finite, but what follows from them need not be.
+    #[cold]
+    pub(super) fn overflow(&self, reference: u32, value: f64) -> FmuError {
+        let what = self.variable(reference).map(|variable| variable.name.clone()).unwrap_or_default();
+        FmuError::Overflow { what, value }
     }
 
     #[inline(never)]

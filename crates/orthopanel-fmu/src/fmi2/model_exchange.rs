@@ -40,7 +40,7 @@ model_exchange_entries!(
     fmi2SetContinuousStates,
     fmi2GetContinuousStates,
     fmi2GetDerivatives,
-    fmi2GetNominalsOfContinuousStates,
+    fmi2GetNominalsOfContinuousStates once_instantiated true,
     fmi2GetEventIndicators,
     fmi2CompletedIntegratorStep
 );

@@ -5,60 +5,50 @@ use std::ffi::c_int;
 
 use super::{Boolean, Pointer, Text};
 use crate::FmuError;
-use crate::boundary::{self, DISCARD, OK, Status};
+use crate::boundary::{self, DISCARD, Instance, OK, Status, place};
 
 const LAST_SUCCESSFUL_TIME: c_int = 2;
 const TERMINATED: c_int = 3;
 const NO_ANSWER: &str = "canRunAsynchronuously = false: steps return when done, there is no such status";
 
-#[unsafe(no_mangle)]
-unsafe extern "C" fn fmi2GetRealStatus(c: Pointer, kind: c_int, value: *mut f64) -> Status {
-    // SAFETY: a live instance and a place for the value, under the FMI contract.
-    discarded(unsafe {
-        boundary::call(c, "fmi2GetRealStatus", |instance| match (kind, value.as_mut()) {
-            (_, None) => Err(FmuError::Null("value")),
-            (LAST_SUCCESSFUL_TIME, Some(value)) => {
-                *value = instance.component.time();
-                Ok(())
-            }
-            _ => Err(FmuError::NotOffered(NO_ANSWER)),
+/// Runs a status call: refused as any other for null pointers; a question that the FMU does not answer is discarded.
+///
+/// # Safety
+/// `c` is null or a live instance that no other call is using, `value` null or a place for the answer.
+unsafe fn answer<T>(c: Pointer, call: &str, value: *mut T, ask: impl FnOnce(&mut Instance) -> Option<T>) -> Status {
+    let mut asked = false;
+    // SAFETY: the caller passes a live instance and a place for the value, or null.
+    let status = unsafe {
+        boundary::call(c, call, |instance| {
+            let value = place(value, "value")?;
+            asked = true;
+            *value = ask(instance).ok_or(FmuError::NotOffered(NO_ANSWER))?;
+            Ok(())
         })
-    })
+    };
+    if status != OK && asked { DISCARD } else { status }
 }
 
-#[unsafe(no_mangle)]
-unsafe extern "C" fn fmi2GetBooleanStatus(c: Pointer, kind: c_int, value: *mut Boolean) -> Status {
-    // SAFETY: a live instance and a place for the value, under the FMI contract.
-    discarded(unsafe {
-        boundary::call(c, "fmi2GetBooleanStatus", |_| match (kind, value.as_mut()) {
-            (_, None) => Err(FmuError::Null("value")),
-            (TERMINATED, Some(value)) => {
-                *value = 0;
-                Ok(())
-            }
-            _ => Err(FmuError::NotOffered(NO_ANSWER)),
-        })
-    })
-}
-
-/// Defines status calls that never have an answer.
-macro_rules! no_answer {
-    ($($name:ident($value:ty);)*) => {$(
+/// Defines status calls; what has no answer is `None`.
+macro_rules! status_calls {
+    ($($name:ident($value:ty) |$instance:pat_param, $kind:pat_param| $answer:expr;)*) => {$(
         #[unsafe(no_mangle)]
-        unsafe extern "C" fn $name(c: Pointer, _kind: c_int, _value: $value) -> Status {
-            // SAFETY: a live instance, under the FMI contract.
-            discarded(unsafe { boundary::call(c, stringify!($name), |_| Err(FmuError::NotOffered(NO_ANSWER))) })
+        unsafe extern "C" fn $name(c: Pointer, kind: c_int, value: *mut $value) -> Status {
+            // SAFETY: a live instance and a place for the value, under the FMI contract.
+            unsafe {
+                answer(c, stringify!($name), value, |instance| {
+                    let ($instance, $kind) = (instance, kind);
+                    $answer
+                })
+            }
         }
     )*};
 }
 
-no_answer! {
-    fmi2GetStatus(*mut c_int);
-    fmi2GetIntegerStatus(*mut c_int);
-    fmi2GetStringStatus(*mut Text);
-}
-
-/// The standard's status for a question that the FMU does not answer.
-fn discarded(status: Status) -> Status {
-    if status == OK { OK } else { DISCARD }
+status_calls! {
+    fmi2GetRealStatus(f64) |instance, kind| (kind == LAST_SUCCESSFUL_TIME).then(|| instance.component.time());
+    fmi2GetBooleanStatus(Boolean) |_, kind| (kind == TERMINATED).then_some(0);
+    fmi2GetStatus(c_int) |_, _| None;
+    fmi2GetIntegerStatus(c_int) |_, _| None;
+    fmi2GetStringStatus(Text) |_, _| None;
 }

@@ -26,12 +26,13 @@ entries! {
         *next_event_time = 0.0;
         Ok(())
     };
-    fmi3GetNumberOfEventIndicators(count: *mut usize) |_instance| {
-        *place(count, "nEventIndicators")? = 0;
+    fmi3GetNumberOfEventIndicators(count: *mut usize) |instance| {
+        *place(count, "nEventIndicators")? = instance.component.count_for_model_exchange(0)?;
         Ok(())
     };
     fmi3GetNumberOfContinuousStates(count: *mut usize) |instance| {
-        *place(count, "nContinuousStates")? = instance.component.state_count();
+        *place(count, "nContinuousStates")? =
+            instance.component.count_for_model_exchange(instance.component.state_count())?;
         Ok(())
     };
 }
@@ -41,7 +42,7 @@ model_exchange_entries!(
     fmi3SetContinuousStates,
     fmi3GetContinuousStates,
     fmi3GetContinuousStateDerivatives,
-    fmi3GetNominalsOfContinuousStates,
+    fmi3GetNominalsOfContinuousStates once_instantiated false,
     fmi3GetEventIndicators,
     fmi3CompletedIntegratorStep
 );
