@@ -1,11 +1,11 @@
 //! `documentation/index.html`: what the FMU holds, for the one who is handed it.
 
-use std::f64::consts::TAU;
 use std::fmt::Write as _;
 
 use orthopanel_fmu::{GENERATOR, Resource};
-use orthopanel_model::{CoreFit, Estimate, ModalModel, PanelModel};
+use orthopanel_model::{CoreFit, Estimate, PanelModel};
 
+use crate::acceleration_band::AccelerationBands;
 use crate::{FmiVersion, FmuOptions};
 
 /// What the page tells of the panel behind the modes.
@@ -13,6 +13,8 @@ pub(crate) struct Origin<'a> {
     pub panel: &'a PanelModel,
     /// How the core's modulus is fitted, where one relaxes.
     pub core: Option<CoreFit>,
+    /// Up to where accelerations hold; not told of a core, in whose modes internal variables mix.
+    pub bands: Option<AccelerationBands>,
 }
 
 /// The page: variables with their places, modes, how the force is held, and where the panel comes from.
@@ -41,20 +43,20 @@ pub(crate) fn write(resource: &Resource, from: Option<&Origin<'_>>, options: &Fm
     page += LINEAR;
     page += "</p>\n<h2>Modes</h2>\n<p>";
     page += MODES;
-    page += &left_out(resource);
     page += "</p>\n<table>\n<tr><th>frequency [Hz]</th><th>damping ratio</th></tr>\n";
     for mode in resource.model().modes() {
         let frequency = mode.angular_frequency / std::f64::consts::TAU;
         let _ = writeln!(page, "<tr><td>{frequency:.3}</td><td>{}</td></tr>", mode.damping_ratio);
     }
     page += "</table>\n";
+    page += &left_out(resource, from.and_then(|from| from.bands.as_ref()));
     page += &from.map(origin).unwrap_or_default();
     let _ = write!(page, "<p>Written by {GENERATOR}.</p>\n</body>\n</html>\n");
     page
 }
 
 /// The constants with their standard deviations, the effects, and what is told of the identification behind them.
-fn origin(Origin { panel, core }: &Origin<'_>) -> String {
+fn origin(Origin { panel, core, .. }: &Origin<'_>) -> String {
     let mut text = String::from("<h2>Where the panel comes from</h2>\n<table>\n");
     let mut row = |name: &str, value: &str| {
         let _ = writeln!(text, "<tr><td>{}</td><td>{}</td></tr>", escaped(name), escaped(value));
@@ -96,7 +98,7 @@ fn relaxing(fit: &CoreFit) -> String {
 }
 
 const PARAMETERS: &str = "Parameters are fixed: they are set before or in initialization mode, and stay for the run. Where \
-     one of the panel's is set, the modes are solved anew, which takes milliseconds. The number of modes is that of the \
+     one of the panel's is set, the modes are solved anew, which takes milliseconds for a beam, a tenth of a second for a plate, seconds beside a core. The number of modes is that of the \
      export. None is tunable.";
 const HELD: &str = "The force is held at the value set before the step, over the whole step.";
 const BY_DERIVATIVES: &str = " If the importer gives the first derivative of a force \
@@ -107,45 +109,32 @@ const LINEAR: &str = " If the parameter force_linear is true, the force of a ste
      advanced exactly, whatever the step.";
 const MODES: &str = "Rigid modes have the frequency 0. Outputs are sums over these modes.";
 
-/// What the modes left out add, and up to where an acceleration can do without them.
-fn left_out(resource: &Resource) -> String {
-    let mut text = String::new();
+/// What the modes left out add to displacements, and up to where an acceleration can do without them: a row a pair of ports.
+fn left_out(resource: &Resource, bands: Option<&AccelerationBands>) -> String {
+    let Some(bands) = bands else { return String::new() };
+    let mut text = String::from(LEFT_OUT);
     for (r, row) in resource.static_remainder().iter().enumerate() {
-        for (f, &remainder) in row.iter().enumerate().filter(|(_, remainder)| **remainder != 0.0) {
-            let band = match accelerance_band(resource.model(), r, f, remainder) {
+        for (f, &remainder) in row.iter().enumerate() {
+            let band = match bands.within_one_percent(r, f) {
                 Some(band) => format!("holds within 1 % up to {band:.0} Hz"),
                 None => "is never within 1 %".into(),
             };
             let (response, force) = (r + 1, f + 1);
+            let added = if remainder == 0.0 { "none".into() } else { format!("{remainder:.3e} m/N") };
             let _ = writeln!(
                 text,
-                "</p>\n<p>displacement_{response} has {remainder:.3e} m/N times force_{force} added: the modes left out, at \
-                 rest. acceleration_{response} under force_{force} {band} (the share of the modes left out in the root mean \
-                 square over an octave)."
+                "<tr><td>displacement_{response}: {added}</td><td>acceleration_{response} under force_{force} {band}</td></tr>"
             );
         }
     }
-    text
+    text + "</table>\n"
 }
 
-/// Highest frequency \[Hz\], of a grid up to the highest mode, below which what the modes left out add to the
-/// accelerance, $\omega^2R$, stays within 1 % of its root mean square over the octave around; `None` where none is.
-fn accelerance_band(model: &ModalModel, response: usize, force: usize, remainder: f64) -> Option<f64> {
-    const POINTS_AN_OCTAVE: i32 = 48;
-    let highest = model.modes().last()?.angular_frequency / TAU;
-    let squares: Vec<(f64, f64)> = (-10 * POINTS_AN_OCTAVE..=POINTS_AN_OCTAVE / 2)
-        .map(|point| highest * 2.0_f64.powf(f64::from(point) / f64::from(POINTS_AN_OCTAVE)))
-        .map(|frequency| (frequency, model.accelerance(response, force, frequency).norm_sqr()))
-        .collect();
-    let octaves = squares.windows(POINTS_AN_OCTAVE as usize + 1);
-    let held = octaves.map_while(|octave| {
-        let frequency = octave.get(octave.len() / 2)?.0;
-        let mean = octave.iter().map(|(_, square)| square).sum::<f64>() / octave.len() as f64;
-        let missing = (TAU * frequency).powi(2) * remainder;
-        (missing * missing <= 1e-4 * mean).then_some(frequency)
-    });
-    held.last()
-}
+const LEFT_OUT: &str = "<h2>What the modes left out do</h2>\n<p>At rest they would add to displacements what stands on the left, \
+     times the force, and this is added. An acceleration lacks what they do: up to the frequency on the right that is less \
+     than 1 % of the root mean square of the accelerance over the octave around, by three times as many modes and the static \
+     part of the rest. At an antiresonance, where little is left of the whole, it is a larger part.</p>\n\
+     <table>\n<tr><th>static part of the modes left out</th><th>band</th></tr>\n";
 
 fn escaped(text: &str) -> String {
     quick_xml::escape::escape(text).into_owned()

@@ -6,6 +6,7 @@ use std::path::Path;
 use orthopanel_fmu::{FmuError, RESOURCE_FILE, Resource, content_token};
 use orthopanel_model::{ModalModel, ModeRange, PanelModel, Ports};
 
+use crate::acceleration_band::AccelerationBands;
 use crate::archive::{Entry, pack};
 use crate::documentation::{self, Origin};
 use crate::{ExportError, Library, library, model_description, terminals};
@@ -103,7 +104,9 @@ impl Fmu {
         check(&ports, options)?;
         let (alone, _) = panel.panel_alone().map_err(FmuError::from)?;
         let (resource, core) = Resource::of_panel(&alone, range, ports)?;
-        Self::of_resource(resource, Some(Origin { panel, core }), options)
+        let bands =
+            if core.is_none() { Some(AccelerationBands::of(&alone, &resource).map_err(FmuError::from)?) } else { None };
+        Self::of_resource(resource, Some(Origin { panel, core, bands }), options)
     }
 
     fn of_resource(resource: Resource, origin: Option<Origin<'_>>, options: &FmuOptions) -> Result<Self, ExportError> {

@@ -1,5 +1,6 @@
 #![doc = include_str!("../README.md")]
 
+mod acceleration_band;
 mod archive;
 mod documentation;
 mod error;
