@@ -55,6 +55,32 @@ impl Platform {
     }
 }
 
+impl Platform {
+    /// What the header of a library calls its processor.
+    fn machine(self) -> u32 {
+        match (self.system, self.architecture == "aarch64") {
+            (System::Linux, false) => 0x3e,
+            (System::Linux, true) => 0xb7,
+            (System::Windows, false) => 0x8664,
+            (System::Windows, true) => 0xaa64,
+            (System::Darwin, false) => 0x0100_0007,
+            (System::Darwin, true) => 0x0100_000c,
+        }
+    }
+}
+
+/// The processor in the header: ELF's `e_machine`, PE's `Machine` behind the address at 0x3c, Mach-O's `cputype`, all with the
+/// lowest byte first. `None` where the file ends before.
+fn machine(system: System, content: &[u8]) -> Option<u32> {
+    let two = |at: usize| Some(u32::from(u16::from_le_bytes(content.get(at..at.checked_add(2)?)?.try_into().ok()?)));
+    let four = |at: usize| Some(u32::from_le_bytes(content.get(at..at.checked_add(4)?)?.try_into().ok()?));
+    match system {
+        System::Linux => two(18),
+        System::Windows => two(usize::try_from(four(0x3c)?).ok()?.checked_add(4)?),
+        System::Darwin => four(4),
+    }
+}
+
 impl fmt::Display for Platform {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let system = match self.system {
@@ -97,6 +123,16 @@ impl Library {
         let refuse = |reason| Err(ExportError::Library { platform: platform.to_string(), reason });
         if !content.starts_with(start) {
             return refuse(format!("it is not {kind}"));
+        }
+        match machine(platform.system, &content) {
+            Some(machine) if machine == platform.machine() => {}
+            Some(machine) => {
+                let needed = platform.machine();
+                return refuse(format!(
+                    "it is for another processor: its header has machine {machine:#x}, not {needed:#x}"
+                ));
+            }
+            None => return refuse("its header is cut off".into()),
         }
         // What it reads is named in it: a runtime of another version would refuse this FMU's resource.
         for needed in ["fmi2Instantiate", "fmi3InstantiateCoSimulation", RESOURCE_SCHEMA] {

@@ -75,9 +75,19 @@ fn models_without_ports_or_name_are_refused() {
     }
 }
 
-/// Bytes that pass for the runtime of a system: its first bytes, and the names that it would hold.
-fn made_library(start: &[u8]) -> Vec<u8> {
-    [start, b"..fmi2Instantiate..fmi3InstantiateCoSimulation..", RESOURCE_SCHEMA.as_bytes(), b".."].concat()
+/// Bytes that pass for the runtime of a platform: its header with the processor, and the names that it would hold.
+fn made_library(platform: &str) -> Vec<u8> {
+    let mut header = vec![0; 0x50];
+    let mut put = |at: usize, bytes: &[u8]| header[at..at + bytes.len()].copy_from_slice(bytes);
+    match platform {
+        "x86_64-linux" | "linux64" => (put(0, b"\x7fELF"), put(18, &[0x3e, 0])),
+        "aarch64-linux" => (put(0, b"\x7fELF"), put(18, &[0xb7, 0])),
+        "x86_64-windows" | "win64" => (put(0, b"MZ"), (put(0x3c, &[0x40]), put(0x40, b"PE\0\0\x64\x86")).0),
+        "aarch64-darwin" => (put(0, b"\xcf\xfa\xed\xfe"), put(4, &[0x0c, 0, 0, 1])),
+        other => panic!("{other}"),
+    };
+    let names = [b"..fmi2Instantiate..fmi3InstantiateCoSimulation..", RESOURCE_SCHEMA.as_bytes(), b".."].concat();
+    [header, names].concat()
 }
 
 fn platform(name: &str) -> Platform {
@@ -86,10 +96,9 @@ fn platform(name: &str) -> Platform {
 
 #[test]
 fn libraries_of_several_platforms_lie_side_by_side() {
-    let mac = b"\xcf\xfa\xed\xfe".as_slice();
-    let given = [("win64", b"MZ".as_slice()), ("aarch64-darwin", mac), ("x86_64-linux", b"\x7fELF")];
+    let given = ["win64", "aarch64-darwin", "x86_64-linux"];
     let libraries: Result<Vec<_>, _> =
-        given.iter().map(|(name, start)| Library::new(platform(name), made_library(start))).collect();
+        given.iter().map(|name| Library::new(platform(name), made_library(name))).collect();
     let options = FmuOptions { libraries: libraries.expect("sound libraries"), ..FmuOptions::default() };
     for (version, paths) in [
         (FmiVersion::Fmi2, ["win64/orthopanel.dll", "aarch64-darwin/orthopanel.dylib", "linux64/orthopanel.so"]),
@@ -101,12 +110,12 @@ fn libraries_of_several_platforms_lie_side_by_side() {
         let options = FmuOptions { version, ..options.clone() };
         let bytes = Fmu::new(model(1, 1), ports(1, 1), &options).and_then(|fmu| fmu.to_bytes()).expect("an archive");
         let mut archive = zip::ZipArchive::new(std::io::Cursor::new(bytes)).expect("a zip");
-        for (path, (_, start)) in paths.iter().zip(given) {
+        for (path, name) in paths.iter().zip(given) {
             let mut content = Vec::new();
             let mut entry = archive.by_name(&format!("binaries/{path}")).expect(path);
             entry.read_to_end(&mut content).expect("bytes");
             // The one given for this platform stands in place of the embedded one.
-            assert_eq!(content, made_library(start), "{path}");
+            assert_eq!(content, made_library(name), "{path}");
         }
     }
 }
@@ -117,9 +126,11 @@ fn libraries_that_cannot_be_the_runtime_are_refused() {
         matches!("solaris".parse::<Platform>(), Err(ExportError::Platform { known, .. }) if known.contains("linux"))
     );
     for (content, reason) in [
-        (made_library(b"MZ"), "not an ELF"),
-        (b"\x7fELF of something else".to_vec(), "no orthopanel-fmu of this version"),
-        (made_library(b"\x7fELF").iter().map(|&byte| if byte == b'2' { b'1' } else { byte }).collect(), "this version"),
+        (made_library("win64"), "not an ELF"),
+        (made_library("aarch64-linux"), "another processor: its header has machine 0xb7, not 0x3e"),
+        (b"\x7fELF".to_vec(), "cut off"),
+        (made_library("linux64")[..0x50].to_vec(), "no orthopanel-fmu of this version"),
+        (made_library("linux64").iter().map(|&byte| if byte == b'2' { b'1' } else { byte }).collect(), "this version"),
         (Vec::new(), "not an ELF"),
     ] {
         let refused = Library::new(platform("linux64"), content);
@@ -129,7 +140,7 @@ fn libraries_that_cannot_be_the_runtime_are_refused() {
         );
     }
     let twice =
-        ["win64", "x86_64-windows"].map(|name| Library::new(platform(name), made_library(b"MZ")).expect("sound"));
+        ["win64", "x86_64-windows"].map(|name| Library::new(platform(name), made_library(name)).expect("sound"));
     let options = FmuOptions { libraries: twice.to_vec(), ..FmuOptions::default() };
     let refused = Fmu::new(model(1, 1), ports(1, 1), &options);
     assert!(matches!(refused, Err(ExportError::Library { reason, .. }) if reason.contains("twice")));
