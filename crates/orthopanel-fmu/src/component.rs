@@ -3,6 +3,7 @@
 mod continuous;
 mod elements;
 mod fmu_states;
+mod parameter_sensitivities;
 mod parameters;
 mod phase;
 mod sensitivities;
@@ -113,9 +114,15 @@ impl Component {
         Ok(())
     }
 
-    /// Value of a quantity of the panel, given its modes and forces; `None` for what is none of the panel's.
+    /// Value of a quantity of the panel, given its modes, their static remainder and forces; `None` for what is none of the panel's.
     #[inline(always)]
-    fn panel_value(&self, quantity: Quantity, stepper: &WideStepper, forces: &[f64]) -> Option<f64> {
+    fn panel_value(
+        &self,
+        quantity: Quantity,
+        stepper: &WideStepper,
+        static_remainder: &[Vec<f64>],
+        forces: &[f64],
+    ) -> Option<f64> {
         match quantity {
             Quantity::Time | Quantity::ForceLinear => None,
             Quantity::Parameter(index) => self.now.parameters.get(index).copied(),
@@ -124,7 +131,7 @@ impl Component {
             Quantity::Velocity(port) => stepper.velocity(port),
             Quantity::Displacement(port) => {
                 let mut displacement = stepper.displacement(port)?;
-                for (remainder, force) in self.static_remainder.get(port)?.iter().zip(forces) {
+                for (remainder, force) in static_remainder.get(port)?.iter().zip(forces) {
                     displacement += remainder * force;
                 }
                 Some(displacement)

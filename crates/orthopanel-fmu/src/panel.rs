@@ -127,6 +127,19 @@ impl Panel {
         }
     }
 
+    /// Sizes by which the parameters are differenced: their own values, and for places the length. What may be zero has one of
+    /// its kind.
+    pub(crate) fn sizes(&self, values: &[f64]) -> Vec<f64> {
+        let length = values.first().copied().unwrap_or(1.0);
+        let size = |(part, &value): (Part, &f64)| match part {
+            Part::ForceX(_) | Part::ForceY(_) | Part::ResponseX(_) | Part::ResponseY(_) => length,
+            Part::Damping(_) => value.max(0.01),
+            Part::Constant(_) if value == 0.0 => 1.0,
+            _ => value,
+        };
+        self.parts().into_iter().zip(values).map(size).collect()
+    }
+
     /// The modes with these values of the parameters.
     ///
     /// # Errors

@@ -1,7 +1,8 @@
 //! Derivatives: of outputs and state derivatives by inputs and states, and of outputs by time.
 //!
 //! Every output is linear in forces and modal states and zero where these are. So its derivative along a direction
-//! is the output itself, asked of a panel whose forces and states *are* that direction.
+//! is the output itself, asked of a panel whose forces and states *are* that direction. By parameters, which move the modes,
+//! it is differenced (`parameter_sensitivities`).
 
 use super::{Component, Phase, finite};
 use crate::{FmuError, Quantity};
@@ -29,8 +30,12 @@ impl Component {
             self.add_to_probe(known, value)?;
         }
         self.probe.stepper.set_forces(&self.probe.forces)?;
-        for (&unknown, value) in unknowns.iter().zip(sensitivity) {
-            *value = self.probe_output(unknown)?;
+        let by_parameters = self.parameter_derivative(unknowns, knowns, seed)?;
+        for ((index, &unknown), value) in unknowns.iter().enumerate().zip(sensitivity) {
+            *value = self.probe_output(unknown)? + by_parameters.get(index).copied().unwrap_or(0.0);
+            if !value.is_finite() {
+                return Err(self.overflow(unknown, *value));
+            }
         }
         Ok(())
     }
@@ -58,9 +63,10 @@ impl Component {
             self.rest_probe()?;
             self.add_to_probe(known, 1.0)?;
             self.probe.stepper.set_forces(&self.probe.forces)?;
+            let by_parameter = self.parameter_derivative(unknowns, &[known], &[1.0])?;
             let mut sum = 0.0;
-            for (&unknown, weight) in unknowns.iter().zip(seed) {
-                sum += weight * self.probe_output(unknown)?;
+            for (index, (&unknown, weight)) in unknowns.iter().zip(seed).enumerate() {
+                sum += weight * (self.probe_output(unknown)? + by_parameter.get(index).copied().unwrap_or(0.0));
             }
             if !sum.is_finite() {
                 return Err(self.overflow(known, sum));
@@ -121,8 +127,12 @@ impl Component {
 
     fn check_known(&self, known: u32) -> Result<(), FmuError> {
         match self.quantity(known)? {
-            Quantity::Force(_) | Quantity::ModalPosition(_) | Quantity::ModalVelocity(_) => Ok(()),
-            _ => Err(self.not_differentiable(known, "knowns are inputs and continuous states")),
+            Quantity::Force(_) | Quantity::ModalPosition(_) | Quantity::ModalVelocity(_) | Quantity::Time => Ok(()),
+            Quantity::Parameter(_) if Phase::INITIALIZATION.contain(self.now.phase) => Ok(()),
+            _ => Err(self.not_differentiable(
+                known,
+                "knowns are inputs and continuous states, until initialization ends parameters",
+            )),
         }
     }
 
@@ -138,6 +148,8 @@ impl Component {
         let quantity = self.quantity(known)?;
         let probe = &mut self.probe;
         match quantity {
+            // What the outputs do when it is set: nothing, until its step is done.
+            Quantity::Force(_) if self.now.forces_wait() => {}
             Quantity::Force(port) => {
                 if let Some(force) = probe.forces.get_mut(port) {
                     *force += value;
@@ -154,7 +166,8 @@ impl Component {
     }
 
     fn probe_output(&self, reference: u32) -> Result<f64, FmuError> {
-        let value = self.panel_value(self.quantity(reference)?, &self.probe.stepper, &self.probe.forces);
+        let (quantity, probe) = (self.quantity(reference)?, &self.probe);
+        let value = self.panel_value(quantity, &probe.stepper, &self.static_remainder, &probe.forces);
         let value = value.unwrap_or(f64::NAN);
         if value.is_finite() { Ok(value) } else { Err(self.overflow(reference, value)) }
     }

@@ -51,8 +51,13 @@ impl Situation {
     /// what was set since is reached at the end of the next one only. Masters that hand over values before they read
     /// outputs would else see accelerations a step ahead of the motion.
     pub(super) fn forces_in_effect(&self) -> &[f64] {
+        if self.forces_wait() { &self.forces_before } else { &self.forces }
+    }
+
+    /// Do the forces set act at the end of the next step only?
+    pub(super) fn forces_wait(&self) -> bool {
         let between_steps = self.force_linear && matches!(self.phase, Phase::Step | Phase::Terminated);
-        if between_steps && self.interface == Interface::CoSimulation { &self.forces_before } else { &self.forces }
+        between_steps && self.interface == Interface::CoSimulation
     }
 
     /// Does it fit an instance that now stands in `other`, and is every number one?

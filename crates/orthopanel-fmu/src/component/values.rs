@@ -55,7 +55,8 @@ impl Component {
             // The table has the ports and modes of the stepper: none of these is ever missing.
             Some(Quantity::Force(port)) => Ok(self.now.forces.get(port).copied().unwrap_or(f64::NAN)),
             Some(quantity) => {
-                Ok(self.panel_value(quantity, &self.stepper, self.now.forces_in_effect()).unwrap_or(f64::NAN))
+                let (remainder, forces) = (&self.static_remainder, self.now.forces_in_effect());
+                Ok(self.panel_value(quantity, &self.stepper, remainder, forces).unwrap_or(f64::NAN))
             }
         }
     }
