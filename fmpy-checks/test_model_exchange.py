@@ -122,4 +122,4 @@ def test_modes_and_interfaces_are_kept_apart(fmu, continuous):
     with panel(fmu) as co_simulation:
         co_simulation.initialize()
         assert co_simulation.call(("fmi2EnterContinuousTimeMode", "fmi3EnterContinuousTimeMode")) == 3
-        assert "allowed in event mode (model exchange)" in co_simulation.messages[-1]
+        assert "this instance is co-simulation" in co_simulation.messages[-1]
