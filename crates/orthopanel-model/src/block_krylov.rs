@@ -47,7 +47,16 @@ impl BlockKrylov {
         let basis = pencil.rigid_vectors();
         let images = Mat::zeros(pencil.size(), 0);
         let (rigid, next) = (basis.ncols(), orthonormal(&basis, start));
-        Self { basis, images, next, rigid, least, thetas: Vec::new(), shapes: Mat::zeros(0, 0), converged: 0 }
+        Self {
+            basis,
+            images,
+            next,
+            rigid,
+            least,
+            thetas: Vec::new(),
+            shapes: Mat::zeros(pencil.size(), 0),
+            converged: 0,
+        }
     }
 
     /// How many of the lowest flexible modes have converged.

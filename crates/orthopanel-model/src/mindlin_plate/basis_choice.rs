@@ -21,7 +21,7 @@ impl MindlinPlate {
     pub fn with_default_basis(piece: &Piece, boundary: Boundary, count: usize) -> Result<Self, ModelError> {
         let layers = Self::layer_terms(piece, boundary)?;
         let terms = Reach { layers, ..Reach::new(piece, boundary, EQUAL_STIFFNESSES)? }.terms(count)?;
-        let plate = Self::within_ellipse(piece, boundary, terms)?;
+        let plate = Self::new(piece, boundary, terms)?;
         Ok(Self { resolved_modes: plate.resolved_modes.max(count), ..plate })
     }
 
@@ -49,9 +49,8 @@ impl MindlinPlate {
     ) -> Result<Self, ModelError> {
         let stiffnesses = plate_stiffnesses(piece.checked()?.thickness, values)?;
         let terms = Reach::new(piece, boundary, stiffnesses)?.terms(count)?;
-        // At the edges of a span functions with kinks join in, which have no degree.
-        let products = if own.spread.losses.is_empty() { Products::WithinEllipse } else { Products::All };
-        let plate = Self::uneven(piece, boundary, terms, products, own)?;
+        // Frequencies can do without products of many nodes both ways, the motion under a point force cannot.
+        let plate = Self::uneven(piece, boundary, terms, Products::All, own)?;
         Ok(Self { resolved_modes: plate.resolved_modes.max(count), ..plate })
     }
 
