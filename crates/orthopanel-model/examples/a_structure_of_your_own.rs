@@ -34,7 +34,11 @@ impl ThinPlate {
         let along_x = diagonal(&|[i, _]| (i as f64 * PI / piece.length).powi(4));
         let along_y = diagonal(&|[_, j]| (j as f64 * PI / piece.width).powi(4));
         let mass = diagonal(&|_| piece.mass_per_area);
-        Self { piece, terms, blocks: vec![Block { stiffness: vec![along_x, along_y], mass, rigid: vec![] }] }
+        Self {
+            piece,
+            terms,
+            blocks: vec![Block { stiffness: vec![along_x.into(), along_y.into()], mass: mass.into(), rigid: vec![] }],
+        }
     }
 }
 

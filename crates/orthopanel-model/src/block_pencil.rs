@@ -3,7 +3,8 @@
 use faer::Mat;
 
 use crate::ModelError;
-use crate::dense::{Cholesky, negative_pivots, norm, product, symmetric_eigen};
+use crate::dense::{Cholesky, negative_pivots, symmetric_eigen};
+use crate::skyline::{SkylineCholesky, SymmetricMatrix};
 use crate::structure::Block;
 
 /// $K$ and $M$ of a block, and the operator whose largest eigenvalues are its lowest modes.
@@ -15,17 +16,17 @@ pub(crate) struct BlockPencil<'a> {
     block: &'a Block,
     sigma: f64,
     scale: Vec<f64>,
-    /// $S(K+\sigma M)S$, its lower triangle.
-    shifted: Mat<f64>,
-    factor: Cholesky,
+    /// $S(K+\sigma M)S$.
+    shifted: SymmetricMatrix,
+    factor: Factor,
     /// $SMS$.
-    mass: Mass,
+    mass: SymmetricMatrix,
 }
 
-/// A mass matrix: that of orthogonal functions has a diagonal alone.
-enum Mass {
-    Diagonal(Vec<f64>),
-    Whole(Mat<f64>),
+/// $LL^T$ by rows where few entries are not zero, else by blocks.
+pub(crate) enum Factor {
+    Thin(SkylineCholesky),
+    Dense(Cholesky),
 }
 
 /// One mode of a block: $\omega^2$ and its mass-normalised coordinates.
@@ -35,27 +36,17 @@ impl<'a> BlockPencil<'a> {
     /// # Errors
     /// [`ModelError::Eigenproblem`] where stiffness or mass is not positive.
     pub(crate) fn new(block: &'a Block, coefficients: &[f64]) -> Result<Self, ModelError> {
-        let size = block.size();
-        let mut shifted = Mat::<f64>::zeros(size, size);
-        for column in 0..size {
-            let sum = &mut shifted.col_as_slice_mut(column)[column..];
-            for (matrix, &coefficient) in block.stiffness.iter().zip(coefficients) {
-                if matrix.ncols() == size {
-                    add(sum, coefficient, &matrix.col_as_slice(column)[column..]);
-                }
-            }
-        }
-        let sigma = shift(&shifted, &block.mass);
+        let stiffness = block.stiffness_at(coefficients);
+        let sigma = shift(&stiffness, &block.mass);
+        let sum = [(1.0, &stiffness), (sigma, &block.mass)];
+        let shifted = SymmetricMatrix::sum(sum.into_iter(), block.size());
         // Unit diagonal first: Cholesky then keeps the digits of soft and stiff coordinates alike.
-        let diagonal = |i: usize| shifted[(i, i)] + sigma * block.mass[(i, i)];
-        let scale: Vec<f64> = (0..size).map(|i| diagonal(i).sqrt().recip()).collect();
+        let scale: Vec<f64> = (0..block.size()).map(|i| shifted[(i, i)].sqrt().recip()).collect();
         if scale.iter().any(|value| !value.is_finite()) {
             return Err(ModelError::Eigenproblem);
         }
-        let mass = Mass::of(&block.mass, &scale);
-        scale_both(&mut shifted, &scale);
-        mass.add_to(&mut shifted, sigma);
-        let factor = Cholesky::new(&shifted).ok_or(ModelError::Eigenproblem)?;
+        let (shifted, mass) = (shifted.scaled(&scale), block.mass.clone().scaled(&scale));
+        let factor = Factor::new(&shifted).ok_or(ModelError::Eigenproblem)?;
         Ok(Self { block, sigma, scale, shifted, factor, mass })
     }
 
@@ -67,46 +58,46 @@ impl<'a> BlockPencil<'a> {
         self.block.rigid.len()
     }
 
-    /// The rigid modes as unit vectors of $A$, a column each.
-    pub(crate) fn rigid_vectors(&self) -> Mat<f64> {
+    /// The rigid modes as unit vectors of $A$.
+    pub(crate) fn rigid_vectors(&self) -> Vec<Vec<f64>> {
         self.unit_vectors(&self.block.rigid)
     }
 
     /// The unit vectors of $A$ that stand for shapes.
-    pub(crate) fn unit_vectors(&self, shapes: &[impl AsRef<[f64]>]) -> Mat<f64> {
-        let coordinates = Mat::from_fn(self.size(), shapes.len(), |i, n| shapes[n].as_ref()[i] / self.scale[i]);
-        let mut vectors = self.factor.upper_times(&coordinates);
-        for mut column in vectors.col_iter_mut() {
-            let norm = norm(column.as_ref());
-            column /= faer::Scale(norm);
-        }
-        vectors
+    pub(crate) fn unit_vectors(&self, shapes: &[impl AsRef<[f64]>]) -> Vec<Vec<f64>> {
+        let unit = |shape: &[f64]| {
+            let mut vector: Vec<f64> = shape.iter().zip(&self.scale).map(|(value, scale)| value / scale).collect();
+            self.factor.upper_times(&mut vector);
+            let norm = vector.iter().map(|value| value * value).sum::<f64>().sqrt();
+            vector.iter_mut().for_each(|value| *value /= norm);
+            vector
+        };
+        shapes.iter().map(|shape| unit(shape.as_ref())).collect()
     }
 
-    /// $AV$.
-    pub(crate) fn apply(&self, vectors: &Mat<f64>) -> Mat<f64> {
-        let mut half = vectors.clone();
+    /// $Av$.
+    pub(crate) fn apply(&self, vector: &[f64]) -> Vec<f64> {
+        let mut half = vector.to_vec();
         self.factor.solve_upper(&mut half);
-        let mut image = self.mass.times(half);
+        let mut image = self.mass.image(&half);
         self.factor.solve_lower(&mut image);
         image
     }
 
     /// $(K+\sigma M)^{-1}B$.
     pub(crate) fn solve(&self, mut loads: Mat<f64>) -> Mat<f64> {
-        self.scale_rows(&mut loads);
-        self.factor.solve_lower(&mut loads);
-        self.factor.solve_upper(&mut loads);
-        self.scale_rows(&mut loads);
+        for column in 0..loads.ncols() {
+            let load = loads.col_as_slice_mut(column);
+            self.scale_rows(load);
+            self.factor.solve_lower(load);
+            self.factor.solve_upper(load);
+            self.scale_rows(load);
+        }
         loads
     }
 
-    fn scale_rows(&self, columns: &mut Mat<f64>) {
-        for column in 0..columns.ncols() {
-            for (value, scale) in columns.col_as_slice_mut(column).iter_mut().zip(&self.scale) {
-                *value *= scale;
-            }
-        }
+    fn scale_rows(&self, vector: &mut [f64]) {
+        vector.iter_mut().zip(&self.scale).for_each(|(value, scale)| *value *= scale);
     }
 
     /// $\omega^2$ that an eigenvalue of $A$ stands for.
@@ -114,15 +105,12 @@ impl<'a> BlockPencil<'a> {
         (1.0 / theta - self.sigma).max(0.0)
     }
 
-    /// Modes of unit eigenvectors of $A$, given as columns, with their eigenvalues.
-    pub(crate) fn modes(&self, thetas: &[f64], mut vectors: Mat<f64>) -> Vec<Eigenpair> {
-        self.factor.solve_upper(&mut vectors);
-        let mode = |(column, &theta): (usize, &f64)| {
-            let norm = theta.sqrt().recip();
-            let coordinates = self.scale.iter().enumerate().map(|(row, s)| norm * s * vectors[(row, column)]).collect();
-            (self.omega2(theta), coordinates)
-        };
-        thetas.iter().enumerate().map(mode).collect()
+    /// The mode of a unit eigenvector of $A$ with its eigenvalue.
+    pub(crate) fn mode(&self, theta: f64, mut vector: Vec<f64>) -> Eigenpair {
+        self.factor.solve_upper(&mut vector);
+        let norm = theta.sqrt().recip();
+        vector.iter_mut().zip(&self.scale).for_each(|(value, scale)| *value *= norm * scale);
+        (self.omega2(theta), vector)
     }
 
     /// All flexible modes, rising.
@@ -131,87 +119,69 @@ impl<'a> BlockPencil<'a> {
     /// [`ModelError::Eigenproblem`] where the eigenvalues are not found.
     pub(crate) fn all_modes(&self) -> Result<Vec<Eigenpair>, ModelError> {
         let size = self.size();
-        let image = self.apply(&Mat::identity(size, size));
-        let symmetric = Mat::from_fn(size, size, |i, j| 0.5 * (image[(i, j)] + image[(j, i)]));
-        let (mut thetas, vectors) = symmetric_eigen(&symmetric).ok_or(ModelError::Eigenproblem)?;
+        let unit = |column: usize| (0..size).map(|i| f64::from(u8::from(i == column))).collect::<Vec<f64>>();
+        let images: Vec<Vec<f64>> = (0..size).map(|column| self.apply(&unit(column))).collect();
+        let symmetric = Mat::from_fn(size, size, |i, j| 0.5 * (images[j][i] + images[i][j]));
+        let (thetas, vectors) = symmetric_eigen(&symmetric).ok_or(ModelError::Eigenproblem)?;
         // Largest θ first; the rigid modes are the very largest and are replaced by their exact shapes.
-        let flexible = size - self.rigid_count();
-        thetas.truncate(flexible);
-        thetas.reverse();
-        let vectors = Mat::from_fn(size, flexible, |i, j| vectors[(i, flexible - 1 - j)]);
-        let modes = self.modes(&thetas, vectors);
-        Ok(modes.into_iter().filter(|(omega2, _)| omega2.is_finite()).collect())
+        let flexible = (0..size - self.rigid_count()).rev();
+        let modes = flexible.map(|n| self.mode(thetas[n], vectors.col_as_slice(n).to_vec()));
+        Ok(modes.filter(|(omega2, _)| omega2.is_finite()).collect())
     }
 
     /// Number of modes, rigid ones included, with $\omega^2$ below `limit`: the negative pivots of $K - \text{limit}\,M$
     /// (Sylvester's law of inertia). `None` where a pivot vanishes.
     pub(crate) fn count_below(&self, limit: f64) -> Option<usize> {
         let mut shifted = self.shifted.clone();
-        self.mass.add_to(&mut shifted, -self.sigma - limit);
-        negative_pivots(&shifted)
+        shifted.add(-self.sigma - limit, &self.mass);
+        if shifted.is_thin() { shifted.negative_pivots() } else { negative_pivots(&shifted.to_dense()) }
     }
 }
 
-impl Mass {
-    /// $SMS$.
-    fn of(mass: &Mat<f64>, scale: &[f64]) -> Self {
-        let is_diagonal = |column: usize| {
-            let [before, after] = [&mass.col_as_slice(column)[..column], &mass.col_as_slice(column)[column + 1..]];
-            before.iter().chain(after).all(|value| *value == 0.0)
-        };
-        if (0..mass.ncols()).all(is_diagonal) {
-            return Self::Diagonal((0..mass.ncols()).map(|i| scale[i] * scale[i] * mass[(i, i)]).collect());
-        }
-        let mut whole = mass.clone();
-        scale_both(&mut whole, scale);
-        Self::Whole(whole)
-    }
-
-    /// $MV$.
-    fn times(&self, mut vectors: Mat<f64>) -> Mat<f64> {
-        match self {
-            Self::Diagonal(diagonal) => {
-                for column in 0..vectors.ncols() {
-                    vectors.col_as_slice_mut(column).iter_mut().zip(diagonal).for_each(|(value, mass)| *value *= mass);
-                }
-                vectors
-            }
-            Self::Whole(mass) => product(mass.as_ref(), vectors.as_ref()),
+impl Factor {
+    /// `None` where the matrix is not positive definite.
+    pub(crate) fn new(matrix: &SymmetricMatrix) -> Option<Self> {
+        if matrix.is_thin() {
+            SkylineCholesky::new(matrix).map(Self::Thin)
+        } else {
+            Cholesky::new(&matrix.to_dense()).map(Self::Dense)
         }
     }
 
-    /// Adds $cM$ to the lower triangle of a matrix.
-    fn add_to(&self, sum: &mut Mat<f64>, coefficient: f64) {
+    /// $L^{-1}b$ in the place of $b$.
+    pub(crate) fn solve_lower(&self, vector: &mut [f64]) {
         match self {
-            Self::Diagonal(diagonal) => {
-                diagonal.iter().enumerate().for_each(|(i, mass)| sum[(i, i)] += coefficient * mass);
-            }
-            Self::Whole(mass) => {
-                for column in 0..mass.ncols() {
-                    add(&mut sum.col_as_slice_mut(column)[column..], coefficient, &mass.col_as_slice(column)[column..]);
-                }
-            }
+            Self::Thin(factor) => factor.solve_lower(vector),
+            Self::Dense(factor) => on_column(vector, |column| factor.solve_lower(column)),
         }
     }
+
+    /// $L^{-T}b$ in the place of $b$.
+    pub(crate) fn solve_upper(&self, vector: &mut [f64]) {
+        match self {
+            Self::Thin(factor) => factor.solve_upper(vector),
+            Self::Dense(factor) => on_column(vector, |column| factor.solve_upper(column)),
+        }
+    }
+
+    /// $L^Tb$ in the place of $b$.
+    fn upper_times(&self, vector: &mut [f64]) {
+        match self {
+            Self::Thin(factor) => factor.upper_times(vector),
+            Self::Dense(factor) => on_column(vector, |column| *column = factor.upper_times(column)),
+        }
+    }
+}
+
+fn on_column(vector: &mut [f64], work: impl Fn(&mut Mat<f64>)) {
+    let mut column = Mat::from_fn(vector.len(), 1, |i, _| vector[i]);
+    work(&mut column);
+    vector.copy_from_slice(column.col_as_slice(0));
 }
 
 /// A shift of the size of the lowest $\omega^2$: the least Rayleigh quotient of a single coordinate that has stiffness.
-pub(crate) fn shift(stiffness: &Mat<f64>, mass: &Mat<f64>) -> f64 {
+pub(crate) fn shift(stiffness: &SymmetricMatrix, mass: &SymmetricMatrix) -> f64 {
     let quotients = (0..mass.nrows()).map(|i| stiffness[(i, i)] / mass[(i, i)]);
     let greatest = quotients.clone().fold(0.0, f64::max);
     quotients.filter(|&quotient| quotient > 1e-14 * greatest).fold(greatest, f64::min)
-}
-
-/// $a \mathrel{+}= cb$.
-fn add(sum: &mut [f64], coefficient: f64, values: &[f64]) {
-    sum.iter_mut().zip(values).for_each(|(total, value)| *total += coefficient * value);
-}
-
-/// $SAS$ with a diagonal $S$, in the place of $A$.
-fn scale_both(matrix: &mut Mat<f64>, scale: &[f64]) {
-    for (column, own) in scale.iter().enumerate() {
-        for (value, row) in matrix.col_as_slice_mut(column).iter_mut().zip(scale) {
-            *value *= own * row;
-        }
-    }
 }

@@ -111,5 +111,6 @@ fn block_couplings(structure: &dyn Structure, block: usize, modes: &[&RitzMode],
     let asked = modes.iter().take(count).filter(|mode| mode.block == block).count();
     let Some(matrices) = structure.blocks().get(block) else { return Vec::new() };
     let vectors = Mat::from_fn(matrices.size(), own.len(), |i, n| own[n].coordinates[i]);
-    matrices.stiffness.iter().map(|stiffness| vectors.transpose() * (stiffness * vectors.subcols(0, asked))).collect()
+    let moved = vectors.subcols(0, asked).to_owned();
+    matrices.stiffness.iter().map(|stiffness| vectors.transpose() * stiffness.times(&moved)).collect()
 }

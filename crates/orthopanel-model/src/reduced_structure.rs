@@ -8,7 +8,7 @@ use crate::block_pencil::BlockPencil;
 use crate::dense::{product, symmetric_eigen};
 use crate::ritz_modes::{checked_coefficients, ritz_modes};
 use crate::structure::{Block, Motion, RitzMode, Structure};
-use crate::{Constant, ModelError, Place, side_by_side};
+use crate::{Constant, ModelError, Place, SymmetricMatrix, side_by_side};
 
 /// A structure on the space of its lowest modes at some values of the constants and of their first changes with these.
 ///
@@ -62,12 +62,12 @@ impl<S: Structure + Send + Sync> ReducedStructure<S> {
             let rows: Vec<Vec<f64>> = forces.iter().map(|&place| whole.shape_row(index, place)).collect();
             let forces = Mat::from_fn(block.size(), rows.len(), |i, force| rows[force][i]);
             let shapes = shapes(block, &coefficients, &own, forces)?;
-            let project = |matrix: &Mat<f64>| between(&shapes, matrix, &shapes);
+            let project = |matrix: &SymmetricMatrix| between(&shapes, matrix, &shapes).into();
             let rigid = own.iter().filter(|mode| mode.angular_frequency == 0.0).count();
             let unit = |position: usize| (0..shapes.ncols()).map(|i| f64::from(u8::from(i == position))).collect();
             let block = Block {
                 stiffness: block.stiffness.iter().map(project).collect(),
-                mass: Mat::identity(shapes.ncols(), shapes.ncols()),
+                mass: Mat::<f64>::identity(shapes.ncols(), shapes.ncols()).into(),
                 rigid: (0..rigid).map(unit).collect(),
             };
             Ok((shapes, block))
@@ -130,8 +130,8 @@ impl<S> ReducedStructure<S> {
 fn shapes(block: &Block, coefficients: &[f64], modes: &[&RitzMode], forces: Mat<f64>) -> Result<Mat<f64>, ModelError> {
     let own = Mat::from_fn(block.size(), modes.len(), |i, m| modes[m].coordinates[i]);
     let rigid = modes.iter().filter(|mode| mode.angular_frequency == 0.0).count();
-    let flexible = own.subcols(rigid, modes.len() - rigid);
-    let images: Vec<Mat<f64>> = block.stiffness.iter().map(|stiffness| product(stiffness.as_ref(), flexible)).collect();
+    let flexible = own.subcols(rigid, modes.len() - rigid).to_owned();
+    let images: Vec<Mat<f64>> = block.stiffness.iter().map(|stiffness| stiffness.times(&flexible)).collect();
     let count = flexible.ncols();
     let load = |i: usize, j: usize| coefficients[j / count] * images[j / count][(i, j % count)];
     let loads = Mat::from_fn(block.size(), count * images.len(), load);
@@ -147,7 +147,7 @@ fn shapes(block: &Block, coefficients: &[f64], modes: &[&RitzMode], forces: Mat<
     if forces.ncols() > 0 {
         let mut answers = pencil.solve(forces);
         without_modes(&mut answers);
-        let mut again = pencil.solve(product(block.mass.as_ref(), answers.as_ref()));
+        let mut again = pencil.solve(block.mass.times(&answers));
         without_modes(&mut again);
         [&mut answers, &mut again].into_iter().for_each(|vectors| to_unit_mass(vectors, &block.mass));
         changes = faer::concat![[changes, answers, again]];
@@ -162,8 +162,8 @@ fn shapes(block: &Block, coefficients: &[f64], modes: &[&RitzMode], forces: Mat<
 }
 
 /// Scales each column to $v^TMv = 1$.
-fn to_unit_mass(vectors: &mut Mat<f64>, mass: &Mat<f64>) {
-    let images = product(mass.as_ref(), vectors.as_ref());
+fn to_unit_mass(vectors: &mut Mat<f64>, mass: &SymmetricMatrix) {
+    let images = mass.times(vectors);
     for column in 0..vectors.ncols() {
         let square: f64 = (0..vectors.nrows()).map(|i| vectors[(i, column)] * images[(i, column)]).sum();
         let scale = if square > 0.0 { square.sqrt().recip() } else { 0.0 };
@@ -172,8 +172,8 @@ fn to_unit_mass(vectors: &mut Mat<f64>, mass: &Mat<f64>) {
 }
 
 /// $A^TMB$.
-fn between(left: &Mat<f64>, matrix: &Mat<f64>, right: &Mat<f64>) -> Mat<f64> {
-    product(left.transpose(), product(matrix.as_ref(), right.as_ref()).as_ref())
+fn between(left: &Mat<f64>, matrix: &SymmetricMatrix, right: &Mat<f64>) -> Mat<f64> {
+    product(left.transpose(), matrix.times(right).as_ref())
 }
 
 impl<S: Structure> Structure for ReducedStructure<S> {

@@ -34,7 +34,7 @@ pub fn ritz_modes(structure: &dyn Structure, values: &[f64], count: usize) -> Re
     };
     side_by_side::try_each(&mut solved, |block| block.prove_below(limit))?;
 
-    let mut modes = flexible(solved.into_iter().map(SolvedBlock::modes));
+    let mut modes = flexible(solved.into_iter().map(|block| block.modes(count)));
     modes.truncate(count);
     Ok(rigid(blocks).chain(modes).collect())
 }
@@ -130,6 +130,9 @@ pub fn modes_below(
     Ok(sums)
 }
 
+/// Modes that coincide in one block are looked for up to so many.
+const COINCIDENT: usize = 4;
+
 /// The modes known of one block.
 struct SolvedBlock<'a> {
     pencil: BlockPencil<'a>,
@@ -144,7 +147,7 @@ enum Known {
 
 impl<'a> SolvedBlock<'a> {
     fn new(pencil: BlockPencil<'a>, wanted: usize) -> Result<Self, ModelError> {
-        let known = Known::Lowest(Box::new(BlockKrylov::new(&pencil)));
+        let known = Known::Lowest(Box::new(BlockKrylov::new(&pencil, 1)));
         let mut block = Self { pencil, known };
         block.solve(wanted)?;
         Ok(block)
@@ -184,17 +187,36 @@ impl<'a> SolvedBlock<'a> {
 
     /// Makes sure that no mode with $\omega^2$ below `limit` is missing.
     fn prove_below(&mut self, limit: f64) -> Result<(), ModelError> {
-        let Known::Lowest(krylov) = &self.known else { return Ok(()) };
-        let known = krylov.omega2s(&self.pencil).take(krylov.converged()).filter(|omega2| *omega2 < limit).count();
-        if self.pencil.count_below(limit) != Some(known + self.pencil.rigid_count()) {
-            self.known = Known::All(self.pencil.all_modes()?);
+        if matches!(self.known, Known::All(_)) {
+            return Ok(());
+        }
+        let below = self.pencil.count_below(limit).and_then(|count| count.checked_sub(self.pencil.rigid_count()));
+        if below != Some(self.known_below(limit)) {
+            self.known = match below.and_then(|count| self.known_from_more(count, limit)) {
+                Some(krylov) => Known::Lowest(Box::new(krylov)),
+                None => Known::All(self.pencil.all_modes()?),
+            };
         }
         Ok(())
     }
 
-    fn modes(self) -> Vec<Eigenpair> {
+    /// One vector finds one of two modes that coincide; this finds `count` modes below `limit` from several.
+    fn known_from_more(&self, count: usize, limit: f64) -> Option<BlockKrylov> {
+        let mut krylov = BlockKrylov::new(&self.pencil, COINCIDENT);
+        let all = krylov.grow(&self.pencil, count) && krylov.known_below(&self.pencil, limit) == count;
+        all.then_some(krylov)
+    }
+
+    fn known_below(&self, limit: f64) -> usize {
+        match &self.known {
+            Known::Lowest(krylov) => krylov.known_below(&self.pencil, limit),
+            Known::All(_) => self.count_below(limit),
+        }
+    }
+
+    fn modes(self, most: usize) -> Vec<Eigenpair> {
         match self.known {
-            Known::Lowest(krylov) => krylov.modes(&self.pencil),
+            Known::Lowest(krylov) => krylov.modes(&self.pencil, most),
             Known::All(modes) => modes,
         }
     }
@@ -244,4 +266,60 @@ fn flexible(solved: impl Iterator<Item = Vec<Eigenpair>>) -> Vec<RitzMode> {
     let mut modes: Vec<RitzMode> = solved.enumerate().flat_map(of_block).collect();
     modes.sort_by(|a, b| a.angular_frequency.total_cmp(&b.angular_frequency));
     modes
+}
+
+#[cfg(test)]
+mod tests {
+    use faer::Mat;
+
+    use super::*;
+    use crate::Place;
+
+    /// Springs side by side, every two or three of them alike.
+    struct Springs {
+        blocks: Vec<Block>,
+    }
+
+    impl Structure for Springs {
+        fn constants(&self) -> &'static [Constant] {
+            &[Constant { name: "k", unit: "N/m", low: 0.1, high: 10.0 }]
+        }
+
+        fn coefficients(&self, values: &[f64]) -> Result<Vec<f64>, ModelError> {
+            Ok(values.to_vec())
+        }
+
+        fn coefficient_derivatives(&self, _values: &[f64]) -> Result<Mat<f64>, ModelError> {
+            Ok(Mat::identity(1, 1))
+        }
+
+        fn blocks(&self) -> &[Block] {
+            &self.blocks
+        }
+
+        fn shape_row(&self, _block: usize, _place: Place) -> Vec<f64> {
+            vec![0.0; 150]
+        }
+    }
+
+    /// The space of one vector holds one mode of each group: the count tells the others.
+    #[test]
+    fn val_modes_that_coincide_in_a_block_are_all_found() {
+        for alike in [2, 3, 7] {
+            let stiffness = |i: usize| ((1 + i / alike) as f64).powi(3);
+            let matrix = Mat::from_fn(150, 150, |i, j| if i == j { stiffness(i) } else { 0.0 });
+            let mass = Mat::<f64>::identity(150, 150);
+            let blocks = vec![Block { stiffness: vec![matrix.into()], mass: mass.into(), rigid: vec![] }];
+            let modes = ritz_modes(&Springs { blocks }, &[2.0], 9).unwrap();
+            for (i, mode) in modes.iter().enumerate() {
+                let expected = 2.0 * stiffness(i);
+                assert!((mode.angular_frequency.powi(2) / expected - 1.0).abs() < 1e-10, "{alike}, mode {i}");
+                for other in &modes[..i] {
+                    let both: f64 = mode.coordinates.iter().zip(&other.coordinates).map(|(a, b)| a * b).sum();
+                    assert!(both.abs() < 1e-7, "{alike}: {both:e}");
+                }
+            }
+            assert_eq!(modes.len(), 9);
+        }
+    }
 }

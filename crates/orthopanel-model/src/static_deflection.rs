@@ -2,8 +2,8 @@
 
 use faer::Mat;
 
-use crate::block_pencil::shift;
-use crate::dense::{Cholesky, product};
+use crate::block_pencil::{Factor, shift};
+use crate::dense::product;
 use crate::ritz_modes::checked_coefficients;
 use crate::structure::Block;
 use crate::{ModelError, Place, Structure};
@@ -41,22 +41,43 @@ pub fn static_deflections(
 /// $u$ of one block, a column a force.
 fn deflected(block: &Block, coefficients: &[f64], mut loads: Mat<f64>) -> Result<Mat<f64>, ModelError> {
     let size = block.size();
-    let mut stiffness = Mat::<f64>::zeros(size, size);
-    for (matrix, &coefficient) in block.stiffness.iter().zip(coefficients) {
-        stiffness += faer::Scale(coefficient) * matrix;
-    }
+    let mut stiffness = block.stiffness_at(coefficients);
     let rigid = Mat::from_fn(size, block.rigid.len(), |i, n| block.rigid[n][i]);
-    let momentum = product(block.mass.as_ref(), rigid.as_ref());
+    let momentum = block.mass.times(&rigid);
     let shares = product(rigid.transpose(), loads.as_ref());
     loads -= product(momentum.as_ref(), shares.as_ref());
-    // A stiffness on the rigid motions alone: the loads do none of them, so it changes nothing but makes K regular.
+    // Springs that just hold the rigid motions: the loads do no work on these, so no spring yields.
     let held = shift(&stiffness, &block.mass);
-    stiffness += faer::Scale(held) * product(momentum.as_ref(), momentum.transpose());
+    for coordinate in held_coordinates(block) {
+        stiffness.add_to_diagonal(coordinate, held * block.mass[(coordinate, coordinate)]);
+    }
     let scale: Vec<f64> = (0..size).map(|i| stiffness[(i, i)].sqrt().recip()).collect();
-    let scaled = Mat::from_fn(size, size, |i, j| scale[i] * stiffness[(i, j)] * scale[j]);
-    let factor = Cholesky::new(&scaled).ok_or(ModelError::Eigenproblem)?;
-    let mut deflected = Mat::from_fn(size, loads.ncols(), |i, f| scale[i] * loads[(i, f)]);
-    factor.solve_lower(&mut deflected);
-    factor.solve_upper(&mut deflected);
-    Ok(Mat::from_fn(size, loads.ncols(), |i, f| scale[i] * deflected[(i, f)]))
+    let factor = Factor::new(&stiffness.scaled(&scale)).ok_or(ModelError::Eigenproblem)?;
+    for force in 0..loads.ncols() {
+        let load = loads.col_as_slice_mut(force);
+        load.iter_mut().zip(&scale).for_each(|(value, scale)| *value *= scale);
+        factor.solve_lower(load);
+        factor.solve_upper(load);
+        load.iter_mut().zip(&scale).for_each(|(value, scale)| *value *= scale);
+    }
+    let moved = product(momentum.transpose(), loads.as_ref());
+    Ok(loads - product(rigid.as_ref(), moved.as_ref()))
+}
+
+/// As many coordinates as there are rigid motions, none of which they all leave free.
+fn held_coordinates(block: &Block) -> Vec<usize> {
+    let weight: Vec<f64> = (0..block.size()).map(|i| block.mass[(i, i)].sqrt()).collect();
+    let mut motions = block.rigid.clone();
+    let mut held = Vec::new();
+    while let Some(motion) = motions.pop() {
+        let part = |i: &usize| (motion[*i] * weight[*i]).abs();
+        let Some(most) = (0..motion.len()).max_by(|a, b| part(a).total_cmp(&part(b))) else { break };
+        held.push(most);
+        // What the others do there this motion takes back.
+        for other in &mut motions {
+            let share = other[most] / motion[most];
+            other.iter_mut().zip(&motion).for_each(|(value, own)| *value -= share * own);
+        }
+    }
+    held
 }

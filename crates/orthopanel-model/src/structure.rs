@@ -3,7 +3,7 @@
 use faer::Mat;
 
 use crate::dense::dot;
-use crate::{Constant, ModelError, Place};
+use crate::{Constant, ModelError, Place, SymmetricMatrix};
 
 /// A structure with named elastic constants, on a Ritz basis.
 ///
@@ -111,10 +111,10 @@ pub struct TermDerivative {
 /// Coordinates that only couple among themselves.
 #[derive(Debug, Clone)]
 pub struct Block {
-    /// $K_i$, one symmetric matrix a coefficient.
-    pub stiffness: Vec<Mat<f64>>,
-    /// The mass matrix, symmetric and positive definite.
-    pub mass: Mat<f64>,
+    /// $K_i$, one matrix a coefficient; an empty one is zero.
+    pub stiffness: Vec<SymmetricMatrix>,
+    /// The mass matrix, positive definite.
+    pub mass: SymmetricMatrix,
     /// The rigid modes that lie in this block, mass-normalised and orthogonal to each other.
     pub rigid: Vec<Vec<f64>>,
 }
@@ -123,6 +123,13 @@ impl Block {
     /// Number of coordinates.
     pub fn size(&self) -> usize {
         self.mass.nrows()
+    }
+
+    /// $K = \sum_ic_iK_i$.
+    pub(crate) fn stiffness_at(&self, coefficients: &[f64]) -> SymmetricMatrix {
+        let size = self.size();
+        let terms = coefficients.iter().copied().zip(&self.stiffness).filter(|(_, matrix)| matrix.nrows() == size);
+        SymmetricMatrix::sum(terms, size)
     }
 }
 
@@ -147,7 +154,7 @@ impl RitzMode {
     /// $\partial\omega^2/\partial c_i = \phi^TK_i\phi$ for each coefficient.
     pub fn coefficient_sensitivity(&self, structure: &dyn Structure) -> Vec<f64> {
         let stiffness = structure.blocks().get(self.block).map_or(&[][..], |block| &block.stiffness);
-        stiffness.iter().map(|matrix| quadratic_form(matrix, &self.coordinates)).collect()
+        stiffness.iter().map(|matrix| matrix.quadratic_form(&self.coordinates)).collect()
     }
 }
 

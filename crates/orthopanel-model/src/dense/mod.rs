@@ -13,11 +13,6 @@ pub(crate) use by_faer::{Cholesky, negative_pivots, product, symmetric_eigen};
 #[cfg(feature = "compact")]
 pub(crate) use compact::{Cholesky, negative_pivots, product, symmetric_eigen};
 
-/// $\sqrt{v^Tv}$.
-pub(crate) fn norm(vector: faer::ColRef<'_, f64>) -> f64 {
-    vector.iter().map(|value| value * value).sum::<f64>().sqrt()
-}
-
 /// $a^Tb$, in four sums, which the compiler may keep side by side.
 pub(crate) fn dot(left: &[f64], right: &[f64]) -> f64 {
     let (left, left_rest) = left.as_chunks::<4>();

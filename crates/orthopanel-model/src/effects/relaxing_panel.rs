@@ -12,7 +12,7 @@ use super::{CoreFit, CoreModulus, DressedMode, ElementLaw};
 use crate::block_pencil::BlockPencil;
 use crate::dense::{Cholesky, dot, product, symmetric_eigen};
 use crate::structure::{Motion, Structure};
-use crate::{Block, ModelError, Place};
+use crate::{ModelError, Place, SymmetricMatrix};
 
 /// A panel on shapes that stay good while its core relaxes, at its low modulus.
 pub(super) struct Relaxing {
@@ -107,15 +107,15 @@ impl DressedPanel {
             let modes = Mat::from_fn(block.size(), own.len(), |i, m| self.bare[own[m]].1[i]);
             let flexible: Vec<usize> = (0..own.len()).filter(|&m| own[m] >= rigid).collect();
             let moving = Mat::from_fn(block.size(), flexible.len(), |i, m| modes[(i, flexible[m])]);
-            let (pencil, shear) = (BlockPencil::new(block, &coefficients)?, weighted(block, &shear));
+            let (pencil, shear) = (BlockPencil::new(block, &coefficients)?, block.stiffness_at(&shear));
             let without_modes = |mut vectors: Mat<f64>| {
                 for _ in 0..2 {
-                    let held = product(modes.transpose(), product(block.mass.as_ref(), vectors.as_ref()).as_ref());
+                    let held = product(modes.transpose(), block.mass.times(&vectors).as_ref());
                     vectors -= product(modes.as_ref(), held.as_ref());
                 }
                 vectors
             };
-            let changed = |vectors: &Mat<f64>| without_modes(pencil.solve(product(shear.as_ref(), vectors.as_ref())));
+            let changed = |vectors: &Mat<f64>| without_modes(pencil.solve(shear.times(vectors)));
             let mut changes = changed(&moving);
             if !seats.is_empty() {
                 let rows = seats.iter().map(|&(motion, place)| structure.motion_row(index, motion, place));
@@ -130,7 +130,7 @@ impl DressedPanel {
                 let again = changed(&answers);
                 changes = faer::concat![[changes, answers, again]];
             }
-            let gram = product(changes.transpose(), product(block.mass.as_ref(), changes.as_ref()).as_ref());
+            let gram = product(changes.transpose(), block.mass.times(&changes).as_ref());
             let size = |m: usize| gram[(m, m)].sqrt().max(f64::MIN_POSITIVE);
             let even = Mat::from_fn(gram.nrows(), gram.ncols(), |i, j| gram[(i, j)] / (size(i) * size(j)));
             let (shares, directions) = symmetric_eigen(&even).ok_or(ModelError::Eigenproblem)?;
@@ -194,11 +194,9 @@ impl DressedPanel {
     /// $\sum_ic_iK_i$ in the bare shapes from `first` on.
     fn form(&self, coefficients: &[f64], first: usize) -> Mat<f64> {
         let shapes = &self.bare[first..];
-        let matrices: Vec<Mat<f64>> =
-            self.structure.blocks().iter().map(|block| weighted(block, coefficients)).collect();
-        let image = |(block, shape, _): &(usize, Vec<f64>, f64)| -> Vec<f64> {
-            (0..shape.len()).map(|i| dot(matrices[*block].col_as_slice(i), shape)).collect()
-        };
+        let matrices: Vec<SymmetricMatrix> =
+            self.structure.blocks().iter().map(|block| block.stiffness_at(coefficients)).collect();
+        let image = |(block, shape, _): &(usize, Vec<f64>, f64)| matrices[*block].image(shape);
         let images: Vec<Vec<f64>> = shapes.iter().map(image).collect();
         let entry = |m: usize, n: usize| if shapes[m].0 == shapes[n].0 { dot(&shapes[m].1, &images[n]) } else { 0.0 };
         Mat::from_fn(shapes.len(), shapes.len(), |m, n| 0.5 * (entry(m, n) + entry(n, m)))
@@ -217,15 +215,6 @@ const UNMOVED: f64 = 1e-9;
 
 /// Share of a new direction among the changes of shape below which it is another's.
 const DEPENDENT: f64 = 1e-9;
-
-/// $\sum_ic_iK_i$ of one block.
-fn weighted(block: &Block, coefficients: &[f64]) -> Mat<f64> {
-    let mut sum = Mat::zeros(block.size(), block.size());
-    for (matrix, &coefficient) in block.stiffness.iter().zip(coefficients) {
-        sum += faer::Scale(coefficient) * matrix;
-    }
-    sum
-}
 
 /// $b_k$ with $S \approx \sum_kb_kb_k^T$: with $Su_k = \mu_kKu_k$ and $u_k^TKu_k = 1$, $b_k = \sqrt{\mu_k}Ku_k$ for the greatest
 /// $\mu_k$, the share of shear in a stiffness. What is left out, no shape has more than its share of.

@@ -1,11 +1,17 @@
 //! Stiffness and mass matrices of the plate, block by block: sums of products of integrals along x and along y.
+//!
+//! Coordinates stand by their degree along the side with more functions, then by that along the other. Since functions
+//! meet whose degrees are at most two apart, rows of the matrices then are short.
+
+use std::sync::Arc;
 
 use faer::{Mat, MatRef};
 
 use super::Field;
 use super::edge_basis::EdgeBasis;
-use crate::structure::{Block, quadratic_form};
-use crate::{Piece, side_by_side};
+use crate::skyline::Profile;
+use crate::structure::Block;
+use crate::{Piece, SymmetricMatrix, side_by_side};
 
 /// One product of a function along x and a function along y, of one field.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -61,8 +67,9 @@ pub(super) fn assemble(
             coordinates.push(block_coordinates(along, [odd_x, odd_y], products));
         }
     }
+    let meetings = along.each_ref().map(EdgeBasis::meetings);
     let blocks = side_by_side::map(&coordinates, |list| {
-        let mut block = block(piece, along, rotary_factor, list);
+        let mut block = block(piece, along, rotary_factor, (list, &meetings));
         if edge_mass != 0.0 {
             add_edge_mass(piece, along, edge_mass, list, &mut block);
         }
@@ -72,7 +79,8 @@ pub(super) fn assemble(
 }
 
 /// Each rotation has the parity of the slope of $w$ along its own direction.
-fn block_coordinates([x, y]: &[EdgeBasis; 2], [odd_x, odd_y]: [bool; 2], products: Products) -> Vec<Coordinate> {
+fn block_coordinates(along: &[EdgeBasis; 2], [odd_x, odd_y]: [bool; 2], products: Products) -> Vec<Coordinate> {
+    let [x, y] = along;
     let mut list = Vec::new();
     for field in Field::ALL {
         let flips_x = field == Field::RotationX;
@@ -83,29 +91,50 @@ fn block_coordinates([x, y]: &[EdgeBasis; 2], [odd_x, odd_y]: [bool; 2], product
             list.extend(own.map(|j| Coordinate { field, x: i, y: j }));
         }
     }
+    list.sort_by_key(|coordinate| degrees(along, coordinate));
     list
 }
 
-fn block(piece: &Piece, along: &[EdgeBasis; 2], rotary_factor: f64, list: &[Coordinate]) -> Block {
-    let form = |f: &[Term], g: &[Term]| product(along, list, EdgeBasis::integrals, [f, g]);
-    let shear = |f: &[Term]| product(along, list, EdgeBasis::sheared_integrals, [f, f]);
-    let crossed = form(CURVATURE_X, CURVATURE_Y);
+/// Degrees along the side with more functions and along the other.
+fn degrees([x, y]: &[EdgeBasis; 2], &Coordinate { field, x: i, y: j }: &Coordinate) -> [usize; 2] {
+    let [along_x, along_y] = [x.degree(field, i), y.degree(field, j)];
+    if x.count(Field::Deflection) >= y.count(Field::Deflection) { [along_x, along_y] } else { [along_y, along_x] }
+}
+
+fn block(
+    piece: &Piece,
+    along: &[EdgeBasis; 2],
+    rotary_factor: f64,
+    (list, meetings): (&[Coordinate], &[Vec<Vec<bool>>; 2]),
+) -> Block {
+    let profile = Arc::new(profile(along, list, meetings));
+    let form = |f: &[Term], g: &[Term]| product(along, (list, &profile), EdgeBasis::integrals, [f, g]);
+    let shear = |f: &[Term]| product(along, (list, &profile), EdgeBasis::sheared_integrals, [f, f]);
+    let mut crossed = form(CURVATURE_X, CURVATURE_Y);
+    crossed.add(1.0, &form(CURVATURE_Y, CURVATURE_X));
     let stiffness = vec![
         form(CURVATURE_X, CURVATURE_X),
         form(CURVATURE_Y, CURVATURE_Y),
-        &crossed + crossed.transpose(),
+        crossed,
         form(TWIST, TWIST),
         shear(SHEAR_X),
         shear(SHEAR_Y),
     ];
     let rotary_inertia = rotary_factor * piece.mass_per_area * piece.thickness * piece.thickness / 12.0;
-    let mut mass = Mat::zeros(list.len(), list.len());
-    for (field, inertia) in Field::ALL.into_iter().zip([piece.mass_per_area, rotary_inertia, rotary_inertia]) {
-        let own: &[Term] = &[(field, 0, 0)];
-        mass += faer::Scale(inertia) * form(own, own);
-    }
+    let inertias = [piece.mass_per_area, rotary_inertia, rotary_inertia];
+    let own = Field::ALL.map(|field| [(field, 0, 0)]);
+    let own = own.each_ref().map(|own| form(own, own));
+    let mass = SymmetricMatrix::sum(inertias.into_iter().zip(&own), list.len());
     let rigid = rigid_modes(along, list, &mass);
     Block { stiffness, mass, rigid }
+}
+
+/// Where the first coordinate stands that each one meets.
+fn profile(along: &[EdgeBasis; 2], list: &[Coordinate], meetings: &[Vec<Vec<bool>>; 2]) -> Profile {
+    let [x, y] = along;
+    let slots: Vec<[usize; 2]> = list.iter().map(|c| [x.slot(c.field, c.x), y.slot(c.field, c.y)]).collect();
+    let meet = |a: usize, b: usize| meetings[0][slots[a][0]][slots[b][0]] && meetings[1][slots[a][1]][slots[b][1]];
+    Profile::new((0..list.len()).map(|row| (0..row).find(|&column| meet(row, column)).unwrap_or(row)).collect())
 }
 
 /// Adds $\frac mb\int ww\,dy$ at both ends of x, and scales the rigid modes to it: even mass at both ends keeps these
@@ -114,15 +143,20 @@ fn add_edge_mass(piece: &Piece, [x, y]: &[EdgeBasis; 2], mass: f64, list: &[Coor
     let w = Field::Deflection;
     let across = y.integrals((w, 0), (w, 0));
     let own: Vec<usize> = (0..list.len()).filter(|&i| list[i].field == w).collect();
+    let mut added = Mat::<f64>::zeros(list.len(), list.len());
     for end in [-0.5, 0.5] {
-        let along = x.values_at(w, end * piece.length);
+        let mut along = x.values_at(w, end * piece.length);
+        // Most functions vanish at the ends, to rounding.
+        let greatest = along.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
+        along.iter_mut().filter(|value| value.abs() < 1e-12 * greatest).for_each(|value| *value = 0.0);
         for (&i, &j) in own.iter().flat_map(|i| own.iter().map(move |j| (i, j))) {
             let (a, b) = (list[i], list[j]);
-            block.mass[(i, j)] += mass / piece.width * along[a.x] * along[b.x] * across[(a.y, b.y)];
+            added[(i, j)] += mass / piece.width * along[a.x] * along[b.x] * across[(a.y, b.y)];
         }
     }
+    block.mass = SymmetricMatrix::sum([(1.0, &block.mass), (1.0, &added.into())].into_iter(), list.len());
     for mode in &mut block.rigid {
-        let scale = quadratic_form(&block.mass, mode).sqrt().recip();
+        let scale = block.mass.quadratic_form(mode).sqrt().recip();
         mode.iter_mut().for_each(|value| *value *= scale);
     }
 }
@@ -130,34 +164,32 @@ fn add_edge_mass(piece: &Piece, [x, y]: &[EdgeBasis; 2], mass: f64, list: &[Coor
 /// Integrals along x of two fields, each with its order of differentiation.
 type AlongX = fn(&EdgeBasis, (Field, usize), (Field, usize)) -> MatRef<'_, f64>;
 
-/// $\int fg\,dx\,dy$ of two strains in the coordinates of a block: a row a coordinate of `f`, a column one of `g`.
-fn product([x, y]: &[EdgeBasis; 2], list: &[Coordinate], integrals: AlongX, [f, g]: [&[Term]; 2]) -> Mat<f64> {
-    let mut matrix = Mat::zeros(list.len(), list.len());
-    // The coordinates of a block stand field by field.
-    let own = |field: Field| {
-        let first = list.partition_point(|c| (c.field as usize) < field as usize);
-        (first, list.iter().filter(move |c| c.field == field))
-    };
+/// $\int fg\,dx\,dy$ of two strains in the coordinates of a block: a row a coordinate of `f`, a column one of `g`, its lower
+/// triangle.
+fn product(
+    [x, y]: &[EdgeBasis; 2],
+    (list, profile): (&[Coordinate], &Arc<Profile>),
+    integrals: AlongX,
+    [f, g]: [&[Term]; 2],
+) -> SymmetricMatrix {
+    let mut tables: [[Vec<[MatRef<'_, f64>; 2]>; 3]; 3] = Default::default();
     for &(left, left_x, left_y) in f {
         for &(right, right_x, right_y) in g {
             let along_x = integrals(x, (left, left_x), (right, right_x));
             let along_y = y.integrals((left, left_y), (right, right_y));
-            let ((first_row, rows), (first_column, columns)) = (own(left), own(right));
-            let rows: Vec<&Coordinate> = rows.collect();
-            for (column, b) in columns.enumerate() {
-                let entries = &mut matrix.col_as_slice_mut(first_column + column)[first_row..];
-                for (entry, a) in entries.iter_mut().zip(&rows) {
-                    *entry += along_x[(a.x, b.x)] * along_y[(a.y, b.y)];
-                }
-            }
+            tables[left as usize][right as usize].push([along_x, along_y]);
         }
     }
-    matrix
+    SymmetricMatrix::from_fn(profile, |row, column| {
+        let (a, b) = (list[row], list[column]);
+        let parts = &tables[a.field as usize][b.field as usize];
+        parts.iter().map(|[along_x, along_y]| along_x[(a.x, b.x)] * along_y[(a.y, b.y)]).sum()
+    })
 }
 
 /// The motions of a block without strain: $w$ a product of functions that is at most linear, with the rotations that
 /// cancel its slopes.
-fn rigid_modes([x, y]: &[EdgeBasis; 2], list: &[Coordinate], mass: &Mat<f64>) -> Vec<Vec<f64>> {
+fn rigid_modes([x, y]: &[EdgeBasis; 2], list: &[Coordinate], mass: &SymmetricMatrix) -> Vec<Vec<f64>> {
     let mut modes = Vec::new();
     for (position, candidate) in list.iter().enumerate().filter(|(_, c)| c.field == Field::Deflection) {
         let slopes = (x.linear_slope(candidate.x), y.linear_slope(candidate.y));
@@ -180,7 +212,7 @@ fn rigid_modes([x, y]: &[EdgeBasis; 2], list: &[Coordinate], mass: &Mat<f64>) ->
             };
             mode[place] = -slope / other * unit_x * unit_y;
         }
-        let scale = quadratic_form(mass, &mode).sqrt().recip();
+        let scale = mass.quadratic_form(&mode).sqrt().recip();
         mode.iter_mut().for_each(|value| *value *= scale);
         modes.push(mode);
     }

@@ -1,9 +1,9 @@
 //! Functions along one direction of the plate: Legendre series that keep what the two edges of that direction hold.
 //!
-//! With $t \in [-1, 1]$ from edge to edge, functions of degree below `terms` that vanish where the edge holds the field:
-//! nowhere $P_n$; at one edge $P_n \pm P_{n-1}$; at both $P_{n+2}-P_n$, which are the integrated Legendre polynomials.
-//! All are scaled to $\int f^2dt = 1$. The products' integrals are sums of two or three terms or, for derivatives, finite
-//! sums: nothing is left to quadrature.
+//! With $t \in [-1, 1]$ from edge to edge, functions of degree below `terms`: $1$ and $t$, or the one of $1\pm t$ that vanishes
+//! where an edge holds the field, or neither; and the integrated Legendre polynomials $P_n-P_{n-2}$, which vanish at both edges.
+//! All are scaled to $\int f^2dt = 1$. Since $(P_n-P_{n-2})' = (2n-1)P_{n-1}$, integrals of products are sums of two or three terms
+//! and all others exactly zero: functions meet, with derivatives or without, whose degrees are at most two apart.
 //!
 //! Where spans have lost shear stiffness, deflections with a kink at each edge of a span join in, and integrals are by Gauss'
 //! rule from edge to edge, which is exact for them.
@@ -19,6 +19,7 @@ use crate::legendre::{legendre, norm};
 /// A function of $t$ by its Legendre coefficients, and its derivative by $t$ likewise.
 #[derive(Debug, Clone)]
 struct EdgeFunction {
+    /// As many as the degree and one.
     series: Vec<f64>,
     slope: Vec<f64>,
     /// What no series follows, with its factor.
@@ -139,11 +140,42 @@ impl EdgeBasis {
             .collect();
         for &(row, p, f) in &listed {
             for &(column, q, g) in &listed {
-                let sum: f64 = f.iter().zip(g).enumerate().map(|(n, (a, b))| a * b * norm(n)).sum();
+                // The lowest degrees of both are zero.
+                let lowest = f.len().max(g.len()).saturating_sub(SPAN);
+                let both = f.iter().zip(g).enumerate().skip(lowest);
+                let sum: f64 = both.map(|(n, (a, b))| a * b * norm(n)).sum();
                 integrals[(row, column)] = sum * self.half_length.powi(1 - p - q);
             }
         }
         integrals
+    }
+
+    /// Degree of a field's function; what has a kink comes after all polynomials.
+    pub(super) fn degree(&self, field: Field, number: usize) -> usize {
+        match self.fields[field as usize].get(number) {
+            Some(function) if function.kink.is_none() => function.series.len() - 1,
+            _ => self.terms + number,
+        }
+    }
+
+    /// Whether two functions or their derivatives have any integral, by numbers of [`EdgeBasis::slot`].
+    pub(super) fn meetings(&self) -> Vec<Vec<bool>> {
+        let count = 3 * self.terms;
+        let any = |row: usize, column: usize| {
+            let at = |slot: usize, order: usize| (2 * (slot / self.terms) + order) * self.terms + slot % self.terms;
+            let all = [(0, 0), (0, 1), (1, 0), (1, 1)];
+            all.iter().any(|&(p, q)| {
+                let (row, column) = (at(row, p), at(column, q));
+                self.integrals[(row, column)] != 0.0
+                    || self.sheared.as_ref().is_some_and(|sheared| sheared[(row, column)] != 0.0)
+            })
+        };
+        (0..count).map(|row| (0..count).map(|column| any(row, column)).collect()).collect()
+    }
+
+    /// Number of a field's function among those of all fields.
+    pub(super) fn slot(&self, field: Field, number: usize) -> usize {
+        field as usize * self.terms + number
     }
 
     /// Values of all functions of a field at a place \[m\] of this direction, from its centre.
@@ -185,11 +217,11 @@ fn edge_functions([held_low, held_high]: [bool; 2], terms: usize) -> Vec<EdgeFun
     let series = |n: usize| {
         let mut series = vec![0.0; n];
         series.push(1.0);
-        match (held_low, held_high) {
-            (false, false) => {}
-            (true, false) => series[n - 1] = 1.0,
-            (false, true) => series[n - 1] = -1.0,
-            (true, true) => series[n - 2] = -1.0,
+        match (n, held_low, held_high) {
+            (0, ..) | (1, false, false) => {}
+            (1, true, _) => series[0] = 1.0,
+            (1, false, true) => series[0] = -1.0,
+            _ => series[n - 2] = -1.0,
         }
         series
     };
@@ -246,6 +278,9 @@ impl EdgeFunction {
         values
     }
 }
+
+/// Degrees that a function without kinks has: its highest, and two below.
+const SPAN: usize = 3;
 
 /// Part of a kink's size that is no function of its own.
 const FOLLOWED: f64 = 1e-7;

@@ -35,7 +35,6 @@ use assembly::{Coordinate, Products, assemble};
 use edge_basis::EdgeBasis;
 pub(crate) use kink::Membrane;
 use law::{plate_stiffness_derivatives, plate_stiffnesses};
-use mode_names::beam_functions;
 use span_edges::Spans;
 
 /// What moves.
@@ -71,8 +70,8 @@ pub struct MindlinPlate {
     along: [EdgeBasis; 2],
     coordinates: Vec<Vec<Coordinate>>,
     blocks: Vec<Block>,
-    /// Integrals of the deflection functions with beam functions, by their nodes.
-    beam_functions: [Mat<f64>; 2],
+    /// Integrals of the deflection functions with beam functions, by their nodes, once a mode is to be named.
+    beam_functions: OnceLock<[Mat<f64>; 2]>,
     /// What tells the kinks under forces, once it is asked for.
     membrane: OnceLock<Option<Membrane>>,
     is_even: bool,
@@ -132,8 +131,6 @@ impl MindlinPlate {
             x = x.with_spans([left, right], &Spans::new(0.5 * piece.length, &own.losses));
         }
         let y = EdgeBasis::new(0.5 * piece.width, [front, back], Field::RotationY, terms[1]);
-        let beam_functions =
-            [beam_functions(&x, piece.length, [left, right])?, beam_functions(&y, piece.width, [front, back])?];
         let (along, is_even) = ([x, y], own.losses.is_empty());
         let (coordinates, blocks) = assemble(&piece, &along, own.rotary_factor, *edge_mass, products);
         // In each direction n polynomials follow 2n/π half-waves; some nx ny/3 products lie within the ellipse that both
@@ -148,7 +145,7 @@ impl MindlinPlate {
             along,
             coordinates,
             blocks,
-            beam_functions,
+            beam_functions: OnceLock::new(),
             membrane: OnceLock::new(),
             is_even,
         })
@@ -174,10 +171,9 @@ impl MindlinPlate {
         let keeps = |coordinate: &Coordinate| coordinate.x < terms[0] && coordinate.y < terms[1];
         let of_block = |(list, block): (&Vec<Coordinate>, &Block)| {
             let kept: Vec<usize> = (0..list.len()).filter(|&index| keeps(&list[index])).collect();
-            let part = |matrix: &Mat<f64>| Mat::from_fn(kept.len(), kept.len(), |i, j| matrix[(kept[i], kept[j])]);
             let block = Block {
-                stiffness: block.stiffness.iter().map(part).collect(),
-                mass: part(&block.mass),
+                stiffness: block.stiffness.iter().map(|matrix| matrix.part(&kept)).collect(),
+                mass: block.mass.part(&kept),
                 rigid: block.rigid.iter().map(|shape| kept.iter().map(|&index| shape[index]).collect()).collect(),
             };
             (kept.iter().map(|&index| list[index]).collect::<Vec<_>>(), block)

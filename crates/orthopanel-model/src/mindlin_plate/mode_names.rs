@@ -78,6 +78,20 @@ impl MindlinPlate {
         ModeName { nodes, kind, overlap, second_nodes, second_overlap }
     }
 
+    fn beam_functions(&self) -> &[Mat<f64>; 2] {
+        let Boundary { left, right, front, back } = self.boundary;
+        self.beam_functions.get_or_init(|| {
+            let [x, y] = &self.along;
+            [(x, self.piece.length, [left, right]), (y, self.piece.width, [front, back])].map(
+                |(basis, length, ends)| {
+                    // A plate's piece has been checked: where there were no beam functions, modes would have no name.
+                    beam_functions(basis, length, ends)
+                        .unwrap_or_else(|_| Mat::zeros(0, basis.count(Field::Deflection)))
+                },
+            )
+        })
+    }
+
     /// Overlaps, 0 to 1, of one of this plate's modes with the products of beam functions (see [`ModeName`]): a row a
     /// number of nodes along x, a column a number along y, as far as the basis resolves them.
     pub fn overlaps(&self, mode: &RitzMode) -> Mat<f64> {
@@ -94,7 +108,7 @@ impl MindlinPlate {
                 shape[(coordinate.x, coordinate.y)] += *value;
             }
         }
-        let [along_x, along_y] = &self.beam_functions;
+        let [along_x, along_y] = self.beam_functions();
         let [left, right] = [
             product(x.integrals((w, 0), (w, 0)), shape.as_ref()),
             product(shape.as_ref(), y.integrals((w, 0), (w, 0))),
@@ -119,7 +133,7 @@ impl MindlinPlate {
 ///
 /// # Errors
 /// [`ModelError::Size`] where the length has no physical meaning.
-pub(super) fn beam_functions(basis: &EdgeBasis, length: f64, [left, right]: [End; 2]) -> Result<Mat<f64>, ModelError> {
+fn beam_functions(basis: &EdgeBasis, length: f64, [left, right]: [End; 2]) -> Result<Mat<f64>, ModelError> {
     // So slender that neither shear nor rotary inertia counts.
     let piece = Piece { length, width: length, thickness: 1e-3 * length, mass_per_area: 1.0 };
     let beam =

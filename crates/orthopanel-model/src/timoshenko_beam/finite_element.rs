@@ -60,7 +60,7 @@ impl BeamElements {
             }
         }
         let rigid = rigid_motions(boundary, half_length, element_length, &free, &mass);
-        let blocks = vec![Block { stiffness: vec![bending, shear], mass, rigid }];
+        let blocks = vec![Block { stiffness: vec![bending.into(), shear.into()], mass: mass.into(), rigid }];
         Ok(Self { half_length, element_length, free, blocks })
     }
 }

@@ -8,7 +8,7 @@ use super::term_matrices::{Quadrature, series_products, support_stiffness};
 use super::{BEAM_CONSTANTS, Section, StaticFlexibility};
 use crate::legendre::legendre;
 use crate::structure::{Block, Flexibility, Motion, Structure, TermDerivative};
-use crate::{Boundary, Constant, ModelError, Piece, Place};
+use crate::{Boundary, Constant, ModelError, Piece, Place, SymmetricMatrix};
 
 /// The beam of eq. 5 as a [`Structure`]: coefficients are $E_x$ and $G_{zx}$ themselves, with
 /// $K_E = I\int\psi_i'\psi_j'dx$ and $K_G = k'A\int(w'+\psi)_i(w'+\psi)_jdx$.
@@ -105,7 +105,7 @@ fn assemble(functions: &[StrainFunction], section: Section, half_length: f64, te
             (0..size).map(|j| if i == j { scale } else { 0.0 }).collect()
         })
         .collect();
-    Block { stiffness, mass, rigid }
+    Block { stiffness: stiffness.into_iter().map(SymmetricMatrix::from).collect(), mass: mass.into(), rigid }
 }
 
 impl Structure for TimoshenkoBeam {

@@ -9,7 +9,7 @@ use super::view::SERIES_TERMS;
 use crate::dense::product;
 use crate::ritz_modes::all_ritz_modes;
 use crate::structure::{Motion, Structure};
-use crate::{ModelError, Place};
+use crate::{ModelError, Place, SymmetricMatrix};
 
 /// What moves, and where.
 pub(in crate::effects) type Row = (Motion, Place);
@@ -88,7 +88,8 @@ impl ModalBase {
             let vectors = Mat::from_fn(block.size(), own.len(), |i, m| own[m].coordinates[i]);
             let in_modes =
                 |matrix: &Mat<f64>| product(vectors.transpose(), product(matrix.as_ref(), vectors.as_ref()).as_ref());
-            let stiffness: Vec<Mat<f64>> = block.stiffness.iter().map(in_modes).collect();
+            let projected = |matrix: &SymmetricMatrix| product(vectors.transpose(), matrix.times(&vectors).as_ref());
+            let stiffness: Vec<Mat<f64>> = block.stiffness.iter().map(projected).collect();
             let of_constant = |j: usize| {
                 let mut sum = Mat::zeros(own.len(), own.len());
                 for (i, matrix) in stiffness.iter().enumerate() {
@@ -140,8 +141,7 @@ impl ModalBase {
             let (Some(own), Some(with)) = (self.structure.blocks().get(index), other.blocks.get(index)) else {
                 continue;
             };
-            let overlap =
-                product(with.vectors.transpose(), product(own.mass.as_ref(), block.vectors.as_ref()).as_ref());
+            let overlap = product(with.vectors.transpose(), own.mass.times(&block.vectors).as_ref());
             for m in 0..block.vectors.ncols().min(with.vectors.ncols()) {
                 if overlap[(m, m)] >= 0.0 {
                     continue;

@@ -45,11 +45,9 @@ impl Moved {
     pub(in crate::effects) fn matrices(&self, block: usize, coefficients: &[f64]) -> [Mat<f64>; 2] {
         let [back, forth] = [0, 1].map(|side: usize| &self.sides[side].blocks()[block]);
         let over = faer::Scale(self.apart.recip());
-        let mut stiffness = Mat::zeros(back.size(), back.size());
-        for ((back, forth), &coefficient) in back.stiffness.iter().zip(&forth.stiffness).zip(coefficients) {
-            stiffness += faer::Scale(coefficient / self.apart) * (forth - back);
-        }
-        [stiffness, over * (&forth.mass - &back.mass)]
+        let [[stiffness, mass], [stiffness_forth, mass_forth]] =
+            [back, forth].map(|side| [side.stiffness_at(coefficients).to_dense(), side.mass.to_dense()]);
+        [over * (stiffness_forth - stiffness), over * (mass_forth - mass)]
     }
 
     /// How the coordinates' values in some rows change with the parameter.
