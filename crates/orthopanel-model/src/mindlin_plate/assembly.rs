@@ -134,7 +134,21 @@ fn profile(along: &[EdgeBasis; 2], list: &[Coordinate], meetings: &[Vec<Vec<bool
     let [x, y] = along;
     let slots: Vec<[usize; 2]> = list.iter().map(|c| [x.slot(c.field, c.x), y.slot(c.field, c.y)]).collect();
     let meet = |a: usize, b: usize| meetings[0][slots[a][0]][slots[b][0]] && meetings[1][slots[a][1]][slots[b][1]];
-    Profile::new((0..list.len()).map(|row| (0..row).find(|&column| meet(row, column)).unwrap_or(row)).collect())
+    // A row begins no sooner than the least degree along the longer series that it meets.
+    let degree: Vec<usize> = list.iter().map(|coordinate| degrees(along, coordinate)[0]).collect();
+    let major = usize::from(x.count(Field::Deflection) < y.count(Field::Deflection));
+    let numbers = |field: Field| (0..along[major].count(field)).map(move |number| (field, number));
+    let least = |slots: &[usize; 2]| {
+        let all = Field::ALL.into_iter().flat_map(numbers);
+        let met = all.filter(|&(field, number)| meetings[major][slots[major]][along[major].slot(field, number)]);
+        met.map(|(field, number)| along[major].degree(field, number)).min().unwrap_or(0)
+    };
+    let first = |row: usize| {
+        let least = least(&slots[row]);
+        let from = degree.partition_point(|degree| *degree < least);
+        (from..row).find(|&column| meet(row, column)).unwrap_or(row)
+    };
+    Profile::new((0..list.len()).map(first).collect())
 }
 
 /// Adds $\frac mb\int ww\,dy$ at both ends of x, and scales the rigid modes to it: even mass at both ends keeps these
