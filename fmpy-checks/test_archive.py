@@ -81,30 +81,40 @@ def test_the_documentation_tells_the_identification_and_the_band(tmp_path):
 
 
 def test_the_band_in_the_documentation_is_where_the_modes_left_out_add_a_hundredth(tmp_path):
-    """By three times as many modes of our own: a hundredth of the root mean square over an octave, nowhere below and soon above."""
+    """By our own modes, four times as many: a hundredth of the root mean square over an octave, nowhere below and soon above.
+
+    The second force is at no response's place: there modes above the cut-off count too, which ours here leave out.
+    """
     path = tmp_path / "band.json"
     path.write_text(json.dumps(beam_model(BEAM)))
+    forces = (-0.3, -0.1)
     for response in (-0.3, 0.3, 0.1):
-        words = export_words(path, tmp_path / "band.fmu", "--modes=6", "--force=-0.3", f"--response={response}")
-        subprocess.run(words, check=True, capture_output=True)
+        ports = [f"--force={x}" for x in forces] + [f"--response={response}"]
+        subprocess.run(export_words(path, tmp_path / "band.fmu", "--modes=6", *ports), check=True, capture_output=True)
         with zipfile.ZipFile(tmp_path / "band.fmu") as archive:
             page = archive.read("documentation/index.html").decode()
-        band = float(re.search(r"acceleration_1 under force_1 holds within 1 % up to (\d+) Hz", page).group(1))
-        modes = modes_at(BEAM, ZETAS + 18 * [0.003], -0.3, response)
+        for number, force in enumerate(forces, 1):
+            said = rf"acceleration_1 under force_{number} holds within 1 % up to (\d+) Hz"
+            band = float(re.search(said, page).group(1))
+            holds_up_to(band, modes_at(BEAM, ZETAS + 18 * [0.003], force, response))
 
-        def accelerance(frequency, modes):
-            s = 2j * np.pi * np.asarray(frequency)[:, None]
-            omega, zeta, shape = (np.array(column) for column in zip(*modes))
-            return (shape * s**2 / (s**2 + 2 * zeta * omega * s + omega**2)).sum(axis=1)
 
-        def share(frequency):
-            octave = frequency * 2.0 ** np.linspace(-0.5, 0.5, 49)
-            return abs(accelerance([frequency], modes[8:])[0]) / np.sqrt((abs(accelerance(octave, modes)) ** 2).mean())
+def holds_up_to(band, modes):
+    """The first eight of these modes, two of them rigid, hold the accelerance of all within 1 % up to there, and not beyond."""
 
-        highest = modes[7][0] / (2 * np.pi)
-        assert all(share(frequency) < 0.0105 for frequency in np.geomspace(20.0, band, 200)), (response, band)
-        above = [share(frequency) for frequency in np.geomspace(band, min(1.03 * band, highest), 20)]
-        assert band > 0.97 * highest or max(above) > 0.0095, (response, band, max(above))
+    def accelerance(frequency, modes):
+        s = 2j * np.pi * np.asarray(frequency)[:, None]
+        omega, zeta, shape = (np.array(column) for column in zip(*modes))
+        return (shape * s**2 / (s**2 + 2 * zeta * omega * s + omega**2)).sum(axis=1)
+
+    def share(frequency):
+        octave = frequency * 2.0 ** np.linspace(-0.5, 0.5, 49)
+        return abs(accelerance([frequency], modes[8:])[0]) / np.sqrt((abs(accelerance(octave, modes)) ** 2).mean())
+
+    highest = modes[7][0] / (2 * np.pi)
+    assert all(share(frequency) < 0.0105 for frequency in np.geomspace(20.0, band, 200)), band
+    above = [share(frequency) for frequency in np.geomspace(band, min(1.03 * band, highest), 20)]
+    assert band > 0.97 * highest or max(above) > 0.0095, (band, max(above))
 
 
 def test_the_band_is_told_of_a_panel_with_an_effect(tmp_path):

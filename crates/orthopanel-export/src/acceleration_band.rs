@@ -8,7 +8,6 @@ use orthopanel_model::{ModalModel, ModeRange, ModelError, PanelModel};
 
 /// So many times the modes of the FMU are summed; what lies above counts as at rest.
 const FURTHER: usize = 3;
-const MOST_MODES: usize = 1000;
 const POINTS_AN_OCTAVE: usize = 48;
 /// Octaves looked at below the highest mode.
 const OCTAVES: usize = 10;
@@ -28,26 +27,17 @@ impl AccelerationBands {
     /// As [`PanelModel::modal_model`].
     pub(crate) fn of(panel: &PanelModel, resource: &Resource) -> Result<Self, ModelError> {
         let (kept, ports) = (resource.model(), resource.ports());
-        let count = kept.modes().iter().filter(|mode| mode.angular_frequency > 0.0).count();
         let all = |count: usize| panel.modal_model(ModeRange::Count(count), &ports.forces, &ports.responses);
-        let all = match all((FURTHER * count).min(MOST_MODES)) {
+        let all = match all(FURTHER * kept.flexible().count()) {
             Err(ModelError::BasisTooSmall { available, .. }) => all(available)?,
             found => found?,
         };
         let further: Vec<_> = all.modes().iter().skip(kept.modes().len()).cloned().collect();
-        let mut beyond = resource.static_remainder().to_vec();
-        for mode in &further {
-            for (row, response) in beyond.iter_mut().zip(&mode.at_responses) {
-                for (value, force) in row.iter_mut().zip(&mode.at_forces) {
-                    *value -= response * force / mode.angular_frequency.powi(2);
-                }
-            }
-        }
-        // Where no static part is known none is counted.
-        if resource.static_remainder().iter().flatten().all(|remainder| *remainder == 0.0) {
-            beyond.iter_mut().flatten().for_each(|value| *value = 0.0);
-        }
         let left_out = ModalModel::new(ports.forces.len(), ports.responses.len(), further)?;
+        let remainder = resource.static_remainder().to_vec();
+        // The static part of a panel with effects is not known: what lies beyond the further modes is not counted.
+        let known = panel.effects.is_empty();
+        let beyond = if known { left_out.left_of_flexibility(remainder) } else { remainder };
         Ok(Self { kept: kept.clone(), left_out, beyond })
     }
 
@@ -65,8 +55,8 @@ impl AccelerationBands {
         let remainder = self.beyond.get(response)?.get(force)?;
         let line = |frequency: f64| {
             let omega = TAU * frequency;
-            let missing = self.left_out.accelerance(response, force, frequency) - omega * omega * remainder;
-            (frequency, missing, self.kept.accelerance(response, force, frequency) + missing)
+            let missing = self.left_out.accelerance(force, response, frequency) - omega * omega * remainder;
+            (frequency, missing, self.kept.accelerance(force, response, frequency) + missing)
         };
         let lines: Vec<(f64, Complex64, Complex64)> = self.grid().into_iter().map(line).collect();
         let held = lines.windows(POINTS_AN_OCTAVE + 1).map_while(|octave| {

@@ -5,9 +5,6 @@ use serde::{Deserialize, Serialize};
 
 use crate::FmuError;
 
-/// Most flexible modes that an FMU keeps.
-const MOST_MODES: usize = 1000;
-
 /// A panel as identified, with the number of flexible modes that its FMU keeps.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -70,13 +67,14 @@ impl Panel {
     /// [`FmuError::ResourceText`] with the numbers, [`FmuError::Model`] for a panel without physical meaning.
     pub(crate) fn check_resource(&self, modes: &ModalModel, ports: &Ports) -> Result<(), FmuError> {
         let refused = |message: String| Err(FmuError::ResourceText(message));
-        let flexible = modes.modes().iter().filter(|mode| mode.angular_frequency > 0.0).count();
+        let flexible = modes.flexible().count();
         let asked = self.flexible_modes;
         // A core brings internal variables that vibrate too.
         let fits = if self.model.relaxes() { asked <= flexible } else { asked == flexible };
-        if asked > MOST_MODES || !fits {
+        if asked > ModeRange::MOST || !fits {
             return refused(format!(
-                "panel.flexible_modes = {asked}: the model has {flexible} flexible modes, and at most {MOST_MODES} can be kept"
+                "panel.flexible_modes = {asked}: the model has {flexible} flexible modes, and at most {} can be kept",
+                ModeRange::MOST
             ));
         }
         let damped = self.model.damping.ratios.len();

@@ -130,4 +130,21 @@ impl ModalModel {
     pub fn modes(&self) -> &[Mode] {
         &self.modes
     }
+
+    /// The modes that vibrate, without the rigid ones.
+    pub fn flexible(&self) -> impl Iterator<Item = &Mode> {
+        self.modes.iter().filter(|mode| mode.angular_frequency > 0.0)
+    }
+
+    /// What these modes leave of a static flexibility $G$ over all flexible modes, $G - \sum_mW_r(m)W_f(m)/\omega_m^2$ \[m/N\]:
+    /// a row a response, a column a force, in `all` as in what is returned.
+    pub fn left_of_flexibility(&self, mut all: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
+        for mode in self.flexible() {
+            let omega2 = mode.angular_frequency.powi(2);
+            for (row, response) in all.iter_mut().zip(&mode.at_responses) {
+                row.iter_mut().zip(&mode.at_forces).for_each(|(value, force)| *value -= response * force / omega2);
+            }
+        }
+        all
+    }
 }

@@ -17,15 +17,15 @@ pub enum ModeRange {
     UpTo(f64),
 }
 
-/// Most flexible modes that one model may have.
-const MOST_MODES: usize = 1000;
-
 impl ModeRange {
+    /// Most flexible modes that one model may have; a plate has as many as its basis resolves, which are fewer.
+    pub const MOST: usize = 1000;
+
     /// The range, if it has a meaning. What a plate holds its basis tells.
     pub(crate) fn checked(self, structure: StructureKind) -> Result<Self, ModelError> {
         match self {
-            Self::Count(count) if count > MOST_MODES && structure != StructureKind::MindlinPlate => {
-                Err(ModelError::BasisTooSmall { asked: count, available: MOST_MODES })
+            Self::Count(count) if count > Self::MOST && structure != StructureKind::MindlinPlate => {
+                Err(ModelError::BasisTooSmall { asked: count, available: Self::MOST })
             }
             Self::UpTo(frequency) if !(frequency.is_finite() && frequency > 0.0) => {
                 Err(ModelError::Size { name: "highest frequency", value: frequency, unit: "Hz" })
@@ -105,8 +105,8 @@ impl PanelModel {
                 // As many as the bare panel has there, and what resonators and masses may bring down.
                 let mut count = self.bare_count(&values, frequency)? + effects.len() + 4;
                 loop {
-                    let modes = first(count.min(MOST_MODES))?;
-                    if count >= MOST_MODES || modes.last().is_some_and(|mode| mode.angular_frequency > limit) {
+                    let modes = first(count.min(ModeRange::MOST))?;
+                    if count >= ModeRange::MOST || modes.last().is_some_and(|mode| mode.angular_frequency > limit) {
                         break modes.into_iter().filter(|mode| mode.angular_frequency <= limit).collect();
                     }
                     count *= 2;
@@ -227,7 +227,8 @@ impl PanelModel {
         Ok(match range.checked(self.structure)? {
             ModeRange::Count(count) => beam.modes(count),
             ModeRange::UpTo(frequency) => {
-                let flexible = beam.flexible_modes().take(MOST_MODES).take_while(|mode| mode.frequency() <= frequency);
+                let flexible =
+                    beam.flexible_modes().take(ModeRange::MOST).take_while(|mode| mode.frequency() <= frequency);
                 beam.rigid_modes().into_iter().chain(flexible).collect()
             }
         })

@@ -30,7 +30,7 @@ impl PanelModel {
             return Ok(model);
         }
         let modes = self.modal_model(range, forces, responses)?;
-        let flexible = modes.modes().iter().filter(|mode| mode.angular_frequency > 0.0).count();
+        let flexible = modes.flexible().count();
         Ok(TimeModel { modes, flexible, core: None })
     }
 
@@ -45,17 +45,8 @@ impl PanelModel {
         forces: &[Place],
         responses: &[Place],
     ) -> Result<Vec<Vec<f64>>, ModelError> {
-        let flexible = || modes.modes().iter().filter(|mode| mode.angular_frequency > 0.0);
-        let Some(mut remainder) = self.static_flexibility(flexible().count(), forces, responses)? else {
-            return Ok(vec![vec![0.0; forces.len()]; responses.len()]);
-        };
-        for mode in flexible() {
-            let omega2 = mode.angular_frequency.powi(2);
-            for (row, response) in remainder.iter_mut().zip(&mode.at_responses) {
-                row.iter_mut().zip(&mode.at_forces).for_each(|(value, force)| *value -= response * force / omega2);
-            }
-        }
-        Ok(remainder)
+        let all = self.static_flexibility(modes.flexible().count(), forces, responses)?;
+        Ok(all.map_or_else(|| vec![vec![0.0; forces.len()]; responses.len()], |all| modes.left_of_flexibility(all)))
     }
 
     /// `None` for a panel without a viscoelastic core.

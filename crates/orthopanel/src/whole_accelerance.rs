@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use num_complex::Complex64;
-use orthopanel_model::{ModalModel, Mode, ModeRange, ModelError, PanelModel, Place, RelaxingLines, StructureKind};
+use orthopanel_model::{ModalModel, ModeRange, ModelError, PanelModel, Place, RelaxingLines, StructureKind};
 
 /// Modes summed one by one unless said; the rest, taken at rest, errs by the fourth power of a line over its modes.
 const SUMMED: usize = 300;
@@ -77,12 +77,7 @@ impl WholeAccelerance {
             return Ok(Self::Relaxing(Box::new(lines)));
         }
         let modes = model.modal_model(range, &[force], &[response])?;
-        let flexible = modes.modes().iter().filter(|mode| mode.angular_frequency > 0.0);
-        let own =
-            |mode: &Mode| Some(mode.at_forces.first()? * mode.at_responses.first()? / mode.angular_frequency.powi(2));
-        let products: Vec<f64> = flexible.filter_map(own).collect();
-        let all = model.static_flexibility(products.len(), &[force], &[response])?;
-        let beyond = all.map_or(0.0, |all| all[0][0] - products.iter().sum::<f64>());
+        let beyond = model.static_remainder(&modes, &[force], &[response])?[0][0];
         Ok(Self::Modes { modes, beyond })
     }
 

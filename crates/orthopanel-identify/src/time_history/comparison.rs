@@ -159,10 +159,7 @@ const ROUNDING: f64 = 1e-12;
 
 /// $R = G - \sum_m W_m(l_1)W_m(l_x)/\omega_m^2$ \[m/N\] over the flexible modes of the model.
 fn left_out(model: &ModalModel, all: f64) -> Result<f64, ModelError> {
-    let flexible = model.modes().iter().filter(|mode| mode.angular_frequency > 0.0);
-    let own = flexible
-        .filter_map(|mode| Some(mode.at_forces.first()? * mode.at_responses.first()? / mode.angular_frequency.powi(2)));
-    let left = all - own.sum::<f64>();
+    let left = model.left_of_flexibility(vec![vec![all]])[0][0];
     if left.is_finite() { Ok(left) } else { Err(ModelError::NotFinite { what: "static flexibility", value: all }) }
 }
 
