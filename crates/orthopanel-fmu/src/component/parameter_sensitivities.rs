@@ -14,9 +14,9 @@ use crate::{FmuError, Quantity};
 const STEP: f64 = 1e-3;
 
 /// Places in steps, with their weights.
-type Rule = [(f64, f64); 5];
-const CENTRAL: Rule = [(-2.0, 1.0 / 12.0), (-1.0, -2.0 / 3.0), (1.0, 2.0 / 3.0), (2.0, -1.0 / 12.0), (0.0, 0.0)];
-const FORWARD: Rule = [(0.0, -25.0 / 12.0), (1.0, 4.0), (2.0, -3.0), (3.0, 4.0 / 3.0), (4.0, -0.25)];
+type Rule = [(f64, f64)];
+const CENTRAL: &Rule = &[(-2.0, 1.0 / 12.0), (-1.0, -2.0 / 3.0), (1.0, 2.0 / 3.0), (2.0, -1.0 / 12.0)];
+const FORWARD: &Rule = &[(0.0, -25.0 / 12.0), (1.0, 4.0), (2.0, -3.0), (3.0, 4.0 / 3.0), (4.0, -0.25)];
 
 impl Component {
     /// $\sum_k(\partial y/\partial p_k)\,\delta p_k$ of each unknown over the parameters among the knowns; empty where there
@@ -29,6 +29,11 @@ impl Component {
         seed: &[f64],
     ) -> Result<Vec<f64>, FmuError> {
         let Some(solved) = &self.solved else { return Ok(Vec::new()) };
+        let is_parameter = |known: &u32| matches!(self.quantity(*known), Ok(Quantity::Parameter(_)));
+        // Importers ask for derivatives by inputs and states at every step.
+        if !knowns.iter().any(is_parameter) {
+            return Ok(Vec::new());
+        }
         let mut direction = vec![0.0; solved.values.len()];
         for (&known, &value) in knowns.iter().zip(seed) {
             if let Quantity::Parameter(index) = self.quantity(known)?
@@ -44,14 +49,14 @@ impl Component {
         }
         let step = STEP / longest;
         // At a bound, such as a damping ratio of zero or the edge of the piece, one side is no panel.
-        self.difference(unknowns, &direction, step, &CENTRAL)
-            .or_else(|_| self.difference(unknowns, &direction, step, &FORWARD))
-            .or_else(|_| self.difference(unknowns, &direction, -step, &FORWARD))
+        self.difference(unknowns, &direction, step, CENTRAL)
+            .or_else(|_| self.difference(unknowns, &direction, step, FORWARD))
+            .or_else(|_| self.difference(unknowns, &direction, -step, FORWARD))
     }
 
     fn difference(&self, unknowns: &[u32], direction: &[f64], step: f64, rule: &Rule) -> Result<Vec<f64>, FmuError> {
         let mut sums = vec![0.0; unknowns.len()];
-        for &(place, weight) in rule.iter().filter(|(_, weight)| *weight != 0.0) {
+        for &(place, weight) in rule {
             let values = self.outputs_at(unknowns, direction, place * step)?;
             sums.iter_mut().zip(values).for_each(|(sum, value)| *sum += weight / step * value);
         }
