@@ -98,8 +98,8 @@ fn relaxing(fit: &CoreFit) -> String {
 }
 
 const PARAMETERS: &str = "Parameters are fixed: they are set before or in initialization mode, and stay for the run. Where \
-     one of the panel's is set, the modes are solved anew, which takes milliseconds for a beam, a tenth of a second for a plate, seconds beside a core. The number of modes is that of the \
-     export. None is tunable.";
+     one of the panel's is set, the modes are solved anew, which takes milliseconds for a beam, a tenth of a second for a \
+     plate, seconds beside a core. The number of modes is that of the export. None is tunable.";
 const HELD: &str = "The force is held at the value set before the step, over the whole step.";
 const BY_DERIVATIVES: &str = " If the importer gives the first derivative of a force \
      (fmi2SetRealInputDerivatives), the force of the next step runs at that rate from the value set.";

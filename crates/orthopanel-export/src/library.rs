@@ -25,17 +25,33 @@ enum System {
     Darwin,
 }
 
-/// Every platform: its name in FMI 3.0, and the one of its own that FMI 2.0 may have for it.
-const PLATFORMS: [(&str, &str, System, Option<&str>); 6] = [
-    ("x86_64-linux", "x86_64", System::Linux, Some("linux64")),
-    ("aarch64-linux", "aarch64", System::Linux, None),
-    ("x86_64-windows", "x86_64", System::Windows, Some("win64")),
-    ("aarch64-windows", "aarch64", System::Windows, None),
-    ("x86_64-darwin", "x86_64", System::Darwin, Some("darwin64")),
-    ("aarch64-darwin", "aarch64", System::Darwin, None),
+/// A platform with what FMI and a library's header call it.
+struct KnownPlatform {
+    platform: Platform,
+    /// In FMI 2.0, where it has a name of its own there.
+    fmi2: Option<&'static str>,
+    /// What the header of a library calls its processor.
+    machine: u32,
+}
+
+const fn known(architecture: &'static str, system: System, fmi2: Option<&'static str>, machine: u32) -> KnownPlatform {
+    KnownPlatform { platform: Platform { architecture, system }, fmi2, machine }
+}
+
+const PLATFORMS: [KnownPlatform; 6] = [
+    known("x86_64", System::Linux, Some("linux64"), 0x3e),
+    known("aarch64", System::Linux, None, 0xb7),
+    known("x86_64", System::Windows, Some("win64"), 0x8664),
+    known("aarch64", System::Windows, None, 0xaa64),
+    known("x86_64", System::Darwin, Some("darwin64"), 0x0100_0007),
+    known("aarch64", System::Darwin, None, 0x0100_000c),
 ];
 
 impl Platform {
+    fn known(self) -> Option<&'static KnownPlatform> {
+        PLATFORMS.iter().find(|known| known.platform == self)
+    }
+
     /// The one that this program runs on; `None` where FMI has no name for it.
     pub(crate) fn here() -> Option<Self> {
         let system = if std::env::consts::OS == "macos" { "darwin" } else { std::env::consts::OS };
@@ -44,7 +60,7 @@ impl Platform {
 
     /// Place of its library inside the archive.
     pub(crate) fn path(self, version: FmiVersion) -> String {
-        let own = PLATFORMS.iter().find(|(name, ..)| *name == self.to_string()).and_then(|(.., own)| *own);
+        let own = self.known().and_then(|known| known.fmi2);
         let folder = own.filter(|_| version == FmiVersion::Fmi2).map_or_else(|| self.to_string(), String::from);
         let extension = match self.system {
             System::Linux => "so",
@@ -52,20 +68,6 @@ impl Platform {
             System::Darwin => "dylib",
         };
         format!("binaries/{folder}/{MODEL_IDENTIFIER}.{extension}")
-    }
-}
-
-impl Platform {
-    /// What the header of a library calls its processor.
-    fn machine(self) -> u32 {
-        match (self.system, self.architecture == "aarch64") {
-            (System::Linux, false) => 0x3e,
-            (System::Linux, true) => 0xb7,
-            (System::Windows, false) => 0x8664,
-            (System::Windows, true) => 0xaa64,
-            (System::Darwin, false) => 0x0100_0007,
-            (System::Darwin, true) => 0x0100_000c,
-        }
     }
 }
 
@@ -96,10 +98,10 @@ impl FromStr for Platform {
     type Err = ExportError;
 
     fn from_str(text: &str) -> Result<Self, ExportError> {
-        let found = PLATFORMS.iter().find(|(name, _, _, own)| *name == text || *own == Some(text));
-        found.map(|&(_, architecture, system, _)| Self { architecture, system }).ok_or_else(|| ExportError::Platform {
+        let found = PLATFORMS.iter().find(|known| known.platform.to_string() == text || known.fmi2 == Some(text));
+        found.map(|known| known.platform).ok_or_else(|| ExportError::Platform {
             given: text.into(),
-            known: PLATFORMS.map(|(name, ..)| name).join(", "),
+            known: PLATFORMS.iter().map(|known| known.platform.to_string()).collect::<Vec<_>>().join(", "),
         })
     }
 }
@@ -124,15 +126,15 @@ impl Library {
         if !content.starts_with(start) {
             return refuse(format!("it is not {kind}"));
         }
-        match machine(platform.system, &content) {
-            Some(machine) if machine == platform.machine() => {}
-            Some(machine) => {
-                let needed = platform.machine();
+        let needed = platform.known().map(|known| known.machine);
+        match (machine(platform.system, &content), needed) {
+            (None, _) => return refuse("its header is cut off".into()),
+            (Some(machine), Some(needed)) if machine != needed => {
                 return refuse(format!(
                     "it is for another processor: its header has machine {machine:#x}, not {needed:#x}"
                 ));
             }
-            None => return refuse("its header is cut off".into()),
+            _ => {}
         }
         // What it reads is named in it: a runtime of another version would refuse this FMU's resource.
         for needed in ["fmi2Instantiate", "fmi3InstantiateCoSimulation", RESOURCE_SCHEMA] {
