@@ -1,5 +1,7 @@
 //! How much of the force's record holds its blow, and whether the noise of the rest counts.
 
+use std::ops::Range;
+
 use super::{
     channel_noise::{AHEAD, TOUCH},
     extremes::{peak, sampled_median},
@@ -22,21 +24,18 @@ impl CutBlow {
     pub(super) fn of(hits: &[&Hit], reach: f64) -> Self {
         let mut all = Self { lost: 0.0, needed: 0 };
         for hit in hits {
-            let offset = sampled_median(&hit.force);
-            let (at, height) = peak(&hit.force, offset);
-            let noise = hit.noise_before(offset, (at, height)).map_or(0.0, |noise| noise.force.powi(2));
-            let half = length(hit, offset, (at, height));
-            let near = at.saturating_sub(half)..(at + half + 1).min(hit.force.len());
-            let square = |n: usize| (hit.force[n] - offset).powi(2);
-            let whole: f64 = near.clone().map(square).sum();
+            let blow = Blow::of(hit);
+            let noise = blow.noise.unwrap_or(0.0);
+            let square = |n: usize| (hit.force[n] - blow.offset).powi(2);
+            let whole: f64 = blow.near.clone().map(square).sum();
             let outside = |reach: f64| {
-                let cut = near.clone().filter(|n| n.abs_diff(at) as f64 > reach);
+                let cut = blow.near.clone().filter(|n| n.abs_diff(blow.at) as f64 > reach);
                 // Noise scatters about its own power by the root of twice the samples.
                 let (power, count) = cut.fold((0.0, 0.0), |(power, count), n| (power + square(n), count + 1.0));
                 let of_noise = noise * (count + SURELY * f64::sqrt(2.0 * count));
                 (f64::max(power - of_noise, 0.0) / whole).sqrt()
             };
-            let needed = (0..half).find(|&reach| outside(reach as f64) <= WHOLE).unwrap_or(half);
+            let needed = (0..blow.half).find(|&reach| outside(reach as f64) <= WHOLE).unwrap_or(blow.half);
             (all.lost, all.needed) = (all.lost.max(outside(reach)), all.needed.max(needed));
         }
         all
@@ -46,12 +45,32 @@ impl CutBlow {
 /// Standard deviations that noise may stand above its usual power.
 const SURELY: f64 = 3.0;
 
-/// Samples on either side of a hit's peak that hold its blow and what a filter makes of it.
-fn length(hit: &Hit, offset: f64, (at, height): (usize, f64)) -> usize {
-    let touches = |force: &&f64| (**force - offset) * height.signum() > TOUCH * height.abs();
-    let (before, after) = hit.force.split_at(at);
-    let length = before.iter().rev().take_while(touches).count() + after.iter().take_while(touches).count();
-    LENGTHS * length + AHEAD
+/// Where the blow of a hit lies in its record.
+struct Blow {
+    /// The hammer's force where it touches nothing.
+    offset: f64,
+    /// Sample of the peak.
+    at: usize,
+    /// Samples on either side of the peak that hold the blow and what a filter makes of it.
+    half: usize,
+    /// All of these that the record has.
+    near: Range<usize>,
+    /// Variance of the force's noise, where the record tells it.
+    noise: Option<f64>,
+}
+
+impl Blow {
+    fn of(hit: &Hit) -> Self {
+        let offset = sampled_median(&hit.force);
+        let (at, height) = peak(&hit.force, offset);
+        let touches = |force: &&f64| (**force - offset) * height.signum() > TOUCH * height.abs();
+        let (before, after) = hit.force.split_at(at);
+        let length = before.iter().rev().take_while(touches).count() + after.iter().take_while(touches).count();
+        let half = LENGTHS * length + AHEAD;
+        let near = at.saturating_sub(half)..(at + half + 1).min(hit.force.len());
+        let noise = hit.noise_before(offset, (at, height)).map(|noise| noise.force.powi(2));
+        Self { offset, at, half, near, noise }
+    }
 }
 
 /// Blow and noise of the hits of a place.
@@ -76,16 +95,13 @@ impl BlowWindow {
         let mut all = Self { last: 0, half: 0, noise: Some(0.0) };
         let (mut noise, mut impulse) = (Some(0.0), 0.0);
         for hit in hits {
-            let offset = sampled_median(&hit.force);
-            let (at, height) = peak(&hit.force, offset);
-            let half = length(hit, offset, (at, height));
-            let near = at.saturating_sub(half)..(at + half + 1).min(hit.force.len());
-            let sum: f64 = hit.force.get(near).unwrap_or_default().iter().map(|force| force - offset).sum();
+            let blow = Blow::of(hit);
+            let near = hit.force.get(blow.near).unwrap_or_default();
+            let sum: f64 = near.iter().map(|force| force - blow.offset).sum();
             impulse += sum * sum;
-            let told = hit.noise_before(offset, (at, height));
-            let own = told.map(|noise| noise.force.powi(2) * hit.force.len() as f64);
+            let own = blow.noise.map(|noise| noise * hit.force.len() as f64);
             noise = noise.zip(own).map(|(sum, own)| sum + own);
-            (all.last, all.half) = (all.last.max(at), all.half.max(half));
+            (all.last, all.half) = (all.last.max(blow.at), all.half.max(blow.half));
         }
         all.noise = noise.map(|noise: f64| noise / impulse);
         all
