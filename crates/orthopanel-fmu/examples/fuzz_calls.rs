@@ -5,7 +5,7 @@
 //! With `FUZZ_TELL` set each seed is printed before it runs, to find a call that does not return.
 #![expect(unsafe_code, reason = "an importer in Rust calls C functions")]
 
-use std::ffi::{CString, c_char, c_int};
+use std::ffi::{CString, c_int};
 use std::ptr::null_mut;
 use std::time::{Duration, Instant};
 
@@ -15,19 +15,7 @@ use orthopanel_model::{ModeRange, PanelModel, Place, Ports};
 #[path = "../tests/instantiation/mod.rs"]
 mod instantiation;
 
-use instantiation::{Pointer, fmi2Instantiate, fmi3InstantiateCoSimulation};
-
-unsafe extern "C" {
-    fn fmi3InstantiateModelExchange(
-        name: *const c_char,
-        token: *const c_char,
-        resources: *const c_char,
-        visible: u8,
-        logging: u8,
-        environment: Pointer,
-        log: Pointer,
-    ) -> Pointer;
-}
+use instantiation::{Pointer, fmi2Instantiate, fmi3InstantiateCoSimulation, fmi3InstantiateModelExchange};
 
 /// Declares the functions that both versions have with the same arguments, and a table of them for each version.
 macro_rules! both {

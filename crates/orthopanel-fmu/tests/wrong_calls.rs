@@ -11,7 +11,7 @@ use orthopanel_model::{ModalModel, Mode, Place, Ports};
 
 mod instantiation;
 
-use instantiation::{Pointer, fmi2Instantiate, fmi3InstantiateCoSimulation};
+use instantiation::{Pointer, fmi2Instantiate, fmi3InstantiateCoSimulation, fmi3InstantiateModelExchange};
 
 const DISCARD: c_int = 2;
 const ERROR: c_int = 3;
@@ -27,15 +27,6 @@ unsafe extern "C" {
     fn fmi2GetNominalsOfContinuousStates(instance: Pointer, values: *mut f64, count: usize) -> c_int;
     fn fmi2GetEventIndicators(instance: Pointer, values: *mut f64, count: usize) -> c_int;
     fn fmi2FreeInstance(instance: Pointer);
-    fn fmi3InstantiateModelExchange(
-        name: *const c_char,
-        token: *const c_char,
-        resources: *const c_char,
-        visible: u8,
-        logging: u8,
-        environment: Pointer,
-        log: Pointer,
-    ) -> Pointer;
     fn fmi3EnterInitializationMode(i: Pointer, has: u8, tolerance: f64, start: f64, stops: u8, stop: f64) -> c_int;
     fn fmi3ExitInitializationMode(instance: Pointer) -> c_int;
     fn fmi3GetContinuousStates(instance: Pointer, values: *mut f64, count: usize) -> c_int;

@@ -1,4 +1,5 @@
 //! The C functions that make instances, as an importer in Rust declares them.
+#![allow(dead_code, reason = "no test makes instances of every kind")]
 
 use std::ffi::{c_char, c_int, c_void};
 
@@ -27,5 +28,14 @@ unsafe extern "C" {
         environment: Pointer,
         log: Pointer,
         update: Pointer,
+    ) -> Pointer;
+    pub fn fmi3InstantiateModelExchange(
+        name: *const c_char,
+        token: *const c_char,
+        resources: *const c_char,
+        visible: u8,
+        logging: u8,
+        environment: Pointer,
+        log: Pointer,
     ) -> Pointer;
 }
