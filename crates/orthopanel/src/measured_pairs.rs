@@ -53,7 +53,8 @@ pub fn told(verdicts: &[HitVerdict]) -> Vec<ToldHit> {
 /// A pair of places whose measured forces drove a model.
 pub struct ComparedPair {
     pub history: TimeHistory,
-    /// In the order of `history.hits`.
+    /// In the order of `history.hits`, as these that follow.
+    pub verdicts: Vec<HitVerdict>,
     pub hits: Vec<HitComparison>,
     /// The modes that were driven.
     pub modes: ModalModel,
@@ -78,16 +79,16 @@ impl ComparedPair {
         let static_flexibility = all.map(|all| all[0][0]);
         let settings = HistorySettings { between_samples, static_flexibility, band, ..HistorySettings::default() };
         let hits = compare_time_history(&seen, &history, &settings)?;
-        Ok(Self { history, hits, modes: seen, static_flexibility })
+        Ok(Self { verdicts: history.verdicts(), history, hits, modes: seen, static_flexibility })
     }
 
     /// The hit to draw: the first without a fault that spoils it, else the first.
     pub fn shown(&self) -> usize {
-        self.history.verdicts().iter().position(HitVerdict::is_kept).unwrap_or(0)
+        self.verdicts.iter().position(HitVerdict::is_kept).unwrap_or(0)
     }
 
     pub fn misfits(&self) -> Vec<HitMisfit> {
-        let hits = self.hits.iter().zip(told(&self.history.verdicts()));
+        let hits = self.hits.iter().zip(told(&self.verdicts));
         let peak = |hit: &Hit| hit.force.iter().fold(0.0_f64, |peak, force| peak.max(force.abs()));
         hits.zip(&self.history.hits)
             .map(|((compared, verdict), hit)| HitMisfit {

@@ -64,7 +64,7 @@ fn of_elements(
     history: &TimeHistory,
     exact: &ModalModel,
 ) -> Result<(ModalModel, usize), ModelError> {
-    let count = exact.modes().iter().filter(|mode| mode.angular_frequency > 0.0).count();
+    let count = exact.flexible().count();
     let elements = (ELEMENTS_OF_MODE * count).max(LEAST_ELEMENTS);
     let structure = BeamElements::new(&model.piece, model.boundary, elements)?;
     let values = [model.constant("e_x")?, model.constant("g_zx")?];
@@ -96,6 +96,7 @@ pub fn by_runge_kutta(
         let hits = compare_time_history(&modes, history, &settings)?;
         Ok::<_, IdentifyError>(ComparedPair {
             history: history.clone(),
+            verdicts: exact.verdicts.clone(),
             hits,
             modes: modes.clone(),
             static_flexibility,
