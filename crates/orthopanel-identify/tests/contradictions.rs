@@ -8,14 +8,19 @@ use orthopanel_data::{Estimation, ImpactTest, Window};
 use orthopanel_identify::{Identification, IdentifyError, Settings, identify};
 use support::hammer_test;
 
+/// One place at 0.3 % noise, with something in the test file written otherwise.
+fn one_place_with(written: &str, instead: &str) -> Option<Result<Identification, IdentifyError>> {
+    let folder = tempfile::tempdir().unwrap();
+    hammer_test(&folder.path().join("one"), &["--noise", "0.003", "--seed", "14"])?;
+    let path = folder.path().join("one/test.toml");
+    let text = std::fs::read_to_string(&path).unwrap().replace(written, instead);
+    Some(identify(&ImpactTest::from_toml(&text, &path).unwrap(), Settings::default()))
+}
+
 /// The hammer's place typed wrongly: the resonances are right, the lines between them are not.
 #[test]
 fn a_wrong_place_is_refused() {
-    let folder = tempfile::tempdir().unwrap();
-    let Some(_) = hammer_test(&folder.path().join("one"), &["--noise", "0.003", "--seed", "14"]) else { return };
-    let path = folder.path().join("one/test.toml");
-    let text = std::fs::read_to_string(&path).unwrap().replace("force_at = [-0.3", "force_at = [-0.02");
-    let refused = identify(&ImpactTest::from_toml(&text, &path).unwrap(), Settings::default());
+    let Some(refused) = one_place_with("force_at = [-0.3", "force_at = [-0.02") else { return };
     match refused {
         Err(IdentifyError::Contradiction { record, .. }) => {
             assert!(record.contains("one/point-0-hit-1.csv"), "{record}")
@@ -149,11 +154,8 @@ fn mere_noise_gives_no_constants() {
 /// A length in another unit, with a thickness that is right: told at once, and not searched for among thousands of modes.
 #[test]
 fn a_piece_too_large_for_its_records_is_told() {
-    let folder = tempfile::tempdir().unwrap();
-    let Some(_) = hammer_test(&folder.path().join("one"), &["--noise", "0.003", "--seed", "14"]) else { return };
-    let path = folder.path().join("one/test.toml");
-    let text = std::fs::read_to_string(&path).unwrap().replace("length = 0.8", "length = 80");
-    match identify(&ImpactTest::from_toml(&text, &path).unwrap(), Settings::default()) {
+    let Some(refused) = one_place_with("length = 0.8", "length = 80") else { return };
+    match refused {
         Err(refused @ IdentifyError::PieceTooLarge { .. }) => {
             assert!(refused.to_string().contains("a piece 80 m long"), "{refused}")
         }

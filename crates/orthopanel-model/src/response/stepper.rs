@@ -104,6 +104,7 @@ impl ModalStepper {
         if !bound.is_finite() {
             return Err(not_finite(&[force], bound));
         }
+        // Two branches, since of one condition the compiler works out both sides before it branches.
         if self.coupled.is_some() {
             return self.advance_in_two(force, step);
         }
