@@ -1,7 +1,10 @@
 //! CSV of time histories and accelerances.
 
+mod support;
+
 use num_complex::Complex64;
-use orthopanel_data::{RecordFile, RecordKind, Samples};
+use orthopanel_data::{RecordFile, RecordKind, Samples, TimeHistory};
+use support::recorded::measurement;
 
 fn read(text: &str) -> Result<RecordFile, String> {
     RecordFile::from_bytes(text.as_bytes(), "a.csv").map_err(|error| error.to_string())
@@ -23,6 +26,16 @@ fn val_an_accelerance_may_bring_its_coherence() {
     assert_eq!(file.records[0].ordinate, Samples::Complex(values));
     assert_eq!(file.records[1].ordinate, Samples::Real(vec![1.0, 0.5]));
     assert_eq!(read("frequency_hz,real,imag\n1,2,3\n").unwrap().records.len(), 1);
+}
+
+/// The line where a row was lost is named, not one far from it at which the times no longer fit the mean step.
+#[test]
+fn val_a_lost_row_is_named() {
+    let row = |n: usize| format!("{},{},{}\n", n as f64 / 1000.0, if n == 50 { 1.0 } else { 0.0 }, (n as f64).sin());
+    let text: String = (0..2000).filter(|n| *n != 1200).map(row).collect();
+    let file = read(&format!("time_s,force_n,acceleration_m_s2\n{text}")).unwrap();
+    let message = TimeHistory::from_records(file, &measurement()).unwrap_err().to_string();
+    assert!(message.starts_with("a.csv:1202: ") && message.contains("2.000 times the usual step"), "{message}");
 }
 
 #[test]

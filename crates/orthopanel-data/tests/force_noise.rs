@@ -26,6 +26,57 @@ fn val_the_force_is_windowed_where_its_noise_counts() {
     assert!(noisy.notes.iter().any(|note| note.contains("the force is kept within")), "{:?}", noisy.notes);
 }
 
+/// Two per cent of the blow, 0.3 s after it, is too little for a double hit. Without a window it does no harm; a window takes it from
+/// the force, but not from the response.
+#[test]
+fn val_a_push_that_a_force_window_cuts_off_is_said() {
+    let noise = &mut Noise(3);
+    let touched = |noise: &mut Noise, second: f64| {
+        let mut force = DAMPED.hit(SAMPLES, 100.0).force;
+        for n in 0..SAMPLES - 300 {
+            let push = second * DAMPED.hit(SAMPLES, 100.0).force[n];
+            force[n + 300] += push;
+        }
+        noise.over(&DAMPED.respond(force), 0.03, 1e-4)
+    };
+    let force_window = Estimation { window: Window::Force { half_width: 0.1 }, ..Estimation::default() };
+    for (second, said) in [(0.02, true), (0.0, false)] {
+        let hits = history(vec![touched(noise, 0.0), touched(noise, second)]);
+        let notes = hits.accelerance(force_window).unwrap().notes;
+        let told = notes.iter().find(|note| note.contains("cuts off a push"));
+        assert_eq!(told.is_some(), said, "{notes:?}");
+        assert!(
+            told.is_none_or(|note| note.contains("hit 2") && note.contains("of 2.") && note.contains("300 ms after")),
+            "{told:?}"
+        );
+        let notes = hits.accelerance(Estimation::default()).unwrap().notes;
+        assert!(notes.iter().all(|note| !note.contains("cuts off")), "{notes:?}");
+    }
+}
+
+/// A blow in the middle of a record whose response rings on: the exponential begins at the blow. From the record's start it made
+/// the blow smaller than the noise before it.
+#[test]
+fn val_the_exponential_begins_at_the_blow() {
+    let ringing = Resonator { radius: 0.999, angle: 0.5 };
+    let late = |noise: &mut Noise| {
+        let mut force = vec![0.0; 4000];
+        force.extend(ringing.hit(4000, 100.0).force);
+        noise.over(&ringing.respond(force), 0.05, 0.05)
+    };
+    let noise = &mut Noise(4);
+    let found = history((0..4).map(|_| late(noise)).collect()).accelerance(AS_NEEDED).unwrap();
+    assert!(found.decay_rate > 0.0);
+    let errors: Vec<f64> = found
+        .frequency
+        .iter()
+        .zip(&found.value)
+        .map(|(&frequency, value)| (value / ringing.transfer(found.decay_rate, frequency) - 1.0).norm())
+        .collect();
+    let rms = mean(errors.iter().map(|error| error * error)).sqrt();
+    assert!(rms < 0.05, "{rms}");
+}
+
 /// The force's spectrum drowns in its noise: nothing can be divided by it.
 #[test]
 fn val_a_force_below_its_noise_is_refused_with_the_number() {

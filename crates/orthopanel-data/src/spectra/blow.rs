@@ -1,4 +1,6 @@
-//! The hammer's blow in its channel: how long it pushes, how far it stands out, and whether it touches again.
+//! The hammer's blow in its channel: where it lies, how long it pushes, how far it stands out, and whether it touches again.
+
+use std::ops::Range;
 
 use super::{
     extremes::{Levels, median, peak, peak_among, sampled_median},
@@ -9,8 +11,17 @@ use super::{
 /// Force that counts as a touch, over the peak: less does not change the spectrum by more than this.
 const TOUCH: f64 = 0.05;
 
+/// Samples before a blow that an anti-alias filter may ring ahead.
+const AHEAD: usize = 32;
+
+/// The blow's own lengths, on either side of its peak, that hold it and what a filter makes of it.
+const LENGTHS: usize = 2;
+
 /// Standard deviations of the channel's noise that a touch must pass: of a million samples of noise, not one in fifty does.
 const ABOVE_NOISE: f64 = 5.5;
+
+/// Push over the peak that a force window may cut off unsaid.
+const LEAST_PUSH: f64 = 0.002;
 
 /// Next to the pulse, within three times its length, up to this the anti-alias filter rings.
 const FILTER_RINGING: f64 = 0.2;
@@ -39,14 +50,58 @@ fn runs(pushes: impl Iterator<Item = f64>, threshold: f64) -> Vec<Run> {
     runs
 }
 
+/// Where the blow of a hit lies in its record.
+pub(super) struct Blow {
+    /// What the hammer's channel shows where it touches nothing \[N\].
+    pub(super) offset: f64,
+    /// Sample of the peak.
+    pub(super) at: usize,
+    /// The peak, over the offset \[N\].
+    pub(super) height: f64,
+    /// Samples before the first touch, and before what a filter rings ahead of it: there neither hammer nor piece moves. `None`
+    /// where the record begins later.
+    pub(super) quiet: Option<usize>,
+    /// Samples on either side of the peak that hold the blow and what a filter makes of it.
+    pub(super) half: usize,
+}
+
+impl Blow {
+    /// All samples within [`Blow::half`] that a record of this length has.
+    pub(super) fn near(&self, length: usize) -> Range<usize> {
+        self.at.saturating_sub(self.half)..(self.at + self.half + 1).min(length)
+    }
+}
+
 impl Hit {
-    /// How often the force stands above a touch and above its noise before the blow.
-    pub(super) fn pushes(&self) -> usize {
+    /// Where its blow lies.
+    pub(super) fn blow(&self) -> Blow {
         let offset = sampled_median(&self.force);
         let (at, height) = peak(&self.force, offset);
-        let noise = self.noise_before(offset, (at, height)).map_or(0.0, |noise| noise.force);
-        let threshold = (TOUCH * height.abs()).max(ABOVE_NOISE * noise);
-        runs(self.force.iter().map(|value| height.signum() * (value - offset)), threshold).len()
+        let touches = |force: &&f64| (**force - offset) * height.signum() > TOUCH * height.abs();
+        let (before, after) = self.force.split_at(at);
+        let foot = before.iter().rev().take_while(touches).count();
+        let length = foot + after.iter().take_while(touches).count();
+        Blow { offset, at, height, quiet: at.checked_sub(foot + AHEAD), half: LENGTHS * length + AHEAD }
+    }
+
+    /// The greatest push farther than `reach` samples from the blow's peak that is no noise, nor what a filter makes of the blow: its
+    /// sample, and its height over the blow's. `None` without one, and where the record does not tell its noise.
+    pub(super) fn push_beyond(&self, reach: f64) -> Option<(usize, f64)> {
+        let blow = self.blow();
+        let noise = self.noise_before(&blow)?.force / blow.height.abs();
+        let near = blow.near(self.force.len());
+        let beyond = |n: &usize| !near.contains(n) && n.abs_diff(blow.at) as f64 > reach;
+        let push = |n: usize| (n, (self.force[n] - blow.offset) / blow.height);
+        let pushes = (0..self.force.len()).filter(beyond).map(push);
+        pushes.max_by(|a, b| a.1.total_cmp(&b.1)).filter(|(_, ratio)| *ratio > (ABOVE_NOISE * noise).max(LEAST_PUSH))
+    }
+
+    /// How often the force stands above a touch and above its noise before the blow.
+    pub(super) fn pushes(&self) -> usize {
+        let blow = self.blow();
+        let noise = self.noise_before(&blow).map_or(0.0, |noise| noise.force);
+        let threshold = (TOUCH * blow.height.abs()).max(ABOVE_NOISE * noise);
+        runs(self.force.iter().map(|value| blow.height.signum() * (value - blow.offset)), threshold).len()
     }
 }
 

@@ -1,9 +1,6 @@
 //! Noise of a hit's two channels, read where neither the hammer nor the piece moves: before the blow.
 
-use super::{
-    extremes::{median, peak, sampled_median},
-    time_history::Hit,
-};
+use super::{blow::Blow, extremes::median, time_history::Hit};
 
 /// Standard deviations of the noise of a hit's channels, as if it were white.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -13,12 +10,6 @@ pub struct ChannelNoise {
     /// \[m/s²\]
     pub acceleration: f64,
 }
-
-/// Force over its peak at which the blow begins.
-pub(super) const TOUCH: f64 = 0.05;
-
-/// Samples before that which an anti-alias filter may ring ahead.
-pub(super) const AHEAD: usize = 32;
 
 /// Samples that are read at most, ...
 const MOST: usize = 1024;
@@ -34,15 +25,12 @@ impl Hit {
     ///
     /// Read from second differences, which neither an offset nor a hum nor what rings on from the hit before reaches.
     pub fn noise_before_blow(&self) -> Option<ChannelNoise> {
-        let offset = sampled_median(&self.force);
-        self.noise_before(offset, peak(&self.force, offset))
+        self.noise_before(&self.blow())
     }
 
-    /// As [`Hit::noise_before_blow`], where the force's offset, and where and how high it peaks, are known.
-    pub(super) fn noise_before(&self, offset: f64, (at, height): (usize, f64)) -> Option<ChannelNoise> {
-        let touches = |force: &&f64| (**force - offset) * height.signum() > TOUCH * height.abs();
-        let foot = self.force.get(..at)?.iter().rev().take_while(touches).count();
-        let quiet = at.checked_sub(foot + AHEAD)?;
+    /// As [`Hit::noise_before_blow`], where the blow is known.
+    pub(super) fn noise_before(&self, blow: &Blow) -> Option<ChannelNoise> {
+        let quiet = blow.quiet?;
         let quiet = quiet.saturating_sub(MOST)..quiet;
         let deviation = |channel: &[f64]| deviation(channel.get(quiet.clone()).unwrap_or_default());
         Some(ChannelNoise { force: deviation(&self.force)?, acceleration: deviation(&self.acceleration)? })

@@ -90,6 +90,7 @@ impl TimeHistory {
         let window = estimation.window.resolved(left, &hits, self.rate);
         notes.extend(window.notes(left.is_some()));
         notes.extend(self.cut_blow(estimation.window, &hits)?);
+        notes.extend(self.cut_push(window, &kept));
         let floor = |sums: &Sums| match estimation.window {
             Window::AsNeeded => OUT_OF_NOISE * sums.noise_of_forces(),
             // Who asks for a window gets all lines that it leaves.
@@ -202,6 +203,22 @@ impl TimeHistory {
             return Err(DataError::Contradiction { at: Box::new(location), problem });
         }
         Ok((lost > WHOLE).then(|| format!("{cut}: the lines are wrong by as much, and what is read off them")))
+    }
+
+    /// A sentence where a force window cuts off a push beside the blow.
+    fn cut_push(&self, window: Window, hits: &[(usize, &Hit)]) -> Option<String> {
+        let reach = window.force_half_width()? * self.rate;
+        let pushes = hits.iter().filter_map(|(index, hit)| Some((index, hit, hit.push_beyond(reach)?)));
+        let (index, hit, (at, ratio)) = pushes.max_by(|a, b| a.2.1.total_cmp(&b.2.1))?;
+        let after = (at as f64 - hit.blow().at as f64) / self.rate;
+        let when = if after < 0.0 { "before" } else { "after" };
+        Some(format!(
+            "{}: the force window cuts off a push of {:.1} % of the blow, {} {when} it: where that is a second touch, the piece \
+             has felt it, and what is read off the lines is wrong; take the window none",
+            self.hit_name(*index),
+            100.0 * ratio,
+            milliseconds(after.abs())
+        ))
     }
 
     /// The first line that is left out above the band, where the force falls below `floor` too, and what to say of it.

@@ -3,12 +3,7 @@
 use num_complex::Complex64;
 use realfft::RealFftPlanner;
 
-use super::{
-    extremes::{peak, sampled_median},
-    scatter::NoisePower,
-    time_history::Hit,
-    window::Window,
-};
+use super::{blow::Blow, scatter::NoisePower, time_history::Hit, window::Window};
 
 /// Sums over hits of $|F|^2$, $|A|^2$ and $\bar F A$, line by line from 0 to half the rate.
 pub(super) struct Sums {
@@ -80,19 +75,18 @@ pub(super) fn sums(hits: &[&Hit], samples: usize, window: Window, rate: f64) -> 
     for hit in hits {
         // The hammer is off the piece nearly all the time, so the median is its channel's offset; the mean is not,
         // for it holds the impulse.
-        let offset = sampled_median(&hit.force);
-        let (peak, height) = peak(&hit.force, offset);
-        let rest = rest_before(hit, offset, height);
-        let mut force: Vec<f64> = hit.force.iter().map(|value| value - offset).collect();
+        let blow = hit.blow();
+        let rest = rest_before(hit, &blow);
+        let mut force: Vec<f64> = hit.force.iter().map(|value| value - blow.offset).collect();
         let mut motion: Vec<f64> = hit.acceleration.iter().map(|value| value - rest).collect();
-        window.apply(&mut force, &mut motion, peak, rate);
+        window.apply(&mut force, &mut motion, &blow, rate);
         let transformed = transform
             .process_with_scratch(&mut force, &mut force_spectrum, &mut scratch)
             .and_then(|()| transform.process_with_scratch(&mut motion, &mut motion_spectrum, &mut scratch));
         // It fails for other lengths than planned only; the caller has checked that all hits are of one length.
         debug_assert!(transformed.is_ok());
         sums.add(&force_spectrum, &motion_spectrum);
-        noise.push(hit.noise_before(offset, (peak, height)));
+        noise.push(hit.noise_before(&blow));
     }
     if let [first, ..] = hits {
         sums.noise = NoisePower::of(&noise, windowed(first, window, rate));
@@ -105,10 +99,9 @@ fn windowed(hit: &Hit, window: Window, rate: f64) -> [f64; 2] {
     if window == Window::None {
         return [hit.force.len() as f64; 2];
     }
-    let (at, _) = peak(&hit.force, sampled_median(&hit.force));
     let mut channels = [vec![1.0; hit.force.len()], vec![1.0; hit.force.len()]];
     let [force, acceleration] = &mut channels;
-    window.apply(force, acceleration, at, rate);
+    window.apply(force, acceleration, &hit.blow(), rate);
     channels.map(|weights| weights.iter().map(|weight| weight * weight).sum())
 }
 
@@ -119,8 +112,9 @@ const LEAST_REST: usize = 8;
 ///
 /// The mean over the whole record would hold the piece's own motion, which a window then smears over the lowest lines;
 /// the mean of a few noisy samples would add an offset where there was none.
-fn rest_before(hit: &Hit, offset: f64, height: f64) -> f64 {
-    let begins = hit.force.iter().position(|force| (force - offset).abs() > 0.01 * height.abs()).unwrap_or(0);
+fn rest_before(hit: &Hit, blow: &Blow) -> f64 {
+    let first = |force: &f64| (force - blow.offset).abs() > 0.01 * blow.height.abs();
+    let begins = hit.force.iter().position(first).unwrap_or(0);
     let before = hit.acceleration.get(..begins).unwrap_or_default();
     if before.len() < LEAST_REST {
         return 0.0;

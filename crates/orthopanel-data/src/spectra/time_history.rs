@@ -7,7 +7,7 @@ use orthopanel_model::Place;
 use super::{
     accelerance::Accelerance,
     channels::{self, Quantity},
-    extremes::{LANES, extremes, sampled_median},
+    extremes::{LANES, extremes, median, sampled_median},
     misplaced_channel::{self, Ordered},
 };
 use crate::{
@@ -270,6 +270,17 @@ fn common_grid(force: &Record, acceleration: &Record) -> Result<(usize, f64), Da
             let due = start + step * *index as f64;
             (*time - due).abs() > STEP_TOLERANCE * step
         });
+        if uneven.is_some()
+            && let Some((index, ratio)) = leap(&record.abscissa)
+        {
+            let at = record.at_point(index);
+            let problem = format!(
+                "{name}, sample {}: {ratio:.3} times the usual step after the one before: samples are missing or stand twice; \
+                 force and acceleration need the same even times",
+                index + 1
+            );
+            return Err(DataError::Channels { at, problem });
+        }
         if let Some((index, time)) = uneven {
             let problem = format!(
                 "{name}, sample {}: t = {time} s, {} s expected: force and acceleration need the same even times",
@@ -281,6 +292,21 @@ fn common_grid(force: &Record, acceleration: &Record) -> Result<(usize, f64), Da
     }
     Ok((length, 1.0 / step))
 }
+
+/// The first sample that does not follow the one before after the usual step, where nearly all do, and its step over the usual one.
+fn leap(times: &[f64]) -> Option<(usize, f64)> {
+    let steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let usual = median(steps.clone());
+    let is_leap = |step: &f64| (step / usual - 1.0).abs() > LEAP;
+    let first = steps.iter().position(is_leap)?;
+    let few = LEAPS_AT_MOST.max(steps.len() / 1000);
+    (steps.iter().filter(|step| is_leap(step)).count() <= few).then(|| (first + 1, steps[first] / usual))
+}
+
+/// Part by which a step of times printed with few digits stays within the usual one, ...
+const LEAP: f64 = 0.5;
+/// ... and leaps that are faults of a record whose times else are even.
+const LEAPS_AT_MOST: usize = 8;
 
 fn mean_step(record: &Record) -> Result<f64, DataError> {
     let span = record.abscissa.last().zip(record.abscissa.first()).map(|(last, first)| last - first);

@@ -1,10 +1,6 @@
 //! Windows over the records of a hit.
 
-use super::{
-    blow_window::BlowWindow,
-    extremes::{peak, sampled_median},
-    time_history::Hit,
-};
+use super::{blow::Blow, blow_window::BlowWindow, time_history::Hit};
 
 /// What the records are multiplied by before the transform.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -27,7 +23,8 @@ pub enum Window {
         /// Half the width of the force window \[s\].
         half_width: f64,
     },
-    /// The force kept within `half_width` \[s\] of its peak and zero elsewhere; both channels times $e^{-t/\tau}$.
+    /// The force kept within `half_width` \[s\] of its peak and zero elsewhere; both channels times $e^{-t/\tau}$ from the blow
+    /// on, and zero before it, where there is nothing but noise.
     ///
     /// Since both channels carry the same exponential, the quotient is the accelerance at $s = 1/\tau + j\omega$
     /// exactly, for any linear piece: each mode's decay rate $\zeta\omega$ seems raised by $1/\tau$, and nothing leaks.
@@ -117,8 +114,7 @@ impl Window {
             return 0.0;
         }
         let length = hit.force.len() as f64;
-        let (at, _) = peak(&hit.force, sampled_median(&hit.force));
-        let slope = (std::f64::consts::PI * at as f64 / length).tan().recip().abs();
+        let slope = (std::f64::consts::PI * hit.blow().at as f64 / length).tan().recip().abs();
         std::f64::consts::TAU * rate / length * slope.clamp(1.0, length)
     }
 
@@ -133,8 +129,8 @@ impl Window {
         }
     }
 
-    /// Windows the two channels of a hit whose offsets are removed; `peak` is the sample of the greatest force.
-    pub(super) fn apply(self, force: &mut [f64], acceleration: &mut [f64], peak: usize, rate: f64) {
+    /// Windows the two channels of a hit whose offsets are removed.
+    pub(super) fn apply(self, force: &mut [f64], acceleration: &mut [f64], blow: &Blow, rate: f64) {
         match self {
             Self::None | Self::AsNeeded => {}
             Self::Hann => {
@@ -145,11 +141,14 @@ impl Window {
                     }
                 }
             }
-            Self::Force { half_width } => keep_near(force, peak, half_width * rate),
+            Self::Force { half_width } => keep_near(force, blow.at, half_width * rate),
             Self::ForceExponential { half_width, tau } => {
-                keep_near(force, peak, half_width * rate);
+                keep_near(force, blow.at, half_width * rate);
+                let begins = blow.quiet.unwrap_or(0);
                 for channel in [force, acceleration] {
-                    for (n, value) in channel.iter_mut().enumerate() {
+                    let (before, after) = channel.split_at_mut(begins.min(channel.len()));
+                    before.fill(0.0);
+                    for (n, value) in after.iter_mut().enumerate() {
                         *value *= (-(n as f64) / (rate * tau)).exp();
                     }
                 }
