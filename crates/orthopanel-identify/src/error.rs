@@ -43,7 +43,7 @@ pub enum IdentifyError {
     },
     /// Records that end below the modes that would tell the constants.
     #[error(
-        "the records end at {to:.1} Hz and hold {found} modes of {of}, for {needed} constants: the next needed lies at about \
+        "the band of the records ends at {to:.1} Hz, by their sampling rate or by the hammer's force, and holds {found} modes of {of}, for {needed} constants: the next needed lies at about \
          {next:.0} Hz; sample at {:.0} Hz or more (2.56 times that), with a hammer tip whose force reaches it, or hold a \
          constant under [constants]", RATE_OVER_BAND * next
     )]

@@ -201,7 +201,9 @@ pub fn misfit_table(misfits: &[&HitMisfit]) -> String {
     let mut table = tables::aligned(&heading, &misfits.iter().map(row).collect::<Vec<_>>());
     for misfit in misfits {
         if let Some(said) = misfit.verdict.said() {
-            table += &format!("{} to {}: {said}\n", place_text(misfit.force), place_text(misfit.response));
+            let compared =
+                if misfit.verdict.kept { "" } else { " (an accelerance leaves it out; compared here all the same)" };
+            table += &format!("{} to {}: {said}{compared}\n", place_text(misfit.force), place_text(misfit.response));
         }
     }
     table

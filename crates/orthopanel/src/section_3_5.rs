@@ -29,6 +29,9 @@ pub struct Integration {
     elements: usize,
     /// Steps of Runge-Kutta from one sample to the next.
     steps: usize,
+    /// Steps asked for, where these could not be taken.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    steps_asked: Option<usize>,
     /// Greatest difference from the exact stepper on the same elements, over the measured peak, of all hits.
     step_error_of_peak: f64,
     /// Steps at which that difference is 1e-8, by the method's fourth order.
@@ -38,14 +41,17 @@ pub struct Integration {
 impl Integration {
     /// What was done, and how far the steps are from none.
     pub fn said(&self) -> String {
-        let Self { force, response, elements, steps, step_error_of_peak, steps_to_1e_8 } = self;
+        let Self { force, response, elements, steps, steps_asked, step_error_of_peak, steps_to_1e_8 } = self;
+        let asked = steps_asked.map_or(String::new(), |asked| {
+            format!(" ({asked} asked: a band-limited force takes a multiple of its straight lines between samples)")
+        });
         let onwards = if *step_error_of_peak > CONVERGED {
             format!("; --steps {steps_to_1e_8} brings 1e-8")
         } else {
             String::new()
         };
         format!(
-            "{} to {}: {elements} beam elements, {steps} steps of Runge-Kutta from one sample to the next; they err by \
+            "{} to {}: {elements} beam elements, {steps} steps{asked} of Runge-Kutta from one sample to the next; they err by \
              {step_error_of_peak:.1e} of the peak, beside the exact stepper on the same elements{onwards}",
             place_text(*force),
             place_text(*response)
@@ -89,7 +95,10 @@ pub fn by_runge_kutta(
     let needed = (highest / (history.rate * ANGLE_OF_STEP)).ceil().max(1.0) as usize;
     // A band-limited force runs in straight lines between finer instants, each of which takes a whole number of steps.
     let (_, finer) = between_samples.straight_lines(&[0.0; 2]);
-    let steps = steps.unwrap_or(needed).div_ceil(finer) * finer;
+    let asked = steps;
+    let whole = |steps: usize| steps.div_ceil(finer) * finer;
+    let steps = whole(asked.unwrap_or(needed));
+    let steps_asked = asked.filter(|asked| *asked != steps);
     let stepped = |stepping: Stepping| {
         let static_flexibility = exact.static_flexibility;
         let settings = HistorySettings { between_samples, stepping, static_flexibility, band: None };
@@ -106,9 +115,9 @@ pub fn by_runge_kutta(
     let of_steps = apart(&pair, &stepped(Stepping::Exact)?);
     let step_error_of_peak = of_steps.into_iter().fold(0.0, f64::max) / 100.0;
     let growth = (step_error_of_peak / CONVERGED).powf(1.0 / ORDER).max(1.0);
-    let steps_to_1e_8 = (steps as f64 * growth * SURELY).ceil() as usize;
+    let steps_to_1e_8 = whole((steps as f64 * growth * SURELY).ceil() as usize);
     let (force, response) = (history.force_at, history.response_at);
-    Ok((pair, Integration { force, response, elements, steps, step_error_of_peak, steps_to_1e_8 }))
+    Ok((pair, Integration { force, response, elements, steps, steps_asked, step_error_of_peak, steps_to_1e_8 }))
 }
 
 /// Beyond what the order says, since the fourth power holds for short steps only.
