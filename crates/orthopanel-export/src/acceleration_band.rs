@@ -34,10 +34,7 @@ impl AccelerationBands {
         };
         let further: Vec<_> = all.modes().iter().skip(kept.modes().len()).cloned().collect();
         let left_out = ModalModel::new(ports.forces.len(), ports.responses.len(), further)?;
-        let remainder = resource.static_remainder().to_vec();
-        // The static part of a panel with effects is not known: what lies beyond the further modes is not counted.
-        let known = panel.effects.is_empty();
-        let beyond = if known { left_out.left_of_flexibility(remainder) } else { remainder };
+        let beyond = left_out.left_of_flexibility(resource.static_remainder().to_vec());
         Ok(Self { kept: kept.clone(), left_out, beyond })
     }
 

@@ -35,7 +35,7 @@ impl PanelModel {
     }
 
     /// What the flexible modes that these leave out add to displacements at rest, $\sum W_rW_f/\omega^2$ \[m/N\]: a row a response,
-    /// a column a force. Zero for a panel with effects, where the sum over all is not known.
+    /// a column a force. Zero beside a core that relaxes, where the sum over all is not known.
     ///
     /// # Errors
     /// As [`PanelModel::static_flexibility`].

@@ -4,8 +4,8 @@ use std::f64::consts::TAU;
 
 use num_complex::Complex64;
 use orthopanel_model::{
-    Boundary, CoreModulus, Damping, EffectState, ModalStepper, ModeRange, PanelModel, Piece, Place, ReceptanceSetup,
-    RecordSetting, effect,
+    Boundary, CoreModulus, Damping, EffectState, ModalStepper, ModeRange, PanelMode, PanelModel, Piece, Place,
+    ReceptanceSetup, RecordSetting, effect,
 };
 
 const PIECE: Piece = Piece { length: 0.8, width: 0.1, thickness: 0.03, mass_per_area: 6.88 };
@@ -71,6 +71,74 @@ fn val_modes_are_the_poles_of_the_receptance() {
         // The residual shapes hold the first two of the six terms that the receptance keeps.
         let (low, high) = (dynamic(f * (1.0 - 1e-5)), dynamic(f * (1.0 + 1e-5)));
         assert!(low * high < 0.0, "no pole at {f} Hz: {low:e} {high:e}");
+    }
+}
+
+/// A free beam with a mass $m$ at $p$, from what is known of it without: a force at $f$ moves it rigidly by $a(x)$, the mass pulls back
+/// with $m\,a(p)$, and the motion that is left does none of the rigid motions of beam and mass together.
+#[test]
+fn val_static_part_beside_a_mass_in_closed_form() {
+    let (mass, p, f, r) = (0.09, 0.11, -0.31, 0.27);
+    let model = PanelModel::from_json(&text(r#"{"id":"local-mass","owner":"panel","mass":0.09,"x":0.11}"#)).unwrap();
+    let bare = PanelModel::from_json(&text("")).unwrap();
+    let flexibility = |from: f64, to: f64| bare.static_flexibility(1, &[at(from)], &[at(to)]).unwrap().unwrap()[0][0];
+    let rigid: Vec<PanelMode> =
+        bare.modes(ModeRange::Count(1)).unwrap().into_iter().filter(PanelMode::is_rigid).collect();
+    let shapes = |x: f64| -> Vec<f64> { rigid.iter().map(|mode| mode.deflection(at(x))).collect() };
+    let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    let (at_p, at_f) = (shapes(p), shapes(f));
+    let heavier = 1.0 + mass * product(&at_p, &at_p);
+    for x in [r, f, p] {
+        let pulled = mass * product(&at_f, &at_p) / heavier;
+        let elastic = |x: f64| flexibility(f, x) - pulled * flexibility(p, x);
+        let expected = elastic(x) - mass * elastic(p) / heavier * product(&at_p, &shapes(x));
+        let found = model.static_flexibility(6, &[at(f)], &[at(x)]).unwrap().unwrap()[0][0];
+        assert!((found / expected - 1.0).abs() < 1e-9, "at {x}: {found:e}, expected {expected:e}");
+    }
+}
+
+/// Held panels stand still under a force whatever they carry.
+#[test]
+fn val_masses_change_nothing_of_a_held_panel_at_rest() {
+    let carried = r#""effects":[{"id":"local-mass","owner":"panel","mass":0.2,"x":0.11},
+        {"id":"resonator","owner":"panel","mass":0.1,"frequency":200,"zeta":0.004,"x":-0.2}]"#;
+    let beam = r#""structure":"timoshenko-beam","constants":{"e_x":1.07e10,"g_zx":5.363e8},
+        "boundary":{"left":"pinned","right":"clamped"}"#;
+    let plate = r#""structure":"mindlin-plate","boundary":{"left":"pinned","right":"clamped","front":"pinned","back":"pinned"},
+        "constants":{"e_x":1.07e10,"e_y":9e9,"nu_xy":0.3,"g_xy":3e9,"g_yz":3e8,"g_zx":5.363e8}"#;
+    for (panel, within) in [(beam, 1e-9), (plate, 1e-6)] {
+        let flexibility = |effects: &str| {
+            let text = format!(
+                r#"{{"schema":"orthopanel.model/1",{panel},"piece":{{"length":0.8,"width":0.3,"thickness":0.03,
+                "mass_per_area":6.88}},"damping":{{"ratios":[],"beyond":0.004}},{effects}}}"#
+            );
+            let model = PanelModel::from_json(&text).unwrap();
+            model.static_flexibility(6, &[at(-0.31), at(0.2)], &[at(0.27)]).unwrap().unwrap()
+        };
+        let (with, without) = (flexibility(carried), flexibility(r#""effects":[]"#));
+        // Two ports far apart on the plate are all but independent: what is left there is small beside the other.
+        let greatest = without[0].iter().fold(0.0_f64, |most, value| most.max(value.abs()));
+        for (with, without) in with[0].iter().zip(&without[0]) {
+            assert!((with - without).abs() < within * greatest, "{with:e} {without:e}");
+        }
+    }
+}
+
+/// What few modes miss of the accelerance well below the last is the static part of the others.
+#[test]
+fn val_the_static_part_makes_up_for_the_modes_left_out() {
+    let model = PanelModel::from_json(&text(DRESSED)).unwrap();
+    let ports = [[at(-0.31)], [at(0.27)]];
+    let modes = model.modal_model(ModeRange::Count(2), &ports[0], &ports[1]).unwrap();
+    let beyond = model.static_remainder(&modes, &ports[0], &ports[1]).unwrap()[0][0];
+    // Below the first resonance, where the damping of no mode counts.
+    for frequency in [20.0, 60.0, 120.0, 200.0] {
+        let omega = TAU * frequency;
+        let truth = line(SAME, 0.004, Complex64::new(0.0, omega));
+        let sum = modes.accelerance(0, 0, frequency);
+        let [without, with] =
+            [sum, sum - omega * omega * beyond].map(|found| (found - truth).norm() / (omega * omega * beyond));
+        assert!((without - 1.0).abs() < 0.03 && with < 0.03, "{frequency} Hz: {without} {with}");
     }
 }
 

@@ -96,8 +96,9 @@ pub(super) struct Dressed {
 }
 
 impl Dressed {
-    /// On the first `summed` flexible modes of the structure with what effects spread over it.
-    pub(super) fn new(parts: PanelWithEffects, summed: usize) -> Result<Self, ModelError> {
+    /// On the first `summed` flexible modes of the structure with what effects spread over it; beside the effects' elements one
+    /// without mass at each of `ports`.
+    pub(super) fn new(parts: PanelWithEffects, summed: usize, ports: &[Place]) -> Result<Self, ModelError> {
         let PanelWithEffects { setting, even, values, effects, .. } = parts;
         let dressing = Dressing::of(effects, setting, 0)?;
         if dressing.plate.is_some() {
@@ -106,6 +107,8 @@ impl Dressed {
             ));
         }
         let mut elements = elements(effects, setting)?;
+        let without_mass = ElementLaw::Mass { mass: 0.0 };
+        elements.extend(ports.iter().map(|&port| PointElement::on_deflection(without_mass, Seat::At(port))));
         let (structure, plate): (SharedStructure, _) = match (even, dressing.terms) {
             (Even::Beam(even), None) => (Arc::<TimoshenkoBeam>::clone(even), None),
             (Even::Beam(_), Some(terms)) => {
@@ -253,7 +256,7 @@ impl DressedPanel {
 
     /// The modes of the panel and its matrices, in rising order, all that there are.
     pub(super) fn solve(parts: PanelWithEffects, count: usize) -> Result<(Self, System, Vec<FoundMode>), ModelError> {
-        let dressed = Dressed::new(parts, count + SPARE_MODES)?;
+        let dressed = Dressed::new(parts, count + SPARE_MODES, &[])?;
         if dressed.core.is_some() {
             return Err(ModelError::Unsupported("viscoelastic-core in a model of modes".into()));
         }

@@ -8,6 +8,7 @@ mod catalogue;
 mod channel_factor;
 mod core_fit;
 mod core_modulus;
+mod dressed_flexibility;
 mod dressed_modes;
 mod dressed_panel;
 mod dressed_system;

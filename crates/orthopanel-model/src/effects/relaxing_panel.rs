@@ -31,7 +31,7 @@ impl Relaxing {
     /// On `count` flexible bare modes, with shapes of their own for the elements' places and for `ports`; `None` where no
     /// effect is a core.
     pub(super) fn new(parts: PanelWithEffects, count: usize, ports: &[Place]) -> Result<Option<Self>, ModelError> {
-        let Dressed { mut panel, base, elements, core } = Dressed::new(parts, count)?;
+        let Dressed { mut panel, base, elements, core } = Dressed::new(parts, count, &[])?;
         let Some(core) = core else { return Ok(None) };
         let mut system = System::new(&View::new(&base, &[], &[])?, &[], parts.damping);
         let of_elements: Vec<Row> = elements.iter().filter_map(row).collect();
