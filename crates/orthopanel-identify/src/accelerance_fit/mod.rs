@@ -169,8 +169,19 @@ fn by_papers_error(
     let parameters = starting_parameters(&problem, &start);
     let parameters = paper_error::minimise(&problem, &start, test.boundary, &parameters, settings.paper_weights)?;
     let minimum = Minimum { at: problem.linearise(&parameters)?, parameters };
-    outcome::outcome(test, settings, start, &mut problem, minimum)
+    let mut found = outcome::outcome(test, settings, start, &mut problem, minimum)?;
+    if let Some(left) = found.chi_square.filter(|left| *left > PAPERS_MISFIT) {
+        found.notes.push(format!(
+            "the minimum of eq. 23 leaves {left:.1} times the noise: it takes one frequency and one magnitude of each resonance, and \
+             magnitudes, which it weighs most, tell little of the constants; leave out --search simplex, or give \
+             --magnitude-weight 0"
+        ));
+    }
+    Ok(found)
 }
+
+/// Misfit per datum from which another search would have found the records' own minimum elsewhere.
+const PAPERS_MISFIT: f64 = 2.0;
 
 fn assemble(start: &Start, settings: Settings) -> Result<AcceleranceProblem, IdentifyError> {
     let rough = Rough {
