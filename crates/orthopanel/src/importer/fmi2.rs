@@ -9,7 +9,7 @@ use fmi_rs::model_description::fmi2::ModelDescription;
 use super::{Instance, References};
 
 pub(super) fn references(description: &ModelDescription) -> Result<References, String> {
-    References::find(|name| description.variable_by_name(name).ok().map(|variable| variable.valueReference))
+    References::find(|name| description.variable_by_name(name).ok().map(|variable| (variable.valueReference, 1)))
 }
 
 pub(super) struct Fmi2<'a> {
@@ -39,7 +39,7 @@ impl Instance for Fmi2<'_> {
     }
 
     fn outputs(&self) -> Result<Vec<f64>, &'static str> {
-        let mut values = vec![0.0; self.references.outputs.len()];
+        let mut values = vec![0.0; self.references.output_count];
         done(self.instance.getReal(&self.references.outputs, &mut values), "fmi2GetReal")?;
         Ok(values)
     }

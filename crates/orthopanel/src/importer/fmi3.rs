@@ -9,7 +9,11 @@ use fmi_rs::model_description::fmi3::ModelDescription;
 use super::{Instance, References};
 
 pub(super) fn references(description: &ModelDescription) -> Result<References, String> {
-    References::find(|name| description.variable_by_name(name).ok().map(|variable| variable.valueReference))
+    References::find(|name| {
+        let variable = description.variable_by_name(name).ok()?;
+        let sizes = description.initial_size(variable).ok()?;
+        Some((variable.valueReference, sizes.iter().product()))
+    })
 }
 
 pub(super) struct Fmi3<'a> {
@@ -41,7 +45,7 @@ impl Instance for Fmi3<'_> {
     }
 
     fn outputs(&self) -> Result<Vec<f64>, &'static str> {
-        let mut values = vec![0.0; self.references.outputs.len()];
+        let mut values = vec![0.0; self.references.output_count];
         done(self.instance.getFloat64(&self.references.outputs, &mut values), "fmi3GetFloat64")?;
         Ok(values)
     }

@@ -28,24 +28,32 @@ trait Instance {
 struct References {
     force_linear: u32,
     forces: Vec<u32>,
+    force_count: usize,
     outputs: Vec<u32>,
+    /// Numbers in all outputs together.
+    output_count: usize,
 }
 
 impl References {
-    /// Finds the variables by name; `Err` tells which is missing.
-    fn find(reference: impl Fn(&str) -> Option<u32>) -> Result<Self, String> {
-        let numbered =
-            |kind: &str| -> Vec<u32> { (1..).map_while(|port| reference(&format!("{kind}_{port}"))).collect() };
-        let needed = |kind: &str| match numbered(kind) {
-            found if found.is_empty() => Err(format!("it has no variable {kind}_1")),
-            found => Ok(found),
+    /// Finds the variables by name, each with how many numbers it holds: one a port, or one array for all ports of a kind. `Err`
+    /// tells which is missing.
+    fn find(variable: impl Fn(&str) -> Option<(u32, usize)>) -> Result<Self, String> {
+        let needed = |kind: &str| -> Result<(Vec<u32>, usize), String> {
+            let numbered: Vec<_> = (1..).map_while(|port| variable(&format!("{kind}_{port}"))).collect();
+            let array = || variable(kind).map(|whole| vec![whole]);
+            let found = if numbered.is_empty() { array() } else { Some(numbered) };
+            let found = found.ok_or_else(|| format!("it has neither a variable {kind}_1 nor an array {kind}"))?;
+            Ok((found.iter().map(|(reference, _)| *reference).collect(), found.iter().map(|(_, size)| size).sum()))
         };
-        let mut outputs = Vec::new();
+        let (mut outputs, mut output_count) = (Vec::new(), 0);
         for kind in ["acceleration", "velocity", "displacement"] {
-            outputs.append(&mut needed(kind)?);
+            let (mut references, count) = needed(kind)?;
+            outputs.append(&mut references);
+            output_count += count;
         }
-        let force_linear = reference("force_linear").ok_or("it has no variable force_linear")?;
-        Ok(Self { force_linear, forces: needed("force")?, outputs })
+        let (force_linear, _) = variable("force_linear").ok_or("it has no variable force_linear")?;
+        let (forces, force_count) = needed("force")?;
+        Ok(Self { force_linear, forces, force_count, outputs, output_count })
     }
 }
 
@@ -75,7 +83,7 @@ pub fn simulate(
             let fmu = fmi_rs::fmi2::builder::FMU2Builder::new(&path).map_err(import)?;
             let references = fmi2::references(&fmu.model_description);
             let references = references.map_err(|problem| foreign(path, problem))?;
-            let force = force(references.forces.len())?;
+            let force = force(references.force_count)?;
             let instance =
                 fmi2::Fmi2 { instance: fmu.instantiate_cs("panel").map_err(import)?, references: &references };
             let motions = run(&instance, &references, &force).map_err(|call| failed(path, call))?;
@@ -86,7 +94,7 @@ pub fn simulate(
             (fmu.eventModeUsed, fmu.earlyReturnAllowed) = (false, false);
             let references = fmi3::references(&fmu.model_description);
             let references = references.map_err(|problem| foreign(path, problem))?;
-            let force = force(references.forces.len())?;
+            let force = force(references.force_count)?;
             let instance =
                 fmi3::Fmi3 { instance: fmu.instantiate_cs("panel").map_err(import)?, references: &references };
             let motions = run(&instance, &references, &force).map_err(|call| failed(path, call))?;
@@ -117,7 +125,7 @@ fn failed(path: &Path, call: &str) -> CommandError {
 /// The co-simulation itself, at the samples of the force.
 fn run(instance: &dyn Instance, references: &References, driving: &DrivingForce) -> Result<Vec<Motion>, &'static str> {
     let (force, held) = (driving.stepped(), driving.is_held());
-    let responses = references.outputs.len() / 3;
+    let responses = references.output_count / 3;
     let mut motions = vec![Motion::default(); responses];
     instance.set_force_linear(!held)?;
     instance.initialise(force.time.first().copied().unwrap_or(0.0), &force.at(0))?;
