@@ -19,9 +19,15 @@ fn val_a_good_hit_has_no_fault() {
 fn val_overload_is_found_in_either_channel() {
     let mut hit = good();
     hit.force.iter_mut().for_each(|force| *force = force.min(80.0));
-    let [HitFault::Overload { channel: Channel::Force, samples: 3, value: 80.0 }] = hit.faults(RATE)[..] else {
+    let [fault @ HitFault::Overload { channel: Channel::Force, first, samples: 3, value: 80.0 }] = hit.faults(RATE)[..]
+    else {
         panic!("{:?}", hit.faults(RATE))
     };
+    // Samples are counted from one.
+    assert_eq!(hit.force.iter().position(|force| *force == 80.0), Some(first - 1));
+    let said =
+        format!("force cut off from sample {first} on: 3 samples at exactly 80.0000 N (overload): set a greater range");
+    assert!(fault.to_string().starts_with(&said), "{fault}");
     let mut hit = good();
     let greatest = hit.acceleration.iter().copied().fold(0.0, f64::max);
     hit.acceleration.iter_mut().for_each(|a| *a = a.clamp(-0.5 * greatest, 0.5 * greatest));

@@ -155,7 +155,7 @@ fn val_two_short_blows_that_share_their_ceiling_to_the_last_bit_are_cut_off() {
     let cut = hits(90.0);
     assert!(cut.iter().all(|hit| overloads(hit).is_empty()), "one sample at the ceiling tells nothing");
     let refused = history(cut).accelerance(Estimation::default()).unwrap_err().to_string();
-    assert_eq!(refused.matches("1 samples at exactly 90.0000 N").count(), 2, "{refused}");
+    assert_eq!(refused.matches("1 sample at exactly 90.0000 N").count(), 2, "{refused}");
 }
 
 /// What a sharp anti-alias filter makes of a blow much shorter than a sample: it rings on either side.

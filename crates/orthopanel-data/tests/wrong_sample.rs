@@ -25,7 +25,10 @@ fn quantised(hit: &Hit, bits: i32) -> Hit {
 fn cut(hit: &Hit) -> Vec<f64> {
     let faults = hit.faults(RATE).into_iter();
     let cut = faults.filter_map(|fault| match fault {
-        HitFault::CutCrest { expected, .. } => Some(expected),
+        HitFault::CutCrest { sample, value, expected } => {
+            assert_eq!(hit.acceleration[sample - 1], value);
+            Some(expected)
+        }
         _ => None,
     });
     cut.collect()

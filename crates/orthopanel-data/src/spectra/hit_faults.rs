@@ -28,6 +28,8 @@ pub enum HitFault {
     Overload {
         /// The channel.
         channel: Channel,
+        /// The first sample at the extreme, from 1.
+        first: usize,
         /// Samples at the extreme, in a row or scattered.
         samples: usize,
         /// The extreme \[N or m/s²\].
@@ -35,6 +37,8 @@ pub enum HitFault {
     },
     /// The one greatest sample of the response cut off.
     CutCrest {
+        /// The sample, from 1.
+        sample: usize,
         /// What stands there \[m/s²\].
         value: f64,
         /// What its neighbours point to \[m/s²\].
@@ -109,13 +113,19 @@ impl fmt::Display for HitFault {
         };
         match *self {
             Self::Silent(channel) => write!(f, "no signal in the {}", name(channel).0),
-            Self::Overload { channel, samples, value } => {
+            Self::Overload { channel, first, samples, value } => {
                 let (name, unit) = name(channel);
-                write!(f, "{name} cut off: {samples} samples at exactly {value:.4} {unit} (overload)")
+                let many = if samples == 1 { "" } else { "s" };
+                write!(
+                    f,
+                    "{name} cut off from sample {first} on: {samples} sample{many} at exactly {value:.4} {unit} (overload): \
+                     {GREATER_RANGE}"
+                )
             }
-            Self::CutCrest { value, expected } => write!(
+            Self::CutCrest { sample, value, expected } => write!(
                 f,
-                "acceleration cut off: its greatest sample is {value:.4} m/s2 where {expected:.4} would fit (overload)"
+                "acceleration cut off at sample {sample}: its greatest is {value:.4} m/s2 where {expected:.4} would fit \
+                 (overload): {GREATER_RANGE}"
             ),
             Self::DroppedSample { channel, sample, value, expected } => {
                 let (name, unit) = name(channel);
@@ -163,6 +173,9 @@ impl fmt::Display for HitFault {
         }
     }
 }
+
+/// What helps where a channel is cut off.
+const GREATER_RANGE: &str = "set a greater range, or hit more softly";
 
 /// Difference of two lines over the greater of both beyond which they hardly differ but in sign: that makes two.
 const TURNED_ROUND: f64 = 1.9;

@@ -43,7 +43,7 @@ const CHANCE: f64 = 1e-4;
 pub(super) fn overload(channel: Channel, values: &[f64], levels: Levels) -> Option<HitFault> {
     levels.far().filter_map(|extreme| Touches::of(values, extreme)).find_map(|touches| {
         let samples = touches.clipped(channel, values, levels.reach())?;
-        Some(HitFault::Overload { channel, samples, value: touches.extreme })
+        Some(HitFault::Overload { channel, first: touches.first(), samples, value: touches.extreme })
     })
 }
 
@@ -69,6 +69,11 @@ impl Touches {
             }
         }
         Some(Self { extreme, runs })
+    }
+
+    /// The first sample on the extreme, from 1.
+    fn first(&self) -> usize {
+        self.runs.first().map_or(0, |(start, _)| start + 1)
     }
 
     fn samples(&self) -> usize {
@@ -174,7 +179,8 @@ pub(super) fn shared_extremes(hits: &[Hit]) -> Vec<(usize, HitFault)> {
                 differ > PAIR_DROP * steps.fold(0.0, f64::max)
             };
             if sharing.len() >= 3 || (sharing.len() == 2 && (samples >= 4 || fine())) {
-                found.push((index, HitFault::Overload { channel, samples: on_it(values(hit)), value }));
+                let first = values(hit).iter().position(|&sample| sample == value).map_or(0, |at| at + 1);
+                found.push((index, HitFault::Overload { channel, first, samples: on_it(values(hit)), value }));
             }
         }
     }

@@ -81,7 +81,7 @@ pub(super) fn cut_crest(acceleration: &[f64], levels: Levels) -> Option<HitFault
         let n = acceleration.iter().position(|&sample| sample == value)?;
         let error = error_at(acceleration, n, noise, EXPLAINED_CREST, &filter)?;
         let is_cut = error * (value - levels.middle) < 0.0 && error.abs() > STEPS * converter_step(acceleration);
-        is_cut.then_some(HitFault::CutCrest { value, expected: value - error })
+        is_cut.then_some(HitFault::CutCrest { sample: n + 1, value, expected: value - error })
     })
 }
 
