@@ -4,6 +4,7 @@ use orthopanel_identify::PieceFit;
 use orthopanel_model::Place;
 use plotters::prelude::*;
 
+use super::curve::curve;
 use super::frequency_axes::{self, degrees};
 use super::{FONT, GRID, MEASURED, MODEL, stacked};
 use crate::error::CommandError;
@@ -39,8 +40,9 @@ pub fn accelerance(fit: &PieceFit, places: [Place; 2], seen: &WholeAccelerance) 
             }
         }
         let magnitude = values.iter().map(|(line, (re, im))| (*line, re.hypot(*im).max(low)));
+        let magnitude = curve(&chart, magnitude, MODEL.stroke_width(2));
         chart
-            .draw_series(LineSeries::new(magnitude, MODEL.stroke_width(2)))?
+            .draw_series([magnitude])?
             .label("model")
             .legend(|(x, y)| PathElement::new([(x, y), (x + 16, y)], MODEL.stroke_width(2)));
         chart
@@ -53,7 +55,8 @@ pub fn accelerance(fit: &PieceFit, places: [Place; 2], seen: &WholeAccelerance) 
 
         let mut chart = frequency_axes::phase(lower, highest)?;
         let phase = values.iter().map(|(line, (re, im))| (*line, degrees(im.atan2(*re))));
-        chart.draw_series(LineSeries::new(phase, MODEL.stroke_width(2)))?;
+        let phase = curve(&chart, phase, MODEL.stroke_width(2));
+        chart.draw_series([phase])?;
         Ok(())
     })
 }

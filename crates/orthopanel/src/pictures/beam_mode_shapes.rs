@@ -3,6 +3,7 @@
 use orthopanel_model::{Piece, Place};
 use plotters::prelude::*;
 
+use super::curve::curve;
 use super::{Area, Drawn, FONT, GRID, MODEL, titled};
 use crate::error::CommandError;
 
@@ -62,7 +63,8 @@ fn line(area: &Area, piece: &Piece, shape: &ModeShape) -> Drawn {
         .label_style((FONT, 12))
         .draw()?;
     chart.draw_series(LineSeries::new([(-half, 0.0), (half, 0.0)], BLACK.mix(0.5)))?;
-    chart.draw_series(LineSeries::new(points.iter().map(|(x, w)| (*x, scale * w)), MODEL.stroke_width(2)))?;
+    let deflected = curve(&chart, points.iter().map(|(x, w)| (*x, scale * w)), MODEL.stroke_width(2));
+    chart.draw_series([deflected])?;
     // Nodes, where the deflection changes sign: a sensor there is blind to the mode.
     let node = |pair: &[(f64, f64)]| match *pair {
         [(left, a), (right, b)] if (a < 0.0) != (b < 0.0) => Some((left + (right - left) * a / (a - b), 0.0)),

@@ -3,6 +3,7 @@
 use orthopanel_data::Accelerance;
 use plotters::prelude::*;
 
+use super::curve::curve;
 use super::envelope::envelope;
 use super::{FONT, GRID, MODEL, titled};
 use crate::error::CommandError;
@@ -37,7 +38,8 @@ pub fn coherence(piece: &str, records: &[&Accelerance]) -> Result<Option<String>
             .draw()?;
         for (record, coherence) in &told {
             let points = record.frequency.iter().copied().zip(coherence.iter().copied()).collect();
-            chart.draw_series(LineSeries::new(envelope(points), colour))?;
+            let points = curve(&chart, envelope(points), colour);
+            chart.draw_series([points])?;
         }
         Ok(())
     });

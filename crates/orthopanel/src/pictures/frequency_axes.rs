@@ -7,13 +7,18 @@ use plotters::coord::ranged1d::{DefaultFormatting, KeyPointHint};
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 
-use super::{Area, FONT, GRID};
+use super::{Area, Chart, FONT, GRID};
 
-type Chart<'a, 'b, Y> = ChartContext<'b, SVGBackend<'a>, Cartesian2d<RangedCoordf64, Y>>;
+type OverFrequency<'a, 'b, Y> = Chart<'a, 'b, RangedCoordf64, Y>;
 type Built<T> = Result<T, Box<dyn std::error::Error>>;
 
 /// Logarithmic, from `low` to `high` \[(m/s²)/N\], up to the frequency `highest` \[Hz\].
-pub fn magnitude<'a, 'b>(area: &'b Area<'a>, highest: f64, low: f64, high: f64) -> Built<Chart<'a, 'b, LogCoord<f64>>> {
+pub fn magnitude<'a, 'b>(
+    area: &'b Area<'a>,
+    highest: f64,
+    low: f64,
+    high: f64,
+) -> Built<OverFrequency<'a, 'b, LogCoord<f64>>> {
     let mut chart = ChartBuilder::on(area)
         .margin(12)
         .x_label_area_size(30)
@@ -55,7 +60,7 @@ impl Ranged for Phases {
 }
 
 /// Phases as [`degrees`] gives them, up to the frequency `highest` \[Hz\].
-pub fn phase<'a, 'b>(area: &'b Area<'a>, highest: f64) -> Built<Chart<'a, 'b, Phases>> {
+pub fn phase<'a, 'b>(area: &'b Area<'a>, highest: f64) -> Built<OverFrequency<'a, 'b, Phases>> {
     let mut chart = ChartBuilder::on(area)
         .margin(12)
         .x_label_area_size(45)

@@ -3,6 +3,7 @@
 use orthopanel_identify::AcceleranceFit;
 use plotters::prelude::*;
 
+use super::curve::curve;
 use super::envelope::envelope;
 use super::frequency_axes::{self, degrees};
 use super::{FONT, GRID, MEASURED, MODEL, stacked};
@@ -28,8 +29,9 @@ pub fn measured_accelerance(piece: &str, fit: &AcceleranceFit) -> Result<String,
         let curves = [("measured", &fit.measured, MEASURED, 3), ("calculated", &fit.model, MODEL, 1)];
         for (label, values, colour, width) in curves {
             let sizes = fit.frequency.iter().zip(values).map(|(&line, value)| (line, value.norm().max(low)));
+            let sizes = curve(&chart, envelope(sizes.collect()), colour.stroke_width(width));
             chart
-                .draw_series(LineSeries::new(envelope(sizes.collect()), colour.stroke_width(width)))?
+                .draw_series([sizes])?
                 .label(label)
                 .legend(move |(x, y)| PathElement::new([(x, y), (x + 16, y)], colour.stroke_width(width)));
         }
@@ -44,7 +46,8 @@ pub fn measured_accelerance(piece: &str, fit: &AcceleranceFit) -> Result<String,
         let mut chart = frequency_axes::phase(lower, highest)?;
         for (_, values, colour, width) in curves {
             let phases = fit.frequency.iter().zip(values).map(|(&line, value)| (line, degrees(value.arg())));
-            chart.draw_series(LineSeries::new(envelope(phases.collect()), colour.stroke_width(width)))?;
+            let phases = curve(&chart, envelope(phases.collect()), colour.stroke_width(width));
+            chart.draw_series([phases])?;
         }
         Ok(())
     })

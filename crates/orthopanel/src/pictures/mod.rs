@@ -3,6 +3,7 @@
 mod accelerance;
 mod beam_mode_shapes;
 mod coherence;
+mod curve;
 mod envelope;
 mod frequencies;
 mod frequency_axes;
@@ -36,6 +37,7 @@ const FONT: &str = "sans-serif";
 const SIZE: (u32, u32) = (900, 640);
 
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+type Chart<'a, 'b, X, Y> = ChartContext<'b, SVGBackend<'a>, Cartesian2d<X, Y>>;
 type Drawn = Result<(), Box<dyn std::error::Error>>;
 
 /// A picture of charts one above the other under a title, of these heights \[pixels\]; the last takes what is left.
@@ -76,7 +78,7 @@ fn titled(
         Ok(())
     })();
     let failed = |error: Box<dyn std::error::Error>| CommandError::Picture { name, problem: error.to_string() };
-    drawn.map_err(failed).map(|()| text)
+    drawn.map_err(failed).map(|()| curve::in_pixels(&text))
 }
 
 /// A range with a twentieth of its width to spare at both ends, never empty.

@@ -3,6 +3,7 @@
 use plotters::coord::ranged1d::SegmentedCoord;
 use plotters::prelude::*;
 
+use super::curve::curve;
 use super::{ERROR, FONT, GRID, MEASURED, MODEL, spaced, titled};
 use crate::error::CommandError;
 use crate::evidence::{PairResidual, ResidualUnit, banded};
@@ -53,10 +54,12 @@ pub fn residual_by_frequency(residuals: &[PairResidual]) -> Result<String, Comma
         }
         if pairs.len() > 1 {
             for pair in pairs {
-                chart.draw_series(LineSeries::new(pair, MODEL.mix(0.35)))?;
+                let pair = curve(&chart, pair, MODEL.mix(0.35));
+                chart.draw_series([pair])?;
             }
         }
-        chart.draw_series(LineSeries::new(all, MODEL.stroke_width(3)))?;
+        let all = curve(&chart, all, MODEL.stroke_width(3));
+        chart.draw_series([all])?;
         Ok(())
     })
 }

@@ -2,6 +2,7 @@
 
 use plotters::prelude::*;
 
+use super::curve::curve;
 use super::{FONT, GRID, MEASURED, MODEL, spaced, stacked};
 use crate::error::CommandError;
 use crate::force_file::ForceHistory;
@@ -18,7 +19,7 @@ pub fn response(force: &ForceHistory, motions: &[Motion]) -> Result<String, Comm
             (lower, motions.first().map(|motion| &motion.acceleration), "acceleration [m/s²]", "time [ms]", MODEL),
         ];
         for (area, values, what, below, colour) in rows {
-            let curve = || {
+            let motion = || {
                 let samples = force.time.iter().zip(values.into_iter().flatten());
                 samples.map(|(&time, &value)| (1000.0 * time, value)).take_while(|&(time, _)| time <= last)
             };
@@ -26,7 +27,7 @@ pub fn response(force: &ForceHistory, motions: &[Motion]) -> Result<String, Comm
                 .margin(12)
                 .x_label_area_size(if below.is_empty() { 30 } else { 45 })
                 .y_label_area_size(70)
-                .build_cartesian_2d(0.0..last, spaced(curve().map(|(_, value)| value)))?;
+                .build_cartesian_2d(0.0..last, spaced(motion().map(|(_, value)| value)))?;
             chart
                 .configure_mesh()
                 .light_line_style(TRANSPARENT)
@@ -37,7 +38,8 @@ pub fn response(force: &ForceHistory, motions: &[Motion]) -> Result<String, Comm
                 .y_desc(what)
                 .label_style((FONT, 15))
                 .draw()?;
-            chart.draw_series(LineSeries::new(curve(), colour.stroke_width(2)))?;
+            let motion = curve(&chart, motion(), colour.stroke_width(2));
+            chart.draw_series([motion])?;
         }
         Ok(())
     })

@@ -3,6 +3,7 @@
 use orthopanel_data::Hit;
 use plotters::prelude::*;
 
+use super::curve::curve;
 use super::envelope::envelope;
 use super::{Area, Drawn, ERROR, FONT, GRID, MEASURED, MODEL, spaced, stacked};
 use crate::error::CommandError;
@@ -13,7 +14,7 @@ const SHOWN: f64 = 0.02;
 /// Of that, before the force is greatest \[s\].
 const BEFORE: f64 = 0.001;
 
-struct Curve<'a> {
+struct Signal<'a> {
     label: &'static str,
     values: &'a [f64],
     colour: RGBColor,
@@ -28,18 +29,18 @@ pub fn time_history(piece: &str, pair: &ComparedPair) -> Result<String, CommandE
     };
     let (force, response) = (place_text(history.force_at), place_text(history.response_at));
     let title = format!("Piece {piece}: hit {} at {force} m, response at {response} m", index + 1);
-    let signals = &compared.whole;
-    let error: Vec<f64> = signals.measured.iter().zip(&signals.calculated).map(|(m, c)| m - c).collect();
-    let curve = |label, values, colour, width| Curve { label, values, colour, width };
-    let measured = || curve("measured", &signals.measured, MEASURED, 3);
+    let compared = &compared.whole;
+    let error: Vec<f64> = compared.measured.iter().zip(&compared.calculated).map(|(m, c)| m - c).collect();
+    let signal = |label, values, colour, width| Signal { label, values, colour, width };
+    let measured = || signal("measured", &compared.measured, MEASURED, 3);
     let from = blow(hit).saturating_sub((BEFORE * history.rate) as usize);
     let close = from..from + (SHOWN * history.rate) as usize;
     let rate = history.rate;
     stacked("time history", &title, [160, 240, 200], |[top, middle, bottom]| {
-        draw(top, rate, close.clone(), "force [N]", &[curve("", &hit.force, MEASURED, 2)])?;
-        let calculated = curve("calculated", &signals.calculated, MODEL, 1);
+        draw(top, rate, close.clone(), "force [N]", &[signal("", &hit.force, MEASURED, 2)])?;
+        let calculated = signal("calculated", &compared.calculated, MODEL, 1);
         draw(middle, rate, close.clone(), "acceleration [m/s²]", &[measured(), calculated])?;
-        let missed = curve("measured less calculated", &error, ERROR, 1);
+        let missed = signal("measured less calculated", &error, ERROR, 1);
         draw(bottom, rate, 0..error.len(), "acceleration [m/s²]", &[measured(), missed])
     })
 }
@@ -50,13 +51,13 @@ fn blow(hit: &Hit) -> usize {
     sizes.fold((0, 0.0), |best, (index, size)| if size > best.1 { (index, size) } else { best }).0
 }
 
-fn draw(area: &Area, rate: f64, samples: std::ops::Range<usize>, what: &str, curves: &[Curve]) -> Drawn {
+fn draw(area: &Area, rate: f64, samples: std::ops::Range<usize>, what: &str, signals: &[Signal]) -> Drawn {
     let time = |sample: usize| 1000.0 * sample as f64 / rate;
     let points = |values: &[f64]| -> Vec<(f64, f64)> {
         let shown = values.iter().enumerate().skip(samples.start).take(samples.len());
         envelope(shown.map(|(sample, &value)| (time(sample), value)).collect())
     };
-    let heights = curves.iter().flat_map(|curve| points(curve.values)).map(|(_, height)| height);
+    let heights = signals.iter().flat_map(|signal| points(signal.values)).map(|(_, height)| height);
     let mut chart = ChartBuilder::on(area)
         .margin(12)
         .x_label_area_size(40)
@@ -73,14 +74,15 @@ fn draw(area: &Area, rate: f64, samples: std::ops::Range<usize>, what: &str, cur
         .y_desc(what)
         .label_style((FONT, 15))
         .draw()?;
-    for curve in curves {
-        let style = curve.colour.stroke_width(curve.width);
-        let drawn = chart.draw_series(LineSeries::new(points(curve.values), style))?;
-        if curves.len() > 1 {
-            drawn.label(curve.label).legend(move |(x, y)| PathElement::new([(x, y), (x + 16, y)], style));
+    for signal in signals {
+        let style = signal.colour.stroke_width(signal.width);
+        let drawn = curve(&chart, points(signal.values), style);
+        let drawn = chart.draw_series([drawn])?;
+        if signals.len() > 1 {
+            drawn.label(signal.label).legend(move |(x, y)| PathElement::new([(x, y), (x + 16, y)], style));
         }
     }
-    if curves.len() > 1 {
+    if signals.len() > 1 {
         chart
             .configure_series_labels()
             .position(SeriesLabelPosition::UpperRight)
