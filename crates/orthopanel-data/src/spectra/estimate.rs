@@ -113,7 +113,7 @@ impl TimeHistory {
         let mut result = Accelerance::empty(self.force_at, self.response_at);
         let (mut variance, mut coherence) = (Vec::new(), Vec::new());
         let mut force_noise = ForceNoise::beneath(window, &sums, samples as f64 / self.rate);
-        let scatter = if kept.len() > 1 { sums.variance(1..end) } else { Vec::new() };
+        let (scatter, astray) = if kept.len() > 1 { sums.variance(1..end) } else { (Vec::new(), 0.0) };
         let lines = sums.force.iter().zip(&sums.motion).zip(&sums.cross).enumerate().take(end).skip(1);
         for (line, ((&force, &motion), &cross)) in lines {
             // A line without force has no quotient; it is left out like the band above.
@@ -128,7 +128,7 @@ impl TimeHistory {
             result.value.push(value);
             coherence.push(gamma);
             if let Some(noise) = &mut force_noise {
-                noise.push(&sums, line, first, estimation.estimator);
+                noise.push(&sums, (line, first), astray, estimation.estimator);
             }
             variance.push(match noise {
                 Some((force_noise, motion_noise)) => (motion_noise + first * force_noise) / force,

@@ -13,6 +13,9 @@ pub struct ForceNoise {
     pub half_width: f64,
     /// Variance of each line that comes from it, $|H|^2 N_f/\sum|F|^2$ \[((m/s²)/N)²\]; part of the whole variance.
     pub variance: Vec<f64>,
+    /// Variance of the rest of each line's errors, independent from line to line, as the noise before the blows and what strong
+    /// lines scatter beyond it tell \[((m/s²)/N)²\]; the scatter of the hits may show more.
+    pub independent: Vec<f64>,
     /// The part of its size by which each line is too low for the noise in $S_{ff}$; not taken out of the accelerance.
     pub bias: Vec<f64>,
 }
@@ -22,13 +25,15 @@ impl ForceNoise {
     pub(super) fn beneath(window: Window, sums: &Sums, length: f64) -> Option<Self> {
         let half_width = window.force_half_width().filter(|half_width| 2.0 * half_width < length)?;
         sums.noise.as_ref()?;
-        Some(Self { half_width, variance: Vec::new(), bias: Vec::new() })
+        Some(Self { half_width, variance: Vec::new(), independent: Vec::new(), bias: Vec::new() })
     }
 
-    /// Adds the line of the spectra with this number, at which $|H|^2$ is `power`.
-    pub(super) fn push(&mut self, sums: &Sums, line: usize, power: f64, estimator: Estimator) {
+    /// Adds the line of the spectra with this number, at which $|H|^2$ is `power`; a part `astray` of each hit's motion comes to
+    /// its channels' noise.
+    pub(super) fn push(&mut self, sums: &Sums, (line, power): (usize, f64), astray: f64, estimator: Estimator) {
         let (shared, biased) = sums.force_noise(line);
         self.variance.push(power * shared);
+        self.independent.push(sums.independent_noise(line, power, astray));
         // H_1 divides by S_ff, H_v by its root, H_2 not at all.
         self.bias.push(match estimator {
             Estimator::H1 => biased,
@@ -48,6 +53,17 @@ impl Sums {
             let (share, part) = (powers[line] / all, noise.of_force() / all);
             (shared + share * part, biased + (1.0 - share) * part)
         })
+    }
+
+    /// $\sum h_iN_i/\sum|F|^2$ of the accelerations' noise and of what goes astray with each hit's motion.
+    fn independent_noise(&self, line: usize, power: f64, astray: f64) -> f64 {
+        let all = self.force[line];
+        let hits = self.powers.iter().zip(self.noise.iter().flatten());
+        hits.map(|(powers, noise)| {
+            let own = powers[line];
+            own / all * (noise.of_acceleration() + astray * power * own) / all
+        })
+        .sum()
     }
 
     /// The noise of all forces together in any line of $\sum|F|^2$; zero where a hit does not tell its own.

@@ -41,6 +41,11 @@ impl NoisePower {
         self.acceleration + power * self.force
     }
 
+    /// $N_a$.
+    pub(super) fn of_acceleration(self) -> f64 {
+        self.acceleration
+    }
+
     /// $N_f$.
     pub(super) fn of_force(self) -> f64 {
         self.force
@@ -105,11 +110,12 @@ impl Sums {
     /// hits are equally noisy, and a fifth of that for two of 1 : 3 whose noise goes with their strength.
     ///
     /// The ratios are read from the channels before each blow, and from what strong lines scatter beyond them, which is
-    /// taken to go with the hit's own motion. Where a record begins with its blow, all hits are taken as equally noisy.
-    pub(super) fn variance(&self, lines: Range<usize>) -> Vec<f64> {
+    /// taken to go with the hit's own motion: the part of it that does is the second number. Where a record begins with its blow,
+    /// all hits are taken as equally noisy.
+    pub(super) fn variance(&self, lines: Range<usize>) -> (Vec<f64>, f64) {
         let lines: Vec<Line> = lines.map(|line| self.line(line)).collect();
         let astray = if self.noise.is_some() { self.astray(&lines) } else { 0.0 };
-        lines.iter().map(|line| line.variance(astray)).collect()
+        (lines.iter().map(|line| line.variance(astray)).collect(), astray)
     }
 
     fn line(&self, line: usize) -> Line {

@@ -4,6 +4,7 @@ mod band;
 mod contradiction;
 mod force_window;
 mod line_block;
+mod line_group;
 mod line_noise;
 mod matching;
 mod misfit;
@@ -26,6 +27,7 @@ mod smooth_part;
 mod start;
 mod structures;
 mod synthesis;
+mod whole_covariance;
 mod wide_scan;
 
 use orthopanel_data::ImpactTest;

@@ -12,6 +12,7 @@ use super::contradiction::contradiction;
 use super::misfit::{noise_percent, record_misfit_percent};
 use super::problem::AcceleranceProblem;
 use super::start::Start;
+use super::whole_covariance::Weighed;
 use crate::free_constants::Rest;
 use crate::frequency_fit::identified_constants;
 use crate::least_squares::Minimum;
@@ -37,21 +38,19 @@ pub(super) fn outcome(
     problem: &mut AcceleranceProblem,
     minimum: Minimum,
 ) -> Result<Identification, IdentifyError> {
-    let Minimum { parameters, at } = minimum;
-    let chi_square = problem.chi_square(at.cost);
     let noise_known = problem.noise_is_known();
-    if noise_known && problem.cost_of_nothing() - at.cost < MORE_THAN_CHANCE * problem.size() as f64 {
+    if noise_known && problem.cost_of_nothing() - minimum.at.cost < MORE_THAN_CHANCE * problem.size() as f64 {
         let records = || problem.pieces.iter().flat_map(|piece| &piece.records);
         let needed = problem.constants.count();
         return Err(IdentifyError::TooFewResonances { found: 0, needed, noise_percent: noise_percent(records()) });
     }
-    let covariance = problem.covariance(&parameters, &at)?;
-    let std_factor = if noise_known { chi_square.max(1.0).sqrt() } else { chi_square.sqrt() };
-    let std = |i: usize| covariance.as_ref().map(|matrix| std_factor * matrix[(i, i)].sqrt());
     // Eq. 23 is no likelihood: its minimum has no standard deviation that follows from the noise.
     let likelihood = settings.search == Search::LeastSquares;
-    let log_std: Vec<Option<f64>> = (0..problem.size()).map(|i| std(i).filter(|_| likelihood)).collect();
-    let covariance = covariance.filter(|_| likelihood);
+    let Weighed { minimum: Minimum { parameters, .. }, covariance, chi_square } =
+        if likelihood { problem.weigh_whole(minimum)? } else { Weighed::unknown(problem, minimum) };
+    let std_factor = if noise_known { chi_square.max(1.0).sqrt() } else { chi_square.sqrt() };
+    let std = |i: usize| covariance.as_ref().map(|matrix| std_factor * matrix[(i, i)].sqrt());
+    let log_std: Vec<Option<f64>> = (0..problem.size()).map(std).collect();
     let correlations = covariance.as_ref().map(|matrix| problem.constants.correlations(matrix)).unwrap_or_default();
     let mut found = Found { parameters, log_std, correlations, chi_square: noise_known.then_some(chi_square) };
     if !problem.usual.is_empty() {

@@ -158,6 +158,11 @@ impl AcceleranceProblem {
         self.constants.count() + self.pieces.iter().map(|piece| piece.free_zetas).sum::<usize>()
     }
 
+    /// The records of all pieces.
+    pub(super) fn records(&self) -> impl Iterator<Item = &PlaceRecord> {
+        self.pieces.iter().flat_map(|piece| &piece.records)
+    }
+
     /// Number of independent real data: two a line, less what windows tie together.
     pub(super) fn data(&self) -> f64 {
         self.pieces
@@ -199,8 +204,10 @@ impl AcceleranceProblem {
         for (record, model) in records.zip(lines.by_ref()).filter(|(record, _)| !record.scatter_told) {
             record.variance = noise_of_misfit(record, &model);
             // What a force window ties together runs as smoothly as what a model lacks.
-            let tied = record.tied.iter().flat_map(|noise| &noise.variance);
-            record.variance.iter_mut().zip(tied).for_each(|(all, tied)| *all += tied);
+            if let Some(noise) = &mut record.tied {
+                noise.independent.clone_from(&record.variance);
+                record.variance.iter_mut().zip(&noise.variance).for_each(|(all, tied)| *all += tied);
+            }
             record.variance_known = true;
         }
         Ok(())
@@ -262,19 +269,28 @@ impl AcceleranceProblem {
 
     /// Half the curvature of $\sum 2|H_{cal}-H_{exp}|^2/\mathrm{var}$ and of the damping priors, with gradient and value.
     pub(super) fn linearise(&self, parameters: &[f64]) -> Result<Quadratic, ModelError> {
-        let mut sum = Quadratic::zero(self.size());
-        for (index, piece) in self.pieces.iter().enumerate() {
-            let Derivatives { models, chain, columns } = self.derivatives(index, parameters)?;
+        self.linearise_by(parameters, |_, Derivatives { models, chain, .. }, records| {
             let run = |record: &PlaceRecord| (0..record.value.len()).step_by(RUN);
-            let jobs: Vec<(&PlaceRecord, &PairModel, usize)> = piece
-                .records
+            let jobs: Vec<(&PlaceRecord, &PairModel, usize)> = records
                 .iter()
-                .zip(&models)
+                .zip(models)
                 .flat_map(|(record, model)| run(record).map(move |from| (record, model, from)))
                 .collect();
-            let parts: Vec<Mat<f64>> =
-                jobs.into_par_iter().map(|(record, model, from)| run_products(record, model, &chain, from)).collect();
-            parts.iter().for_each(|part| sum.add_products(part, &columns));
+            jobs.into_par_iter().map(|(record, model, from)| run_products(record, model, chain, from)).collect()
+        })
+    }
+
+    /// The same, where the products $[J\,r]^TW[J\,r]$ of a piece's records, or of parts of these, are made by `products`.
+    pub(super) fn linearise_by(
+        &self,
+        parameters: &[f64],
+        products: impl Fn(usize, &Derivatives, &[PlaceRecord]) -> Vec<Mat<f64>>,
+    ) -> Result<Quadratic, ModelError> {
+        let mut sum = Quadratic::zero(self.size());
+        for (index, piece) in self.pieces.iter().enumerate() {
+            let derivatives = self.derivatives(index, parameters)?;
+            let parts = products(index, &derivatives, &piece.records);
+            parts.iter().for_each(|part| sum.add_products(part, &derivatives.columns));
         }
         for (column, log_zeta) in parameters.iter().enumerate().skip(self.constants.count()) {
             sum.add_row((log_zeta - self.usual_log_zeta) / PRIOR_LOG_ZETA_STD, &[(column, 1.0 / PRIOR_LOG_ZETA_STD)]);
@@ -304,7 +320,7 @@ pub(super) fn log_zeta_bounds() -> (f64, f64) {
 }
 
 /// Lines summed by one task: enough to be worth a task, few enough to share out evenly.
-const RUN: usize = 32 * BLOCK;
+pub(super) const RUN: usize = 32 * BLOCK;
 
 /// The models of a piece's records, and which parameters they follow.
 pub(super) struct Derivatives {
@@ -363,7 +379,7 @@ impl<'a> WeightedRows<'a> {
 }
 
 /// $[J\,r]^T[J\,r]$ of a run of lines.
-fn run_products(record: &PlaceRecord, model: &PairModel, chain: &[Vec<f64>], from: usize) -> Mat<f64> {
+pub(super) fn run_products(record: &PlaceRecord, model: &PairModel, chain: &[Vec<f64>], from: usize) -> Mat<f64> {
     let mut rows = WeightedRows::of(record, model, chain);
     let mut products = Mat::zeros(rows.size(), rows.size());
     for from in (from..record.value.len().min(from + RUN)).step_by(BLOCK) {

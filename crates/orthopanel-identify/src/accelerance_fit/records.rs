@@ -64,8 +64,14 @@ impl PlaceRecord {
             decay_rate: accelerance.decay_rate,
             decay_rate_in_doubt: accelerance.decay_rate_in_doubt,
             worth: vec![1.0; usable.len()],
-            tied: noise.map(|noise| TiedNoise::of(noise, &usable)),
+            tied: noise.map(|noise| TiedNoise::of(noise, accelerance, &usable)),
         }
+    }
+
+    /// The same over that part of its noise which is independent from line to line; `None` where no window ties any.
+    pub(super) fn independent(&self) -> Option<Self> {
+        let noise = self.tied.as_ref()?;
+        Some(Self { variance: noise.independent.clone(), tied: None, ..self.clone() })
     }
 
     /// Whether its lines are no greater than their noise makes them.
