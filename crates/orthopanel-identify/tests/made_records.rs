@@ -90,7 +90,7 @@ fn val_weights_of_the_papers_error_are_heeded() {
     assert!(found.frequency_rms_percent < 0.01, "{} %", found.frequency_rms_percent);
 }
 
-/// A blow late in its record, which ends before the response has died away: the exponential window begins at the blow. Over the whole
+/// A blow late in its record, which ends before the response has died away: the exponential window begins just before the blow. Over the whole
 /// record it left the noise before the blow whole and the blow small: damping was 3 to 9 % too high, or no hit could be used.
 #[test]
 fn val_a_late_blow_is_as_good_as_an_early_one() {

@@ -23,8 +23,8 @@ pub enum Window {
         /// Half the width of the force window \[s\].
         half_width: f64,
     },
-    /// The force kept within `half_width` \[s\] of its peak and zero elsewhere; both channels times $e^{-t/\tau}$ from the blow
-    /// on, and zero before it, where there is nothing but noise.
+    /// The force kept within `half_width` \[s\] of its peak and zero elsewhere; both channels times $e^{-t/\tau}$ from
+    /// $\tau/2$ before the blow on, and zero before that, where there is nothing but noise.
     ///
     /// Since both channels carry the same exponential, the quotient is the accelerance at $s = 1/\tau + j\omega$
     /// exactly, for any linear piece: each mode's decay rate $\zeta\omega$ seems raised by $1/\tau$, and nothing leaks.
@@ -39,6 +39,10 @@ pub enum Window {
 /// What the exponential leaves of a response at the record's end, over its greatest. The slow low modes that ring longest
 /// are a hundredth of what a hammer raises in all, and their leak should still be below noise.
 const LEFT: f64 = 1e-6;
+
+/// Time constants before the blow at which the exponential begins: so far ahead a filter has not begun to ring, and noise counts for
+/// little more than at the blow.
+const AHEAD: f64 = 0.5;
 
 impl Window {
     /// Half the width of the force window unless said \[s\]: ten times a usual blow.
@@ -144,7 +148,8 @@ impl Window {
             Self::Force { half_width } => keep_near(force, blow.at, half_width * rate),
             Self::ForceExponential { half_width, tau } => {
                 keep_near(force, blow.at, half_width * rate);
-                let begins = blow.quiet.unwrap_or(0);
+                let begins =
+                    blow.quiet.map_or(0, |quiet| quiet.min(blow.at.saturating_sub((AHEAD * tau * rate) as usize)));
                 for channel in [force, acceleration] {
                     let (before, after) = channel.split_at_mut(begins.min(channel.len()));
                     before.fill(0.0);
