@@ -67,6 +67,17 @@ pub enum IdentifyError {
         /// The constants of the structure.
         known: String,
     },
+    /// Held constants of a plate beside which no likely value of the free ones has a definite law.
+    #[error(
+        "[constants] {held}: beside these no {free} that the data could mean has a definite law, for nu_xy must lie below \
+         sqrt(e_x / e_y); look at the values held, or hold fewer"
+    )]
+    HeldLaw {
+        /// The constants held that the law's limit is of, with their values.
+        held: String,
+        /// Those that are free.
+        free: String,
+    },
     /// The search came to no end.
     #[error(
         "no minimum after {iterations} iterations; the last error was {error_percent:.3} % rms: check the order of the frequencies and the sizes of the piece"
@@ -113,6 +124,16 @@ pub enum IdentifyError {
         /// Error of the last one \[% rms\].
         error_percent: f64,
         /// The lines with the names that they should have.
+        names: String,
+    },
+    /// A plate that misses its list by so much that its constants are none.
+    #[error(
+        "no plate meets these frequencies under these names, the nearest misses them by {error_percent:.1} % rms: {names}"
+    )]
+    FarFromList {
+        /// Error of the nearest \[% rms\].
+        error_percent: f64,
+        /// The lines with the names that they may have, or how the list was read.
         names: String,
     },
     /// The best value lies on a bound, so it is none.
@@ -198,6 +219,36 @@ pub enum IdentifyError {
         /// The factor on all records with which they fit; `None` where there is none.
         factor: Option<f64>,
     },
+    /// Records that miss the plate that was found.
+    #[error(
+        "half of all lines miss the plate found by more than {percent:.0} %, most of all in {record}{}: {}either the test file \
+         says other things than the records (force_at and response_at, the sensor's direction, units and gain, sizes and \
+         mass of the piece, boundary, the window), or the search ended at other constants than the panel's: hold what is \
+         known of them under [constants], and measure more places off the centre lines", untaken(.resonances),
+        all_times(*.factor)
+    )]
+    PlateContradiction {
+        /// Files and places of the record that misses it most.
+        record: String,
+        /// As in [`IdentifyError::Contradiction`] \[%\].
+        percent: f64,
+        /// The factor on all records with which they fit; `None` where there is none.
+        factor: Option<f64>,
+        /// Resonances that no mode of the plate took \[Hz\].
+        resonances: Vec<f64>,
+    },
+    /// Resonances that the plate found does not have, in records that it misses by far more than their noise.
+    #[error(
+        "the plate found misses the records by far more than their noise, chi-square per datum {chi_square:.0} (1: all that is \
+         left is noise){}: its constants are not the panel's; hold what is known of them under [constants], look whether \
+         boundary, sizes and places are those of the test, and measure more places off the centre lines", untaken(.resonances)
+    )]
+    UntakenResonances {
+        /// Misfit per datum.
+        chi_square: f64,
+        /// \[Hz\].
+        resonances: Vec<f64>,
+    },
     /// A piece so large that no material would put its modes where the records are.
     #[error(
         "a piece {length} m long and {thickness} m thick with {mass_per_area} kg/m2 begins at {first:.2} Hz or lower, even with \
@@ -252,6 +303,13 @@ pub enum IdentifyError {
         /// $W_G$.
         magnitude: f64,
     },
+    /// A trace of a test whose structure is a plate.
+    #[error(
+        "a plate's data are not traced yet: the trace looks for what a beam lacks, and this test declares \
+         structure = \"mindlin-plate\"; `orthopanel identify` finds the plate's constants, and without that line the trace \
+         judges the beam, the plate (width-coupling) among its effects"
+    )]
+    PlateNotTraced,
     /// A test that this version cannot evaluate.
     #[error("{0}")]
     Unsupported(String),
@@ -293,6 +351,14 @@ fn spaced(unit: &str) -> String {
     if unit == "1" { String::new() } else { format!(" {unit}") }
 }
 
+fn untaken(resonances: &[f64]) -> String {
+    let told: Vec<String> = resonances.iter().map(|frequency| format!("{frequency:.1}")).collect();
+    match &told[..] {
+        [] => String::new(),
+        told => format!(", and has no mode for the resonance at {} Hz", told.join(", ")),
+    }
+}
+
 fn other_place(fits_at: &Option<(&'static str, f64)>) -> String {
     fits_at.map_or(String::new(), |(key, x)| format!(", and would fit with {key} x = {x:.3} m"))
 }
@@ -321,7 +387,7 @@ impl IdentifyError {
     /// Whether another law of damping may explain what was refused.
     pub(crate) fn may_be_of_damping(&self) -> bool {
         match self {
-            Self::Contradiction { factor, .. } => factor.is_none(),
+            Self::Contradiction { factor, .. } | Self::PlateContradiction { factor, .. } => factor.is_none(),
             Self::RecordContradiction { fits_at, .. } => fits_at.is_none(),
             Self::OnBound { .. } | Self::TooFewResonances { .. } => true,
             _ => false,
@@ -339,9 +405,12 @@ impl IdentifyError {
             self,
             Self::NotConverged { .. }
                 | Self::DoubtfulNames { .. }
+                | Self::FarFromList { .. }
                 | Self::OnBound { .. }
                 | Self::NotDetermined { .. }
                 | Self::Contradiction { .. }
+                | Self::PlateContradiction { .. }
+                | Self::UntakenResonances { .. }
                 | Self::OtherDamping { .. }
                 | Self::RecordContradiction { .. }
         )

@@ -72,3 +72,27 @@ fn a_width_that_the_beam_lacks_makes_the_model_a_plate() {
     assert!(model["constants"]["nu_xy"]["std"].is_number());
     refused(&bench, "trace nowhere.toml", 2, &["nowhere.toml", "cannot be read"]);
 }
+
+/// A trace is of beams: a test that declares a plate gets the plate, and is told that nothing was traced.
+#[test]
+fn a_declared_plate_is_written_as_the_plate_that_was_identified() {
+    let bench = Bench::new();
+    let answer = bench.json("run examples/pieces-1-2-plate/test.toml -o out");
+    assert!(answer["trace"].is_null() && !bench.path("out/trace.json").exists());
+    assert!(answer["not_traced"].as_str().expect("a reason").contains("plate's data are not traced"), "{answer}");
+    for piece in ["1", "2"] {
+        let model = bench.read_json(&format!("out/model-{piece}.json"));
+        assert_eq!(model["structure"], "mindlin-plate");
+        assert_eq!(model["constants"]["e_x"]["value"], answer["identified"]["constants"]["e_x"]["value"]);
+        assert!(model["provenance"].get("trace").is_none(), "{model}");
+        assert_eq!(model["effects"].as_array().map_or(0, Vec::len), 0);
+    }
+    let text = bench.done("run examples/pieces-1-2-plate/test.toml -o out");
+    assert!(text.contains("Not traced: ") && !text.contains("The model lacked"), "{text}");
+    for page in ["out/report.html", "page.html"] {
+        bench.done("report examples/pieces-1-2-plate/test.toml -o page.html");
+        let page = std::fs::read_to_string(bench.path(page)).expect("a page");
+        assert!(page.contains("Not traced: ") && !page.contains("The model lacked"), "{page}");
+    }
+    refused(&bench, "trace examples/pieces-1-2-plate/test.toml", 2, &["plate", "not traced", "width-coupling"]);
+}

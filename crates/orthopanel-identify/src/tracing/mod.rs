@@ -39,6 +39,7 @@ mod wide_panel;
 mod widened_lines;
 
 use orthopanel_data::{ImpactTest, MeasurementData, TimeHistory};
+use orthopanel_model::StructureKind;
 
 pub use outcome::{
     Candidate, FittedError, NotTested, Progress, Removed, TracedEffect, TracedError, TracedParameter, Tracing, Verdict,
@@ -56,7 +57,8 @@ use records_of_test::TestRecords;
 /// file declares are part of the base model.
 ///
 /// # Errors
-/// [`IdentifyError`]: records that cannot be read or show too few resonances, and tests that this version cannot trace.
+/// [`IdentifyError::PlateNotTraced`] for a declared plate; records that cannot be read or show too few resonances, and tests
+/// that this version cannot trace.
 pub fn trace(test: &ImpactTest) -> Result<Tracing, IdentifyError> {
     trace_with(test, &|_| {})
 }
@@ -66,6 +68,10 @@ pub fn trace(test: &ImpactTest) -> Result<Tracing, IdentifyError> {
 /// # Errors
 /// As [`trace`].
 pub fn trace_with(test: &ImpactTest, progress: &(dyn Fn(Progress) + Sync)) -> Result<Tracing, IdentifyError> {
+    // The base of every trace is a beam: of a plate it would judge another model than the one that the file declares.
+    if test.structure == Some(StructureKind::MindlinPlate) {
+        return Err(IdentifyError::PlateNotTraced);
+    }
     let lists = |data: &MeasurementData| matches!(data, MeasurementData::NaturalFrequencies(_));
     if test.measurements.iter().all(|measurement| lists(&measurement.data)) {
         let piece = test.pieces.iter().map(|named| named.piece).max_by(|a, b| a.mass().total_cmp(&b.mass()));

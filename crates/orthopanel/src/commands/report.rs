@@ -32,7 +32,7 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
     let identified = Identified::from_test(test, options)?;
     let evidence = Evidence::of(&identified, options.settings()?.estimation, test)?;
     let traced = Traced::where_possible(&identified.test, test);
-    output::write(output, report::page(test, &identified, traced.as_ref(), &evidence)?)?;
+    output::write(output, report::page(test, &identified, &traced, &evidence)?)?;
     eprintln!("wrote {}", output.display());
     Ok(())
 }

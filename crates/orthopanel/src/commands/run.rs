@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use orthopanel_data::ImpactTest;
 use orthopanel_export::{FmiVersion, Fmu, FmuOptions};
 use orthopanel_identify::{IdentifyError, Tracing};
-use orthopanel_model::{ModelError, PanelModel};
+use orthopanel_model::{ModelError, PanelModel, StructureKind};
 use serde::Serialize;
 
 use crate::arguments::USUAL_MODES;
@@ -27,7 +27,8 @@ use crate::{output, pictures, report, time_response};
 /// its own: model-NAME.json and so on.
 ///
 /// Where the test can be traced, model and FMUs are those after tracing: effects of the panel stay in them, effects of
-/// rig and measuring chain are taken out, and trace.json tells which (see `orthopanel trace --help`). Records that no beam
+/// rig and measuring chain are taken out, and trace.json tells which (see `orthopanel trace --help`). A test that declares a
+/// plate is not traced yet: model and FMUs are those of the plate identified. Records that no beam
 /// could give are traced all the same: where the trace explains them, as by a plate, its model and FMUs are written.
 ///
 /// Of records, each pair of places gets a picture of the accelerance, measured and calculated, and one of a hit with
@@ -57,6 +58,9 @@ struct RunAnswer<'a> {
     identified: Option<&'a Answer>,
     /// `null` where the test cannot be traced.
     trace: Option<&'a Tracing>,
+    /// Why it cannot.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    not_traced: Option<&'a str>,
     /// One entry a measured hit.
     hits: &'a [&'a HitMisfit],
     files: &'a [PathBuf],
@@ -78,17 +82,17 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
     };
     let traced = Traced::where_possible(&identified.test, test);
     let models =
-        traced.as_ref().map_or_else(|| identified.models.clone(), |traced| traced.applied_to(&identified.models));
+        traced.as_ref().map_or_else(|_| identified.models.clone(), |traced| traced.applied_to(&identified.models));
     let evidence = Evidence::of(&identified, options.settings()?.estimation, test)?;
     let mut files = output::Files::default();
     files.add("identified.json", output::json(&identified.answer));
-    files.add("report.html", report::page(test, &identified, traced.as_ref(), &evidence)?);
+    files.add("report.html", report::page(test, &identified, &traced, &evidence)?);
     for ((fit, model), shown) in identified.found.pieces.iter().zip(&models).zip(&evidence.pieces) {
         let suffix = identified.suffix(fit);
         add_model(&mut files, test, &suffix, model)?;
         add_pictures(&mut files, &suffix, shown);
     }
-    if let Some(traced) = &traced {
+    if let Ok(traced) = &traced {
         files.add("trace.json", output::json(&traced.tracing));
     }
     let hits = &evidence.hits()[..];
@@ -98,13 +102,22 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
     }
     let files = written(files, output)?;
     if *json {
-        let trace = traced.as_ref().map(|traced| &traced.tracing);
+        let trace = traced.as_ref().ok().map(|traced| &traced.tracing);
+        let not_traced = traced.as_ref().err().map(String::as_str);
         let identified = Some(&identified.answer);
-        output::print_json(&RunAnswer { schema: "orthopanel.run/1", identified, trace, hits, files: &files });
+        output::print_json(&RunAnswer {
+            schema: "orthopanel.run/1",
+            identified,
+            trace,
+            not_traced,
+            hits,
+            files: &files,
+        });
     } else {
         output::print(&identified.tables());
-        if let Some(traced) = &traced {
-            output::print(&format!("\n{}", traced.text()));
+        match &traced {
+            Ok(traced) => output::print(&format!("\n{}", traced.text())),
+            Err(why) => output::print(&format!("\n{why}\n")),
         }
         if !hits.is_empty() {
             output::print(&format!("\nmeasured hits, and the model driven by their forces\n{}", misfit_table(hits)));
@@ -116,8 +129,11 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
 /// Records that no beam could give may be a plate's: the trace tells. Where it explains nothing, the refusal stands.
 fn trace_alone(arguments: &Arguments, refused: CommandError) -> Result<(), CommandError> {
     let Arguments { test: path, output, json, .. } = arguments;
-    eprintln!("not identified: {refused}");
     let test = ImpactTest::read(path)?;
+    if test.structure == Some(StructureKind::MindlinPlate) {
+        return Err(refused);
+    }
+    eprintln!("not identified: {refused}");
     let traced = Traced::from_test(&test).map_err(|source| CommandError::Identify { path: path.clone(), source })?;
     let mut files = output::Files::default();
     files.add("trace.json", output::json(&traced.tracing));
@@ -135,6 +151,7 @@ fn trace_alone(arguments: &Arguments, refused: CommandError) -> Result<(), Comma
             schema: "orthopanel.run/1",
             identified: None,
             trace,
+            not_traced: None,
             hits: &[],
             files: &files,
         });

@@ -28,6 +28,8 @@ struct Page {
     constants: Table,
     about_constants: Vec<String>,
     trace: Option<TraceSection>,
+    /// Why there is no trace.
+    not_traced: Option<String>,
     pieces: Vec<PieceSection>,
     notes: Vec<String>,
 }
@@ -48,7 +50,7 @@ impl Figure {
 pub fn page(
     path: &Path,
     identified: &Identified,
-    traced: Option<&Traced>,
+    traced: &Result<Traced, String>,
     evidence: &Evidence,
 ) -> Result<String, CommandError> {
     let found = &identified.found;
@@ -60,7 +62,8 @@ pub fn page(
         lead: constants::lead(found),
         constants: constants::table(found),
         about_constants: constants::remarks(found),
-        trace: traced.map(|traced| TraceSection::of(piece_name, traced)).transpose()?,
+        trace: traced.as_ref().ok().map(|traced| TraceSection::of(piece_name, traced)).transpose()?,
+        not_traced: traced.as_ref().err().cloned(),
         pieces: pieces.map(|(fit, shown)| PieceSection::of(fit, shown)).collect::<Result<_, _>>()?,
         notes: notes::counted(&found.notes).collect(),
     };

@@ -28,11 +28,13 @@ impl Traced {
         Ok(Self { tracing })
     }
 
-    /// As [`Traced::from_test`] where tracing is not all that was asked for: a test that it refuses is said to be so on
-    /// standard error.
-    pub fn where_possible(test: &ImpactTest, path: &Path) -> Option<Self> {
-        let refused = |error: IdentifyError| eprintln!("not traced: {}: {error}", path.display());
-        Self::from_test(test).map_err(refused).ok()
+    /// As [`Traced::from_test`] where tracing is not all that was asked for: of a test that it refuses the sentence that
+    /// says so, which goes to standard error too.
+    pub fn where_possible(test: &ImpactTest, path: &Path) -> Result<Self, String> {
+        Self::from_test(test).map_err(|error| {
+            eprintln!("not traced: {}: {error}", path.display());
+            format!("Not traced: {error}.")
+        })
     }
 
     /// The panels with the effects that were found and are theirs; `None` where no effect was found, or none that explains
