@@ -3,11 +3,13 @@
 import json
 import os
 import subprocess
+import zipfile
 
 import numpy as np
 import pytest
 from conftest import ROOT
 from plate_by_scikit_fem import shapes_at
+from plate_record_files import write
 
 TRUTH = {"e_x": 1.07e10, "e_y": 8.6e9, "nu_xy": 0.34, "g_xy": 3.2e9, "g_yz": 2.6e8, "g_zx": 5.363e8}
 PIECE = {"length": 0.8, "width": 0.2, "thickness": 0.03, "mass_per_area": 6.880}
@@ -27,23 +29,9 @@ def modes():
 def test_folder(request, modes, tmp_path_factory):
     folder = tmp_path_factory.mktemp("plate-records")
     random = np.random.default_rng(request.param)
-    frequencies, shapes = modes
+    frequencies, _ = modes
     zetas = 2e-3 * np.exp(0.3 * random.standard_normal(len(frequencies)))
-    omega, natural = 2.0 * np.pi * LINES[:, None], 2.0 * np.pi * frequencies
-    gain = -(omega**2) / (natural**2 - omega**2 + 2j * zetas * natural * omega)
-    # Rigid modes come first, at zero frequency.
-    gain[:, :3] = 1.0
-    lines = ['structure = "mindlin-plate"', "[piece]"] + [f"{key} = {value}" for key, value in PIECE.items()]
-    for number, force in enumerate(FORCES):
-        value = gain @ (shapes[0] * shapes[1 + number])
-        std = NOISE * np.sqrt(np.mean(np.abs(value) ** 2))
-        value = value + std * np.sqrt(0.5) * (random.standard_normal(len(LINES)) + 1j * random.standard_normal(len(LINES)))
-        table = np.column_stack([LINES, value.real, value.imag, np.full(len(LINES), std**2)])
-        name = f"place-{number}.csv"
-        np.savetxt(folder / name, table, delimiter=",", header="frequency_hz,real,imag,variance", comments="")
-        lines += ["[[measurement]]", 'kind = "accelerance"', f'file = "{name}"']
-        lines += [f"force_at = {list(force)}", f"response_at = {list(RESPONSE)}"]
-    (folder / "test.toml").write_text("\n".join(lines) + "\n")
+    write(folder, PIECE, modes, zetas, FORCES, RESPONSE, LINES, NOISE, random)
     inside = (frequencies > 1.0) & (frequencies < LINES[-1])
     return folder, zetas[inside], frequencies[inside]
 
@@ -65,3 +53,24 @@ def test_constants_and_damping_of_a_plate_come_from_its_accelerances(test_folder
         index = mode["mode"] - 1
         assert mode["measured_hz"] == pytest.approx(frequencies[index], rel=2e-4)
         assert mode["zeta"] == pytest.approx(zetas[index], rel=0.05), mode
+
+
+def test_what_is_written_of_a_plates_records_is_the_plate(test_folder, tmp_path):
+    folder, _, _ = test_folder
+    command = os.environ.get("ORTHOPANEL", str(ROOT / "target/release/orthopanel"))
+    test = str(folder / "test.toml")
+    done = subprocess.run([command, "run", test, "-o", str(tmp_path / "out"), "--json"], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    answer = json.loads(done.stdout)
+    assert answer["trace"] is None and "not traced" in answer["not_traced"]
+    model = json.loads((tmp_path / "out/model.json").read_text())
+    assert model["structure"] == "mindlin-plate" and not model.get("effects")
+    for name, constant in answer["identified"]["constants"].items():
+        assert model["constants"][name]["value"] == constant["value"]
+    with zipfile.ZipFile(tmp_path / "out/panel.fmu") as fmu:
+        resource = fmu.read("resources/panel.json").decode()
+    assert "mindlin-plate" in resource
+    page = (tmp_path / "out/report.html").read_text()
+    assert "Not traced: " in page and "The model lacked" not in page
+    traced = subprocess.run([command, "trace", test], capture_output=True, text=True)
+    assert traced.returncode == 2 and "not traced" in traced.stderr, traced.stderr

@@ -2,6 +2,7 @@
 //! that the data do not show.
 
 use crate::free_constants::{FreeConstants, Rest};
+use crate::least_squares::Quadratic;
 
 /// Poisson's ratio of aluminium faces.
 const NU: f64 = 0.3;
@@ -35,4 +36,54 @@ fn usual_poisson(e_x: f64, e_y: f64) -> f64 {
 pub(crate) fn usual_plate([e_x, e_y]: [f64; 2], g_zx: f64) -> [(&'static str, f64); 6] {
     let (nu_xy, g_xy) = (usual_poisson(e_x, e_y), USUAL_SHEAR * e_x);
     [("e_x", e_x), ("e_y", e_y), ("nu_xy", nu_xy), ("g_xy", g_xy), ("g_yz", g_zx), ("g_zx", g_zx)]
+}
+
+/// Standard deviation of a modulus' logarithm beside what is usual, of Poisson's ratio, and of what rests on nothing beside
+/// its start: wide, since they only hold what no datum moves.
+const USUAL_LOG_STD: f64 = 0.5;
+const USUAL_POISSON_STD: f64 = 0.1;
+const START_LOG_STD: f64 = 1.5;
+
+/// All free constants of a plate, each near what is usual beside the others: what data do not show then stays there.
+pub(crate) struct BesideUsual<'a> {
+    pub constants: &'a FreeConstants,
+    /// Where parameters that rest on nothing are kept.
+    pub start: Vec<f64>,
+    /// Indices of the pieces that the data are of.
+    pub pieces: Vec<usize>,
+}
+
+impl BesideUsual<'_> {
+    /// A residual of each parameter over the standard deviation that is open to it; fills the lower triangle.
+    pub fn add_to(&self, sum: &mut Quadratic, parameters: &[f64]) {
+        for index in 0..parameters.len() {
+            let (residual, std, leader) = self.residual(index, parameters);
+            let mut row = vec![(index, std.recip())];
+            row.extend(leader.map(|leader| (leader, -std.recip())));
+            row.sort_by_key(|(parameter, _)| *parameter);
+            sum.add_row(residual / std, &row);
+        }
+    }
+
+    /// Standard deviation of a parameter that nothing but what is usual tells.
+    pub fn open(&self, index: usize) -> f64 {
+        self.residual(index, &self.start).1
+    }
+
+    /// The parameter less what is usual, the standard deviation of that, and the parameter that it follows.
+    fn residual(&self, index: usize, parameters: &[f64]) -> (f64, f64, Option<usize>) {
+        let constant = self.constants.free[index].constant;
+        let mut pieces = self.pieces.iter().copied();
+        let has_it = |piece: &usize| self.constants.parameters_of(*piece)[constant] == Some(index);
+        let piece = pieces.find(has_it).unwrap_or(0);
+        match usual_rest(self.constants, constant) {
+            Some(Rest::Held(value)) => (parameters[index] - value, USUAL_POISSON_STD, None),
+            Some(Rest::Follows { leader, ratio }) => {
+                let value = self.constants.values(parameters, piece)[leader];
+                let leads = self.constants.parameters_of(piece)[leader];
+                (parameters[index] - (ratio * value).ln(), USUAL_LOG_STD, leads)
+            }
+            None => (parameters[index] - self.start[index], START_LOG_STD, None),
+        }
+    }
 }

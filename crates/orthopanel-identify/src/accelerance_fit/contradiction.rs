@@ -2,6 +2,7 @@
 
 use num_complex::Complex64;
 use orthopanel_data::{ImpactTest, MeasurementData};
+use orthopanel_model::StructureKind;
 
 use super::misfit::{median, misfit_percent, record_misfit_percent, scaled_misfit_percent};
 use super::problem::AcceleranceProblem;
@@ -20,11 +21,13 @@ const RECORD_CONTRADICTION: f64 = 80.0;
 const MENDED: f64 = 10.0;
 
 /// Refuses records that contradict the test file; a sentence on the one that stands apart where it may be kept.
+/// `resonances` \[Hz\] are those that no mode took.
 pub(super) fn contradiction(
     test: &ImpactTest,
     problem: &AcceleranceProblem,
     parameters: &[f64],
     lines: &[Vec<Complex64>],
+    resonances: Vec<f64>,
 ) -> Result<Option<String>, IdentifyError> {
     let records: Vec<(usize, &PlaceRecord)> =
         problem.pieces.iter().flat_map(|piece| piece.records.iter().map(|record| (piece.piece, record))).collect();
@@ -40,7 +43,13 @@ pub(super) fn contradiction(
     }
     let percent = misfit_percent(records.iter().map(|(_, record)| *record).zip(lines));
     if percent > CONTRADICTION {
-        return Err(IdentifyError::Contradiction { record: name, percent, factor: common_factor(&records, lines) });
+        let (record, factor) = (name, common_factor(&records, lines));
+        return Err(match test.structure {
+            Some(StructureKind::MindlinPlate) => {
+                IdentifyError::PlateContradiction { record, percent, factor, resonances }
+            }
+            _ => IdentifyError::Contradiction { record, percent, factor },
+        });
     }
     if worst_percent > RECORD_CONTRADICTION {
         return Err(refused);

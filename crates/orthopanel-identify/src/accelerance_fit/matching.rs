@@ -51,7 +51,7 @@ const ANCHORS: usize = 3;
 /// Modes that the anchor may be: those below may be unseen.
 const LOWEST_MODES: usize = 6;
 /// A pole further than this from every mode belongs to none.
-const REACH: f64 = 0.05;
+pub(super) const REACH: f64 = 0.05;
 /// The same while a plate's moduli still stand in their usual ratios.
 const FIRST_PLATE_REACH: f64 = 0.15;
 /// What a wholly different shape counts beside a distance of [`REACH`].
@@ -91,8 +91,11 @@ pub(super) fn candidates(
             let holds = constants.constants.iter().zip(&values).all(|(constant, &value)| constant.check(value).is_ok());
             // Frequencies go with the root of a factor on all moduli; shapes stay.
             let scaled = |(piece, modes): (&PiecePoles, &Vec<SeenMode>)| {
-                let scaled =
-                    modes.iter().map(|mode| SeenMode { frequency: mode.frequency * factor.sqrt(), ..mode.clone() });
+                let scaled = modes.iter().map(|mode| SeenMode {
+                    frequency: mode.frequency * factor.sqrt(),
+                    by_constant: Vec::new(),
+                    ..mode.clone()
+                });
                 scaled.take_while(|mode| mode.frequency < piece.band * (1.0 + reach)).collect()
             };
             holds.then(|| {
@@ -133,12 +136,17 @@ fn anchors(guide: &PiecePoles, guess: &[f64]) -> Result<Vec<f64>, ModelError> {
 
 /// The modes of each piece's poles at given constants of each piece.
 pub(super) fn match_at(pieces: &[PiecePoles], values: Vec<Vec<f64>>) -> Result<Matching, ModelError> {
+    match_within(pieces, values, REACH)
+}
+
+/// The same where a pole may lie as far from its mode as `reach`.
+pub(super) fn match_within(pieces: &[PiecePoles], values: Vec<Vec<f64>>, reach: f64) -> Result<Matching, ModelError> {
     let seen = pieces
         .iter()
         .zip(&values)
-        .map(|(piece, values)| piece.structure.modes_below(values, piece.band * (1.0 + REACH), &piece.pairs));
+        .map(|(piece, values)| piece.structure.modes_below(values, piece.band * (1.0 + reach), &piece.pairs));
     let seen = seen.collect::<Result<Vec<_>, _>>()?;
-    Ok(match_all(pieces, values, seen, REACH))
+    Ok(match_all(pieces, values, seen, reach))
 }
 
 fn match_all(pieces: &[PiecePoles], values: Vec<Vec<f64>>, seen: Vec<Vec<SeenMode>>, reach: f64) -> Matching {
@@ -182,7 +190,7 @@ fn match_piece(piece: &PiecePoles, modes: &[SeenMode], reach: f64) -> (f64, Vec<
 
 /// Modal assurance criterion of a mode's products and a pole's amplitudes, $(p\cdot a)^2/(p\cdot p)(a\cdot a)$; one where
 /// either is not told.
-fn likeness(products: &[f64], amplitudes: &[f64]) -> f64 {
+pub(super) fn likeness(products: &[f64], amplitudes: &[f64]) -> f64 {
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
     let sizes = dot(products, products) * dot(amplitudes, amplitudes);
     if sizes > 0.0 { dot(products, amplitudes).powi(2) / sizes } else { 1.0 }

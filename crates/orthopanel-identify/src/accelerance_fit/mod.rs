@@ -2,6 +2,7 @@
 
 mod band;
 mod contradiction;
+mod followed_modes;
 mod force_window;
 mod line_block;
 mod line_group;

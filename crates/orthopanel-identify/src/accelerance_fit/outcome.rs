@@ -170,7 +170,15 @@ fn report(
     let Found { parameters, log_std, correlations, chi_square } = found;
     problem.constants.refuse_bounds(&parameters)?;
     let lines = problem.lines(&parameters)?;
-    notes.extend(contradiction(test, problem, &parameters, &lines)?);
+    let is_plate = start.recorded.structure == StructureKind::MindlinPlate;
+    let untaken = start.untaken_resonances();
+    notes.extend(contradiction(test, problem, &parameters, &lines, untaken.clone())?);
+    if let Some(chi_square) = chi_square.filter(|of| *of > FAR_FROM_NOISE && is_plate && !untaken.is_empty()) {
+        return Err(IdentifyError::UntakenResonances { chi_square, resonances: untaken });
+    }
+    if is_plate {
+        notes.extend(note_of_untaken(&untaken));
+    }
     refuse_low_band(start.recorded, &problem.constants, &parameters)?;
     let (fits, accelerance_rms_percent) = accelerance_fits(problem, lines);
     let pieces = piece_fits(test, start, problem, &parameters, &log_std)?;
@@ -246,6 +254,11 @@ fn accelerance_fits(problem: &AcceleranceProblem, lines: Vec<Vec<Complex64>>) ->
     let missed: f64 = pairs().map(|(model, measured)| (model - measured).norm_sqr()).sum();
     let total: f64 = pairs().map(|(_, measured)| measured.norm_sqr()).sum();
     (fits, 100.0 * (missed / total).sqrt())
+}
+
+fn note_of_untaken(resonances: &[f64]) -> Option<String> {
+    let told: Vec<String> = resonances.iter().map(|frequency| format!("{frequency:.1} Hz")).collect();
+    (!told.is_empty()).then(|| format!("resonances that no mode of the model took: {}", told.join(", ")))
 }
 
 /// Modes in the band without a resonance of their own, and which of them have no damping of their own either.

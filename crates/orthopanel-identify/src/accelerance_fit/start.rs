@@ -5,12 +5,13 @@ use orthopanel_model::{Boundary, Piece, Place, StructureKind};
 use rayon::prelude::*;
 
 use super::band::{low_band_of_usual_panel, refuse_large_pieces};
+use super::followed_modes::follow;
 use super::matching::{Matching, PiecePoles, candidates, match_at};
 use super::misfit::noise_percent;
 use super::mode_group::{NearMode, Overlap, group_pole};
 use super::poles::{NoisePower, Pole, alike, poles};
 use super::records::PlaceRecord;
-use super::structures;
+use super::structures::{self, SeenMode};
 use crate::free_constants::FreeConstants;
 use crate::frequency_fit::{PoleFit, PoleSet, fit_poles};
 use crate::least_squares::Quadratic;
@@ -55,6 +56,17 @@ impl<'a> Start<'a> {
     /// together. Where one lies wholly beside its peak, the misfit has no slope towards it: damping would grow instead.
     pub fn resonances_meet(&self) -> bool {
         self.beside().all(|half_widths| half_widths.abs() <= OVERLAP)
+    }
+
+    /// Resonances \[Hz\] that no mode took; those below the lowest mode may come from the piece's suspension.
+    pub fn untaken_resonances(&self) -> Vec<f64> {
+        let pieces = self.poles.iter().zip(&self.matching.modes).zip(&self.matching.seen);
+        let of_piece = |((poles, modes), seen): ((&Vec<Pole>, &Vec<Option<usize>>), &Vec<SeenMode>)| {
+            let lowest = seen.first().map_or(f64::INFINITY, |mode| mode.frequency);
+            let untaken = poles.iter().zip(modes).filter(|(pole, mode)| mode.is_none() && pole.frequency > lowest);
+            untaken.map(|(pole, _)| pole.frequency).collect::<Vec<f64>>()
+        };
+        pieces.flat_map(of_piece).collect()
     }
 
     /// How far the model's resonances lie beside those of the records, in half widths, rms; zero of none.
@@ -193,6 +205,11 @@ pub(super) fn start(recorded: &Recorded) -> Result<Start<'_>, IdentifyError> {
         return Err(low_band_of_usual_panel(recorded)?.unwrap_or_else(too_few));
     }
     let candidates = candidates(poles, structure, constants, tried(structure))?;
+    if structure == StructureKind::MindlinPlate {
+        let found = follow(poles, constants, candidates)?;
+        let (matching, fit) = found.filter(|(matching, _)| matching.count() >= needed).ok_or_else(too_few)?;
+        return Ok(Start { recorded, poles: poles_of(recorded), matching, fit });
+    }
     let own_poles = poles_of(recorded);
     let fitted = candidates.into_iter().map(|candidate| {
         let sets = |matching: &Matching| pole_sets(pieces, &own_poles, matching, *boundary);
@@ -217,7 +234,7 @@ pub(super) fn start(recorded: &Recorded) -> Result<Start<'_>, IdentifyError> {
 fn tried(structure: StructureKind) -> usize {
     match structure {
         StructureKind::TimoshenkoBeam => 12,
-        StructureKind::MindlinPlate => 1,
+        StructureKind::MindlinPlate => 3,
     }
 }
 

@@ -39,16 +39,25 @@ impl RecordedPlate {
 impl RecordedStructure for RecordedPlate {
     fn modes_below(&self, values: &[f64], limit: f64, pairs: &[(Place, Place)]) -> Result<Vec<SeenMode>, ModelError> {
         let (plate, modes) = self.modes(values, limit)?;
-        let flexible = modes.iter().filter(|mode| mode.angular_frequency > 0.0);
+        let by_constants = plate.coefficient_derivatives(values)?;
+        let below = limit * std::f64::consts::TAU;
+        let flexible = modes.iter().filter(|mode| mode.angular_frequency > 0.0 && mode.angular_frequency < below);
         let seen = flexible.map(|mode| SeenMode {
             frequency: mode.angular_frequency / std::f64::consts::TAU,
+            by_constant: {
+                let by_coefficient = mode.coefficient_sensitivity(&plate);
+                let by = |constant: usize| -> f64 {
+                    by_coefficient.iter().enumerate().map(|(i, by)| by * by_constants[(i, constant)]).sum()
+                };
+                (0..values.len()).map(|constant| by(constant) / (2.0 * mode.angular_frequency.powi(2))).collect()
+            },
             nodes: plate.mode_name(mode).nodes,
             products: pairs
                 .iter()
                 .map(|&(force, response)| mode.deflection(&plate, force) * mode.deflection(&plate, response))
                 .collect(),
         });
-        Ok(seen.take_while(|mode| mode.frequency < limit).collect())
+        Ok(seen.collect())
     }
 
     // The density of a plate's modes does not fall with frequency, so a sum as far as a beam's would hold hundreds.

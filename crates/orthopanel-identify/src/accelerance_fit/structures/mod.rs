@@ -18,6 +18,8 @@ pub(super) struct SeenMode {
     pub nodes: [usize; 2],
     /// $W(l_1)W(l_x)$ of each record.
     pub products: Vec<f64>,
+    /// $\partial\ln f/\partial c_j$ for each constant.
+    pub by_constant: Vec<f64>,
 }
 
 /// A piece with a structure whose constants are to be found.

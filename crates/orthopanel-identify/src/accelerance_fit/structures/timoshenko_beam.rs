@@ -26,6 +26,7 @@ impl RecordedStructure for RecordedBeam {
         let modes = beam.flexible_modes().take(MOST_MODES).take_while(|mode| mode.frequency() < limit);
         let seen = |(index, mode): (usize, BeamMode)| SeenMode {
             frequency: mode.frequency(),
+            by_constant: mode.sensitivity().iter().map(|by| by / (2.0 * mode.angular_frequency().powi(2))).collect(),
             nodes: [index + rigid, 0],
             products: pairs
                 .iter()
