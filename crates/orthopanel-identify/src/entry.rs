@@ -1,6 +1,7 @@
 //! The entry: what the test holds decides which of the paper's two problems is solved.
 
 use orthopanel_data::{ImpactTest, MeasurementData};
+use orthopanel_model::ModelError;
 
 use crate::{Identification, IdentifyError, Settings, accelerance_fit, frequency_fit, tracing};
 
@@ -22,13 +23,26 @@ pub fn identify(test: &ImpactTest, settings: impl Into<Settings>) -> Result<Iden
     }
     let is_frequencies = |data: &MeasurementData| matches!(data, MeasurementData::NaturalFrequencies(_));
     let lists = test.measurements.iter().filter(|measurement| is_frequencies(&measurement.data)).count();
+    let of_held = |error| of_held_constants(test, error);
     if lists == test.measurements.len() {
-        frequency_fit::identify_frequencies(test, settings.search)?.determined()
+        frequency_fit::identify_frequencies(test, settings.search).map_err(of_held)?.determined()
     } else if lists == 0 {
-        accelerance_fit::identify_records(test, settings)?.determined()
+        accelerance_fit::identify_records(test, settings).map_err(of_held)?.determined()
     } else {
         let message = "natural frequencies and records in one test: put them in two test files, since the frequencies \
                        are most likely read off the same records and would count twice";
         Err(IdentifyError::Unsupported(message.to_owned()))
     }
+}
+
+/// A law that is indefinite where the search began says nothing of the values it began with, where these are not the user's.
+fn of_held_constants(test: &ImpactTest, error: IdentifyError) -> IdentifyError {
+    let IdentifyError::Model(ModelError::IndefiniteLaw { .. }) = error else { return error };
+    let (held, free): (Vec<&str>, Vec<&str>) =
+        ["e_x", "e_y", "nu_xy"].into_iter().partition(|name| test.constants.contains_key(*name));
+    if free.is_empty() || held.is_empty() {
+        return error;
+    }
+    let value = |name: &&str| format!("{name} = {:e}", test.constants[*name]);
+    IdentifyError::HeldLaw { held: held.iter().map(value).collect::<Vec<_>>().join(", "), free: free.join(" and ") }
 }

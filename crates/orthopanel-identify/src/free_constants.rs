@@ -263,10 +263,16 @@ impl FreeConstants {
 
     /// Correlation coefficient of each pair of parameters, the first ones of a covariance.
     pub fn correlations(&self, covariance: &Mat<f64>) -> Vec<Correlation> {
-        let name = |i: usize| self.constant(i).name;
         let value = |i: usize, j: usize| covariance[(i, j)] / (covariance[(i, i)] * covariance[(j, j)]).sqrt();
         let pairs = (0..self.count()).flat_map(|i| (i + 1..self.count()).map(move |j| (i, j)));
-        pairs.map(|(i, j)| Correlation { first: name(i), second: name(j), value: value(i, j) }).collect()
+        let of = |(i, j): (usize, usize)| Correlation {
+            first: self.constant(i).name,
+            first_piece: self.free[i].piece,
+            second: self.constant(j).name,
+            second_piece: self.free[j].piece,
+            value: value(i, j),
+        };
+        pairs.map(of).collect()
     }
 
     /// Refuses a minimum that lies on a bound.

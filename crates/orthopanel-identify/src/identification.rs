@@ -91,8 +91,12 @@ impl NotIdentified {
 pub struct Correlation {
     /// Name of the one.
     pub first: &'static str,
+    /// Index of the piece that has it of its own; `None` where pieces share it.
+    pub first_piece: Option<usize>,
     /// Name of the other.
     pub second: &'static str,
+    /// Index of the piece that has that of its own.
+    pub second_piece: Option<usize>,
     /// The coefficient, from -1 to 1.
     pub value: f64,
 }

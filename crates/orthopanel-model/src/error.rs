@@ -18,6 +18,23 @@ pub enum ModelError {
         /// Its unit.
         unit: &'static str,
     },
+    /// A thickness and a mass per area that no solid has together.
+    #[error(
+        "a thickness of {thickness} m and {mass_per_area} kg/m2 make {density:.3} kg/m3, and solids have {lightest} to \
+         {heaviest}: sizes are in metres, mass_per_area in kg/m2"
+    )]
+    Density {
+        /// Thickness \[m\].
+        thickness: f64,
+        /// Mass per area \[kg/m²\].
+        mass_per_area: f64,
+        /// What they make \[kg/m³\].
+        density: f64,
+        /// Of the lightest solid.
+        lightest: f64,
+        /// Of the heaviest.
+        heaviest: f64,
+    },
     /// An elastic constant outside its bounds.
     #[error("{name} = {value:e}{}: must lie between {low:e} and {high:e}", spaced(.unit))]
     Constant {

@@ -142,10 +142,10 @@ impl PanelModel {
     /// checked by the structure they belong to.
     ///
     /// # Errors
-    /// The first of [`ModelError::Size`], [`ModelError::Damping`], [`ModelError::UnknownConstant`],
+    /// The first of [`ModelError::Size`], [`ModelError::Density`], [`ModelError::Damping`], [`ModelError::UnknownConstant`],
     /// [`ModelError::OffPiece`] that holds.
     pub fn check(&self) -> Result<(), ModelError> {
-        self.piece.checked()?;
+        self.piece.checked()?.solid()?;
         self.damping.check()?;
         let known = self.structure.constants();
         if let Some(name) = self.constants.keys().find(|name| known.iter().all(|constant| constant.name != **name)) {

@@ -42,7 +42,26 @@ impl From<Place> for [f64; 2] {
     }
 }
 
+/// Densities of solids \[kg/m³\]: no foam is lighter, no metal heavier. Between are all panels; one in centimetres or
+/// millimetres is not.
+const LIGHTEST: f64 = 5.0;
+const HEAVIEST: f64 = 23_000.0;
+
 impl Piece {
+    /// Checks that thickness and mass per area make a solid: sizes in millimetres do not.
+    ///
+    /// # Errors
+    /// [`ModelError::Density`] with both and the density that they make.
+    pub fn solid(self) -> Result<Self, ModelError> {
+        let Self { thickness, mass_per_area, .. } = self;
+        let density = mass_per_area / thickness;
+        if (LIGHTEST..HEAVIEST).contains(&density) {
+            Ok(self)
+        } else {
+            Err(ModelError::Density { thickness, mass_per_area, density, lightest: LIGHTEST, heaviest: HEAVIEST })
+        }
+    }
+
     /// Checks that every size is finite and greater than zero.
     ///
     /// # Errors

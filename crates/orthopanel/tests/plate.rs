@@ -42,7 +42,8 @@ fn val_a_picture_names_every_mode() {
     }
     // Nodal lines: 2 + 2 + 3 + 3 at least, each drawn as one line or several.
     assert!(text.matches("<polyline").count() >= 10);
-    bench.done("modes plate.json --count 0 --picture modes.svg");
+    bench.done("modes plate.json --count 0 --picture none.svg");
+    assert!(!bench.path("none.svg").exists(), "a picture of no mode");
 }
 
 #[test]
@@ -134,4 +135,36 @@ fn the_table_tells_what_the_data_leave_open() {
     assert!(table.contains(", along ln g_xy "), "{table}");
     let poisson = table.lines().find(|line| line.starts_with("nu_xy ")).expect("a row");
     assert!(poisson.trim_end().ends_with("held"), "{table}");
+}
+
+/// Held along its front, a plate that does not contract sideways is a cantilever as long as the plate is wide.
+#[test]
+fn val_a_plate_clamped_along_its_front_swings_as_a_cantilever_across() {
+    let bench = Bench::new();
+    let example = std::fs::read_to_string(bench.path("examples/clamped-plate.json")).expect("the example");
+    bench.write("held.json", &example.replace("\"nu_xy\": 0.3", "\"nu_xy\": 0.0"));
+    bench.write(
+        "across.json",
+        r#"{"schema": "orthopanel.model/1", "structure": "timoshenko-beam",
+            "piece": {"length": 0.4, "width": 0.1, "thickness": 0.03, "mass_per_area": 6.88},
+            "boundary": {"left": "clamped", "right": "free"}, "constants": {"e_x": 1.07e10, "g_zx": 3.0e8},
+            "damping": {"beyond": 0.003}}"#,
+    );
+    let [plate, beam] = ["held", "across"].map(|name| bench.json(&format!("modes {name}.json --count 1")));
+    let [plate, beam] = [&plate, &beam].map(|modes| number(modes, "/modes/0/frequency_hz"));
+    assert!((plate / beam - 1.0).abs() < 1e-4, "plate {plate}, cantilever {beam}");
+}
+
+/// The same sizes are refused in a model as in a test.
+#[test]
+fn sizes_in_millimetres_are_refused_in_models_too() {
+    let bench = Bench::new();
+    let sizes = PLATE.replace("0.8,", "800,").replace("0.2,", "200,").replace("0.03,", "30,");
+    bench.write("mm.json", &sizes.replace("[[-0.3, -0.05]]", "[]").replace("[[0.3, 0.05]]", "[]"));
+    for command in ["modes mm.json", "export mm.json -o out.fmu --force 1 --response 2"] {
+        let output = bench.run(command);
+        let message = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(2), "{command}: {message}");
+        assert!(message.contains("make 0.229 kg/m3") && message.contains("metres"), "{message}");
+    }
 }

@@ -41,11 +41,6 @@ pub(super) fn pieces(source: &Source, pieces: Option<syntax::Pieces>) -> Result<
     Ok(read)
 }
 
-/// Densities of solids \[kg/m³\]: no foam is lighter, no metal heavier. Between are all panels; one in centimetres or
-/// millimetres is not.
-const LIGHTEST: f64 = 5.0;
-const HEAVIEST: f64 = 23_000.0;
-
 fn one(source: &Source, piece: syntax::Piece, key: &str, default_name: Option<&str>) -> Result<NamedPiece, DataError> {
     let size = |number: &Option<Spanned<f64>>, name: &str| {
         let key = format!("{key}.{name}");
@@ -55,15 +50,11 @@ fn one(source: &Source, piece: syntax::Piece, key: &str, default_name: Option<&s
     let (length, width) = (size(&piece.length, "length")?, size(&piece.width, "width")?);
     let thickness = size(&piece.thickness, "thickness")?;
     let mass_per_area = mass_per_area(source, &piece, key)?;
-    let density = mass_per_area / thickness;
-    let solid = LIGHTEST..HEAVIEST;
-    if !solid.contains(&density) {
+    let sizes = Piece { length, width, thickness, mass_per_area };
+    if let Err(error) = sizes.solid() {
         let spans = [&piece.thickness, &piece.length].into_iter().flatten().next();
         let at = spans.map_or_else(|| source.whole(key), |number| source.at(number.span(), format!("{key}.thickness")));
-        let problem = format!(
-            "a thickness of {thickness} m and {mass_per_area} kg/m2 make {density:.3} kg/m3, and solids have {LIGHTEST} to \
-             {HEAVIEST}: sizes are in metres, mass_per_area in kg/m2, weighings in m, m and kg"
-        );
+        let problem = format!("{error}, weighings in m, m and kg");
         return Err(DataError::Contradiction { at, problem });
     }
     let name = match &piece.name {
@@ -74,7 +65,7 @@ fn one(source: &Source, piece: syntax::Piece, key: &str, default_name: Option<&s
         })?,
     };
     let own_constants = own_constants(source, piece.own_constants, key)?;
-    Ok(NamedPiece { name, piece: Piece { length, width, thickness, mass_per_area }, own_constants })
+    Ok(NamedPiece { name, piece: sizes, own_constants })
 }
 
 /// Which names a structure has is judged where the structure is known.

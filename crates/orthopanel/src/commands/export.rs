@@ -16,6 +16,9 @@ use crate::{model_file, output};
 /// displacement_1, ... in SI units, numbered in the order of the places given. Sizes, mass, constants, damping ratios
 /// and places are parameters of the FMU, which solves its modes anew where one is set.
 ///
+/// The edges are held as the model file's "boundary" says (see `orthopanel modes --help`): left and right, of a plate front and
+/// back too.
+///
 /// Example: orthopanel export out/model.json -o panel.fmu --fmi 3 --modes 6 --force -0.3 --response 0.3 --response 0,0.02
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]

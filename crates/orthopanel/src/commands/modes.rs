@@ -16,8 +16,13 @@ use crate::{model_file, output, tables};
 /// width), torsion (one), transverse (two and more), or mixed where two such shapes share a mode. With a viscoelastic core each
 /// mode stands at the core's storage modulus at its own frequency, and zeta holds the core's loss.
 ///
+/// How the edges are held stands in the model file: "boundary": {"left": "clamped", "right": "free"}, each "free" (where it is
+/// left out), "pinned" or "clamped"; left and right are the ends x = -length/2 and +length/2, and a plate has "front" and
+/// "back" too, the edges y = -width/2 and +width/2.
+///
 /// Examples: orthopanel modes out/model.json --count 6
 ///           orthopanel modes out/model.json --picture out/modes.svg
+///           orthopanel modes examples/clamped-plate.json
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
 pub struct Arguments {
@@ -70,7 +75,10 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
     };
     let core = model.effects.iter().any(|effect| effect.id == "viscoelastic-core").then_some(CORE);
     let answer = Answer { schema: "orthopanel.modes/1", modes: (1..).zip(&flexible).map(entry).collect(), core };
-    if let Some(path) = &arguments.picture {
+    if let Some(path) = arguments.picture.as_ref().filter(|_| flexible.is_empty()) {
+        eprintln!("{} not written: no mode was asked for", path.display());
+    }
+    if let Some(path) = arguments.picture.as_ref().filter(|_| !flexible.is_empty()) {
         let shape = |(mode, entry)| shape(mode, entry);
         let shapes: Vec<ModeShape> = flexible.iter().copied().zip(&answer.modes).map(shape).collect();
         let picture = match model.structure {

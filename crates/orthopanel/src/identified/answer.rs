@@ -55,7 +55,12 @@ struct NotIdentifiedEntry {
 #[derive(Serialize)]
 struct CorrelationEntry {
     first: &'static str,
+    /// Name of the piece that has it of its own.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    first_piece: Option<String>,
     second: &'static str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    second_piece: Option<String>,
     value: f64,
 }
 
@@ -121,6 +126,16 @@ fn effect(found: &TracedEffect) -> EffectEntry {
     EffectEntry { id: found.id, owner: found.owner.name(), parameters: parameters.collect() }
 }
 
+/// The name of the piece that has a constant of its own.
+pub(super) fn piece_name(found: &Identification, piece: Option<usize>) -> Option<&str> {
+    Some(found.pieces.get(piece?)?.name.as_str())
+}
+
+/// A constant as people call it: `g_zx`, or `g_zx of NAME` where piece NAME has it of its own.
+pub fn called(found: &Identification, name: &str, piece: Option<usize>) -> String {
+    piece_name(found, piece).map_or(name.to_owned(), |piece| format!("{name} of {piece}"))
+}
+
 impl Answer {
     pub(super) fn of(found: &Identification) -> Self {
         let constant = |constant: &IdentifiedConstant| {
@@ -167,7 +182,13 @@ impl Answer {
             own_constants,
             not_identified: found.not_identified.iter().map(unseen).collect(),
             correlations: correlations
-                .map(|pair| CorrelationEntry { first: pair.first, second: pair.second, value: pair.value })
+                .map(|pair| CorrelationEntry {
+                    first: pair.first,
+                    first_piece: piece_name(found, pair.first_piece).map(str::to_owned),
+                    second: pair.second,
+                    second_piece: piece_name(found, pair.second_piece).map(str::to_owned),
+                    value: pair.value,
+                })
                 .collect(),
             effects: found.effects.iter().map(effect).collect(),
             modes: found.pieces.iter().flat_map(|fit| fit.modes.iter().map(move |of| mode(fit, of))).collect(),

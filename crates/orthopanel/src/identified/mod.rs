@@ -14,7 +14,7 @@ use orthopanel_model::PanelModel;
 use crate::error::CommandError;
 use crate::record_options::IdentifyOptions;
 use crate::{notes, progress};
-pub use answer::Answer;
+pub use answer::{Answer, called};
 pub use mode_rows::{Digits, ModeRows};
 use models::{ASSUMED_DAMPING, model};
 

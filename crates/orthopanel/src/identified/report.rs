@@ -3,6 +3,7 @@
 use orthopanel_identify::{IdentifiedConstant, NotIdentified, PieceFit};
 use orthopanel_model::Piece;
 
+use super::answer::called;
 use super::{Digits, Identified, ModeRows};
 use crate::tables;
 use crate::traced::effect_rows;
@@ -43,7 +44,9 @@ impl Identified {
             );
         }
         for pair in &self.found.correlations {
-            text += &format!("correlation of {} and {}: {:+.3}\n", pair.first, pair.second, pair.value);
+            let [first, second] = [(pair.first, pair.first_piece), (pair.second, pair.second_piece)]
+                .map(|(name, piece)| called(&self.found, name, piece));
+            text += &format!("correlation of {first} and {second}: {:+.3}\n", pair.value);
         }
         text += &format!("error of the frequencies: {:.3} % rms", self.found.frequency_rms_percent);
         if let Some(error) = self.found.left_one_out_percent {

@@ -4,6 +4,7 @@ use orthopanel_identify::{Identification, IdentifiedConstant};
 use orthopanel_model::StructureKind;
 
 use super::table::Table;
+use crate::identified::called;
 use crate::tables::{shown_unit, with_unit};
 
 /// Half the width of a 95 % interval, over the standard deviation.
@@ -82,8 +83,11 @@ pub fn remarks(found: &Identification) -> Vec<String> {
         )
     });
     let correlations = found.correlations.iter();
-    let correlations = correlations
-        .map(|pair| format!("The correlation of {} and {} is {:+.3}.", pair.first, pair.second, pair.value));
+    let correlations = correlations.map(|pair| {
+        let [first, second] = [(pair.first, pair.first_piece), (pair.second, pair.second_piece)]
+            .map(|(name, piece)| called(found, name, piece));
+        format!("The correlation of {first} and {second} is {:+.3}.", pair.value)
+    });
     unseen.chain(correlations).collect()
 }
 
