@@ -52,7 +52,49 @@ pub(super) fn doubtful_names(
             told = best(changed_pairs(&whole)?);
         }
     }
-    told.or_else(|| best(near_pairs(&whole))).map_or(Ok(Vec::new()), |tried| tried.notes(test, &whole))
+    match told.or_else(|| best(near_pairs(&whole))) {
+        Some(tried) => tried.notes(test, &whole),
+        None if stands_out => lines_apart(test, problem, &whole, found, FAR_BETTER * cost),
+        None => Ok(Vec::new()),
+    }
+}
+
+/// Most lines that may stand apart, as a part of all.
+const MOST_APART: f64 = 0.25;
+
+/// A sentence for each line without which the others are met far better, though it is no other mode's either.
+fn lines_apart(
+    test: &ImpactTest,
+    problem: &FrequencyProblem,
+    whole: &FrequencyProblem,
+    found: &[f64],
+    most: f64,
+) -> Result<Vec<String>, IdentifyError> {
+    let mut best: Option<(f64, Vec<String>)> = None;
+    for (more, parameters) in robust_minima(problem, whole, found)? {
+        let Ok(predictions) = more.predictions(&parameters) else { continue };
+        let (mut apart, mut others) = (Vec::new(), 0.0);
+        for (set, predicted) in more.sets.iter().zip(&predictions) {
+            let lines = set.measured.iter().zip(set.modes.nodes()).zip(&predicted.modes);
+            for ((measured, nodes), mode) in lines {
+                let miss = mode.frequency / measured - 1.0;
+                if miss.abs() <= LARGE_MISS {
+                    others += miss * miss;
+                    continue;
+                }
+                apart.push(format!(
+                    "piece {}, {measured} Hz named {nodes:?}: the other frequencies put that mode at {:.1} Hz; look at this \
+                     frequency and at its mode's shape again",
+                    test.pieces[set.piece].name, mode.frequency
+                ));
+            }
+        }
+        let few = !apart.is_empty() && apart.len() as f64 <= MOST_APART * whole.count() as f64;
+        if few && others < best.as_ref().map_or(most, |(least, _)| *least) {
+            best = Some((others, apart));
+        }
+    }
+    Ok(best.map_or_else(Vec::new, |(_, apart)| apart))
 }
 
 /// The same where no search ended under the names that the test has: `error` \[% rms\] is that of the last step.
@@ -116,18 +158,57 @@ fn robust_names(
     whole: &FrequencyProblem,
     found: &[f64],
 ) -> Result<Vec<Vec<Renamed>>, IdentifyError> {
-    let RestingFreed { constants, parameters, usual_stds } = problem.constants.with_resting_freed(found);
-    let usual = at_usual_values(&constants, &whole.constants, &starting_values(whole)?);
-    let more = FrequencyProblem { structure: problem.structure, constants, sets: problem.sets.clone() };
     let mut names: Vec<Vec<Renamed>> = Vec::new();
-    for start in [parameters, usual] {
-        let Some(minimum) = robust_minimum(&more, &start, &usual_stds)? else { continue };
+    for (more, minimum) in robust_minima(problem, whole, found)? {
         let proposed = proposed_names(&more, &minimum)?;
         if !proposed.is_empty() && !names.contains(&proposed) {
             names.push(proposed);
         }
     }
     Ok(names)
+}
+
+/// The robust minima from where the constants were found, from what is usual, and from that at the size that half of the lines
+/// want: a single wrong line pulls the size of all.
+fn robust_minima(
+    problem: &FrequencyProblem,
+    whole: &FrequencyProblem,
+    found: &[f64],
+) -> Result<Vec<(FrequencyProblem, Vec<f64>)>, IdentifyError> {
+    let RestingFreed { constants, parameters, usual_stds } = problem.constants.with_resting_freed(found);
+    let usual = at_usual_values(&constants, &whole.constants, &starting_values(whole)?);
+    let of = |constants: &FreeConstants| FrequencyProblem {
+        structure: problem.structure,
+        constants: constants.clone(),
+        sets: problem.sets.clone(),
+    };
+    let more = of(&constants);
+    let median = at_median_size(&more, &usual);
+    let mut minima = Vec::new();
+    for start in [Some(parameters), Some(usual), median].into_iter().flatten() {
+        if let Some(minimum) = robust_minimum(&more, &start, &usual_stds)? {
+            minima.push((of(&constants), minimum));
+        }
+    }
+    Ok(minima)
+}
+
+/// Parameters with the factor on all moduli that half of the lines want more and half less.
+fn at_median_size(more: &FrequencyProblem, parameters: &[f64]) -> Option<Vec<f64>> {
+    if !more.constants.moduli_are_free() {
+        return None;
+    }
+    let predictions = more.predictions(parameters).ok()?;
+    let lines = more.sets.iter().zip(&predictions);
+    let lines = lines.flat_map(|(set, at)| set.measured.iter().zip(&at.modes));
+    let mut ratios: Vec<f64> = lines.map(|(measured, mode)| (measured / mode.frequency).ln()).collect();
+    ratios.sort_by(f64::total_cmp);
+    let log_factor = 2.0 * ratios.get(ratios.len() / 2)?;
+    let scaled = |(index, parameter): (usize, &f64)| {
+        let is_modulus = more.constants.is_modulus(more.constants.free[index].constant);
+        if is_modulus { parameter + log_factor } else { *parameter }
+    };
+    Some(parameters.iter().enumerate().map(scaled).collect())
 }
 
 /// The usual start in the order of these parameters.

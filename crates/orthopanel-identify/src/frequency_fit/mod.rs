@@ -1,7 +1,9 @@
 //! Identification by natural frequencies (eqs 22 and 24).
 
+mod all_at_once;
 mod changed_pairs;
 mod doubtful_names;
+mod far_from_list;
 mod first_constants;
 mod impossible_names;
 mod noise;
@@ -58,9 +60,17 @@ pub(crate) fn identify_frequencies(test: &ImpactTest, search: Search) -> Result<
             let all = problem.constants.clone();
             let seen =
                 seen_constants::minimise_what_is_seen(&mut problem, &start).map_err(|error| named(test, error))?;
-            let at = problem.linearised(&seen.predictions, &problem.constants);
-            doubts = doubtful_names::doubtful_names(test, &problem, &seen.parameters, &at)?;
-            let seen = if doubts.is_empty() { other_starts::from_other_starts(&mut problem, &all, seen) } else { seen };
+            far_from_list::refuse_other_than_bending(test, &problem, &seen)?;
+            // A list that all constants together meet is named rightly.
+            let seen = match all_at_once::meets_at_once(&mut problem, &all, &seen) {
+                Some(met) => met,
+                None => {
+                    let at = problem.linearised(&seen.predictions, &problem.constants);
+                    doubts = doubtful_names::doubtful_names(test, &problem, &seen.parameters, &at)?;
+                    if doubts.is_empty() { other_starts::from_other_starts(&mut problem, &all, seen) } else { seen }
+                }
+            };
+            far_from_list::refuse_far_from_list(test, &problem, &seen, &doubts)?;
             let not_identified = unseen_constants::reports(&problem, &all, &seen);
             if search == Search::LeastSquares {
                 problem.constants.refuse_bounds(&seen.parameters)?;
@@ -76,6 +86,9 @@ pub(crate) fn identify_frequencies(test: &ImpactTest, search: Search) -> Result<
 /// A search without end, with the names of the lines that would have one.
 fn named(test: &ImpactTest, error: IdentifyError) -> IdentifyError {
     let IdentifyError::NotConverged { iterations, error_percent } = error else { return error };
+    if let Some(read) = far_from_list::read_as_bending(test) {
+        return IdentifyError::FarFromList { error_percent, names: read };
+    }
     match doubtful_names::names_with_a_minimum(test, error_percent) {
         Ok(names) if !names.is_empty() => {
             IdentifyError::DoubtfulNames { iterations, error_percent, names: names.join("; ") }

@@ -15,7 +15,7 @@ const FAR_BETTER: f64 = 0.25;
 const FACTORS: [f64; 2] = [0.6, 1.6];
 
 /// Sum of the squares of the residuals.
-fn cost(problem: &FrequencyProblem, at: &Minimum) -> f64 {
+pub(super) fn cost(problem: &FrequencyProblem, at: &Minimum) -> f64 {
     problem.linearised(&at.predictions, &problem.constants).quadratic().cost
 }
 
@@ -55,7 +55,7 @@ pub(super) fn from_other_starts(problem: &mut FrequencyProblem, all: &FreeConsta
 }
 
 /// Parameters of all constants: those found, then each modulus beside where it was found.
-fn starts(constants: &FreeConstants, all: &FreeConstants, found: &[f64]) -> Vec<Vec<f64>> {
+pub(super) fn starts(constants: &FreeConstants, all: &FreeConstants, found: &[f64]) -> Vec<Vec<f64>> {
     let at = |index: usize| {
         let free = all.free[index];
         all.parameter(index, constants.values(found, free.piece.unwrap_or(0))[free.constant])

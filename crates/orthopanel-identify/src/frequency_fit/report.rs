@@ -51,9 +51,16 @@ fn large_miss(problem: &FrequencyProblem, at: &Linearised) -> Option<String> {
     let scatter = Noise::stated(problem).variance.sqrt();
     (problem.structure == StructureKind::MindlinPlate && rms > BEYOND_CHANCE * scatter).then(|| {
         let told = if rounding_variance(problem) > 0.0 { "the bins stated" } else { "the usual scatter" };
+        let mut pieces: Vec<usize> = problem.sets.iter().map(|set| set.piece).collect();
+        pieces.dedup();
+        let of_pieces = if pieces.len() > 1 && problem.constants.free.iter().all(|free| free.piece.is_none()) {
+            ", or the pieces differ in a constant (own_constants = [\"g_zx\"] in a [[piece]] gives it one of its own)"
+        } else {
+            ""
+        };
         format!(
             "the plate misses the frequencies by {:.2} % rms, {:.0} times {told} ({:.2} %), from other starts too: a mode may \
-             be named wrongly, or the plate lacks something; its constants are in doubt",
+             be named wrongly, or the plate lacks something{of_pieces}; its constants are in doubt",
             100.0 * rms,
             rms / scatter,
             100.0 * scatter

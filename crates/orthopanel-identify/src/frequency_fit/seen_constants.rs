@@ -114,8 +114,7 @@ fn pays(problem: &FrequencyProblem, trial: &Minimum, freed: usize, reached: &Rea
     let noise = if reached.misses { Noise::stated(problem) } else { Noise::left(problem, &at) };
     let stds = noise.standard_deviations(&at);
     let mut own = (0..constants.count()).filter(|&index| constants.free[index].constant == freed);
-    let seen =
-        own.all(|index| stds[index] <= widest(constants, index) && !constants.on_bound(index, trial.parameters[index]));
+    let seen = own.all(|index| !is_open(constants, index, trial.parameters[index], stds[index]));
     seen && match (reached.prediction, prediction_error(&at)) {
         (Some(before), Some(after)) => after <= factor * before,
         _ => reached.misses,
@@ -188,7 +187,7 @@ pub(super) fn worst_hidden(problem: &FrequencyProblem, at: &Minimum) -> Option<u
     let hidden = (0..constants.count()).filter_map(|index| {
         let constant = constants.free[index].constant;
         let ratio = stds[index] / widest(constants, index);
-        let is_hidden = ratio > 1.0 || constants.on_bound(index, at.parameters[index]);
+        let is_hidden = is_open(constants, index, at.parameters[index], stds[index]);
         (is_hidden && (moduli > 1 || !constants.is_modulus(constant))).then_some((constant, ratio))
     });
     hidden.max_by(|a, b| a.1.total_cmp(&b.1)).map(|(constant, _)| constant)
@@ -203,6 +202,19 @@ fn total_standard_deviations(problem: &FrequencyProblem, at: &Minimum) -> Vec<f6
         || noise.standard_deviations(&linearised),
         |covariance| (0..constants.count()).map(|index| covariance[(index, index)].sqrt()).collect(),
     )
+}
+
+/// A ratio that is known this well is a result though its interval reaches beyond its bound: it is known to lie near it.
+const NARROW_RATIO: f64 = 0.05;
+
+/// Whether data leave a parameter open: its interval is wider than its bounds, or reaches beyond one of them.
+fn is_open(constants: &FreeConstants, index: usize, at: f64, std: f64) -> bool {
+    let (low, high) = constants.bounds()[index];
+    let is_ratio = !constants.is_modulus(constants.free[index].constant);
+    let reaches_beyond = at - HALF_95 * std < low || at + HALF_95 * std > high;
+    std > widest(constants, index)
+        || constants.on_bound(index, at)
+        || (is_ratio && std > NARROW_RATIO && reaches_beyond)
 }
 
 /// The widest standard deviation of a parameter that still is a result.
