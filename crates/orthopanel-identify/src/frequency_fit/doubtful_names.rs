@@ -54,7 +54,7 @@ pub(super) fn doubtful_names(
     }
     match told.or_else(|| best(near_pairs(&whole))) {
         Some(tried) => tried.notes(test, &whole),
-        None if stands_out => lines_apart(test, problem, &whole, found, FAR_BETTER * cost),
+        None if stands_out => lines_apart(test, problem, &whole, found),
         None => Ok(Vec::new()),
     }
 }
@@ -62,14 +62,18 @@ pub(super) fn doubtful_names(
 /// Most lines that may stand apart, as a part of all.
 const MOST_APART: f64 = 0.25;
 
-/// A sentence for each line without which the others are met far better, though it is no other mode's either.
+/// The others are met where they are missed by no more than so many times what they scatter.
+const OTHERS_MET: f64 = 1.5;
+
+/// A sentence for each line that stands apart from others which are met, though it is no other mode's either.
 fn lines_apart(
     test: &ImpactTest,
     problem: &FrequencyProblem,
     whole: &FrequencyProblem,
     found: &[f64],
-    most: f64,
 ) -> Result<Vec<String>, IdentifyError> {
+    // What the plate lacks moves several lines: only where all others are met does one stand apart.
+    let most = OTHERS_MET.powi(2) * Noise::stated(problem).variance * problem.count() as f64;
     let mut best: Option<(f64, Vec<String>)> = None;
     for (more, parameters) in robust_minima(problem, whole, found)? {
         let Ok(predictions) = more.predictions(&parameters) else { continue };
