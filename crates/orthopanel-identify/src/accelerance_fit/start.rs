@@ -11,7 +11,7 @@ use super::misfit::noise_percent;
 use super::mode_group::{NearMode, Overlap, group_pole};
 use super::poles::{NoisePower, Pole, alike, poles};
 use super::records::PlaceRecord;
-use super::structures::{self, SeenMode};
+use super::structures;
 use crate::free_constants::FreeConstants;
 use crate::frequency_fit::{PoleFit, PoleSet, fit_poles};
 use crate::least_squares::Quadratic;
@@ -60,13 +60,13 @@ impl<'a> Start<'a> {
 
     /// Resonances \[Hz\] that no mode took; those below the lowest mode may come from the piece's suspension.
     pub fn untaken_resonances(&self) -> Vec<f64> {
-        let pieces = self.poles.iter().zip(&self.matching.modes).zip(&self.matching.seen);
-        let of_piece = |((poles, modes), seen): ((&Vec<Pole>, &Vec<Option<usize>>), &Vec<SeenMode>)| {
+        let mut untaken = Vec::new();
+        for ((poles, modes), seen) in self.poles.iter().zip(&self.matching.modes).zip(&self.matching.seen) {
             let lowest = seen.first().map_or(f64::INFINITY, |mode| mode.frequency);
-            let untaken = poles.iter().zip(modes).filter(|(pole, mode)| mode.is_none() && pole.frequency > lowest);
-            untaken.map(|(pole, _)| pole.frequency).collect::<Vec<f64>>()
-        };
-        pieces.flat_map(of_piece).collect()
+            let lonely = poles.iter().zip(modes).filter(|(pole, mode)| mode.is_none() && pole.frequency > lowest);
+            untaken.extend(lonely.map(|(pole, _)| pole.frequency));
+        }
+        untaken
     }
 
     /// How far the model's resonances lie beside those of the records, in half widths, rms; zero of none.
