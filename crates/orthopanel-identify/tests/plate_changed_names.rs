@@ -26,16 +26,11 @@ fn assert_told(one: usize, other: usize) {
     }
 }
 
-/// Where the names that the file has lead to no minimum, the error tells the others. Which pairs end so changes with the basis.
+/// Pairs whose search under the names of the file found no minimum at first. Since all constants move at once the search of each of the
+/// 45 pairs ends somewhere, so that no refusal for want of a minimum is left to be tested here; the pairs must be told all the same.
 #[test]
-fn names_without_a_minimum_are_told_with_the_error() {
-    let pairs = [(3, 5), (4, 5), (5, 7)];
-    pairs.iter().for_each(|&(one, other)| assert_told(one, other));
-    // On another basis of the same space the three pairs found first have a minimum: another pair has none.
-    let all = || (0..FREE.len()).flat_map(|one| (one + 1..FREE.len()).map(move |other| (one, other)));
-    let without = pairs.into_iter().chain(all()).find(|&(one, other)| told(one, other).starts_with("no minimum"));
-    let (one, other) = without.expect("a pair whose search does not end");
-    assert_told(one, other);
+fn pairs_that_led_to_no_minimum_are_told() {
+    [(3, 5), (4, 5), (5, 7)].into_iter().for_each(|(one, other)| assert_told(one, other));
 }
 
 /// 3144.8 and 3191.4 Hz: with each other's names no line misses by 1 %.
