@@ -4,7 +4,10 @@ use orthopanel_data::DataError;
 use orthopanel_model::ModelError;
 use thiserror::Error;
 
+use self::wording::{all_times, much_noise, other_place, spaced, untaken};
 use crate::least_squares::Stuck;
+
+mod wording;
 
 /// Sampling rate over the band of an analyser, whose anti-alias filter needs the rest.
 const RATE_OVER_BAND: f64 = 2.56;
@@ -319,48 +322,6 @@ pub enum IdentifyError {
     /// What the physics refuses.
     #[error(transparent)]
     Model(#[from] ModelError),
-}
-
-/// Noise of the median line \[%\] beside which few resonances are no wonder.
-const MUCH_NOISE: f64 = 30.0;
-
-fn much_noise(percent: Option<f64>) -> String {
-    percent.filter(|&percent| percent > MUCH_NOISE).map_or(String::new(), |percent| {
-        format!(
-            "too much noise, {percent:.0} % of the line in the median line (hit harder, average more hits, mend cable and range); \
-             or "
-        )
-    })
-}
-
-fn all_times(factor: Option<f64>) -> String {
-    factor.map_or(String::new(), |factor| {
-        let cause = if (factor + 1.0).abs() < 0.1 {
-            "the sensor turned round: direction = -1 in each [[measurement]]"
-        } else if (factor / 9.806_65 - 1.0).abs() < 0.1 {
-            "an acceleration in g that the file calls m/s2: put its unit right there, in CSV the column acceleration_g"
-        } else {
-            "a gain, a unit, or the mass of the piece"
-        };
-        format!("times {factor:.3} all of them fit ({cause}); ")
-    })
-}
-
-/// A unit behind its number; pure numbers have none.
-fn spaced(unit: &str) -> String {
-    if unit == "1" { String::new() } else { format!(" {unit}") }
-}
-
-fn untaken(resonances: &[f64]) -> String {
-    let told: Vec<String> = resonances.iter().map(|frequency| format!("{frequency:.1}")).collect();
-    match &told[..] {
-        [] => String::new(),
-        told => format!(", and has no mode for the resonance at {} Hz", told.join(", ")),
-    }
-}
-
-fn other_place(fits_at: &Option<(&'static str, f64)>) -> String {
-    fits_at.map_or(String::new(), |(key, x)| format!(", and would fit with {key} x = {x:.3} m"))
 }
 
 impl IdentifyError {

@@ -1,0 +1,43 @@
+//! Parts of the sentences of errors that depend on their numbers.
+
+/// Noise of the median line \[%\] beside which few resonances are no wonder.
+const MUCH_NOISE: f64 = 30.0;
+
+pub(super) fn much_noise(percent: Option<f64>) -> String {
+    percent.filter(|&percent| percent > MUCH_NOISE).map_or(String::new(), |percent| {
+        format!(
+            "too much noise, {percent:.0} % of the line in the median line (hit harder, average more hits, mend cable and range); \
+             or "
+        )
+    })
+}
+
+pub(super) fn all_times(factor: Option<f64>) -> String {
+    factor.map_or(String::new(), |factor| {
+        let cause = if (factor + 1.0).abs() < 0.1 {
+            "the sensor turned round: direction = -1 in each [[measurement]]"
+        } else if (factor / 9.806_65 - 1.0).abs() < 0.1 {
+            "an acceleration in g that the file calls m/s2: put its unit right there, in CSV the column acceleration_g"
+        } else {
+            "a gain, a unit, or the mass of the piece"
+        };
+        format!("times {factor:.3} all of them fit ({cause}); ")
+    })
+}
+
+/// A unit behind its number; pure numbers have none.
+pub(super) fn spaced(unit: &str) -> String {
+    if unit == "1" { String::new() } else { format!(" {unit}") }
+}
+
+pub(super) fn untaken(resonances: &[f64]) -> String {
+    let told: Vec<String> = resonances.iter().map(|frequency| format!("{frequency:.1}")).collect();
+    match &told[..] {
+        [] => String::new(),
+        told => format!(", and has no mode for the resonance at {} Hz", told.join(", ")),
+    }
+}
+
+pub(super) fn other_place(fits_at: &Option<(&'static str, f64)>) -> String {
+    fits_at.map_or(String::new(), |(key, x)| format!(", and would fit with {key} x = {x:.3} m"))
+}
