@@ -4,7 +4,10 @@ use faer::Mat;
 use orthopanel_data::ImpactTest;
 use orthopanel_model::Constant;
 
-use crate::{Correlation, IdentifyError};
+use crate::{Correlation, IdentifyError, NotIdentified};
+
+/// Half of a 95 % interval in standard deviations.
+pub(crate) const HALF_95: f64 = 1.96;
 
 /// A constant to find.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -253,12 +256,27 @@ impl FreeConstants {
 
     /// The direction of these changes of all parameters as a unit vector by the names of the constants: one parameter first
     /// and positive, then the largest; small ones are not told.
-    pub fn direction(&self, first: usize, changes: &[f64]) -> Vec<(&'static str, f64)> {
+    fn direction(&self, first: usize, changes: &[f64]) -> Vec<(&'static str, f64)> {
         let size = changes.iter().map(|change| change * change).sum::<f64>().sqrt() * changes[first].signum();
         let mut components: Vec<(usize, f64)> = changes.iter().map(|change| change / size).enumerate().collect();
         components.retain(|(index, component)| *index == first || component.abs() > SMALL_COMPONENT);
         components.sort_by(|a, b| (b.0 == first).cmp(&(a.0 == first)).then(b.1.abs().total_cmp(&a.1.abs())));
         components.into_iter().map(|(index, component)| (self.constant(index).name, component)).collect()
+    }
+
+    /// What is said of a parameter that rests at `at` since the data leave it open by this standard deviation: its 95 % interval,
+    /// and where all parameters go with it, by the covariance, of which these are the first.
+    pub fn not_identified(&self, parameter: usize, at: f64, std: f64, covariance: Option<&Mat<f64>>) -> NotIdentified {
+        let Constant { name, unit, .. } = *self.constant(parameter);
+        let end = |sign: f64| self.value(parameter, at + sign * HALF_95 * std);
+        let column = |matrix: &Mat<f64>| (0..self.count()).map(|i| matrix[(i, parameter)]).collect::<Vec<f64>>();
+        NotIdentified {
+            name,
+            unit,
+            held_at: self.value(parameter, at),
+            interval: [end(-1.0), end(1.0)],
+            direction: covariance.map(|matrix| self.direction(parameter, &column(matrix))).unwrap_or_default(),
+        }
     }
 
     /// Correlation coefficient of each pair of parameters, the first ones of a covariance.

@@ -27,7 +27,7 @@ pub(super) fn contradiction(
     problem: &AcceleranceProblem,
     parameters: &[f64],
     lines: &[Vec<Complex64>],
-    resonances: Vec<f64>,
+    resonances: &[f64],
 ) -> Result<Option<String>, IdentifyError> {
     let records: Vec<(usize, &PlaceRecord)> =
         problem.pieces.iter().flat_map(|piece| piece.records.iter().map(|record| (piece.piece, record))).collect();
@@ -46,7 +46,7 @@ pub(super) fn contradiction(
         let (record, factor) = (name, common_factor(&records, lines));
         return Err(match test.structure {
             Some(StructureKind::MindlinPlate) => {
-                IdentifyError::PlateContradiction { record, percent, factor, resonances }
+                IdentifyError::PlateContradiction { record, percent, factor, resonances: resonances.to_vec() }
             }
             _ => IdentifyError::Contradiction { record, percent, factor },
         });

@@ -7,15 +7,15 @@
 
 use faer::prelude::Solve;
 use faer::{Mat, Side};
-use orthopanel_model::{Constant, ModelError};
+use orthopanel_model::ModelError;
 use rayon::prelude::*;
 
 use super::matching::{Matching, PiecePoles, REACH, likeness, match_within};
+use crate::IdentifyError;
 use crate::free_constants::{FreeConstant, FreeConstants, Rest};
 use crate::frequency_fit::PoleFit;
 use crate::least_squares::Quadratic;
 use crate::usual_plate::BesideUsual;
-use crate::{IdentifyError, NotIdentified};
 
 /// Rounds, far to near: a pole further than this from every mode belongs to none, and one that misses by more than the scatter
 /// counts for less.
@@ -160,23 +160,11 @@ impl<'a> Following<'a> {
             if std < SEEN * open {
                 continue;
             }
-            let value = self.constants.value(index, parameters[index]);
-            let end = |sign: f64| self.constants.value(index, parameters[index] + sign * 1.96 * std.min(open));
-            let changes = |matrix: &Mat<f64>| (0..parameters.len()).map(|i| matrix[(i, index)]).collect::<Vec<f64>>();
-            let Constant { name, unit, .. } = *self.constants.constant(index);
-            not_identified.push(NotIdentified {
-                name,
-                unit,
-                held_at: value,
-                interval: [end(-1.0), end(1.0)],
-                direction: covariance
-                    .as_ref()
-                    .map(|matrix| self.constants.direction(index, &changes(matrix)))
-                    .unwrap_or_default(),
-            });
+            let unseen = self.constants.not_identified(index, parameters[index], std.min(open), covariance.as_ref());
             if constants.free.iter().any(|other| other.constant == free.constant) {
-                constants.rest(free.constant, Rest::Held(value));
+                constants.rest(free.constant, Rest::Held(unseen.held_at));
             }
+            not_identified.push(unseen);
         }
         let kept = |index: &usize| constants.free.contains(&self.constants.free[*index]);
         let kept: Vec<usize> = (0..parameters.len()).filter(kept).collect();

@@ -133,13 +133,12 @@ fn by_wide_records(
     settings: Settings,
     recorded: &Recorded,
 ) -> Result<Identification, IdentifyError> {
-    let records = || recorded.pieces.iter().flat_map(|piece| &piece.records);
     let too_few = || IdentifyError::TooFewResonances {
         found: 0,
         needed: recorded.constants.count(),
-        noise_percent: misfit::noise_percent(records()),
+        noise_percent: misfit::noise_percent(recorded.records()),
     };
-    if records().all(PlaceRecord::is_mere_noise) {
+    if recorded.records().all(PlaceRecord::is_mere_noise) {
         return Err(too_few());
     }
     let mut refused = None;

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use faer::Mat;
 use num_complex::Complex64;
 use orthopanel_data::ImpactTest;
-use orthopanel_model::{Constant, Estimate, StructureKind};
+use orthopanel_model::{Estimate, StructureKind};
 
 use super::band::refuse_low_band;
 use super::contradiction::contradiction;
@@ -40,9 +40,9 @@ pub(super) fn outcome(
 ) -> Result<Identification, IdentifyError> {
     let noise_known = problem.noise_is_known();
     if noise_known && problem.cost_of_nothing() - minimum.at.cost < MORE_THAN_CHANCE * problem.size() as f64 {
-        let records = || problem.pieces.iter().flat_map(|piece| &piece.records);
         let needed = problem.constants.count();
-        return Err(IdentifyError::TooFewResonances { found: 0, needed, noise_percent: noise_percent(records()) });
+        let noise_percent = noise_percent(problem.records());
+        return Err(IdentifyError::TooFewResonances { found: 0, needed, noise_percent });
     }
     // Eq. 23 is no likelihood: its minimum has no standard deviation that follows from the noise.
     let likelihood = settings.search == Search::LeastSquares;
@@ -79,10 +79,6 @@ fn rest_unseen(
     covariance: Option<&Mat<f64>>,
 ) -> Vec<NotIdentified> {
     let constants = problem.constants.clone();
-    let direction = |parameter: usize| {
-        let changes = |matrix: &Mat<f64>| (0..constants.count()).map(|i| matrix[(i, parameter)]).collect::<Vec<f64>>();
-        covariance.map(|matrix| constants.direction(parameter, &changes(matrix))).unwrap_or_default()
-    };
     let mut reports = Vec::new();
     // From the last, so that the places of those before stay.
     for usual in problem.usual.drain(..).rev() {
@@ -91,12 +87,9 @@ fn rest_unseen(
             continue;
         }
         let at = found.parameters[usual.parameter];
-        let end = |sign: f64| constants.value(usual.parameter, at + sign * 1.96 * std.min(usual.std));
-        let value = constants.value(usual.parameter, at);
-        let Constant { name, unit, .. } = *constants.constant(usual.parameter);
-        let interval = [end(-1.0), end(1.0)];
-        reports.push(NotIdentified { name, unit, held_at: value, interval, direction: direction(usual.parameter) });
-        problem.constants.rest(constants.free[usual.parameter].constant, Rest::Held(value));
+        let unseen = constants.not_identified(usual.parameter, at, std.min(usual.std), covariance);
+        problem.constants.rest(constants.free[usual.parameter].constant, Rest::Held(unseen.held_at));
+        reports.push(unseen);
         found.parameters.remove(usual.parameter);
         found.log_std.remove(usual.parameter);
     }
@@ -147,7 +140,7 @@ pub(super) fn from_poles(
 /// A resonance $\delta$ half widths beside its place changes no line by more than that part of it, so a greater misfit in half
 /// of a record's lines is not the resonances'.
 fn why_from_poles(start: &Start, problem: &AcceleranceProblem, lines: &[Vec<Complex64>]) -> &'static str {
-    let records = problem.pieces.iter().flat_map(|piece| &piece.records).zip(lines);
+    let records = problem.records().zip(lines);
     let most = records.map(|(record, model)| record_misfit_percent(record, model)).fold(0.0, f64::max);
     let between = start.resonances_meet() && most > 100.0 * start.half_widths_beside();
     if between {
@@ -172,7 +165,7 @@ fn report(
     let lines = problem.lines(&parameters)?;
     let is_plate = start.recorded.structure == StructureKind::MindlinPlate;
     let untaken = start.untaken_resonances();
-    notes.extend(contradiction(test, problem, &parameters, &lines, untaken.clone())?);
+    notes.extend(contradiction(test, problem, &parameters, &lines, &untaken)?);
     if let Some(chi_square) = chi_square.filter(|of| *of > FAR_FROM_NOISE && is_plate && !untaken.is_empty()) {
         return Err(IdentifyError::UntakenResonances { chi_square, resonances: untaken });
     }

@@ -165,12 +165,7 @@ impl AcceleranceProblem {
 
     /// Number of independent real data: two a line, less what windows tie together.
     pub(super) fn data(&self) -> f64 {
-        self.pieces
-            .iter()
-            .flat_map(|piece| &piece.records)
-            .flat_map(|record| &record.worth)
-            .map(|worth| 2.0 * worth)
-            .sum()
+        self.records().flat_map(|record| &record.worth).map(|worth| 2.0 * worth).sum()
     }
 
     /// Misfit per datum that is left beside the parameters, of a sum of squares.
@@ -180,8 +175,7 @@ impl AcceleranceProblem {
 
     /// The sum of squares of no model at all.
     pub(super) fn cost_of_nothing(&self) -> f64 {
-        let records = self.pieces.iter().flat_map(|piece| &piece.records);
-        records
+        self.records()
             .flat_map(|record| record.value.iter().zip(&record.variance).zip(&record.worth))
             .map(|((value, variance), worth)| 2.0 * worth * value.norm_sqr() / variance)
             .sum()
@@ -189,12 +183,12 @@ impl AcceleranceProblem {
 
     /// Whether every record tells its own noise.
     pub(super) fn noise_is_known(&self) -> bool {
-        self.pieces.iter().flat_map(|piece| &piece.records).all(|record| record.variance_known)
+        self.records().all(|record| record.variance_known)
     }
 
     /// Whether there is a record whose noise no scatter of hits tells.
     pub(super) fn noise_is_to_learn(&self) -> bool {
-        self.pieces.iter().flat_map(|piece| &piece.records).any(|record| !record.scatter_told)
+        self.records().any(|record| !record.scatter_told)
     }
 
     /// Takes the noise of such records from the misfit at these parameters.

@@ -163,6 +163,5 @@ pub(super) fn sharpened_lines(
 
 /// Whether a width of this part of the frequency is more than the distance between lines anywhere.
 fn narrows(recorded: &Recorded, part: f64) -> bool {
-    let mut records = recorded.pieces.iter().flat_map(|piece| &piece.records);
-    records.any(|record| part * record.band_end() > record.line_step())
+    recorded.records().any(|record| part * record.band_end() > record.line_step())
 }

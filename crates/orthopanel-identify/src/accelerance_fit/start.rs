@@ -28,6 +28,13 @@ pub(super) struct Recorded {
     pub notes: Vec<String>,
 }
 
+impl Recorded {
+    /// The records of all pieces.
+    pub fn records(&self) -> impl Iterator<Item = &PlaceRecord> {
+        self.pieces.iter().flat_map(|piece| &piece.records)
+    }
+}
+
 /// What stands before the fit: which modes the poles are, and constants.
 pub(super) struct Start<'a> {
     pub recorded: &'a Recorded,
@@ -196,11 +203,8 @@ pub(super) fn start(recorded: &Recorded) -> Result<Start<'_>, IdentifyError> {
         StructureKind::MindlinPlate => constants.count().clamp(1, 2),
     };
     let found: usize = poles.iter().map(|piece| piece.frequencies.len()).sum();
-    let too_few = || IdentifyError::TooFewResonances {
-        found,
-        needed,
-        noise_percent: noise_percent(pieces.iter().flat_map(|piece| &piece.records)),
-    };
+    let too_few =
+        || IdentifyError::TooFewResonances { found, needed, noise_percent: noise_percent(recorded.records()) };
     if found < needed {
         return Err(low_band_of_usual_panel(recorded)?.unwrap_or_else(too_few));
     }

@@ -4,10 +4,9 @@ use faer::Side;
 
 use super::problem::FrequencyProblem;
 use super::uncertainty::rounding_variance;
+use crate::free_constants::HALF_95;
 use crate::least_squares::Linearised;
 
-/// Half of a 95 % interval in standard deviations.
-pub(super) const HALF_95: f64 = 1.96;
 /// Relative standard deviation of a frequency, where neither a bin is stated nor a fit has told it.
 pub(super) const USUAL_SCATTER: f64 = 1e-3;
 /// Frequencies that are missed by more scatters than these are not missed by chance.

@@ -3,12 +3,12 @@
 use std::sync::Arc;
 
 use super::first_constants::{Resting, first_minimum};
-use super::noise::{BEYOND_CHANCE, HALF_95, Noise};
+use super::noise::{BEYOND_CHANCE, Noise};
 use super::problem::{FrequencyProblem, FrequencySet};
 use super::uncertainty::{left_one_out_percent, with_unseen};
 use super::{Minimum, least_squares};
 use crate::IdentifyError;
-use crate::free_constants::{FreeConstant, FreeConstants, Rest};
+use crate::free_constants::{FreeConstant, FreeConstants, HALF_95, Rest};
 use crate::least_squares::{Ending, Linearised, descend};
 
 /// A modulus is not seen where the standard deviation of its logarithm is above this: its interval spans a factor of 7.

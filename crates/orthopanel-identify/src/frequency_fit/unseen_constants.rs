@@ -1,10 +1,9 @@
 //! What is said of the constants that the frequencies do not show.
 
 use faer::{Mat, Side};
-use orthopanel_model::Constant;
 
 use super::Minimum;
-use super::noise::{HALF_95, Noise};
+use super::noise::Noise;
 use super::problem::FrequencyProblem;
 use super::seen_constants::as_if_freed;
 use crate::NotIdentified;
@@ -24,29 +23,20 @@ pub(super) fn reports(problem: &FrequencyProblem, all: &FreeConstants, minimum: 
         noise = stated;
     }
     let stds = noise.standard_deviations(&at);
-    let normal = at.quadratic().normal;
+    let open = open_covariance(&at.quadratic().normal);
     let report = |&constant: &usize| {
         let index = constants.free.iter().position(|free| free.constant == constant).unwrap_or(0);
-        let Constant { name, unit, .. } = constants.constants[constant];
-        let end = |sign: f64| constants.value(index, values[index] + sign * HALF_95 * stds[index]);
-        NotIdentified {
-            name,
-            unit,
-            held_at: constants.value(index, values[index]),
-            interval: [end(-1.0), end(1.0)],
-            direction: blind_direction(&constants, &normal, index),
-        }
+        constants.not_identified(index, values[index], stds[index], open.as_ref())
     };
     resting.iter().map(report).collect()
 }
 
-/// Where all parameters go when one moves and the others make up for it as far as they can: its column of the covariance.
-fn blind_direction(constants: &FreeConstants, normal: &Mat<f64>, parameter: usize) -> Vec<(&'static str, f64)> {
-    let Ok(decomposition) = normal.self_adjoint_eigen(Side::Lower) else { return Vec::new() };
+/// The covariance of all parameters, of which the data may leave some open: what has next to no curvature has much of it.
+fn open_covariance(normal: &Mat<f64>) -> Option<Mat<f64>> {
+    let decomposition = normal.self_adjoint_eigen(Side::Lower).ok()?;
     let (values, vectors) = (decomposition.S(), decomposition.U());
     let count = normal.nrows();
     let floor = 1e-14 * (0..count).map(|k| values[k]).fold(f64::MIN_POSITIVE, f64::max);
-    let share = |k: usize| vectors[(parameter, k)] / values[k].max(floor);
-    let column: Vec<f64> = (0..count).map(|i| (0..count).map(|k| vectors[(i, k)] * share(k)).sum()).collect();
-    constants.direction(parameter, &column)
+    let share = |i: usize, j: usize, k: usize| vectors[(i, k)] * (vectors[(j, k)] / values[k].max(floor));
+    Some(Mat::from_fn(count, count, |i, j| (0..count).map(|k| share(i, j, k)).sum()))
 }
