@@ -84,14 +84,15 @@ impl Hit {
         Blow { offset, at, height, quiet: at.checked_sub(foot + AHEAD), half: LENGTHS * length + AHEAD }
     }
 
-    /// The greatest push farther than `reach` samples from the blow's peak that is no noise, nor what a filter makes of the blow: its
-    /// sample, and its height over the blow's. `None` without one, and where the record does not tell its noise.
-    pub(super) fn push_beyond(&self, reach: f64) -> Option<(usize, f64)> {
+    /// The greatest push farther than `reach` samples from the blow's peak that is no noise, nor what a filter makes of the blow: how
+    /// many samples after the peak it lies, and its height over the blow's. `None` without one, and where the record does not
+    /// tell its noise.
+    pub(super) fn push_beyond(&self, reach: f64) -> Option<(f64, f64)> {
         let blow = self.blow();
         let noise = self.noise_before(&blow)?.force / blow.height.abs();
         let near = blow.near(self.force.len());
         let beyond = |n: &usize| !near.contains(n) && n.abs_diff(blow.at) as f64 > reach;
-        let push = |n: usize| (n, (self.force[n] - blow.offset) / blow.height);
+        let push = |n: usize| (n as f64 - blow.at as f64, (self.force[n] - blow.offset) / blow.height);
         let pushes = (0..self.force.len()).filter(beyond).map(push);
         pushes.max_by(|a, b| a.1.total_cmp(&b.1)).filter(|(_, ratio)| *ratio > (ABOVE_NOISE * noise).max(LEAST_PUSH))
     }

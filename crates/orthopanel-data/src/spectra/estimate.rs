@@ -208,9 +208,9 @@ impl TimeHistory {
     /// A sentence where a force window cuts off a push beside the blow.
     fn cut_push(&self, window: Window, hits: &[(usize, &Hit)]) -> Option<String> {
         let reach = window.force_half_width()? * self.rate;
-        let pushes = hits.iter().filter_map(|(index, hit)| Some((index, hit, hit.push_beyond(reach)?)));
-        let (index, hit, (at, ratio)) = pushes.max_by(|a, b| a.2.1.total_cmp(&b.2.1))?;
-        let after = (at as f64 - hit.blow().at as f64) / self.rate;
+        let pushes = hits.iter().filter_map(|(index, hit)| Some((index, hit.push_beyond(reach)?)));
+        let (index, (samples, ratio)) = pushes.max_by(|a, b| a.1.1.total_cmp(&b.1.1))?;
+        let after = samples / self.rate;
         let when = if after < 0.0 { "before" } else { "after" };
         Some(format!(
             "{}: the force window cuts off a push of {:.1} % of the blow, {} {when} it: where that is a second touch, the piece \

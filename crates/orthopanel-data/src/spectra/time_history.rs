@@ -270,23 +270,19 @@ fn common_grid(force: &Record, acceleration: &Record) -> Result<(usize, f64), Da
             let due = start + step * *index as f64;
             (*time - due).abs() > STEP_TOLERANCE * step
         });
-        if uneven.is_some()
-            && let Some((index, ratio)) = leap(&record.abscissa)
-        {
-            let at = record.at_point(index);
-            let problem = format!(
-                "{name}, sample {}: {ratio:.3} times the usual step after the one before: samples are missing or stand twice; \
-                 force and acceleration need the same even times",
-                index + 1
-            );
-            return Err(DataError::Channels { at, problem });
-        }
-        if let Some((index, time)) = uneven {
-            let problem = format!(
-                "{name}, sample {}: t = {time} s, {} s expected: force and acceleration need the same even times",
-                index + 1,
-                start + step * index as f64
-            );
+        if let Some((off, time)) = uneven {
+            let due = start + step * off as f64;
+            let (index, found) = match leap(&record.abscissa) {
+                Some((index, ratio)) => (
+                    index,
+                    format!(
+                        "{ratio:.3} times the usual step after the one before: samples are missing or stand twice;"
+                    ),
+                ),
+                None => (off, format!("t = {time} s, {due} s expected:")),
+            };
+            let problem =
+                format!("{name}, sample {}: {found} force and acceleration need the same even times", index + 1);
             return Err(DataError::Channels { at: record.at_point(index), problem });
         }
     }

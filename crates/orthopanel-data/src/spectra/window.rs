@@ -42,7 +42,7 @@ const LEFT: f64 = 1e-6;
 
 /// Time constants before the blow at which the exponential begins: so far ahead a filter has not begun to ring, and noise counts for
 /// little more than at the blow.
-const AHEAD: f64 = 0.5;
+const BEGINS_AHEAD: f64 = 0.5;
 
 impl Window {
     /// Half the width of the force window unless said \[s\]: ten times a usual blow.
@@ -148,8 +148,9 @@ impl Window {
             Self::Force { half_width } => keep_near(force, blow.at, half_width * rate),
             Self::ForceExponential { half_width, tau } => {
                 keep_near(force, blow.at, half_width * rate);
-                let begins =
-                    blow.quiet.map_or(0, |quiet| quiet.min(blow.at.saturating_sub((AHEAD * tau * rate) as usize)));
+                let begins = blow
+                    .quiet
+                    .map_or(0, |quiet| quiet.min(blow.at.saturating_sub((BEGINS_AHEAD * tau * rate) as usize)));
                 for channel in [force, acceleration] {
                     let (before, after) = channel.split_at_mut(begins.min(channel.len()));
                     before.fill(0.0);
