@@ -140,11 +140,16 @@ impl ModalModel {
     /// a row a response, a column a force, in `all` as in what is returned.
     pub fn left_of_flexibility(&self, mut all: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
         for mode in self.flexible() {
-            let omega2 = mode.angular_frequency.powi(2);
-            for (row, response) in all.iter_mut().zip(&mode.at_responses) {
-                row.iter_mut().zip(&mode.at_forces).for_each(|(value, force)| *value -= response * force / omega2);
-            }
+            add_flexibility(&mut all, -1.0, mode.angular_frequency, (&mode.at_responses, &mode.at_forces));
         }
         all
+    }
+}
+
+/// Adds so many times $W_rW_f/\omega^2$ \[m/N\] of a mode to a row a response, a column a force.
+pub(crate) fn add_flexibility(sum: &mut [Vec<f64>], times: f64, omega: f64, (responses, forces): (&[f64], &[f64])) {
+    let omega2 = omega.powi(2);
+    for (row, response) in sum.iter_mut().zip(responses) {
+        row.iter_mut().zip(forces).for_each(|(value, force)| *value += times * (response * force / omega2));
     }
 }

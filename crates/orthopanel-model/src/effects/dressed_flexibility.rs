@@ -1,6 +1,7 @@
 //! What all modes of a panel with effects together leave at low frequency.
 
 use super::dressed_panel::{Dressed, DressedPanel, PanelWithEffects, SPARE_MODES};
+use crate::modal_model::add_flexibility;
 use crate::{ModelError, Place};
 
 /// Bare modes in whose coordinates it is worked out, at most: forces at ports and elements have shapes of their own, so that no
@@ -34,11 +35,10 @@ impl DressedPanel {
         let (forces, responses) = (at(forces), at(responses));
         let mut sum = vec![vec![0.0; forces.len()]; responses.len()];
         for (omega, _, shares) in modes.iter().filter(|(omega, ..)| *omega > 0.0) {
-            let seen = |row: &Vec<f64>| row.iter().zip(shares).map(|(value, share)| value * share).sum::<f64>();
-            let at_forces: Vec<f64> = forces.iter().map(seen).collect();
-            for (row, response) in sum.iter_mut().zip(responses.iter().map(seen)) {
-                row.iter_mut().zip(&at_forces).for_each(|(sum, force)| *sum += response * force / (omega * omega));
-            }
+            let seen = |rows: &[Vec<f64>]| -> Vec<f64> {
+                rows.iter().map(|row| row.iter().zip(shares).map(|(value, share)| value * share).sum()).collect()
+            };
+            add_flexibility(&mut sum, 1.0, *omega, (&seen(&responses), &seen(&forces)));
         }
         Ok(Some(sum))
     }
