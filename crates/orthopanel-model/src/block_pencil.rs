@@ -86,18 +86,17 @@ impl<'a> BlockPencil<'a> {
 
     /// $(K+\sigma M)^{-1}B$.
     pub(crate) fn solve(&self, mut loads: Mat<f64>) -> Mat<f64> {
-        for column in 0..loads.ncols() {
-            let load = loads.col_as_slice_mut(column);
-            self.scale_rows(load);
-            self.factor.solve_lower(load);
-            self.factor.solve_upper(load);
-            self.scale_rows(load);
-        }
+        self.scale_rows(&mut loads);
+        self.factor.solve_lower_columns(&mut loads);
+        self.factor.solve_upper_columns(&mut loads);
+        self.scale_rows(&mut loads);
         loads
     }
 
-    fn scale_rows(&self, vector: &mut [f64]) {
-        vector.iter_mut().zip(&self.scale).for_each(|(value, scale)| *value *= scale);
+    fn scale_rows(&self, columns: &mut Mat<f64>) {
+        for column in 0..columns.ncols() {
+            columns.col_as_slice_mut(column).iter_mut().zip(&self.scale).for_each(|(value, scale)| *value *= scale);
+        }
     }
 
     /// $\omega^2$ that an eigenvalue of $A$ stands for.
@@ -108,6 +107,11 @@ impl<'a> BlockPencil<'a> {
     /// The mode of a unit eigenvector of $A$ with its eigenvalue.
     pub(crate) fn mode(&self, theta: f64, mut vector: Vec<f64>) -> Eigenpair {
         self.factor.solve_upper(&mut vector);
+        self.mode_of(theta, vector)
+    }
+
+    /// The same from $L^{-T}v$.
+    fn mode_of(&self, theta: f64, mut vector: Vec<f64>) -> Eigenpair {
         let norm = theta.sqrt().recip();
         vector.iter_mut().zip(&self.scale).for_each(|(value, scale)| *value *= norm * scale);
         (self.omega2(theta), vector)
@@ -119,13 +123,16 @@ impl<'a> BlockPencil<'a> {
     /// [`ModelError::Eigenproblem`] where the eigenvalues are not found.
     pub(crate) fn all_modes(&self) -> Result<Vec<Eigenpair>, ModelError> {
         let size = self.size();
-        let unit = |column: usize| (0..size).map(|i| f64::from(u8::from(i == column))).collect::<Vec<f64>>();
-        let images: Vec<Vec<f64>> = (0..size).map(|column| self.apply(&unit(column))).collect();
-        let symmetric = Mat::from_fn(size, size, |i, j| 0.5 * (images[j][i] + images[i][j]));
-        let (thetas, vectors) = symmetric_eigen(&symmetric).ok_or(ModelError::Eigenproblem)?;
+        let mut half = self.mass.to_dense();
+        self.factor.solve_lower_columns(&mut half);
+        let mut image = half.transpose().to_owned();
+        self.factor.solve_lower_columns(&mut image);
+        let symmetric = Mat::from_fn(size, size, |i, j| 0.5 * (image[(i, j)] + image[(j, i)]));
+        let (thetas, mut vectors) = symmetric_eigen(&symmetric).ok_or(ModelError::Eigenproblem)?;
+        self.factor.solve_upper_columns(&mut vectors);
         // Largest θ first; the rigid modes are the very largest and are replaced by their exact shapes.
         let flexible = (0..size - self.rigid_count()).rev();
-        let modes = flexible.map(|n| self.mode(thetas[n], vectors.col_as_slice(n).to_vec()));
+        let modes = flexible.map(|n| self.mode_of(thetas[n], vectors.col_as_slice(n).to_vec()));
         Ok(modes.filter(|(omega2, _)| omega2.is_finite()).collect())
     }
 
@@ -156,6 +163,22 @@ impl Factor {
         }
     }
 
+    /// $L^{-1}B$ in the place of $B$.
+    fn solve_lower_columns(&self, columns: &mut Mat<f64>) {
+        match self {
+            Self::Thin(factor) => each_column(columns, |column| factor.solve_lower(column)),
+            Self::Dense(factor) => factor.solve_lower(columns),
+        }
+    }
+
+    /// $L^{-T}B$ in the place of $B$.
+    fn solve_upper_columns(&self, columns: &mut Mat<f64>) {
+        match self {
+            Self::Thin(factor) => each_column(columns, |column| factor.solve_upper(column)),
+            Self::Dense(factor) => factor.solve_upper(columns),
+        }
+    }
+
     /// $L^{-T}b$ in the place of $b$.
     pub(crate) fn solve_upper(&self, vector: &mut [f64]) {
         match self {
@@ -170,6 +193,12 @@ impl Factor {
             Self::Thin(factor) => factor.upper_times(vector),
             Self::Dense(factor) => on_column(vector, |column| *column = factor.upper_times(column)),
         }
+    }
+}
+
+fn each_column(columns: &mut Mat<f64>, work: impl Fn(&mut [f64])) {
+    for column in 0..columns.ncols() {
+        work(columns.col_as_slice_mut(column));
     }
 }
 
