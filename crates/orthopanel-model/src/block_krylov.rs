@@ -16,6 +16,11 @@ const NEARLY_CONVERGED: f64 = 1e-6;
 /// What a step takes off a residual, on the quick side: of one vector, of more.
 const GAIN: [f64; 2] = [6.0, 15.0];
 
+/// Vectors that hold all of an image but rounding's share, where the space grows by one vector a step.
+const LARGE_SHARES: usize = 2;
+/// A pass over all vectors that leaves less of a vector than this was not the last.
+const KEPT: f64 = 0.7;
+
 /// The Krylov space of a block, which grows until the modes asked for have converged.
 pub(crate) struct BlockKrylov {
     /// Orthonormal: the rigid modes, the space, and what it grows by next.
@@ -105,14 +110,14 @@ impl BlockKrylov {
     fn join(&mut self, mut vector: Vec<f64>) -> Vec<f64> {
         let before = dot(&vector, &vector).sqrt();
         let mut shares = vec![0.0; self.vectors.len()];
-        for _ in 0..2 {
-            for (sum, other) in shares.iter_mut().zip(&self.vectors) {
-                let share = dot(other, &vector);
-                *sum += share;
-                add(&mut vector, -share, other);
-            }
+        // Nearly all of an image lies in the last vectors: with that gone, one more time over all takes rounding's share out.
+        let last = self.vectors.len().saturating_sub(LARGE_SHARES);
+        let mut left = self.take_out(&mut vector, &mut shares, last);
+        let mut after = self.take_out(&mut vector, &mut shares, 0);
+        while after < KEPT * left && after > 1e-12 * before {
+            left = after;
+            after = self.take_out(&mut vector, &mut shares, 0);
         }
-        let after = dot(&vector, &vector).sqrt();
         let mut shares = shares.split_off(self.rigid);
         if after > 1e-12 * before {
             vector.iter_mut().for_each(|value| *value /= after);
@@ -120,6 +125,16 @@ impl BlockKrylov {
             shares.push(after);
         }
         shares
+    }
+
+    /// Takes the shares of the vectors from one on out of a vector, and adds them to `shares`; the norm of what is left.
+    fn take_out(&self, vector: &mut [f64], shares: &mut [f64], from: usize) -> f64 {
+        for (sum, other) in shares.iter_mut().zip(&self.vectors).skip(from) {
+            let share = dot(other, vector);
+            *sum += share;
+            add(vector, -share, other);
+        }
+        dot(vector, vector).sqrt()
     }
 
     /// Counts the modes that have converged; the largest residual of the lowest `wanted`.
