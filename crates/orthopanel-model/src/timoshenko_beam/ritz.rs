@@ -73,27 +73,32 @@ impl TimoshenkoBeam {
     }
 }
 
+/// $\sum_ic_iA_i$.
+#[inline(never)] // As series_products.
+fn sum(terms: &[(f64, &SymmetricMatrix)]) -> SymmetricMatrix {
+    SymmetricMatrix::sum(terms.iter().copied(), terms.first().map_or(0, |(_, matrix)| matrix.nrows()))
+}
+
 fn assemble(functions: &[StrainFunction], section: Section, half_length: f64, terms: &BeamTerms) -> Block {
     let size = functions.len();
     let Section { second_moment, shear_area, mass, rotary_inertia } = section;
-    let bending = faer::Scale(second_moment) * series_products(functions, half_length, |f| &f.curvature);
-    let turning = faer::Scale(rotary_inertia) * series_products(functions, half_length, |f| &f.rotation);
+    let curvature = series_products(functions, half_length, |f| &f.curvature).into();
+    let rotation = series_products(functions, half_length, |f| &f.rotation).into();
     let (strain, deflection) = if terms.losses.is_empty() {
         let strain = series_products(functions, half_length, |f| &f.shear);
-        (strain, series_products(functions, half_length, |f| &f.deflection))
+        (strain.into(), series_products(functions, half_length, |f| &f.deflection).into())
     } else {
         let quadrature = Quadrature::new(functions, half_length, &terms.losses);
-        let mut strain = quadrature.shear();
+        let mut strain = SymmetricMatrix::from(quadrature.shear());
         for loss in &terms.losses {
-            strain -= faer::Scale(loss.loss) * quadrature.span(loss);
+            strain = sum(&[(1.0, &strain), (-loss.loss, &quadrature.span(loss).into())]);
         }
-        (strain, quadrature.deflection())
+        (strain, quadrature.deflection().into())
     };
-    let shear = faer::Scale(shear_area) * strain;
-    let mass = faer::Scale(mass) * deflection + turning;
-    let mut stiffness = vec![bending, shear];
+    let mass = sum(&[(mass, &deflection), (rotary_inertia, &rotation)]);
+    let mut stiffness = vec![sum(&[(second_moment, &curvature)]), sum(&[(shear_area, &strain)])];
     if let Some(support) = terms.support {
-        stiffness.push(support_stiffness(functions, [support.translation, support.rotation]));
+        stiffness.push(support_stiffness(functions, [support.translation, support.rotation]).into());
     }
     let strainless = |f: &StrainFunction| {
         f.step.is_none() && terms.support.is_none() && f.curvature.iter().chain(&f.shear).all(|&value| value == 0.0)
@@ -105,7 +110,7 @@ fn assemble(functions: &[StrainFunction], section: Section, half_length: f64, te
             (0..size).map(|j| if i == j { scale } else { 0.0 }).collect()
         })
         .collect();
-    Block { stiffness: stiffness.into_iter().map(SymmetricMatrix::from).collect(), mass: mass.into(), rigid }
+    Block { stiffness, mass, rigid }
 }
 
 impl Structure for TimoshenkoBeam {

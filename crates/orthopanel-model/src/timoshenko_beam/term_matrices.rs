@@ -9,10 +9,11 @@ use crate::dense::product;
 use crate::legendre::{gauss_legendre, legendre_at, norm};
 
 /// $h\int_{-1}^1f_if_j\,dt$ of one Legendre series of each function.
+#[inline(never)] // Four times in one place, it would make every FMU larger.
 pub(super) fn series_products(
     functions: &[StrainFunction],
     half_length: f64,
-    series: impl Fn(&StrainFunction) -> &[f64],
+    series: fn(&StrainFunction) -> &[f64],
 ) -> Mat<f64> {
     let terms = functions.iter().map(|f| series(f).len()).max().unwrap_or(0);
     let root: Vec<f64> = (0..terms).map(|n| (half_length * norm(n)).sqrt()).collect();

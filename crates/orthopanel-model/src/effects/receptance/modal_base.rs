@@ -176,7 +176,7 @@ pub(super) fn coordinate_rows(
     let mut matrix = Mat::zeros(rows.len(), size);
     for (i, &(motion, place)) in rows.iter().enumerate() {
         let row = structure.motion_row(block, motion, place).ok_or_else(|| {
-            ModelError::Unsupported(format!("an effect on the {motion:?} of this structure").to_lowercase())
+            ModelError::Unsupported(format!("an effect on the {motion:?} of this structure").to_ascii_lowercase())
         })?;
         row.iter().enumerate().for_each(|(j, &value)| matrix[(i, j)] = value);
     }
