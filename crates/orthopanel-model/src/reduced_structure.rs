@@ -41,7 +41,7 @@ impl<S: Structure + Send + Sync> ReducedStructure<S> {
     ///
     /// # Errors
     /// As [`ritz_modes`].
-    pub(crate) fn answering(whole: Arc<S>, values: &[f64], count: usize, forces: &[Place]) -> Result<Self, ModelError> {
+    pub fn answering(whole: Arc<S>, values: &[f64], count: usize, forces: &[Place]) -> Result<Self, ModelError> {
         let modes = ritz_modes(whole.as_ref(), values, count)?;
         Self::on_modes(whole, values, &modes, forces)
     }

@@ -19,7 +19,8 @@ use crate::usual_plate::BesideUsual;
 
 /// Rounds, far to near: a pole further than this from every mode belongs to none, and one that misses by more than the scatter
 /// counts for less.
-const ROUNDS: [(f64, f64); 5] = [(0.35, 0.1), (0.2, 0.05), (0.1, 0.02), (REACH, 5e-3), (REACH, 1e-3)];
+const FAR_ROUNDS: [(f64, f64); 3] = [(0.35, 0.1), (0.2, 0.05), (0.1, 0.02)];
+const NEAR_ROUNDS: [(f64, f64); 2] = [(REACH, 5e-3), (REACH, 1e-3)];
 /// Steps of a round, at most; one of less than this ends it.
 const STEPS: usize = 6;
 const SMALL_STEP: f64 = 1e-4;
@@ -55,9 +56,13 @@ pub(super) fn follow(
         BESIDE.iter().map(beside).collect()
     };
     let begun: Vec<Vec<f64>> = starts.iter().flat_map(begun).collect();
-    let ends = begun.into_par_iter().map(|start| Following::from(poles, constants, &start).end(start));
+    let far = begun.into_par_iter().map(|start| {
+        let end = Following::from(poles, constants, &start).far(start.clone());
+        (start, end)
+    });
+    let (likely, mut refused) = likely(far.collect());
+    let ends = likely.into_par_iter().map(|(start, from)| Following::from(poles, constants, &start).near(from));
     let mut best: Option<(Matching, Vec<f64>)> = None;
-    let mut refused = None;
     for end in ends.collect::<Vec<_>>() {
         match end {
             Ok(end) if best.as_ref().is_none_or(|(least, _)| end.0.charge < least.charge) => best = Some(end),
@@ -68,6 +73,36 @@ pub(super) fn follow(
     let Some((matching, parameters)) = best else { return refused.map_or(Ok(None), |error| Err(error.into())) };
     let fit = Following::from(poles, constants, &parameters).what_is_seen(&matching, parameters);
     Ok(Some((matching, fit)))
+}
+
+/// Ends of far rounds that are followed near, and how far apart in any parameter two of them lie at least.
+const LIKELY: usize = 4;
+const APART: f64 = 0.01;
+
+/// The likeliest ends of the far rounds, each with its start, and the first refusal.
+#[expect(clippy::type_complexity, reason = "starts and ends, taken apart at once")]
+fn likely(
+    far: Vec<(Vec<f64>, Result<(Matching, Vec<f64>), ModelError>)>,
+) -> (Vec<(Vec<f64>, Vec<f64>)>, Option<ModelError>) {
+    let mut refused = None;
+    let mut ends = Vec::new();
+    for (start, end) in far {
+        match end {
+            Ok((matching, parameters)) => ends.push((matching.charge, start, parameters)),
+            Err(error) => refused = refused.or(Some(error)),
+        }
+    }
+    ends.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut likely: Vec<(Vec<f64>, Vec<f64>)> = Vec::new();
+    for (_, start, parameters) in ends {
+        let alike = |(_, other): &(Vec<f64>, Vec<f64>)| {
+            other.iter().zip(&parameters).all(|(one, other)| (one - other).abs() < APART)
+        };
+        if likely.len() < LIKELY && !likely.iter().any(alike) {
+            likely.push((start, parameters));
+        }
+    }
+    (likely, refused)
 }
 
 /// A search from one start.
@@ -88,10 +123,20 @@ impl<'a> Following<'a> {
         match_within(self.poles, values, reach)
     }
 
-    fn end(&self, mut parameters: Vec<f64>) -> Result<(Matching, Vec<f64>), ModelError> {
+    fn far(&self, parameters: Vec<f64>) -> Result<(Matching, Vec<f64>), ModelError> {
+        self.through(&FAR_ROUNDS, parameters)
+    }
+
+    fn near(&self, parameters: Vec<f64>) -> Result<(Matching, Vec<f64>), ModelError> {
+        self.through(&NEAR_ROUNDS, parameters)
+    }
+
+    /// Where these rounds lead, with the mode of each pole within [`REACH`].
+    fn through(&self, rounds: &[(f64, f64)], mut parameters: Vec<f64>) -> Result<(Matching, Vec<f64>), ModelError> {
         let bounds = self.constants.bounds();
-        let mut matching = self.matched(&parameters, ROUNDS[0].0)?;
-        for (reach, scatter) in ROUNDS {
+        let first = rounds.first().map_or(REACH, |(reach, _)| *reach);
+        let mut matching = self.matched(&parameters, first)?;
+        for &(reach, scatter) in rounds {
             for _ in 0..STEPS {
                 let mut sum =
                     self.of_poles(&matching, |residual, like| like * like / (scatter * scatter + residual * residual));

@@ -27,6 +27,8 @@ pub(super) struct PieceProblem {
     /// Modes summed one by one: those within the structure's reach.
     pub summed: usize,
     synthesis: Box<dyn ModeSynthesis>,
+    /// What takes its place near the parameters of [`AcceleranceProblem::move_near`], if anything.
+    nearby: Option<Box<dyn ModeSynthesis>>,
     places: Vec<Place>,
     pairs: Vec<(usize, usize)>,
 }
@@ -57,6 +59,7 @@ impl PieceProblem {
             free_zetas: below(1.3 * band),
             summed: frequencies.len().max(1),
             synthesis,
+            nearby: None,
             records,
             places,
             pairs,
@@ -65,10 +68,11 @@ impl PieceProblem {
 
     /// The model of every record at these constants and logarithms of the free damping ratios.
     fn pair_models(&self, values: &[f64], log_zetas: &[f64], law: DampingLaw) -> Result<Vec<PairModel>, ModelError> {
-        let modes = self.synthesis.modes(values, self.summed, &self.places)?;
+        let synthesis = self.nearby.as_deref().unwrap_or(self.synthesis.as_ref());
+        let modes = synthesis.modes(values, self.summed, &self.places)?;
         let zetas = self.zetas(log_zetas);
         let between = |(pair, record): (&(usize, usize), &PlaceRecord)| {
-            let flexibility = self.synthesis.flexibility(&modes, &self.places, *pair, values);
+            let flexibility = synthesis.flexibility(&modes, &self.places, *pair, values);
             let lines = (record.decay_rate, record.band_end());
             PairModel::new(&modes, *pair, flexibility, law, (&zetas, self.free_zetas), lines)
         };
@@ -151,6 +155,17 @@ impl AcceleranceProblem {
         self.constants = constants;
         at.extend(&parameters[seen..]);
         at
+    }
+
+    /// From here on models are those of what sums quickly near these parameters, where there is such a thing; says whether there
+    /// is. Values and slopes there are those of the whole, further off they differ by the square of the distance.
+    pub(super) fn move_near(&mut self, parameters: &[f64]) -> Result<bool, ModelError> {
+        for index in 0..self.pieces.len() {
+            let values = self.values(parameters, index);
+            let piece = &mut self.pieces[index];
+            piece.nearby = piece.synthesis.near(&values, piece.summed, &piece.places)?;
+        }
+        Ok(self.pieces.iter().any(|piece| piece.nearby.is_some()))
     }
 
     /// Number of parameters.

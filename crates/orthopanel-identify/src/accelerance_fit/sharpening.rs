@@ -118,15 +118,34 @@ pub(super) fn fit_wide(
     Ok(Rough { misfit: problem.chi_square(minimum.at.cost), ..Rough::of(&problem, &minimum.parameters) })
 }
 
+/// Quick searches one after the other, each near where the last one ended.
+const QUICK_SEARCHES: usize = 8;
+
 /// The minimum over all lines; `None` where the search finds no end.
 ///
-/// Valleys of modes beyond the band, whose damping ratios stand in for one another, are long and bent: a search that is
-/// still in one, with no more to gain than one standard deviation costs, has come near enough.
-pub(super) fn line_by_line(problem: &AcceleranceProblem, from: &[f64]) -> Option<Minimum> {
+/// Where lines are summed quickly near some constants, the search goes on near its own end until nothing is promised there: that
+/// is a minimum of the whole. Valleys of modes beyond the band, whose damping ratios stand in for one another, are long and bent: a
+/// search that is still in one, with no more to gain than one standard deviation costs, has come near enough.
+pub(super) fn line_by_line(problem: &mut AcceleranceProblem, from: &[f64]) -> Option<Minimum> {
     let (bounds, ending) = (problem.bounds(), Ending::likelihood(problem.data()));
-    let (minimum, settled) = descend(|p| problem.linearise(p), from, &bounds, ending).ok()?;
     let near = Ending { small_gain: 1.0 / problem.data(), ..ending };
-    (settled || near.is_reached(&minimum.at, &minimum.parameters, &bounds)).then_some(minimum)
+    let mut from = from.to_vec();
+    let mut is_quick = problem.move_near(&from).ok()?;
+    for search in 1..=QUICK_SEARCHES {
+        let (mut minimum, settled) = descend(|p| problem.linearise(p), &from, &bounds, ending).ok()?;
+        let mut settled = settled || near.is_reached(&minimum.at, &minimum.parameters, &bounds);
+        if is_quick {
+            is_quick = problem.move_near(&minimum.parameters).ok()?;
+            minimum.at = problem.linearise(&minimum.parameters).ok()?;
+            let enough = if search < QUICK_SEARCHES { ending } else { near };
+            settled = settled && enough.is_reached(&minimum.at, &minimum.parameters, &bounds);
+        }
+        if settled || !is_quick {
+            return settled.then_some(minimum);
+        }
+        from = minimum.parameters;
+    }
+    None
 }
 
 /// Passes in which noise and fit follow from each other.

@@ -8,7 +8,7 @@ use crate::starting_constants::guess;
 /// Pairs of lines that are tried with each other's names.
 const MOST_PAIRS: usize = 8;
 /// Relative scatter of a usual panel's frequencies about those of any other.
-const USUAL_MISS: f64 = 0.05;
+pub(super) const USUAL_MISS: f64 = 0.05;
 /// Two lines this near to each other, as a part of their frequency, miss by little with each other's names.
 const NEAR: f64 = 0.04;
 

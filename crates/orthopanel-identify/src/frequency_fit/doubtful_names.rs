@@ -6,6 +6,7 @@ use rayon::prelude::*;
 
 use super::changed_pairs::{changed_pairs, near_pairs};
 use super::noise::{self, Noise};
+use super::other_readings::read_otherwise;
 use super::problem::{FrequencyProblem, Renamed};
 use super::seen_constants::minimise_what_is_seen;
 use super::starting_values::starting_values;
@@ -16,6 +17,8 @@ use crate::least_squares::{Ending, Linearised, Quadratic, descend};
 
 /// A mode that misses its frequency by less is what it is called, or so near its neighbour that no list can tell.
 const LARGE_MISS: f64 = 0.01;
+/// A name that belongs to another line leaves some line further off than this, and lists whose names are right are met better.
+const FAR_OFF: f64 = 0.03;
 /// Another mode is meant where it misses by less than this part.
 const FAR_NEARER: f64 = 0.25;
 /// Other names are told where they leave less than this part of the sum of squares: a third of the error.
@@ -44,7 +47,8 @@ pub(super) fn doubtful_names(
         return Ok(Vec::new());
     }
     let whole = FrequencyProblem::of(test)?;
-    let best = |names: Vec<Vec<Renamed>>| best_of(test, &whole, names, FAR_BETTER * cost);
+    let most = (FAR_BETTER * cost).min(FAR_OFF.powi(2) * problem.count() as f64);
+    let best = |names: Vec<Vec<Renamed>>| best_of(test, &whole, names, most);
     let mut told = None;
     if stands_out {
         told = best(robust_names(problem, &whole, found)?);
@@ -54,7 +58,11 @@ pub(super) fn doubtful_names(
     }
     match told.or_else(|| best(near_pairs(&whole))) {
         Some(tried) => tried.notes(test, &whole),
-        None if stands_out => lines_apart(test, problem, &whole, found),
+        None if stands_out => {
+            let apart = lines_apart(test, problem, &whole, found)?;
+            let is_far_off = at.residuals.iter().any(|residual| residual.abs() > FAR_OFF);
+            if apart.is_empty() && is_far_off { read_otherwise(test, &whole, most) } else { Ok(apart) }
+        }
         None => Ok(Vec::new()),
     }
 }
@@ -105,8 +113,9 @@ fn lines_apart(
 pub(super) fn names_with_a_minimum(test: &ImpactTest, error: f64) -> Result<Vec<String>, IdentifyError> {
     let whole = FrequencyProblem::of(test)?;
     let cost = (0.01 * error).powi(2) * whole.count() as f64;
-    let told = best_of(test, &whole, changed_pairs(&whole)?, FAR_BETTER * cost);
-    told.map_or(Ok(Vec::new()), |tried| tried.notes(test, &whole))
+    let most = (FAR_BETTER * cost).min(FAR_OFF.powi(2) * whole.count() as f64);
+    let told = best_of(test, &whole, changed_pairs(&whole)?, most);
+    told.map_or_else(|| read_otherwise(test, &whole, most), |tried| tried.notes(test, &whole))
 }
 
 /// The first names that leave less than `most` of the sum of squares: the likeliest come first, two side by side.
@@ -127,7 +136,7 @@ struct Tried {
 
 impl Tried {
     fn of(test: &ImpactTest, whole: &FrequencyProblem, names: Vec<Renamed>) -> Option<Self> {
-        let mut problem = whole.renamed(test, &names).ok()?;
+        let mut problem = whole.read_as(test, &names, None).ok()?;
         let start = starting_values(&problem).ok()?;
         let minimum = minimise_what_is_seen(&mut problem, &start).ok()?;
         let cost = problem.linearised(&minimum.predictions, &problem.constants).quadratic().cost;

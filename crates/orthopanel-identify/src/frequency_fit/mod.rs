@@ -8,7 +8,9 @@ mod first_constants;
 mod impossible_names;
 mod noise;
 mod of_poles;
+mod other_readings;
 mod other_starts;
+mod own_constants;
 mod problem;
 mod report;
 mod seen_constants;
@@ -65,8 +67,11 @@ pub(crate) fn identify_frequencies(test: &ImpactTest, search: Search) -> Result<
             let seen = match all_at_once::meets_at_once(&mut problem, &all, &seen) {
                 Some(met) => met,
                 None => {
-                    let at = problem.linearised(&seen.predictions, &problem.constants);
-                    doubts = doubtful_names::doubtful_names(test, &problem, &seen.parameters, &at)?;
+                    doubts.extend(own_constants::met_with_an_own_constant(test, &problem, &seen));
+                    if doubts.is_empty() {
+                        let at = problem.linearised(&seen.predictions, &problem.constants);
+                        doubts = doubtful_names::doubtful_names(test, &problem, &seen.parameters, &at)?;
+                    }
                     if doubts.is_empty() { other_starts::from_other_starts(&mut problem, &all, seen) } else { seen }
                 }
             };

@@ -26,6 +26,15 @@ pub(super) struct FrequencySet {
     pub rounding: Vec<f64>,
 }
 
+/// A line of a list.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Line {
+    /// Index of the list.
+    pub set: usize,
+    /// Index of the line in it.
+    pub line: usize,
+}
+
 /// Another name for a line of a list.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Renamed {
@@ -77,19 +86,28 @@ impl FrequencyProblem {
         Ok(problem)
     }
 
-    /// The same lists with some lines named otherwise; an error where one name stands twice.
-    pub(super) fn renamed(&self, test: &ImpactTest, names: &[Renamed]) -> Result<Self, IdentifyError> {
-        let rename = |(index, set): (usize, &FrequencySet)| {
+    /// The same lists with some lines named otherwise, and without one; an error where one name stands twice.
+    pub(super) fn read_as(
+        &self,
+        test: &ImpactTest,
+        names: &[Renamed],
+        without: Option<Line>,
+    ) -> Result<Self, IdentifyError> {
+        let read = |(index, set): (usize, &FrequencySet)| {
             let mut nodes = set.modes.nodes().to_vec();
             names.iter().filter(|name| name.set == index).for_each(|name| nodes[name.line] = name.nodes);
+            let is_kept = |line: &usize| without != Some(Line { set: index, line: *line });
+            let kept: Vec<usize> = (0..nodes.len()).filter(is_kept).collect();
+            let nodes: Vec<[usize; 2]> = kept.iter().map(|&line| nodes[line]).collect();
             if (1..nodes.len()).any(|line| nodes[..line].contains(&nodes[line])) {
                 return Err(IdentifyError::Unsupported("two frequencies of one mode".to_owned()));
             }
             let modes = structures::of(self.structure, &test.pieces[set.piece].piece, test.boundary, nodes)?;
-            let (measured, rounding) = (set.measured.clone(), set.rounding.clone());
+            let measured = kept.iter().map(|&line| set.measured[line]).collect();
+            let rounding = kept.iter().filter_map(|&line| set.rounding.get(line).copied()).collect();
             Ok(FrequencySet { piece: set.piece, modes, measured, rounding })
         };
-        let sets = self.sets.iter().enumerate().map(rename).collect::<Result<Arc<[_]>, _>>()?;
+        let sets = self.sets.iter().enumerate().map(read).collect::<Result<Arc<[_]>, _>>()?;
         Ok(Self { structure: self.structure, constants: self.constants.clone(), sets })
     }
 

@@ -4,6 +4,7 @@ use orthopanel_data::ImpactTest;
 use orthopanel_model::StructureKind;
 
 use super::noise::{BEYOND_CHANCE, Noise, USUAL_SCATTER};
+use super::own_constants::own_constant_that_helps;
 use super::problem::{FrequencyProblem, SetPrediction};
 use super::uncertainty::{residual_variance, rounding_variance, uncertainty};
 use crate::free_constants::FreeConstants;
@@ -22,7 +23,7 @@ pub(super) fn report(
     notes.extend(assumed_scatter(problem, &at));
     notes.extend(other_modes(test, problem, predictions)?);
     if notes.is_empty() {
-        notes.extend(large_miss(problem, &at));
+        notes.extend(large_miss(test, problem, found, predictions, &at));
     }
     Ok(Identification {
         structure: problem.structure,
@@ -46,26 +47,30 @@ pub(super) fn report(
 }
 
 /// What is said where a plate misses its frequencies by far more than these scatter.
-fn large_miss(problem: &FrequencyProblem, at: &Linearised) -> Option<String> {
+fn large_miss(
+    test: &ImpactTest,
+    problem: &FrequencyProblem,
+    found: &[f64],
+    predictions: &[SetPrediction],
+    at: &Linearised,
+) -> Option<String> {
     let rms = (at.quadratic().cost / problem.count().max(1) as f64).sqrt();
     let scatter = Noise::stated(problem).variance.sqrt();
-    (problem.structure == StructureKind::MindlinPlate && rms > BEYOND_CHANCE * scatter).then(|| {
-        let told = if rounding_variance(problem) > 0.0 { "the bins stated" } else { "the usual scatter" };
-        let mut pieces: Vec<usize> = problem.sets.iter().map(|set| set.piece).collect();
-        pieces.dedup();
-        let of_pieces = if pieces.len() > 1 && problem.constants.free.iter().all(|free| free.piece.is_none()) {
-            ", or the pieces differ in a constant (own_constants = [\"g_zx\"] in a [[piece]] gives it one of its own)"
-        } else {
-            ""
-        };
-        format!(
-            "the plate misses the frequencies by {:.2} % rms, {:.0} times {told} ({:.2} %), from other starts too: a mode may \
-             be named wrongly, or the plate lacks something{of_pieces}; its constants are in doubt",
-            100.0 * rms,
-            rms / scatter,
-            100.0 * scatter
-        )
-    })
+    if problem.structure != StructureKind::MindlinPlate || rms <= BEYOND_CHANCE * scatter {
+        return None;
+    }
+    let told = if rounding_variance(problem) > 0.0 { "the bins stated" } else { "the usual scatter" };
+    let may_be = match own_constant_that_helps(test, problem, found, predictions) {
+        Some(own) => own,
+        None => "a mode may be named wrongly, or the plate lacks something".to_owned(),
+    };
+    Some(format!(
+        "the plate misses the frequencies by {:.2} % rms, {:.0} times {told} ({:.2} %), from other starts too: {may_be}; its \
+         constants are in doubt",
+        100.0 * rms,
+        rms / scatter,
+        100.0 * scatter
+    ))
 }
 
 /// A mode with a smaller share of the nodal lines by which it is told is another one.

@@ -92,7 +92,7 @@ impl MindlinPlate {
     ///
     /// # Errors
     /// As [`MindlinPlate::with_basis_for`].
-    pub(crate) fn estimated_count(
+    pub fn estimated_count(
         piece: &Piece,
         boundary: Boundary,
         values: &[f64],

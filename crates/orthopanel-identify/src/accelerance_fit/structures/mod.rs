@@ -51,6 +51,17 @@ pub(super) trait ModeSynthesis: Send + Sync {
 
     /// $\partial c_i/\partial p_j$ of the coefficients by the constants.
     fn coefficient_derivatives(&self, values: &[f64]) -> Result<Mat<f64>, ModelError>;
+
+    /// What sums `count` modes at these places quickly near these values, with the same modes and derivatives there, and less
+    /// well further off; `None` where this one is quick.
+    fn near(
+        &self,
+        _values: &[f64],
+        _count: usize,
+        _places: &[Place],
+    ) -> Result<Option<Box<dyn ModeSynthesis>>, ModelError> {
+        Ok(None)
+    }
 }
 
 /// A recorded piece.
