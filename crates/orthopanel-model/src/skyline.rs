@@ -65,9 +65,19 @@ impl Index<(usize, usize)> for SymmetricMatrix {
 impl SymmetricMatrix {
     /// With these entries where the profile has any.
     pub(crate) fn from_fn(profile: &Arc<Profile>, entry: impl Fn(usize, usize) -> f64) -> Self {
-        let entry = &entry;
-        let rows = profile.first.iter().enumerate();
-        let values = rows.flat_map(|(row, &first)| (first..=row).map(move |column| entry(row, column))).collect();
+        let mut values = Vec::with_capacity(profile.starts.last().copied().unwrap_or(0));
+        for (row, &first) in profile.first.iter().enumerate() {
+            values.extend((first..=row).map(|column| entry(row, column)));
+        }
+        Self { profile: Arc::clone(profile), values }
+    }
+
+    /// With these rows, each from its first entry up to the diagonal; they come filled with zeros.
+    pub(crate) fn from_rows(profile: &Arc<Profile>, mut fill: impl FnMut(usize, usize, &mut [f64])) -> Self {
+        let mut values = vec![0.0; profile.starts.last().copied().unwrap_or(0)];
+        for (row, &first) in profile.first.iter().enumerate() {
+            fill(row, first, &mut values[profile.starts[row]..profile.starts[row + 1]]);
+        }
         Self { profile: Arc::clone(profile), values }
     }
 

@@ -122,7 +122,7 @@ impl Dressed {
                 (Arc::<ReducedStructure<MindlinPlate>>::clone(&whole.reduced), Some(whole))
             }
         };
-        let base = ModalBase::new(&structure, values, summed, &[], &[])?;
+        let base = ModalBase::without_parameters(&structure, values, summed)?;
         let mode = |&(block, number): &(usize, usize)| {
             let modes = base.blocks.get(block)?;
             let coordinates = (0..modes.vectors.nrows()).map(|i| modes.vectors[(i, number)]).collect();

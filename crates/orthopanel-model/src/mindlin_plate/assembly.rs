@@ -188,19 +188,41 @@ fn product(
     integrals: AlongX,
     [f, g]: [&[Term]; 2],
 ) -> SymmetricMatrix {
-    let mut tables: [[Vec<[MatRef<'_, f64>; 2]>; 3]; 3] = Default::default();
+    let mut tables: [[Vec<[Rows; 2]>; 3]; 3] = Default::default();
     for &(left, left_x, left_y) in f {
         for &(right, right_x, right_y) in g {
             let along_x = integrals(x, (left, left_x), (right, right_x));
             let along_y = y.integrals((left, left_y), (right, right_y));
-            tables[left as usize][right as usize].push([along_x, along_y]);
+            tables[left as usize][right as usize].push([along_x, along_y].map(Rows::of));
         }
     }
-    SymmetricMatrix::from_fn(profile, |row, column| {
-        let (a, b) = (list[row], list[column]);
-        let parts = &tables[a.field as usize][b.field as usize];
-        parts.iter().map(|[along_x, along_y]| along_x[(a.x, b.x)] * along_y[(a.y, b.y)]).sum()
+    SymmetricMatrix::from_rows(profile, |row, first, values| {
+        let own = list[row];
+        for (field, parts) in tables[own.field as usize].iter().enumerate() {
+            for [along_x, along_y] in parts {
+                let (along_x, along_y) = (along_x.row(own.x), along_y.row(own.y));
+                let others = values.iter_mut().zip(&list[first..]).filter(|(_, other)| other.field as usize == field);
+                others.for_each(|(value, other)| *value += along_x[other.x] * along_y[other.y]);
+            }
+        }
     })
+}
+
+/// A matrix by rows.
+struct Rows {
+    width: usize,
+    values: Vec<f64>,
+}
+
+impl Rows {
+    fn of(matrix: MatRef<'_, f64>) -> Self {
+        let row = |i: usize| (0..matrix.ncols()).map(move |j| matrix[(i, j)]);
+        Self { width: matrix.ncols(), values: (0..matrix.nrows()).flat_map(row).collect() }
+    }
+
+    fn row(&self, row: usize) -> &[f64] {
+        &self.values[row * self.width..(row + 1) * self.width]
+    }
 }
 
 /// The motions of a block without strain: $w$ a product of functions that is at most linear, with the rotations that

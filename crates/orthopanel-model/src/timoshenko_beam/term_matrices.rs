@@ -15,13 +15,21 @@ pub(super) fn series_products(
     half_length: f64,
     series: fn(&StrainFunction) -> &[f64],
 ) -> Mat<f64> {
+    // A series has few terms that are not zero, and few functions share one.
     let terms = functions.iter().map(|f| series(f).len()).max().unwrap_or(0);
-    let root: Vec<f64> = (0..terms).map(|n| (half_length * norm(n)).sqrt()).collect();
-    // A column a function: products then run along memory.
-    let scaled = Mat::from_fn(terms, functions.len(), |n, i| {
-        series(&functions[i]).get(n).map_or(0.0, |coefficient| root[n] * coefficient)
-    });
-    product(scaled.transpose(), scaled.as_ref())
+    let mut sharing: Vec<Vec<(usize, f64)>> = vec![Vec::new(); terms];
+    for (i, function) in functions.iter().enumerate() {
+        let coefficients = series(function).iter().zip(&mut sharing);
+        coefficients.filter(|(value, _)| **value != 0.0).for_each(|(value, own)| own.push((i, *value)));
+    }
+    let mut products = Mat::zeros(functions.len(), functions.len());
+    for (n, sharing) in sharing.iter().enumerate() {
+        for &(j, b) in sharing {
+            let column = products.col_as_slice_mut(j);
+            sharing.iter().for_each(|&(i, a)| column[i] += half_length * norm(n) * (a * b));
+        }
+    }
+    products
 }
 
 /// Values at Gauss points that no edge lies between.
