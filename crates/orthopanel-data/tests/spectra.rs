@@ -226,3 +226,24 @@ fn val_hanns_window_tells_what_it_leaves_in_doubt() {
     let expected = std::f64::consts::TAU * history.rate / length * slope.max(1.0);
     assert!((of(Window::Hann) / expected - 1.0).abs() < 1e-9, "{} {expected}", of(Window::Hann));
 }
+
+/// A blow at a fiftieth of the record, where Hann's window is a three hundredth of its greatest: what is seen of any decay
+/// is the window's, and that is said.
+#[test]
+fn val_a_blow_that_hanns_window_cuts_off_is_told() {
+    let cut = |from: usize| {
+        let hit = DAMPED.soft_hit(1000, 100.0);
+        let hit = Hit { force: hit.force[from..].to_vec(), acceleration: hit.acceleration[from..].to_vec() };
+        history(vec![hit]).accelerance(Estimation { window: Window::Hann, ..ALL_LINES }).unwrap()
+    };
+    for (from, told) in [(0, false), (100, false), (185, true)] {
+        let found = cut(from);
+        assert_eq!(
+            found.notes.iter().any(|note| note.contains("greatest where the blow is")),
+            told,
+            "{:?}",
+            found.notes
+        );
+        assert_eq!(found.decay_rate_in_doubt.is_infinite(), told, "{}", found.decay_rate_in_doubt);
+    }
+}

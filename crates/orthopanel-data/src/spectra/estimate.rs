@@ -89,6 +89,7 @@ impl TimeHistory {
         let hits: Vec<&Hit> = kept.iter().map(|(_, hit)| *hit).collect();
         let window = estimation.window.resolved(left, &hits, self.rate);
         notes.extend(window.notes(left.is_some()));
+        notes.extend(window.cut_off(&hits, self.rate));
         notes.extend(self.cut_blow(estimation.window, &hits)?);
         notes.extend(self.cut_push(window, &kept));
         let floor = |sums: &Sums| match estimation.window {

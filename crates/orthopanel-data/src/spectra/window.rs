@@ -40,6 +40,9 @@ pub enum Window {
 /// are a hundredth of what a hammer raises in all, and their leak should still be below noise.
 const LEFT: f64 = 1e-6;
 
+/// Hann's window at the blow, over its greatest, below which it leaves next to nothing of the hit: at 7 % of the record's length.
+const CUT_OFF: f64 = 0.05;
+
 /// Time constants before the blow at which the exponential begins: so far ahead a filter has not begun to ring, and noise counts for
 /// little more than at the blow.
 const BEGINS_AHEAD: f64 = 0.5;
@@ -112,14 +115,29 @@ impl Window {
     /// By how much the window may have moved the decay rate of a resonance under a hit \[1/s\], where that is not known.
     ///
     /// Over a response that dies away soon Hann's window acts by its slope, $-w'/w = -\frac{2\pi}{T}\cot(\pi t_0/T)$ at the
-    /// blow's $t_0$; one that does not is smeared over the window's own width, $2\pi/T$.
+    /// blow's $t_0$; one that does not is smeared over the window's own width, $2\pi/T$. Where the window all but cuts off the blow
+    /// nothing is known of any decay: what is seen is the window's.
     pub(super) fn decay_rate_in_doubt(self, hit: &Hit, rate: f64) -> f64 {
         if self != Self::Hann {
             return 0.0;
         }
         let length = hit.force.len() as f64;
-        let slope = (std::f64::consts::PI * hit.blow().at as f64 / length).tan().recip().abs();
-        std::f64::consts::TAU * rate / length * slope.clamp(1.0, length)
+        let phase = std::f64::consts::PI * hit.blow().at as f64 / length;
+        if phase.sin().powi(2) < CUT_OFF {
+            return f64::INFINITY;
+        }
+        std::f64::consts::TAU * rate / length * phase.tan().recip().abs().max(1.0)
+    }
+
+    /// A sentence where the window all but cuts off the blow of a hit.
+    pub(super) fn cut_off(self, hits: &[&Hit], rate: f64) -> Option<String> {
+        let hit = hits.iter().find(|hit| self.decay_rate_in_doubt(hit, rate).is_infinite())?;
+        let part = (std::f64::consts::PI * hit.blow().at as f64 / hit.force.len() as f64).sin().powi(2);
+        Some(format!(
+            "Hann's window is {:.2} % of its greatest where the blow is: noise drowns the hit, and damping is not told; take none or \
+             force and exponential",
+            100.0 * part
+        ))
     }
 
     /// True where the window's numbers are finite and greater than zero.
