@@ -166,6 +166,25 @@ fn hit_csv_swapped() -> String {
     format!("time_s,force_n,acceleration_m_s2\n{rows}")
 }
 
+/// Samples that stand further apart than a blow lasts may miss it: then the force's channel holds less than the response does, and
+/// the sampling rate is named beside the swapped channels.
+#[test]
+fn val_a_blow_between_two_samples_is_told_with_the_rate() {
+    let swings =
+        |n: usize, sign: f64, count: usize| if (20..20 + count).contains(&n) { sign.powi(n as i32) } else { 0.0 };
+    for (rate, said) in [(410.0, true), (16384.0, false)] {
+        let row =
+            |n: usize| format!("{},{},{}\n", n as f64 / rate, 0.1 * swings(n, -1.0, 14), 300.0 * swings(n, 1.0, 6));
+        let rows: String = (0..400).map(row).collect();
+        let file =
+            RecordFile::from_bytes(format!("time_s,force_n,acceleration_m_s2\n{rows}").as_bytes(), "a.csv").unwrap();
+        let refused = TimeHistory::from_records(file, &measurement()).unwrap_err().to_string();
+        assert!(refused.contains("the channels are swapped"), "{refused}");
+        let told = refused.contains("at 410.0 Hz the blow fell between two samples, which stand 2.4 ms apart");
+        assert_eq!(told, said, "{refused}");
+    }
+}
+
 /// Writes a hit as CSV, and returns the `[[measurement]]` that names it.
 fn csv_measurement(folder: &std::path::Path, name: &str, samples: usize) -> String {
     let hit = good();

@@ -9,6 +9,7 @@ use super::{
     channels::{self, Quantity},
     extremes::{LANES, extremes, median, sampled_median},
     misplaced_channel::{self, Ordered},
+    window::milliseconds,
 };
 use crate::{
     DataError, Location, RecordedResponse,
@@ -45,6 +46,9 @@ pub struct Hit {
 
 /// An acceleration record has to follow each force record with its abscissa, within this part of a step.
 const STEP_TOLERANCE: f64 = 0.1;
+
+/// A blow on a panel may be as short as this \[s\].
+const SHORT_BLOW: f64 = 5e-4;
 
 /// Samples below which no spectrum is worth the name.
 const LEAST_SAMPLES: usize = 16;
@@ -178,7 +182,7 @@ impl TimeHistory {
                 }
                 _ => grid = Some((length, rate)),
             }
-            hits.push(hit(force, acceleration, measurement, &mut notes)?);
+            hits.push(hit((force, acceleration), rate, measurement, &mut notes)?);
         }
         let rate = grid.map_or(0.0, |(_, rate)| rate);
         let RecordedResponse { force_at, response_at, .. } = *measurement;
@@ -187,9 +191,10 @@ impl TimeHistory {
     }
 }
 
+/// The two channels of a hit at a sampling rate \[Hz\].
 fn hit(
-    force: Record,
-    acceleration: Record,
+    (force, acceleration): (Record, Record),
+    rate: f64,
     measurement: &RecordedResponse,
     notes: &mut Vec<String>,
 ) -> Result<Hit, DataError> {
@@ -220,9 +225,20 @@ fn hit(
         let swapped = hit.pushes();
         std::mem::swap(&mut hit.force, &mut hit.acceleration);
         if swapped < pushes {
+            let step = 1.0 / rate;
+            let missed = if step > SHORT_BLOW {
+                format!(
+                    ", or at {rate:.1} Hz the blow fell between two samples, which stand {} apart: the sampling rate is too low, or \
+                     the record was decimated without a low pass; record at some {:.0} Hz or more",
+                    milliseconds(step),
+                    2.0 / SHORT_BLOW
+                )
+            } else {
+                String::new()
+            };
             let problem = format!(
                 "the force lasts longer ({pulse:.0} samples) than the response ({ringing:.0}) and swings more often: the \
-                 channels are swapped, or this was no hammer"
+                 channels are swapped, or this was no hammer{missed}"
             );
             return Err(DataError::Channels { at: force_record, problem });
         }
