@@ -365,6 +365,7 @@ impl IdentifyError {
         !matches!(
             self,
             Self::NotConverged { .. }
+                | Self::TooFewResonances { .. }
                 | Self::DoubtfulNames { .. }
                 | Self::FarFromList { .. }
                 | Self::OnBound { .. }
