@@ -127,7 +127,7 @@ fn val_what_is_stated_of_the_forces_noise_is_what_repetitions_show() {
         let variance = mean(own.iter().map(|error| error.norm_sqr()));
         quotients.push(mean(noises().map(|noise| noise.variance[line])) / transfer / variance);
         biases.push(-mean(own.iter().map(|error| error.re)));
-        stated_biases.push(mean(noises().map(|noise| noise.bias[line])));
+        stated_biases.push(mean(found.iter().map(|of| of.bias.as_ref().unwrap()[line])));
         variances.push(variance);
     }
     let of = |values: &[f64]| mean(values.iter().copied());
@@ -145,5 +145,34 @@ fn val_what_is_stated_of_the_forces_noise_is_what_repetitions_show() {
         let size = |errors: &[Complex64]| mean(errors.iter().map(|error| error.norm_sqr())).sqrt();
         let correlation = tied / (size(&own) * size(&other));
         assert!((correlation - expected).abs() < 0.1, "{apart} Hz: {correlation}");
+    }
+}
+
+/// All of the record's noise comes into S_ff without a force window, and under an exponential over the whole force what that leaves.
+#[test]
+fn val_the_bias_is_stated_without_a_force_window_too() {
+    let noise = &mut Noise(5);
+    let whole = Window::ForceExponential { half_width: 10.0, tau: 0.4 };
+    for (window, force) in [(Window::None, 1.1), (whole, 2.0)] {
+        let repeat = |_| {
+            let hits = hits(noise, &[220.0, 300.0, 400.0], force);
+            history(hits).accelerance(Estimation { window, ..AS_NEEDED }).unwrap()
+        };
+        let found: Vec<Accelerance> = (0..REPETITIONS).map(repeat).collect();
+        // Lines are independent here, or nearly: two hundred of them in place of so many more repetitions.
+        let lines = 100..300;
+        let known =
+            |line: usize, error: &Complex64| error / DAMPED.transfer(found[0].decay_rate, found[0].frequency[line]);
+        let mean_of = |each: &dyn Fn(&Accelerance, usize) -> f64| {
+            mean(found.iter().flat_map(|of| lines.clone().map(move |line| (of, line))).map(|(of, line)| each(of, line)))
+        };
+        let bias = mean_of(&|of, line| 1.0 - known(line, &of.value[line]).re);
+        let square = mean_of(&|of, line| (1.0 - known(line, &of.value[line])).norm_sqr());
+        let stated = mean_of(&|of, line| of.bias.as_ref().unwrap()[line]);
+        let uncertain = (square / 2.0 / (found.len() * lines.len()) as f64).sqrt();
+        assert!(bias > 10.0 * uncertain, "no bias to be told: {bias} +- {uncertain}");
+        // Of second order are 5 % of it.
+        assert!((bias / stated - 1.0).abs() < 0.06, "{window:?}: {bias} +- {uncertain}, stated {stated}");
+        assert!(found.iter().all(|of| of.force_noise.is_none()));
     }
 }

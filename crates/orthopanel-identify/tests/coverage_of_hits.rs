@@ -33,9 +33,12 @@ const THREE_HITS: [&str; 10] = [
     "16384",
 ];
 
-/// Parts of the intervals that held the truth: of E_x, of G_zx, of all damping ratios.
+/// The generator's damping of all modes after the sixth.
+const BEYOND: f64 = 4e-3;
+
+/// Parts of the intervals that held the truth: of E_x, of G_zx, of the first six damping ratios, of those beyond.
 #[derive(Debug)]
-struct Held([f64; 3]);
+struct Held([f64; 4]);
 
 /// Noise as a part of what of each channel.
 #[derive(Debug, Clone, Copy)]
@@ -66,7 +69,7 @@ fn held(
     }
     let zetas = zetas.map(|zeta| zeta.parse::<f64>().unwrap());
     let mut normal = Normal(seed);
-    let mut counts = [0_usize; 3];
+    let (mut counts, mut beyond) = ([0_usize; 4], 0);
     for _ in 0..tests {
         for (index, hit) in history.hits.iter().enumerate() {
             let csv = noisy(hit, history.rate, noise, &mut normal);
@@ -79,9 +82,13 @@ fn held(
         }
         let zetas = found.pieces[0].damping.iter().zip(zetas);
         counts[2] += zetas.filter(|(zeta, truth)| inside(zeta.value, zeta.std, *truth)).count();
+        let others = found.pieces[0].damping.get(6..).unwrap_or_default();
+        beyond += others.len();
+        counts[3] += others.iter().filter(|zeta| inside(zeta.value, zeta.std, BEYOND)).count();
     }
     let share = |count: usize, of: usize| count as f64 / of as f64;
-    let held = Held([share(counts[0], tests), share(counts[1], tests), share(counts[2], 6 * tests)]);
+    let of = [tests, tests, 6 * tests, beyond.max(1)];
+    let held = Held(std::array::from_fn(|index| share(counts[index], of[index])));
     println!("{options:?}, {noise:?}: {held:?}");
     Some(held)
 }
@@ -111,7 +118,8 @@ fn val_intervals_from_one_hit_hold_the_truth() {
     for (rate, samples, noise) in [("10240", "16384", 0.002), ("20480", "32768", 0.003)] {
         let options = ["--hits", "1", "--pulse", "half-sine", "--pulse-duration", "2.5e-4"];
         let options = [&options[..], &["--sampling-rate", rate, "--samples", samples]].concat();
-        let Some(Held([e_x, g_zx, zeta])) = held(&options, &MUCH, Noise::OfRms(noise), (60, 77), Settings::default())
+        let Some(Held([e_x, g_zx, zeta, _])) =
+            held(&options, &MUCH, Noise::OfRms(noise), (60, 77), Settings::default())
         else {
             return;
         };
@@ -124,7 +132,8 @@ fn val_intervals_from_one_hit_hold_the_truth() {
 /// held in 82, G_zx in 74 and damping in 83 % of 100 tests.
 #[test]
 fn val_intervals_from_three_hits_of_a_piece_that_rings_on_hold_the_truth() {
-    let Some(Held([e_x, g_zx, zeta])) = held(&THREE_HITS, &TABLE_9, Noise::OfRms(0.005), (400, 7), Settings::default())
+    let Some(Held([e_x, g_zx, zeta, _])) =
+        held(&THREE_HITS, &TABLE_9, Noise::OfRms(0.005), (400, 7), Settings::default())
     else {
         return;
     };
@@ -139,7 +148,7 @@ fn val_intervals_from_three_hits_of_a_piece_that_rings_on_hold_the_truth() {
 fn val_intervals_under_much_noise_of_the_force_hold_the_truth() {
     for (zetas, part) in [(&MUCH, 0.01), (&TABLE_9, 0.003)] {
         let noise = Noise::OfPeak(part);
-        let Some(Held([e_x, g_zx, zeta])) = held(&THREE_HITS, zetas, noise, (120, 11), Settings::default()) else {
+        let Some(Held([e_x, g_zx, zeta, _])) = held(&THREE_HITS, zetas, noise, (120, 11), Settings::default()) else {
             return;
         };
         // One deviation is 2 % for a constant, of so many tests, and a third of that for six damping ratios.
@@ -154,9 +163,23 @@ fn val_intervals_under_much_noise_of_the_force_hold_the_truth() {
 fn val_intervals_under_a_force_window_asked_for_hold_the_truth() {
     let window = Window::ForceExponential { half_width: Window::USUAL_HALF_WIDTH, tau: 0.2 };
     let settings = Settings { estimation: Estimation { window, ..Estimation::default() }, ..Settings::default() };
-    let Some(Held([e_x, g_zx, zeta])) = held(&THREE_HITS, &TABLE_9, Noise::OfRms(0.005), (120, 7), settings) else {
+    let Some(Held([e_x, g_zx, zeta, _])) = held(&THREE_HITS, &TABLE_9, Noise::OfRms(0.005), (120, 7), settings) else {
         return;
     };
     assert!([e_x, g_zx].iter().all(|share| (0.89..=1.0).contains(share)), "{e_x} {g_zx}");
     assert!((0.92..=0.98).contains(&zeta), "{zeta}");
+}
+
+/// Up to beyond 7 kHz the force falls a thousandfold in power, and its noise in the whole record, which counts for nothing where the
+/// force is strong, is a few per cent of S_ff there. Without that taken out of H1 the highest ratio was held in 33 % of tests.
+#[test]
+fn val_intervals_of_the_highest_modes_hold_the_truth() {
+    let options = ["--hits", "5", "--sampling-rate", "16384", "--samples", "16384"];
+    let Some(Held([e_x, g_zx, zeta, beyond])) = held(&options, &MUCH, Noise::OfRms(0.01), (60, 3), Settings::default())
+    else {
+        return;
+    };
+    assert!([e_x, g_zx].iter().all(|share| (0.86..=1.0).contains(share)), "{e_x} {g_zx}");
+    assert!((0.92..=0.98).contains(&zeta), "{zeta}");
+    assert!((0.91..=0.99).contains(&beyond), "{beyond}");
 }

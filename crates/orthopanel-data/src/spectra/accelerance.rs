@@ -38,11 +38,14 @@ pub struct Accelerance {
     pub decay_rate: f64,
     /// By how much a window may have moved the decay rate of a resonance \[1/s\], where that cannot be taken out: under
     /// [`Window::Hann`](crate::Window::Hann) $\frac{2\pi}{T}\max(1, |\cot(\pi t_0/T)|)$ with the blow at $t_0$ of a record
-    /// of length $T$; else zero.
+    /// of length $T$, infinite where the window all but cuts off the blow; else zero.
     pub decay_rate_in_doubt: f64,
     /// What a force window leaves of the force's noise, equally long; `None` without such a window, and where the records
     /// show no quiet stretch before the blow to read it from.
     pub force_noise: Option<ForceNoise>,
+    /// The part of its size by which each line is too low for the force's noise in $S_{ff}$, equally long; not taken out of
+    /// `value`. `None` where the records show no quiet stretch before the blow to read the noise from.
+    pub bias: Option<Vec<f64>>,
     /// What was left out, cut, mended or assumed, a sentence each.
     pub notes: Vec<String>,
 }
@@ -61,6 +64,7 @@ impl Accelerance {
             decay_rate: 0.0,
             decay_rate_in_doubt: 0.0,
             force_noise: None,
+            bias: None,
             notes: Vec::new(),
         }
     }

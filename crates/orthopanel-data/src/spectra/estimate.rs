@@ -114,6 +114,7 @@ impl TimeHistory {
         let mut result = Accelerance::empty(self.force_at, self.response_at);
         let (mut variance, mut coherence) = (Vec::new(), Vec::new());
         let mut force_noise = ForceNoise::beneath(window, &sums, samples as f64 / self.rate);
+        let mut bias = sums.noise.is_some().then(Vec::new);
         let (scatter, astray) = if kept.len() > 1 { sums.variance(1..end) } else { (Vec::new(), 0.0) };
         let lines = sums.force.iter().zip(&sums.motion).zip(&sums.cross).enumerate().take(end).skip(1);
         for (line, ((&force, &motion), &cross)) in lines {
@@ -129,7 +130,10 @@ impl TimeHistory {
             result.value.push(value);
             coherence.push(gamma);
             if let Some(noise) = &mut force_noise {
-                noise.push(&sums, (line, first), astray, estimation.estimator);
+                noise.push(&sums, (line, first), astray);
+            }
+            if let Some(bias) = &mut bias {
+                bias.push(sums.bias(line, estimation.estimator));
             }
             variance.push(match noise {
                 Some((force_noise, motion_noise)) => (motion_noise + first * force_noise) / force,
@@ -155,6 +159,7 @@ impl TimeHistory {
             );
         }
         result.force_noise = force_noise;
+        result.bias = bias;
         if kept.len() > 1 {
             result.coherence = Some(coherence);
             result.variance = Some(variance);

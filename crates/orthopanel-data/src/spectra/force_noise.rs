@@ -16,8 +16,6 @@ pub struct ForceNoise {
     /// Variance of the rest of each line's errors, independent from line to line, as the noise before the blows and what strong
     /// lines scatter beyond it tell \[((m/s²)/N)²\]; the scatter of the hits may show more.
     pub independent: Vec<f64>,
-    /// The part of its size by which each line is too low for the noise in $S_{ff}$; not taken out of the accelerance.
-    pub bias: Vec<f64>,
 }
 
 impl ForceNoise {
@@ -25,25 +23,30 @@ impl ForceNoise {
     pub(super) fn beneath(window: Window, sums: &Sums, length: f64) -> Option<Self> {
         let half_width = window.force_half_width().filter(|half_width| 2.0 * half_width < length)?;
         sums.noise.as_ref()?;
-        Some(Self { half_width, variance: Vec::new(), independent: Vec::new(), bias: Vec::new() })
+        Some(Self { half_width, variance: Vec::new(), independent: Vec::new() })
     }
 
     /// Adds the line of the spectra with this number, at which $|H|^2$ is `power`; a part `astray` of each hit's motion comes to
     /// its channels' noise.
-    pub(super) fn push(&mut self, sums: &Sums, (line, power): (usize, f64), astray: f64, estimator: Estimator) {
-        let (shared, biased) = sums.force_noise(line);
+    pub(super) fn push(&mut self, sums: &Sums, (line, power): (usize, f64), astray: f64) {
+        let (shared, _) = sums.force_noise(line);
         self.variance.push(power * shared);
         self.independent.push(sums.independent_noise(line, power, astray));
-        // H_1 divides by S_ff, H_v by its root, H_2 not at all.
-        self.bias.push(match estimator {
-            Estimator::H1 => biased,
-            Estimator::Hv => 0.5 * biased,
-            Estimator::H2 => 0.0,
-        });
     }
 }
 
 impl Sums {
+    /// The part of its size by which a line is too low for the forces' noise; zero where a hit does not tell its own.
+    pub(super) fn bias(&self, line: usize, estimator: Estimator) -> f64 {
+        let (_, biased) = self.force_noise(line);
+        // H_1 divides by S_ff, H_v by its root, H_2 not at all.
+        match estimator {
+            Estimator::H1 => biased,
+            Estimator::Hv => 0.5 * biased,
+            Estimator::H2 => 0.0,
+        }
+    }
+
     /// The noise $N_i$ of the hits' forces at a line over $\sum|F|^2$: weighed with the hits' shares $h_i$ as in $H_1$,
     /// $\sum h_iN_i$, and as $|H_1|$ is too low by it, $\sum(1-h_i)N_i$. Of a single hit $A/(F+\nu)$ has the mean $A/F$.
     fn force_noise(&self, line: usize) -> (f64, f64) {

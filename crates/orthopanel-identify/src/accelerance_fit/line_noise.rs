@@ -23,13 +23,13 @@ const STRIDE: usize = 5;
 /// runs smoothly with frequency. So the shape $1 + r|H|^2$ is divided out, the rest averaged over neighbours, and $r$
 /// chosen for the greatest likelihood of the scatter seen.
 ///
-/// Where the records tell no variance, an even one is returned; the fit's own scatter then gives its size.
-pub(super) fn line_variance(accelerance: &Accelerance) -> Vec<f64> {
+/// Where the records tell no variance, an even one is returned; the fit's own scatter then gives its size. The second number is $r$.
+pub(super) fn line_variance(accelerance: &Accelerance) -> (Vec<f64>, f64) {
     let power: Vec<f64> = accelerance.value.iter().map(|value| value.norm_sqr()).collect();
     let Some(raw) = &accelerance.variance else {
         // Nothing is known but that strong lines carry the errors of gain: a thousandth of each and of the median.
         let floor = median(&power);
-        return power.iter().map(|p| 1e-6 * (p + floor)).collect();
+        return (power.iter().map(|p| 1e-6 * (p + floor)).collect(), 1.0 / floor);
     };
     most_likely(&power, |shape| raw.iter().zip(shape).map(|(v, s)| v / s).collect())
 }
@@ -57,16 +57,20 @@ pub(super) fn noise_of_misfit(record: &PlaceRecord, model: &[Complex64]) -> Vec<
         // The first and the last line have no two neighbours.
         std::iter::once(f64::NAN).chain(bends).chain([f64::NAN]).take(even.len()).collect()
     })
+    .0
 }
 
-/// The likeliest variance $l(1 + r|H|^2)$ with a level $l$ even over neighbours; `quotient` gives each line's own variance over
-/// such a shape.
-fn most_likely(power: &[f64], quotient: impl Fn(&[f64]) -> Vec<f64>) -> Vec<f64> {
+/// The likeliest variance $l(1 + r|H|^2)$ with a level $l$ even over neighbours, and its $r$; `quotient` gives each line's own variance
+/// over such a shape.
+fn most_likely(power: &[f64], quotient: impl Fn(&[f64]) -> Vec<f64>) -> (Vec<f64>, f64) {
     let typical = median(power).max(f64::MIN_POSITIVE);
-    let smooth = |step: usize| {
+    let ratio = |step: usize| {
         let (lowest, highest, steps) = RATIOS;
-        let ratio = lowest * (highest / lowest).powf(step as f64 / steps as f64);
-        let shape: Vec<f64> = power.iter().map(|p| 1.0 + ratio * p / typical).collect();
+        lowest * (highest / lowest).powf(step as f64 / steps as f64) / typical
+    };
+    let smooth = |step: usize| {
+        let ratio = ratio(step);
+        let shape: Vec<f64> = power.iter().map(|p| 1.0 + ratio * p).collect();
         let quotient = quotient(&shape);
         let level = running_mean(&quotient);
         let variance: Vec<f64> = level.iter().zip(&shape).map(|(l, s)| (l * s).max(f64::MIN_POSITIVE)).collect();
@@ -86,7 +90,8 @@ fn most_likely(power: &[f64], quotient: impl Fn(&[f64]) -> Vec<f64>) -> Vec<f64>
     // Every few steps, then each beside the best: the misfit bends but slowly with the ratio.
     let coarse = least(&mut (0..=RATIOS.2).step_by(STRIDE));
     let nearest = coarse.saturating_sub(STRIDE - 1)..=(coarse + STRIDE - 1).min(RATIOS.2);
-    smooth(least(&mut { nearest })).1
+    let best = least(&mut { nearest });
+    (smooth(best).1, ratio(best))
 }
 
 /// Mean over the neighbours within [`HALF_WINDOW`], lines without a finite value left out.

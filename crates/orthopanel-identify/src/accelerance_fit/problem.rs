@@ -222,6 +222,17 @@ impl AcceleranceProblem {
         Ok(())
     }
 
+    /// Takes the strength of lines, where it counts in their variance, from the model at these parameters; whether any does.
+    pub(super) fn weigh_by_model(&mut self, parameters: &[f64]) -> Result<bool, ModelError> {
+        if self.records().all(|record| record.by_strength.is_none()) {
+            return Ok(false);
+        }
+        let mut lines = self.lines(parameters)?.into_iter();
+        let records = self.pieces.iter_mut().flat_map(|piece| &mut piece.records);
+        records.zip(lines.by_ref()).for_each(|(record, model)| record.weigh_by(&model));
+        Ok(true)
+    }
+
     /// Where the damping of a piece begins in the parameters.
     pub(super) fn zeta_offset(&self, piece: usize) -> usize {
         self.constants.count() + self.pieces[..piece].iter().map(|piece| piece.free_zetas).sum::<usize>()

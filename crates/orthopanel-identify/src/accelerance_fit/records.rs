@@ -11,6 +11,13 @@ use super::line_noise::line_variance;
 /// Power of all lines over that of their noise, below which no signal is in them: few hits tell a variance to some per cent.
 const MERE_NOISE: f64 = 1.05;
 
+/// Part of a line by which the force's noise makes it too low, up to which that is known well enough to be taken out: it is told to
+/// first order, and beyond the force is mostly noise.
+const MOST_BIAS: f64 = 0.3;
+
+/// The same part from which that noise counts in the weights of lines.
+const COUNTS: f64 = 1e-3;
+
 /// One accelerance of one piece.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct PlaceRecord {
@@ -33,13 +40,16 @@ pub(super) struct PlaceRecord {
     pub decay_rate_in_doubt: f64,
     /// How many independent data each line is worth, at most one: an exponential window ties neighbouring lines together.
     pub worth: Vec<f64>,
+    /// $r$ of the lines' variance $l(1 + r|H|^2)$ where the force's noise counts, for then that of $|H|^2$ counts, too: a line that
+    /// noise makes great has a great variance, and a fit that takes both as they are finds all lines too low.
+    pub by_strength: Option<f64>,
     /// What of the variance a force window ties together over many lines.
     pub tied: Option<TiedNoise>,
 }
 
 impl PlaceRecord {
     pub(super) fn of(accelerance: &Accelerance) -> Self {
-        let mut variance = line_variance(accelerance);
+        let (mut variance, ratio) = line_variance(accelerance);
         let noise = accelerance.force_noise.as_ref();
         // A window makes the scatter of few hits wander over its whole width: where they happen to scatter little, what is
         // known of the force's noise stands.
@@ -49,10 +59,9 @@ impl PlaceRecord {
             .for_each(|(all, of)| *all = all.max(*of));
         // A line whose noise is unbounded says nothing.
         let usable: Vec<usize> = (0..accelerance.value.len()).filter(|&line| variance[line].is_finite()).collect();
-        let unbiased = |line: usize| match noise.and_then(|noise| noise.bias.get(line)) {
-            Some(bias) => accelerance.value[line] / (1.0 - bias),
-            None => accelerance.value[line],
-        };
+        let biases = accelerance.bias.as_deref().unwrap_or_default();
+        let bias = |line: usize| biases.get(line).copied().filter(|bias| *bias < MOST_BIAS).unwrap_or_default();
+        let unbiased = |line: usize| accelerance.value[line] / (1.0 - bias(line));
         Self {
             force_at: accelerance.force_at,
             response_at: accelerance.response_at,
@@ -64,6 +73,7 @@ impl PlaceRecord {
             decay_rate: accelerance.decay_rate,
             decay_rate_in_doubt: accelerance.decay_rate_in_doubt,
             worth: vec![1.0; usable.len()],
+            by_strength: (accelerance.hits > 1 && (0..biases.len()).any(|line| bias(line) > COUNTS)).then_some(ratio),
             tied: noise.map(|noise| TiedNoise::of(noise, accelerance, &usable)),
         }
     }
@@ -72,6 +82,14 @@ impl PlaceRecord {
     pub(super) fn independent(&self) -> Option<Self> {
         let noise = self.tied.as_ref()?;
         Some(Self { variance: noise.independent.clone(), tied: None, ..self.clone() })
+    }
+
+    /// Takes $|H|^2$ in the variance of each line from a model of it.
+    pub(super) fn weigh_by(&mut self, model: &[Complex64]) {
+        let Some(ratio) = self.by_strength.take() else { return };
+        let of = |value: &Complex64| 1.0 + ratio * value.norm_sqr();
+        let lines = self.variance.iter_mut().zip(&self.value).zip(model);
+        lines.for_each(|((variance, measured), model)| *variance *= of(model) / of(measured));
     }
 
     /// Whether its lines are no greater than their noise makes them.

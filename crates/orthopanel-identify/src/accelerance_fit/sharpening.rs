@@ -151,7 +151,7 @@ pub(super) fn line_by_line(problem: &mut AcceleranceProblem, from: &[f64]) -> Op
 /// Passes in which noise and fit follow from each other.
 const NOISE_PASSES: usize = 2;
 
-/// The same where the noise of some records follows from the fit itself: it then stands in the problem.
+/// The same where the noise of some records, or the weight of their lines, follows from the fit itself: it then stands in the problem.
 pub(super) fn line_by_line_with_noise(problem: &mut AcceleranceProblem, from: &[f64]) -> Option<Minimum> {
     let mut minimum = line_by_line(problem, from)?;
     if problem.noise_is_to_learn() {
@@ -159,6 +159,9 @@ pub(super) fn line_by_line_with_noise(problem: &mut AcceleranceProblem, from: &[
             problem.learn_noise(&minimum.parameters).ok()?;
             minimum = line_by_line(problem, &minimum.parameters)?;
         }
+    }
+    if !is_far_from_noise(problem, &minimum) && problem.weigh_by_model(&minimum.parameters).ok()? {
+        minimum = line_by_line(problem, &minimum.parameters)?;
     }
     Some(minimum)
 }

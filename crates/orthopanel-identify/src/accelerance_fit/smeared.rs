@@ -76,6 +76,7 @@ pub(super) fn smeared(record: &PlaceRecord, part: f64) -> Vec<PlaceRecord> {
             decay_rate: record.decay_rate + TAU * width,
             decay_rate_in_doubt: record.decay_rate_in_doubt,
             worth: vec![1.0; frequency.len()],
+            by_strength: None,
             tied: None,
             frequency,
             value,
@@ -109,6 +110,7 @@ mod tests {
             decay_rate: 3.0,
             decay_rate_in_doubt: 0.0,
             worth: vec![1.0; frequency.len()],
+            by_strength: None,
             tied: None,
             frequency,
         };
