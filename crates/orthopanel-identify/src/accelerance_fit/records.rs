@@ -11,6 +11,12 @@ use super::line_noise::line_variance;
 /// Power of all lines over that of their noise, below which no signal is in them: few hits tell a variance to some per cent.
 const MERE_NOISE: f64 = 1.05;
 
+/// Part of its size within which a line is known at best, ...
+const DIGITS: f64 = 1e-6;
+/// ... and of the record's lines, rms: a step of a converter of 16 bits. Computed hits agree to the last digit, and weighed by that
+/// no model meets them.
+const STEP: f64 = 1e-5;
+
 /// Part of a line by which the force's noise makes it too low, up to which that is known well enough to be taken out: it is told to
 /// first order, and beyond the force is mostly noise.
 const MOST_BIAS: f64 = 0.3;
@@ -57,6 +63,9 @@ impl PlaceRecord {
             .iter_mut()
             .zip(noise.iter().flat_map(|noise| &noise.variance))
             .for_each(|(all, of)| *all = all.max(*of));
+        let power = || accelerance.value.iter().map(|value| value.norm_sqr());
+        let floor = STEP * STEP * power().sum::<f64>() / power().len() as f64;
+        variance.iter_mut().zip(power()).for_each(|(all, power)| *all += DIGITS * DIGITS * power + floor);
         // A line whose noise is unbounded says nothing.
         let usable: Vec<usize> = (0..accelerance.value.len()).filter(|&line| variance[line].is_finite()).collect();
         let biases = accelerance.bias.as_deref().unwrap_or_default();

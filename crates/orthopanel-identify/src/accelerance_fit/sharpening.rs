@@ -127,8 +127,11 @@ const QUICK_SEARCHES: usize = 8;
 /// is a minimum of the whole. Valleys of modes beyond the band, whose damping ratios stand in for one another, are long and bent: a
 /// search that is still in one, with no more to gain than one standard deviation costs, has come near enough.
 pub(super) fn line_by_line(problem: &mut AcceleranceProblem, from: &[f64]) -> Option<Minimum> {
-    let (bounds, ending) = (problem.bounds(), Ending::likelihood(problem.data()));
-    let near = Ending { small_gain: 1.0 / problem.data(), ..ending };
+    // Of records better than any noise, the sum of squares is no measure of what a step must gain: one is, a deviation's cost.
+    let deviation = if problem.noise_is_known() { 1.0 } else { 0.0 };
+    let bounds = problem.bounds();
+    let ending = Ending { little: SURELY_LITTLE * deviation, ..Ending::likelihood(problem.data()) };
+    let near = Ending { small_gain: 1.0 / problem.data(), little: deviation, ..ending };
     let mut from = from.to_vec();
     let mut is_quick = problem.move_near(&from).ok()?;
     for search in 1..=QUICK_SEARCHES {
@@ -147,6 +150,9 @@ pub(super) fn line_by_line(problem: &mut AcceleranceProblem, from: &[f64]) -> Op
     }
     None
 }
+
+/// Part of what a parameter's standard deviation costs that moves it by a thirtieth of that.
+const SURELY_LITTLE: f64 = 1e-3;
 
 /// Passes in which noise and fit follow from each other.
 const NOISE_PASSES: usize = 2;
