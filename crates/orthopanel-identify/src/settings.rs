@@ -10,10 +10,10 @@ pub enum Search {
     /// Least squares on exact derivatives: eq. 22 for frequencies, maximum likelihood for records.
     #[default]
     LeastSquares,
-    /// The paper's downhill simplex with a penalty: eq. 24 for frequencies, eq. 25 for records. From records it states no
-    /// standard deviations: eq. 23 weighs all resonances alike, whatever their noise, so none follow from its minimum.
-    /// With the paper's weights magnitudes lead and frequencies yield: at 1 % noise and several places, constants stray
-    /// by 0.1 %, hundreds of times further than those of the likelihood.
+    /// The paper's downhill simplex with a penalty: eq. 24 for frequencies, eq. 25 for records. Eq. 23 weighs all resonances
+    /// alike, whatever their noise, and with the paper's weights magnitudes lead and frequencies yield: at 1 % noise and several
+    /// places, constants stray by 0.1 %, hundreds of times further than those of the likelihood. Standard deviations from records
+    /// are what the noise of the resonances does to that minimum; they do not know of what the model lacks.
     Simplex,
 }
 

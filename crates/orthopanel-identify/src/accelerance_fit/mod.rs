@@ -12,6 +12,7 @@ mod misfit;
 mod mode_group;
 mod other_law;
 mod outcome;
+mod paper_deviations;
 mod paper_error;
 mod pole_charge;
 mod poles;
@@ -102,7 +103,7 @@ fn by_poles(test: &ImpactTest, settings: Settings, start: Start) -> Result<Ident
         let all = problem.free_resting(&parameters);
         match line_by_line_with_noise(&mut problem, &all) {
             Some(minimum) if !outcome::is_far_from_noise(&problem, &minimum) => {
-                return outcome::outcome(test, settings, start, &mut problem, minimum);
+                return outcome::outcome(test, start, &mut problem, minimum);
             }
             Some(Minimum { parameters: found, .. }) => {
                 let zetas = found.into_iter().skip(all.len() - parameters.len() + seen.count());
@@ -120,7 +121,7 @@ fn by_poles(test: &ImpactTest, settings: Settings, start: Start) -> Result<Ident
             && problem.chi_square(minimum.at.cost) < EXPLAINED
         {
             let start = Start::at(start.recorded, &problem.constants, &minimum.parameters)?;
-            return outcome::outcome(test, settings, start, &mut problem, minimum);
+            return outcome::outcome(test, start, &mut problem, minimum);
         }
     }
     // What cannot be fitted line by line is judged by its resonances, and refused there if need be.
@@ -148,7 +149,7 @@ fn by_wide_records(
             continue;
         };
         let start = Start::at(recorded, &problem.constants, &minimum.parameters)?;
-        match outcome::outcome(test, settings, start, &mut problem, minimum) {
+        match outcome::outcome(test, start, &mut problem, minimum) {
             Ok(found) => return Ok(found),
             Err(error) if error.knows_the_band() => return Err(error),
             Err(error) => refused = refused.or(Some(error)),
@@ -169,9 +170,10 @@ fn by_papers_error(
     let start = start(recorded)?;
     let mut problem = assemble(&start, settings)?;
     let parameters = starting_parameters(&problem, &start);
-    let parameters = paper_error::minimise(&problem, &start, test.boundary, &parameters, settings.paper_weights)?;
+    let (parameters, covariance) =
+        paper_error::minimise(&problem, &start, test.boundary, &parameters, settings.paper_weights)?;
     let minimum = Minimum { at: problem.linearise(&parameters)?, parameters };
-    let mut found = outcome::outcome(test, settings, start, &mut problem, minimum)?;
+    let mut found = outcome::outcome_of_papers_error(test, start, &mut problem, minimum, covariance)?;
     if let Some(left) = found.chi_square.filter(|left| *left > PAPERS_MISFIT) {
         found.notes.push(format!(
             "the minimum of eq. 23 leaves {left:.1} times the noise: it takes one frequency and one magnitude of each resonance, and \

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use faer::Mat;
+use faer::{Mat, Scale};
 use num_complex::Complex64;
 use orthopanel_data::ImpactTest;
 use orthopanel_model::{Estimate, StructureKind};
@@ -16,10 +16,7 @@ use super::whole_covariance::Weighed;
 use crate::free_constants::Rest;
 use crate::frequency_fit::identified_constants;
 use crate::least_squares::Minimum;
-use crate::{
-    AcceleranceFit, Correlation, HiddenMode, Identification, IdentifyError, ModeFit, NotIdentified, PieceFit, Search,
-    Settings,
-};
+use crate::{AcceleranceFit, Correlation, HiddenMode, Identification, IdentifyError, ModeFit, NotIdentified, PieceFit};
 
 /// A misfit per datum above this is the model's, not the noise's, and line by line damping is not to be trusted.
 const FAR_FROM_NOISE: f64 = 25.0;
@@ -31,38 +28,68 @@ const SEEN: f64 = 0.5;
 /// A damping ratio known no better than to this factor's logarithm is the prior's, and is not reported.
 const DAMPING_UNSEEN: f64 = 0.5;
 
+/// What a minimum of the likelihood says.
 pub(super) fn outcome(
     test: &ImpactTest,
-    settings: Settings,
-    mut start: Start,
+    start: Start,
     problem: &mut AcceleranceProblem,
     minimum: Minimum,
 ) -> Result<Identification, IdentifyError> {
-    let noise_known = problem.noise_is_known();
-    if noise_known && problem.cost_of_nothing() - minimum.at.cost < MORE_THAN_CHANCE * problem.size() as f64 {
-        let needed = problem.constants.count();
-        let noise_percent = noise_percent(problem.records());
-        return Err(IdentifyError::TooFewResonances { found: 0, needed, noise_percent });
-    }
-    // Eq. 23 is no likelihood: its minimum has no standard deviation that follows from the noise.
-    let likelihood = settings.search == Search::LeastSquares;
-    let Weighed { minimum: Minimum { parameters, .. }, covariance, chi_square } =
-        if likelihood { problem.weigh_whole(minimum)? } else { Weighed::unknown(problem, minimum) };
-    let std_factor = if noise_known { chi_square.max(1.0).sqrt() } else { chi_square.sqrt() };
-    let std = |i: usize| covariance.as_ref().map(|matrix| std_factor * matrix[(i, i)].sqrt());
-    let log_std: Vec<Option<f64>> = (0..problem.size()).map(std).collect();
-    let correlations = covariance.as_ref().map(|matrix| problem.constants.correlations(matrix)).unwrap_or_default();
-    let mut found = Found { parameters, log_std, correlations, chi_square: noise_known.then_some(chi_square) };
-    if !problem.usual.is_empty() {
-        start.fit.not_identified = rest_unseen(problem, &mut found, covariance.as_ref());
-    }
+    refuse_mere_noise(problem, &minimum)?;
+    let mut weighed = problem.weigh_whole(minimum)?;
+    let chi_square = weighed.chi_square;
+    let widened = if problem.noise_is_known() { chi_square.max(1.0) } else { chi_square };
+    weighed.covariance = weighed.covariance.map(|matrix| matrix * Scale(widened));
     let mut notes = start.recorded.notes.clone();
-    if likelihood && problem.noise_is_to_learn() {
+    if problem.noise_is_to_learn() {
         notes.push(
             "one hit at a place tells no scatter: noise and standard deviations are from how the misfit of neighbouring lines \
              scatters"
                 .to_owned(),
         );
+    }
+    stated(test, start, problem, weighed, notes)
+}
+
+/// What a minimum of eq. 23 says, with what the noise does to it.
+pub(super) fn outcome_of_papers_error(
+    test: &ImpactTest,
+    start: Start,
+    problem: &mut AcceleranceProblem,
+    minimum: Minimum,
+    covariance: Option<Mat<f64>>,
+) -> Result<Identification, IdentifyError> {
+    refuse_mere_noise(problem, &minimum)?;
+    let chi_square = problem.chi_square(minimum.at.cost);
+    let notes = start.recorded.notes.clone();
+    stated(test, start, problem, Weighed { minimum, covariance, chi_square }, notes)
+}
+
+fn refuse_mere_noise(problem: &AcceleranceProblem, minimum: &Minimum) -> Result<(), IdentifyError> {
+    let chance = MORE_THAN_CHANCE * problem.size() as f64;
+    if problem.noise_is_known() && problem.cost_of_nothing() - minimum.at.cost < chance {
+        let needed = problem.constants.count();
+        let noise_percent = noise_percent(problem.records());
+        return Err(IdentifyError::TooFewResonances { found: 0, needed, noise_percent });
+    }
+    Ok(())
+}
+
+fn stated(
+    test: &ImpactTest,
+    mut start: Start,
+    problem: &mut AcceleranceProblem,
+    weighed: Weighed,
+    notes: Vec<String>,
+) -> Result<Identification, IdentifyError> {
+    let Weighed { minimum: Minimum { parameters, .. }, covariance, chi_square } = weighed;
+    let std = |i: usize| covariance.as_ref().map(|matrix| matrix[(i, i)].sqrt());
+    let log_std: Vec<Option<f64>> = (0..problem.size()).map(std).collect();
+    let correlations = covariance.as_ref().map(|matrix| problem.constants.correlations(matrix)).unwrap_or_default();
+    let chi_square = problem.noise_is_known().then_some(chi_square);
+    let mut found = Found { parameters, log_std, correlations, chi_square };
+    if !problem.usual.is_empty() {
+        start.fit.not_identified = rest_unseen(problem, &mut found, covariance.as_ref());
     }
     report(test, &start, problem, found, notes)
 }

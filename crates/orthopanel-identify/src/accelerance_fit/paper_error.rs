@@ -1,13 +1,14 @@
 //! The paper's second problem: eq. 23 under eq. 25, by downhill simplex with a penalty.
 
+use faer::Mat;
 use num_complex::Complex64;
 use orthopanel_model::{BeamConstants, Boundary, ExactBeam, ModelError, StaticFlexibility};
 use rayon::prelude::*;
 
 use super::poles::Pole;
-use super::problem::{AcceleranceProblem, PieceProblem, log_zeta_bounds};
+use super::problem::{AcceleranceProblem, PRIOR_LOG_ZETA_STD, PieceProblem, log_zeta_bounds};
 use super::records::PlaceRecord;
-use super::resonance_point::{MeasuredPoint, greatest, half_width, measured_point};
+use super::resonance_point::{MeasuredPoint, ResonancePoint, greatest, half_width, measured_point};
 use super::start::Start;
 use super::synthesis::DampingLaw;
 use crate::IdentifyError;
@@ -20,16 +21,18 @@ type PiecePoints = Vec<Vec<MeasuredPoint>>;
 /// Eq. 23, summed over the records,
 /// $$W_f\sum_m\frac{(f_{exp}-f_{cal})^2}{f_{exp}^2} + W_G\sum_m\frac{(G(f_{exp})-G(f_{cal}))^2}{G(f_{exp})^2}$$
 /// where $G$ is the magnitude at the measured and at the calculated resonance.
-struct PaperError<'a> {
+pub(super) struct PaperError<'a> {
     problem: &'a AcceleranceProblem,
     boundary: Boundary,
     /// The start of the damping ratios, as logarithms.
     parameters: &'a [f64],
     weights: PaperWeights,
     points: Vec<PiecePoints>,
+    /// How well each parameter is known without eq. 23: a damping ratio by its pole.
+    pub(super) known: Vec<f64>,
 }
 
-/// The minimum of eq. 23 from `parameters`, which are those of the likelihood.
+/// The minimum of eq. 23 from `parameters`, which are those of the likelihood, with its covariance.
 ///
 /// The simplex moves the free constants. At each of its corners the damping ratios take the values that are best there
 /// ([`PaperError::best_damping`]), so the minimum is that over all parameters of eq. 25.
@@ -39,10 +42,11 @@ pub(super) fn minimise(
     boundary: Boundary,
     parameters: &[f64],
     weights: PaperWeights,
-) -> Result<Vec<f64>, IdentifyError> {
+) -> Result<(Vec<f64>, Option<Mat<f64>>), IdentifyError> {
     let pieces = problem.pieces.iter().zip(&start.poles).zip(&start.matching.modes);
     let points = pieces.map(|((piece, poles), modes)| piece_points(&piece.records, poles, modes)).collect();
-    let error = PaperError { problem, boundary, parameters, weights, points };
+    let known = known_by_poles(problem, start);
+    let error = PaperError { problem, boundary, parameters, weights, points, known };
     let free = problem.constants.count();
     let mut found = parameters.to_vec();
     if free > 0 {
@@ -53,7 +57,22 @@ pub(super) fn minimise(
     }
     let (_, log_zetas) = error.at(&found[..free])?;
     found[free..].copy_from_slice(&log_zetas);
-    Ok(found)
+    let covariance = error.covariance(&found)?;
+    Ok((found, covariance))
+}
+
+/// Standard deviation of each parameter by the poles alone.
+fn known_by_poles(problem: &AcceleranceProblem, start: &Start) -> Vec<f64> {
+    let mut known = vec![PRIOR_LOG_ZETA_STD; problem.size()];
+    for (index, (poles, modes)) in start.poles.iter().zip(&start.matching.modes).enumerate() {
+        let offset = problem.zeta_offset(index);
+        for (pole, mode) in poles.iter().zip(modes) {
+            if let Some(mode) = mode.filter(|&mode| mode < problem.pieces[index].free_zetas) {
+                known[offset + mode] = pole.log_zeta_std;
+            }
+        }
+    }
+    known
 }
 
 /// A place takes part in a mode whose height it knows within this factor of the place that knows it best. Eq. 23 weighs
@@ -100,6 +119,13 @@ impl PlaceModel {
         sum + self.rigid + self.rest * s2
     }
 
+    /// Where a mode's resonance stands; `None` for a mode beyond the sum.
+    fn resonance(&self, mode: usize, zetas: &[f64], law: DampingLaw) -> Option<ResonancePoint> {
+        let (&(omega, _), &zeta) = self.modes.get(mode).zip(zetas.get(mode))?;
+        let natural = omega / std::f64::consts::TAU;
+        Some(greatest(|f| self.at(f, zetas, law), natural, half_width(omega, zeta, self.decay_rate)))
+    }
+
     /// $\partial H/\partial\ln\zeta_m$.
     fn by_log_zeta(&self, frequency: f64, zeta: f64, mode: usize, law: DampingLaw) -> Complex64 {
         let s = Complex64::new(self.decay_rate, std::f64::consts::TAU * frequency);
@@ -129,6 +155,50 @@ impl PaperError<'_> {
             all.extend(log_zetas);
         }
         Ok((sum, all))
+    }
+
+    /// What eq. 23 squares, before its weights: of every point the relative misfit of the frequency, then of the magnitude.
+    pub(super) fn misfits(&self, parameters: &[f64]) -> Result<Vec<f64>, ModelError> {
+        let mut misfits = Vec::new();
+        for (index, (piece, points)) in self.problem.pieces.iter().zip(&self.points).enumerate() {
+            let (values, log_zetas) = self.problem.of_piece(index, parameters);
+            let models = self.place_models(piece, BeamConstants { e_x: values[0], g_zx: values[1] })?;
+            let zetas = piece.zetas(log_zetas);
+            for (model, points) in models.iter().zip(points) {
+                for &MeasuredPoint { mode, point: measured, .. } in points {
+                    let found = model.resonance(mode, &zetas, self.problem.law);
+                    let missed = |found: f64, measured: f64| found / measured - 1.0;
+                    misfits.extend(found.map_or([0.0; 2], |found| {
+                        [missed(found.frequency, measured.frequency), missed(found.magnitude, measured.magnitude)]
+                    }));
+                }
+            }
+        }
+        Ok(misfits)
+    }
+
+    /// Whether a parameter is a damping ratio.
+    pub(super) fn is_damping(&self, parameter: usize) -> bool {
+        parameter >= self.problem.constants.count()
+    }
+
+    /// Whether eq. 23 tells a parameter: a damping ratio by magnitudes of its mode.
+    pub(super) fn moves(&self, parameter: usize) -> bool {
+        let of_piece = |index: usize| parameter.checked_sub(self.problem.zeta_offset(index));
+        let is_told = |(index, points): (usize, &PiecePoints)| {
+            points.iter().flatten().any(|point| Some(point.mode) == of_piece(index))
+        };
+        !self.is_damping(parameter) || (self.weights.magnitude > 0.0 && self.points.iter().enumerate().any(is_told))
+    }
+
+    /// Of each of these misfits its weight, and its variance by the noise of the record.
+    pub(super) fn weights_and_variances(&self) -> (Vec<f64>, Vec<f64>) {
+        let points = self.points.iter().flatten().flatten();
+        let of_point = |point: &MeasuredPoint| {
+            let weights = [self.weights.frequency, self.weights.magnitude];
+            [(weights[0], point.variance[0]), (weights[1], point.variance[1])]
+        };
+        points.flat_map(of_point).unzip()
     }
 
     fn place_models(&self, piece: &PieceProblem, constants: BeamConstants) -> Result<Vec<PlaceModel>, ModelError> {
@@ -172,10 +242,9 @@ impl PaperError<'_> {
             error = 0.0;
             for (model, points) in models.iter().zip(points) {
                 for &MeasuredPoint { mode, point: measured, .. } in points {
-                    let (Some(&(omega, _)), Some(&zeta)) = (model.modes.get(mode), zetas.get(mode)) else { continue };
-                    let natural = omega / std::f64::consts::TAU;
+                    let Some(found) = model.resonance(mode, &zetas, law) else { continue };
+                    let zeta = zetas[mode];
                     let value = |f: f64| model.at(f, &zetas, law);
-                    let found = greatest(value, natural, half_width(omega, zeta, model.decay_rate));
                     let missed = found.magnitude / measured.magnitude - 1.0;
                     error += self.weights.frequency * (found.frequency / measured.frequency - 1.0).powi(2)
                         + self.weights.magnitude * missed * missed;

@@ -133,7 +133,7 @@ pub(super) struct Usual {
 
 /// Standard deviation of a mode's $\ln\zeta$ before the records speak: a factor of seven. It keeps a mode that no record
 /// shows where its neighbours are, and yields to any record that shows it.
-const PRIOR_LOG_ZETA_STD: f64 = 2.0;
+pub(super) const PRIOR_LOG_ZETA_STD: f64 = 2.0;
 
 impl AcceleranceProblem {
     pub(super) fn new(

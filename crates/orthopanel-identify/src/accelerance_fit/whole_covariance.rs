@@ -23,13 +23,6 @@ pub(super) struct Weighed {
     pub chi_square: f64,
 }
 
-impl Weighed {
-    /// Without what follows from the noise.
-    pub(super) fn unknown(problem: &AcceleranceProblem, minimum: Minimum) -> Self {
-        Self { covariance: None, chi_square: problem.chi_square(minimum.at.cost), minimum }
-    }
-}
-
 /// Misfit per datum, over the whole covariance, up to which the records are taken to hold nothing but model and noise. What a model
 /// lacks shows there first, for the lines about a resonance count for far more.
 const MODEL_AND_NOISE: f64 = 1.5;
