@@ -6,8 +6,8 @@ use orthopanel_data::{Accelerance, ForceNoise};
 
 use super::line_block::BLOCK;
 use super::line_group::LineGroup;
-use super::problem::WeightedRows;
 use super::records::PlaceRecord;
+use super::weighted_rows::WeightedRows;
 
 /// The noise of the force under a window.
 #[derive(Debug, Clone, PartialEq)]

@@ -29,6 +29,7 @@ mod smooth_part;
 mod start;
 mod structures;
 mod synthesis;
+mod weighted_rows;
 mod whole_covariance;
 mod wide_scan;
 

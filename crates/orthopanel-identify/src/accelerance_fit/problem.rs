@@ -1,7 +1,6 @@
 //! The likelihood of the records: residuals over the noise, and their derivatives.
 
-use faer::linalg::matmul::matmul;
-use faer::{Accum, Mat, Par};
+use faer::Mat;
 use num_complex::Complex64;
 use orthopanel_model::{ModelError, Piece, Place};
 use rayon::prelude::*;
@@ -11,6 +10,7 @@ use super::line_noise::noise_of_misfit;
 use super::records::PlaceRecord;
 use super::structures::ModeSynthesis;
 use super::synthesis::{DampingLaw, PairModel};
+use super::weighted_rows::{RUN, run_products};
 use crate::free_constants::{FreeConstants, RestingFreed};
 use crate::least_squares::Quadratic;
 
@@ -339,9 +339,6 @@ pub(super) fn log_zeta_bounds() -> (f64, f64) {
     (1e-7_f64.ln(), -0.5 * 2.0_f64.ln() - 1e-9)
 }
 
-/// Lines summed by one task: enough to be worth a task, few enough to share out evenly.
-pub(super) const RUN: usize = 32 * BLOCK;
-
 /// The models of a piece's records, and which parameters they follow.
 pub(super) struct Derivatives {
     pub models: Vec<PairModel>,
@@ -349,62 +346,4 @@ pub(super) struct Derivatives {
     pub chain: Vec<Vec<f64>>,
     /// The parameters: of the constants, then each $\ln\zeta$ of the piece.
     pub columns: Vec<usize>,
-}
-
-/// $[J\,r]$ over the noise of runs of lines: derivatives by the free constants first, then by each $\ln\zeta$, then the residual.
-pub(super) struct WeightedRows<'a> {
-    record: &'a PlaceRecord,
-    model: &'a PairModel,
-    chain: &'a [Vec<f64>],
-    functions: Vec<LineBlock>,
-    rows: Mat<f64>,
-}
-
-impl<'a> WeightedRows<'a> {
-    pub(super) fn of(record: &'a PlaceRecord, model: &'a PairModel, chain: &'a [Vec<f64>]) -> Self {
-        let functions = vec![LineBlock::ZERO; model.functions()];
-        let coefficients = chain.first().map_or(model.coefficients(), Vec::len);
-        let size = chain.len() + model.functions() - coefficients;
-        Self { record, model, chain, functions, rows: Mat::zeros(2 * BLOCK, size) }
-    }
-
-    /// Columns: the derivatives, and one for the residual.
-    pub(super) fn size(&self) -> usize {
-        self.rows.ncols()
-    }
-
-    /// The [`BLOCK`] lines from this one on, real parts above imaginary ones.
-    pub(super) fn block(&mut self, from: usize) -> &Mat<f64> {
-        let Self { record, model, chain, functions, rows } = self;
-        let coefficients = chain.first().map_or(model.coefficients(), Vec::len);
-        let last = rows.ncols() - 1;
-        model.lines(&record.s_block(from), functions);
-        let weights = record.weights(from);
-        let (structural, by_zeta) = functions.split_at_mut(1 + coefficients);
-        let Some((value, by_coefficients)) = structural.split_first_mut() else { return rows };
-        for (column, shares) in chain.iter().enumerate() {
-            let mut by = LineBlock::ZERO;
-            for (by_coefficient, share) in by_coefficients.iter().zip(shares) {
-                by.add_multiple(by_coefficient, *share);
-            }
-            by.write_weighted(&weights, rows.col_as_slice_mut(column));
-        }
-        for (by, column) in by_zeta.iter().zip(chain.len()..) {
-            by.write_weighted(&weights, rows.col_as_slice_mut(column));
-        }
-        value.subtract(&record.value[from..]);
-        value.write_weighted(&weights, rows.col_as_slice_mut(last));
-        rows
-    }
-}
-
-/// $[J\,r]^T[J\,r]$ of a run of lines.
-pub(super) fn run_products(record: &PlaceRecord, model: &PairModel, chain: &[Vec<f64>], from: usize) -> Mat<f64> {
-    let mut rows = WeightedRows::of(record, model, chain);
-    let mut products = Mat::zeros(rows.size(), rows.size());
-    for from in (from..record.value.len().min(from + RUN)).step_by(BLOCK) {
-        let rows = rows.block(from);
-        matmul(&mut products, Accum::Add, rows.transpose(), rows, 1.0, Par::Seq);
-    }
-    products
 }

@@ -9,9 +9,10 @@ use rayon::prelude::*;
 
 use super::force_window::{Impulses, TiedNoise};
 use super::line_block::BLOCK;
-use super::problem::{AcceleranceProblem, RUN, WeightedRows, model_lines, run_products};
+use super::problem::{AcceleranceProblem, model_lines};
 use super::records::PlaceRecord;
 use super::synthesis::PairModel;
+use super::weighted_rows::{RUN, WeightedRows, run_products};
 use crate::least_squares::{Minimum, Quadratic};
 
 /// A minimum with what is known of its parameters.
