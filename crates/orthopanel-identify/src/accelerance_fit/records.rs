@@ -47,7 +47,8 @@ pub(super) struct PlaceRecord {
     /// How many independent data each line is worth, at most one: an exponential window ties neighbouring lines together.
     pub worth: Vec<f64>,
     /// $r$ of the lines' variance $l(1 + r|H|^2)$ where the force's noise counts, for then that of $|H|^2$ counts, too: a line that
-    /// noise makes great has a great variance, and a fit that takes both as they are finds all lines too low.
+    /// noise makes great has a great variance, and a fit that takes both as they are finds all lines too low. Not under a force
+    /// window, where what is left of that noise is tied together and the same for neighbours.
     pub by_strength: Option<f64>,
     /// What of the variance a force window ties together over many lines.
     pub tied: Option<TiedNoise>,
@@ -82,7 +83,8 @@ impl PlaceRecord {
             decay_rate: accelerance.decay_rate,
             decay_rate_in_doubt: accelerance.decay_rate_in_doubt,
             worth: vec![1.0; usable.len()],
-            by_strength: (accelerance.hits > 1 && (0..biases.len()).any(|line| bias(line) > COUNTS)).then_some(ratio),
+            by_strength: (accelerance.hits > 1 && noise.is_none() && (0..biases.len()).any(|line| bias(line) > COUNTS))
+                .then_some(ratio),
             tied: noise.map(|noise| TiedNoise::of(noise, accelerance, &usable)),
         }
     }
