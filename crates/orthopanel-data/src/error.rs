@@ -171,8 +171,8 @@ pub enum DataError {
         /// The text, its first 40 characters.
         text: String,
     },
-    /// A record with a value that is not a number or infinite.
-    #[error("{at}: point {point} is not a finite number: take the record out, or export it again")]
+    /// A record with a value that is not a number, infinite, or 1e30 and more.
+    #[error("{at}: point {point} is not a finite number below 1e30: take the record out, or export it again")]
     NotFinite {
         /// Start of the data, or the line.
         at: Box<Location>,

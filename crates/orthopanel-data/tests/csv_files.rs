@@ -46,6 +46,7 @@ fn val_faults_name_file_line_and_column() {
         ("frequency_hz,real,imag,real\n0,1,2,3\n", "a.csv:1: column real stands twice"),
         ("frequency_hz,real,imag\n1,2,x\n", "a.csv:2: imag: \"x\" is no number"),
         ("frequency_hz,real,imag\n1,2,3\n2,NaN,3\n", "a.csv:3: real: point 2 is not a finite number"),
+        ("frequency_hz,real,imag\n1,2,3\n2,1e200,3\n", "a.csv:3: real: point 2 is not a finite number below 1e30"),
         ("frequency_hz,real,imag\n1,2,3\n1,2,3\n", "a.csv:3: frequency_hz: 1 does not rise"),
         ("frequency_hz,real,imag\n1,2,3\n2,2\n", "a.csv:3: 2 values where the first line names 3 columns"),
         ("frequency_hz,real,imag\n", "a.csv:1: no row under the column names in it"),

@@ -342,11 +342,11 @@ fn val_measured_files_are_read() {
     }
 }
 
-/// A number that is none, among binary data: its own byte is named.
+/// A number that is none, or that no sensor reads, among binary data: its own byte is named.
 #[test]
 fn val_a_value_that_is_no_number_is_told_with_its_byte() {
-    for (double, width) in [(false, 4), (true, 8)] {
-        let values: Vec<f64> = (0..9).map(|index| if index == 6 { f64::NAN } else { f64::from(index) }).collect();
+    for (double, width, wrong) in [(false, 4, f64::NAN), (true, 8, f64::NAN), (true, 8, -1e200), (false, 4, 2e30)] {
+        let values: Vec<f64> = (0..9).map(|index| if index == 6 { wrong } else { f64::from(index) }).collect();
         let bytes = Dataset { double, ..Dataset::time(&values, (12, "m/s^2")) }.binary(false);
         let refused = RecordFile::from_bytes(&bytes, "a.uff").unwrap_err().to_string();
         let data = bytes.len() - "\n    -1\n".len() - 9 * width;

@@ -2,6 +2,7 @@
 
 use std::{path::Path, sync::Arc};
 
+use super::may_be_read;
 use crate::{DataError, Location, Position};
 
 /// True where the first line that is no comment begins with the column `name`.
@@ -77,7 +78,7 @@ pub(super) fn read(bytes: &[u8], path: &Path, needed: &[&str], optional: &[&str]
                 let text = text.chars().take(40).collect();
                 DataError::BadNumber { at: at(line, name), text }
             })?;
-            if !value.is_finite() {
+            if !may_be_read(value) {
                 return Err(DataError::NotFinite { at: at(line, name), point: lines.len() });
             }
             let Some(column) = columns.get_mut(place) else { continue };

@@ -22,6 +22,14 @@ struct Format {
 /// The formats, one line each. The content decides, not the file's extension: extensions of measured files lie.
 const FORMATS: [Format; 3] = [uff::FORMAT, csv_time_history::FORMAT, csv_accelerance::FORMAT];
 
+/// No sensor reads as much, in whatever unit. A spoilt byte in an exponent makes such values, whose squares are no numbers any more.
+const NO_READING: f64 = 1e30;
+
+/// Whether a sensor may have read this: a finite number below [`NO_READING`].
+fn may_be_read(value: f64) -> bool {
+    value.abs() < NO_READING
+}
+
 impl RecordFile {
     /// Reads a file of records; its content tells the format.
     ///

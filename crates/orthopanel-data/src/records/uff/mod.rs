@@ -13,7 +13,7 @@ use std::{path::Path, sync::Arc};
 
 use num_complex::Complex64;
 
-use super::{Format, Record, RecordFile, RecordKind, Samples};
+use super::{Format, Record, RecordFile, RecordKind, Samples, may_be_read};
 use crate::{DataError, Location};
 use cursor::Cursor;
 use header::{Encoding, Header};
@@ -162,16 +162,16 @@ fn check_numbers(
     ordinate: &Samples,
     even: bool,
 ) -> Result<(), DataError> {
-    let finite = |value: &Complex64| value.re.is_finite() && value.im.is_finite();
+    let sound = |value: &Complex64| may_be_read(value.re) && may_be_read(value.im);
     let bad = match ordinate {
-        Samples::Real(values) => first_not_finite(values),
-        Samples::Complex(values) => values.iter().position(|value| !finite(value)),
+        Samples::Real(values) => first_unsound(values),
+        Samples::Complex(values) => values.iter().position(|value| !sound(value)),
     };
     let last = abscissa.len().saturating_sub(1);
     let bad_abscissa = || match abscissa.last() {
         // Even times rise by a step that the header's reader has checked: only their end can overflow.
         Some(end) if even => (!end.is_finite()).then_some(last),
-        _ => first_not_finite(abscissa),
+        _ => first_unsound(abscissa),
     };
     if let Some(point) = bad.or_else(bad_abscissa) {
         return Err(DataError::NotFinite { at: cursor.at(data_start + point * point_width, key), point: point + 1 });
@@ -195,10 +195,10 @@ fn ends_rise(abscissa: &[f64]) -> bool {
     rises(abscissa.get(..2)) && rises(abscissa.get(abscissa.len().saturating_sub(2)..))
 }
 
-/// The first value that is not finite. Files are mostly sound, so all values are tested in one pass without branches.
-fn first_not_finite(values: &[f64]) -> Option<usize> {
-    let sound = values.iter().fold(true, |sound, value| sound & value.is_finite());
-    if sound { None } else { values.iter().position(|value| !value.is_finite()) }
+/// The first value that no sensor has read. Files are mostly sound, so all values are tested in one pass without branches.
+fn first_unsound(values: &[f64]) -> Option<usize> {
+    let sound = values.iter().fold(true, |sound, value| sound & may_be_read(*value));
+    if sound { None } else { values.iter().position(|value| !may_be_read(*value)) }
 }
 
 /// Enough of a line to know it by: a corrupt file's line may be a megabyte long.
