@@ -10,9 +10,10 @@ mod identification;
 mod least_squares;
 mod settings;
 mod starting_constants;
+mod structures;
 mod time_history;
 mod tracing;
-mod usual_plate;
+mod usual_ratios;
 
 pub use accelerance_fit::DampingLaw;
 pub use entry::identify;

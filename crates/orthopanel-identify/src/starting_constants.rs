@@ -1,9 +1,9 @@
 //! Constants from which a search may start.
 
-use orthopanel_model::{SHEAR_COEFFICIENT, StructureKind};
+use orthopanel_model::{Constant, SHEAR_COEFFICIENT};
 
 use crate::free_constants::FreeConstants;
-use crate::usual_plate::{USUAL_SHEAR, usual_plate};
+use crate::usual_ratios::{USUAL_SHEAR, usual_value};
 
 /// Any value will do: a factor on all moduli puts it right.
 const GUESS: f64 = 1e9;
@@ -12,7 +12,7 @@ const GUESS: f64 = 1e9;
 pub(crate) const USUAL_SOFTNESS: f64 = 16.0;
 
 /// All constants at one ratio $E_x/(k'G_{zx})$ of bending to shear, around those that are held.
-pub(crate) fn guess(kind: StructureKind, constants: &FreeConstants, softness: f64) -> Vec<f64> {
+pub(crate) fn guess(constants: &FreeConstants, softness: f64) -> Vec<f64> {
     let shear_ratio = softness * SHEAR_COEFFICIENT;
     let held = |name: &str| constants.held_at(name);
     // In the plane, then through the thickness.
@@ -20,11 +20,7 @@ pub(crate) fn guess(kind: StructureKind, constants: &FreeConstants, softness: f6
     let core = held("g_zx").or(held("g_yz"));
     let e_x = faces.or(core.map(|core| core * shear_ratio)).unwrap_or(GUESS);
     let g_zx = core.unwrap_or(e_x / shear_ratio);
-    match kind {
-        StructureKind::TimoshenkoBeam => vec![e_x, g_zx],
-        StructureKind::MindlinPlate => {
-            let e_y = held("e_y").unwrap_or(e_x);
-            usual_plate([e_x, e_y], g_zx).into_iter().map(|(name, value)| held(name).unwrap_or(value)).collect()
-        }
-    }
+    let in_plane = [e_x, held("e_y").unwrap_or(e_x)];
+    let value = |constant: &Constant| held(constant.name).unwrap_or_else(|| usual_value(constant, in_plane, g_zx));
+    constants.constants.iter().map(value).collect()
 }

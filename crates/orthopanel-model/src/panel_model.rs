@@ -56,6 +56,33 @@ impl StructureKind {
             Self::MindlinPlate => &PLATE_CONSTANTS,
         }
     }
+
+    /// Every structure.
+    pub const ALL: [Self; 2] = [Self::TimoshenkoBeam, Self::MindlinPlate];
+
+    /// Its name in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::TimoshenkoBeam => "timoshenko-beam",
+            Self::MindlinPlate => "mindlin-plate",
+        }
+    }
+
+    /// Its name in sentences, with an article.
+    pub fn title(self) -> &'static str {
+        match self {
+            Self::TimoshenkoBeam => "an orthotropic Timoshenko beam",
+            Self::MindlinPlate => "an orthotropic Mindlin plate",
+        }
+    }
+
+    /// Whether its shapes have nodal lines along x too: then $y$ counts at a place.
+    pub fn has_modes_across(self) -> bool {
+        match self {
+            Self::TimoshenkoBeam => false,
+            Self::MindlinPlate => true,
+        }
+    }
 }
 
 /// A number, with its standard deviation where it was identified; in files `1.07e10` or `{"value", "std"}`.
@@ -181,5 +208,18 @@ impl PanelModel {
     /// [`ModelError::MissingConstant`] where the file does not give it.
     pub fn constant(&self, name: &'static str) -> Result<f64, ModelError> {
         self.constants.get(name).map(|estimate| estimate.value).ok_or(ModelError::MissingConstant { name })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_structure_has_one_name_in_all_files() {
+        for kind in StructureKind::ALL {
+            assert_eq!(serde_json::to_value(kind).unwrap(), kind.name(), "{kind:?}");
+            assert_eq!(serde_json::from_value::<StructureKind>(kind.name().into()).unwrap(), kind);
+        }
     }
 }

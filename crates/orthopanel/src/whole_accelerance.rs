@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use num_complex::Complex64;
-use orthopanel_model::{ModalModel, ModeRange, ModelError, PanelModel, Place, RelaxingLines, StructureKind};
+use orthopanel_model::{ModalModel, ModeRange, ModelError, PanelModel, Place, RelaxingLines};
 
 /// Modes summed one by one unless said; the rest, taken at rest, errs by the fourth power of a line over its modes.
 const SUMMED: usize = 300;
@@ -63,7 +63,7 @@ impl WholeAccelerance {
             }
             usual => usual?,
         };
-        if model.structure == StructureKind::MindlinPlate
+        if model.structure.has_modes_across()
             || usual.natural_frequencies().last().is_some_and(|last| last >= MARGIN * highest)
         {
             return Ok(usual);

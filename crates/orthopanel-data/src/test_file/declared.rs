@@ -30,15 +30,12 @@ pub struct DeclaredEffect {
 }
 
 pub(super) fn structure(source: &Source, name: &Spanned<String>) -> Result<StructureKind, DataError> {
-    match name.get_ref().as_str() {
-        "timoshenko-beam" => Ok(StructureKind::TimoshenkoBeam),
-        "mindlin-plate" => Ok(StructureKind::MindlinPlate),
-        other => {
-            let (name, at) = (other.to_owned(), source.at(name.span(), "structure"));
-            let remedy = "must be \"timoshenko-beam\" or \"mindlin-plate\"".into();
-            Err(DataError::UnknownName { at, name, remedy })
-        }
-    }
+    let of_name = StructureKind::ALL.into_iter().find(|kind| kind.name() == name.get_ref());
+    of_name.ok_or_else(|| {
+        let known = StructureKind::ALL.map(|kind| format!("\"{}\"", kind.name())).join(" or ");
+        let at = source.at(name.span(), "structure");
+        DataError::UnknownName { at, name: name.get_ref().clone(), remedy: format!("must be {known}") }
+    })
 }
 
 pub(super) fn suspension(

@@ -20,7 +20,7 @@ const WANTED: [(&str, &str); 28] = [
     ("constants", "a table [constants]"),
     ("effect", "tables [[effect]]"),
     ("measurement", "tables [[measurement]]"),
-    ("structure", "\"timoshenko-beam\" or \"mindlin-plate\""),
+    ("structure", "a structure's name in quotes, such as \"mindlin-plate\""),
     ("kind", "\"natural-frequencies\", \"time-history\" or \"accelerance\""),
     ("values", "a list of frequencies in Hz"),
     ("resolution", "one number [Hz], or a list with one number a mode"),

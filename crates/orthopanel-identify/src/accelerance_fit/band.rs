@@ -1,14 +1,16 @@
 //! Whether the records reach far enough: as many modes as constants must lie within their band.
 
-use orthopanel_model::{Piece, StructureKind};
+use orthopanel_model::Piece;
 
 use super::records::PlaceRecord;
 use super::start::{Recorded, StartPiece};
 use crate::IdentifyError;
 use crate::free_constants::FreeConstants;
+use crate::structures::Shown;
+use crate::usual_ratios::usual_value;
 
 /// Constants of a usual panel, $E_x$ and $G_{zx}$ \[Pa\], where nothing else is known.
-const USUAL: [f64; 2] = [1e10, 5e8];
+const USUAL: (f64, f64) = (1e10, 5e8);
 /// Bands are doubled so often in looking for the next mode.
 const DOUBLINGS: usize = 12;
 
@@ -49,8 +51,10 @@ pub(super) fn refuse_low_band(
 
 /// The same for a panel with usual constants, as the reason why few resonances stand out.
 pub(super) fn low_band_of_usual_panel(recorded: &Recorded) -> Result<Option<IdentifyError>, IdentifyError> {
-    let held = &recorded.constants.held;
-    let values = |_| USUAL.iter().zip(held).map(|(usual, held)| held.unwrap_or(*usual)).collect();
+    let FreeConstants { constants, held, .. } = &recorded.constants;
+    let (e_x, g_zx) = USUAL;
+    let value = |(constant, held): (_, &Option<f64>)| held.unwrap_or(usual_value(constant, [e_x; 2], g_zx));
+    let values = |_| constants.iter().zip(held).map(value).collect();
     too_low(recorded, recorded.constants.count(), values, "a panel of this size with usual constants")
 }
 
@@ -60,7 +64,7 @@ fn too_low(
     values: impl Fn(usize) -> Vec<f64>,
     of: &'static str,
 ) -> Result<Option<IdentifyError>, IdentifyError> {
-    if recorded.structure != StructureKind::TimoshenkoBeam {
+    if recorded.structure.shown() == Shown::InPart {
         return Ok(None);
     }
     let mut found = 0;

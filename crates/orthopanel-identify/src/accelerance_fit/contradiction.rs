@@ -2,7 +2,6 @@
 
 use num_complex::Complex64;
 use orthopanel_data::{ImpactTest, MeasurementData};
-use orthopanel_model::StructureKind;
 
 use super::misfit::{median, misfit_percent, record_misfit_percent, scaled_misfit_percent};
 use super::problem::AcceleranceProblem;
@@ -10,6 +9,7 @@ use super::record_apart::record_apart;
 use super::records::PlaceRecord;
 use super::start::pair_name;
 use crate::IdentifyError;
+use crate::structures::{self, Shown};
 
 /// Median misfit of a line \[%\] above which records and test file speak of different things. The median leaves out the
 /// peaks, where a right model with a wrong digit misses wholly, and the valleys, where noise does.
@@ -44,11 +44,11 @@ pub(super) fn contradiction(
     let percent = misfit_percent(records.iter().map(|(_, record)| *record).zip(lines));
     if percent > CONTRADICTION {
         let (record, factor) = (name, common_factor(&records, lines));
-        return Err(match test.structure {
-            Some(StructureKind::MindlinPlate) => {
+        return Err(match structures::of_test(test).shown() {
+            Shown::InPart => {
                 IdentifyError::PlateContradiction { record, percent, factor, resonances: resonances.to_vec() }
             }
-            _ => IdentifyError::Contradiction { record, percent, factor },
+            Shown::Wholly => IdentifyError::Contradiction { record, percent, factor },
         });
     }
     if worst_percent > RECORD_CONTRADICTION {

@@ -15,7 +15,7 @@ use crate::IdentifyError;
 use crate::free_constants::{FreeConstant, FreeConstants, Rest};
 use crate::frequency_fit::PoleFit;
 use crate::least_squares::Quadratic;
-use crate::usual_plate::BesideUsual;
+use crate::usual_ratios::BesideUsual;
 
 /// Rounds, far to near: a pole further than this from every mode belongs to none, and one that misses by more than the scatter
 /// counts for less.

@@ -1,12 +1,12 @@
 //! Which pole is which mode: starting constants from poles alone.
 
-use orthopanel_model::{ModelError, Place, StructureKind};
+use orthopanel_model::{ModelError, Place};
 use rayon::prelude::*;
 
 use super::poles::NoisePower;
-use super::structures::{RecordedStructure, SeenMode};
 use crate::free_constants::FreeConstants;
 use crate::starting_constants::guess;
+use crate::structures::{RecordedStructure, SeenMode, Shown};
 
 /// Poles of one piece, rising.
 pub(super) struct PiecePoles {
@@ -52,8 +52,8 @@ const ANCHORS: usize = 3;
 const LOWEST_MODES: usize = 6;
 /// A pole further than this from every mode belongs to none.
 pub(super) const REACH: f64 = 0.05;
-/// The same while a plate's moduli still stand in their usual ratios.
-const FIRST_PLATE_REACH: f64 = 0.15;
+/// The same while moduli that are shown in part still stand in their usual ratios.
+const FIRST_REACH: f64 = 0.15;
 /// What a wholly different shape counts beside a distance of [`REACH`].
 const SHAPE_CHARGE: f64 = 1.0;
 /// A mode that moves the records less than this part of the liveliest one need not show.
@@ -70,15 +70,18 @@ const UNSEEN_PRODUCT: f64 = 0.05;
 /// each has been fitted to its poles.
 pub(super) fn candidates(
     pieces: &[PiecePoles],
-    kind: StructureKind,
+    shown: Shown,
     constants: &FreeConstants,
     count: usize,
 ) -> Result<Vec<Matching>, ModelError> {
     let Some(guide) = pieces.iter().max_by_key(|piece| piece.frequencies.len()) else { return Ok(Vec::new()) };
-    let reach = if kind == StructureKind::MindlinPlate { FIRST_PLATE_REACH } else { REACH };
+    let reach = match shown {
+        Shown::Wholly => REACH,
+        Shown::InPart => FIRST_REACH,
+    };
     let (decades, steps) = SOFTNESS;
     let at_softness = |step: usize| -> Result<Vec<Matching>, ModelError> {
-        let guess = guess(kind, constants, 10.0_f64.powf(step as f64 / steps));
+        let guess = guess(constants, 10.0_f64.powf(step as f64 / steps));
         // Without a size to choose, the guess is what it is.
         let factors = if constants.moduli_are_free() { anchors(guide, &guess)? } else { vec![1.0] };
         let least = factors.iter().copied().fold(f64::INFINITY, f64::min);

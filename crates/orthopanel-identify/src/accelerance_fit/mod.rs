@@ -27,16 +27,15 @@ mod sharpening;
 mod smeared;
 mod smooth_part;
 mod start;
-mod structures;
 mod synthesis;
 mod weighted_rows;
 mod whole_covariance;
 mod wide_scan;
 
 use orthopanel_data::ImpactTest;
-use orthopanel_model::StructureKind;
 
 use crate::least_squares::Minimum;
+use crate::structures::Shown;
 use crate::{Identification, IdentifyError, Search, Settings};
 use problem::AcceleranceProblem;
 use records::PlaceRecord;
@@ -77,9 +76,7 @@ pub(crate) fn identify_records(test: &ImpactTest, settings: Settings) -> Result<
 fn by_likelihood(test: &ImpactTest, settings: Settings, recorded: &Recorded) -> Result<Identification, IdentifyError> {
     match start(recorded).and_then(|start| by_poles(test, settings, start)) {
         Err(refused)
-            if recorded.structure == StructureKind::TimoshenkoBeam
-                && !refused.is_of_model()
-                && !refused.knows_the_place() =>
+            if recorded.structure.shown() == Shown::Wholly && !refused.is_of_model() && !refused.knows_the_place() =>
         {
             by_wide_records(test, settings, recorded).map_err(|wide| if wide.knows_the_band() { wide } else { refused })
         }
@@ -114,7 +111,7 @@ fn by_poles(test: &ImpactTest, settings: Settings, start: Start) -> Result<Ident
         }
         (problem.constants, problem.usual) = (seen, Vec::new());
     }
-    if start.recorded.structure == StructureKind::TimoshenkoBeam {
+    if start.recorded.structure.shown() == Shown::Wholly {
         let rough = Rough::of(&problem, &parameters);
         let sharpened = sharpened_lines(start.recorded, settings.damping_law, rough, NEAR);
         if let Ok(Some((mut problem, minimum))) = sharpened
@@ -164,7 +161,7 @@ fn by_papers_error(
     settings: Settings,
     recorded: &Recorded,
 ) -> Result<Identification, IdentifyError> {
-    if recorded.structure != StructureKind::TimoshenkoBeam {
+    if recorded.structure.shown() == Shown::InPart {
         let message = "the paper's search on records is for beams: leave out --search simplex";
         return Err(IdentifyError::Unsupported(message.to_owned()));
     }

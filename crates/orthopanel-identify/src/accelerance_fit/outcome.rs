@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use faer::{Mat, Scale};
 use num_complex::Complex64;
 use orthopanel_data::ImpactTest;
-use orthopanel_model::{Estimate, StructureKind};
+use orthopanel_model::Estimate;
 
 use super::band::refuse_low_band;
 use super::contradiction::contradiction;
@@ -16,6 +16,7 @@ use super::whole_covariance::Weighed;
 use crate::free_constants::Rest;
 use crate::frequency_fit::identified_constants;
 use crate::least_squares::Minimum;
+use crate::structures::Shown;
 use crate::{AcceleranceFit, Correlation, HiddenMode, Identification, IdentifyError, ModeFit, NotIdentified, PieceFit};
 
 /// A misfit per datum above this is the model's, not the noise's, and line by line damping is not to be trusted.
@@ -141,9 +142,9 @@ pub(super) fn from_poles(
     problem: &AcceleranceProblem,
     parameters: &[f64],
 ) -> Result<Identification, IdentifyError> {
-    let start = match start.recorded.structure {
-        StructureKind::TimoshenkoBeam => start.grouped()?,
-        StructureKind::MindlinPlate => start,
+    let start = match start.recorded.structure.shown() {
+        Shown::Wholly => start.grouped()?,
+        Shown::InPart => start,
     };
     let mut found = Found {
         parameters: parameters.to_vec(),
@@ -190,13 +191,13 @@ fn report(
     let Found { parameters, log_std, correlations, chi_square } = found;
     problem.constants.refuse_bounds(&parameters)?;
     let lines = problem.lines(&parameters)?;
-    let is_plate = start.recorded.structure == StructureKind::MindlinPlate;
+    let is_in_part = start.recorded.structure.shown() == Shown::InPart;
     let untaken = start.untaken_resonances();
     notes.extend(contradiction(test, problem, &parameters, &lines, &untaken)?);
-    if let Some(chi_square) = chi_square.filter(|of| *of > FAR_FROM_NOISE && is_plate && !untaken.is_empty()) {
+    if let Some(chi_square) = chi_square.filter(|of| *of > FAR_FROM_NOISE && is_in_part && !untaken.is_empty()) {
         return Err(IdentifyError::UntakenResonances { chi_square, resonances: untaken });
     }
-    if is_plate {
+    if is_in_part {
         notes.extend(note_of_untaken(&untaken));
     }
     refuse_low_band(start.recorded, &problem.constants, &parameters)?;
@@ -208,7 +209,7 @@ fn report(
     let errors = errors.fold(0.0, std::ops::Add::add);
     let count = pieces.iter().map(|piece| piece.modes.len()).sum::<usize>().max(1);
     Ok(Identification {
-        structure: start.recorded.structure,
+        structure: start.recorded.structure.kind(),
         constants: identified_constants(test, &problem.constants, &parameters, &log_std),
         not_identified: start.fit.not_identified.clone(),
         correlations,

@@ -7,8 +7,8 @@ use rayon::prelude::*;
 
 use super::records::PlaceRecord;
 use super::resonance_fit::ResonanceFit;
-use super::structures::SeenMode;
 use crate::least_squares::levenberg_marquardt;
+use crate::structures::SeenMode;
 
 /// One resonance.
 #[derive(Debug, Clone, Copy, PartialEq)]

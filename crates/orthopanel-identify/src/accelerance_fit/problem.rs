@@ -8,11 +8,11 @@ use rayon::prelude::*;
 use super::line_block::{BLOCK, LineBlock};
 use super::line_noise::noise_of_misfit;
 use super::records::PlaceRecord;
-use super::structures::ModeSynthesis;
 use super::synthesis::{DampingLaw, PairModel};
 use super::weighted_rows::{RUN, run_products};
 use crate::free_constants::{FreeConstants, RestingFreed};
 use crate::least_squares::Quadratic;
+use crate::structures::ModeSynthesis;
 
 /// Records of one piece and what carries its model.
 pub(super) struct PieceProblem {

@@ -1,7 +1,7 @@
 //! Before the fit: poles of the records, which modes they are, and the constants that meet them.
 
 use orthopanel_data::ImpactTest;
-use orthopanel_model::{Boundary, Piece, Place, StructureKind};
+use orthopanel_model::{Boundary, Piece, Place};
 use rayon::prelude::*;
 
 use super::band::{low_band_of_usual_panel, refuse_large_pieces};
@@ -11,15 +11,15 @@ use super::misfit::noise_percent;
 use super::mode_group::{NearMode, Overlap, group_pole};
 use super::poles::{NoisePower, Pole, alike, poles};
 use super::records::PlaceRecord;
-use super::structures;
 use crate::free_constants::FreeConstants;
 use crate::frequency_fit::{PoleFit, PoleSet, fit_poles};
 use crate::least_squares::Quadratic;
+use crate::structures::{self, SearchedStructure, Shown};
 use crate::{IdentifyError, Settings};
 
 /// The records of a test and their poles.
 pub(super) struct Recorded {
-    pub structure: StructureKind,
+    pub structure: &'static dyn SearchedStructure,
     pub boundary: Boundary,
     /// Constants that the test leaves free.
     pub constants: FreeConstants,
@@ -166,8 +166,8 @@ pub(super) struct StartPiece {
 
 /// Reads the records of a test, and their poles off them.
 pub(super) fn recorded(test: &ImpactTest, settings: Settings) -> Result<Recorded, IdentifyError> {
-    let structure = test.structure.unwrap_or(StructureKind::TimoshenkoBeam);
-    let constants = FreeConstants::of(test, structure.constants())?;
+    let structure = structures::of_test(test);
+    let constants = FreeConstants::of(test, structure.kind().constants())?;
     let mut pieces: Vec<StartPiece> = Vec::new();
     let mut notes = Vec::new();
     let accelerances = test.accelerances(settings.estimation)?;
@@ -198,9 +198,9 @@ pub(super) fn recorded(test: &ImpactTest, settings: Settings) -> Result<Recorded
 pub(super) fn start(recorded: &Recorded) -> Result<Start<'_>, IdentifyError> {
     let Recorded { structure, boundary, constants, pieces, poles, .. } = recorded;
     let structure = *structure;
-    let needed = match structure {
-        StructureKind::TimoshenkoBeam => constants.count().max(1),
-        StructureKind::MindlinPlate => constants.count().clamp(1, 2),
+    let needed = match structure.shown() {
+        Shown::Wholly => constants.count().max(1),
+        Shown::InPart => constants.count().clamp(1, 2),
     };
     let found: usize = poles.iter().map(|piece| piece.frequencies.len()).sum();
     let too_few =
@@ -208,8 +208,8 @@ pub(super) fn start(recorded: &Recorded) -> Result<Start<'_>, IdentifyError> {
     if found < needed {
         return Err(low_band_of_usual_panel(recorded)?.unwrap_or_else(too_few));
     }
-    let candidates = candidates(poles, structure, constants, tried(structure))?;
-    if structure == StructureKind::MindlinPlate {
+    let candidates = candidates(poles, structure.shown(), constants, tried(structure.shown()))?;
+    if structure.shown() == Shown::InPart {
         let found = follow(poles, constants, candidates)?;
         let (matching, fit) = found.filter(|(matching, _)| matching.count() >= needed).ok_or_else(too_few)?;
         return Ok(Start { recorded, poles: poles_of(recorded), matching, fit });
@@ -234,18 +234,18 @@ pub(super) fn start(recorded: &Recorded) -> Result<Start<'_>, IdentifyError> {
     Ok(Start { recorded, poles: poles_of(recorded), matching, fit })
 }
 
-/// Candidates that are fitted to their poles: those of a plate cost far more, and its modes are told by their shapes.
-fn tried(structure: StructureKind) -> usize {
-    match structure {
-        StructureKind::TimoshenkoBeam => 12,
-        StructureKind::MindlinPlate => 3,
+/// Candidates that are fitted to their poles: modes both ways cost far more, and are told by their shapes.
+fn tried(shown: Shown) -> usize {
+    match shown {
+        Shown::Wholly => 12,
+        Shown::InPart => 3,
     }
 }
 
 /// A candidate with the constants that meet its poles best; `None` where too few poles meet a mode.
 fn fit_candidate(
     poles: &[PiecePoles],
-    structure: StructureKind,
+    structure: &'static dyn SearchedStructure,
     constants: &FreeConstants,
     needed: usize,
     sets: impl Fn(&Matching) -> Vec<PoleSet>,
@@ -266,7 +266,7 @@ fn fit_candidate(
     Ok(fit.map(|fit| (matching, fit)))
 }
 
-fn piece_poles(piece: &StartPiece, structure: StructureKind, boundary: Boundary) -> PiecePoles {
+fn piece_poles(piece: &StartPiece, structure: &dyn SearchedStructure, boundary: Boundary) -> PiecePoles {
     // At a resonance H = jP/2ζ: the imaginary part has the sign and the size of P.
     let amplitude = |record: &PlaceRecord, pole: &Pole| {
         let line = record.frequency.partition_point(|&frequency| frequency < pole.frequency);
@@ -274,7 +274,7 @@ fn piece_poles(piece: &StartPiece, structure: StructureKind, boundary: Boundary)
     };
     PiecePoles {
         piece: piece.index,
-        structure: structures::of(structure, &piece.sizes, boundary),
+        structure: structure.recorded(&piece.sizes, boundary),
         pairs: piece.records.iter().map(|record| (record.force_at, record.response_at)).collect(),
         frequencies: piece.poles.iter().map(|pole| pole.frequency).collect(),
         amplitudes: piece

@@ -3,18 +3,18 @@
 use std::f64::consts::TAU;
 
 use num_complex::Complex64;
-use orthopanel_model::{ModelError, Place, StructureKind};
+use orthopanel_model::{ModelError, Place};
 use rayon::prelude::*;
 
 use super::records::PlaceRecord;
 use super::sharpening::{Rough, fit_wide};
 use super::smeared::{smeared_value, told};
 use super::start::Recorded;
-use super::structures::RecordedStructure;
 use super::synthesis::DampingLaw;
 use crate::IdentifyError;
 use crate::free_constants::FreeConstants;
 use crate::starting_constants::guess;
+use crate::structures::RecordedStructure;
 
 /// Width of the smeared resonances, $\sigma/\omega$: a scan that steps by no more meets them all.
 pub(super) const WIDTH: f64 = 0.02;
@@ -134,7 +134,7 @@ const APART_WHEN_FITTED: f64 = 0.02;
 /// Constants and damping at which the model meets the records made wide, the nearest first.
 pub(super) fn rough_starts(recorded: &Recorded, law: DampingLaw) -> Result<Vec<Rough>, IdentifyError> {
     let constants = &recorded.constants;
-    let any = guess(recorded.structure, constants, 10.0);
+    let any = guess(constants, 10.0);
     let wide = recorded.pieces.iter().zip(&recorded.poles);
     let wide = wide.map(|(piece, poles)| WidePiece::new(&*poles.structure, &piece.records, &any));
     let wide = wide.collect::<Result<Vec<_>, _>>()?;
@@ -148,7 +148,7 @@ pub(super) fn rough_starts(recorded: &Recorded, law: DampingLaw) -> Result<Vec<R
         };
         fit_wide(recorded, constants, &rough, law, WIDTH).ok()
     };
-    let mut fitted: Vec<Rough> = wide_scan(&wide, recorded.structure, constants)?.par_iter().filter_map(fit).collect();
+    let mut fitted: Vec<Rough> = wide_scan(&wide, constants)?.par_iter().filter_map(fit).collect();
     fitted.sort_by(|a, b| a.misfit.total_cmp(&b.misfit));
     let mut found: Vec<Rough> = Vec::new();
     for rough in fitted {
@@ -163,17 +163,13 @@ pub(super) fn rough_starts(recorded: &Recorded, law: DampingLaw) -> Result<Vec<R
 }
 
 /// Constants at which the wide model comes near the wide records, the nearest first and no two alike.
-fn wide_scan(
-    pieces: &[WidePiece],
-    kind: StructureKind,
-    constants: &FreeConstants,
-) -> Result<Vec<WideStart>, ModelError> {
+fn wide_scan(pieces: &[WidePiece], constants: &FreeConstants) -> Result<Vec<WideStart>, ModelError> {
     let Some((leading, guide)) = pieces.iter().enumerate().max_by_key(|(_, piece)| piece.s.len()) else {
         return Ok(Vec::new());
     };
     let (decades, steps) = SOFTNESS;
     let at_softness = |step: usize| -> Result<Vec<WideStart>, ModelError> {
-        let guess = guess(kind, constants, 10.0_f64.powf(step as f64 / steps as f64));
+        let guess = guess(constants, 10.0_f64.powf(step as f64 / steps as f64));
         let modes = pieces.iter().map(|piece| piece.modes(&guess)).collect::<Result<Vec<_>, _>>()?;
         let of_guide = &modes[leading];
         let factors: Vec<f64> = match (of_guide.first(), of_guide.get(MODES)) {

@@ -17,7 +17,7 @@ use super::{Minimum, least_squares};
 use crate::IdentifyError;
 use crate::free_constants::{FreeConstants, Rest};
 use crate::least_squares::{Ending, Quadratic, descend};
-use crate::usual_plate::BesideUsual;
+use crate::usual_ratios::BesideUsual;
 
 /// The list is met where its lines are missed by less than so many times what they scatter, and missed beyond twice that.
 pub(super) const MET: f64 = 2.0;

@@ -39,7 +39,7 @@ fn changed(own: &FrequencySet, set: usize, [one, other]: [usize; 2]) -> Vec<Rena
 pub(super) fn changed_pairs(whole: &FrequencyProblem) -> Result<Vec<Vec<Renamed>>, IdentifyError> {
     let mut pairs: Vec<(f64, Vec<Renamed>)> = Vec::new();
     for softness in SOFTNESS {
-        let usual = guess(whole.structure, &whole.constants, softness);
+        let usual = guess(&whole.constants, softness);
         let of_set = |set: &FrequencySet| set.modes.rough_frequencies(&usual);
         let frequencies = whole.sets.iter().map(of_set).collect::<Result<Vec<_>, _>>()?;
         let named = whole.sets.iter().zip(&frequencies);

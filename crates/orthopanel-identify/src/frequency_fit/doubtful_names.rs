@@ -1,7 +1,6 @@
 //! Modes that the test file may have named wrongly: a wrong name is a wrong equation, and bends all constants.
 
 use orthopanel_data::ImpactTest;
-use orthopanel_model::StructureKind;
 use rayon::prelude::*;
 
 use super::changed_pairs::{changed_pairs, near_pairs};
@@ -10,10 +9,10 @@ use super::other_readings::read_otherwise;
 use super::problem::{FrequencyProblem, Renamed};
 use super::seen_constants::minimise_what_is_seen;
 use super::starting_values::starting_values;
-use super::structures::SpectrumLine;
 use crate::IdentifyError;
 use crate::free_constants::{FreeConstant, FreeConstants, RestingFreed};
 use crate::least_squares::{Ending, Linearised, Quadratic, descend};
+use crate::structures::{Shown, SpectrumLine};
 
 /// A mode that misses its frequency by less is what it is called, or so near its neighbour that no list can tell.
 const LARGE_MISS: f64 = 0.01;
@@ -41,9 +40,8 @@ pub(super) fn doubtful_names(
 ) -> Result<Vec<String>, IdentifyError> {
     let least = noise::BEYOND_CHANCE.powi(2) * Noise::stated(problem).variance * problem.count() as f64;
     let stands_out = at.residuals.iter().any(|residual| residual.abs() >= LARGE_MISS);
-    let is_plate = problem.structure == StructureKind::MindlinPlate;
     let cost = at.quadratic().cost;
-    if !is_plate || !(stands_out || cost > least) {
+    if problem.structure.shown() == Shown::Wholly || !(stands_out || cost > least) {
         return Ok(Vec::new());
     }
     let whole = FrequencyProblem::of(test)?;

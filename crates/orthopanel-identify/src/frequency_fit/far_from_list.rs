@@ -1,12 +1,12 @@
 //! A list that no plate meets: what was found is refused, with the lines to look at.
 
 use orthopanel_data::{ImpactTest, MeasurementData};
-use orthopanel_model::StructureKind;
 
 use super::Minimum;
 use super::other_starts::cost;
 use super::problem::FrequencyProblem;
 use crate::IdentifyError;
+use crate::structures::{self, Shown};
 
 /// Relative error, rms, at which constants are none: the name of a mode is wrong, or a size. What a plate lacks is a few per
 /// cent.
@@ -57,7 +57,7 @@ pub(super) fn read_as_bending(test: &ImpactTest) -> Option<String> {
         MeasurementData::NaturalFrequencies(data) => data.shape.is_empty(),
         _ => false,
     })?;
-    (test.structure == Some(StructureKind::MindlinPlate)).then(|| {
+    (structures::of_test(test).shown() == Shown::InPart).then(|| {
         format!(
             "the list of piece {} has no `shape`, so it was read as bending modes in rising order ([2, 0], [3, 0], ... of a free \
              plate); with torsion or transverse modes among them give shape = [[nodes_x, nodes_y], ...], a pair a frequency",

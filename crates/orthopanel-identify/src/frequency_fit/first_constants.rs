@@ -8,7 +8,7 @@ use super::{Minimum, least_squares};
 use crate::IdentifyError;
 use crate::free_constants::{FreeConstants, Rest};
 use crate::starting_constants::{USUAL_SOFTNESS, guess};
-use crate::usual_plate::usual_rest;
+use crate::usual_ratios::usual_rest;
 
 /// The minimum over $E_x$ and $G_{zx}$ where the data show both, else over the one modulus that is told best.
 pub(super) fn first_minimum(
@@ -37,7 +37,7 @@ pub(super) fn first_minimum(
 /// The constants with one modulus free that the others follow as is usual, and its parameter: of all moduli the one that is
 /// told best, what is usual being no better known than it is.
 fn best_leader(problem: &FrequencyProblem, all: &FreeConstants) -> Result<(FreeConstants, Vec<f64>), IdentifyError> {
-    let resting = Resting::of(problem, all);
+    let resting = Resting::of(all);
     let mut best: Option<(f64, FreeConstants, Vec<f64>)> = None;
     for leader in all.free_constants().into_iter().filter(|&constant| all.is_modulus(constant)) {
         let mut constants = with_freed(&problem.constants, all, leader);
@@ -67,8 +67,8 @@ pub(super) struct Resting<'a> {
 }
 
 impl<'a> Resting<'a> {
-    pub(super) fn of(problem: &FrequencyProblem, all: &'a FreeConstants) -> Self {
-        Self { all, usual: guess(problem.structure, all, USUAL_SOFTNESS) }
+    pub(super) fn of(all: &'a FreeConstants) -> Self {
+        Self { all, usual: guess(all, USUAL_SOFTNESS) }
     }
 
     /// Where a constant rests that was free among these: as is usual, or beside the first free modulus.

@@ -1,12 +1,13 @@
 //! Names that no panel's mode has beside the other lines of a list: refused before a basis is built for them.
 
 use orthopanel_data::ImpactTest;
-use orthopanel_model::{Constant, MindlinPlate, StructureKind};
+use orthopanel_model::Constant;
 
 use super::starting_values::SOFTNESS;
 use crate::IdentifyError;
 use crate::free_constants::FreeConstants;
 use crate::starting_constants::guess;
+use crate::structures::SearchedStructure;
 
 /// A mode above all lines by this factor, where one product of beam functions tells it within a quarter, was not measured: it is a
 /// factor of sixteen in the moduli. One that lies among the lines may be another line's, and names changed are told later.
@@ -29,13 +30,15 @@ pub(super) struct NamedLine {
 /// Refuses a line whose mode lies far above all that were measured, on every panel that is likely by the other lines.
 pub(super) fn refuse_impossible_names(
     test: &ImpactTest,
+    structure: &dyn SearchedStructure,
     constants: &FreeConstants,
     lines: &[NamedLine],
 ) -> Result<(), IdentifyError> {
     if lines.len() < 2 {
         return Ok(());
     }
-    let panels: Vec<Vec<f64>> = panels(constants).iter().filter_map(|panel| ratios(test, panel, lines)).collect();
+    let panels: Vec<Vec<f64>> =
+        panels(constants).iter().filter_map(|panel| ratios(test, structure, panel, lines)).collect();
     let highest = lines.iter().map(|line| line.measured).fold(0.0, f64::max);
     for (index, line) in lines.iter().enumerate() {
         // Of each panel of the size that the other lines want: how far they scatter, and how far this line lies below.
@@ -59,7 +62,7 @@ pub(super) fn refuse_impossible_names(
 fn panels(constants: &FreeConstants) -> Vec<Vec<f64>> {
     let mut panels = Vec::new();
     for (softness, ratio) in SOFTNESS.iter().flat_map(|softness| RATIOS.map(|ratio| (*softness, ratio))) {
-        let usual = guess(StructureKind::MindlinPlate, constants, softness);
+        let usual = guess(constants, softness);
         let named = |(value, constant): (f64, &Constant)| match constant.name {
             name if constants.held_at(name).is_some() => value,
             "e_y" => value * ratio,
@@ -74,10 +77,15 @@ fn panels(constants: &FreeConstants) -> Vec<Vec<f64>> {
 }
 
 /// Logarithms of each line's mode on a panel over the line; `None` where a panel has no such modes.
-fn ratios(test: &ImpactTest, panel: &[f64], lines: &[NamedLine]) -> Option<Vec<f64>> {
+fn ratios(
+    test: &ImpactTest,
+    structure: &dyn SearchedStructure,
+    panel: &[f64],
+    lines: &[NamedLine],
+) -> Option<Vec<f64>> {
     let ratio = |line: &NamedLine| {
         let piece = &test.pieces[line.piece].piece;
-        let frequency = MindlinPlate::estimated_frequency(piece, test.boundary, panel, line.nodes).ok()?;
+        let frequency = structure.estimated_frequency(piece, test.boundary, panel, line.nodes)?;
         (frequency > 0.0).then(|| (frequency / line.measured).ln())
     };
     lines.iter().map(ratio).collect()

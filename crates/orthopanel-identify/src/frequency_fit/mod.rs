@@ -15,7 +15,6 @@ mod problem;
 mod report;
 mod seen_constants;
 mod starting_values;
-mod structures;
 mod uncertainty;
 mod unseen_constants;
 
@@ -25,16 +24,15 @@ mod tests;
 use std::sync::Arc;
 
 use orthopanel_data::ImpactTest;
-use orthopanel_model::StructureKind;
 
 use crate::downhill_simplex::{Penalised, downhill_simplex};
 use crate::least_squares::{Ending, Stuck, descend, levenberg_marquardt_until};
+use crate::structures::Shown;
 use crate::{Identification, IdentifyError, Search};
 use problem::{FrequencyProblem, FrequencySet, SetPrediction};
 
 pub(crate) use of_poles::{PoleFit, PoleSet, fit_poles};
 pub(crate) use report::identified_constants;
-pub(crate) use structures::bending_nodes;
 
 /// Finds the elastic constants that minimise eq. 22,
 /// $$Error(c) = \frac1M\sum_{m=1}^M\frac{(f_{exp}^{(m)}-f_{cal}^{(m)}(c))^2}{(f_{exp}^{(m)})^2},$$
@@ -56,9 +54,9 @@ pub(crate) fn identify_frequencies(test: &ImpactTest, search: Search) -> Result<
     let mut problem = FrequencyProblem::of(test)?;
     let start = starting_values::starting_values(&problem)?;
     let mut doubts = Vec::new();
-    let (found, not_identified) = match problem.structure {
-        StructureKind::TimoshenkoBeam => (minimise(&problem, &start, search)?, Vec::new()),
-        StructureKind::MindlinPlate => {
+    let (found, not_identified) = match problem.structure.shown() {
+        Shown::Wholly => (minimise(&problem, &start, search)?, Vec::new()),
+        Shown::InPart => {
             let all = problem.constants.clone();
             let seen =
                 seen_constants::minimise_what_is_seen(&mut problem, &start).map_err(|error| named(test, error))?;
@@ -136,16 +134,15 @@ fn least_squares(
     start: &[f64],
     quick: Option<&Arc<[FrequencySet]>>,
 ) -> Result<Minimum, IdentifyError> {
-    let ending = match problem.structure {
-        StructureKind::TimoshenkoBeam => Ending::SMOOTH,
-        StructureKind::MindlinPlate => Ending::WITH_JUMPS,
+    let ending = match problem.structure.shown() {
+        Shown::Wholly => Ending::SMOOTH,
+        Shown::InPart => Ending::WITH_JUMPS,
     };
     let bounds = problem.constants.bounds();
     let mut parameters = start.to_vec();
     let mut quick = quick.cloned();
     let mut known: Option<Vec<SetPrediction>> = None;
-    let searches = if problem.structure == StructureKind::MindlinPlate { QUICK_SEARCHES } else { 0 };
-    for _ in 0..searches {
+    for _ in 0..QUICK_SEARCHES {
         let made_here = quick.is_none();
         if made_here {
             let Some(at) = known.take().or_else(|| problem.predictions(&parameters).ok()) else { break };

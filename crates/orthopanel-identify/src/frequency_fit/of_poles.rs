@@ -2,12 +2,13 @@
 
 use std::sync::Arc;
 
-use orthopanel_model::{Boundary, Piece, StructureKind};
+use orthopanel_model::{Boundary, Piece};
 
 use super::problem::{FrequencyProblem, FrequencySet};
-use super::{least_squares, seen_constants, structures, unseen_constants};
+use super::{least_squares, seen_constants, unseen_constants};
 use crate::free_constants::FreeConstants;
 use crate::least_squares::Quadratic;
+use crate::structures::{SearchedStructure, Shown};
 use crate::{IdentifyError, NotIdentified};
 
 /// Poles of one piece that are known modes.
@@ -22,9 +23,6 @@ pub(crate) struct PoleSet {
     pub frequencies: Vec<f64>,
 }
 
-/// Relative error of a plate's frequency on the basis chosen for it: poles are read far more finely.
-const BASIS_ERROR: f64 = 1e-4;
-
 /// What poles tell.
 pub(crate) struct PoleFit {
     /// The constants that they show are free, the others rest.
@@ -37,7 +35,7 @@ pub(crate) struct PoleFit {
 
 /// The constants that meet the poles best, from these values for all pieces.
 pub(crate) fn fit_poles(
-    structure: StructureKind,
+    structure: &'static dyn SearchedStructure,
     constants: &FreeConstants,
     start: &[f64],
     sets: Vec<PoleSet>,
@@ -45,10 +43,10 @@ pub(crate) fn fit_poles(
     let sets = sets.into_iter().map(|set| {
         Ok(FrequencySet {
             piece: set.piece,
-            modes: structures::of(structure, &set.sizes, set.boundary, set.nodes)?,
-            rounding: match structure {
-                StructureKind::TimoshenkoBeam => Vec::new(),
-                StructureKind::MindlinPlate => set.frequencies.iter().map(|pole| BASIS_ERROR * pole).collect(),
+            modes: structure.measured_modes(&set.sizes, set.boundary, set.nodes)?,
+            rounding: match structure.basis_error() {
+                0.0 => Vec::new(),
+                error => set.frequencies.iter().map(|pole| error * pole).collect(),
             },
             measured: set.frequencies,
         })
@@ -61,10 +59,10 @@ pub(crate) fn fit_poles(
         .enumerate()
         .map(|(index, free)| constants.parameter(index, start[free.constant]))
         .collect();
-    let (parameters, not_identified) = match structure {
-        StructureKind::TimoshenkoBeam if start.is_empty() => (start, Vec::new()),
-        StructureKind::TimoshenkoBeam => (least_squares(&problem, &start, None)?.parameters, Vec::new()),
-        StructureKind::MindlinPlate => {
+    let (parameters, not_identified) = match structure.shown() {
+        Shown::Wholly if start.is_empty() => (start, Vec::new()),
+        Shown::Wholly => (least_squares(&problem, &start, None)?.parameters, Vec::new()),
+        Shown::InPart => {
             let seen = seen_constants::minimise_what_is_seen(&mut problem, &start)?;
             let not_identified = unseen_constants::reports(&problem, constants, &seen);
             (seen.parameters, not_identified)

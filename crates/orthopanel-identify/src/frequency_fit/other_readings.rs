@@ -115,7 +115,7 @@ fn all_readings(whole: &FrequencyProblem) -> Vec<Reading> {
 
 /// Frequencies of the lines' names on a usual panel, list by list.
 fn frequencies_of_usual(whole: &FrequencyProblem, softness: f64, ratio: f64) -> Option<Vec<Vec<f64>>> {
-    let mut usual = guess(whole.structure, &whole.constants, softness);
+    let mut usual = guess(&whole.constants, softness);
     for (constant, value) in whole.constants.constants.iter().zip(&mut usual) {
         if constant.name == "e_y" && whole.constants.held_at(constant.name).is_none() {
             *value *= ratio;

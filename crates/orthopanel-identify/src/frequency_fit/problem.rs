@@ -4,14 +4,14 @@ use std::sync::Arc;
 
 use faer::Mat;
 use orthopanel_data::{ImpactTest, MeasurementData, NaturalFrequencies};
-use orthopanel_model::{RitzMode, StructureKind};
+use orthopanel_model::RitzMode;
 use rayon::prelude::*;
 
 use super::impossible_names::{NamedLine, refuse_impossible_names};
-use super::structures::{self, MeasuredModes, Prediction, Solved, bending_nodes};
 use crate::IdentifyError;
 use crate::free_constants::FreeConstants;
 use crate::least_squares::Linearised;
+use crate::structures::{self, MeasuredModes, Prediction, SearchedStructure, Shown, Solved, bending_nodes};
 
 /// Measured frequencies of one piece.
 #[derive(Debug)]
@@ -59,24 +59,22 @@ pub(super) struct SetPrediction {
 /// The measurements, and which constants are free.
 #[derive(Debug)]
 pub(super) struct FrequencyProblem {
-    pub structure: StructureKind,
+    pub structure: &'static dyn SearchedStructure,
     pub constants: FreeConstants,
     pub sets: Arc<[FrequencySet]>,
 }
 
 impl FrequencyProblem {
     pub(super) fn of(test: &ImpactTest) -> Result<Self, IdentifyError> {
-        let structure = test.structure.unwrap_or(StructureKind::TimoshenkoBeam);
-        let constants = FreeConstants::of(test, structure.constants())?;
-        if structure == StructureKind::MindlinPlate {
-            refuse_impossible_names(test, &constants, &named_lines(test))?;
-        }
+        let structure = structures::of_test(test);
+        let constants = FreeConstants::of(test, structure.kind().constants())?;
+        refuse_impossible_names(test, structure, &constants, &named_lines(test))?;
         let sets = frequency_sets(test, structure)?.into();
         let problem = Self { structure, constants, sets };
-        // A plate may hold what its frequencies do not show; a beam has nothing to hold.
-        let needed = match structure {
-            StructureKind::TimoshenkoBeam => problem.constants.count(),
-            StructureKind::MindlinPlate => problem.constants.count().min(1),
+        // What frequencies show in part may be held; what they show wholly has nothing to hold.
+        let needed = match structure.shown() {
+            Shown::Wholly => problem.constants.count(),
+            Shown::InPart => problem.constants.count().min(1),
         };
         if problem.count() < needed {
             let names: Vec<&str> =
@@ -102,7 +100,7 @@ impl FrequencyProblem {
             if (1..nodes.len()).any(|line| nodes[..line].contains(&nodes[line])) {
                 return Err(IdentifyError::Unsupported("two frequencies of one mode".to_owned()));
             }
-            let modes = structures::of(self.structure, &test.pieces[set.piece].piece, test.boundary, nodes)?;
+            let modes = self.structure.measured_modes(&test.pieces[set.piece].piece, test.boundary, nodes)?;
             let measured = kept.iter().map(|&line| set.measured[line]).collect();
             let rounding = kept.iter().filter_map(|&line| set.rounding.get(line).copied()).collect();
             Ok(FrequencySet { piece: set.piece, modes, measured, rounding })
@@ -232,14 +230,14 @@ fn named_lines(test: &ImpactTest) -> Vec<NamedLine> {
     lines
 }
 
-fn frequency_sets(test: &ImpactTest, structure: StructureKind) -> Result<Vec<FrequencySet>, IdentifyError> {
+fn frequency_sets(test: &ImpactTest, structure: &dyn SearchedStructure) -> Result<Vec<FrequencySet>, IdentifyError> {
     let mut sets = Vec::new();
     for measurement in &test.measurements {
         let MeasurementData::NaturalFrequencies(data) = &measurement.data else { continue };
         let nodes = nodes_of(test, data);
         sets.push(FrequencySet {
             piece: measurement.piece,
-            modes: structures::of(structure, &test.pieces[measurement.piece].piece, test.boundary, nodes)?,
+            modes: structure.measured_modes(&test.pieces[measurement.piece].piece, test.boundary, nodes)?,
             measured: data.values.clone(),
             // A value rounded to a bin is uniform over it.
             rounding: data.resolution.iter().map(|bin| bin / 12.0_f64.sqrt()).collect(),

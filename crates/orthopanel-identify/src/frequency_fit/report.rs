@@ -1,7 +1,6 @@
 //! From the minimum to what is reported.
 
 use orthopanel_data::ImpactTest;
-use orthopanel_model::StructureKind;
 
 use super::noise::{BEYOND_CHANCE, Noise, USUAL_SCATTER};
 use super::own_constants::own_constant_that_helps;
@@ -9,6 +8,7 @@ use super::problem::{FrequencyProblem, SetPrediction};
 use super::uncertainty::{residual_variance, rounding_variance, uncertainty};
 use crate::free_constants::FreeConstants;
 use crate::least_squares::Linearised;
+use crate::structures::Shown;
 use crate::{Identification, IdentifiedConstant, IdentifyError, ModeFit, NotIdentified, PieceFit};
 
 pub(super) fn report(
@@ -26,7 +26,7 @@ pub(super) fn report(
         notes.extend(large_miss(test, problem, found, predictions, &at));
     }
     Ok(Identification {
-        structure: problem.structure,
+        structure: problem.structure.kind(),
         constants: identified_constants(
             test,
             &problem.constants,
@@ -56,7 +56,7 @@ fn large_miss(
 ) -> Option<String> {
     let rms = (at.quadratic().cost / problem.count().max(1) as f64).sqrt();
     let scatter = Noise::stated(problem).variance.sqrt();
-    if problem.structure != StructureKind::MindlinPlate || rms <= BEYOND_CHANCE * scatter {
+    if problem.structure.shown() == Shown::Wholly || rms <= BEYOND_CHANCE * scatter {
         return None;
     }
     let told = if rounding_variance(problem) > 0.0 { "the bins stated" } else { "the usual scatter" };
@@ -102,8 +102,8 @@ fn other_modes(
 
 /// What is said where nothing tells how far the frequencies scatter.
 fn assumed_scatter(problem: &FrequencyProblem, at: &Linearised) -> Option<String> {
-    let is_plate = problem.structure == StructureKind::MindlinPlate;
-    (is_plate && problem.constants.count() > 0 && residual_variance(problem, at) == 0.0).then(|| {
+    let is_in_part = problem.structure.shown() == Shown::InPart;
+    (is_in_part && problem.constants.count() > 0 && residual_variance(problem, at) == 0.0).then(|| {
         format!(
             "no frequency is left over to tell how far they scatter: standard deviations take {} % of each; state the \
              bins (resolution) or measure more modes",

@@ -59,7 +59,7 @@ pub(super) fn let_hidden_rest(
 ) -> Result<Minimum, IdentifyError> {
     while let Some(hidden) = worst_hidden(problem, &minimum) {
         let before = problem.constants.clone();
-        let rest = Resting::of(problem, all).beside(&before, hidden);
+        let rest = Resting::of(all).beside(&before, hidden);
         problem.constants.rest(hidden, rest);
         let from = carried(&before, &minimum.parameters, &problem.constants);
         minimum = least_squares(problem, &from, None)?;

@@ -23,7 +23,7 @@ pub(super) fn starting_values(problem: &FrequencyProblem) -> Result<Vec<f64>, Id
     let sizes = if scalable { &BESIDE_HELD[..1] } else { &BESIDE_HELD[..] };
     let mut best: Result<(f64, Vec<f64>), Option<ModelError>> = Err(None);
     for (softness, size) in SOFTNESS.iter().flat_map(|softness| sizes.iter().map(move |size| (softness, size))) {
-        let guess = constants.free_scaled(&guess(problem.structure, constants, *softness), *size);
+        let guess = constants.free_scaled(&guess(constants, *softness), *size);
         let scaling = match Scaling::of(problem, &guess) {
             Ok(scaling) => scaling,
             // A law that is indefinite beside what is held, say: another ratio may be none.

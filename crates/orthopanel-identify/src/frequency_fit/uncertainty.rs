@@ -2,13 +2,13 @@
 
 use faer::linalg::solvers::DenseSolveCore;
 use faer::{Mat, Side};
-use orthopanel_model::StructureKind;
 
 use super::noise::Noise;
 use super::problem::{FrequencyProblem, SetPrediction};
 use crate::Correlation;
 use crate::free_constants::RestingFreed;
 use crate::least_squares::Linearised;
+use crate::structures::Shown;
 
 /// Of the parameters.
 #[derive(Default)]
@@ -30,9 +30,9 @@ pub(super) fn uncertainty(
     let quadratic = at.quadratic();
     let Some(covariance) = quadratic.covariance() else { return Uncertainty::default() };
     let free = problem.constants.count();
-    let variance = match problem.structure {
-        StructureKind::TimoshenkoBeam => residual_variance(problem, at),
-        StructureKind::MindlinPlate => Noise::left(problem, at).wide_variance(),
+    let variance = match problem.structure.shown() {
+        Shown::Wholly => residual_variance(problem, at),
+        Shown::InPart => Noise::left(problem, at).wide_variance(),
     };
     let correlations = problem.constants.correlations(&covariance);
     let std = if variance > 0.0 {

@@ -15,7 +15,8 @@ use super::records_of_test::base_of_histories;
 use super::report::effects_of;
 use crate::accelerance_fit::{ResonanceStart, is_told};
 use crate::free_constants::FreeConstants;
-use crate::frequency_fit::{bending_nodes, identified_constants};
+use crate::frequency_fit::identified_constants;
+use crate::structures::bending_nodes;
 use crate::{DampingLaw, HiddenMode, Identification, IdentifyError, ModeFit, PieceFit, Search, Settings};
 
 /// The base model fitted to records.

@@ -81,10 +81,9 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
     if let Some(path) = arguments.picture.as_ref().filter(|_| !flexible.is_empty()) {
         let shape = |(mode, entry)| shape(mode, entry);
         let shapes: Vec<ModeShape> = flexible.iter().copied().zip(&answer.modes).map(shape).collect();
-        let picture = match model.structure {
-            StructureKind::TimoshenkoBeam => pictures::beam_mode_shapes(&model.piece, &shapes)?,
-            StructureKind::MindlinPlate => pictures::plate_mode_shapes(&model.piece, &shapes)?,
-        };
+        let draw =
+            if model.structure.has_modes_across() { pictures::plate_mode_shapes } else { pictures::beam_mode_shapes };
+        let picture = draw(&model.piece, &shapes)?;
         output::write(path, picture)?;
         eprintln!("wrote {}", path.display());
     }
@@ -102,16 +101,17 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
 fn table(modes: &[ModeEntry], structure: StructureKind) -> String {
     let row = |entry: &ModeEntry| {
         let mut row = vec![entry.mode.to_string(), format!("{:.2}", entry.frequency_hz), entry.nodes[0].to_string()];
-        if structure == StructureKind::MindlinPlate {
+        if structure.has_modes_across() {
             row.push(entry.nodes[1].to_string());
             row.push(entry.kind.map_or("", kind_text).into());
         }
         row.push(format!("{:.3e}", entry.zeta));
         row
     };
-    let heading: &[&str] = match structure {
-        StructureKind::TimoshenkoBeam => &["mode", "frequency [Hz]", "nodes along x", "zeta"],
-        StructureKind::MindlinPlate => &["mode", "frequency [Hz]", "nodes along x", "along y", "kind", "zeta"],
+    let heading: &[&str] = if structure.has_modes_across() {
+        &["mode", "frequency [Hz]", "nodes along x", "along y", "kind", "zeta"]
+    } else {
+        &["mode", "frequency [Hz]", "nodes along x", "zeta"]
     };
     tables::aligned(heading, &modes.iter().map(row).collect::<Vec<_>>())
 }

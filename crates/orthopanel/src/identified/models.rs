@@ -76,10 +76,7 @@ fn ports(test: &ImpactTest, index: usize, piece: &Piece, structure: StructureKin
     if ports.forces.is_empty() {
         // To the micrometre, so that it reads as a round number in the files.
         let part_of = |side: f64| (375e3 * side).round() / 1e6;
-        let (x, y) = match structure {
-            StructureKind::TimoshenkoBeam => (part_of(piece.length), 0.0),
-            StructureKind::MindlinPlate => (part_of(piece.length), part_of(piece.width)),
-        };
+        let (x, y) = (part_of(piece.length), if structure.has_modes_across() { part_of(piece.width) } else { 0.0 });
         // Zero takes the sign off a negative one.
         ports.forces.push(Place { x: -x, y: 0.0 - y });
         ports.responses.push(Place { x, y });

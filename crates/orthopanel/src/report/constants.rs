@@ -1,7 +1,6 @@
 //! The constants with their intervals, and how well the model meets the test.
 
 use orthopanel_identify::{Identification, IdentifiedConstant};
-use orthopanel_model::StructureKind;
 
 use super::table::Table;
 use crate::identified::called;
@@ -24,10 +23,7 @@ fn percent(value: f64) -> String {
 
 /// What was identified, and the error that is left, a sentence each.
 pub fn lead(found: &Identification) -> Vec<String> {
-    let structure = match found.structure {
-        StructureKind::TimoshenkoBeam => "an orthotropic Timoshenko beam",
-        StructureKind::MindlinPlate => "an orthotropic Mindlin plate",
-    };
+    let structure = found.structure.title();
     let modes: usize = found.pieces.iter().map(|fit| fit.modes.len()).sum();
     let data = match found.accelerances.len() {
         0 => format!("{modes} natural frequencies"),

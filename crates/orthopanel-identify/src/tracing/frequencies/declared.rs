@@ -5,7 +5,8 @@ use orthopanel_model::StructureKind;
 
 use super::list_fit::fit;
 use super::list_problem::ListProblem;
-use crate::frequency_fit::{bending_nodes, identified_constants};
+use crate::frequency_fit::identified_constants;
+use crate::structures::bending_nodes;
 use crate::tracing::hypothesis::Hypothesis;
 use crate::tracing::report::effects_of;
 use crate::{Identification, IdentifyError, ModeFit, PieceFit};

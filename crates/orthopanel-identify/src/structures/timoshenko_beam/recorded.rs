@@ -6,7 +6,7 @@ use orthopanel_model::{
     Structure, TimoshenkoBeam, sensitive_modes,
 };
 
-use super::{ModeSynthesis, RecordedStructure, SeenMode};
+use crate::structures::{ModeSynthesis, RecordedStructure, SeenMode};
 
 pub(super) struct RecordedBeam {
     pub piece: Piece,

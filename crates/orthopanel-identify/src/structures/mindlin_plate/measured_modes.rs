@@ -8,8 +8,8 @@ use orthopanel_model::{
     ritz_modes_near,
 };
 
-use super::{MeasuredModes, Prediction, Solved, SpectrumLine, just_below};
 use crate::IdentifyError;
+use crate::structures::{MeasuredModes, Prediction, Solved, SpectrumLine, just_below};
 
 /// Modes of a plate by their nodal lines.
 #[derive(Debug)]

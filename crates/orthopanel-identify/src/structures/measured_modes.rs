@@ -1,17 +1,10 @@
-//! The measured modes of a piece, as each structure predicts them. A new structure is one file and one line in [`of`].
+//! The measured modes of a piece, as each structure predicts them.
 
-mod mindlin_plate;
-mod timoshenko_beam;
-
-use orthopanel_model::{Boundary, ModelError, Piece, RitzMode, StructureKind};
-
-use crate::IdentifyError;
-use mindlin_plate::PlateModes;
-use timoshenko_beam::BeamModes;
+use orthopanel_model::{ModelError, RitzMode};
 
 /// One measured mode at given constants.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Prediction {
+pub(crate) struct Prediction {
     /// Natural frequency \[Hz\].
     pub frequency: f64,
     /// $\partial\ln f/\partial c_j$ for each constant.
@@ -22,14 +15,14 @@ pub(super) struct Prediction {
 
 /// The measured modes at given constants, and the shapes that they were found among, where these help to solve again.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Solved {
+pub(crate) struct Solved {
     pub predictions: Vec<Prediction>,
     pub shapes: Vec<RitzMode>,
 }
 
 /// One flexible mode of a structure, whether it was measured or not.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct SpectrumLine {
+pub(crate) struct SpectrumLine {
     /// Natural frequency \[Hz\].
     pub frequency: f64,
     /// Nodal lines across x and across y.
@@ -37,7 +30,7 @@ pub(super) struct SpectrumLine {
 }
 
 /// Predicts the modes of one piece that a test measures, in the test's order.
-pub(super) trait MeasuredModes: std::fmt::Debug + Send + Sync {
+pub(crate) trait MeasuredModes: std::fmt::Debug + Send + Sync {
     /// The same, sooner from shapes that are nearly those of the modes.
     fn solve(&self, values: &[f64], _known: &[RitzMode]) -> Result<Solved, ModelError> {
         Ok(Solved { predictions: self.predict(values)?, shapes: Vec::new() })
@@ -83,24 +76,6 @@ pub(super) trait MeasuredModes: std::fmt::Debug + Send + Sync {
 
 /// Below a mode's frequency and above that of any other that differs from it: bases that are the same but for what they
 /// leave out agree to rounding.
-pub(super) fn just_below(frequency: f64) -> f64 {
+pub(crate) fn just_below(frequency: f64) -> f64 {
     frequency * (1.0 - 1e-6)
-}
-
-/// The measured modes of a piece, told by their nodal lines.
-pub(super) fn of(
-    kind: StructureKind,
-    piece: &Piece,
-    boundary: Boundary,
-    nodes: Vec<[usize; 2]>,
-) -> Result<Box<dyn MeasuredModes>, IdentifyError> {
-    Ok(match kind {
-        StructureKind::TimoshenkoBeam => Box::new(BeamModes::new(piece, boundary, nodes)?),
-        StructureKind::MindlinPlate => Box::new(PlateModes::new(piece, boundary, nodes)?),
-    })
-}
-
-/// Nodal lines of bending modes 1 to `count`: what a list of frequencies without shapes holds.
-pub(crate) fn bending_nodes(boundary: Boundary, count: usize) -> Vec<[usize; 2]> {
-    (0..count).map(|index| [index + boundary.rigid_modes(), 0]).collect()
 }

@@ -1,5 +1,7 @@
-//! What the constants of a plate usually are beside each other: a start for a search, and a place to rest for a constant
+//! What the constants of a panel usually are beside each other: a start for a search, and a place to rest for a constant
 //! that the data do not show.
+
+use orthopanel_model::Constant;
 
 use crate::free_constants::{FreeConstants, Rest};
 use crate::least_squares::Quadratic;
@@ -9,7 +11,7 @@ const NU: f64 = 0.3;
 /// $G_{xy}/E_x$ of faces alike in both directions.
 pub(crate) const USUAL_SHEAR: f64 = 0.5 / (1.0 + NU);
 
-/// Where a constant of a plate rests: faces and core alike in both directions,
+/// Where a constant of a panel rests: faces and core alike in both directions,
 /// $$E_y = E_x,\quad \nu_{xy} = 0.3,\quad G_{xy} = \frac{E_x}{2(1+\nu_{xy})},\quad G_{yz} = G_{zx}.$$
 /// `None` for $E_x$ and $G_{zx}$, on which the others rest.
 pub(crate) fn usual_rest(constants: &FreeConstants, constant: usize) -> Option<Rest> {
@@ -32,10 +34,17 @@ fn usual_poisson(e_x: f64, e_y: f64) -> f64 {
     NU * (e_x / e_y).sqrt().min(1.0)
 }
 
-/// All constants of a plate beside these, in the order of [`orthopanel_model::PLATE_CONSTANTS`].
-pub(crate) fn usual_plate([e_x, e_y]: [f64; 2], g_zx: f64) -> [(&'static str, f64); 6] {
-    let (nu_xy, g_xy) = (usual_poisson(e_x, e_y), USUAL_SHEAR * e_x);
-    [("e_x", e_x), ("e_y", e_y), ("nu_xy", nu_xy), ("g_xy", g_xy), ("g_yz", g_zx), ("g_zx", g_zx)]
+/// A constant beside these; where nothing is usual of it, the middle of its bounds.
+pub(crate) fn usual_value(constant: &Constant, [e_x, e_y]: [f64; 2], g_zx: f64) -> f64 {
+    match constant.name {
+        "e_x" => e_x,
+        "e_y" => e_y,
+        "nu_xy" => usual_poisson(e_x, e_y),
+        "g_xy" => USUAL_SHEAR * e_x,
+        "g_yz" | "g_zx" => g_zx,
+        _ if constant.low > 0.0 => (constant.low * constant.high).sqrt(),
+        _ => 0.5 * (constant.low + constant.high),
+    }
 }
 
 /// Standard deviation of a modulus' logarithm beside what is usual, of Poisson's ratio, and of what rests on nothing beside
@@ -44,7 +53,7 @@ const USUAL_LOG_STD: f64 = 0.5;
 const USUAL_POISSON_STD: f64 = 0.1;
 const START_LOG_STD: f64 = 1.5;
 
-/// All free constants of a plate, each near what is usual beside the others: what data do not show then stays there.
+/// All free constants of a panel, each near what is usual beside the others: what data do not show then stays there.
 pub(crate) struct BesideUsual<'a> {
     pub constants: &'a FreeConstants,
     /// Where parameters that rest on nothing are kept.

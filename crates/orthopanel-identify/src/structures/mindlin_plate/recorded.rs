@@ -8,7 +8,7 @@ use orthopanel_model::{
     Structure, ritz_modes, sensitive_modes,
 };
 
-use super::{ModeSynthesis, RecordedStructure, SeenMode};
+use crate::structures::{ModeSynthesis, RecordedStructure, SeenMode};
 
 pub(super) struct RecordedPlate {
     pub piece: Piece,

@@ -2,8 +2,8 @@
 
 use orthopanel_model::{BeamConstants, Boundary, ExactBeam, ModelError, Piece};
 
-use super::{MeasuredModes, Prediction, SpectrumLine};
 use crate::IdentifyError;
+use crate::structures::{MeasuredModes, Prediction, SpectrumLine};
 
 /// Bending modes of a beam.
 #[derive(Debug)]

@@ -1,17 +1,11 @@
-//! What a fit of accelerances asks of a piece's structure. A new structure is one file and one line in [`of`].
-
-mod mindlin_plate;
-mod timoshenko_beam;
+//! What a fit of accelerances asks of a piece's structure.
 
 use faer::Mat;
-use orthopanel_model::{Boundary, ModelError, Piece, Place, SensitiveModes, StructureKind};
-
-use mindlin_plate::RecordedPlate;
-use timoshenko_beam::RecordedBeam;
+use orthopanel_model::{ModelError, Place, SensitiveModes};
 
 /// A flexible mode as the records of a piece see it.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct SeenMode {
+pub(crate) struct SeenMode {
     /// Natural frequency \[Hz\].
     pub frequency: f64,
     /// Nodal lines across x and across y.
@@ -23,7 +17,7 @@ pub(super) struct SeenMode {
 }
 
 /// A piece with a structure whose constants are to be found.
-pub(super) trait RecordedStructure: Send + Sync {
+pub(crate) trait RecordedStructure: Send + Sync {
     /// The lowest flexible modes, at least as many as lie below `limit` \[Hz\], as far as the structure resolves them;
     /// `pairs` are force and response of each record.
     fn modes_below(&self, values: &[f64], limit: f64, pairs: &[(Place, Place)]) -> Result<Vec<SeenMode>, ModelError>;
@@ -36,7 +30,7 @@ pub(super) trait RecordedStructure: Send + Sync {
 }
 
 /// The modes behind the sum over a record's lines.
-pub(super) trait ModeSynthesis: Send + Sync {
+pub(crate) trait ModeSynthesis: Send + Sync {
     /// Modes at these places: `count` with derivatives by the structure's coefficients, the higher ones without.
     fn modes(&self, values: &[f64], count: usize, places: &[Place]) -> Result<SensitiveModes, ModelError>;
 
@@ -61,13 +55,5 @@ pub(super) trait ModeSynthesis: Send + Sync {
         _places: &[Place],
     ) -> Result<Option<Box<dyn ModeSynthesis>>, ModelError> {
         Ok(None)
-    }
-}
-
-/// A recorded piece.
-pub(super) fn of(kind: StructureKind, piece: &Piece, boundary: Boundary) -> Box<dyn RecordedStructure> {
-    match kind {
-        StructureKind::TimoshenkoBeam => Box::new(RecordedBeam { piece: *piece, boundary }),
-        StructureKind::MindlinPlate => Box::new(RecordedPlate { piece: *piece, boundary }),
     }
 }
