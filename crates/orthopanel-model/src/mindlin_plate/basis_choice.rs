@@ -65,6 +65,13 @@ impl MindlinPlate {
         Ok(layers(piece, ends(boundary), solid))
     }
 
+    /// Polynomials along x and y that hold modes with so many nodes, between edges held like this, to about 1e-4 of their
+    /// frequencies; layers at free edges may want more ([`MindlinPlate::layer_terms`]).
+    pub fn terms_for_nodes(boundary: Boundary, nodes: [usize; 2]) -> [usize; 2] {
+        let ends = ends(boundary);
+        [0, 1].map(|axis| terms_for(half_waves(nodes[axis], ends[axis])))
+    }
+
     /// Natural frequency \[Hz\] of the mode with these nodes along x and y, within a quarter or so, by one product of beam functions:
     /// with the mean squares of their slopes and curvatures, bending and shear yield one after the other. Zero for a rigid motion.
     ///

@@ -69,7 +69,10 @@ const MOST_FOR_LAYER: usize = 28;
 /// Polynomials along x and y for modes of so many nodes, whatever the constants.
 fn terms(piece: &Piece, boundary: Boundary, [most_x, most_y]: [usize; 2]) -> Result<[usize; 2], ModelError> {
     let layers = MindlinPlate::layer_terms(piece, boundary)?.map(|layer| layer.min(MOST_FOR_LAYER));
-    Ok([(most_x + 11).max(layers[0]), (most_y + 6).max(7).max(layers[1])])
+    // An edge that is held makes more half-waves of the same nodes.
+    let waves = MindlinPlate::terms_for_nodes(boundary, [most_x, most_y]);
+    let least = [most_x + 11, (most_y + 6).max(7)];
+    Ok([0, 1].map(|axis| least[axis].max(waves[axis]).max(layers[axis])))
 }
 
 /// The most nodes, in the proportion of these, for which a plate can be built.
