@@ -34,11 +34,12 @@ pub struct ModeName {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum ModeKind {
-    /// No node across the width: the plate bends as a beam along x.
+    /// The width moves as one: the plate bends as a beam along x. Only between free edges along the front and back.
     Bending,
-    /// One node across the width: on free edges it twists.
+    /// The width turns as one, about its centre line or about a pinned edge: the plate twists. Never where an edge along it is
+    /// clamped, nor where both are pinned.
     Torsion,
-    /// Two or more nodes across the width.
+    /// The width bends, whatever the plate does along x.
     Transverse,
     /// No product holds two thirds of $\int w^2$: modes that veer, and the plus-minus pairs of square plates.
     Mixed,
@@ -69,10 +70,10 @@ impl MindlinPlate {
         ranked.sort_by(|a, b| b.1.total_cmp(&a.1));
         let at = |rank: usize| ranked.get(rank).copied().unwrap_or(([0, 0], 0.0));
         let ((nodes, overlap), (second_nodes, second_overlap)) = (at(0), at(1));
-        let kind = match nodes[1] {
+        let kind = match ([self.boundary.front, self.boundary.back], nodes[1]) {
             _ if overlap * overlap < NAMED_SHARE => ModeKind::Mixed,
-            0 => ModeKind::Bending,
-            1 => ModeKind::Torsion,
+            ([End::Free, End::Free], 0) => ModeKind::Bending,
+            ([End::Free, End::Free], 1) | ([End::Free, End::Pinned] | [End::Pinned, End::Free], 0) => ModeKind::Torsion,
             _ => ModeKind::Transverse,
         };
         ModeName { nodes, kind, overlap, second_nodes, second_overlap }
