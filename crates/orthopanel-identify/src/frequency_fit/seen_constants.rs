@@ -59,10 +59,18 @@ pub(super) fn let_hidden_rest(
 ) -> Result<Minimum, IdentifyError> {
     while let Some(hidden) = worst_hidden(problem, &minimum) {
         let before = problem.constants.clone();
-        let rest = Resting::of(all).beside(&before, hidden);
-        problem.constants.rest(hidden, rest);
-        let from = carried(&before, &minimum.parameters, &problem.constants);
-        minimum = least_squares(problem, &from, None)?;
+        let mut at_rest = |problem: &mut FrequencyProblem, rest: Rest| {
+            problem.constants = before.clone();
+            problem.constants.rest(hidden, rest);
+            let from = carried(&before, &minimum.parameters, &problem.constants);
+            least_squares(problem, &from, None)
+        };
+        let as_usual = at_rest(problem, Resting::of(all).beside(&before, hidden))?;
+        let value = shared_value(&before, &minimum.parameters, hidden);
+        minimum = match value.filter(|_| is_spoken_against(problem, &before, &minimum, &as_usual)) {
+            Some(value) => at_rest(problem, Rest::Held(value))?,
+            None => as_usual,
+        };
     }
     // The size of all is told by the last modulus, if that is told.
     let last = problem.constants.free.first().map(|free| free.constant);
@@ -74,6 +82,21 @@ pub(super) fn let_hidden_rest(
         minimum = least_squares(problem, &[], None)?;
     }
     Ok(minimum)
+}
+
+/// The value of a constant that all pieces share.
+fn shared_value(constants: &FreeConstants, parameters: &[f64], constant: usize) -> Option<f64> {
+    let index = constants.free.iter().position(|free| free.constant == constant && free.piece.is_none())?;
+    Some(constants.value(index, parameters[index]))
+}
+
+/// Whether what is usual of a constant, `at_rest`, lies outside its 95 % interval where it was `free`: an interval too wide for a
+/// result may still leave it out, and to rest there would cost the others.
+fn is_spoken_against(problem: &FrequencyProblem, free: &FreeConstants, at: &Minimum, at_rest: &Minimum) -> bool {
+    let [there, here] = [(&problem.constants, at_rest), (free, at)]
+        .map(|(constants, at)| problem.linearised(&at.predictions, constants));
+    let noise = Noise::left(problem, &here);
+    there.quadratic().cost - here.quadratic().cost > HALF_95.powi(2) * noise.wide_variance()
 }
 
 /// The minimum of a quick search alone.
