@@ -12,7 +12,7 @@ use crate::DataError;
 /// Natural frequencies of the flexible modes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NaturalFrequencies {
-    /// Frequencies \[Hz\], rising; the beam's flexible modes 1, 2, ... where `shape` is empty.
+    /// Frequencies \[Hz\], rising (with `shape` the file may list them in any order); the beam's flexible modes 1, 2, ... where `shape` is empty.
     pub values: Vec<f64>,
     /// Bin width of the analyser \[Hz\], one a mode; empty where the file says nothing.
     pub resolution: Vec<f64>,
@@ -23,6 +23,22 @@ pub struct NaturalFrequencies {
     pub shape: Vec<[u32; 2]>,
     /// Place of the sensor, where known: its mass lowers the frequencies.
     pub response_at: Option<Place>,
+}
+
+impl NaturalFrequencies {
+    /// The same lines in rising order.
+    fn rising(self) -> Self {
+        let mut order: Vec<usize> = (0..self.values.len()).collect();
+        order.sort_by(|a, b| self.values[*a].total_cmp(&self.values[*b]));
+        let sorted = |of: &[f64]| order.iter().filter_map(|&line| of.get(line).copied()).collect();
+        Self {
+            values: sorted(&self.values),
+            resolution: sorted(&self.resolution),
+            scatter: sorted(&self.scatter),
+            shape: order.iter().filter_map(|&line| self.shape.get(line).copied()).collect(),
+            response_at: self.response_at,
+        }
+    }
 }
 
 impl Entry<'_> {
@@ -42,8 +58,8 @@ impl Entry<'_> {
             let key = format!("values[{}]", index + 1);
             let value = self.source.positive(number, &self.name(&key), "Hz")?;
             if let Some(&previous) = values.last() {
-                // Two plate modes of different shape may share an analyser's bin; two beam modes never do.
-                if value < previous || (value == previous && shape.is_empty()) {
+                // Names by shape make order needless; without them the order is the name.
+                if value <= previous && shape.is_empty() {
                     let (at, piece) = (self.at(number.span(), &key), format!("piece {}", named.name));
                     return Err(DataError::Order { at, piece, mode: index + 1, value, previous });
                 }
@@ -56,7 +72,7 @@ impl Entry<'_> {
             let place = entry.response_at.as_ref();
             place.map(|place| self.place(place, "response_at", &named.piece)).transpose()?
         };
-        Ok(NaturalFrequencies { values, resolution, scatter, shape, response_at })
+        Ok(NaturalFrequencies { values, resolution, scatter, shape, response_at }.rising())
     }
 
     fn shape(&self, entry: &syntax::Measurement, modes: usize) -> Result<Vec<[u32; 2]>, DataError> {
