@@ -10,6 +10,7 @@ use orthopanel_data::ImpactTest;
 use orthopanel_model::{Boundary, Piece, StructureKind};
 
 use crate::IdentifyError;
+use crate::free_constants::FreeConstants;
 use mindlin_plate::Plate;
 use timoshenko_beam::Beam;
 
@@ -57,6 +58,11 @@ pub(crate) trait SearchedStructure: std::fmt::Debug + Sync {
     /// Natural frequency \[Hz\] of the mode with these nodal lines within a quarter, without solving for it; `None` where nothing
     /// tells it, and then no name in a list is refused as impossible.
     fn estimated_frequency(&self, _: &Piece, _: Boundary, _values: &[f64], _nodes: [usize; 2]) -> Option<f64> {
+        None
+    }
+
+    /// What held constants ask of a free one, where it ends near that limit at these values of all constants.
+    fn near_limit(&self, _constants: &FreeConstants, _values: &[f64]) -> Option<String> {
         None
     }
 }

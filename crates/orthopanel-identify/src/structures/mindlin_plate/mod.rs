@@ -7,8 +7,13 @@ use orthopanel_model::{Boundary, MindlinPlate, Piece, StructureKind};
 
 use super::{MeasuredModes, RecordedStructure, SearchedStructure, Shown};
 use crate::IdentifyError;
+use crate::free_constants::FreeConstants;
 use measured_modes::PlateModes;
 use recorded::RecordedPlate;
+
+/// A constant within this factor of the limit of a definite law was kept from where the data want it: the stiffness
+/// $E_x^2/(E_x-\nu_{xy}^2E_y)$ is least at twice the limit, so a plate that should be softer ends there.
+const NEAR_LIMIT: f64 = 2.5;
 
 /// An orthotropic Mindlin plate.
 #[derive(Debug)]
@@ -43,5 +48,23 @@ impl SearchedStructure for Plate {
 
     fn estimated_frequency(&self, piece: &Piece, boundary: Boundary, values: &[f64], nodes: [usize; 2]) -> Option<f64> {
         MindlinPlate::estimated_frequency(piece, boundary, values, nodes).ok()
+    }
+
+    // The law is definite while $E_x > \nu_{xy}^2E_y$.
+    fn near_limit(&self, constants: &FreeConstants, values: &[f64]) -> Option<String> {
+        let &[e_x, e_y, nu_xy, ..] = values else { return None };
+        match ["e_x", "e_y", "nu_xy"].map(|name| constants.held_at(name)) {
+            [None, Some(e_y), Some(nu_xy)] if e_x < NEAR_LIMIT * nu_xy * nu_xy * e_y => Some(format!(
+                "nu_xy = {nu_xy} and e_y = {e_y:.3e} Pa as held ask for e_x above nu_xy^2 e_y = {:.3e} Pa, which keeps it from what \
+                 the frequencies want: look at what is held",
+                nu_xy * nu_xy * e_y
+            )),
+            [Some(e_x), None, Some(nu_xy)] if NEAR_LIMIT * e_y * nu_xy * nu_xy > e_x => Some(format!(
+                "nu_xy = {nu_xy} and e_x = {e_x:.3e} Pa as held ask for e_y below e_x/nu_xy^2 = {:.3e} Pa, which keeps it from \
+                 what the frequencies want: look at what is held",
+                e_x / (nu_xy * nu_xy)
+            )),
+            _ => None,
+        }
     }
 }
