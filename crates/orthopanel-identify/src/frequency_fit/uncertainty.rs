@@ -92,7 +92,7 @@ pub(super) fn rounding_variance(problem: &FrequencyProblem) -> f64 {
 pub(super) fn left_one_out_percent(at: &Linearised, covariance: &Mat<f64>) -> Option<f64> {
     let count = at.residuals.len();
     let free = covariance.nrows();
-    if count < free + 1 {
+    if free == 0 || count < free + 1 {
         return None;
     }
     let mut squares = 0.0;
