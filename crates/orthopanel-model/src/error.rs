@@ -249,7 +249,7 @@ pub enum ModelError {
     BeyondBasis {
         /// Frequency asked for \[Hz\].
         frequency: f64,
-        /// Modes that the basis resolves, rigid ones included.
+        /// Flexible modes that the basis resolves.
         available: usize,
         /// Frequency of the last of them \[Hz\].
         reached: f64,

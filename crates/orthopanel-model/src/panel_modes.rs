@@ -197,7 +197,8 @@ impl PanelModel {
                 return Ok((plate, modes));
             }
             if exhausted {
-                let (available, reached) = (modes.len(), reached / std::f64::consts::TAU);
+                let available = modes.iter().filter(|mode| mode.angular_frequency > 0.0).count();
+                let reached = reached / std::f64::consts::TAU;
                 return Err(ModelError::BeyondBasis { frequency, available, reached });
             }
             count += count / 2;

@@ -10,15 +10,12 @@ const SUMMED: usize = 300;
 /// Least ratio of the highest summed natural frequency to the highest line.
 const MARGIN: f64 = 20.0;
 
-/// Most rigid modes that a plate has.
-const PLATE_RIGID: usize = 3;
-
 /// The modes up to `highest` \[Hz\] as seen from two places; of a plate those that its largest basis resolves, where that
 /// does not reach so far.
 pub fn modes_up_to(model: &PanelModel, highest: f64, force: Place, response: Place) -> Result<ModalModel, ModelError> {
     let of = |range| model.modal_model(range, &[force], &[response]);
     match of(ModeRange::UpTo(highest)) {
-        Err(ModelError::BeyondBasis { available, .. }) => of(ModeRange::Count(available.saturating_sub(PLATE_RIGID))),
+        Err(ModelError::BeyondBasis { available, .. }) => of(ModeRange::Count(available)),
         modes => modes,
     }
 }
