@@ -60,7 +60,7 @@ impl FreeConstants {
     /// What the test file says of the constants of a structure.
     ///
     /// # Errors
-    /// [`IdentifyError::UnknownConstant`], and a held value out of its bounds.
+    /// [`IdentifyError::UnknownConstant`], [`IdentifyError::HeldAndOwn`], and a held value out of its bounds.
     pub fn of(test: &ImpactTest, constants: &[Constant]) -> Result<Self, IdentifyError> {
         let own_names = test.pieces.iter().flat_map(|piece| &piece.own_constants);
         for name in test.constants.keys().chain(own_names) {
@@ -73,6 +73,11 @@ impl FreeConstants {
             constants.iter().map(|constant| test.constants.get(constant.name).copied()).collect();
         for (constant, value) in constants.iter().zip(&held) {
             value.map_or(Ok(()), |value| constant.check(value))?;
+        }
+        for piece in &test.pieces {
+            if let Some(name) = piece.own_constants.iter().find(|name| test.constants.contains_key(*name)) {
+                return Err(IdentifyError::HeldAndOwn { name: name.clone(), piece: piece.name.clone() });
+            }
         }
         let mut free = Vec::new();
         for (index, constant) in constants.iter().enumerate().filter(|(index, _)| held[*index].is_none()) {

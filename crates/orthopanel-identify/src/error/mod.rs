@@ -62,6 +62,16 @@ pub enum IdentifyError {
         /// The mode with which there would be enough \[Hz\].
         next: f64,
     },
+    /// A constant that the test holds for all pieces, and a piece has of its own.
+    #[error(
+        "piece {piece}: own_constants names {name}, which [constants] holds for all pieces: leave one of the two out"
+    )]
+    HeldAndOwn {
+        /// The constant.
+        name: String,
+        /// The piece that has it of its own.
+        piece: String,
+    },
     /// The test holds a constant that the structure does not have.
     #[error("constants.{name}: the structure has no such constant, it has {known}")]
     UnknownConstant {
@@ -357,7 +367,14 @@ impl IdentifyError {
 
     /// Whether the model cannot be evaluated, or the records not be read, whatever the search.
     pub(crate) fn is_of_model(&self) -> bool {
-        matches!(self, Self::Data(_) | Self::Model(_) | Self::Unsupported(_) | Self::UnknownConstant { .. })
+        matches!(
+            self,
+            Self::Data(_)
+                | Self::Model(_)
+                | Self::Unsupported(_)
+                | Self::UnknownConstant { .. }
+                | Self::HeldAndOwn { .. }
+        )
     }
 
     /// Whether the test itself must be mended, rather than that its data or the model say no.
