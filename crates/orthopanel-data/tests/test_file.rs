@@ -123,6 +123,17 @@ fn val_plate_shapes_may_share_a_bin_and_stand_one_a_mode() {
     assert!(twice.contains("measurement[1].shape[3]"), "{twice}");
 }
 
+/// A name by shape makes order needless; each line keeps its bin.
+#[test]
+fn val_a_list_with_shapes_may_stand_in_any_order() {
+    let lines = "values = [321.3, 1520.0, 837.5]\nshape = [[2, 0], [4, 0], [3, 0]]\nresolution = [1.0, 3.0, 2.0]\n";
+    let read = read(&format!("{PIECE}[[measurement]]\nkind = \"natural-frequencies\"\n{lines}")).unwrap();
+    let list = frequencies(&read, 0);
+    assert_eq!(list.values, [321.3, 837.5, 1520.0]);
+    assert_eq!(list.shape, [[2, 0], [3, 0], [4, 0]]);
+    assert_eq!(list.resolution, [1.0, 2.0, 3.0]);
+}
+
 #[test]
 fn val_frequencies_out_of_order_name_piece_modes_and_values() {
     let text = "[[piece]]\nname = \"2\"\nlength = 0.8\nwidth = 0.1\nthickness = 0.03\nmass_per_area = 6.88\n\

@@ -234,3 +234,24 @@ fn what_a_plate_cannot_do_is_refused_with_its_limit() {
         assert!(matches!(MindlinPlate::new(&panel.piece, Boundary::FREE, terms), Err(ModelError::TermCount { .. })));
     }
 }
+
+/// The word follows what the width does: a clamped edge along it lets it neither move nor turn as one.
+#[test]
+fn val_the_kind_of_a_mode_is_what_its_width_does() {
+    let kinds = |front: End, back: End| -> Vec<([usize; 2], ModeKind)> {
+        let mut model = panel(0.3);
+        (model.boundary.front, model.boundary.back) = (front, back);
+        let modes = model.modes(ModeRange::Count(6)).unwrap();
+        let flexible = modes.iter().filter(|mode| !mode.is_rigid());
+        flexible
+            .map(|mode| (mode.nodes(), mode.name().unwrap().kind))
+            .filter(|(_, kind)| *kind != ModeKind::Mixed)
+            .collect()
+    };
+    let held = kinds(End::Clamped, End::Free);
+    assert!(held.len() > 3 && held.iter().all(|(_, kind)| *kind == ModeKind::Transverse), "{held:?}");
+    let hinged = kinds(End::Pinned, End::Free);
+    let of = |nodes: [usize; 2]| hinged.iter().find(|line| line.0 == nodes).map(|line| line.1);
+    assert_eq!(of([1, 0]), Some(ModeKind::Torsion), "{hinged:?}");
+    assert!(hinged.iter().all(|(nodes, kind)| (nodes[1] == 0) == (*kind == ModeKind::Torsion)), "{hinged:?}");
+}
