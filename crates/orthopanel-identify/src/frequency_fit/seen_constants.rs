@@ -59,7 +59,7 @@ pub(super) fn let_hidden_rest(
 ) -> Result<Minimum, IdentifyError> {
     while let Some(hidden) = worst_hidden(problem, &minimum) {
         let before = problem.constants.clone();
-        let mut at_rest = |problem: &mut FrequencyProblem, rest: Rest| {
+        let at_rest = |problem: &mut FrequencyProblem, rest: Rest| {
             problem.constants = before.clone();
             problem.constants.rest(hidden, rest);
             let from = carried(&before, &minimum.parameters, &problem.constants);
@@ -67,7 +67,10 @@ pub(super) fn let_hidden_rest(
         };
         let as_usual = at_rest(problem, Resting::of(all).beside(&before, hidden))?;
         let value = shared_value(&before, &minimum.parameters, hidden);
-        minimum = match value.filter(|_| is_spoken_against(problem, &before, &minimum, &as_usual)) {
+        // As many lines as constants are met wherever one rests, and speak against nothing.
+        let may_speak = problem.count() > all.count();
+        let value = value.filter(|_| may_speak && is_spoken_against(problem, &before, &minimum, &as_usual));
+        minimum = match value {
             Some(value) => at_rest(problem, Rest::Held(value))?,
             None => as_usual,
         };

@@ -52,7 +52,7 @@ impl SearchedStructure for Plate {
 
     // The law is definite while $E_x > \nu_{xy}^2E_y$.
     fn near_limit(&self, constants: &FreeConstants, values: &[f64]) -> Option<String> {
-        let &[e_x, e_y, nu_xy, ..] = values else { return None };
+        let &[e_x, e_y, ..] = values else { return None };
         match ["e_x", "e_y", "nu_xy"].map(|name| constants.held_at(name)) {
             [None, Some(e_y), Some(nu_xy)] if e_x < NEAR_LIMIT * nu_xy * nu_xy * e_y => Some(format!(
                 "nu_xy = {nu_xy} and e_y = {e_y:.3e} Pa as held ask for e_x above nu_xy^2 e_y = {:.3e} Pa, which keeps it from what \
