@@ -1,7 +1,6 @@
-//! Dense matrices in small code: plain loops down the columns, and nalgebra's symmetric eigenproblem.
+//! Dense matrices in small code: plain loops down the columns.
 
 use faer::{Mat, MatRef};
-use nalgebra::{DMatrix, SymmetricEigen};
 
 use super::dot;
 
@@ -100,21 +99,6 @@ fn eliminate(matrix: &mut Mat<f64>) -> Option<Vec<f64>> {
         }
     }
     Some(pivots)
-}
-
-/// Rising eigenvalues and their vectors as columns; `None` where the search does not converge.
-pub(crate) fn symmetric_eigen(matrix: &Mat<f64>) -> Option<(Vec<f64>, Mat<f64>)> {
-    // nalgebra's own default for the first number; QR iterations need two or three a row.
-    let found = SymmetricEigen::try_new(
-        DMatrix::from_fn(matrix.nrows(), matrix.ncols(), |i, j| matrix[(i, j)]),
-        f64::EPSILON,
-        100 * (matrix.nrows() + 1),
-    )?;
-    let mut order: Vec<usize> = (0..matrix.nrows()).collect();
-    order.sort_by(|&a, &b| found.eigenvalues[a].total_cmp(&found.eigenvalues[b]));
-    let values = order.iter().map(|&index| found.eigenvalues[index]).collect();
-    let vectors = Mat::from_fn(matrix.nrows(), order.len(), |i, j| found.eigenvectors[(i, order[j])]);
-    Some((values, vectors))
 }
 
 /// The same matrix, its columns one after the other in memory.

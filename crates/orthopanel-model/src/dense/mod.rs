@@ -1,17 +1,21 @@
 //! Products and decompositions of dense matrices: the one place that says who computes them.
 //!
-//! By faer; with the feature `compact` by nalgebra, for the library inside an FMU. faer brings a set of kernels for each
+//! By faer; with the feature `compact` by plain loops, for the library inside an FMU. faer brings a set of kernels for each
 //! kind of processor, which are worth their speed in an identification and fill megabytes in every FMU.
 
 #[cfg(any(test, not(feature = "compact")))]
 mod by_faer;
 #[cfg(any(test, feature = "compact"))]
 mod compact;
+#[cfg(any(test, feature = "compact"))]
+mod compact_eigen;
 
 #[cfg(not(feature = "compact"))]
 pub(crate) use by_faer::{Cholesky, negative_pivots, product, symmetric_eigen};
 #[cfg(feature = "compact")]
-pub(crate) use compact::{Cholesky, negative_pivots, product, symmetric_eigen};
+pub(crate) use compact::{Cholesky, negative_pivots, product};
+#[cfg(feature = "compact")]
+pub(crate) use compact_eigen::symmetric_eigen;
 
 /// $a^Tb$, in four sums, which the compiler may keep side by side.
 pub(crate) fn dot(left: &[f64], right: &[f64]) -> f64 {
@@ -31,7 +35,7 @@ pub(crate) fn dot(left: &[f64], right: &[f64]) -> f64 {
 mod tests {
     use faer::Mat;
 
-    use super::{by_faer, compact};
+    use super::{by_faer, compact, compact_eigen};
 
     /// A graded spectrum, 1 down to 1e-9, in a basis of Householder reflections: each eigenvalue to rounding.
     #[test]
@@ -46,7 +50,9 @@ mod tests {
         let matrix = Mat::from_fn(size, size, entry);
         // The backward error of a reduction to tridiagonal form grows like size times rounding: here 4e-14.
         let rounding = size as f64 * f64::EPSILON;
-        for (values, _) in [by_faer::symmetric_eigen(&matrix), compact::symmetric_eigen(&matrix)].map(Option::unwrap) {
+        for (values, _) in
+            [by_faer::symmetric_eigen(&matrix), compact_eigen::symmetric_eigen(&matrix)].map(Option::unwrap)
+        {
             for (value, expected) in values.iter().zip(&expected) {
                 assert!((value - expected).abs() < rounding, "{value:e} {expected:e}");
             }
@@ -93,7 +99,7 @@ mod tests {
         for shift in [-6.0, -0.5, 0.1, 2.0, 40.0] {
             let shifted = &symmetric - shift * Mat::<f64>::identity(25, 25);
             for (values, vectors) in
-                [by_faer::symmetric_eigen(&shifted), compact::symmetric_eigen(&shifted)].map(Option::unwrap)
+                [by_faer::symmetric_eigen(&shifted), compact_eigen::symmetric_eigen(&shifted)].map(Option::unwrap)
             {
                 let images = by_faer::product(shifted.as_ref(), vectors.as_ref());
                 let scaled = Mat::from_fn(25, 25, |i, j| vectors[(i, j)] * values[j]);
