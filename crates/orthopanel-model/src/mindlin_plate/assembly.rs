@@ -139,13 +139,18 @@ fn profile(along: &[EdgeBasis; 2], list: &[Coordinate], meetings: &[Vec<Vec<bool
     let degree: Vec<usize> = list.iter().map(|coordinate| degrees(along, coordinate)[0]).collect();
     let major = usize::from(x.count(Field::Deflection) < y.count(Field::Deflection));
     let numbers = |field: Field| (0..along[major].count(field)).map(move |number| (field, number));
-    let least = |slots: &[usize; 2]| {
-        let all = Field::ALL.into_iter().flat_map(numbers);
-        let met = all.filter(|&(field, number)| meetings[major][slots[major]][along[major].slot(field, number)]);
-        met.map(|(field, number)| along[major].degree(field, number)).min().unwrap_or(0)
+    let met: Vec<(usize, usize)> = Field::ALL
+        .into_iter()
+        .flat_map(numbers)
+        .map(|(field, number)| (along[major].slot(field, number), along[major].degree(field, number)))
+        .collect();
+    let least_degree = |slot: usize| {
+        let met = met.iter().filter(|(other, _)| meetings[major][slot][*other]);
+        met.map(|(_, degree)| *degree).min().unwrap_or(0)
     };
+    let least: Vec<usize> = (0..meetings[major].len()).map(least_degree).collect();
     let first = |row: usize| {
-        let least = least(&slots[row]);
+        let least = least[slots[row][major]];
         let from = degree.partition_point(|degree| *degree < least);
         (from..row).find(|&column| meet(row, column)).unwrap_or(row)
     };
@@ -196,13 +201,20 @@ fn product(
             tables[left as usize][right as usize].push([along_x, along_y].map(Rows::of));
         }
     }
+    // Of each field, where its coordinates stand: a row meets but those.
+    let numbered = |field: Field| list.iter().enumerate().filter(move |(_, own)| own.field == field).map(|(at, _)| at);
+    let of_field = Field::ALL.map(|field| numbered(field).collect::<Vec<usize>>());
     SymmetricMatrix::from_rows(profile, |row, first, values| {
         let own = list[row];
-        for (field, parts) in tables[own.field as usize].iter().enumerate() {
+        for (parts, places) in tables[own.field as usize].iter().zip(&of_field).filter(|(parts, _)| !parts.is_empty()) {
+            let begin = places.partition_point(|place| *place < first);
+            let met = &places[begin..begin + places[begin..].partition_point(|place| *place <= row)];
             for [along_x, along_y] in parts {
                 let (along_x, along_y) = (along_x.row(own.x), along_y.row(own.y));
-                let others = values.iter_mut().zip(&list[first..]).filter(|(_, other)| other.field as usize == field);
-                others.for_each(|(value, other)| *value += along_x[other.x] * along_y[other.y]);
+                for &place in met {
+                    let other = list[place];
+                    values[place - first] += along_x[other.x] * along_y[other.y];
+                }
             }
         }
     })

@@ -142,6 +142,9 @@ impl EdgeBasis {
             for &(column, q, g) in &listed {
                 // The lowest degrees of both are zero.
                 let lowest = f.len().max(g.len()).saturating_sub(SPAN);
+                if f.len().min(g.len()) <= lowest {
+                    continue;
+                }
                 let both = f.iter().zip(g).enumerate().skip(lowest);
                 let sum: f64 = both.map(|(n, (a, b))| a * b * norm(n)).sum();
                 integrals[(row, column)] = sum * self.half_length.powi(1 - p - q);
