@@ -242,7 +242,7 @@ fn in_range(what: &'static str, value: f64, low: f64, high: f64) -> Result<(), F
 }
 
 fn solve(model: &PanelModel, range: ModeRange) -> Result<Solution, ModelError> {
-    let TimeModel { modes, flexible, core } = model.time_model(range, &model.ports.forces, &model.ports.responses)?;
-    let static_remainder = model.static_remainder(&modes, &model.ports.forces, &model.ports.responses)?;
+    let solved = model.time_model(range, &model.ports.forces, &model.ports.responses)?;
+    let TimeModel { modes, flexible, core, static_remainder } = solved;
     Ok(Solution { modes, flexible, core, static_remainder })
 }

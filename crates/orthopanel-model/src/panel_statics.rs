@@ -1,8 +1,11 @@
 //! What all modes of a [`PanelModel`] together leave at low frequency.
 
-use crate::effects::DressedPanel;
+use std::sync::Arc;
+
+use crate::effects::{DressedPanel, Flexibilities, MOST_SUMMED, SPARE_MODES};
 use crate::{
-    EffectSetting, EffectState, ModelError, PanelModel, Place, StaticFlexibility, StructureKind, static_deflections,
+    EffectSetting, MindlinPlate, ModalModel, ModeRange, ModelError, Motion, PanelModel, Place, StaticFlexibility,
+    Structure, StructureKind, static_deflections,
 };
 
 /// Modes for which the basis of a plate's static part is chosen: it holds some four times as many.
@@ -23,32 +26,76 @@ impl PanelModel {
         forces: &[Place],
         responses: &[Place],
     ) -> Result<Option<Vec<Vec<f64>>>, ModelError> {
+        if self.relaxes() {
+            return Ok(None);
+        }
         let flexibility = if self.effects.is_empty() {
             self.bare_flexibility(count, forces, responses)?
         } else {
             let (values, effects) = self.with_effects()?;
             let setting = EffectSetting::of_panel(&self.piece, self.boundary);
             let even = self.even(&setting, count)?;
-            let with = |effects: &[EffectState]| {
-                let parts = self.on_even(&setting, &even, &values, effects);
-                DressedPanel::static_flexibility(parts, count, forces, responses)
-            };
-            let Some(mut dressed) = with(&effects)? else { return Ok(None) };
-            // On the small basis of a plate's few modes: what effects change there, beside all modes of the large one.
-            if let StructureKind::MindlinPlate = self.structure
-                && let Some(undressed) = with(&[])?
-            {
-                let bare = self.bare_flexibility(count, forces, responses)?;
-                for ((row, bare), undressed) in dressed.iter_mut().zip(bare).zip(undressed) {
-                    row.iter_mut().zip(bare.iter().zip(undressed)).for_each(|(sum, (bare, own))| *sum += bare - own);
-                }
-            }
-            dressed
+            let parts = self.on_even(&setting, &even, &values, &effects);
+            let dressed = DressedPanel::static_flexibility(parts, count, forces, responses)?;
+            self.on_large_basis(dressed, None, (&values, count.min(MOST_SUMMED)), forces, responses)?
         };
-        match flexibility.iter().flatten().find(|value| !value.is_finite()) {
-            Some(&value) => Err(ModelError::NotFinite { what: "static flexibility", value }),
-            None => Ok(Some(flexibility)),
+        finite(flexibility).map(Some)
+    }
+
+    /// The modes of `count` flexible ones, as seen from these ports, and [`PanelModel::static_flexibility`] between these, in one.
+    pub(crate) fn modes_and_flexibility(
+        &self,
+        range: ModeRange,
+        forces: &[Place],
+        responses: &[Place],
+    ) -> Result<(ModalModel, Flexibilities), ModelError> {
+        let ModeRange::Count(count) = range.checked(self.structure)? else {
+            let modes = self.modal_model(range, forces, responses)?;
+            let all = self.static_flexibility(modes.flexible().count(), forces, responses)?;
+            return Ok((modes, all.unwrap_or_default()));
+        };
+        if self.effects.is_empty() || count > MOST_SUMMED {
+            let modes = self.modal_model(range, forces, responses)?;
+            let all = self.static_flexibility(count, forces, responses)?;
+            return Ok((modes, all.unwrap_or_default()));
         }
+        let (values, effects) = self.with_effects()?;
+        let setting = EffectSetting::of_panel(&self.piece, self.boundary);
+        let even = self.even(&setting, count)?;
+        let parts = self.on_even(&setting, &even, &values, &effects);
+        let (modes, dressed, plate) = DressedPanel::modes_and_flexibility(parts, count, forces, responses)?;
+        let modes: Vec<_> = modes.into_iter().map(crate::PanelMode::of_dressed).collect();
+        let modes = ModalModel::of_modes(&modes, &self.damping, forces, responses)?;
+        let all = self.on_large_basis(dressed, plate, (&values, count), forces, responses)?;
+        Ok((modes, finite(all)?))
+    }
+
+    /// Of a plate, whose effects are seen on the small basis of its few modes: what they change there, beside all modes of
+    /// the large one. `small` is the plate without effects on that basis, where there is one already.
+    fn on_large_basis(
+        &self,
+        mut dressed: Flexibilities,
+        small: Option<Arc<MindlinPlate>>,
+        (values, count): (&[f64], usize),
+        forces: &[Place],
+        responses: &[Place],
+    ) -> Result<Flexibilities, ModelError> {
+        if self.structure != StructureKind::MindlinPlate {
+            return Ok(dressed);
+        }
+        let bare = self.bare_flexibility(count, forces, responses)?;
+        let made =
+            || MindlinPlate::with_basis_for(&self.piece, self.boundary, values, count + SPARE_MODES).map(Arc::new);
+        let small = small.map_or_else(made, Ok)?;
+        let own = static_deflections(small.as_ref(), values, forces, responses)?;
+        for (r, (row, (bare, own))) in dressed.iter_mut().zip(bare.into_iter().zip(own)).enumerate() {
+            for (f, (sum, (bare, own))) in row.iter_mut().zip(bare.into_iter().zip(own)).enumerate() {
+                let motions = [responses[r], forces[f]].map(|place| (Motion::Deflection, place));
+                let kink = small.static_remainder(values, motions).map_or(0.0, |(kink, _)| kink);
+                *sum += bare - own - kink;
+            }
+        }
+        Ok(dressed)
     }
 
     /// Without effects.
@@ -76,5 +123,12 @@ impl PanelModel {
             }
         };
         Ok(flexibility)
+    }
+}
+
+fn finite(flexibility: Flexibilities) -> Result<Flexibilities, ModelError> {
+    match flexibility.iter().flatten().find(|value| !value.is_finite()) {
+        Some(&value) => Err(ModelError::NotFinite { what: "static flexibility", value }),
+        None => Ok(flexibility),
     }
 }

@@ -39,7 +39,7 @@ pub fn static_deflections(
 }
 
 /// $u$ of one block, a column a force.
-fn deflected(block: &Block, coefficients: &[f64], mut loads: Mat<f64>) -> Result<Mat<f64>, ModelError> {
+pub(crate) fn deflected(block: &Block, coefficients: &[f64], mut loads: Mat<f64>) -> Result<Mat<f64>, ModelError> {
     let size = block.size();
     let mut stiffness = block.stiffness_at(coefficients);
     let rigid = Mat::from_fn(size, block.rigid.len(), |i, n| block.rigid[n][i]);

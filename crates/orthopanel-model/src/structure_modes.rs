@@ -8,6 +8,13 @@ pub(crate) trait NaturalMode {
     fn angular_frequency(&self) -> f64;
     /// Mass-normalised deflection $W$ \[kg^-1/2\] at a place.
     fn deflection_at(&self, place: Place) -> f64;
+    /// That of each of these modes, which may know what they share.
+    fn deflections_at(modes: &[Self], place: Place) -> Vec<f64>
+    where
+        Self: Sized,
+    {
+        modes.iter().map(|mode| mode.deflection_at(place)).collect()
+    }
     /// Its damping ratio, where that is no matter of its number in the list.
     fn own_damping(&self) -> Option<f64> {
         None
@@ -71,15 +78,17 @@ impl ModalModel {
     }
 
     /// Modes in rising order, rigid ones first, as seen from the ports.
-    pub(crate) fn of_modes(
-        modes: &[impl NaturalMode],
+    pub(crate) fn of_modes<M: NaturalMode>(
+        modes: &[M],
         damping: &Damping,
         forces: &[Place],
         responses: &[Place],
     ) -> Result<Self, ModelError> {
         let rigid = modes.iter().take_while(|mode| mode.angular_frequency() == 0.0).count();
+        let at = |places: &[Place]| places.iter().map(|&place| M::deflections_at(modes, place)).collect();
+        let (at_forces, at_responses): (Vec<Vec<f64>>, Vec<Vec<f64>>) = (at(forces), at(responses));
         let seen = modes.iter().enumerate().map(|(index, mode)| {
-            let at = |places: &[Place]| places.iter().map(|&place| mode.deflection_at(place)).collect();
+            let own = |ports: &[Vec<f64>]| ports.iter().filter_map(|port| port.get(index).copied()).collect();
             Mode {
                 angular_frequency: mode.angular_frequency(),
                 damping_ratio: if index < rigid {
@@ -87,8 +96,8 @@ impl ModalModel {
                 } else {
                     mode.own_damping().unwrap_or_else(|| damping.ratio(index + 1 - rigid))
                 },
-                at_forces: at(forces),
-                at_responses: at(responses),
+                at_forces: own(&at_forces),
+                at_responses: own(&at_responses),
             }
         });
         let model = Self::new(forces.len(), responses.len(), seen.collect())?;

@@ -12,6 +12,9 @@ pub struct TimeModel {
     pub flexible: usize,
     /// How the core's modulus is fitted, where there is one.
     pub core: Option<CoreFit>,
+    /// What the flexible modes that these leave out add to displacements at rest, $\sum W_rW_f/\omega^2$ \[m/N\]: a row a
+    /// response, a column a force. Zero beside a core that relaxes, where the sum over all is not known.
+    pub static_remainder: Vec<Vec<f64>>,
 }
 
 impl PanelModel {
@@ -29,9 +32,10 @@ impl PanelModel {
         if let Some(model) = self.relaxing_model(range, forces, responses)? {
             return Ok(model);
         }
-        let modes = self.modal_model(range, forces, responses)?;
+        let (modes, all) = self.modes_and_flexibility(range, forces, responses)?;
         let flexible = modes.flexible().count();
-        Ok(TimeModel { modes, flexible, core: None })
+        let static_remainder = modes.left_of_flexibility(all);
+        Ok(TimeModel { modes, flexible, core: None, static_remainder })
     }
 
     /// What the flexible modes that these leave out add to displacements at rest, $\sum W_rW_f/\omega^2$ \[m/N\]: a row a response,
@@ -80,7 +84,8 @@ impl PanelModel {
         let Some((modes, fit)) = found else { return Ok(None) };
         let modes: Vec<_> = modes.into_iter().map(crate::PanelMode::of_dressed).collect();
         let modes = ModalModel::of_modes(&modes, &self.damping, forces, responses)?;
-        Ok(Some(TimeModel { modes, flexible, core: Some(fit) }))
+        let static_remainder = vec![vec![0.0; forces.len()]; responses.len()];
+        Ok(Some(TimeModel { modes, flexible, core: Some(fit), static_remainder }))
     }
 }
 

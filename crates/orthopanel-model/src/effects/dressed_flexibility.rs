@@ -1,20 +1,22 @@
 //! What all modes of a panel with effects together leave at low frequency.
 
+use std::sync::Arc;
+
+use super::dressed_modes::DressedMode;
 use super::dressed_panel::{Dressed, DressedPanel, PanelWithEffects, SPARE_MODES};
+use super::low_modes::FarAnswers;
 use crate::modal_model::add_flexibility;
-use crate::{ModelError, Place};
+use crate::{Damping, MindlinPlate, ModelError, Place};
 
 /// Bare modes in whose coordinates it is worked out, at most: forces at ports and elements have shapes of their own, so that no
 /// number of modes makes it better but where the panel itself is uneven.
-const MOST_SUMMED: usize = 60;
+pub(crate) const MOST_SUMMED: usize = 60;
+
+/// A row a response, a column a force \[m/N\].
+pub(crate) type Flexibilities = Vec<Vec<f64>>;
 
 impl DressedPanel {
-    /// $\sum_m W_m(r)W_m(f)/\omega_m^2$ \[m/N\] over all flexible modes of the panel with its effects: a row a response, a column a
-    /// force. `None` beside a core that relaxes.
-    ///
-    /// In the coordinates of [`DressedPanel`], with a residual shape for each port as for each element, a force at a port has its
-    /// static answer: the sum over the few modes of these coordinates is that over all. For a free panel it is the answer beside the
-    /// rigid motion that the force brings about.
+    /// $\sum_m W_m(r)W_m(f)/\omega_m^2$ \[m/N\] over all flexible modes of the panel with its effects.
     ///
     /// # Errors
     /// As [`DressedPanel::modes`].
@@ -23,13 +25,44 @@ impl DressedPanel {
         count: usize,
         forces: &[Place],
         responses: &[Place],
-    ) -> Result<Option<Vec<Vec<f64>>>, ModelError> {
+    ) -> Result<Flexibilities, ModelError> {
+        let dressed = Dressed::new(parts, count.min(MOST_SUMMED) + SPARE_MODES)?;
         let ports: Vec<Place> = forces.iter().chain(responses).copied().collect();
-        let dressed = Dressed::new(parts, count.min(MOST_SUMMED) + SPARE_MODES, &ports)?;
-        if dressed.core.is_some() {
-            return Ok(None);
-        }
-        let (panel, system) = dressed.with_residuals(parts.damping)?;
+        dressed.static_flexibility(&dressed.far_answers(&ports)?, parts.damping, [forces, responses])
+    }
+
+    /// [`DressedPanel::modes`] and [`DressedPanel::static_flexibility`] in one, and the plate on whose basis they are found, where
+    /// nothing is spread over it.
+    ///
+    /// # Errors
+    /// As [`DressedPanel::modes`].
+    pub(crate) fn modes_and_flexibility(
+        parts: PanelWithEffects,
+        count: usize,
+        forces: &[Place],
+        responses: &[Place],
+    ) -> Result<(Vec<DressedMode>, Flexibilities, Option<Arc<MindlinPlate>>), ModelError> {
+        let dressed = Dressed::new(parts, count + SPARE_MODES)?;
+        let ports: Vec<Place> = forces.iter().chain(responses).copied().collect();
+        let answers = dressed.far_answers(&ports)?;
+        let flexibility = dressed.static_flexibility(&answers, parts.damping, [forces, responses])?;
+        let (panel, system, found) = dressed.solve(&answers, parts.damping, count)?;
+        Ok((panel.dressed(&system, found, count), flexibility, dressed.even_plate()))
+    }
+}
+
+impl Dressed {
+    /// In the coordinates of [`DressedPanel`], with a residual shape for each port as for each element, a force at a port has its
+    /// static answer: the sum over the few modes of these coordinates is that over all. For a free panel it is the answer beside the
+    /// rigid motion that the force brings about.
+    fn static_flexibility(
+        &self,
+        answers: &FarAnswers,
+        damping: &Damping,
+        [forces, responses]: [&[Place]; 2],
+    ) -> Result<Flexibilities, ModelError> {
+        let ports: Vec<Place> = forces.iter().chain(responses).copied().collect();
+        let (panel, system) = self.with_residuals(answers, &ports, damping);
         let modes = system.solve()?;
         let at = |places: &[Place]| -> Vec<Vec<f64>> { places.iter().map(|&place| panel.deflections(place)).collect() };
         let (forces, responses) = (at(forces), at(responses));
@@ -40,6 +73,6 @@ impl DressedPanel {
             };
             add_flexibility(&mut sum, 1.0, *omega, (&seen(&responses), &seen(&forces)));
         }
-        Ok(Some(sum))
+        Ok(sum)
     }
 }

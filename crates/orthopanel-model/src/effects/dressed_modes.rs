@@ -58,7 +58,22 @@ impl EffectSetting {
 impl DressedMode {
     /// Mass-normalised deflection \[kg^-1/2\] at a place.
     pub(crate) fn deflection(&self, place: Place) -> f64 {
-        self.panel.deflections(place).iter().zip(&self.shares).map(|(value, share)| value * share).sum()
+        self.in_basis(&self.basis_at(place))
+    }
+
+    /// What its panel's coordinates do at a place.
+    pub(crate) fn basis_at(&self, place: Place) -> Vec<f64> {
+        self.panel.deflections(place)
+    }
+
+    /// Its deflection where its panel's coordinates do this.
+    pub(crate) fn in_basis(&self, basis: &[f64]) -> f64 {
+        basis.iter().zip(&self.shares).map(|(value, share)| value * share).sum()
+    }
+
+    /// Whether it is written in the same coordinates.
+    pub(crate) fn is_beside(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.panel, &other.panel)
     }
 
     /// Nodes along x and along y.

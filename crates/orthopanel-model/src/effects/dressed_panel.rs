@@ -2,23 +2,18 @@
 
 use std::sync::{Arc, OnceLock};
 
-use faer::Mat;
-
 use super::dressed_system::{FoundMode, System};
 use super::dressing::Dressing;
-use super::receptance::modal_base::{ModalBase, Row, SharedStructure};
-use super::receptance::view::View;
+use super::low_modes::{FarAnswers, LowModes};
+use super::receptance::modal_base::{Row, SharedStructure};
 use super::{Action, CoreModulus, EffectSetting, EffectState, ElementLaw, PointElement, Seat};
-use crate::dense::product;
 use crate::mindlin_plate::PlateTerms;
 use crate::panel_mode::crossings;
 use crate::structure::Motion;
-use crate::{
-    BeamTerms, Damping, MindlinPlate, ModeName, ModelError, Piece, Place, ReducedStructure, RitzMode, TimoshenkoBeam,
-};
+use crate::{BeamTerms, Damping, MindlinPlate, ModeName, ModelError, Piece, Place, RitzMode, TimoshenkoBeam};
 
 /// Modes of the bare structure beyond those asked for.
-pub(super) const SPARE_MODES: usize = 10;
+pub(crate) const SPARE_MODES: usize = 10;
 /// A panel with effects, in coordinates of its bare modes, of the static residual shape under each element, and of each
 /// resonator's own mass (Rubin, AIAA J. 13 (1975) 995).
 ///
@@ -34,7 +29,7 @@ pub(crate) struct DressedPanel {
     rigid: usize,
     /// The residual shapes.
     pub(super) residuals: Vec<Residual>,
-    plate: Option<WholePlate>,
+    plate: Option<Arc<MindlinPlate>>,
     grid: OnceLock<Vec<Vec<f64>>>,
 }
 
@@ -45,12 +40,6 @@ pub(super) struct Residual {
     pub image: Vec<f64>,
     /// Else the part of it in the basis, in the coordinates of each block.
     pub shape: Vec<Vec<f64>>,
-}
-
-/// The plate whose few shapes the panel stands on.
-struct WholePlate {
-    plate: Arc<MindlinPlate>,
-    reduced: Arc<ReducedStructure<MindlinPlate>>,
 }
 
 /// What vibrates where no effect acts.
@@ -87,19 +76,24 @@ fn basis_terms(summed: usize) -> usize {
     2 * summed + 24
 }
 
-/// The structure of a panel with the modes that are summed, before any element joins it.
+/// The structure of a panel with its lowest modes, before any element joins it.
 pub(super) struct Dressed {
-    pub(super) panel: DressedPanel,
-    pub(super) base: ModalBase,
+    structure: SharedStructure,
+    plate: Option<Arc<MindlinPlate>>,
+    /// Whether no effect is spread over it.
+    is_even: bool,
+    piece: Piece,
+    values: Vec<f64>,
+    pub(super) low: LowModes,
     pub(super) elements: Vec<PointElement>,
     pub(super) core: Option<CoreModulus>,
 }
 
 impl Dressed {
-    /// On the first `summed` flexible modes of the structure with what effects spread over it; beside the effects' elements one
-    /// without mass at each of `ports`.
-    pub(super) fn new(parts: PanelWithEffects, summed: usize, ports: &[Place]) -> Result<Self, ModelError> {
+    /// On the first `summed` flexible modes of the structure with what effects spread over it.
+    pub(super) fn new(parts: PanelWithEffects, summed: usize) -> Result<Self, ModelError> {
         let PanelWithEffects { setting, even, values, effects, .. } = parts;
+        let (piece, boundary) = (setting.piece, setting.boundary);
         let dressing = Dressing::of(effects, setting, 0)?;
         if dressing.plate.is_some() {
             return Err(ModelError::Unsupported(
@@ -107,83 +101,74 @@ impl Dressed {
             ));
         }
         let mut elements = elements(effects, setting)?;
-        let without_mass = ElementLaw::Mass { mass: 0.0 };
-        elements.extend(ports.iter().map(|&port| PointElement::on_deflection(without_mass, Seat::At(port))));
+        let mut is_even = dressing.terms.is_none();
         let (structure, plate): (SharedStructure, _) = match (even, dressing.terms) {
             (Even::Beam(even), None) => (Arc::<TimoshenkoBeam>::clone(even), None),
             (Even::Beam(_), Some(terms)) => {
                 let order = basis_terms(summed);
-                (Arc::new(TimoshenkoBeam::with_terms(&setting.piece, setting.boundary, order, terms)?), None)
+                (Arc::new(TimoshenkoBeam::with_terms(&piece, boundary, order, terms)?), None)
             }
             (Even::Plate, terms) => {
                 let edge_mass = take_edge_mass(&mut elements);
+                is_even &= edge_mass == 0.0;
                 let terms = PlateTerms { spread: terms.unwrap_or_default(), edge_mass };
-                let whole = WholePlate::new(setting, values, summed, &terms, &elements)?;
-                (Arc::<ReducedStructure<MindlinPlate>>::clone(&whole.reduced), Some(whole))
+                let plate = MindlinPlate::uneven_with_basis_for((&piece, boundary), values, summed, &terms)?;
+                let plate = Arc::new(plate);
+                (Arc::<MindlinPlate>::clone(&plate), Some(plate))
             }
         };
-        let base = ModalBase::without_parameters(&structure, values, summed)?;
-        let mode = |&(block, number): &(usize, usize)| {
-            let modes = base.blocks.get(block)?;
-            let coordinates = (0..modes.vectors.nrows()).map(|i| modes.vectors[(i, number)]).collect();
-            Some((block, coordinates, modes.lambda[number]))
-        };
-        let bare = base.near.iter().filter_map(mode).collect();
-        let panel = DressedPanel {
-            structure,
-            piece: setting.piece,
-            values: values.to_vec(),
-            bare,
-            rigid: base.rigid,
+        let low = LowModes::new(structure.as_ref(), values, summed)?;
+        let core = dressing.core.map(|(core, _)| core);
+        Ok(Self { structure, plate, is_even, piece, values: values.to_vec(), low, elements, core })
+    }
+
+    /// The plate, where it is one and nothing is spread over it.
+    pub(super) fn even_plate(&self) -> Option<Arc<MindlinPlate>> {
+        self.plate.clone().filter(|_| self.is_even)
+    }
+
+    /// The panel without any element.
+    pub(super) fn panel(&self) -> DressedPanel {
+        DressedPanel {
+            structure: Arc::clone(&self.structure),
+            piece: self.piece,
+            values: self.values.clone(),
+            bare: self.low.modes.clone(),
+            rigid: self.low.rigid,
             residuals: vec![],
-            plate,
+            plate: self.plate.clone(),
             grid: OnceLock::new(),
-        };
-        Ok(Self { panel, base, elements, core: dressing.core.map(|(core, _)| core) })
-    }
-
-    /// With the residual shapes of all elements: the panel and its matrices.
-    pub(super) fn with_residuals(mut self, damping: &Damping) -> Result<(DressedPanel, System), ModelError> {
-        let rows: Vec<Row> = self.elements.iter().filter_map(row).collect();
-        let view = View::new(&self.base, &rows, &[])?;
-        for (number, &row) in rows.iter().enumerate() {
-            let share = |(m, mode): (usize, &(usize, Vec<f64>, f64))| {
-                if mode.2 > 0.0 { view.numbers[view.layout.shape(m) + number] / mode.2 } else { 0.0 }
-            };
-            let image = self.panel.bare.iter().enumerate().map(share).collect();
-            let shape = if self.panel.plate.is_some() { far_shape(&self.base, row)? } else { vec![] };
-            self.panel.residuals.push(Residual { row, image, shape });
         }
-        Ok((self.panel, System::new(&view, &self.elements, damping)))
     }
-}
 
-/// $\sum\phi_m\phi_m(p)/\omega_m^2$ over the modes that are not summed, block by block.
-fn far_shape(base: &ModalBase, row: Row) -> Result<Vec<Vec<f64>>, ModelError> {
-    let of_block = |(index, block): (usize, &super::receptance::modal_base::BlockModes)| {
-        let here = base.rows(index, &[row])?;
-        let shares = Mat::from_fn(block.lambda.len(), 1, |m, _| {
-            block.far.iter().position(|far| *far == m).map_or(0.0, |far| here[(0, m)] * block.powers[(far, 0)])
-        });
-        let shape = product(block.vectors.as_ref(), shares.as_ref());
-        Ok((0..shape.nrows()).map(|i| shape[(i, 0)]).collect())
-    };
-    base.blocks.iter().enumerate().map(of_block).collect()
-}
+    /// What the modes beyond the lowest do at the elements and at `ports`.
+    pub(super) fn far_answers(&self, ports: &[Place]) -> Result<FarAnswers, ModelError> {
+        let rows = self.elements.iter().filter_map(row);
+        let rows: Vec<Row> = rows.chain(ports.iter().map(|&port| (Motion::Deflection, port))).collect();
+        self.low.far_answers(self.structure.as_ref(), &self.values, &rows)
+    }
 
-impl WholePlate {
-    fn new(
-        setting: &EffectSetting,
-        values: &[f64],
-        summed: usize,
-        terms: &PlateTerms,
-        elements: &[PointElement],
-    ) -> Result<Self, ModelError> {
-        let (piece, boundary) = (&setting.piece, setting.boundary);
-        let plate = Arc::new(MindlinPlate::uneven_with_basis_for((piece, boundary), values, summed, terms)?);
-        let places: Vec<Place> = elements.iter().filter_map(row).map(|(_, place)| place).collect();
-        let reduced = ReducedStructure::answering(Arc::clone(&plate), values, summed, &places)?;
-        Ok(Self { plate, reduced: Arc::new(reduced) })
+    /// With the residual shapes of all elements and of `ports`, where elements without mass stand: the panel and its matrices.
+    /// `answers` are of these, and may be of more ports.
+    pub(super) fn with_residuals(
+        &self,
+        answers: &FarAnswers,
+        ports: &[Place],
+        damping: &Damping,
+    ) -> (DressedPanel, System) {
+        let mut panel = self.panel();
+        let without_mass = |&port| PointElement::on_deflection(ElementLaw::Mass { mass: 0.0 }, Seat::At(port));
+        let elements: Vec<PointElement> = self.elements.iter().cloned().chain(ports.iter().map(without_mass)).collect();
+        for (number, row) in elements.iter().filter_map(row).enumerate() {
+            let share = |(m, mode): (usize, &(usize, Vec<f64>, f64))| {
+                if mode.2 > 0.0 { answers.near[(m, number)] / mode.2 } else { 0.0 }
+            };
+            let image = panel.bare.iter().enumerate().map(share).collect();
+            let shape = if self.plate.is_some() { answers.shapes[number].clone() } else { vec![] };
+            panel.residuals.push(Residual { row, image, shape });
+        }
+        let system = System::new(&self.low, answers, &elements, damping);
+        (panel, system)
     }
 }
 
@@ -209,20 +194,21 @@ impl DressedPanel {
 
     /// The name of a plate's mode; `None` for a beam's.
     pub(super) fn name(&self, shares: &[f64]) -> Option<ModeName> {
-        let whole = self.plate.as_ref()?;
+        let plate = self.plate.as_ref()?;
         let block = |(block, matrices): (usize, &crate::Block)| {
-            let mut sum = vec![0.0; matrices.size()];
-            let mut add = |share: f64, shape: &[f64]| sum.iter_mut().zip(shape).for_each(|(sum, s)| *sum += share * s);
+            let mut coordinates = vec![0.0; matrices.size()];
+            let mut add =
+                |share: f64, shape: &[f64]| coordinates.iter_mut().zip(shape).for_each(|(sum, s)| *sum += share * s);
             for ((_, shape, _), share) in self.bare.iter().zip(shares).filter(|((own, ..), _)| *own == block) {
                 add(*share, shape);
             }
             for (residual, share) in self.residuals.iter().zip(shares.iter().skip(self.bare.len())) {
                 add(*share, residual.shape.get(block).map_or(&[][..], |shape| shape));
             }
-            whole.reduced.in_whole(&RitzMode { angular_frequency: 0.0, block, coordinates: sum })
+            RitzMode { angular_frequency: 0.0, block, coordinates }
         };
         let parts: Vec<RitzMode> = self.structure.blocks().iter().enumerate().map(block).collect();
-        Some(whole.plate.name_of_sum(&parts))
+        Some(plate.name_of_sum(&parts))
     }
 
     /// Values of all bare coordinates in one row.
@@ -254,16 +240,28 @@ impl DressedPanel {
         }
     }
 
-    /// The modes of the panel and its matrices, in rising order, all that there are.
+    /// The modes of the panel and its matrices, in rising order, `count` flexible ones.
     pub(super) fn solve(parts: PanelWithEffects, count: usize) -> Result<(Self, System, Vec<FoundMode>), ModelError> {
-        let dressed = Dressed::new(parts, count + SPARE_MODES, &[])?;
-        if dressed.core.is_some() {
+        let dressed = Dressed::new(parts, count + SPARE_MODES)?;
+        let answers = dressed.far_answers(&[])?;
+        dressed.solve(&answers, parts.damping, count)
+    }
+}
+
+impl Dressed {
+    /// As [`DressedPanel::solve`], with answers that may be of ports too.
+    pub(super) fn solve(
+        &self,
+        answers: &FarAnswers,
+        damping: &Damping,
+        count: usize,
+    ) -> Result<(DressedPanel, System, Vec<FoundMode>), ModelError> {
+        if self.core.is_some() {
             return Err(ModelError::Unsupported("viscoelastic-core in a model of modes".into()));
         }
-        let (panel, system) = dressed.with_residuals(parts.damping)?;
-        let rigid = panel.rigid();
+        let (panel, system) = self.with_residuals(answers, &[], damping);
         let mut found = system.solve()?;
-        found.truncate(rigid + count);
+        found.truncate(panel.rigid() + count);
         Ok((panel, system, found))
     }
 }

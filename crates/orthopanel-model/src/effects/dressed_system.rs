@@ -2,9 +2,9 @@
 
 use faer::Mat;
 
-use super::receptance::view::View;
+use super::low_modes::{FarAnswers, LowModes};
 use super::{ElementLaw, PointElement};
-use crate::dense::{Cholesky, symmetric_eigen};
+use crate::dense::{Cholesky, dot, symmetric_eigen};
 use crate::{Damping, ModelError};
 
 /// $\omega$, $\zeta$ and all coordinates of a mode.
@@ -24,35 +24,43 @@ pub(super) struct System {
 }
 
 impl System {
-    pub(super) fn new(view: &View, elements: &[PointElement], damping: &Damping) -> Self {
-        let (layout, numbers) = (view.layout, &view.numbers);
-        let (modes, count) = (layout.modes, layout.active);
-        let resonators = elements.iter().filter(|element| matches!(element.law, ElementLaw::Resonator { .. })).count();
-        let (panel, size) = (modes + count, modes + count + resonators);
-        let series = |k: usize, a: usize, b: usize| numbers[layout.series(k) + a * count + b];
+    /// Of the modes alone.
+    pub(super) fn without_elements(low: &LowModes, damping: &Damping) -> Self {
+        let size = low.modes.len();
         let mut system = Self {
             stiffness: Mat::zeros(size, size),
-            mass: Mat::zeros(size, size),
+            mass: Mat::identity(size, size),
             damping: Mat::zeros(size, size),
-            residuals: modes,
-            panel,
-            shift: numbers.get(layout.rigid).copied().unwrap_or(1.0),
+            residuals: size,
+            panel: size,
+            shift: low.modes.get(low.rigid).map_or(1.0, |mode| mode.2),
         };
-        for (m, &lambda) in numbers.iter().enumerate().take(modes) {
+        for (m, &(.., lambda)) in low.modes.iter().enumerate() {
             system.stiffness[(m, m)] = lambda;
-            system.mass[(m, m)] = 1.0;
-            let zeta = if m < layout.rigid { 0.0 } else { damping.ratio(m + 1 - layout.rigid) };
+            let zeta = if m < low.rigid { 0.0 } else { damping.ratio(m + 1 - low.rigid) };
             system.damping[(m, m)] = 2.0 * zeta * lambda.sqrt();
         }
+        system
+    }
+
+    /// With these elements, which the first rows of `answers` belong to.
+    pub(super) fn new(low: &LowModes, answers: &FarAnswers, elements: &[PointElement], damping: &Damping) -> Self {
+        let mut system = Self::without_elements(low, damping);
+        let (modes, count) = (system.panel, elements.len());
+        let resonators = elements.iter().filter(|element| matches!(element.law, ElementLaw::Resonator { .. })).count();
+        let (panel, size) = (modes + count, modes + count + resonators);
+        system.grow(size);
+        system.panel = panel;
+        let [first, second] = &answers.series;
         for (a, b) in (0..count).flat_map(|a| (0..count).map(move |b| (a, b))) {
-            system.stiffness[(modes + a, modes + b)] = series(0, a, b);
-            system.mass[(modes + a, modes + b)] = series(1, a, b);
+            system.stiffness[(modes + a, modes + b)] = first[(a, b)];
+            system.mass[(modes + a, modes + b)] = second[(a, b)];
         }
         let mut resonators = panel..size;
         for (a, element) in elements.iter().enumerate() {
             let mut row = vec![0.0; size];
-            (0..modes).for_each(|m| row[m] = numbers[layout.shape(m) + a]);
-            (0..count).for_each(|b| row[modes + b] = series(0, a, b));
+            (0..modes).for_each(|m| row[m] = answers.near[(m, a)]);
+            (0..count).for_each(|b| row[modes + b] = first[(a, b)]);
             system.join(element.law, row, &mut resonators);
         }
         system
@@ -80,7 +88,34 @@ impl System {
     /// $\omega$, $\zeta$ and all coordinates of each mode, rising. As in [`crate::ritz_modes()`], by the inverse
     /// of a shifted stiffness; a mass matrix that negative masses make indefinite leaves modes without meaning, which go.
     pub(super) fn solve(&self) -> Result<Vec<FoundMode>, ModelError> {
-        let kept = self.independent();
+        let mut found: Vec<(f64, Vec<f64>)> = Vec::new();
+        for part in uncoupled(&[&self.stiffness, &self.mass], &self.independent()) {
+            self.solve_part(&part, &mut found)?;
+        }
+        // A coordinate without mass has none but rounding, and follows the others at once.
+        let least = 1e-13 * found.iter().fold(0.0, |most: f64, (theta, _)| most.max(*theta));
+        let damping = self.dampers();
+        let omega = |theta: f64| {
+            let lambda = 1.0 / theta - self.shift;
+            // Rounding of a rigid mode.
+            if lambda > 1e-9 * self.shift { lambda.sqrt() } else { 0.0 }
+        };
+        let found = found.into_iter().filter(|(theta, _)| *theta > least);
+        let mut modes: Vec<(f64, usize, Vec<f64>)> =
+            found.enumerate().map(|(place, (theta, whole))| (omega(theta), place, whole)).collect();
+        // Rigid modes stay as they come: translation before rotation.
+        modes.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        let modes = modes.into_iter().map(|(omega, _, whole)| {
+            let lost: f64 = damping.iter().map(|&(i, j, value)| whole[i] * value * whole[j]).sum();
+            // Below zero by rounding, where nothing is lost.
+            let zeta = if omega > 0.0 { (lost / (2.0 * omega)).clamp(0.0, 0.7) } else { 0.0 };
+            (omega, zeta, whole)
+        });
+        Ok(modes.collect())
+    }
+
+    /// Adds $1/(\omega^2+\sigma)$ and all coordinates of each mode in which some coordinates alone move.
+    fn solve_part(&self, kept: &[usize], found: &mut Vec<(f64, Vec<f64>)>) -> Result<(), ModelError> {
         let size = kept.len();
         let part = |matrix: &Mat<f64>| Mat::from_fn(size, size, |i, j| matrix[(kept[i], kept[j])]);
         let shifted = part(&self.stiffness) + faer::Scale(self.shift) * part(&self.mass);
@@ -97,40 +132,40 @@ impl System {
         let symmetric = Mat::from_fn(size, size, |i, j| 0.5 * (flexibility[(i, j)] + flexibility[(j, i)]));
         let (thetas, mut vectors) = symmetric_eigen(&symmetric).ok_or(ModelError::Eigenproblem)?;
         factor.solve_upper(&mut vectors);
-        // A coordinate without mass has none but rounding, and follows the others at once.
-        let least = 1e-13 * thetas.last().copied().unwrap_or(0.0);
-        let positive = (0..size).rev().filter(|&column| thetas[column] > least);
-        let modes = positive.map(|column| {
-            let norm = thetas[column].sqrt().recip();
+        for (column, &theta) in thetas.iter().enumerate().rev().filter(|(_, theta)| **theta > 0.0) {
+            let norm = theta.sqrt().recip();
             let mut whole = vec![0.0; self.mass.nrows()];
             (0..size).for_each(|i| whole[kept[i]] = norm * scale[i] * vectors[(i, column)]);
-            let lambda = 1.0 / thetas[column] - self.shift;
-            // Rounding of a rigid mode.
-            let omega = if lambda > 1e-9 * self.shift { lambda.sqrt() } else { 0.0 };
-            let lost = crate::structure::quadratic_form(&self.damping, &whole);
-            // Below zero by rounding, where nothing is lost.
-            let zeta = if omega > 0.0 { (lost / (2.0 * omega)).clamp(0.0, 0.7) } else { 0.0 };
-            (omega, zeta, whole)
-        });
-        Ok(modes.collect())
+            found.push((theta, whole));
+        }
+        Ok(())
+    }
+
+    /// The entries of the damping matrix that are not zero: most are.
+    fn dampers(&self) -> Vec<(usize, usize, f64)> {
+        let size = self.damping.nrows();
+        let all = (0..size).flat_map(|j| (0..size).map(move |i| (i, j)));
+        all.map(|(i, j)| (i, j, self.damping[(i, j)])).filter(|entry| entry.2 != 0.0).collect()
     }
 
     /// The damping matrix in these modes, less $2\zeta\omega$ on its diagonal; rigid modes have none.
     pub(super) fn couplings(&self, modes: &[FoundMode]) -> Vec<Vec<f64>> {
-        let row = |(m, (omega, zeta, shape)): (usize, &FoundMode)| {
-            let forces: Vec<f64> = (0..shape.len())
-                .map(|i| self.damping.col_as_slice(i).iter().zip(shape).map(|(damping, share)| damping * share).sum())
-                .collect();
-            let other = |(n, (other, _, along)): (usize, &FoundMode)| {
-                let whole: f64 = forces.iter().zip(along).map(|(force, share)| force * share).sum();
+        let damping = self.dampers();
+        // What rounding leaves of a rigid mode, or of the diagonal.
+        let rounding = 1e-12 * self.shift.sqrt();
+        let mut rows = vec![vec![0.0; modes.len()]; modes.len()];
+        let mut forces = vec![0.0; self.damping.nrows()];
+        for (m, (omega, zeta, shape)) in modes.iter().enumerate() {
+            forces.fill(0.0);
+            damping.iter().for_each(|&(i, j, value)| forces[i] += value * shape[j]);
+            for (n, (other, _, along)) in modes.iter().enumerate().take(m + 1) {
+                let whole = dot(&forces, along);
                 let rest = if n == m { whole - 2.0 * zeta * omega } else { whole };
-                // What rounding leaves of a rigid mode, or of the diagonal.
-                let rounding = 1e-12 * self.shift.sqrt();
-                if *omega == 0.0 || *other == 0.0 || rest.abs() <= rounding { 0.0 } else { rest }
-            };
-            modes.iter().enumerate().map(other).collect()
-        };
-        modes.iter().enumerate().map(row).collect()
+                let rest = if *omega == 0.0 || *other == 0.0 || rest.abs() <= rounding { 0.0 } else { rest };
+                (rows[m][n], rows[n][m]) = (rest, rest);
+            }
+        }
+        rows
     }
 
     /// Coordinates without the residual shapes that others hold already, as of two elements at one place.
@@ -162,4 +197,27 @@ fn add(matrix: &mut Mat<f64>, factor: f64, row: &[f64]) {
             matrix[(i, j)] += factor * a * b;
         }
     }
+}
+
+/// Those of these coordinates that the matrices couple, part by part: parities, where all is even.
+pub(super) fn uncoupled(matrices: &[&Mat<f64>], coordinates: &[usize]) -> Vec<Vec<usize>> {
+    let mut left: Vec<usize> = coordinates.iter().rev().copied().collect();
+    let mut parts = Vec::new();
+    while let Some(first) = left.pop() {
+        let mut part = vec![first];
+        let mut looked_at = 0;
+        while let Some(&one) = part.get(looked_at) {
+            looked_at += 1;
+            left.retain(|&other| {
+                let meets = matrices.iter().any(|matrix| matrix[(one, other)] != 0.0);
+                if meets {
+                    part.push(other);
+                }
+                !meets
+            });
+        }
+        part.sort_unstable();
+        parts.push(part);
+    }
+    parts
 }

@@ -5,9 +5,8 @@ use std::sync::Arc;
 use faer::Mat;
 
 use super::dressed_panel::{Dressed, DressedPanel, Even, PanelWithEffects, Residual, row};
-use super::dressed_system::System;
+use super::dressed_system::{System, uncoupled};
 use super::receptance::modal_base::Row;
-use super::receptance::view::View;
 use super::{CoreFit, CoreModulus, DressedMode, ElementLaw};
 use crate::block_pencil::BlockPencil;
 use crate::dense::{Cholesky, dot, product, symmetric_eigen};
@@ -31,9 +30,10 @@ impl Relaxing {
     /// On `count` flexible bare modes, with shapes of their own for the elements' places and for `ports`; `None` where no
     /// effect is a core.
     pub(super) fn new(parts: PanelWithEffects, count: usize, ports: &[Place]) -> Result<Option<Self>, ModelError> {
-        let Dressed { mut panel, base, elements, core } = Dressed::new(parts, count, &[])?;
-        let Some(core) = core else { return Ok(None) };
-        let mut system = System::new(&View::new(&base, &[], &[])?, &[], parts.damping);
+        let dressed = Dressed::new(parts, count)?;
+        let (Some(core), elements) = (dressed.core, &dressed.elements) else { return Ok(None) };
+        let mut panel = dressed.panel();
+        let mut system = System::without_elements(&dressed.low, parts.damping);
         let of_elements: Vec<Row> = elements.iter().filter_map(row).collect();
         let mut seats: Vec<Row> = Vec::new();
         for seat in of_elements.iter().copied().chain(ports.iter().map(|port| (Motion::Deflection, *port))) {
@@ -220,6 +220,22 @@ const DEPENDENT: f64 = 1e-9;
 /// $\mu_k$, the share of shear in a stiffness. What is left out, no shape has more than its share of.
 fn shear_directions(stiffness: &Mat<f64>, shear: &Mat<f64>, kept: usize) -> Result<Vec<Vec<f64>>, ModelError> {
     let size = stiffness.nrows();
+    let mut found: Vec<(f64, Vec<f64>)> = Vec::new();
+    for part in uncoupled(&[stiffness, shear], &(0..size).collect::<Vec<_>>()) {
+        let of_part = |matrix: &Mat<f64>| Mat::from_fn(part.len(), part.len(), |i, j| matrix[(part[i], part[j])]);
+        for (share, direction) in directions_of_part(&of_part(stiffness), &of_part(shear))? {
+            let mut whole = vec![0.0; size];
+            part.iter().zip(direction).for_each(|(&i, value)| whole[i] = value);
+            found.push((share, whole));
+        }
+    }
+    found.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+    Ok(found.into_iter().skip(size.saturating_sub(kept)).map(|(_, direction)| direction).collect())
+}
+
+/// $\mu_k$ and $b_k$ of coordinates that couple.
+fn directions_of_part(stiffness: &Mat<f64>, shear: &Mat<f64>) -> Result<Vec<(f64, Vec<f64>)>, ModelError> {
+    let size = stiffness.nrows();
     let scale: Vec<f64> = (0..size).map(|i| stiffness[(i, i)].max(f64::MIN_POSITIVE).sqrt().recip()).collect();
     let scaled = |matrix: &Mat<f64>| Mat::from_fn(size, size, |i, j| scale[i] * matrix[(i, j)] * scale[j]);
     // Kinks at one place are the same twice.
@@ -236,7 +252,7 @@ fn shear_directions(stiffness: &Mat<f64>, shear: &Mat<f64>, kept: usize) -> Resu
     factor.solve_upper(&mut directions);
     let images = product(even.as_ref(), directions.as_ref());
     let direction = |k: usize| (0..size).map(|i| shares[k].max(0.0).sqrt() * images[(i, k)] / scale[i]).collect();
-    Ok((size.saturating_sub(kept)..size).map(direction).collect())
+    Ok((0..size).map(|k| (shares[k], direction(k))).collect())
 }
 
 impl System {
@@ -276,7 +292,7 @@ impl System {
         }
     }
 
-    fn grow(&mut self, size: usize) {
+    pub(super) fn grow(&mut self, size: usize) {
         let before = self.stiffness.nrows();
         for matrix in [&mut self.stiffness, &mut self.mass, &mut self.damping] {
             *matrix = Mat::from_fn(size, size, |i, j| if i < before && j < before { matrix[(i, j)] } else { 0.0 });

@@ -179,7 +179,7 @@ fn add_model(files: &mut output::Files, test: &Path, suffix: &str, model: &Panel
             );
             return Ok(());
         }
-        seen => seen.in_file(test)?.modes,
+        seen => seen.in_file(test)?,
     };
     for (version, ending) in [(FmiVersion::Fmi2, ""), (FmiVersion::Fmi3, "-fmi3")] {
         let options = FmuOptions { version, ..FmuOptions::default() };
@@ -187,8 +187,7 @@ fn add_model(files: &mut output::Files, test: &Path, suffix: &str, model: &Panel
         files.add(format!("panel{suffix}{ending}.fmu"), fmu.to_bytes()?);
     }
     let hit = DrivingForce::new(ForceHistory::half_sine(ports.forces.len()), Hold::Linear, test)?;
-    let remainder = model.static_remainder(&seen, &ports.forces, &ports.responses).in_file(test)?;
-    let motions = time_response::simulate(&seen, &remainder, &hit).in_file(test)?;
+    let motions = time_response::simulate(&seen.modes, &seen.static_remainder, &hit).in_file(test)?;
     let hit = hit.samples;
     files.add(format!("response{suffix}.csv"), time_response::csv(&hit, &motions));
     files.add(format!("response{suffix}.svg"), pictures::response(&hit, &motions)?);

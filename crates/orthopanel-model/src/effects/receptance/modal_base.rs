@@ -75,26 +75,7 @@ impl ModalBase {
         terms: &[usize],
         moved: &[Moved],
     ) -> Result<Self, ModelError> {
-        Self::with_parameters(structure, values, summed, Some((terms, moved)))
-    }
-
-    /// The same without parameters: nothing is to be differentiated.
-    pub(in crate::effects) fn without_parameters(
-        structure: &SharedStructure,
-        values: &[f64],
-        summed: usize,
-    ) -> Result<Self, ModelError> {
-        Self::with_parameters(structure, values, summed, None)
-    }
-
-    fn with_parameters(
-        structure: &SharedStructure,
-        values: &[f64],
-        summed: usize,
-        parameters: Option<(&[usize], &[Moved])>,
-    ) -> Result<Self, ModelError> {
-        let constants = if parameters.is_some() { values.len() } else { 0 };
-        let (terms, moved) = parameters.unwrap_or_default();
+        let constants = values.len();
         let modes = all_ritz_modes(structure.as_ref(), values)?;
         let by_constants = structure.coefficient_derivatives(values)?;
         let derivatives = if terms.is_empty() { vec![] } else { structure.term_derivatives(values) };
@@ -108,8 +89,7 @@ impl ModalBase {
             let in_modes =
                 |matrix: &Mat<f64>| product(vectors.transpose(), product(matrix.as_ref(), vectors.as_ref()).as_ref());
             let projected = |matrix: &SymmetricMatrix| product(vectors.transpose(), matrix.times(&vectors).as_ref());
-            let of_constants = if constants > 0 { &block.stiffness[..] } else { &[] };
-            let stiffness: Vec<Mat<f64>> = of_constants.iter().map(projected).collect();
+            let stiffness: Vec<Mat<f64>> = block.stiffness.iter().map(projected).collect();
             let of_constant = |j: usize| {
                 let mut sum = Mat::zeros(own.len(), own.len());
                 for (i, matrix) in stiffness.iter().enumerate() {
@@ -188,7 +168,7 @@ impl ModalBase {
 }
 
 /// Values of a block's coordinates, `size` of them, in some rows.
-pub(super) fn coordinate_rows(
+pub(in crate::effects) fn coordinate_rows(
     structure: &dyn Structure,
     (block, size): (usize, usize),
     rows: &[Row],

@@ -124,8 +124,7 @@ fn run_model(arguments: &Arguments) -> Result<(ForceHistory, Vec<Motion>), Comma
     let ports = arguments.ports.needed(&model, path)?;
     let force = driving_force(arguments, ports.forces.len())?;
     let seen = model.time_model(arguments.modes.range(), &ports.forces, &ports.responses).in_file(path)?;
-    let remainder = model.static_remainder(&seen.modes, &ports.forces, &ports.responses).in_file(path)?;
-    let motions = time_response::simulate(&seen.modes, &remainder, &force).in_file(path)?;
+    let motions = time_response::simulate(&seen.modes, &seen.static_remainder, &force).in_file(path)?;
     Ok((force.samples, motions))
 }
 

@@ -1,0 +1,104 @@
+//! The lowest modes of a structure, and what all its others do under forces that stand still.
+
+use faer::Mat;
+
+use super::receptance::modal_base::{Row, coordinate_rows};
+use crate::dense::product;
+use crate::ritz_modes::{checked_coefficients, ritz_modes};
+use crate::static_deflection::deflected;
+use crate::structure::{Block, Structure};
+use crate::{ModelError, RitzMode};
+
+/// The lowest modes of a structure at some values of its constants: rigid ones first, then rising.
+#[derive(Clone)]
+pub(super) struct LowModes {
+    /// Block, coordinates and $\omega^2$ of each.
+    pub modes: Vec<(usize, Vec<f64>, f64)>,
+    /// How many are rigid.
+    pub rigid: usize,
+}
+
+/// What the modes beyond [`LowModes`] do under unit forces in some rows.
+pub(super) struct FarAnswers {
+    /// $\phi_m(p)$ of the low modes: a row a mode, a column a row $p$.
+    pub near: Mat<f64>,
+    /// $C_0 = \sum\phi_m(p)\phi_m(q)/\omega_m^2$ over the modes beyond, and $C_1$ with $\omega_m^4$.
+    pub series: [Mat<f64>; 2],
+    /// $\sum\phi_m\phi_m(p)/\omega_m^2$ of each row, in the coordinates of each block.
+    pub shapes: Vec<Vec<Vec<f64>>>,
+}
+
+impl LowModes {
+    /// The rigid modes and `count` flexible ones.
+    pub(super) fn new(structure: &dyn Structure, values: &[f64], count: usize) -> Result<Self, ModelError> {
+        let modes = ritz_modes(structure, values, count)?;
+        let rigid = modes.iter().take_while(|mode| mode.angular_frequency == 0.0).count();
+        let kept = |RitzMode { block, coordinates, angular_frequency }| (block, coordinates, angular_frequency.powi(2));
+        Ok(Self { modes: modes.into_iter().map(kept).collect(), rigid })
+    }
+
+    /// What the modes beyond these do in some rows: without them, by the structure's stiffness and these modes alone. What the
+    /// basis is known to lack of $C_0$ is added.
+    pub(super) fn far_answers(
+        &self,
+        structure: &dyn Structure,
+        values: &[f64],
+        rows: &[Row],
+    ) -> Result<FarAnswers, ModelError> {
+        let coefficients = checked_coefficients(structure, values)?;
+        let (modes, count) = (self.modes.len(), rows.len());
+        let mut answers = FarAnswers {
+            near: Mat::zeros(modes, count),
+            series: [Mat::zeros(count, count), Mat::zeros(count, count)],
+            shapes: vec![vec![]; count],
+        };
+        for (index, block) in structure.blocks().iter().enumerate() {
+            let own: Vec<usize> = (0..modes).filter(|&m| self.modes[m].0 == index).collect();
+            let shapes = Mat::from_fn(block.size(), own.len(), |i, m| self.modes[own[m]].1[i]);
+            let forces = coordinate_rows(structure, (index, block.size()), rows)?.transpose().to_owned();
+            let seen = product(shapes.transpose(), forces.as_ref());
+            for (i, &m) in own.iter().enumerate() {
+                (0..count).for_each(|p| answers.near[(m, p)] = seen[(i, p)]);
+            }
+            if count == 0 {
+                continue;
+            }
+            let moved = beyond(block, &coefficients, &shapes, &forces)?;
+            answers.series[0] += product(forces.transpose(), moved.as_ref());
+            answers.series[1] += product(moved.transpose(), block.mass.times(&moved).as_ref());
+            for (p, shapes) in answers.shapes.iter_mut().enumerate() {
+                shapes.push(moved.col_as_slice(p).to_vec());
+            }
+        }
+        self.close(structure, values, rows, &mut answers);
+        Ok(answers)
+    }
+
+    /// Puts the exact static flexibility in place of the basis' own, where the structure knows it, else adds what the basis
+    /// is known to lack.
+    fn close(&self, structure: &dyn Structure, values: &[f64], rows: &[Row], answers: &mut FarAnswers) {
+        let near = &answers.near;
+        let far = &mut answers.series[0];
+        for (p, &first) in rows.iter().enumerate() {
+            for (q, &second) in rows.iter().enumerate() {
+                if let Some(whole) = structure.static_flexibility(values, [first, second]) {
+                    let flexible = self.modes.iter().enumerate().skip(self.rigid);
+                    let summed: f64 = flexible.map(|(m, mode)| near[(m, p)] * near[(m, q)] / mode.2).sum();
+                    far[(p, q)] = whole.value - summed;
+                } else if let Some((lacking, _)) = structure.static_remainder(values, [first, second]) {
+                    far[(p, q)] += lacking;
+                }
+            }
+        }
+    }
+}
+
+/// $\sum\phi_m\phi_m^Tf/\omega_m^2$ over the modes of a block but these, a column a force: the deflection under the part of the
+/// forces that moves none of these.
+fn beyond(block: &Block, coefficients: &[f64], modes: &Mat<f64>, forces: &Mat<f64>) -> Result<Mat<f64>, ModelError> {
+    let images = block.mass.times(modes);
+    let pushed = forces - product(images.as_ref(), product(modes.transpose(), forces.as_ref()).as_ref());
+    let mut moved = deflected(block, coefficients, pushed)?;
+    moved -= product(modes.as_ref(), product(images.transpose(), moved.as_ref()).as_ref());
+    Ok(moved)
+}
