@@ -1,7 +1,7 @@
 //! What a time stepper needs of a panel: its modes, and the internal variables of a core that relaxes.
 
 use crate::effects::{CoreFit, DressedPanel};
-use crate::{EffectSetting, ModalModel, ModeRange, ModelError, PanelModel, Place};
+use crate::{EffectSetting, ModalModel, ModeRange, ModelError, PanelModel, Place, StructureKind, modes_below};
 
 /// Modes as seen from ports, ready to be stepped.
 #[derive(Debug, Clone, PartialEq)]
@@ -69,12 +69,12 @@ impl PanelModel {
         let (values, effects) = self.with_effects()?;
         let flexible = match range.checked(self.structure)? {
             ModeRange::Count(count) => count,
-            ModeRange::UpTo(frequency) => self.bare_count(&values, frequency)?,
+            ModeRange::UpTo(frequency) => self.flexible_below(&values, frequency)?.max(FEWEST_RELAXING),
         };
         // The first two frequencies make a band; more modes than these many make no stepper.
-        if !(2..=MOST_RELAXING).contains(&flexible) {
+        if !(FEWEST_RELAXING..=MOST_RELAXING).contains(&flexible) {
             return Err(ModelError::Unsupported(format!(
-                "viscoelastic-core with {flexible} modes: from 2 to {MOST_RELAXING} can be stepped"
+                "viscoelastic-core with {flexible} modes: from {FEWEST_RELAXING} to {MOST_RELAXING} can be stepped"
             )));
         }
         let setting = EffectSetting::of_panel(&self.piece, self.boundary);
@@ -87,10 +87,27 @@ impl PanelModel {
         let static_remainder = vec![vec![0.0; forces.len()]; responses.len()];
         Ok(Some(TimeModel { modes, flexible, core: Some(fit), static_remainder }))
     }
+
+    /// Flexible modes without effects up to a frequency \[Hz\]; of a plate at most as many as its largest basis resolves.
+    fn flexible_below(&self, values: &[f64], frequency: f64) -> Result<usize, ModelError> {
+        let estimate = self.bare_count(values, frequency)?;
+        if self.structure == StructureKind::TimoshenkoBeam {
+            return Ok(estimate.saturating_sub(self.boundary.rigid_modes()));
+        }
+        let (plate, values) = match self.structure_for(estimate + estimate / 4 + 4) {
+            Err(ModelError::BasisTooSmall { available, .. }) => self.structure_for(available)?,
+            found => found?,
+        };
+        let below = modes_below(plate.as_ref(), &values, &[frequency * std::f64::consts::TAU])?;
+        Ok(below.first().copied().unwrap_or(0))
+    }
 }
 
 /// The effect whose modulus depends on frequency.
 pub(crate) const CORE: &str = "viscoelastic-core";
+
+/// Two frequencies make a band.
+const FEWEST_RELAXING: usize = 2;
 
 /// Each mode brings its internal variables, and all are coupled: a step costs the square of their number.
 const MOST_RELAXING: usize = 60;

@@ -346,3 +346,23 @@ fn a_core_is_refused_where_no_internal_variables_can_be_told() {
     assert!(model.modes(ModeRange::Count(5)).is_ok(), "each at its own modulus");
     assert!(refused(&model, 1).contains("from 2 to 60"), "{}", refused(&model, 1));
 }
+
+/// `--up-to` keeps the modes that the panel has there at the low modulus of its core, rigid ones not counted, and two at least.
+#[test]
+fn val_a_range_up_to_a_frequency_counts_the_modes_beside_a_core() {
+    let core = r#"{"id":"viscoelastic-core","owner":"panel","strength":0.2,"tau":1e-4,"alpha":0.6}"#;
+    let plate = r#"{"schema":"orthopanel.model/1","structure":"mindlin-plate",
+        "piece":{"length":0.8,"width":0.4,"thickness":0.03,"mass_per_area":6.88},"damping":{"ratios":[],"beyond":0.004},
+        "constants":{"e_x":1.07e10,"e_y":9e9,"nu_xy":0.3,"g_xy":3e9,"g_yz":3e8,"g_zx":5.363e8},"effects":[CORE]}"#;
+    for model in [text(core), plate.replace("CORE", core)] {
+        let model = PanelModel::from_json(&model).unwrap();
+        let mut bare = model.clone();
+        bare.effects.clear();
+        for frequency in [100.0, 900.0, 1700.0, 2900.0] {
+            let modes = bare.modes(ModeRange::UpTo(frequency)).unwrap();
+            let expected = modes.iter().filter(|mode| !mode.is_rigid()).count().max(2);
+            let found = model.time_model(ModeRange::UpTo(frequency), &[at(-0.31)], &[at(0.27)]).unwrap();
+            assert_eq!(found.flexible, expected, "up to {frequency} Hz");
+        }
+    }
+}
