@@ -67,16 +67,32 @@ def test_arrays_have_one_terminal_of_all_places(export):
 def test_the_documentation_tells_the_identification_and_the_band(tmp_path):
     model = beam_model(BEAM)
     model["constants"]["e_x"] = {"value": BEAM.e_x, "std": 4.5e7}
-    model["provenance"] = {"piece": "piece <1>", "frequency_rms_percent": 0.21}
+    modes = [
+        {"mode": 1, "measured_hz": 321.3, "model_hz": 320.92, "error_percent": -0.12, "zeta": 2.4e-3, "zeta_std": 1e-4},
+        {"mode": 2, "measured_hz": 837.5, "measured_std_hz": 0.36, "model_hz": 838.21, "error_percent": 0.085},
+    ]
+    model["provenance"] = {"piece": "piece <1>", "frequency_rms_percent": 0.21, "modes": modes}
+    model["effects"] = [{"id": "local-mass", "owner": "panel", "mass": {"value": 0.03, "std": 2e-4}, "x": 0.11}]
     path = tmp_path / "told.json"
     path.write_text(json.dumps(model))
     words = export_words(path, tmp_path / "told.fmu", "--force=-0.3", "--response=-0.3")
     subprocess.run(words, check=True, capture_output=True)
     with zipfile.ZipFile(tmp_path / "told.fmu") as archive:
         page = archive.read("documentation/index.html").decode()
-    etree.fromstring(page.split("\n", 1)[1], etree.HTMLParser())
-    for text in ("standard deviation 4.5e7", "piece &lt;1&gt;", "frequency rms percent", "0.21", "None is tunable"):
+    root = etree.fromstring(page.split("\n", 1)[1], etree.HTMLParser())
+    for text in ("piece &lt;1&gt;", "frequency rms percent", "0.21", "None is tunable"):
         assert text in page, text
+    rows = [["".join(cell.itertext()) for cell in row] for row in root.iter("tr")]
+    for row in (
+        ["e_x [Pa]", "1.0670e10", "4.5e7"],
+        ["width, along y [m]", "0.1", ""],
+        ["mass, without effects [kg]", "0.5504", ""],
+        ["edges", "left free, right free, front free, back free", ""],
+        ["local-mass mass [kg]", "3.0000e-2", "2.0e-4"],
+        ["1", "321.30", "", "320.92", "-0.120", "2.400e-3", "1.0e-4"],
+        ["2", "837.50", "3.6e-1", "838.21", "+0.085", "", ""],
+    ):
+        assert row in rows, (row, rows)
     assert "acceleration_1 under force_1 holds within 1 % up to" in page
 
 

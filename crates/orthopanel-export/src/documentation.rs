@@ -3,23 +3,16 @@
 use std::fmt::Write as _;
 
 use orthopanel_fmu::{GENERATOR, Resource};
-use orthopanel_model::{CoreFit, Estimate, PanelModel};
 
 use crate::acceleration_band::AccelerationBands;
+use crate::origin::Origin;
 use crate::{FmiVersion, FmuOptions};
-
-/// What the page tells of the panel behind the modes.
-pub(crate) struct Origin<'a> {
-    pub panel: &'a PanelModel,
-    /// How the core's modulus is fitted, where one relaxes.
-    pub core: Option<CoreFit>,
-    /// Up to where accelerations hold; not told of a core, in whose modes internal variables mix.
-    pub bands: Option<AccelerationBands>,
-}
 
 /// The page: variables with their places, modes, how the force is held, and where the panel comes from.
 pub(crate) fn write(resource: &Resource, from: Option<&Origin<'_>>, options: &FmuOptions) -> String {
-    let mut page = String::from("<!DOCTYPE html>\n<html lang=\"en\">\n<head><meta charset=\"utf-8\"><title>");
+    let mut page = String::from("<!DOCTYPE html>\n<html lang=\"en\">\n<head><meta charset=\"utf-8\">\n");
+    page += STYLE;
+    page += "<title>";
     page += &escaped(&options.name);
     page += "</title></head>\n<body>\n<h1>";
     page += &escaped(&options.name);
@@ -50,56 +43,22 @@ pub(crate) fn write(resource: &Resource, from: Option<&Origin<'_>>, options: &Fm
     }
     page += "</table>\n";
     page += &left_out(resource, from.and_then(|from| from.bands.as_ref()));
-    page += &from.map(origin).unwrap_or_default();
+    page += &from.map(Origin::section).unwrap_or_default();
     let _ = write!(page, "<p>Written by {GENERATOR}.</p>\n</body>\n</html>\n");
     page
 }
 
-/// The constants with their standard deviations, the effects, and what is told of the identification behind them.
-fn origin(Origin { panel, core, .. }: &Origin<'_>) -> String {
-    let mut text = String::from("<h2>Where the panel comes from</h2>\n<table>\n");
-    let mut row = |name: &str, value: &str| {
-        let _ = writeln!(text, "<tr><td>{}</td><td>{}</td></tr>", escaped(name), escaped(value));
-    };
-    let told = |estimate: &Estimate| match estimate.std {
-        Some(std) => format!("{:.4e}, standard deviation {std:.1e}", estimate.value),
-        None => format!("{:.4e}", estimate.value),
-    };
-    for (name, estimate) in &panel.constants {
-        row(&format!("{name}{}", if name.starts_with("nu") { "" } else { " [Pa]" }), &told(estimate));
-    }
-    for effect in &panel.effects {
-        let parameters = effect.parameters.iter().map(|(name, value)| format!("{name} {}", told(value)));
-        let fate = match core {
-            _ if effect.owner != "panel" => "left out: no part of the panel".into(),
-            Some(fit) if effect.id == CORE => relaxing(fit),
-            _ => "in the modes".into(),
-        };
-        row(&format!("effect {} ({fate})", effect.id), &parameters.collect::<Vec<_>>().join("; "));
-    }
-    for (name, value) in &panel.provenance {
-        row(&name.replace('_', " "), &value.as_str().map_or_else(|| value.to_string(), String::from));
-    }
-    text + "</table>\n"
-}
-
-/// The effect that brings internal variables.
-const CORE: &str = "viscoelastic-core";
-
-fn relaxing(fit: &CoreFit) -> String {
-    let CoreFit { terms, ratio, band: [from, to], error } = fit;
-    format!(
-        "in internal variables, {} oscillators of damping ratio {ratio} for each mode, so the frequencies above are those of \
-         the modes and these variables together, undamped: this rational fit of the shear modulus errs by {:.2} % of it at \
-         most, from {from:.0} to {to:.0} Hz, and gives no energy at any frequency",
-        terms.len(),
-        100.0 * error
-    )
-}
+/// Legible on a narrow screen too, and without any file beside it.
+const STYLE: &str = "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<style>
+body { font-family: sans-serif; line-height: 1.4; max-width: 60em; margin: 1em auto; padding: 0 1em; color: #222; background: #fff }
+table { border-collapse: collapse; display: block; overflow-x: auto; margin: 1em 0 }
+th, td { border: 1px solid #bbb; padding: 0.2em 0.6em; text-align: left; vertical-align: top }
+th { background: #eee }
+</style>\n";
 
 const PARAMETERS: &str = "Parameters are fixed: they are set before or in initialization mode, and stay for the run. Where \
-     one of the panel's is set, the modes are solved anew, which takes milliseconds for a beam, a tenth of a second for a \
-     plate, seconds beside a core. The number of modes is that of the export. None is tunable.";
+     one of the panel's is set, the modes are solved anew, which takes milliseconds for a beam or a plate, some hundredths \
+     of a second beside a core. The number of modes is that of the export. None is tunable.";
 const HELD: &str = "The force is held at the value set before the step, over the whole step.";
 const BY_DERIVATIVES: &str = " If the importer gives the first derivative of a force \
      (fmi2SetRealInputDerivatives), the force of the next step runs at that rate from the value set.";
@@ -136,6 +95,6 @@ const LEFT_OUT: &str = "<h2>What the modes left out do</h2>\n<p>At rest they wou
      part of the rest. At an antiresonance, where little is left of the whole, it is a larger part.</p>\n\
      <table>\n<tr><th>static part of the modes left out</th><th>band</th></tr>\n";
 
-fn escaped(text: &str) -> String {
+pub(crate) fn escaped(text: &str) -> String {
     quick_xml::escape::escape(text).into_owned()
 }

@@ -8,7 +8,8 @@ use orthopanel_model::{ModalModel, ModeRange, PanelModel, Ports};
 
 use crate::acceleration_band::AccelerationBands;
 use crate::archive::{Entry, pack};
-use crate::documentation::{self, Origin};
+use crate::documentation;
+use crate::origin::Origin;
 use crate::{ExportError, Library, library, model_description, terminals};
 
 /// Version of the FMI standard.

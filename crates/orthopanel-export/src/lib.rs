@@ -7,6 +7,7 @@ mod error;
 mod fmu;
 mod library;
 mod model_description;
+mod origin;
 mod terminals;
 
 pub use error::ExportError;

@@ -1,7 +1,7 @@
 //! A model of one identified piece: its damping beyond the band, its ports, and where it comes from.
 
 use orthopanel_data::{ImpactTest, MeasurementData};
-use orthopanel_identify::{DampingLaw, Identification, PieceFit};
+use orthopanel_identify::{DampingLaw, Identification, ModeFit, PieceFit};
 use orthopanel_model::{PanelModel, Piece, Place, Ports, StructureKind};
 
 /// Modal damping ratio assumed where a test measures none: typical of the paper's table 9.
@@ -32,8 +32,35 @@ pub(super) fn model(
     if let Some(error) = found.accelerance_rms_percent {
         model.provenance.insert("accelerance_rms_percent".into(), rounded(error).into());
     }
+    model.provenance.insert("modes".into(), fit.modes.iter().map(measured_mode).collect());
     model.provenance.insert("program".into(), concat!("orthopanel ", env!("CARGO_PKG_VERSION")).into());
     model
+}
+
+/// A mode as measured and by the model, with as many digits as their errors have: what a model file and an FMU tell of it.
+fn measured_mode(mode: &ModeFit) -> serde_json::Value {
+    let rounded = |value: f64, digits: i32| (value * 10f64.powi(digits)).round() / 10f64.powi(digits);
+    let mut told = serde_json::json!({
+        "mode": mode.mode,
+        "nodes": mode.nodes,
+        "measured_hz": rounded(mode.measured, 4),
+        "model_hz": rounded(mode.model, 4),
+        "error_percent": rounded(mode.error_percent(), 4),
+    });
+    let two_digits = |value: f64| format!("{value:.1e}").parse::<f64>().unwrap_or(value);
+    let four_digits = |value: f64| format!("{value:.3e}").parse::<f64>().unwrap_or(value);
+    let ratio = mode.damping;
+    let told_where_known = [
+        ("measured_std_hz", mode.measured_std.map(two_digits)),
+        ("zeta", ratio.map(|ratio| four_digits(ratio.value))),
+        ("zeta_std", ratio.and_then(|ratio| ratio.std).map(two_digits)),
+    ];
+    for (key, value) in told_where_known {
+        if let Some(value) = value {
+            told[key] = value.into();
+        }
+    }
+    told
 }
 
 /// Which of a piece's ratios were measured.

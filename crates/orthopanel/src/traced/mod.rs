@@ -58,6 +58,8 @@ impl Traced {
             model.constants.clone_from(&panel.constants);
             model.damping.clone_from(&panel.damping);
             model.effects.clone_from(&panel.effects);
+            // Those of the model without the effects.
+            model.provenance.remove("modes");
             model.provenance.insert("trace".into(), self.tracing.verdict.name().into());
             let removed: Vec<&str> = self.tracing.removed.iter().map(|removed| removed.id).collect();
             if !removed.is_empty() {
