@@ -1,4 +1,5 @@
-//! `modelDescription/`: the XML of each flavour for one small model, as it was last agreed on.
+//! `modelDescription/`: the XML of each flavour for one small model, as it was last agreed on; of arrays and
+//! a plate too.
 //!
 //! After a change on purpose, write them anew with `UPDATE_GOLDEN=1 cargo test -p orthopanel-export --test golden_xml`
 //! and read the difference.
@@ -68,28 +69,68 @@ fn regress_terminals() {
     compare("terminalsAndIcons.xml", &text);
 }
 
+/// All forces as one array, and each kind of output as another.
+#[test]
+fn regress_arrays() {
+    let options = FmuOptions { version: FmiVersion::Fmi3, arrays: true, ..FmuOptions::default() };
+    let fmu = exported(&beam(""), 3, [&[-0.3, 0.1], &[0.1, 0.3]], &options);
+    compare("fmi3-arrays.xml", &tokenless(&fmu, "instantiationToken"));
+}
+
+#[test]
+fn regress_plate() {
+    for (version, attribute, file) in FLAVOURS {
+        let options = FmuOptions { version, ..FmuOptions::default() };
+        let fmu = exported(PLATE, 3, [&[-0.3], &[0.1]], &options);
+        compare(&format!("{file}-plate.xml"), &tokenless(&fmu, attribute));
+    }
+}
+
+const FLAVOURS: [(FmiVersion, &str, &str); 2] =
+    [(FmiVersion::Fmi2, "guid", "fmi2"), (FmiVersion::Fmi3, "instantiationToken", "fmi3")];
+
+const PLATE: &str = r#"{"schema": "orthopanel.model/1", "structure": "mindlin-plate",
+    "piece": {"length": 0.8, "width": 0.5, "thickness": 0.03, "mass_per_area": 6.88},
+    "constants": {"e_x": 1.067e10, "e_y": 0.9e10, "nu_xy": 0.3, "g_xy": 3e9, "g_yz": 4e8, "g_zx": 5.304e8},
+    "damping": {"beyond": 0.003}}"#;
+
+/// The paper's piece 1, with these effects.
+fn beam(effects: &str) -> String {
+    format!(
+        r#"{{"schema": "orthopanel.model/1", "structure": "timoshenko-beam",
+        "piece": {{"length": 0.8, "width": 0.1, "thickness": 0.03, "mass_per_area": 6.88}},
+        "constants": {{"e_x": 1.067e10, "g_zx": 5.304e8}}, "damping": {{"beyond": 0.003}}, "effects": [{effects}]}}"#
+    )
+}
+
+/// With so many modes, forces and responses at these x.
+fn exported(text: &str, modes: usize, [forces, responses]: [&[f64]; 2], options: &FmuOptions) -> Fmu {
+    let panel = PanelModel::from_json(text).expect("a sound model");
+    let places = |all: &[f64]| all.iter().map(|&x| Place { x, y: 0.0 }).collect();
+    let ports = Ports { forces: places(forces), responses: places(responses) };
+    Fmu::of_panel(&panel, ModeRange::Count(modes), ports, options).expect("a sound FMU")
+}
+
 /// The paper's piece 1, with parameters.
 fn settable(version: FmiVersion) -> Fmu {
-    let text = r#"{"schema": "orthopanel.model/1", "structure": "timoshenko-beam",
-        "piece": {"length": 0.8, "width": 0.1, "thickness": 0.03, "mass_per_area": 6.88},
-        "constants": {"e_x": 1.067e10, "g_zx": 5.304e8}, "damping": {"beyond": 0.003}}"#;
-    let panel = PanelModel::from_json(text).expect("a sound model");
-    let place = |x| Place { x, y: 0.0 };
-    let ports = Ports { forces: vec![place(-0.3), place(0.1)], responses: vec![place(0.1), place(0.3)] };
-    let options = FmuOptions { version, ..FmuOptions::default() };
-    Fmu::of_panel(&panel, ModeRange::Count(3), ports, &options).expect("a sound FMU")
+    exported(&beam(""), 3, [&[-0.3, 0.1], &[0.1, 0.3]], &FmuOptions { version, ..FmuOptions::default() })
 }
 
 /// The importer `fmi-rs` has a validator of its own.
 #[test]
 fn val_fmi_rs_finds_no_problem() {
-    for two in [fmu(FmiVersion::Fmi2), settable(FmiVersion::Fmi2)] {
+    let core = beam(r#"{"id": "viscoelastic-core", "owner": "panel", "strength": 0.3, "tau": 1e-4, "alpha": 0.6}"#);
+    let also = |version| {
+        let options = FmuOptions { version, ..FmuOptions::default() };
+        [PLATE, &core].map(|text| exported(text, 2, [&[-0.3], &[0.1]], &options))
+    };
+    for two in [fmu(FmiVersion::Fmi2), settable(FmiVersion::Fmi2)].into_iter().chain(also(FmiVersion::Fmi2)) {
         let two = two.model_description();
         let two = fmi_rs::model_description::fmi2::ModelDescription::from_string(two).expect("FMI 2.0");
         let problems = two.validate();
         assert!(problems.is_empty(), "{problems:?}");
     }
-    for three in [fmu(FmiVersion::Fmi3), settable(FmiVersion::Fmi3)] {
+    for three in [fmu(FmiVersion::Fmi3), settable(FmiVersion::Fmi3)].into_iter().chain(also(FmiVersion::Fmi3)) {
         let three = three.model_description();
         let three = fmi_rs::model_description::fmi3::ModelDescription::from_string(three).expect("FMI 3.0");
         let problems = three.validate();
