@@ -1,4 +1,4 @@
-"""The FMU through C, without FMPy between: `c_harness/checks.c`, also under valgrind where there is one."""
+"""The FMU through C, without FMPy between: `c_harness/`, also under valgrind where there is one."""
 
 import shutil
 import subprocess
@@ -6,29 +6,43 @@ from pathlib import Path
 
 import fmpy
 import pytest
+from conftest import BEAM, FORCES, RESPONSES, ROOT, ZETAS
 from fmpy import extract, read_model_description
+from modal_sum import modes_at
 
 HERE = Path(__file__).resolve().parent / "c_harness"
+PROPAGATOR = ROOT / "benches/fmu_c"
 FLAGS = ["-std=c11", "-O1", "-g", "-Wall", "-Wextra", "-Werror"]
 
 pytestmark = pytest.mark.skipif(not shutil.which("gcc"), reason="needs gcc")
 
 
 @pytest.fixture(scope="module")
-def command(fmu2, tmp_path_factory):
+def command(fmu, tmp_path_factory):
     """The call of the harness on the FMU, unpacked where a careless importer stumbles; the number of instances lacks."""
     folder = tmp_path_factory.mktemp("50% of ü")
+    unpacked = Path(extract(str(fmu), unzipdir=str(folder / "a fmu")))
+    description = read_model_description(str(unpacked))
+    is_three = description.fmiVersion.startswith("3")
     program = folder / "checks"
     headers = Path(fmpy.__file__).parent / "c-code"
-    words = ["gcc", *FLAGS, f"-I{headers}", HERE / "checks.c", "-o", program, "-ldl", "-lm"]
+    sources = [HERE / ("checks3.c" if is_three else "checks.c"), PROPAGATOR / "propagator.c"]
+    words = ["gcc", *FLAGS, f"-I{headers}", f"-I{PROPAGATOR}", *sources, "-o", program, "-ldl", "-lm"]
     subprocess.run(list(map(str, words)), check=True)
-    unpacked = Path(extract(str(fmu2), unzipdir=str(folder / "a fmu")))
-    description = read_model_description(str(unpacked))
+    # The numbers are held against modes of our own, not the FMU's.
+    modes = modes_at(BEAM, ZETAS, FORCES[0], RESPONSES[0])
+    text = folder / "modes.txt"
+    text.write_text("".join(f"{omega:.17g} {zeta:.17g} {shape:.17g} 1.0\n" for omega, zeta, shape in modes))
     references = {v.name: str(v.valueReference) for v in description.modelVariables}
     library = next((unpacked / "binaries").glob("*/*.so"))
-    uri = (unpacked / "resources").as_uri()
-    names = ("force_1", "acceleration_1", "displacement_1")
-    return [str(program), str(library), description.guid, uri, *(references[name] for name in names)]
+    resources = unpacked / "resources"
+    where = [f"{resources}/" if is_three else resources.as_uri(), text]
+    names = [references[name] for name in ("force_1", "acceleration_1", "displacement_1")]
+    if is_three:
+        rates = [unknown.variable for unknown in description.derivatives]
+        names += [",".join(str(v.valueReference) for v in list) for list in ([v.derivative for v in rates], rates)]
+    token = description.instantiationToken if is_three else description.guid
+    return list(map(str, [program, library, token, *where, *names]))
 
 
 def test_numbers_reset_states_derivatives_and_2000_instances(command):
