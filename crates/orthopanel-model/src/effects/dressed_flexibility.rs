@@ -15,6 +15,9 @@ pub(crate) const MOST_SUMMED: usize = 60;
 /// A row a response, a column a force \[m/N\].
 pub(crate) type Flexibilities = Vec<Vec<f64>>;
 
+/// Modes, what all together leave at rest, and the plate that they stand on, where nothing is spread over it.
+pub(crate) type ModesAndFlexibility = (Vec<DressedMode>, Flexibilities, Option<Arc<MindlinPlate>>);
+
 impl DressedPanel {
     /// $\sum_m W_m(r)W_m(f)/\omega_m^2$ \[m/N\] over all flexible modes of the panel with its effects.
     ///
@@ -41,7 +44,7 @@ impl DressedPanel {
         count: usize,
         forces: &[Place],
         responses: &[Place],
-    ) -> Result<(Vec<DressedMode>, Flexibilities, Option<Arc<MindlinPlate>>), ModelError> {
+    ) -> Result<ModesAndFlexibility, ModelError> {
         let dressed = Dressed::new(parts, count + SPARE_MODES)?;
         let ports: Vec<Place> = forces.iter().chain(responses).copied().collect();
         let answers = dressed.far_answers(&ports)?;
