@@ -102,7 +102,7 @@ def test_effects_of_rig_and_channel_are_left_out_and_said(tmp_path):
             texts.append(archive.read("resources/panel.json"))
             page = archive.read("documentation/index.html").decode()
             assert ("<td>effect gain</td><td>left out: no part of the panel</td>" in page) == (name == "all.fmu")
-            assert "effect local-mass (in the modes)" in page
+            assert "<td>effect local-mass</td><td>in the modes</td>" in page
     assert texts[0] == texts[1]
 
 
