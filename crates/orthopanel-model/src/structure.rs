@@ -58,6 +58,13 @@ pub trait Structure {
         None
     }
 
+    /// What the basis lacks of $\sum_m\phi_{1m}\phi_{2m}/\omega_m^4$ over all flexible modes, with its derivatives, between each of
+    /// `rows` and each of the first `columns` of them, row by row; nothing where that is not known. It is the second term of the
+    /// series in $s^2$ that stands for the modes above a sum, where [`Structure::static_flexibility`] is the first.
+    fn inertial_remainders(&self, _values: &[f64], _rows: &[(Motion, Place)], _columns: usize) -> Vec<Flexibility> {
+        vec![]
+    }
+
     /// How stiffness and mass follow each parameter of the structure's own terms; none unless said.
     fn term_derivatives(&self, _values: &[f64]) -> Vec<TermDerivative> {
         vec![]

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use num_complex::Complex64;
 use orthopanel_model::{
-    Boundary, CoreModulus, Damping, EffectState, ModalStepper, ModeRange, PanelMode, PanelModel, Piece, Place,
+    Boundary, CoreModulus, Damping, EffectState, ModalStepper, Mode, ModeRange, PanelMode, PanelModel, Piece, Place,
     ReceptanceSetup, RecordSetting, effect,
 };
 
@@ -124,21 +124,29 @@ fn val_masses_change_nothing_of_a_held_panel_at_rest() {
     }
 }
 
-/// What few modes miss of the accelerance well below the last is the static part of the others.
+/// What few modes miss of the accelerance well below the last is the static part of the others, and beyond it
+/// $\omega^2\sum\phi_m\phi_m/\omega_m^4$ of these: 4 % of the static part at 200 Hz. A static part that is off by 2 %, as the missing mass
+/// makes it where the series' second term is that of a cut basis, may hide in that, so the term is taken off.
 #[test]
 fn val_the_static_part_makes_up_for_the_modes_left_out() {
     let model = PanelModel::from_json(&text(DRESSED)).unwrap();
     let ports = [[at(-0.31)], [at(0.27)]];
     let modes = model.modal_model(ModeRange::Count(2), &ports[0], &ports[1]).unwrap();
     let beyond = model.static_remainder(&modes, &ports[0], &ports[1]).unwrap()[0][0];
+    let many = model.modal_model(ModeRange::Count(30), &ports[0], &ports[1]).unwrap();
+    let second = |mode: &Mode| mode.at_forces[0] * mode.at_responses[0] / mode.angular_frequency.powi(4);
+    let second: f64 = many.flexible().skip(2).map(second).sum();
     // Below the first resonance, where the damping of no mode counts.
     for frequency in [20.0, 60.0, 120.0, 200.0] {
         let omega = TAU * frequency;
         let truth = line(SAME, 0.004, Complex64::new(0.0, omega));
         let sum = modes.accelerance(0, 0, frequency);
-        let [without, with] =
-            [sum, sum - omega * omega * beyond].map(|found| (found - truth).norm() / (omega * omega * beyond));
-        assert!((without - 1.0).abs() < 0.03 && with < 0.03, "{frequency} Hz: {without} {with}");
+        let at_rest = omega * omega * beyond;
+        let [without, with] = [0.0, at_rest + omega.powi(4) * second].map(|rest| (sum - rest - truth) / at_rest);
+        assert!((without.re - 1.0).abs() < 0.04, "{frequency} Hz: {without}");
+        // The third term is 2 % of the second.
+        assert!(with.re.abs() < 1e-3, "{frequency} Hz: {with}");
+        assert!(with.im.abs() < 0.01, "{frequency} Hz: {with}");
     }
 }
 

@@ -38,7 +38,7 @@ impl LowModes {
     }
 
     /// What the modes beyond these do in some rows: without them, by the structure's stiffness and these modes alone. What the
-    /// basis is known to lack of $C_0$ is added.
+    /// basis is known to lack of $C_0$ and $C_1$ is added.
     pub(super) fn far_answers(
         &self,
         structure: &dyn Structure,
@@ -75,10 +75,13 @@ impl LowModes {
     }
 
     /// Puts the exact static flexibility in place of the basis' own, where the structure knows it, else adds what the basis
-    /// is known to lack.
+    /// is known to lack; adds what it lacks of $C_1$.
     fn close(&self, structure: &dyn Structure, values: &[f64], rows: &[Row], answers: &mut FarAnswers) {
         let near = &answers.near;
-        let far = &mut answers.series[0];
+        let [far, inertia] = &mut answers.series;
+        for (index, lacking) in structure.inertial_remainders(values, rows, rows.len()).iter().enumerate() {
+            inertia[(index / rows.len(), index % rows.len())] += lacking.value;
+        }
         for (p, &first) in rows.iter().enumerate() {
             for (q, &second) in rows.iter().enumerate() {
                 if let Some(whole) = structure.static_flexibility(values, [first, second]) {

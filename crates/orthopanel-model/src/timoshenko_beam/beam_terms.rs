@@ -62,6 +62,14 @@ impl ShearLoss {
     }
 }
 
+impl ShearLoss {
+    /// Whether a place lies in the span.
+    pub(crate) fn holds(&self, x: f64, half_length: f64) -> bool {
+        let [low, high] = self.edges(half_length);
+        (low..high).contains(&x)
+    }
+}
+
 /// Springs between a clamped end and the ground; infinite stiffness is the ideal clamp.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Support {

@@ -10,6 +10,7 @@
 mod beam_terms;
 mod exact;
 mod finite_element;
+mod inertial_remainder;
 mod ritz;
 mod static_field;
 mod static_flexibility;

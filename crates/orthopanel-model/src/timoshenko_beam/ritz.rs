@@ -2,7 +2,8 @@
 
 use faer::Mat;
 
-use super::beam_terms::BeamTerms;
+use super::beam_terms::{BeamTerms, ShearLoss};
+use super::inertial_remainder::InertialRemainder;
 use super::strain_basis::{Parity, StrainFunction, end_motions, steps, strain_functions};
 use super::term_matrices::{Quadrature, series_products, support_stiffness};
 use super::{BEAM_CONSTANTS, Section, StaticFlexibility};
@@ -23,6 +24,7 @@ pub struct TimoshenkoBeam {
     functions: Vec<Vec<StrainFunction>>,
     blocks: Vec<Block>,
     flexibility: StaticFlexibility,
+    inertia: InertialRemainder,
 }
 
 impl TimoshenkoBeam {
@@ -69,7 +71,8 @@ impl TimoshenkoBeam {
         let functions: Vec<_> = [even, odd, all].into_iter().filter(|block| !block.is_empty()).collect();
         let blocks = functions.iter().map(|block| assemble(block, section, half_length, &terms)).collect();
         let flexibility = StaticFlexibility::with_terms(&piece, boundary, &terms)?;
-        Ok(Self { half_length, section, terms, functions, blocks, flexibility })
+        let inertia = InertialRemainder::new(half_length, section, order.max(4), &terms.losses);
+        Ok(Self { half_length, section, terms, functions, blocks, flexibility, inertia })
     }
 }
 
@@ -155,6 +158,24 @@ impl Structure for TimoshenkoBeam {
             // Rotary inertia alters the field that a free beam's own inertia balances.
             by_terms: std::iter::once(None).chain(known).chain(support.map(Some)).collect(),
         })
+    }
+
+    fn inertial_remainders(&self, values: &[f64], rows: &[(Motion, Place)], columns: usize) -> Vec<Flexibility> {
+        let Some(g_zx) = values.get(1) else { return vec![] };
+        let rows: Vec<_> = rows.iter().map(|(motion, place)| self.inertia.unheld(*motion, place.x)).collect();
+        let pairs = rows.iter().flat_map(|a| rows.iter().take(columns).map(move |b| (a, b)));
+        let pairs = pairs.map(|(a, b)| {
+            let value = self.inertia.between(a, b) / (g_zx * g_zx);
+            // It goes with the flexibility at both places; the rotary inertia and supports have no part in it.
+            let by_loss = |loss: &ShearLoss| {
+                let inside = [a, b].into_iter().filter(|row| loss.holds(row.at, self.half_length)).count();
+                value * inside as f64 / (1.0 - loss.loss)
+            };
+            let by_losses = self.terms.losses.iter().flat_map(|loss| [Some(by_loss(loss)), None, None]);
+            let by_terms = std::iter::once(None).chain(by_losses).collect();
+            Flexibility { value, by_constants: vec![0.0, -2.0 * value / g_zx], by_terms }
+        });
+        pairs.collect()
     }
 
     fn term_derivatives(&self, values: &[f64]) -> Vec<TermDerivative> {

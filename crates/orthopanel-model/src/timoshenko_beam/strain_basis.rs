@@ -104,7 +104,12 @@ fn integrated(h: f64, [w0, psi0]: [f64; 2], curvature: Vec<f64>, shear: Vec<f64>
 }
 
 /// Derivatives of the shear strain that may jump at an edge, the strain itself among them.
-const JUMPS: i32 = 3;
+pub(super) const JUMPS: i32 = 3;
+
+/// Whether a place $t$ lies on the beam and not at its end, where an edge is none.
+pub(super) fn is_inside(t: f64) -> bool {
+    t.abs() < 1.0 - 1e-4
+}
 
 /// Strains that begin at the edges of a span, where shear stiffness changes: the shear force goes on smoothly there, so
 /// the strain must jump, which no few polynomials can. An edge at the beam's end is none.
@@ -112,7 +117,7 @@ const JUMPS: i32 = 3;
 /// Each is taken less its share of the `terms` polynomials of the basis, lest it nearly repeat them. What is left has no
 /// mean, so $w$ vanishes at both ends whatever holds them.
 pub(super) fn steps(half_length: f64, edges: [f64; 2], terms: usize) -> impl Iterator<Item = StrainFunction> {
-    let inside = edges.into_iter().map(move |x| x / half_length).filter(|t| t.abs() < 1.0 - 1e-4);
+    let inside = edges.into_iter().map(move |x| x / half_length).filter(|t| is_inside(*t));
     inside.flat_map(move |edge| steps_at(half_length, edge, terms))
 }
 

@@ -67,4 +67,10 @@ impl Moved {
         let of = |side: &TimoshenkoBeam| Some(side.static_flexibility(values, motions)?.value);
         Some((of(forth)? - of(back)?) / self.apart)
     }
+
+    /// How [`Structure::inertial_remainders`] change with the parameter.
+    pub(in crate::effects) fn inertial_remainders(&self, values: &[f64], rows: &[Row], columns: usize) -> Vec<f64> {
+        let [back, forth] = [0, 1].map(|side: usize| self.sides[side].inertial_remainders(values, rows, columns));
+        forth.iter().zip(&back).map(|(forth, back)| (forth.value - back.value) / self.apart).collect()
+    }
 }

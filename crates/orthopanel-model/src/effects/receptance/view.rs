@@ -87,6 +87,7 @@ impl View {
             }
         }
         view.close(base, &rows);
+        view.add_inertia(base, &rows);
         Ok(view)
     }
 
@@ -197,6 +198,30 @@ impl View {
         }
     }
 
+    /// Adds what the basis lacks of the series' second term: most at a driving point, where the strain jumps.
+    fn add_inertia(&mut self, base: &ModalBase, rows: &[Row]) {
+        let layout = self.layout;
+        let lacking = base.structure.inertial_remainders(&base.values, rows, layout.active);
+        add_all(&mut self.numbers[layout.series(1)..], lacking.iter().map(|lacking| lacking.value));
+        let active = &rows[..layout.active];
+        let lacking = &lacking[..lacking.len().min(layout.active * layout.active)];
+        let constants = base.values.len();
+        for p in 0..layout.parameters {
+            let into = &mut self.numbers[layout.series_by(p, 1)..];
+            let Some(&term) = p.checked_sub(constants).and_then(|position| base.terms.get(position)) else {
+                add_all(into, lacking.iter().map(|lacking| lacking.by_constants.get(p).copied().unwrap_or_default()));
+                continue;
+            };
+            match base.moved.iter().find(|(_, moved)| moved.term == term) {
+                Some((_, moved)) => add_all(into, moved.inertial_remainders(&base.values, active, active.len())),
+                None => add_all(
+                    into,
+                    lacking.iter().map(|lacking| lacking.by_terms.get(term).copied().flatten().unwrap_or_default()),
+                ),
+            }
+        }
+    }
+
     /// Adds what the basis is known to lack.
     fn add_remainder(&mut self, base: &ModalBase, motions: [Row; 2], [row, column]: [usize; 2]) {
         let Some((value, by_coefficients)) = base.structure.static_remainder(&base.values, motions) else { return };
@@ -223,6 +248,10 @@ impl View {
             + self.numbers[shape + row] * self.numbers[by + column];
         (turned - self.product(m, row, column) * self.numbers[self.layout.by(p) + m] / lambda) / lambda
     }
+}
+
+fn add_all(into: &mut [f64], values: impl IntoIterator<Item = f64>) {
+    into.iter_mut().zip(values).for_each(|(sum, value)| *sum += value);
 }
 
 fn add(into: &mut [f64], matrix: &Mat<f64>) {
