@@ -5,7 +5,7 @@
 mod support;
 
 use orthopanel_identify::{Tracing, Verdict, trace};
-use support::{hammer_test, made};
+use support::{hammer_test, made, made_with};
 
 fn value(found: &Tracing, parameter: &str) -> (f64, f64) {
     let estimate = found.effects[0].parameters.iter().find(|known| known.name == parameter).unwrap().values[0];
@@ -28,6 +28,23 @@ fn val_an_effect_put_in_is_named_and_measured() {
         // Thousands of lines above their noise know a gain to 1e-6. No model is trusted to more than 3e-4 at any of ten modes.
         assert!(kind != "record-gain" || std > 5e-5, "{kind}: {std}");
         assert!(found.error.after.held_out < 1.2 * found.error.noise_floor, "{kind}: {:?}", found.error);
+    }
+}
+
+/// The constants fitted with ideal clamps are no start for clamps that yield: this was `unexplained` before the search began from the
+/// resonances.
+#[test]
+fn val_clamps_that_yield_are_found_from_one_pair_of_places() {
+    let folder = tempfile::tempdir().unwrap();
+    let Some((test, case)) = made_with(&folder.path().join("set"), "single-place", "support-compliance", 1101) else {
+        return;
+    };
+    let found = trace(&test).unwrap();
+    assert_eq!((found.verdict.name(), found.effects[0].id), ("explained", "support-compliance"));
+    for parameter in ["rotation", "translation"] {
+        let truth = case["effects"][0]["parameters"][parameter].as_f64().unwrap();
+        let (value, std) = value(&found, parameter);
+        assert!((value - truth).abs() < 3.0 * std, "{parameter}: {value} +- {std}, truth {truth}");
     }
 }
 

@@ -9,6 +9,7 @@ use super::fit::{Fit, LAST, PATIENCE, fit, polish, settle};
 use super::held_out::held_out;
 use super::hypothesis::Hypothesis;
 use super::information::LikelihoodScale;
+use super::other_side::turn_round;
 use super::outcome::{NotTested, Progress};
 use super::record_problem::{Grouping, State};
 use super::records_of_test::TestRecords;
@@ -49,6 +50,9 @@ const LITTLE: f64 = 300.0;
 /// Rounds on the narrowest lines that the best hypothesis may take beyond the first, and the gain that is worth another.
 const MORE_ROUNDS: usize = 3;
 const SETTLED: f64 = 1.0;
+/// Rounds of a search that still goes down by this part: a core's valley beside a delay's is long.
+const MOST_ROUNDS: usize = 8;
+const STILL_FALLING: f64 = 0.05;
 
 /// What a search needs to know.
 pub(super) struct Search<'a> {
@@ -90,7 +94,8 @@ impl Search<'_> {
                 Err(error) => not_tested.push(NotTested { id, reason: error.to_string() }),
             }
         }
-        let fits = [base].into_iter().chain(self.finish(begun, 0)).collect::<Vec<_>>();
+        let mut fits = [base].into_iter().chain(self.finish(begun, 0)).collect::<Vec<_>>();
+        turn_round(self.records, &mut fits, self.declared());
         let mut ranking = Ranking { scale: self.scale(&fits)?, fits, chosen: 0, not_tested, unfinished: false };
         self.choose(&mut ranking)?;
         for size in 1..MOST_EFFECTS {
@@ -137,9 +142,10 @@ impl Search<'_> {
     /// Follows the best to its minimum: what others are held against must be what it can be.
     fn lead_on(&self, running: &mut [Costed]) {
         let Some(best) = running.iter_mut().min_by(|a, b| a.1.total_cmp(&b.1)) else { return };
-        for _ in 0..MORE_ROUNDS {
+        for round in 0..MOST_ROUNDS {
+            let worth = if round < MORE_ROUNDS { SETTLED } else { STILL_FALLING * best.1 };
             match polish(self.records, &best.0, LAST, PATIENCE[LAST]) {
-                Ok((state, cost)) if cost < best.1 - SETTLED => *best = (state, cost),
+                Ok((state, cost)) if cost < best.1 - worth => *best = (state, cost),
                 _ => break,
             }
         }
@@ -202,6 +208,7 @@ impl Search<'_> {
                 break;
             }
         }
+        turn_round(self.records, &mut more, self.declared());
         ranking.fits.extend(each_once(more));
         Ok(())
     }
@@ -299,9 +306,11 @@ impl Ranking {
         let effects = |index: usize| self.fits[index].state.hypothesis.effects.len();
         let size = |index: usize| self.fits[index].state.hypothesis.size();
         let limit = self.bic(self.chosen) + CLEAR;
+        let base = self.price(0);
         let alike = (1..self.fits.len()).filter(|&index| {
             let as_many = effects(index) == effects(self.chosen) && size(index) < size(self.chosen);
-            as_many && self.fits[index].given_up.is_none() && self.bic(index) < limit
+            // What does not pay beside the base is no name for anything.
+            as_many && self.fits[index].given_up.is_none() && self.bic(index) < limit && self.price(index) < base
         });
         let simplest = alike.min_by(|&a, &b| size(a).cmp(&size(b)).then(self.bic(a).total_cmp(&self.bic(b))));
         self.chosen = simplest.unwrap_or(self.chosen);

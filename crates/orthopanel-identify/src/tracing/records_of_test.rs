@@ -41,7 +41,7 @@ pub(super) struct TestRecords {
     /// See [`RecordProblem::work`].
     pub work: AtomicU64,
     /// Frequencies \[Hz\] of the resonances that the records show.
-    poles: Vec<f64>,
+    pub poles: Vec<f64>,
     /// How many of them the beam has no mode for.
     strange_poles: usize,
     /// As the analyser shows the records.

@@ -4,15 +4,20 @@ use orthopanel_model::{Effect, Piece, Scale};
 use rayon::prelude::*;
 
 use super::fit::{polish, promise};
-use super::hypothesis::Switched;
+use super::hypothesis::{Switched, has_place};
 use super::record_problem::State;
 use super::records_of_test::TestRecords;
+use super::support_starts::{SUPPORT, support_starts};
 use crate::IdentifyError;
 use crate::least_squares::Ending;
 
 /// Starts that are followed for some steps before the best is taken.
 const FOLLOWED: usize = 3;
 const FOLLOW: Ending = Ending::far(8, 1.0);
+/// One pair of places hardly tells where on the panel something is: wide peaks have more minima there than several pairs leave,
+/// and each costs less to follow.
+const FEW_RECORDS: usize = 2;
+const FOLLOWED_OF_FEW: usize = 8;
 /// A plate's modes of two families change their order: one step foretells little.
 const PLATES_FOLLOWED: usize = 4;
 const PLATES_FOLLOW: Ending = Ending::far(16, 1.0);
@@ -34,6 +39,9 @@ pub(super) fn scored_starts(
     (piece, stage): (&Piece, usize),
 ) -> Result<Vec<Costed>, IdentifyError> {
     let problem = records.problem(stage);
+    // Where no end is clamped, the grid's own starts say so.
+    let beside =
+        if effect.id() == SUPPORT { support_starts(records, base, effect, piece).unwrap_or_default() } else { vec![] };
     let scored: Vec<Result<Costed, IdentifyError>> = grid(effect, piece, (problem.records.len(), records.band))
         .into_par_iter()
         .flat_map_iter(|start| {
@@ -46,6 +54,7 @@ pub(super) fn scored_starts(
                 Err(error) => vec![Err(error)],
             }
         })
+        .chain(beside.into_par_iter().map(Ok))
         .map(|state| {
             let state = state?;
             let at = problem.linearise(&problem.parameters(&state), &state)?;
@@ -72,7 +81,14 @@ pub(super) fn scored_starts(
 pub(super) fn followed(records: &TestRecords, starts: &[Costed], stage: usize) -> Option<Costed> {
     let is_plate = starts.iter().any(|(state, _)| state.hypothesis.holds_plate());
     let is_hard = is_plate && records.shows_more_than_a_beam();
-    let (follow, patience) = if is_hard { (PLATES_FOLLOWED, PLATES_FOLLOW) } else { (FOLLOWED, FOLLOW) };
+    let has_place = |(state, _): &Costed| state.hypothesis.effects.last().is_some_and(|on| has_place(on.effect));
+    let (follow, patience) = if is_hard {
+        (PLATES_FOLLOWED, PLATES_FOLLOW)
+    } else if records.problem(stage).records.len() <= FEW_RECORDS && starts.first().is_some_and(has_place) {
+        (FOLLOWED_OF_FEW, FOLLOW)
+    } else {
+        (FOLLOWED, FOLLOW)
+    };
     let followed: Vec<Costed> =
         starts.par_iter().take(follow).filter_map(|(state, _)| polish(records, state, stage, patience).ok()).collect();
     followed.into_iter().min_by(|a, b| a.1.total_cmp(&b.1))

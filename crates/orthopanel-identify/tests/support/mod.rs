@@ -12,6 +12,11 @@ use serde_json::Value;
 /// A test made by `tests/blind_tracing`, which shares no code with the crates, with its truth; `None` where
 /// `ORTHOPANEL_PYTHON` names no Python for it.
 pub fn made(folder: &Path, set: &str, kind: &str) -> Option<(ImpactTest, Value)> {
+    made_with(folder, set, kind, 1001)
+}
+
+/// The same with a seed.
+pub fn made_with(folder: &Path, set: &str, kind: &str, seed: u32) -> Option<(ImpactTest, Value)> {
     let Some(python) = std::env::var_os("ORTHOPANEL_PYTHON") else {
         println!("skipped: ORTHOPANEL_PYTHON names no Python with numpy, scipy and pyuff");
         return None;
@@ -21,7 +26,7 @@ pub fn made(folder: &Path, set: &str, kind: &str) -> Option<(ImpactTest, Value)>
         .current_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests"))
         .args(["-m", "blind_tracing", "make"])
         .arg(folder)
-        .args(["--set", set, "--kind", kind, "--count", "1", "--seed", "1001"])
+        .args(["--set", set, "--kind", kind, "--count", "1", "--seed", &seed.to_string()])
         .output()
         .unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));

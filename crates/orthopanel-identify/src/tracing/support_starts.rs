@@ -1,0 +1,77 @@
+//! Where the search for yielding clamps begins: the constants of a beam fitted with ideal clamps can be far off.
+
+use orthopanel_model::{BEAM_CONSTANTS, Effect, Piece};
+
+use super::hypothesis::Switched;
+use super::record_problem::State;
+use super::records_of_test::TestRecords;
+use crate::IdentifyError;
+use crate::accelerance_fit::pole_charge;
+
+/// The effect.
+pub(super) const SUPPORT: &str = "support-compliance";
+/// Springs tried against rotation, in $EI/L$, and against translation, in $EI/L^3$: from clamps that yield visibly to such that
+/// hardly do.
+const ROTATIONS: [f64; 3] = [10.0, 50.0, 250.0];
+const TRANSLATIONS: [f64; 3] = [300.0, 3000.0, 30_000.0];
+/// Ratios $E_x/G_{zx}$ tried: lowest, highest and steps between.
+const RATIOS: (f64, f64, usize) = (6.0, 60.0, 5);
+/// One of so many lowest poles is one of so many lowest modes.
+const ANCHORS: usize = 3;
+/// A pole further than this from every mode belongs to none.
+const REACH: f64 = 0.05;
+/// Starts that are handed on.
+const STARTS: usize = 6;
+
+/// `base` with springs at the clamps and constants at which the modes lie nearest to the poles, the likeliest first. With
+/// the springs counted in $EI$, all frequencies go with the root of a factor on both constants.
+///
+/// # Errors
+/// What the model refuses, as where no end is clamped.
+pub(super) fn support_starts(
+    records: &TestRecords,
+    base: &State,
+    effect: &'static dyn Effect,
+    piece: &Piece,
+) -> Result<Vec<State>, IdentifyError> {
+    let count = records.problem(0).records.len();
+    let poles = &records.poles;
+    let top = poles.last().copied().unwrap_or(0.0) * (1.0 + REACH);
+    let with = |constants: [f64; 2], rotation: f64, translation: f64| {
+        let bending = constants[0] * piece.width * piece.thickness.powi(3) / 12.0;
+        let springs = [rotation * bending / piece.length, translation * bending / piece.length.powi(3)];
+        let value = |name: &str| Some(springs[usize::from(name == "translation")]);
+        let switched = Switched::new(effect, piece, count, value, |_| false);
+        let constants = constants.map(f64::ln);
+        State { constants, hypothesis: base.hypothesis.and(switched), ..base.clone() }
+    };
+    let usual = base.constants.map(f64::exp);
+    let (lowest, highest, steps) = RATIOS;
+    let mut found: Vec<(f64, State)> = Vec::new();
+    for (rotation, translation) in ROTATIONS.iter().flat_map(|r| TRANSLATIONS.map(|t| (*r, t))) {
+        for step in 0..=steps {
+            let ratio = lowest * (highest / lowest).powf(step as f64 / steps as f64);
+            let unit = match records.held {
+                [Some(e_x), g_zx] => [e_x, g_zx.unwrap_or(e_x / ratio)],
+                [None, Some(g_zx)] => [ratio * g_zx, g_zx],
+                [None, None] => [usual[0], usual[0] / ratio],
+            };
+            let state = with(unit, rotation, translation);
+            let modes = records.setup.summed_frequencies(&unit, &state.hypothesis.states(count)?)?;
+            let anchored = |pole: &f64| modes.iter().take(ANCHORS).map(|mode| pole / mode).collect::<Vec<_>>();
+            let is_free = records.held == [None; 2];
+            let factors: Vec<f64> =
+                if is_free { poles.iter().take(ANCHORS).flat_map(anchored).collect() } else { vec![1.0] };
+            let best = factors
+                .into_iter()
+                .map(|factor| (pole_charge(poles, modes.iter().map(|mode| mode * factor), top, REACH), factor));
+            let Some((charge, factor)) = best.min_by(|a, b| a.0.total_cmp(&b.0)) else { continue };
+            let values = unit.map(|constant| constant * factor * factor);
+            if BEAM_CONSTANTS.iter().zip(&values).all(|(constant, &value)| constant.check(value).is_ok()) {
+                found.push((charge, with(values, rotation, translation)));
+            }
+        }
+    }
+    found.sort_by(|a, b| a.0.total_cmp(&b.0));
+    Ok(found.into_iter().take(STARTS).map(|(_, state)| state).collect())
+}
