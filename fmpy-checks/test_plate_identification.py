@@ -10,7 +10,8 @@ from conftest import ROOT
 from plate_by_scikit_fem import nodal_lines
 
 TRUTH = {"e_x": 1.07e10, "e_y": 8.6e9, "nu_xy": 0.34, "g_xy": 3.2e9, "g_yz": 2.6e8, "g_zx": 5.363e8}
-WIDTHS = [0.15, 0.2, 0.25, 0.3, 0.35, 0.4]
+# Poisson's ratio shows where bending along x and y couple, so nearly square plates are among these.
+WIDTHS = [0.2, 0.3, 0.4, 0.5, 0.6, 0.7]
 COUNT = 20
 NOISE = 5e-4
 SEEDS = range(20)
@@ -55,21 +56,15 @@ def identify(text, folder):
 
 
 def test_all_six_constants_come_back_and_their_intervals_hold_them(modes, tmp_path):
-    held, poisson = [], []
+    held = []
     for seed in SEEDS:
         found = identify(written(modes, seed), tmp_path)
         assert not found["not_identified"], found["not_identified"]
         for name, truth in TRUTH.items():
             constant = found["constants"][name]
-            missed = abs(constant["value"] / truth - 1.0)
-            held.append(missed * truth < 1.96 * constant["std"])
-            if name == "nu_xy":
-                poisson.append(missed)
-            else:
-                assert missed < 0.01, (seed, name, constant)
-    # Poisson's ratio moves no frequency by more than a few hundredths of itself: its own standard deviation is 0.5 %
-    # here, so that one test in twenty or so misses 1 %, and none by much.
-    assert np.mean(np.array(poisson) < 0.01) >= 0.9 and max(poisson) < 0.02, poisson
+            missed = abs(constant["value"] - truth)
+            held.append(missed < 1.96 * constant["std"])
+            assert missed < 0.01 * truth, (seed, name, constant)
     # 120 intervals of 95 %. The six of one test miss together in part, so the share scatters by some 4 %.
     assert np.mean(held) > 0.85, np.mean(held)
 
