@@ -3,7 +3,7 @@
 
 use std::fmt::Write as _;
 
-use orthopanel_model::{Boundary, CoreFit, EffectEntry, Estimate, PanelModel, StructureKind, effect};
+use orthopanel_model::{Boundary, CoreFit, EffectEntry, Estimate, PanelModel, effect};
 
 use crate::acceleration_band::AccelerationBands;
 use crate::documentation::escaped;
@@ -48,7 +48,7 @@ impl Origin<'_> {
         let piece = &self.panel.piece;
         let exact = |name: &str, value: String| [name.to_owned(), value, String::new()];
         let mut rows = vec![
-            exact("structure", structure(self.panel.structure).into()),
+            exact("structure", self.panel.structure.title().into()),
             exact("length, along x [m]", piece.length.to_string()),
             exact("width, along y [m]", piece.width.to_string()),
             exact("thickness [m]", piece.thickness.to_string()),
@@ -121,13 +121,6 @@ const MEASURED: &str = "<p>Each mode as measured, and by the model as identified
 fn told(name: String, estimate: &Estimate) -> [String; 3] {
     let std = estimate.std.map_or_else(|| "not told".into(), |std| format!("{std:.1e}"));
     [name, format!("{:.4e}", estimate.value), std]
-}
-
-fn structure(kind: StructureKind) -> &'static str {
-    match kind {
-        StructureKind::TimoshenkoBeam => "orthotropic Timoshenko beam",
-        StructureKind::MindlinPlate => "orthotropic Mindlin plate",
-    }
 }
 
 fn edges(Boundary { left, right, front, back }: Boundary) -> String {

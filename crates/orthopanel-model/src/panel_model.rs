@@ -68,11 +68,11 @@ impl StructureKind {
         }
     }
 
-    /// Its name in sentences, with an article.
+    /// Its name in sentences.
     pub fn title(self) -> &'static str {
         match self {
-            Self::TimoshenkoBeam => "an orthotropic Timoshenko beam",
-            Self::MindlinPlate => "an orthotropic Mindlin plate",
+            Self::TimoshenkoBeam => "orthotropic Timoshenko beam",
+            Self::MindlinPlate => "orthotropic Mindlin plate",
         }
     }
 

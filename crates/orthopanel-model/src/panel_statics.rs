@@ -42,23 +42,21 @@ impl PanelModel {
         finite(flexibility).map(Some)
     }
 
-    /// The modes of `count` flexible ones, as seen from these ports, and [`PanelModel::static_flexibility`] between these, in one.
+    /// The modes of a range, as seen from these ports, and [`PanelModel::static_flexibility`] between these, in one.
     pub(crate) fn modes_and_flexibility(
         &self,
         range: ModeRange,
         forces: &[Place],
         responses: &[Place],
     ) -> Result<(ModalModel, Flexibilities), ModelError> {
-        let ModeRange::Count(count) = range.checked(self.structure)? else {
-            let modes = self.modal_model(range, forces, responses)?;
-            let all = self.static_flexibility(modes.flexible().count(), forces, responses)?;
-            return Ok((modes, all.unwrap_or_default()));
+        let count = match range.checked(self.structure)? {
+            ModeRange::Count(count) if !self.effects.is_empty() && count <= MOST_SUMMED => count,
+            _ => {
+                let modes = self.modal_model(range, forces, responses)?;
+                let all = self.static_flexibility(modes.flexible().count(), forces, responses)?;
+                return Ok((modes, all.unwrap_or_default()));
+            }
         };
-        if self.effects.is_empty() || count > MOST_SUMMED {
-            let modes = self.modal_model(range, forces, responses)?;
-            let all = self.static_flexibility(count, forces, responses)?;
-            return Ok((modes, all.unwrap_or_default()));
-        }
         let (values, effects) = self.with_effects()?;
         let setting = EffectSetting::of_panel(&self.piece, self.boundary);
         let even = self.even(&setting, count)?;

@@ -45,10 +45,12 @@ pub(super) fn refuse_far_from_list(
         return Ok(());
     }
     let limit = found.predictions.iter().find_map(|at| problem.structure.near_limit(&problem.constants, &at.values));
-    let names = match doubts {
-        _ if limit.is_some() => limit.unwrap_or_default(),
-        [] => format!("{}; look at its shape again, and at the sizes of the piece", worst_line(test, problem, found)),
-        doubts => doubts.join("; "),
+    let names = match (limit, doubts) {
+        (Some(limit), _) => limit,
+        (None, []) => {
+            format!("{}; look at its shape again, and at the sizes of the piece", worst_line(test, problem, found))
+        }
+        (None, doubts) => doubts.join("; "),
     };
     Err(IdentifyError::FarFromList { error_percent, names })
 }

@@ -134,15 +134,15 @@ fn least_squares(
     start: &[f64],
     quick: Option<&Arc<[FrequencySet]>>,
 ) -> Result<Minimum, IdentifyError> {
-    let ending = match problem.structure.shown() {
-        Shown::Wholly => Ending::SMOOTH,
-        Shown::InPart => Ending::WITH_JUMPS,
+    let (ending, searches) = match problem.structure.shown() {
+        Shown::Wholly => (Ending::SMOOTH, 0),
+        Shown::InPart => (Ending::WITH_JUMPS, QUICK_SEARCHES),
     };
     let bounds = problem.constants.bounds();
     let mut parameters = start.to_vec();
     let mut quick = quick.cloned();
     let mut known: Option<Vec<SetPrediction>> = None;
-    for _ in 0..QUICK_SEARCHES {
+    for _ in 0..searches {
         let made_here = quick.is_none();
         if made_here {
             let Some(at) = known.take().or_else(|| problem.predictions(&parameters).ok()) else { break };

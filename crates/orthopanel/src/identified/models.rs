@@ -27,7 +27,7 @@ pub(super) fn model(
     }
     model.provenance.insert("piece".into(), fit.name.clone().into());
     // Two digits say how good an error is.
-    let rounded = |value: f64| format!("{value:.1e}").parse::<f64>().unwrap_or(value);
+    let rounded = |value: f64| to_digits(value, 2);
     model.provenance.insert("frequency_rms_percent".into(), rounded(found.frequency_rms_percent).into());
     if let Some(error) = found.accelerance_rms_percent {
         model.provenance.insert("accelerance_rms_percent".into(), rounded(error).into());
@@ -47,13 +47,11 @@ fn measured_mode(mode: &ModeFit) -> serde_json::Value {
         "model_hz": rounded(mode.model, 4),
         "error_percent": rounded(mode.error_percent(), 4),
     });
-    let two_digits = |value: f64| format!("{value:.1e}").parse::<f64>().unwrap_or(value);
-    let four_digits = |value: f64| format!("{value:.3e}").parse::<f64>().unwrap_or(value);
     let ratio = mode.damping;
     let told_where_known = [
-        ("measured_std_hz", mode.measured_std.map(two_digits)),
-        ("zeta", ratio.map(|ratio| four_digits(ratio.value))),
-        ("zeta_std", ratio.and_then(|ratio| ratio.std).map(two_digits)),
+        ("measured_std_hz", mode.measured_std.map(|std| to_digits(std, 2))),
+        ("zeta", ratio.map(|ratio| to_digits(ratio.value, 4))),
+        ("zeta_std", ratio.and_then(|ratio| ratio.std).map(|std| to_digits(std, 2))),
     ];
     for (key, value) in told_where_known {
         if let Some(value) = value {
@@ -61,6 +59,11 @@ fn measured_mode(mode: &ModeFit) -> serde_json::Value {
         }
     }
     told
+}
+
+/// So many significant digits of a value.
+fn to_digits(value: f64, digits: usize) -> f64 {
+    format!("{value:.behind$e}", behind = digits - 1).parse().unwrap_or(value)
 }
 
 /// Which of a piece's ratios were measured.

@@ -30,7 +30,7 @@ pub fn lead(found: &Identification) -> Vec<String> {
         1 => "the records of one pair of places".into(),
         pairs => format!("the records of {pairs} pairs of places"),
     };
-    let mut sentences = vec![format!("The panel was identified as {structure} from {data}.")];
+    let mut sentences = vec![format!("The panel was identified as an {structure} from {data}.")];
     let mut frequencies = format!("The natural frequencies are met to {} rms", percent(found.frequency_rms_percent));
     if let Some(error) = found.left_one_out_percent {
         frequencies += &format!("; each predicted from the others, to {} rms", percent(error));

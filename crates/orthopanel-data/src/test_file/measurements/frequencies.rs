@@ -12,7 +12,8 @@ use crate::DataError;
 /// Natural frequencies of the flexible modes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NaturalFrequencies {
-    /// Frequencies \[Hz\], rising (with `shape` the file may list them in any order); the beam's flexible modes 1, 2, ... where `shape` is empty.
+    /// Frequencies \[Hz\], rising (with `shape` the file may list them in any order); the beam's flexible modes 1, 2, ... where
+    /// `shape` is empty.
     pub values: Vec<f64>,
     /// Bin width of the analyser \[Hz\], one a mode; empty where the file says nothing.
     pub resolution: Vec<f64>,
