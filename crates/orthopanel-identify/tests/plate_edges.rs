@@ -9,8 +9,8 @@ use support::plate::TRUTH;
 
 const ENDS: [(End, &str); 3] = [(End::Free, "free"), (End::Pinned, "pinned"), (End::Clamped, "clamped")];
 
-/// Widths and thicknesses \[m\]. Thicker ones with a free edge along the front may err by up to 8e-4 in lines of four nodes across.
-const SIZES: [[f64; 2]; 2] = [[0.4, 0.03], [0.7, 0.03]];
+/// Widths and thicknesses \[m\].
+const SIZES: [[f64; 2]; 4] = [[0.4, 0.03], [0.7, 0.03], [0.7, 0.06], [0.8, 0.1]];
 
 /// The lowest modes that share their name with no other, on a basis far larger than a list's: it holds them to some 1e-6.
 fn lowest(piece: &Piece, boundary: Boundary) -> Vec<(f64, [usize; 2])> {

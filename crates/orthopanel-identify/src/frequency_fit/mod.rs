@@ -6,6 +6,7 @@ mod doubtful_names;
 mod far_from_list;
 mod first_constants;
 mod impossible_names;
+mod lone_lines;
 mod noise;
 mod of_poles;
 mod other_readings;

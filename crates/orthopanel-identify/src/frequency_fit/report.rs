@@ -2,6 +2,7 @@
 
 use orthopanel_data::ImpactTest;
 
+use super::lone_lines::lone_lines;
 use super::noise::{BEYOND_CHANCE, Noise, USUAL_SCATTER};
 use super::own_constants::own_constant_that_helps;
 use super::problem::{FrequencyProblem, SetPrediction};
@@ -24,6 +25,9 @@ pub(super) fn report(
     notes.extend(other_modes(test, problem, predictions)?);
     if notes.is_empty() {
         notes.extend(large_miss(test, problem, found, predictions, &at));
+    }
+    if notes.is_empty() {
+        notes = lone_lines(test, problem, &at);
     }
     Ok(Identification {
         structure: problem.structure.kind(),

@@ -97,9 +97,7 @@ pub(super) fn left_one_out_percent(at: &Linearised, covariance: &Mat<f64>) -> Op
     }
     let mut squares = 0.0;
     for (i, residual) in at.residuals.iter().enumerate() {
-        let row = |j: usize| at.jacobian[(i, j)];
-        let pairs = (0..free).flat_map(|j| (0..free).map(move |k| (j, k)));
-        let leverage: f64 = pairs.map(|(j, k)| row(j) * covariance[(j, k)] * row(k)).sum();
+        let leverage = leverage(at, covariance, i);
         if leverage > 1.0 - 1e-9 {
             // Without this frequency a constant is not determined at all.
             return None;
@@ -107,4 +105,12 @@ pub(super) fn left_one_out_percent(at: &Linearised, covariance: &Mat<f64>) -> Op
         squares += (residual / (1.0 - leverage)).powi(2);
     }
     Some(100.0 * (squares / count as f64).sqrt())
+}
+
+/// $h_i = a_i^TCa_i$: how much of line $i$ the fit takes from that line itself.
+pub(super) fn leverage(at: &Linearised, covariance: &Mat<f64>, line: usize) -> f64 {
+    let row = |j: usize| at.jacobian[(line, j)];
+    let free = covariance.nrows();
+    let pairs = (0..free).flat_map(|j| (0..free).map(move |k| (j, k)));
+    pairs.map(|(j, k)| row(j) * covariance[(j, k)] * row(k)).sum()
 }

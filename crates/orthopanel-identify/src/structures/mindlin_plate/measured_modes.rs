@@ -69,13 +69,9 @@ const MOST_FOR_LAYER: usize = 28;
 /// Polynomials along x and y for modes of so many nodes, whatever the constants.
 fn terms(piece: &Piece, boundary: Boundary, [most_x, most_y]: [usize; 2]) -> Result<[usize; 2], ModelError> {
     let layers = MindlinPlate::layer_terms(piece, boundary)?.map(|layer| layer.min(MOST_FOR_LAYER));
-    let Boundary { left, right, front, back } = boundary;
-    let is_held = [[left, right], [front, back]].map(|ends| !ends.contains(&End::Free));
     let waves = MindlinPlate::terms_for_nodes(boundary, [most_x, most_y]);
     let least = [most_x + 11, (most_y + 6).max(7)];
-    // Edges held on both sides make more half-waves of the same nodes, and their conditions take polynomials away.
-    let for_edges = |axis: usize| if is_held[axis] { least[axis].max(waves[axis]) } else { least[axis] };
-    Ok([0, 1].map(|axis| for_edges(axis).max(layers[axis])))
+    Ok([0, 1].map(|axis| least[axis].max(waves[axis]).max(layers[axis])))
 }
 
 /// The most nodes, in the proportion of these, for which a plate can be built.
