@@ -1,7 +1,8 @@
 //! Builds the library that lies inside every FMU, so that this crate can embed it.
 //!
 //! A cdylib that is a plain dependency ends in `target/PROFILE/deps` and is lost by `cargo install`. So the library
-//! is built here, in its own profile and target folder, and `src/library.rs` embeds its bytes.
+//! is built here, in its own profile and target folder, and `src/library.rs` embeds its bytes. A release has it built before, for
+//! older systems than the builder's own (`crates/orthopanel-fmu/build-linux`), and names it in [`READY`].
 
 use std::env;
 use std::error::Error;
@@ -16,7 +17,11 @@ const LEAKING: [&str; 6] =
 const KEPT: [&str; 6] =
     ["CARGO_HOME", "CARGO_NET_", "CARGO_HTTP_", "CARGO_REGISTR", "CARGO_SOURCE_", "CARGO_MAKEFLAGS"];
 
+/// Environment variable with the path of a library that is embedded in place of one built here.
+const READY: &str = "ORTHOPANEL_FMU_READY";
+
 fn main() -> Result<(), Box<dyn Error>> {
+    println!("cargo:rerun-if-env-changed={READY}");
     let crates = PathBuf::from(env::var("CARGO_MANIFEST_DIR")?).join("..");
     let runtime = crates.join("orthopanel-fmu");
     for source in [runtime.as_path(), &crates.join("orthopanel-model")] {
@@ -28,9 +33,21 @@ fn main() -> Result<(), Box<dyn Error>> {
         println!("cargo:rerun-if-changed={}", crates.join("..").join(workspace_file).display());
     }
 
-    let library = build(&runtime.join("Cargo.toml"))?;
+    let library = match env::var_os(READY) {
+        Some(ready) => existing(Path::new(&ready))?,
+        None => build(&runtime.join("Cargo.toml"))?,
+    };
     println!("cargo:rustc-env=ORTHOPANEL_FMU_LIBRARY={}", library.display());
     Ok(())
+}
+
+/// The whole path of a library that was built before.
+fn existing(ready: &Path) -> Result<PathBuf, Box<dyn Error>> {
+    let whole = ready
+        .canonicalize()
+        .map_err(|error| format!("{READY} = {}: {error}; give the whole path of the FMU's library", ready.display()))?;
+    println!("cargo:rerun-if-changed={}", whole.display());
+    Ok(whole)
 }
 
 /// Builds the library in the profile `fmu`; returns where it lies.
