@@ -14,8 +14,12 @@ const WIDTH: u32 = 900;
 const TITLE: u32 = 40;
 /// What a map's name takes \[pixels\].
 const NAME: u32 = 30;
-/// Around a map \[pixels\].
+/// Around a map and its labels \[pixels\].
 const MARGIN: u32 = 12;
+/// What labels take below and beside a map \[pixels\].
+const LABELS: (u32, u32) = (22, 44);
+/// Right of a map, for half of its last label \[pixels\].
+const AFTER: u32 = 28;
 /// Least and greatest height of a map \[pixels\].
 const HEIGHTS: (u32, u32) = (60, 420);
 /// Cells along the longer side.
@@ -26,16 +30,16 @@ const LEVELS: [f64; 10] = [-0.9, -0.7, -0.5, -0.3, -0.1, 0.1, 0.3, 0.5, 0.7, 0.9
 type Map<'a, 'b> = ChartContext<'b, SVGBackend<'a>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
 type Ring = Vec<(f64, f64)>;
 
-/// Orange is up, blue is down; x to the right, y upwards, both to one scale.
+/// Orange is up, blue is down; x to the right, y upwards, both to one scale and in millimetres from the centre.
 pub fn plate_mode_shapes(piece: &Piece, shapes: &[ModeShape]) -> Result<String, CommandError> {
     let Piece { length, width, thickness, .. } = piece;
     // A map wider than high gets half of the picture, a square one a third.
     let across = if *length >= 2.0 * width { 2 } else { 3 };
-    let map_width = WIDTH / across - 2 * MARGIN;
+    let map_width = WIDTH / across - MARGIN - AFTER - LABELS.1;
     let map_height = (f64::from(map_width) * width / length).round().clamp(HEIGHTS.0.into(), HEIGHTS.1.into()) as u32;
     let rows = shapes.len().div_ceil(across as usize);
     let title = format!("Modes of the piece of {length} x {width} x {thickness} m");
-    let height = TITLE + (NAME + map_height + 2 * MARGIN) * rows as u32;
+    let height = TITLE + (NAME + map_height + LABELS.0 + 2 * MARGIN) * rows as u32;
     titled("mode shapes", &title, (WIDTH, height), |area| {
         if rows == 0 {
             return Ok(());
@@ -70,8 +74,22 @@ fn map(area: &Area, piece: &Piece, shape: &ModeShape) -> Drawn {
         ContourBuilder::new(columns, rows, true).x_origin(-half_x).y_origin(-half_y).x_step(step_x).y_step(step_y);
     let mut chart: Map = ChartBuilder::on(area)
         .margin(MARGIN)
+        .margin_right(AFTER)
         .caption(&shape.name, (FONT, 15))
+        .x_label_area_size(LABELS.0)
+        .y_label_area_size(LABELS.1)
         .build_cartesian_2d(-half_x..half_x, -half_y..half_y)?;
+    // Adding zero takes the sign off a negative one.
+    let millimetres = |metres: &f64| format!("{}", (1000.0 * metres).round() + 0.0);
+    chart
+        .configure_mesh()
+        .disable_mesh()
+        .x_labels(5)
+        .y_labels(4)
+        .x_label_formatter(&|x| format!("{} mm", millimetres(x)))
+        .y_label_formatter(&millimetres)
+        .label_style((FONT, 12))
+        .draw()?;
     let whole = [(-half_x, -half_y), (half_x, half_y)];
     chart.draw_series([Rectangle::new(whole, colour(-1.0).filled())])?;
     // From the lowest level up, each over the one before it.
