@@ -33,10 +33,10 @@ mod timoshenko_beam;
 pub use boundary::{Boundary, End};
 pub use constant::Constant;
 pub use effects::{
-    Action, ChannelFactor, CoreFit, CoreLine, CoreModulus, Effect, EffectParameter, EffectSetting, EffectState,
-    ElementLaw, ElementLine, FactorLine, FieldTerm, LineDerivatives, LineEvaluator, NaturalFrequencies, Owner,
-    PointElement, ReceptanceModel, ReceptanceSetup, RecordSetting, Reference, RelaxingLines, Scale, Seat, Share, Shift,
-    SuspensionMotion, catalogue, effect, natural_frequencies,
+    Action, CORE_WAVES, ChannelFactor, CoreFit, CoreLine, CoreModulus, Effect, EffectParameter, EffectSetting,
+    EffectState, ElementLaw, ElementLine, FactorLine, FieldTerm, LineDerivatives, LineEvaluator, NaturalFrequencies,
+    Owner, PointElement, ReceptanceModel, ReceptanceSetup, RecordSetting, Reference, RelaxingLines, Scale, Seat, Share,
+    Shift, SuspensionMotion, catalogue, effect, natural_frequencies, roughness,
 };
 pub use error::{ModelError, Readable};
 pub use mindlin_plate::{MindlinPlate, ModeKind, ModeName, PLATE_CONSTANTS};

@@ -35,6 +35,9 @@ pub enum FieldTerm {
     RotaryFactor(f64),
     /// Shear stiffness lost over a span: numbers loss, span, place.
     ShearLoss(ShearLoss),
+    /// A wave of an uneven core: its number from 0, see [`crate::BeamTerms::core_waves`], and its amplitude, which is the
+    /// parameter.
+    CoreWave(usize, f64),
     /// Clamped ends that yield: numbers translation, rotation.
     Support(Support),
 }

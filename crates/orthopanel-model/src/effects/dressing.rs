@@ -21,7 +21,7 @@ impl Dressing {
     pub(super) fn of(effects: &[EffectState], setting: &EffectSetting, first: usize) -> Result<Self, ModelError> {
         let mut dressing = Self::default();
         let mut terms = BeamTerms::default();
-        let (mut rotary, mut losses, mut support) = (vec![], vec![], vec![]);
+        let (mut rotary, mut losses, mut support, mut waves) = (vec![], vec![], vec![], vec![]);
         for (effect, start) in effects.iter().zip(EffectState::starts(effects, first)) {
             for action in effect.effect.act(&effect.values_in(setting.record.number)?, setting)? {
                 match action {
@@ -37,6 +37,14 @@ impl Dressing {
                         terms.support = Some(springs);
                         support = numbers.iter().map(|number| start + number).collect();
                     }
+                    Action::Field(FieldTerm::CoreWave(number, amplitude), numbers) => {
+                        let length = terms.core_waves.len().max(number + 1);
+                        terms.core_waves.resize(length, 0.0);
+                        terms.core_waves[number] += amplitude;
+                        // Behind values that each record has of its own.
+                        let column = |parameter: &usize| start + effect.position(*parameter, setting.record.number);
+                        waves.extend(numbers.iter().map(|parameter| (number, column(parameter))));
+                    }
                     Action::Core(core) => dressing.core = Some((core, start)),
                     Action::Plate(ratios) => dressing.plate = Some((ratios, start)),
                     Action::Element(_) | Action::Channel(..) | Action::Place(_) | Action::Window { .. } => {}
@@ -49,8 +57,10 @@ impl Dressing {
             ));
         }
         // In the order of the beam's own terms: the rotary factor is there always.
+        let before = 1 + losses.len() + support.len();
         let later = losses.into_iter().chain(support).enumerate().map(|(i, column)| (i + 1, column));
-        dressing.parameters = rotary.into_iter().map(|column| (0, column)).chain(later).collect();
+        let waves = waves.into_iter().map(|(number, column)| (before + number, column));
+        dressing.parameters = rotary.into_iter().map(|column| (0, column)).chain(later).chain(waves).collect();
         dressing.terms = (!dressing.parameters.is_empty()).then_some(terms);
         Ok(dressing)
     }

@@ -34,6 +34,7 @@ mod position_error;
 mod record_gain;
 mod resonator;
 mod rotary_inertia;
+mod roughness;
 mod sensor_mass;
 mod sensor_resonance;
 mod stiffness_loss;
@@ -55,6 +56,7 @@ pub use parameter::{EffectParameter, Reference, Scale};
 pub use point_element::{ElementLaw, ElementLine, PointElement, Seat, Share};
 pub use receptance::{LineDerivatives, LineEvaluator, ReceptanceModel, ReceptanceSetup};
 pub use relaxing_lines::RelaxingLines;
+pub use roughness::{CORE_WAVES, roughness};
 pub use setting::{EffectSetting, RecordSetting, SuspensionMotion};
 pub use state::EffectState;
 

@@ -40,7 +40,8 @@ impl TimoshenkoBeam {
     ///
     /// Where supports yield, the springs add a third coefficient of fixed value 1. The parameters of
     /// [`Structure::term_derivatives`] stand in this order: the rotary factor; loss, span and place of each shear loss;
-    /// translation and rotation stiffness of the supports. Span and place have no matrices: see [`TermDerivative`].
+    /// translation and rotation stiffness of the supports; the waves of an uneven core. Span and place have no matrices: see
+    /// [`TermDerivative`].
     ///
     /// # Errors
     /// [`ModelError::Size`] where a size, factor or stiffness has no physical meaning, [`ModelError::HeldSide`]
@@ -58,7 +59,7 @@ impl TimoshenkoBeam {
         }
         functions
             .extend(terms.losses.iter().flat_map(|loss| steps(half_length, loss.edges(half_length), order.max(4))));
-        let uneven = !terms.losses.is_empty() || terms.support.is_some();
+        let uneven = !terms.losses.is_empty() || !terms.core_waves.is_empty() || terms.support.is_some();
         let (mut even, mut odd, mut all) = (vec![], vec![], vec![]);
         for function in functions {
             match function.parity {
@@ -87,14 +88,17 @@ fn assemble(functions: &[StrainFunction], section: Section, half_length: f64, te
     let Section { second_moment, shear_area, mass, rotary_inertia } = section;
     let curvature = series_products(functions, half_length, |f| &f.curvature).into();
     let rotation = series_products(functions, half_length, |f| &f.rotation).into();
-    let (strain, deflection) = if terms.losses.is_empty() {
+    let (strain, deflection) = if terms.losses.is_empty() && terms.core_waves.is_empty() {
         let strain = series_products(functions, half_length, |f| &f.shear);
         (strain.into(), series_products(functions, half_length, |f| &f.deflection).into())
     } else {
-        let quadrature = Quadrature::new(functions, half_length, &terms.losses);
+        let quadrature = Quadrature::new(functions, half_length, terms);
         let mut strain = SymmetricMatrix::from(quadrature.shear());
         for loss in &terms.losses {
             strain = sum(&[(1.0, &strain), (-loss.loss, &quadrature.span(loss).into())]);
+        }
+        for (amplitude, wave) in terms.core_waves.iter().zip(quadrature.waves(terms.core_waves.len())) {
+            strain = sum(&[(1.0, &strain), (*amplitude, &wave.into())]);
         }
         (strain, quadrature.deflection().into())
     };
@@ -152,11 +156,12 @@ impl Structure for TimoshenkoBeam {
         let parts = self.flexibility.between_motions(motions.map(|(motion, place)| (motion, place.x)), [e_x, g_zx]);
         let known = parts.by_losses.into_iter().flat_map(|by| [Some(by), None, None]);
         let support = self.terms.support.map(|_| parts.by_support).into_iter().flatten();
+        let waves = parts.by_waves.into_iter().map(Some);
         Some(Flexibility {
             value: parts.value,
             by_constants: parts.by_constants.to_vec(),
             // Rotary inertia alters the field that a free beam's own inertia balances.
-            by_terms: std::iter::once(None).chain(known).chain(support.map(Some)).collect(),
+            by_terms: std::iter::once(None).chain(known).chain(support.map(Some)).chain(waves).collect(),
         })
     }
 
@@ -188,7 +193,7 @@ impl Structure for TimoshenkoBeam {
         let mut list = vec![TermDerivative { stiffness: vec![], mass: self.functions.iter().map(by_rotary).collect() }];
         for loss in &self.terms.losses {
             let by_loss = |functions: &Vec<StrainFunction>| {
-                faer::Scale(-shear) * Quadrature::new(functions, self.half_length, &self.terms.losses).span(loss)
+                faer::Scale(-shear) * Quadrature::new(functions, self.half_length, &self.terms).span(loss)
             };
             list.push(of_stiffness(self.functions.iter().map(by_loss).collect()));
             // With span and place the edges move, and with them the functions that begin there.
@@ -199,6 +204,17 @@ impl Structure for TimoshenkoBeam {
                 let matrices = self.functions.iter().map(|functions| support_stiffness(functions, springs));
                 list.push(of_stiffness(matrices.collect()));
             }
+        }
+        let count = self.terms.core_waves.len();
+        if count > 0 {
+            let waves = |functions: &Vec<StrainFunction>| {
+                Quadrature::new(functions, self.half_length, &self.terms).waves(count).into_iter()
+            };
+            let mut blocks: Vec<_> = self.functions.iter().map(waves).collect();
+            list.extend((0..count).map(|_| {
+                let of_blocks = blocks.iter_mut().filter_map(Iterator::next);
+                of_stiffness(of_blocks.map(|wave| faer::Scale(shear) * wave).collect())
+            }));
         }
         list
     }

@@ -1,6 +1,6 @@
 //! Deflection of the beam under a force that stands still: what all flexible modes together leave at low frequency.
 
-use super::beam_terms::{BeamTerms, ShearLoss};
+use super::beam_terms::{BeamTerms, ShearLoss, core_waves};
 use super::static_field::StaticField;
 use super::{Section, gauss_points};
 use crate::structure::Motion;
@@ -18,7 +18,7 @@ pub struct StaticFlexibility {
     half_length: f64,
     section: Section,
     boundary: Boundary,
-    losses: Vec<ShearLoss>,
+    terms: BeamTerms,
     /// Flexibility of the support of a clamped end: \[m/N\] and \[rad/(N m)\].
     support: [f64; 2],
 }
@@ -32,6 +32,8 @@ pub(crate) struct FlexibilityParts {
     pub by_constants: [f64; 2],
     /// Its derivative by each shear loss.
     pub by_losses: Vec<f64>,
+    /// Its derivative by each wave of an uneven core.
+    pub by_waves: Vec<f64>,
     /// Its derivatives by the translation and rotation stiffness of the supports.
     pub by_support: [f64; 2],
 }
@@ -51,7 +53,7 @@ impl StaticFlexibility {
         let mut section = Section::of(&piece);
         section.rotary_inertia *= terms.rotary_factor;
         let support = terms.support.map_or([0.0; 2], |support| [1.0 / support.translation, 1.0 / support.rotation]);
-        Ok(Self { half_length: 0.5 * piece.length, section, boundary, losses: terms.losses.clone(), support })
+        Ok(Self { half_length: 0.5 * piece.length, section, boundary, terms: terms.clone(), support })
     }
 
     /// $G$ \[m/N\] between two places at the constants $E_x$ and $G_{zx}$, and its derivatives by both.
@@ -72,12 +74,14 @@ impl StaticFlexibility {
         let [bending, shear, support] = self.energies(&a, &b);
         let (by_bending, by_shear) = (bending / stiffness[0], shear / stiffness[1]);
         // Least energy: moving the redundants changes nothing to first order, so only the stiffnesses count.
-        let by_losses = self.losses.iter().map(|loss| self.by_loss(loss, &a, &b) / stiffness[1]).collect();
+        let by_losses = self.terms.losses.iter().map(|loss| self.by_loss(loss, &a, &b) / stiffness[1]).collect();
+        let by_waves = self.by_waves(&a, &b).into_iter().map(|by| by / stiffness[1]).collect();
         let ends = self.end_products(&a, &b);
         FlexibilityParts {
             value: by_bending + by_shear + support,
             by_constants: [-by_bending / e_x, -by_shear / g_zx],
             by_losses,
+            by_waves,
             by_support: [0, 1].map(|i| -ends[i] * self.support[i] * self.support[i]),
         }
     }
@@ -85,6 +89,11 @@ impl StaticFlexibility {
     /// Derivative of $\int V_1V_2/(1-\text{loss})\,dx$ by the loss.
     fn by_loss(&self, loss: &ShearLoss, a: &StaticField, b: &StaticField) -> f64 {
         let [low, high] = loss.edges(self.half_length);
+        if !self.terms.core_waves.is_empty() {
+            let mut sum = 0.0;
+            self.each_shear(a, b, [low, high], &mut |x, product| sum += product * self.shear_part(x).powi(-2));
+            return sum;
+        }
         self.shear_between(a, b, low, high) / (1.0 - loss.loss).powi(2)
     }
 
@@ -174,9 +183,14 @@ impl StaticFlexibility {
         let [moments, shears] = StaticField::concentrated(a, b);
         sums[0] += moments;
         sums[1] += shears;
-        for loss in &self.losses {
-            let [low, high] = loss.edges(h);
-            sums[1] += (1.0 / (1.0 - loss.loss) - 1.0) * self.shear_between(a, b, low, high);
+        if self.terms.core_waves.is_empty() {
+            for loss in &self.terms.losses {
+                let [low, high] = loss.edges(h);
+                sums[1] += (1.0 / (1.0 - loss.loss) - 1.0) * self.shear_between(a, b, low, high);
+            }
+        } else {
+            sums[1] = 0.0;
+            self.each_shear(a, b, [-h, h], &mut |x, product| sums[1] += product / self.shear_part(x));
         }
         let ends = self.end_products(a, b);
         sums[2] = self.support[0] * ends[0] + self.support[1] * ends[1];
@@ -190,6 +204,49 @@ impl StaticFlexibility {
             .sum();
         let inside = |field: &StaticField| field.place() > low && field.place() < high;
         spread + a.concentrated_shear(b, inside(a)) + b.concentrated_shear(a, inside(b))
+    }
+
+    /// Derivatives of $\int V_1V_2/g\,dx$ by the waves of the core.
+    fn by_waves(&self, a: &StaticField, b: &StaticField) -> Vec<f64> {
+        let h = self.half_length;
+        let mut sums = vec![0.0; self.terms.core_waves.len()];
+        if sums.is_empty() {
+            return sums;
+        }
+        self.each_shear(a, b, [-h, h], &mut |x, product| {
+            let by_part = -product * self.shear_part(x).powi(-2);
+            let waves = core_waves(sums.len(), x / h);
+            sums.iter_mut().zip(waves).for_each(|(sum, wave)| *sum += by_part * wave);
+        });
+        sums
+    }
+
+    /// The part $g$ of the shear stiffness that is there.
+    fn shear_part(&self, x: f64) -> f64 {
+        self.terms.shear_part(x / self.half_length, self.half_length)
+    }
+
+    /// Takes each $x$ of `[low, high]` with its part of $\int V_1V_2\,dx$, at points close enough for a core with waves.
+    fn each_shear(&self, a: &StaticField, b: &StaticField, [low, high]: [f64; 2], take: &mut dyn FnMut(f64, f64)) {
+        let h = self.half_length;
+        let longest = 2.0 * h / (STRETCHES * self.terms.core_waves.len().max(1)) as f64;
+        let mut nodes: Vec<f64> = self.terms.losses.iter().flat_map(|loss| loss.edges(h)).collect();
+        nodes.extend([low, high, a.place(), b.place()]);
+        nodes.retain(|x| (low..=high).contains(x));
+        nodes.sort_by(f64::total_cmp);
+        for pair in nodes.windows(2).filter(|pair| pair[1] > pair[0]) {
+            let count = ((pair[1] - pair[0]) / longest).ceil().max(1.0);
+            let step = (pair[1] - pair[0]) / count;
+            for part in 0..count as usize {
+                let start = pair[0] + step * part as f64;
+                for (x, weight) in points(start, start + step) {
+                    take(x, weight * a.at(x)[1] * b.at(x)[1]);
+                }
+            }
+        }
+        let inside = |field: &StaticField| field.place() > low && field.place() < high;
+        take(a.place(), a.concentrated_shear(b, inside(a)));
+        take(b.place(), b.concentrated_shear(a, inside(b)));
     }
 
     /// Products of shear forces and of moments at the clamped ends.
@@ -209,6 +266,9 @@ impl StaticFlexibility {
         products
     }
 }
+
+/// Stretches to each half-wave of an uneven core: four points on each leave 1e-8 of a cosine's integral.
+const STRETCHES: usize = 2;
 
 /// Stretches of `[low, high]` on which both fields are polynomials.
 fn segments(a: &StaticField, b: &StaticField, [low, high]: [f64; 2]) -> impl Iterator<Item = [f64; 2]> {

@@ -3,7 +3,7 @@
 
 use faer::Mat;
 
-use super::beam_terms::ShearLoss;
+use super::beam_terms::{BeamTerms, ShearLoss, core_waves};
 use super::strain_basis::StrainFunction;
 use crate::dense::product;
 use crate::legendre::{gauss_legendre, legendre_at, norm};
@@ -48,13 +48,14 @@ pub(super) struct Quadrature<'a> {
 }
 
 impl<'a> Quadrature<'a> {
-    pub(super) fn new(functions: &'a [StrainFunction], half_length: f64, losses: &[ShearLoss]) -> Self {
+    pub(super) fn new(functions: &'a [StrainFunction], half_length: f64, of: &BeamTerms) -> Self {
         let terms = functions.iter().map(|f| f.deflection.len()).max().unwrap_or(0);
         let mut edges: Vec<f64> =
-            losses.iter().flat_map(|loss| loss.edges(half_length)).map(|x| x / half_length).collect();
+            of.losses.iter().flat_map(|loss| loss.edges(half_length)).map(|x| x / half_length).collect();
         edges.extend([-1.0, 1.0]);
         edges.sort_by(f64::total_cmp);
-        let rule = gauss_legendre(terms + 2);
+        // Products of two functions, and some points more for a cosine: each half-wave wants less than two.
+        let rule = gauss_legendre(terms + 2 + of.core_waves.len());
         let stretches = edges.windows(2).filter_map(|pair| match pair {
             [low, high] if high > low => Some((0.5 * (low + high), 0.5 * (high - low))),
             _ => None,
@@ -113,15 +114,38 @@ impl<'a> Quadrature<'a> {
         let [low, high] = loss.edges(self.half_length).map(|x| x / self.half_length);
         let inside: Vec<usize> =
             (0..self.points.len()).filter(|&row| self.points[row].0 > low && self.points[row].0 < high).collect();
+        let (strained, mut values) = self.strains(&inside);
+        let root: Vec<f64> = inside.iter().map(|&row| self.points[row].1.sqrt()).collect();
+        for column in 0..strained.len() {
+            values.col_as_slice_mut(column).iter_mut().zip(&root).for_each(|(value, root)| *value *= root);
+        }
+        self.spread(&strained, &product(values.transpose(), values.as_ref()))
+    }
+
+    /// $\int c_k(w'+\psi)_i(w'+\psi)_j\,dx$ of each of so many waves $c_k$ of the core.
+    pub(super) fn waves(&self, count: usize) -> Vec<Mat<f64>> {
+        let all: Vec<usize> = (0..self.points.len()).collect();
+        let (strained, values) = self.strains(&all);
+        let waves: Vec<Vec<f64>> = self.points.iter().map(|&(t, _)| core_waves(count, t).collect()).collect();
+        let wave = |number: usize| {
+            let at_points = self.points.iter().zip(&waves);
+            let weights: Vec<f64> = at_points.map(|((_, weight), waves)| weight * waves[number]).collect();
+            let weighted = Mat::from_fn(values.nrows(), values.ncols(), |row, i| weights[row] * values[(row, i)]);
+            self.spread(&strained, &product(values.transpose(), weighted.as_ref()))
+        };
+        (0..count).map(wave).collect()
+    }
+
+    /// The functions that have shear strain, and theirs at some of the points, a column each.
+    fn strains(&self, inside: &[usize]) -> (Vec<usize>, Mat<f64>) {
         let strained: Vec<usize> = (0..self.functions.len())
             .filter(|&i| self.functions[i].step.is_some() || self.functions[i].shear.iter().any(|&c| c != 0.0))
             .collect();
-        let root: Vec<f64> = inside.iter().map(|&row| self.points[row].1.sqrt()).collect();
         let mut values = Mat::zeros(inside.len(), strained.len());
         for (column, &function) in strained.iter().enumerate() {
             let values = values.col_as_slice_mut(column);
             let mut add = |share: f64, of: &[f64]| {
-                values.iter_mut().zip(&inside).for_each(|(value, &row)| *value += share * of[row]);
+                values.iter_mut().zip(inside).for_each(|(value, &row)| *value += share * of[row]);
             };
             match self.steps.iter().position(|step| *step == function) {
                 Some(k) => add(1.0, self.shear.col_as_slice(k)),
@@ -130,9 +154,12 @@ impl<'a> Quadrature<'a> {
                     series.for_each(|(n, &share)| add(share, self.polynomials.col_as_slice(n)));
                 }
             }
-            values.iter_mut().zip(&root).for_each(|(value, root)| *value *= root);
         }
-        let within = product(values.transpose(), values.as_ref());
+        (strained, values)
+    }
+
+    /// A matrix of some functions as one of all.
+    fn spread(&self, strained: &[usize], within: &Mat<f64>) -> Mat<f64> {
         let mut matrix = Mat::zeros(self.functions.len(), self.functions.len());
         for (j, &column) in strained.iter().enumerate() {
             for (i, &row) in strained.iter().enumerate() {
