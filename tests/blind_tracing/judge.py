@@ -22,6 +22,7 @@ ASKED = {
     "rough": [(*RIGHT, 0.90, "least"), INSIDE, FLOOR],
     "single-place": [("right effect named or among the alternatives", "named", 0.95, "least"), INSIDE, FLOOR],
     "none": [("no false effect", "quiet", 0.99, "least"), FLOOR],
+    "rough-none": [("no false effect", "quiet", 0.99, "least"), FLOOR],
     "pairs": [("both effects of the pair named", "both", 0.90, "least"), INSIDE, FLOOR],
     "outside": [("explained by a wrong name", "explained", 0.10, "most")],
 }

@@ -9,7 +9,7 @@ from .catalogue import CANTILEVER, EFFECTS, NOT_SINGLE, PAIRS
 from .draw import Draw
 from .outside import OUTSIDE
 
-SETS = ("clean", "rough", "single-place", "none", "pairs", "outside")
+SETS = ("clean", "rough", "rough-none", "single-place", "none", "pairs", "outside")
 HIT_SPREAD = 0.7e-3  # m, of each hit about its place (rough)
 GAIN_SPREAD = 3e-3  # of each record's gain (rough)
 CORE_SPREAD = 5e-3  # rms of the core's shear stiffness along the piece (rough)
@@ -34,6 +34,8 @@ def cases(name, count):
         kinds = [Case(e, (e,), "single", cantilever=e in CANTILEVER) for e in EFFECTS if e not in NOT_SINGLE]
     elif name == "none":
         kinds = [Case("none", ()), Case("none, one place", (), "single"), Case("none, clamped", (), cantilever=True)]
+    elif name == "rough-none":
+        kinds = [Case("none", (), rough=True)]
     elif name == "pairs":
         kinds = [Case(" + ".join(pair), pair) for pair in PAIRS]
     elif name == "outside":
