@@ -1,7 +1,8 @@
 //! One hypothesis fitted to the records, from the widest peaks to the narrowest.
 
-use faer::Side;
+use faer::linalg::solvers::DenseSolveCore;
 use faer::prelude::Solve;
+use faer::{Mat, Side};
 
 use super::record_problem::{Grouping, State, total};
 use super::records_of_test::TestRecords;
@@ -94,6 +95,14 @@ pub(super) fn promise(at: &Quadratic) -> f64 {
 }
 
 const DAMPED: f64 = 1e-3;
+
+/// Covariance of everything that a search moved where a misfit of `unit` per datum counts as one; what is known beforehand
+/// stays as sure as it is. `None` where the data do not tell.
+pub(super) fn covariance(fit: &Fit, unit: f64) -> Option<Mat<f64>> {
+    let (beforehand, data) = fit.places.split_last()?;
+    let normal = faer::Scale(1.0 / unit) * total(data).normal + &beforehand.normal;
+    Some(normal.llt(Side::Lower).ok()?.inverse())
+}
 
 /// Sums of squares at a fit, hit by hit where places are not what is left out, the last being what is known of damping beforehand.
 pub(super) fn by_group(records: &TestRecords, fit: &Fit, grouping: Grouping) -> Result<Vec<Quadratic>, IdentifyError> {

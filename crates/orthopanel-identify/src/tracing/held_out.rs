@@ -6,6 +6,7 @@ use faer::{Mat, Side};
 use super::fit::{Fit, by_group};
 use super::record_problem::{Grouping, total};
 use super::records_of_test::TestRecords;
+use super::roughness::{free_of, positions};
 use crate::IdentifyError;
 use crate::least_squares::Quadratic;
 
@@ -30,7 +31,12 @@ pub(super) fn held_out(records: &TestRecords, fit: &Fit, grouping: Grouping) -> 
     let whole = total(&sums);
     let Some((_, groups)) = sums.split_last() else { return Ok(f64::NAN) };
     let neutral = neutral_steps(fit);
-    let missed: f64 = groups.iter().map(|group| predicted(&whole, group, &neutral)).sum();
+    let own = |group: usize| if grouping == Grouping::Places { own_roughness(records, fit, group) } else { vec![] };
+    let missed = groups.iter().enumerate().map(|(index, group)| {
+        let foretold = foretold(&whole, group, &neutral);
+        foretold.map_or(f64::INFINITY, |foretold| foretold.beside(&own(index)))
+    });
+    let missed: f64 = missed.sum();
     let problem = records.problem(usize::MAX);
     let hits = |hits: usize| if grouping == Grouping::Hits { hits } else { 1 };
     let data: usize = problem.records.iter().map(|record| 2 * record.s.len() * hits(record.hits.len())).sum();
@@ -60,11 +66,51 @@ fn neutral_steps(fit: &Fit) -> Vec<f64> {
     steps
 }
 
+/// The roughness that is a record's own, by its places among the parameters, with its standard deviation beforehand.
+fn own_roughness(records: &TestRecords, fit: &Fit, record: usize) -> Vec<(usize, f64)> {
+    let Some(scales) = &records.rough else { return vec![] };
+    let hypothesis = &fit.state.hypothesis;
+    let first = fit.parameters.len().saturating_sub(hypothesis.size());
+    let all = positions(hypothesis).zip(free_of(hypothesis));
+    let own = all.filter(|(_, (free, _))| free.record == Some(record));
+    own.map(|(at, (free, _))| (first + at, scales.of(free.parameter))).collect()
+}
+
 /// A parameter of which the other groups hold less than this part is the group's own.
 const OWN: f64 = 1e-6;
 
 /// What a group costs where all others alone settle the parameters, to first order.
 pub(super) fn predicted(whole: &Quadratic, group: &Quadratic, neutral: &[f64]) -> f64 {
+    foretold(whole, group, neutral).map_or(f64::INFINITY, |foretold| foretold.beside(&[]))
+}
+
+/// A group's sum of squares where the others have settled the parameters.
+struct Foretold<'a> {
+    group: &'a Quadratic,
+    cost: f64,
+    /// Half of its derivative there.
+    gradient: Vec<f64>,
+}
+
+impl Foretold<'_> {
+    /// The cost where numbers of the group's own, which nothing else tells, have their standard deviations: that under the
+    /// covariance $I + JPJ^T$, $c - g^T(N + P^{-1})^{-1}g$ by Woodbury's identity.
+    fn beside(&self, own: &[(usize, f64)]) -> f64 {
+        let mut cost = self.cost;
+        if !own.is_empty() {
+            let normal = Mat::from_fn(own.len(), own.len(), |i, j| {
+                let beforehand = if i == j { own[i].1.powi(-2) } else { 0.0 };
+                self.group.normal[(own[i].0, own[j].0)] + beforehand
+            });
+            let gradient = Mat::from_fn(own.len(), 1, |i, _| self.gradient[own[i].0]);
+            let Ok(factor) = normal.llt(Side::Lower) else { return f64::INFINITY };
+            cost -= (gradient.transpose() * factor.solve(&gradient))[(0, 0)];
+        }
+        cost.max(0.0)
+    }
+}
+
+fn foretold<'a>(whole: &Quadratic, group: &'a Quadratic, neutral: &[f64]) -> Option<Foretold<'a>> {
     let size = neutral.len();
     let mut normal = &whole.normal - &group.normal;
     let mut gradient = Mat::from_fn(size, 1, |i, _| whole.gradient[i] - group.gradient[i]);
@@ -81,10 +127,11 @@ pub(super) fn predicted(whole: &Quadratic, group: &Quadratic, neutral: &[f64]) -
             normal[(i, i)] *= 1.0 + OWN;
         }
     }
-    let Ok(factor) = normal.llt(Side::Lower) else { return f64::INFINITY };
-    let step = factor.solve(&gradient);
+    let step = normal.llt(Side::Lower).ok()?.solve(&gradient);
     let step: Vec<f64> = (0..size).map(|i| -step[(i, 0)]).collect();
     let slope: f64 = step.iter().zip(&group.gradient).map(|(a, b)| a * b).sum();
-    let bend: f64 = (0..size).map(|i| (0..size).map(|j| step[i] * group.normal[(i, j)] * step[j]).sum::<f64>()).sum();
-    (group.cost + 2.0 * slope + bend).max(0.0)
+    let bent: Vec<f64> = (0..size).map(|i| (0..size).map(|j| group.normal[(i, j)] * step[j]).sum()).collect();
+    let bend: f64 = step.iter().zip(&bent).map(|(a, b)| a * b).sum();
+    let gradient = group.gradient.iter().zip(&bent).map(|(own, bent)| own + bent).collect();
+    Some(Foretold { group, cost: group.cost + 2.0 * slope + bend, gradient })
 }

@@ -19,6 +19,7 @@ mod frequencies;
 mod further_list;
 mod held_out;
 mod hit_noise;
+mod hit_places;
 mod hypothesis;
 mod information;
 mod model_error;
@@ -32,6 +33,9 @@ mod reactions;
 mod record_problem;
 mod records_of_test;
 mod report;
+mod rough_rest;
+mod rough_search;
+mod roughness;
 mod rows;
 mod starts;
 mod support_starts;
@@ -98,8 +102,12 @@ pub fn trace_with(test: &ImpactTest, progress: &(dyn Fn(Progress) + Sync)) -> Re
         return Err(IdentifyError::Unsupported(message.to_owned()));
     }
     let histories: Vec<TimeHistory> = test.time_histories()?.into_iter().map(|(_, history)| history).collect();
-    let records = TestRecords::new(test, &histories)?;
-    let search = Search { records: &records, piece: named.piece, progress };
-    let ranking = search.run()?;
-    report::report(test, &search, &ranking)
+    let mut records = TestRecords::new(test, &histories)?;
+    let piece = named.piece;
+    let alone = Search { records: &records, piece, progress }.each_alone()?;
+    let ranking = match rough_search::rough_search(&mut records, piece, progress, &alone) {
+        Some(ranking) => ranking,
+        None => Search { records: &records, piece, progress }.together(alone)?,
+    };
+    report::report(test, &Search { records: &records, piece, progress }, &ranking)
 }

@@ -20,13 +20,16 @@ const TUNED: f64 = 3e-5;
 ///
 /// The lines of a record fall into as many stretches as there are modes in the band. Over each, the accelerance $h$ of each
 /// record may be wrong by the part [`TRUSTED`] in size and in phase, and that of all records together by a shift of frequency,
-/// $s\,dh/ds$ times [`TUNED`].
+/// $s\,dh/ds$ times [`TUNED`]. In a rough test both are what its roughness leaves, where that is more: see
+/// [`super::rough_rest`].
 ///
 /// # Errors
 /// What the model refuses.
 pub(super) fn spread_of_gradient(records: &TestRecords, fit: &Fit) -> Result<Mat<f64>, ModelError> {
     let problem = records.problem(LAST);
     let size = fit.parameters.len();
+    let (trusted, tuned) =
+        records.rest.map_or((TRUSTED, TUNED), |rest| (rest.part.max(TRUSTED), rest.tuning.max(TUNED)));
     let mut sum = Mat::zeros(size, size);
     let mut add = |gradient: &[f64]| {
         for (column, factor) in gradient.iter().enumerate() {
@@ -50,12 +53,12 @@ pub(super) fn spread_of_gradient(records: &TestRecords, fit: &Fit) -> Result<Mat
         };
         for (number, from) in (0..lines).step_by(stretch).enumerate() {
             let own = from..(from + stretch).min(lines);
-            add(&gradient(own.clone(), &|line| TRUSTED * record.value[line]));
-            add(&gradient(own.clone(), &|line| TRUSTED * Complex64::I * record.value[line]));
+            add(&gradient(own.clone(), &|line| trusted * record.value[line]));
+            add(&gradient(own.clone(), &|line| trusted * Complex64::I * record.value[line]));
             if shifts.len() <= number {
                 shifts.push(vec![0.0; size]);
             }
-            let shift = gradient(own, &|line| TUNED * record.s[line] * slope(record, line));
+            let shift = gradient(own, &|line| tuned * record.s[line] * slope(record, line));
             shifts[number].iter_mut().zip(shift).for_each(|(sum, own)| *sum += own);
         }
     })?;
@@ -64,7 +67,7 @@ pub(super) fn spread_of_gradient(records: &TestRecords, fit: &Fit) -> Result<Mat
 }
 
 /// $dh/ds$ at a line, from its neighbours.
-fn slope(record: &WidenedLines, line: usize) -> Complex64 {
+pub(super) fn slope(record: &WidenedLines, line: usize) -> Complex64 {
     let (before, after) = (line.saturating_sub(1), (line + 1).min(record.s.len() - 1));
     let apart = record.s[after] - record.s[before];
     if apart.norm() > 0.0 { (record.value[after] - record.value[before]) / apart } else { Complex64::ZERO }

@@ -13,6 +13,7 @@ use super::other_side::turn_round;
 use super::outcome::{NotTested, Progress};
 use super::record_problem::{Grouping, State};
 use super::records_of_test::TestRecords;
+use super::roughness::is_roughness;
 use super::starts::{Costed, followed, scored_starts};
 use super::verdict::{CLEAR, MET};
 use super::whiteness::{independent_part, residuals};
@@ -45,8 +46,8 @@ const PROMISING: usize = 6;
 const MOST_WORK: u64 = 25_000_000;
 /// Of what the best effect gains on the widest lines over the worst, another must gain all but this part to be followed on;
 /// [`LITTLE`] is what the narrower lines may still tell apart.
-const BEHIND: f64 = 0.2;
-const LITTLE: f64 = 300.0;
+pub(super) const BEHIND: f64 = 0.2;
+pub(super) const LITTLE: f64 = 300.0;
 /// Rounds on the narrowest lines that the best hypothesis may take beyond the first, and the gain that is worth another.
 const MORE_ROUNDS: usize = 3;
 const SETTLED: f64 = 1.0;
@@ -67,11 +68,11 @@ impl Search<'_> {
         self.records.start.hypothesis.effects.len()
     }
 
-    /// Fits the base, every effect of the catalogue, and greedily one more.
+    /// Fits the base and every effect of the catalogue.
     ///
     /// # Errors
     /// Where the base itself cannot be fitted.
-    pub(super) fn run(&self) -> Result<Ranking, IdentifyError> {
+    pub(super) fn each_alone(&self) -> Result<Ranking, IdentifyError> {
         let base = fit(self.records, self.records.start.clone(), 0)?;
         let declared = &base.state.hypothesis;
         let tried: Vec<_> = catalogue().iter().filter(|effect| !declared.holds(**effect)).collect();
@@ -98,6 +99,14 @@ impl Search<'_> {
         turn_round(self.records, &mut fits, self.declared());
         let mut ranking = Ranking { scale: self.scale(&fits)?, fits, chosen: 0, not_tested, unfinished: false };
         self.choose(&mut ranking)?;
+        Ok(ranking)
+    }
+
+    /// Adds greedily one more effect.
+    ///
+    /// # Errors
+    /// What the model refuses.
+    pub(super) fn together(&self, mut ranking: Ranking) -> Result<Ranking, IdentifyError> {
         for size in 1..MOST_EFFECTS {
             let before = ranking.chosen;
             if self.meets_noise(&ranking.fits[ranking.chosen]) {
@@ -152,7 +161,7 @@ impl Search<'_> {
     }
 
     /// Whiteness and misfit of the best fit so far make the measure for all.
-    fn scale(&self, fits: &[Fit]) -> Result<LikelihoodScale, IdentifyError> {
+    pub(super) fn scale(&self, fits: &[Fit]) -> Result<LikelihoodScale, IdentifyError> {
         let problem = self.records.problem(LAST);
         let best = fits.iter().filter(|fit| fit.given_up.is_none()).min_by(|a, b| a.cost.total_cmp(&b.cost));
         let Some(best) = best else { return Ok(LikelihoodScale { independent: 1.0, unit: 1.0, data: problem.data() }) };
@@ -161,12 +170,12 @@ impl Search<'_> {
     }
 
     /// Whether a fit leaves nothing to explain. What a model refuses meets nothing.
-    fn meets_noise(&self, fit: &Fit) -> bool {
+    pub(super) fn meets_noise(&self, fit: &Fit) -> bool {
         self.records.misfit_over_floor(fit).is_ok_and(|left| left <= MET)
     }
 
     /// Moves on to the hypothesis that pays best for its effects and their parameters, on the data and on what was held out.
-    fn choose(&self, ranking: &mut Ranking) -> Result<(), IdentifyError> {
+    pub(super) fn choose(&self, ranking: &mut Ranking) -> Result<(), IdentifyError> {
         ranking.scale = self.scale(&ranking.fits)?;
         let current = ranking.chosen;
         let mut order: Vec<usize> = (0..ranking.fits.len()).filter(|&index| index != current).collect();
@@ -302,7 +311,7 @@ impl Ranking {
 
     /// Names the simplest first of as many effects that the data do not part: a mass that the data put beside the sensor, at a
     /// place of its own, is the sensor's.
-    fn prefer_the_simpler(&mut self) {
+    pub(super) fn prefer_the_simpler(&mut self) {
         let effects = |index: usize| self.fits[index].state.hypothesis.effects.len();
         let size = |index: usize| self.fits[index].state.hypothesis.size();
         let limit = self.bic(self.chosen) + CLEAR;
@@ -319,7 +328,10 @@ impl Ranking {
     /// Criterion of one of the fits.
     pub(super) fn bic(&self, index: usize) -> f64 {
         let fit = &self.fits[index];
-        self.scale.bic(fit.cost, fit.size)
+        let rough = fit.state.hypothesis.effects.iter().any(is_roughness);
+        // What is known beforehand is no line that errs with its neighbours.
+        let beforehand = fit.places.last().filter(|_| rough).map_or(0.0, |prior| prior.cost);
+        self.scale.bic((fit.cost - beforehand).max(0.0), fit.size) + beforehand
     }
 
     /// Criterion with what each effect and each of its parameters must pay.
@@ -331,7 +343,7 @@ impl Ranking {
 
     /// What is left out to judge a fit: what one record alone tells, as its gain, no other record can foretell.
     pub(super) fn grouping(&self, records: &TestRecords, index: usize) -> Grouping {
-        let of_one_record = self.fits[index].state.hypothesis.effects.iter().any(|on| {
+        let of_one_record = self.fits[index].state.hypothesis.effects.iter().filter(|on| !is_roughness(on)).any(|on| {
             on.effect.parameters().iter().any(|parameter| parameter.each_record || parameter.name == "record")
         });
         if of_one_record { Grouping::Hits } else { super::held_out::grouping(records) }

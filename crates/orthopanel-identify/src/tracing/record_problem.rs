@@ -9,6 +9,7 @@ use orthopanel_model::{BEAM_CONSTANTS, Damping, ModelError, ReceptanceModel, Rec
 use super::hypothesis::{CUBIC, Hypothesis, PLATE};
 use super::reaction_lines::{ReactionLines, Taken};
 use super::reactions::Reactions;
+use super::roughness::{ROUGHNESS, RoughScales, add_prior, is_roughness};
 use super::widened_lines::WidenedLines;
 use crate::least_squares::Quadratic;
 
@@ -25,6 +26,8 @@ pub(super) struct RecordProblem<'a> {
     pub usual_log_zeta: f64,
     /// What is known of damping beforehand.
     pub prior: DampingPrior<'a>,
+    /// What is known of the test's roughness beforehand, where hypotheses have any.
+    pub rough: Option<RoughScales>,
     /// Lines that were evaluated, counted as those of the plain beam.
     pub work: &'a AtomicU64,
     /// Forces that are not linear, where the test can tell them.
@@ -59,9 +62,9 @@ pub(super) enum Grouping {
 
 /// Making a model costs as much as so many of its lines.
 const MAKING: u64 = 4000;
-/// Effects for which modes are solved at several nodes, on a basis with moving edges, or of a plate, and how much more each line
-/// of these costs.
-const DEARER: [(&str, u64); 3] = [("viscoelastic-core", 8), ("stiffness-loss", 4), (PLATE, 8)];
+/// Effects for which modes are solved at several nodes, on a basis with moving edges, of a plate, or with a dozen derivatives
+/// more, and how much more each line of these costs.
+const DEARER: [(&str, u64); 4] = [("viscoelastic-core", 8), ("stiffness-loss", 4), (PLATE, 8), (ROUGHNESS, 4)];
 
 impl RecordProblem<'_> {
     /// Positions of the free constants.
@@ -108,7 +111,7 @@ impl RecordProblem<'_> {
         constants.chain(zetas).chain(state.hypothesis.bounds()).collect()
     }
 
-    /// The sum of squares of each group of data at these parameters, and last that of what is known of damping beforehand.
+    /// The sum of squares of each group of data at these parameters, and last that of what is known beforehand.
     pub(super) fn by_group(
         &self,
         parameters: &[f64],
@@ -218,6 +221,19 @@ impl RecordProblem<'_> {
         Ok((lines > 0).then(|| sum / lines as f64))
     }
 
+    /// Derivative of a record's accelerance by the place of its force, at any $s$; the state has roughness. Empty where it has none.
+    pub(super) fn by_place(&self, state: &State, index: usize, s: &[Complex64]) -> Result<Vec<Complex64>, ModelError> {
+        let effects = &state.hypothesis.effects;
+        let Some(rough) = effects.iter().position(is_roughness) else { return Ok(vec![]) };
+        let before: usize = effects[..rough].iter().map(|on| on.values.len()).sum();
+        let column = state.constants.len() + state.zetas.len() + before + index;
+        let (model, _) = self.model(state)?;
+        let Some(mut evaluator) = model.evaluator(index) else { return Ok(vec![]) };
+        let mut by_place = Vec::with_capacity(s.len());
+        evaluator.lines(s, |_, _, by| by_place.push(by.of(column)));
+        Ok(by_place)
+    }
+
     /// What is linear, and what is not.
     fn model(&self, state: &State) -> Result<(ReceptanceModel, Option<ReactionLines>), ModelError> {
         let ratios = state.zetas.iter().map(|log| log.exp()).collect();
@@ -254,6 +270,9 @@ impl RecordProblem<'_> {
         for (mode, log) in self.free_zetas(state).iter().enumerate() {
             let about = self.prior.about.get(mode).unwrap_or(&self.usual_log_zeta);
             prior.add_row((log - about) / self.prior.std, &[(first + mode, 1.0 / self.prior.std)]);
+        }
+        if let Some(scales) = &self.rough {
+            add_prior(&mut prior, &state.hypothesis, scales, first + self.free_zetas(state).len());
         }
         prior
     }

@@ -2,6 +2,7 @@
 
 use std::sync::atomic::AtomicU64;
 
+use num_complex::Complex64;
 use orthopanel_data::{Accelerance, Estimation, ImpactTest, TimeHistory};
 use orthopanel_model::{
     BEAM_CONSTANTS, BeamConstants, ExactBeam, ModelError, ReceptanceSetup, RecordSetting, SuspensionMotion,
@@ -15,8 +16,10 @@ use super::hypothesis::{Hypothesis, PLATE, Switched};
 use super::plate_starts::plate_starts;
 use super::reactions::Reactions;
 use super::record_problem::{DampingPrior, Grouping, RecordProblem, State, total};
+use super::rough_rest::RoughRest;
+use super::roughness::RoughScales;
 use super::whiteness::{independent_part, residuals};
-use super::widened_lines::{WIDENINGS, WidenedLines, widened_lines};
+use super::widened_lines::{WIDENINGS, WidenedLines, aligned_lines, widened_lines};
 use crate::accelerance_fit::{ResonanceStart, resonance_starts};
 use crate::free_constants::FreeConstants;
 use crate::least_squares::{Ending, descend};
@@ -47,6 +50,11 @@ pub(super) struct TestRecords {
     /// As the analyser shows the records.
     accelerances: Vec<Accelerance>,
     reactions: Option<Reactions>,
+    histories: Vec<TimeHistory>,
+    /// Scales of the test's roughness, where hypotheses have any.
+    pub rough: Option<RoughScales>,
+    /// What is in the lines' variances beside noise, where the test is rough.
+    pub rest: Option<RoughRest>,
     /// Hits that were left out, and why.
     pub notes: Vec<String>,
 }
@@ -112,6 +120,7 @@ impl TestRecords {
         records.accelerances = accelerances;
         records.notes = notes;
         records.reactions = Reactions::new(test, histories, (records.summed, records.band))?;
+        records.histories = kept;
         Ok(records)
     }
 
@@ -168,6 +177,9 @@ impl TestRecords {
             strange_poles,
             accelerances: vec![],
             reactions: None,
+            histories: vec![],
+            rough: None,
+            rest: None,
             notes: vec![],
         };
         let problem = records.problem(0);
@@ -198,9 +210,14 @@ impl TestRecords {
         if let Some(scatter) = self.problem(LAST).scatter_beside_reactions(&fit.state)? {
             return Ok(scatter);
         }
+        Ok(self.hit_scatter())
+    }
+
+    /// The same where all forces are linear.
+    pub(super) fn hit_scatter(&self) -> f64 {
         let last = self.widened.last().map_or(&[][..], Vec::as_slice);
         let told: Vec<f64> = last.iter().filter_map(|record| record.scatter).collect();
-        Ok(if told.is_empty() { 1.0 } else { told.iter().sum::<f64>() / told.len() as f64 })
+        if told.is_empty() { 1.0 } else { told.iter().sum::<f64>() / told.len() as f64 }
     }
 
     /// Misfit per datum of a fit over what the hits' scatter asks of any: at least 1, and no more than [`SCATTERED`].
@@ -209,6 +226,40 @@ impl TestRecords {
     /// What the model refuses.
     pub(super) fn misfit_over_floor(&self, fit: &Fit) -> Result<f64, IdentifyError> {
         Ok(fit.chi_square(self) / self.noise_floor(fit)?.clamp(1.0, SCATTERED))
+    }
+
+    /// Whether the hits of a record differ by more than noise.
+    pub(super) fn hits_differ(&self) -> bool {
+        self.hit_scatter() > SCATTERED
+    }
+
+    /// Brings the hits of each record to the place that they hit in the mean, by the model at a state with roughness, on all
+    /// lines from this widening on, and adds to the lines' variances what roughness leaves. Tells by how much the mean of a record's
+    /// hits scatters \[m\].
+    ///
+    /// # Errors
+    /// What the model refuses.
+    pub(super) fn align_hits(&mut self, state: &State, (from, rest): (usize, RoughRest)) -> Result<f64, ModelError> {
+        let mut scatter = 0.0;
+        for (stage, &widening) in WIDENINGS.iter().enumerate().skip(from) {
+            let problem = self.problem(stage);
+            let by_place = |index: usize, s: &[Complex64]| problem.by_place(state, index, s);
+            let aligned = aligned_lines(&self.histories, widening, self.band, by_place)?;
+            let (lines, places): (Vec<_>, Vec<_>) = aligned.into_iter().unzip();
+            self.widened[stage] = lines;
+            scatter = of_means(&places);
+            self.widened[stage].iter_mut().for_each(|record| rest.widen(record));
+        }
+        self.rest = Some(rest);
+        Ok(scatter)
+    }
+
+    /// Undoes [`TestRecords::align_hits`].
+    pub(super) fn as_hit(&mut self, from: usize) {
+        for (widened, &widening) in self.widened.iter_mut().zip(&WIDENINGS).skip(from) {
+            *widened = widened_lines(&self.histories, widening, self.band);
+        }
+        self.rest = None;
     }
 
     /// Whether there are resonances that the beam has no modes for: then its constants are no start for a plate.
@@ -257,9 +308,17 @@ impl TestRecords {
         let about = if stage < LAST { &self.log_zetas[..] } else { &[] };
         let prior = DampingPrior { about, std: LOG_ZETA_STD[stage.min(LAST)] };
         let (held, usual_log_zeta) = (*held, *usual_log_zeta);
-        let reactions = self.reactions.as_ref();
-        RecordProblem { setup, records, held, free_damping: true, usual_log_zeta, prior, work, reactions }
+        let (reactions, rough) = (self.reactions.as_ref(), self.rough);
+        RecordProblem { setup, records, held, free_damping: true, usual_log_zeta, prior, rough, work, reactions }
     }
+}
+
+/// Standard deviation of the mean of a record's hits, from how each lies beside it.
+fn of_means(beside: &[Vec<f64>]) -> f64 {
+    let square: f64 = beside.iter().flatten().map(|beside| beside * beside).sum();
+    let freedom: f64 = beside.iter().map(|hits| hits.len() as f64 - 1.0).sum();
+    let hits = beside.iter().map(|hits| hits.len() as f64).sum::<f64>() / beside.len().max(1) as f64;
+    (square / freedom.max(1.0) / hits.max(1.0)).sqrt()
 }
 
 /// The base model fitted to the hits of a test of one piece.

@@ -1,19 +1,20 @@
 //! From the ranking to what is said.
 
-use faer::linalg::solvers::DenseSolveCore;
-use faer::{Mat, Side};
+use faer::Mat;
 use orthopanel_data::ImpactTest;
 use orthopanel_model::{Estimate, Owner, PanelModel};
 
 use super::bare_panel::bare_panel;
-use super::fit::{Fit, by_group};
+use super::fit::{Fit, covariance};
 use super::held_out::held_out;
 use super::hypothesis::{Hypothesis, PLATE, Switched};
 use super::model_error::spread_of_gradient;
 use super::next_experiment::next_experiment;
 use super::outcome::{Candidate, FittedError, Removed, TracedEffect, TracedError, TracedParameter, Tracing};
 use super::ranking::{Ranking, Search};
-use super::record_problem::{Grouping, total};
+use super::record_problem::Grouping;
+use super::records_of_test::TestRecords;
+use super::roughness::ROUGHNESS;
 use super::verdict::verdict;
 use super::widened_lines::WIDENINGS;
 use crate::IdentifyError;
@@ -69,8 +70,13 @@ pub(super) fn report(test: &ImpactTest, search: &Search, ranking: &Ranking) -> R
         panels: vec![panel],
         removed,
         accelerances: records.curves(chosen)?,
-        notes: records.notes.iter().cloned().chain(ranking.unfinished.then(|| UNFINISHED.to_owned())).collect(),
+        notes: notes(records, ranking),
     })
+}
+
+fn notes(records: &TestRecords, ranking: &Ranking) -> Vec<String> {
+    let rough = records.rough.map(|scales| scales.note());
+    records.notes.iter().cloned().chain(rough).chain(ranking.unfinished.then(|| UNFINISHED.to_owned())).collect()
 }
 
 /// The ids of the effects that the file does not declare.
@@ -78,20 +84,18 @@ pub(super) fn name(fit: &Fit, declared: usize) -> String {
     fit.state.hypothesis.name_beyond(declared)
 }
 
-/// Standard deviation of everything that a search moved: $(J^TJ)^{-1}$, widened as the likelihood is, and what a model that is
+/// Standard deviation of everything that a search moved: [`covariance`], widened as the likelihood is, and what a model that is
 /// wrong by a little adds, see [`spread_of_gradient`].
 fn deviations(search: &Search, ranking: &Ranking, fit: &Fit) -> Result<Vec<Option<f64>>, IdentifyError> {
-    let normal = total(&by_group(search.records, fit, Grouping::Places)?).normal;
-    let Ok(factor) = normal.llt(Side::Lower) else { return Ok(vec![None; fit.size]) };
-    let covariance = factor.inverse();
     let unit = ranking.scale.independent.recip() * fit.chi_square(search.records).max(1.0);
+    let Some(covariance) = covariance(fit, unit) else { return Ok(vec![None; fit.size]) };
     let of_model = if fit.given_up.is_none() {
         let spread = spread_of_gradient(search.records, fit)?;
-        &covariance * spread * &covariance
+        faer::Scale(unit.powi(-2)) * (&covariance * spread * &covariance)
     } else {
         Mat::zeros(fit.size, fit.size)
     };
-    let variance = |i: usize| unit * covariance[(i, i)] + of_model[(i, i)];
+    let variance = |i: usize| covariance[(i, i)] + of_model[(i, i)];
     Ok((0..fit.size).map(|i| Some(variance(i).sqrt()).filter(|std| std.is_finite())).collect())
 }
 
@@ -143,6 +147,9 @@ fn panel(test: &ImpactTest, search: &Search, fit: &Fit, std: &[Option<f64>]) -> 
 pub(super) fn take_out(all: Vec<TracedEffect>, declared: usize, panel: &mut PanelModel) -> Vec<Removed> {
     let mut removed = Vec::new();
     for (index, effect) in all.into_iter().enumerate() {
+        if effect.id == ROUGHNESS {
+            continue;
+        }
         if effect.owner == Owner::Panel {
             // The plate is the structure itself.
             if effect.id != PLATE {

@@ -1,8 +1,10 @@
 //! Which word the ranking deserves, and which effects fit about as well as the chosen ones.
 
+use super::fit::Fit;
 use super::outcome::Verdict;
 use super::ranking::Ranking;
 use super::records_of_test::TestRecords;
+use super::roughness::exceeds_any_test;
 use crate::IdentifyError;
 
 /// A rival must stay behind by this much of the scaled criterion to be out of the question.
@@ -20,10 +22,11 @@ pub(super) fn verdict(records: &TestRecords, ranking: &Ranking) -> Result<(Verdi
     let chosen = &ranking.fits[ranking.chosen];
     let left = records.misfit_over_floor(chosen)?;
     if ranking.chosen == 0 {
-        return Ok((if left <= MET { Verdict::NothingMissing } else { Verdict::Unexplained }, vec![]));
+        let is_met = left <= MET && !is_too_rough(chosen);
+        return Ok((if is_met { Verdict::NothingMissing } else { Verdict::Unexplained }, vec![]));
     }
     let rivals = rivals(ranking);
-    let verdict = if left > EXPLAINED || on_bound(ranking) {
+    let verdict = if left > EXPLAINED || on_bound(ranking) || is_too_rough(chosen) {
         Verdict::Unexplained
     } else if rivals.is_empty() && !ranking.unfinished {
         Verdict::Explained
@@ -51,6 +54,11 @@ fn rivals(ranking: &Ranking) -> Vec<usize> {
         .collect();
     rivals.sort_by(|&a, &b| ranking.bic(a).total_cmp(&ranking.bic(b)));
     rivals
+}
+
+/// Whether a fit needs more roughness than a test has: then that stands for something else.
+fn is_too_rough(fit: &Fit) -> bool {
+    exceeds_any_test(&fit.state.hypothesis)
 }
 
 /// Whether a parameter of the chosen hypothesis lies on its bound: then it is the bound's, not the data's.

@@ -10,6 +10,7 @@ use realfft::RealFftPlanner;
 
 use super::blow::Blow;
 use super::hit_noise::HitNoise;
+use super::hit_places::align;
 
 /// How far the peaks are widened, and how far the lines stand apart.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -66,7 +67,26 @@ pub(super) struct HitLines {
 
 /// The lines of every record at one widening, up to `band` \[Hz\].
 pub(super) fn widened_lines(histories: &[TimeHistory], widening: Widening, band: f64) -> Vec<WidenedLines> {
-    histories.par_iter().map(|history| of_record(history, widening, band)).collect()
+    histories.par_iter().map(|history| of_record(history, widening, band, &[]).0).collect()
+}
+
+/// The same with all hits of a record brought to the place that they hit in the mean, see [`align`], and by how much each was
+/// beside that \[m\]. `by_place` is $\partial H/\partial x$ of a record, by its number, at any $s$.
+///
+/// # Errors
+/// What `by_place` refuses.
+pub(super) fn aligned_lines<E: Send>(
+    histories: &[TimeHistory],
+    widening: Widening,
+    band: f64,
+    by_place: impl Fn(usize, &[Complex64]) -> Result<Vec<Complex64>, E> + Sync,
+) -> Result<Vec<(WidenedLines, Vec<f64>)>, E> {
+    let records = histories.par_iter().enumerate().map(|(index, history)| {
+        let (s, _) = lines_of(history, widening, band);
+        let slopes = by_place(index, &s)?;
+        Ok(of_record(history, widening, band, &slopes))
+    });
+    records.collect()
 }
 
 /// Both channels' transforms of one hit.
@@ -80,12 +100,20 @@ pub(super) struct HitSpectra {
     pub motion_noise: Option<f64>,
 }
 
-fn of_record(history: &TimeHistory, widening: Widening, band: f64) -> WidenedLines {
-    let spectra: Vec<HitSpectra> =
-        history.hits.iter().map(|hit| spectra(hit, history.rate, widening.decay_rate)).collect();
+/// Every line of the transforms below `band`, from 0, and their distance \[Hz\].
+fn lines_of(history: &TimeHistory, widening: Widening, band: f64) -> (Vec<Complex64>, f64) {
     let samples = history.hits.first().map_or(0, |hit| hit.force.len()).max(1);
     let resolution = history.rate / samples as f64;
     let end = ((band / resolution) as usize).min(samples / 2);
+    ((0..end).map(|line| Complex64::new(widening.decay_rate, TAU * resolution * line as f64)).collect(), resolution)
+}
+
+fn of_record(history: &TimeHistory, widening: Widening, band: f64, by_place: &[Complex64]) -> (WidenedLines, Vec<f64>) {
+    let mut spectra: Vec<HitSpectra> =
+        history.hits.iter().map(|hit| spectra(hit, history.rate, widening.decay_rate)).collect();
+    let (all, resolution) = lines_of(history, widening, band);
+    let end = all.len();
+    let beside = if by_place.is_empty() { vec![] } else { align(&mut spectra, by_place) };
     let noise = HitNoise::of(&spectra, end);
     let stride = (widening.step / resolution).round().max(1.0) as usize;
     let lines: Vec<usize> = (stride.max(1)..=end).step_by(stride).collect();
@@ -117,7 +145,7 @@ fn of_record(history: &TimeHistory, widening: Widening, band: f64) -> WidenedLin
         record.value.push(value);
         record.variance.push(1.0 / power + widening.tolerance.powi(2) * value.norm_sqr());
     }
-    record
+    (record, beside)
 }
 
 /// Transforms of one hit, each channel times $e^{-\sigma(t-t_0)}$ with $t_0$ the hit.

@@ -7,8 +7,8 @@ use super::pieces::Gallery;
 use super::table::Table;
 use crate::error::CommandError;
 use crate::evidence::PairResidual;
-use crate::pictures;
 use crate::traced::{Traced, comparison_rows, effect_rows, ranking_rows};
+use crate::{notes, pictures};
 
 pub struct TraceSection {
     pub verdict: String,
@@ -21,6 +21,8 @@ pub struct TraceSection {
     /// What stays in the model, what was taken out and why.
     pub ownership: Vec<String>,
     pub next_experiment: String,
+    /// What was assumed or left out, and how rough the test is.
+    pub notes: Vec<String>,
     /// Effects that these data cannot show, with the reason.
     pub not_tested: Vec<String>,
     /// The records beside the model with the effects, and what it leaves of them; none where no effect was found.
@@ -45,6 +47,7 @@ impl TraceSection {
             ranking: Table::new(&ranking, ranking_rows(tracing, usize::MAX)),
             ownership: traced.ownership(),
             next_experiment: tracing.next_experiment.clone(),
+            notes: notes::counted(&tracing.notes).collect(),
             not_tested: tracing.not_tested.iter().map(|of| format!("{}: {}", of.id, of.reason)).collect(),
             fit: gallery(name, fitted)?,
             residual: residual(fitted)?,

@@ -136,7 +136,17 @@ impl AccelerancesProblem {
         // No damping is free here.
         let prior = DampingPrior { about: &[], std: f64::INFINITY };
         let (held, usual_log_zeta) = (*held, *usual_log_zeta);
-        RecordProblem { setup, records: lines, held, free_damping: false, usual_log_zeta, prior, work, reactions: None }
+        RecordProblem {
+            setup,
+            records: lines,
+            held,
+            free_damping: false,
+            usual_log_zeta,
+            prior,
+            rough: None,
+            work,
+            reactions: None,
+        }
     }
 
     /// The fit's own lines and those of the data, over the root of their level, record by record.

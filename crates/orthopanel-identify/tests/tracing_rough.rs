@@ -1,0 +1,40 @@
+//! Tracing on rough hammer tests made by `tests/blind_tracing`: hits 0.7 mm off, gains 0.3 % off, a core 0.5 % uneven.
+//!
+//! These need Python with numpy, scipy and pyuff, named by `ORTHOPANEL_PYTHON`; without it they say so and pass.
+
+mod support;
+
+use orthopanel_identify::{Tracing, Verdict, trace};
+use support::made;
+
+fn tells_that_it_is_rough(found: &Tracing) -> bool {
+    found.notes.iter().any(|note| note.starts_with("this test is rough"))
+}
+
+/// No name that the scatter of hits, gains and a core would wear.
+#[test]
+fn val_a_rough_test_lacks_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let Some((test, _)) = made(&folder.path().join("set"), "rough-none", "none") else { return };
+    let found = trace(&test).unwrap();
+    assert_eq!((found.verdict, found.effects.len()), (Verdict::NothingMissing, 0), "{:?}", found.effects);
+    assert!(tells_that_it_is_rough(&found), "{:?}", found.notes);
+    // What the hits share is no part of the panel.
+    assert!(found.panels[0].effects.is_empty() && found.removed.is_empty(), "{:?}", found.removed);
+}
+
+#[test]
+fn val_an_effect_is_found_beside_roughness() {
+    for (kind, parameter) in [("suspension", "stiffness"), ("local-mass", "x")] {
+        let folder = tempfile::tempdir().unwrap();
+        let Some((test, case)) = made(&folder.path().join("set"), "rough", kind) else { return };
+        let found = trace(&test).unwrap();
+        assert!(matches!(found.verdict, Verdict::Explained | Verdict::Ambiguous), "{kind}: {}", found.verdict.name());
+        assert_eq!(found.effects[0].id, kind);
+        assert!(tells_that_it_is_rough(&found), "{:?}", found.notes);
+        let truth = case["effects"][0]["parameters"][parameter].as_f64().unwrap();
+        let known = found.effects[0].parameters.iter().find(|known| known.name == parameter).unwrap().values[0];
+        let (value, std) = (known.value, known.std.unwrap());
+        assert!((value - truth).abs() < 3.0 * std, "{kind}: {value} +- {std}, truth {truth}");
+    }
+}
