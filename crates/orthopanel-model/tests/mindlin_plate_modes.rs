@@ -235,6 +235,24 @@ fn what_a_plate_cannot_do_is_refused_with_its_limit() {
     }
 }
 
+/// A strip's modes all have their nodes along it: more of them than polynomials follow are refused with the number that can be had. A
+/// trace that looked for the plate behind saturated records ended with the number of polynomials as its error.
+#[test]
+fn more_modes_of_a_strip_than_polynomials_follow_are_refused_with_their_number() {
+    let strip = Piece { length: 0.8, width: 0.01, thickness: 0.003, mass_per_area: 6.88 };
+    let built = |count: usize| MindlinPlate::with_basis_for(&strip, Boundary::FREE, &HONEYCOMB, count);
+    for count in 20..120 {
+        match built(count) {
+            Ok(_) => continue,
+            Err(ModelError::BasisTooSmall { asked, available }) => {
+                assert!(asked == count && available < count && built(available).is_ok(), "{count}: {available}");
+            }
+            Err(error) => panic!("{count}: {error}"),
+        }
+    }
+    assert!(built(120).is_err());
+}
+
 /// The word follows what the width does: a clamped edge along it lets it neither move nor turn as one.
 #[test]
 fn val_the_kind_of_a_mode_is_what_its_width_does() {

@@ -91,7 +91,7 @@ impl MindlinPlate {
     /// Whether a plate with so many polynomials along x and y is small enough to be built: 80 each way at most, and no more
     /// coordinates than some 200 MB of matrices hold.
     pub fn can_have(boundary: Boundary, terms: [usize; 2]) -> bool {
-        terms.iter().all(|count| (TERMS[0]..=TERMS[1]).contains(count)) && fits(ends(boundary), terms)
+        terms.iter().all(|count| *count >= TERMS[0]) && fits(ends(boundary), terms)
     }
 
     /// Roughly how many flexible modes lie below `frequency` \[Hz\], within a quarter or so; at most one more than a
@@ -213,8 +213,9 @@ impl Reach {
 
 fn fits(ends: [[End; 2]; 2], [x, y]: [usize; 2]) -> bool {
     let coordinates = 3 * x * y;
+    let are_followed = x.max(y) <= TERMS[1];
     let blocks: usize = ends.iter().map(|[low, high]| if low == high { 2 } else { 1 }).product();
-    coordinates * coordinates / blocks <= MOST_ENTRIES
+    are_followed && coordinates * coordinates / blocks <= MOST_ENTRIES
 }
 
 /// $\omega^2\rho t$ of the product of beam functions with these nodes; `None` where it is a rigid motion.
