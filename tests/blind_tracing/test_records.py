@@ -124,4 +124,5 @@ def test_every_kind_can_be_played(name):
         plain.noise = 0.0
         without = records.play(plain, np.random.default_rng(1)).acceleration
         difference = np.sqrt(np.mean((with_it.acceleration - without) ** 2) / np.mean(without**2))
-        assert (difference > 1e-4) == bool(case.effects), f"{case.kind}: {difference:.1e}"
+        # A rough test differs from the smooth one even where nothing is missing.
+        assert (difference > 1e-4) == (bool(case.effects) or case.rough), f"{case.kind}: {difference:.1e}"
