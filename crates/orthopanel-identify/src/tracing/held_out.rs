@@ -6,7 +6,7 @@ use faer::{Mat, Side};
 use super::fit::{Fit, by_group};
 use super::record_problem::{Grouping, total};
 use super::records_of_test::TestRecords;
-use super::roughness::{free_of, positions};
+use super::roughness::free_of;
 use crate::IdentifyError;
 use crate::least_squares::Quadratic;
 
@@ -71,9 +71,8 @@ fn own_roughness(records: &TestRecords, fit: &Fit, record: usize) -> Vec<(usize,
     let Some(scales) = &records.rough else { return vec![] };
     let hypothesis = &fit.state.hypothesis;
     let first = fit.parameters.len().saturating_sub(hypothesis.size());
-    let all = positions(hypothesis).zip(free_of(hypothesis));
-    let own = all.filter(|(_, (free, _))| free.record == Some(record));
-    own.map(|(at, (free, _))| (first + at, scales.of(free.parameter))).collect()
+    let own = free_of(hypothesis).filter(|(_, free, _)| free.record == Some(record));
+    own.map(|(at, free, _)| (first + at, scales.of(free.parameter))).collect()
 }
 
 /// A parameter of which the other groups hold less than this part is the group's own.

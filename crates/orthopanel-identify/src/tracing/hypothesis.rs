@@ -1,7 +1,7 @@
 //! Effects that are switched on, and which of their parameters a search moves.
 
 use orthopanel_data::ImpactTest;
-use orthopanel_model::{Effect, EffectState, ModelError, Piece, Scale, effect};
+use orthopanel_model::{Effect, EffectParameter, EffectState, ModelError, Piece, Scale, effect};
 
 use crate::IdentifyError;
 
@@ -66,7 +66,12 @@ impl FreeParameter {
 
 /// Whether an effect sits at a place of its own: a piece may have several of it.
 pub(super) fn has_place(effect: &dyn Effect) -> bool {
-    effect.parameters().iter().any(|parameter| parameter.name == "x")
+    effect.parameters().iter().any(is_place)
+}
+
+/// Whether a parameter is the place of an effect along the piece.
+pub(super) fn is_place(parameter: &EffectParameter) -> bool {
+    parameter.name == "x"
 }
 
 impl Switched {

@@ -3,8 +3,8 @@
 //! What parts them is how the peaks' sizes and the lines between them change. A search that has come down on the wrong side finds
 //! no way across, for each place between changes the frequencies.
 
-use super::fit::{Fit, LAST, PATIENCE, polish, settle};
-use super::hypothesis::Hypothesis;
+use super::fit::{Fit, fit};
+use super::hypothesis::{Hypothesis, is_place};
 use super::record_problem::State;
 use super::records_of_test::TestRecords;
 
@@ -18,25 +18,18 @@ pub(super) fn turn_round(records: &TestRecords, fits: &mut [Fit], declared: usiz
     for position in declared..best.state.hypothesis.effects.len() {
         let Some(hypothesis) = mirrored(&best.state.hypothesis, position) else { continue };
         let turned = State { hypothesis, ..best.state.clone() };
-        if let Some(other) = followed(records, turned).filter(|other| other.cost < best.cost) {
-            *best = other;
+        match fit(records, turned, FROM) {
+            Ok(other) if other.cost < best.cost => *best = other,
+            _ => {}
         }
     }
-}
-
-fn followed(records: &TestRecords, mut state: State) -> Option<Fit> {
-    for (stage, &patience) in PATIENCE.iter().enumerate().take(LAST + 1).skip(FROM) {
-        state = polish(records, &state, stage, patience).ok()?.0;
-    }
-    settle(records, state, None).ok()
 }
 
 /// With the place of one effect on the other side; `None` where it has none that is free.
 fn mirrored(hypothesis: &Hypothesis, position: usize) -> Option<Hypothesis> {
     let mut turned = hypothesis.clone();
     let on = turned.effects.get_mut(position)?;
-    let is_place = |parameter: usize| on.effect.parameters()[parameter].name == "x";
-    let at = on.free.iter().find(|free| is_place(free.parameter))?.at;
+    let at = on.free.iter().find(|free| is_place(&on.effect.parameters()[free.parameter]))?.at;
     on.values[at] = -on.values[at];
     Some(turned)
 }

@@ -76,9 +76,9 @@ impl RoughScales {
     /// expectation and maximisation, within the bounds of a test by hand. `std` are those of the hypothesis' coordinates.
     pub(super) fn estimated(hypothesis: &Hypothesis, std: &[Option<f64>]) -> Self {
         let mut sums = [(0.0, 0.0_f64); 3];
-        for ((free, value), std) in free_of(hypothesis).zip(std_of(hypothesis, std)) {
+        for (at, free, value) in free_of(hypothesis) {
             let kind = &mut sums[free.parameter.min(2)];
-            kind.0 += value * value + std.unwrap_or(0.0).powi(2);
+            kind.0 += value * value + std.get(at).copied().flatten().unwrap_or(0.0).powi(2);
             kind.1 += 1.0;
         }
         let [place, gain, wave] = sums.map(|(sum, count)| (sum / count.max(1.0)).sqrt());
@@ -96,7 +96,7 @@ impl RoughScales {
 /// [`SPARE`] of that for what a few numbers scatter.
 pub(super) fn exceeds_any_test(hypothesis: &Hypothesis) -> bool {
     let mut sums = [(0.0, 0.0); 3];
-    for (free, value) in free_of(hypothesis) {
+    for (_, free, value) in free_of(hypothesis) {
         let kind = &mut sums[free.parameter.min(2)];
         kind.0 += (value / RoughScales::MOST.of(free.parameter)).powi(2);
         kind.1 += 1.0;
@@ -117,24 +117,15 @@ pub(super) fn none_yet(piece: &Piece, records: usize) -> Switched {
     Switched::new(roughness(), piece, records, |_| None, |_| false)
 }
 
-/// The free parameters of the roughness, with their coordinates: zero is none.
-pub(super) fn free_of(hypothesis: &Hypothesis) -> impl Iterator<Item = (&FreeParameter, f64)> {
-    let own = hypothesis.each_free().filter(|(on, _)| is_roughness(on));
-    own.map(|(on, free)| (free, free.coordinate(on.values[free.at])))
-}
-
-/// Where among the hypothesis' coordinates those parameters stand.
-pub(super) fn positions(hypothesis: &Hypothesis) -> impl Iterator<Item = usize> {
-    hypothesis.each_free().enumerate().filter(|(_, (on, _))| is_roughness(on)).map(|(at, _)| at)
-}
-
-fn std_of<'a>(hypothesis: &'a Hypothesis, std: &'a [Option<f64>]) -> impl Iterator<Item = Option<f64>> {
-    positions(hypothesis).map(|at| std.get(at).copied().flatten())
+/// The free parameters of the roughness, with where among the hypothesis' coordinates each stands, and its coordinate: zero is none.
+pub(super) fn free_of(hypothesis: &Hypothesis) -> impl Iterator<Item = (usize, &FreeParameter, f64)> {
+    let own = hypothesis.each_free().enumerate().filter(|(_, (on, _))| is_roughness(on));
+    own.map(|(at, (on, free))| (at, free, free.coordinate(on.values[free.at])))
 }
 
 /// Adds what is known of the roughness beforehand; `first` is the place of the hypothesis' first coordinate.
 pub(super) fn add_prior(prior: &mut Quadratic, hypothesis: &Hypothesis, scales: &RoughScales, first: usize) {
-    for (at, (free, value)) in positions(hypothesis).zip(free_of(hypothesis)) {
+    for (at, free, value) in free_of(hypothesis) {
         let over = 1.0 / scales.of(free.parameter);
         prior.add_row(over * value, &[(first + at, over)]);
     }

@@ -27,8 +27,7 @@ impl BeamTerms {
     /// The part of the even shear stiffness \[1\] that is there at $t = 2x/a$.
     pub(super) fn shear_part(&self, t: f64, half_length: f64) -> f64 {
         let x = t * half_length;
-        let within = |loss: &&ShearLoss| (x - loss.at).abs() < 0.5 * loss.span;
-        let lost: f64 = self.losses.iter().filter(within).map(|loss| loss.loss).sum();
+        let lost: f64 = self.losses.iter().filter(|loss| loss.holds(x, half_length)).map(|loss| loss.loss).sum();
         let waves = core_waves(self.core_waves.len(), t);
         1.0 - lost + self.core_waves.iter().zip(waves).map(|(amplitude, wave)| amplitude * wave).sum::<f64>()
     }
@@ -90,9 +89,7 @@ impl ShearLoss {
     pub(crate) fn edges(&self, half_length: f64) -> [f64; 2] {
         [-0.5, 0.5].map(|side| (self.at + side * self.span).clamp(-half_length, half_length))
     }
-}
 
-impl ShearLoss {
     /// Whether a place lies in the span.
     pub(crate) fn holds(&self, x: f64, half_length: f64) -> bool {
         let [low, high] = self.edges(half_length);

@@ -78,8 +78,8 @@ impl InertialRemainder {
             Motion::Slope => Some((n as f64 + 0.5) * values[n] / self.half_length),
             Motion::Rotation | Motion::Curvature => None,
         };
-        let left = |loss: &ShearLoss| if loss.holds(x, self.half_length) { 1.0 - loss.loss } else { 1.0 };
-        let stiffness = self.section.shear_area * self.losses.iter().map(left).product::<f64>();
+        let lost: f64 = self.losses.iter().filter(|loss| loss.holds(x, self.half_length)).map(|loss| loss.loss).sum();
+        let stiffness = self.section.shear_area * (1.0 - lost);
         (self.order - 2..=self.last()).map(|n| Some(g(n)? / stiffness)).collect()
     }
 
