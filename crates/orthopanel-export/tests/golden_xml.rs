@@ -1,5 +1,5 @@
-//! `modelDescription/`: the XML of each flavour for one small model, as it was last agreed on; of arrays and
-//! a plate too.
+//! `modelDescription/`: the XML of each flavour for one small model, as it was last agreed on; of arrays, a plate
+//! and each effect that can stand in an FMU, too.
 //!
 //! After a change on purpose, write them anew with `UPDATE_GOLDEN=1 cargo test -p orthopanel-export --test golden_xml`
 //! and read the difference.
@@ -86,6 +86,28 @@ fn regress_plate() {
     }
 }
 
+/// The effects that can stand in an FMU, each in a beam of two modes: what states and parameters it brings.
+const EFFECTS: [&str; 6] = [
+    r#"{"id": "local-mass", "owner": "panel", "mass": 0.05, "x": 0.1}"#,
+    r#"{"id": "edge-mass", "owner": "panel", "mass": 0.05}"#,
+    r#"{"id": "stiffness-loss", "owner": "panel", "loss": 0.5, "span": 0.1, "x": 0.1}"#,
+    r#"{"id": "resonator", "owner": "panel", "mass": 0.02, "frequency": 900, "zeta": 0.02, "x": 0.21}"#,
+    r#"{"id": "rotary-inertia", "owner": "panel", "factor": 2.4}"#,
+    r#"{"id": "viscoelastic-core", "owner": "panel", "strength": 0.3, "tau": 1e-4, "alpha": 0.6}"#,
+];
+
+#[test]
+fn regress_each_effect() {
+    for (version, attribute, file) in FLAVOURS {
+        for effect in EFFECTS {
+            let id = effect.split('"').nth(3).expect("an id");
+            let options = FmuOptions { version, ..FmuOptions::default() };
+            let fmu = exported(&beam(effect), 2, [&[-0.3], &[0.1]], &options);
+            compare(&format!("{file}-{id}.xml"), &tokenless(&fmu, attribute));
+        }
+    }
+}
+
 const FLAVOURS: [(FmiVersion, &str, &str); 2] =
     [(FmiVersion::Fmi2, "guid", "fmi2"), (FmiVersion::Fmi3, "instantiationToken", "fmi3")];
 
@@ -119,10 +141,10 @@ fn settable(version: FmiVersion) -> Fmu {
 /// The importer `fmi-rs` has a validator of its own.
 #[test]
 fn val_fmi_rs_finds_no_problem() {
-    let core = beam(r#"{"id": "viscoelastic-core", "owner": "panel", "strength": 0.3, "tau": 1e-4, "alpha": 0.6}"#);
     let also = |version| {
         let options = FmuOptions { version, ..FmuOptions::default() };
-        [PLATE, &core].map(|text| exported(text, 2, [&[-0.3], &[0.1]], &options))
+        let panels = EFFECTS.into_iter().map(beam).chain([PLATE.into()]);
+        panels.map(move |text| exported(&text, 2, [&[-0.3], &[0.1]], &options)).collect::<Vec<_>>()
     };
     for two in [fmu(FmiVersion::Fmi2), settable(FmiVersion::Fmi2)].into_iter().chain(also(FmiVersion::Fmi2)) {
         let two = two.model_description();
