@@ -48,12 +48,14 @@ pub(crate) fn write(resource: &Resource, from: Option<&Origin<'_>>, options: &Fm
     page
 }
 
-/// Legible on a narrow screen too, and without any file beside it.
+/// Legible without any file beside it, and on a narrow screen, where long names break rather than the table scrolls.
 const STYLE: &str = "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<style>
 body { font-family: sans-serif; line-height: 1.4; max-width: 60em; margin: 1em auto; padding: 0 1em; color: #222; background: #fff }
 table { border-collapse: collapse; display: block; overflow-x: auto; margin: 1em 0 }
 th, td { border: 1px solid #bbb; padding: 0.2em 0.6em; text-align: left; vertical-align: top }
 th { background: #eee }
+@media (max-width: 40em) { table { display: table; font-size: 0.8em }
+th, td { padding: 0.1em 0.3em; overflow-wrap: anywhere } }
 </style>\n";
 
 const PARAMETERS: &str = "Parameters are fixed: they are set before or in initialization mode, and stay for the run. Where \
