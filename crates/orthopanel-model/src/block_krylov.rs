@@ -8,6 +8,7 @@ use faer::Mat;
 use crate::block_pencil::{BlockPencil, Eigenpair};
 use crate::dense::{dot, symmetric_eigen};
 use crate::skyline::add;
+use crate::wide::wide;
 
 /// Residual, over its eigenvalue, at which a vector has converged: its frequency is then exact to rounding.
 const CONVERGED: f64 = 1e-8;
@@ -129,12 +130,16 @@ impl BlockKrylov {
 
     /// Takes the shares of the vectors from one on out of a vector, and adds them to `shares`; the norm of what is left.
     fn take_out(&self, vector: &mut [f64], shares: &mut [f64], from: usize) -> f64 {
-        for (sum, other) in shares.iter_mut().zip(&self.vectors).skip(from) {
-            let share = dot(other, vector);
-            *sum += share;
-            add(vector, -share, other);
-        }
-        dot(vector, vector).sqrt()
+        let vectors = &self.vectors[from..];
+        let shares = &mut shares[from..];
+        wide!(|vectors: &'a [Vec<f64>], vector: &'a mut [f64], shares: &'a mut [f64]| -> f64 {
+            for (sum, other) in shares.iter_mut().zip(vectors) {
+                let share = dot(other, vector);
+                *sum += share;
+                add(vector, -share, other);
+            }
+            dot(vector, vector).sqrt()
+        })
     }
 
     /// Counts the modes that have converged; the largest residual of the lowest `wanted`.

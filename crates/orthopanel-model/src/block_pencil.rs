@@ -5,6 +5,7 @@ use faer::Mat;
 use crate::ModelError;
 use crate::dense::{Cholesky, negative_pivots, symmetric_eigen};
 use crate::skyline::{SkylineCholesky, SymmetricMatrix};
+use crate::sparse_rows::SparseRows;
 use crate::structure::Block;
 
 /// $K$ and $M$ of a block, and the operator whose largest eigenvalues are its lowest modes.
@@ -21,6 +22,8 @@ pub(crate) struct BlockPencil<'a> {
     factor: Factor,
     /// $SMS$.
     mass: SymmetricMatrix,
+    /// The same without zeros, where that is worth it.
+    mass_rows: Option<SparseRows>,
 }
 
 /// $LL^T$ by rows where few entries are not zero, else by blocks.
@@ -47,7 +50,8 @@ impl<'a> BlockPencil<'a> {
         }
         let (shifted, mass) = (shifted.scaled(&scale), block.mass.clone().scaled(&scale));
         let factor = Factor::new(&shifted).ok_or(ModelError::Eigenproblem)?;
-        Ok(Self { block, sigma, scale, shifted, factor, mass })
+        let mass_rows = SparseRows::of(&mass);
+        Ok(Self { block, sigma, scale, shifted, factor, mass, mass_rows })
     }
 
     pub(crate) fn size(&self) -> usize {
@@ -79,7 +83,7 @@ impl<'a> BlockPencil<'a> {
     pub(crate) fn apply(&self, vector: &[f64]) -> Vec<f64> {
         let mut half = vector.to_vec();
         self.factor.solve_upper(&mut half);
-        let mut image = self.mass.image(&half);
+        let mut image = self.mass_rows.as_ref().map_or_else(|| self.mass.image(&half), |rows| rows.image(&half));
         self.factor.solve_lower(&mut image);
         image
     }

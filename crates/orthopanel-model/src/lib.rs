@@ -24,11 +24,13 @@ mod response;
 mod ritz_modes;
 mod side_by_side;
 mod skyline;
+mod sparse_rows;
 mod static_deflection;
 mod structure;
 mod structure_modes;
 mod time_model;
 mod timoshenko_beam;
+mod wide;
 
 pub use boundary::{Boundary, End};
 pub use constant::Constant;

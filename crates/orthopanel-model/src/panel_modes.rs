@@ -163,7 +163,7 @@ impl PanelModel {
         Ok((values, effects))
     }
 
-    fn plate_constants(&self) -> Result<[f64; 6], ModelError> {
+    pub(crate) fn plate_constants(&self) -> Result<[f64; 6], ModelError> {
         let mut values = [0.0; 6];
         for (value, constant) in values.iter_mut().zip(&PLATE_CONSTANTS) {
             *value = self.constant(constant.name)?;

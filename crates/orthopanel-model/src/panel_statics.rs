@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use crate::effects::{DressedPanel, Flexibilities, MOST_SUMMED, SPARE_MODES};
+use crate::mindlin_plate::FixedPlate;
 use crate::{
     EffectSetting, MindlinPlate, ModalModel, ModeRange, ModelError, Motion, PanelModel, Place, StaticFlexibility,
     Structure, StructureKind, static_deflections,
@@ -113,11 +114,14 @@ impl PanelModel {
                 responses.iter().map(row).collect()
             }
             StructureKind::MindlinPlate => {
-                let (plate, values) = match self.structure_for(count.max(STATIC_BASIS)) {
-                    Err(ModelError::BasisTooSmall { available, .. }) => self.structure_for(available)?,
+                self.check()?;
+                let values = self.plate_constants()?;
+                let on = |count| FixedPlate::with_basis_for(&self.piece, self.boundary, &values, count);
+                let plate = match on(count.max(STATIC_BASIS)) {
+                    Err(ModelError::BasisTooSmall { available, .. }) => on(available)?,
                     found => found?,
                 };
-                static_deflections(plate.as_ref(), &values, forces, responses)?
+                static_deflections(&plate, &values, forces, responses)?
             }
         };
         Ok(flexibility)

@@ -9,6 +9,7 @@ use std::sync::Arc;
 use faer::Mat;
 
 use crate::dense::{dot, product};
+use crate::wide::wide;
 
 /// A symmetric matrix by the rows of its lower triangle, each from its first entry that is not zero.
 #[derive(Debug, Clone, PartialEq)]
@@ -79,6 +80,16 @@ impl SymmetricMatrix {
             fill(row, first, &mut values[profile.starts[row]..profile.starts[row + 1]]);
         }
         Self { profile: Arc::clone(profile), values }
+    }
+
+    /// Where a row begins, and its entries from there up to the diagonal.
+    pub(crate) fn row(&self, row: usize) -> (usize, &[f64]) {
+        (self.profile.first[row], self.profile.row(&self.values, row))
+    }
+
+    /// How many entries are kept.
+    pub(crate) fn stored(&self) -> usize {
+        self.values.len()
     }
 
     /// Number of rows.
@@ -178,10 +189,10 @@ impl SymmetricMatrix {
         self.profile.first.iter().enumerate().map(row).sum()
     }
 
-    /// Whether so many entries are zero that factors by rows are quicker than by blocks.
+    /// Whether so many entries are zero that factors by rows are quicker than by blocks. Small code has no blocks.
     pub(crate) fn is_thin(&self) -> bool {
         let size = self.nrows();
-        size <= 32 || 4 * self.values.len() < size * size
+        cfg!(feature = "compact") || size <= 32 || 4 * self.values.len() < size * size
     }
 
     /// All entries.
@@ -191,6 +202,12 @@ impl SymmetricMatrix {
 
     /// Number of negative eigenvalues: the negative pivots of $LDL^T$ (Sylvester's law of inertia). `None` where a pivot vanishes.
     pub(crate) fn negative_pivots(mut self) -> Option<usize> {
+        let own = &mut self;
+        wide!(|own: &'a mut SymmetricMatrix| -> Option<usize> { own.count_negative_pivots() })
+    }
+
+    #[inline(always)]
+    fn count_negative_pivots(&mut self) -> Option<usize> {
         let mut pivots = Vec::with_capacity(self.nrows());
         for row in 0..self.nrows() {
             self.reduce_row(row);
@@ -211,6 +228,7 @@ impl SymmetricMatrix {
     }
 
     /// Takes the rows above off this one but for its diagonal, by the factor $L$ that they hold.
+    #[inline(always)]
     fn reduce_row(&mut self, row: usize) {
         let Profile { first, starts } = self.profile.as_ref();
         let (above, rest) = self.values.split_at_mut(starts[row]);
@@ -234,6 +252,13 @@ impl SkylineCholesky {
     /// `None` where the matrix is not positive definite.
     pub(crate) fn new(matrix: &SymmetricMatrix) -> Option<Self> {
         let mut lower = matrix.clone();
+        let own = &mut lower;
+        wide!(|own: &'a mut SymmetricMatrix| -> Option<()> { SkylineCholesky::factor(own) })?;
+        Some(Self { lower })
+    }
+
+    #[inline(always)]
+    fn factor(lower: &mut SymmetricMatrix) -> Option<()> {
         for row in 0..lower.nrows() {
             let Profile { first, starts } = lower.profile.as_ref();
             let (above, rest) = lower.values.split_at_mut(starts[row]);
@@ -252,9 +277,10 @@ impl SkylineCholesky {
             }
             *diagonal = pivot.sqrt().recip();
         }
-        Some(Self { lower })
+        Some(())
     }
 
+    #[inline(always)]
     fn rows(&self) -> impl DoubleEndedIterator<Item = (usize, usize, &[f64], f64)> {
         let profile = &self.lower.profile;
         profile.first.iter().enumerate().filter_map(|(row, &first)| {
@@ -265,18 +291,24 @@ impl SkylineCholesky {
 
     /// $L^{-1}b$ in the place of $b$.
     pub(crate) fn solve_lower(&self, vector: &mut [f64]) {
-        for (row, first, before, inverse) in self.rows() {
-            vector[row] = (vector[row] - dot(before, &vector[first..row])) * inverse;
-        }
+        let own = self;
+        wide!(|own: &'a SkylineCholesky, vector: &'a mut [f64]| -> () {
+            for (row, first, before, inverse) in own.rows() {
+                vector[row] = (vector[row] - dot(before, &vector[first..row])) * inverse;
+            }
+        });
     }
 
     /// $L^{-T}b$ in the place of $b$.
     pub(crate) fn solve_upper(&self, vector: &mut [f64]) {
-        for (row, first, before, inverse) in self.rows().rev() {
-            vector[row] *= inverse;
-            let own = vector[row];
-            add(&mut vector[first..row], -own, before);
-        }
+        let own = self;
+        wide!(|own: &'a SkylineCholesky, vector: &'a mut [f64]| -> () {
+            for (row, first, before, inverse) in own.rows().rev() {
+                vector[row] *= inverse;
+                let share = vector[row];
+                add(&mut vector[first..row], -share, before);
+            }
+        });
     }
 
     /// $L^Tb$ in the place of $b$.
@@ -290,6 +322,7 @@ impl SkylineCholesky {
 }
 
 /// $a \mathrel{+}= cb$.
+#[inline(always)]
 pub(crate) fn add(sum: &mut [f64], coefficient: f64, values: &[f64]) {
     sum.iter_mut().zip(values).for_each(|(total, value)| *total += coefficient * value);
 }

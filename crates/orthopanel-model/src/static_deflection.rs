@@ -41,6 +41,10 @@ pub fn static_deflections(
 /// $u$ of one block, a column a force.
 pub(crate) fn deflected(block: &Block, coefficients: &[f64], mut loads: Mat<f64>) -> Result<Mat<f64>, ModelError> {
     let size = block.size();
+    // A force on a line of symmetry moves nothing that is odd about it.
+    if (0..loads.ncols()).all(|force| loads.col_as_slice(force).iter().all(|value| *value == 0.0)) {
+        return Ok(loads);
+    }
     let mut stiffness = block.stiffness_at(coefficients);
     let rigid = Mat::from_fn(size, block.rigid.len(), |i, n| block.rigid[n][i]);
     let momentum = block.mass.times(&rigid);

@@ -13,7 +13,8 @@ const MOST_TURNS: usize = 60;
 /// Rising eigenvalues and their vectors as columns; `None` where the search does not converge.
 pub(crate) fn symmetric_eigen(matrix: &Mat<f64>) -> Option<(Vec<f64>, Mat<f64>)> {
     let size = matrix.nrows();
-    let mut reflected: Vec<f64> = matrix.col_iter().flat_map(|column| column.iter().copied()).collect();
+    let mut reflected = Vec::with_capacity(size * size);
+    (0..size).for_each(|column| reflected.extend_from_slice(matrix.col_as_slice(column)));
     let (mut diagonal, mut beside, scales) = to_tridiagonal(&mut reflected, size);
     let mut vectors = product_of_reflections(&reflected, &scales, size);
     to_diagonal(&mut diagonal, &mut beside, &mut vectors)?;

@@ -18,6 +18,7 @@ pub(crate) use compact::{Cholesky, negative_pivots, product};
 pub(crate) use compact_eigen::symmetric_eigen;
 
 /// $a^Tb$, in four sums, which the compiler may keep side by side.
+#[inline(always)]
 pub(crate) fn dot(left: &[f64], right: &[f64]) -> f64 {
     let (left, left_rest) = left.as_chunks::<4>();
     let (right, right_rest) = right.as_chunks::<4>();

@@ -1,7 +1,8 @@
 //! Stiffness and mass matrices of the plate, block by block: sums of products of integrals along x and along y.
 //!
 //! Coordinates stand by their degree along the side with more functions, then by that along the other. Since functions
-//! meet whose degrees are at most two apart, rows of the matrices then are short.
+//! meet whose degrees are at most two apart, rows of the matrices then are short. Where spans have lost shear stiffness, all
+//! functions along x meet, and the degree along y comes first.
 
 use std::sync::Arc;
 
@@ -45,6 +46,9 @@ impl Products {
 /// A field with its orders of differentiation along x and y.
 type Term = (Field, usize, usize);
 
+const DEFLECTION: &[Term] = &[(Field::Deflection, 0, 0)];
+const ROTATION_X: &[Term] = &[(Field::RotationX, 0, 0)];
+const ROTATION_Y: &[Term] = &[(Field::RotationY, 0, 0)];
 const CURVATURE_X: &[Term] = &[(Field::RotationX, 1, 0)];
 const CURVATURE_Y: &[Term] = &[(Field::RotationY, 0, 1)];
 const TWIST: &[Term] = &[(Field::RotationX, 0, 1), (Field::RotationY, 1, 0)];
@@ -59,6 +63,7 @@ pub(super) fn assemble(
     rotary_factor: f64,
     edge_mass: f64,
     products: Products,
+    coefficients: Option<[f64; 6]>,
 ) -> (Vec<Vec<Coordinate>>, Vec<Block>) {
     let [x, y] = along;
     let mut coordinates = Vec::new();
@@ -69,7 +74,7 @@ pub(super) fn assemble(
     }
     let meetings = along.each_ref().map(EdgeBasis::meetings);
     let blocks = side_by_side::map(&coordinates, |list| {
-        let mut block = block(piece, along, rotary_factor, (list, &meetings));
+        let mut block = block(piece, along, rotary_factor, (list, &meetings), coefficients);
         if edge_mass != 0.0 {
             add_edge_mass(piece, along, edge_mass, list, &mut block);
         }
@@ -91,15 +96,26 @@ fn block_coordinates(along: &[EdgeBasis; 2], [odd_x, odd_y]: [bool; 2], products
             list.extend(own.map(|j| Coordinate { field, x: i, y: j }));
         }
     }
-    // Stable sorting would bring 9 KB into every FMU.
-    list.sort_unstable_by_key(|coordinate| (degrees(along, coordinate), coordinate.field as usize));
-    list
+    // Keys made once, and small ones: sorting longer ones would bring 7 KB into every FMU.
+    let keyed = |(place, coordinate): (usize, &Coordinate)| {
+        let [first, second] = degrees(along, coordinate);
+        (((first << 16 | second) << 2) + coordinate.field as usize, place)
+    };
+    let mut order: Vec<(usize, usize)> = list.iter().enumerate().map(keyed).collect();
+    order.sort_unstable();
+    order.into_iter().map(|(_, place)| list[place]).collect()
 }
 
-/// Degrees along the side with more functions and along the other.
-fn degrees([x, y]: &[EdgeBasis; 2], &Coordinate { field, x: i, y: j }: &Coordinate) -> [usize; 2] {
-    let [along_x, along_y] = [x.degree(field, i), y.degree(field, j)];
-    if x.count(Field::Deflection) >= y.count(Field::Deflection) { [along_x, along_y] } else { [along_y, along_x] }
+/// The side along which rows of the matrices are ordered first: that with more functions, but never one all of whose functions meet
+/// in a span without all of the shear stiffness.
+fn major([x, y]: &[EdgeBasis; 2]) -> usize {
+    usize::from(x.is_sheared() || x.count(Field::Deflection) < y.count(Field::Deflection))
+}
+
+/// Degrees along the major side and along the other.
+fn degrees(along: &[EdgeBasis; 2], &Coordinate { field, x: i, y: j }: &Coordinate) -> [usize; 2] {
+    let [along_x, along_y] = [along[0].degree(field, i), along[1].degree(field, j)];
+    if major(along) == 0 { [along_x, along_y] } else { [along_y, along_x] }
 }
 
 fn block(
@@ -107,25 +123,33 @@ fn block(
     along: &[EdgeBasis; 2],
     rotary_factor: f64,
     (list, meetings): (&[Coordinate], &[Vec<Vec<bool>>; 2]),
+    coefficients: Option<[f64; 6]>,
 ) -> Block {
     let profile = Arc::new(profile(along, list, meetings));
-    let form = |f: &[Term], g: &[Term]| product(along, (list, &profile), EdgeBasis::integrals, [f, g]);
-    let shear = |f: &[Term]| product(along, (list, &profile), EdgeBasis::sheared_integrals, [f, f]);
-    let mut crossed = form(CURVATURE_X, CURVATURE_Y);
-    crossed.add(1.0, &form(CURVATURE_Y, CURVATURE_X));
-    let stiffness = vec![
-        form(CURVATURE_X, CURVATURE_X),
-        form(CURVATURE_Y, CURVATURE_Y),
-        crossed,
-        form(TWIST, TWIST),
-        shear(SHEAR_X),
-        shear(SHEAR_Y),
+    let sum = |forms: &[Form]| product(along, (list, &profile), forms);
+    let plain = |f: &'static [Term], g: &'static [Term]| (1.0, EdgeBasis::integrals as AlongX, f, g);
+    let sheared = |f: &'static [Term]| (1.0, EdgeBasis::sheared_integrals as AlongX, f, f);
+    // In the order of the coefficients.
+    let mut forms = [
+        vec![plain(CURVATURE_X, CURVATURE_X)],
+        vec![plain(CURVATURE_Y, CURVATURE_Y)],
+        vec![plain(CURVATURE_X, CURVATURE_Y), plain(CURVATURE_Y, CURVATURE_X)],
+        vec![plain(TWIST, TWIST)],
+        vec![sheared(SHEAR_X)],
+        vec![sheared(SHEAR_Y)],
     ];
+    let stiffness = match coefficients {
+        None => forms.iter().map(|own| sum(own)).collect(),
+        Some(coefficients) => {
+            for (own, coefficient) in forms.iter_mut().zip(coefficients) {
+                own.iter_mut().for_each(|form| form.0 = coefficient);
+            }
+            vec![sum(&forms.concat())]
+        }
+    };
     let rotary_inertia = rotary_factor * piece.mass_per_area * piece.thickness * piece.thickness / 12.0;
-    let inertias = [piece.mass_per_area, rotary_inertia, rotary_inertia];
-    let own = Field::ALL.map(|field| [(field, 0, 0)]);
-    let own = own.each_ref().map(|own| form(own, own));
-    let mass = SymmetricMatrix::sum(inertias.into_iter().zip(&own), list.len());
+    let inertias = [(piece.mass_per_area, DEFLECTION), (rotary_inertia, ROTATION_X), (rotary_inertia, ROTATION_Y)];
+    let mass = sum(&inertias.map(|(inertia, own)| (inertia, EdgeBasis::integrals as AlongX, own, own)));
     let rigid = rigid_modes(along, list, &mass);
     Block { stiffness, mass, rigid }
 }
@@ -137,7 +161,7 @@ fn profile(along: &[EdgeBasis; 2], list: &[Coordinate], meetings: &[Vec<Vec<bool
     let meet = |a: usize, b: usize| meetings[0][slots[a][0]][slots[b][0]] && meetings[1][slots[a][1]][slots[b][1]];
     // A row begins no sooner than the least degree along the longer series that it meets.
     let degree: Vec<usize> = list.iter().map(|coordinate| degrees(along, coordinate)[0]).collect();
-    let major = usize::from(x.count(Field::Deflection) < y.count(Field::Deflection));
+    let major = major(along);
     let numbers = |field: Field| (0..along[major].count(field)).map(move |number| (field, number));
     let met: Vec<(usize, usize)> = Field::ALL
         .into_iter()
@@ -184,56 +208,95 @@ fn add_edge_mass(piece: &Piece, [x, y]: &[EdgeBasis; 2], mass: f64, list: &[Coor
 /// Integrals along x of two fields, each with its order of differentiation.
 type AlongX = fn(&EdgeBasis, (Field, usize), (Field, usize)) -> MatRef<'_, f64>;
 
-/// $\int fg\,dx\,dy$ of two strains in the coordinates of a block: a row a coordinate of `f`, a column one of `g`, its lower
-/// triangle.
-#[inline(never)] // Ten times in one place, it would make every FMU larger.
+/// $c\int fg\,dx\,dy$ of two strains.
+type Form<'a> = (f64, AlongX, &'a [Term], &'a [Term]);
+
+/// A sum of forms in the coordinates of a block: a row a coordinate of `f`, a column one of `g`, its lower triangle.
+#[inline(never)] // Several times in one place, it would make every FMU larger.
 fn product(
     [x, y]: &[EdgeBasis; 2],
     (list, profile): (&[Coordinate], &Arc<Profile>),
-    integrals: AlongX,
-    [f, g]: [&[Term]; 2],
+    forms: &[Form],
 ) -> SymmetricMatrix {
-    let mut tables: [[Vec<[Rows; 2]>; 3]; 3] = Default::default();
-    for &(left, left_x, left_y) in f {
-        for &(right, right_x, right_y) in g {
-            let along_x = integrals(x, (left, left_x), (right, right_x));
-            let along_y = y.integrals((left, left_y), (right, right_y));
-            tables[left as usize][right as usize].push([along_x, along_y].map(Rows::of));
+    let mut tables: [Vec<(Field, [Rows; 2])>; 3] = Default::default();
+    for &(factor, integrals, f, g) in forms {
+        for &(left, left_x, left_y) in f {
+            for &(right, right_x, right_y) in g {
+                let along_x = integrals(x, (left, left_x), (right, right_x));
+                let along_y = y.integrals((left, left_y), (right, right_y));
+                tables[left as usize].push((right, [Rows::of(along_x, factor), Rows::of(along_y, 1.0)]));
+            }
         }
     }
-    // Of each field, where its coordinates stand: a row meets but those.
-    let numbered = |field: Field| list.iter().enumerate().filter(move |(_, own)| own.field == field).map(|(at, _)| at);
-    let of_field = Field::ALL.map(|field| numbered(field).collect::<Vec<usize>>());
+    let places = Places::of(list, [x, y]);
     SymmetricMatrix::from_rows(profile, |row, first, values| {
         let own = list[row];
-        for (parts, places) in tables[own.field as usize].iter().zip(&of_field).filter(|(parts, _)| !parts.is_empty()) {
-            let begin = places.partition_point(|place| *place < first);
-            let met = &places[begin..begin + places[begin..].partition_point(|place| *place <= row)];
-            for [along_x, along_y] in parts {
-                let (along_x, along_y) = (along_x.row(own.x), along_y.row(own.y));
-                for &place in met {
-                    let other = list[place];
-                    values[place - first] += along_x[other.x] * along_y[other.y];
+        for (field, [along_x, along_y]) in &tables[own.field as usize] {
+            let along_y = along_y.row(own.y);
+            for &(other_x, by_x) in along_x.row(own.x) {
+                for &(other_y, by_y) in along_y {
+                    // Those of other blocks, and of the upper triangle, have no place here.
+                    let place = places.at(*field, other_x, other_y).wrapping_sub(first);
+                    if let Some(value) = values.get_mut(place) {
+                        *value += by_x * by_y;
+                    }
                 }
             }
         }
     })
 }
 
-/// A matrix by rows.
+/// What is not zero of a matrix, by rows: most functions do not meet.
 struct Rows {
-    width: usize,
-    values: Vec<f64>,
+    starts: Vec<usize>,
+    entries: Vec<(usize, f64)>,
 }
 
 impl Rows {
-    fn of(matrix: MatRef<'_, f64>) -> Self {
-        let row = |i: usize| (0..matrix.ncols()).map(move |j| matrix[(i, j)]);
-        Self { width: matrix.ncols(), values: (0..matrix.nrows()).flat_map(row).collect() }
+    /// Times a factor.
+    fn of(matrix: MatRef<'_, f64>, factor: f64) -> Self {
+        let (mut starts, mut entries) = (vec![0], Vec::with_capacity(4 * matrix.nrows()));
+        for i in 0..matrix.nrows() {
+            for j in 0..matrix.ncols() {
+                let value = matrix[(i, j)];
+                if value != 0.0 {
+                    entries.push((j, factor * value));
+                }
+            }
+            starts.push(entries.len());
+        }
+        Self { starts, entries }
     }
 
-    fn row(&self, row: usize) -> &[f64] {
-        &self.values[row * self.width..(row + 1) * self.width]
+    fn row(&self, row: usize) -> &[(usize, f64)] {
+        &self.entries[self.starts[row]..self.starts[row + 1]]
+    }
+}
+
+/// Where in a block each product of two functions stands.
+struct Places {
+    counts: [usize; 2],
+    places: Vec<usize>,
+}
+
+impl Places {
+    fn of(list: &[Coordinate], along: [&EdgeBasis; 2]) -> Self {
+        let counts = along.map(|basis| Field::ALL.map(|field| basis.count(field)).into_iter().max().unwrap_or(0));
+        let mut own = Self { counts, places: vec![usize::MAX; 3 * counts[0] * counts[1]] };
+        for (place, coordinate) in list.iter().enumerate() {
+            let number = own.number(coordinate.field, coordinate.x, coordinate.y);
+            own.places[number] = place;
+        }
+        own
+    }
+
+    fn number(&self, field: Field, x: usize, y: usize) -> usize {
+        (field as usize * self.counts[0] + x) * self.counts[1] + y
+    }
+
+    /// [`usize::MAX`] of another block's.
+    fn at(&self, field: Field, x: usize, y: usize) -> usize {
+        self.places[self.number(field, x, y)]
     }
 }
 

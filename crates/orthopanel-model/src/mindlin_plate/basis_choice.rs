@@ -47,11 +47,24 @@ impl MindlinPlate {
         count: usize,
         own: &PlateTerms,
     ) -> Result<Self, ModelError> {
-        let stiffnesses = plate_stiffnesses(piece.checked()?.thickness, values)?;
-        let terms = Reach::new(piece, boundary, stiffnesses)?.terms(count)?;
+        let terms = Self::terms_for_basis(piece, boundary, values, count)?;
         // Frequencies can do without products of many nodes both ways, the motion under a point force cannot.
-        let plate = Self::uneven(piece, boundary, terms, Products::All, own)?;
+        let plate = Self::uneven(piece, boundary, terms, Products::All, own, None)?;
         Ok(Self { resolved_modes: plate.resolved_modes.max(count), ..plate })
+    }
+
+    /// Terms along x and y that [`MindlinPlate::with_basis_for`] has.
+    ///
+    /// # Errors
+    /// As there.
+    pub(super) fn terms_for_basis(
+        piece: &Piece,
+        boundary: Boundary,
+        values: &[f64],
+        count: usize,
+    ) -> Result<[usize; 2], ModelError> {
+        let stiffnesses = plate_stiffnesses(piece.checked()?.thickness, values)?;
+        Reach::new(piece, boundary, stiffnesses)?.terms(count)
     }
 
     /// Polynomials along x and y that follow the layers at the free edges of a plate that shears as little as solid metal,
@@ -121,7 +134,10 @@ impl MindlinPlate {
         let stiffnesses = plate_stiffnesses(piece.checked()?.thickness, values)?;
         let reach = Reach::new(piece, boundary, stiffnesses)?;
         let omega2 = (frequency * std::f64::consts::TAU).powi(2) * piece.mass_per_area;
-        Ok(reach.modes.into_iter().take_while(|(estimate, _)| *estimate <= omega2).map(|(_, nodes)| nodes).collect())
+        let mut below = reach.modes;
+        below.retain(|(estimate, _)| *estimate <= omega2);
+        below.sort_unstable_by(rising);
+        Ok(below.into_iter().map(|(_, nodes)| nodes).collect())
     }
 }
 
@@ -157,9 +173,16 @@ fn terms_for_layer(epsilon: f64) -> usize {
 /// Part of a frequency that the layers along one direction may cost.
 const LAYER_ERROR: f64 = 2.5e-5;
 
-/// Nodes of the flexible modes, in rising order of a one-term estimate of $\omega^2\rho t$.
+/// A one-term estimate of $\omega^2\rho t$ with the nodes that it is of.
+type Estimate = (f64, [usize; 2]);
+
+fn rising(a: &Estimate, b: &Estimate) -> std::cmp::Ordering {
+    a.0.total_cmp(&b.0).then(a.1.cmp(&b.1))
+}
+
+/// Nodes of the flexible modes.
 struct Reach {
-    modes: Vec<(f64, [usize; 2])>,
+    modes: Vec<Estimate>,
     /// What holds the edges at the low and high end of x, then of y.
     ends: [[End; 2]; 2],
     /// Terms along x and y that the layers at free edges want.
@@ -177,17 +200,28 @@ impl Reach {
         for nodes in (0..=MOST_NODES).flat_map(|m| (0..=MOST_NODES).map(move |n| [m, n])) {
             modes.extend(one_term(&piece, ends, stiffnesses, nodes).map(|estimate| (estimate, nodes)));
         }
-        modes.sort_by(|a, b| a.0.total_cmp(&b.0));
         Ok(Self { modes, layers: layers(&piece, ends, stiffnesses), ends })
     }
 
     /// Terms along x and y for `count` modes.
-    fn terms(&self, count: usize) -> Result<[usize; 2], ModelError> {
+    fn terms(mut self, count: usize) -> Result<[usize; 2], ModelError> {
         // The order of the estimates is rough, so look a little further.
         let margin = |count: usize| count + count / 10 + 1;
+        // Few are wanted of two thousand and more: these alone are put in order.
+        let mut lowest = std::mem::take(&mut self.modes);
+        if margin(count) < lowest.len() {
+            let mut limit = lowest.iter().fold(0.0, |most: f64, (estimate, _)| most.max(*estimate));
+            let below = |limit: f64| lowest.iter().filter(|(estimate, _)| *estimate <= limit).count();
+            while limit.is_normal() && below(0.5 * limit) >= margin(count) {
+                limit *= 0.5;
+            }
+            lowest.retain(|(estimate, _)| *estimate <= limit);
+        }
+        lowest.sort_unstable_by(rising);
+        lowest.truncate(margin(count));
         let mut most_nodes = [0; 2];
         let mut terms = [0; 2];
-        for (index, (_, nodes)) in self.modes.iter().take(margin(count)).enumerate() {
+        for (index, (_, nodes)) in lowest.iter().enumerate() {
             most_nodes = [most_nodes[0].max(nodes[0]), most_nodes[1].max(nodes[1])];
             let wider = [0, 1].map(|direction| terms_for(half_waves(most_nodes[direction], self.ends[direction])));
             if !self.fits(wider) || most_nodes.contains(&MOST_NODES) {

@@ -64,30 +64,56 @@ impl EdgeBasis {
         own.extend(more);
         self.terms = self.fields.iter().map(Vec::len).max().unwrap_or(polynomials).max(polynomials);
         self.symmetric = false;
-        self.integrals = self.by_rule(&rule, |_| 1.0);
-        self.sheared = Some(self.by_rule(&rule, |t| spans.remaining(t)));
+        // Of polynomials alone by their series, which leave exact zeros.
+        let exact = self.all_integrals();
+        let mut integrals = self.by_rule(&rule, |_| 1.0, &[&EVERY]);
+        let kinked = |index: usize| {
+            let function = self.fields[index / (2 * self.terms)].get(index % self.terms);
+            function.is_some_and(|function| function.kink.is_some())
+        };
+        for column in (0..integrals.ncols()).filter(|column| !kinked(*column)) {
+            let values = integrals.col_as_slice_mut(column).iter_mut().enumerate();
+            values.filter(|(row, _)| !kinked(*row)).for_each(|(row, value)| *value = exact[(row, column)]);
+        }
+        self.integrals = integrals;
+        self.sheared = Some(self.by_rule(&rule, |t| spans.remaining(t), &[&SHEAR_ALONG, &SHEAR_ACROSS]));
         self
     }
 
-    fn by_rule(&self, rule: &[(f64, f64)], share: impl Fn(f64) -> f64) -> Mat<f64> {
+    /// Integrals of every two of what each list has.
+    fn by_rule(&self, rule: &[(f64, f64)], share: impl Fn(f64) -> f64, lists: &[&[(Field, usize)]]) -> Mat<f64> {
         let size = 6 * self.terms;
-        let values = Mat::<f64>::zeros(size, rule.len());
+        let values = Mat::<f64>::zeros(rule.len(), size);
         let (mut left, mut right) = (values.clone(), values);
         let h = self.half_length;
-        for (column, &(t, weight)) in rule.iter().enumerate() {
+        for (row, &(t, weight)) in rule.iter().enumerate() {
             let polynomials = legendre(self.terms, t);
             for field in Field::ALL {
                 for (n, function) in self.fields[field as usize].iter().enumerate() {
                     let [value, slope] = function.at(t, &polynomials);
                     for (order, value) in [(0, value), (1, slope / h)] {
-                        let row = self.index(field, order, n);
+                        let column = self.index(field, order, n);
                         left[(row, column)] = weight * share(t) * h * value;
                         right[(row, column)] = value;
                     }
                 }
             }
         }
-        crate::dense::product(left.as_ref(), right.transpose())
+        let mut integrals = Mat::zeros(size, size);
+        for list in lists {
+            for (&(f, p), &(g, q)) in list.iter().flat_map(|f| list.iter().map(move |g| (f, g))) {
+                let (row, column) = (self.index(f, p, 0), self.index(g, q, 0));
+                let of =
+                    |values: &'_ Mat<f64>, from: usize, count: usize| values.get(.., from..from + count).to_owned();
+                let (left, right) = (of(&left, row, self.count(f)), of(&right, column, self.count(g)));
+                let part = crate::dense::product(left.transpose(), right.as_ref());
+                for j in 0..part.ncols() {
+                    integrals.col_as_slice_mut(column + j)[row..row + part.nrows()]
+                        .copy_from_slice(part.col_as_slice(j));
+                }
+            }
+        }
+        integrals
     }
 
     /// Numbers of a field's functions of one parity; of all functions where the edges differ.
@@ -104,6 +130,11 @@ impl EdgeBasis {
     /// The parities that deflections may have: even and odd, or one stand-in where the edges differ.
     pub(super) fn parities(&self) -> &'static [bool] {
         if self.symmetric { &[false, true] } else { &[false] }
+    }
+
+    /// Whether spans have lost shear stiffness.
+    pub(super) fn is_sheared(&self) -> bool {
+        self.sheared.is_some()
     }
 
     /// Number of a field's functions.
@@ -131,15 +162,18 @@ impl EdgeBasis {
     fn all_integrals(&self) -> Mat<f64> {
         let size = 6 * self.terms;
         let mut integrals = Mat::zeros(size, size);
-        let listed: Vec<(usize, i32, &[f64])> = Field::ALL
-            .into_iter()
-            .flat_map(|field| self.fields[field as usize].iter().enumerate().map(move |(n, f)| (field, n, f)))
-            .flat_map(|(field, n, f)| {
-                [(self.index(field, 0, n), 0, &f.series[..]), (self.index(field, 1, n), 1, &f.slope[..])]
-            })
-            .collect();
-        for &(row, p, f) in &listed {
-            for &(column, q, g) in &listed {
+        // By the number of terms: functions meet whose numbers are near.
+        let mut listed: Vec<Vec<(usize, i32, &[f64])>> = vec![Vec::new(); self.terms + 1];
+        for field in Field::ALL {
+            for (n, function) in self.fields[field as usize].iter().enumerate() {
+                for (order, series) in [(0, &function.series), (1, &function.slope)] {
+                    listed[series.len()].push((self.index(field, order as usize, n), order, &series[..]));
+                }
+            }
+        }
+        for (length, own) in listed.iter().enumerate() {
+            let near = &listed[length.saturating_sub(SPAN)..(length + SPAN + 1).min(listed.len())];
+            for (&(row, p, f), &(column, q, g)) in own.iter().flat_map(|f| near.iter().flatten().map(move |g| (f, g))) {
                 // The lowest degrees of both are zero.
                 let lowest = f.len().max(g.len()).saturating_sub(SPAN);
                 if f.len().min(g.len()) <= lowest {
@@ -281,6 +315,16 @@ impl EdgeFunction {
         values
     }
 }
+
+/// Every field and its slope.
+const EVERY: [(Field, usize); 6] = {
+    use Field::{Deflection, RotationX, RotationY};
+    [(Deflection, 0), (Deflection, 1), (RotationX, 0), (RotationX, 1), (RotationY, 0), (RotationY, 1)]
+};
+
+/// What of the shear strain along x goes with x, and of that along y.
+const SHEAR_ALONG: [(Field, usize); 2] = [(Field::Deflection, 1), (Field::RotationX, 0)];
+const SHEAR_ACROSS: [(Field, usize); 2] = [(Field::Deflection, 0), (Field::RotationY, 0)];
 
 /// Degrees that a function without kinks has: its highest, and two below.
 const SPAN: usize = 3;

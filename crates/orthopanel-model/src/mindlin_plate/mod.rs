@@ -17,6 +17,7 @@
 mod assembly;
 mod basis_choice;
 mod edge_basis;
+mod fixed;
 mod kink;
 mod law;
 mod mode_names;
@@ -33,6 +34,7 @@ use crate::structure::{Block, Motion, Structure};
 use crate::{BeamTerms, Boundary, Constant, ModelError, Piece, Place};
 use assembly::{Coordinate, Products, assemble};
 use edge_basis::EdgeBasis;
+pub(crate) use fixed::FixedPlate;
 pub(crate) use kink::Membrane;
 use law::{plate_stiffness_derivatives, plate_stiffnesses};
 use span_edges::Spans;
@@ -96,7 +98,7 @@ impl MindlinPlate {
     /// [`ModelError::Size`] where the piece has no physical meaning, [`ModelError::TermCount`] for other numbers of
     /// terms.
     pub fn new(piece: &Piece, boundary: Boundary, terms: [usize; 2]) -> Result<Self, ModelError> {
-        Self::uneven(piece, boundary, terms, Products::All, &PlateTerms::default())
+        Self::uneven(piece, boundary, terms, Products::All, &PlateTerms::default(), None)
     }
 
     /// The same without those products of two polynomials that have many nodes both ways: three quarters of the coordinates, with
@@ -105,15 +107,17 @@ impl MindlinPlate {
     /// # Errors
     /// As [`MindlinPlate::new`].
     pub fn within_ellipse(piece: &Piece, boundary: Boundary, terms: [usize; 2]) -> Result<Self, ModelError> {
-        Self::uneven(piece, boundary, terms, Products::WithinEllipse, &PlateTerms::default())
+        Self::uneven(piece, boundary, terms, Products::WithinEllipse, &PlateTerms::default(), None)
     }
 
+    /// With `coefficients` their weighted sum is the only stiffness: see [`FixedPlate`].
     fn uneven(
         piece: &Piece,
         boundary: Boundary,
         terms: [usize; 2],
         products: Products,
         own: &PlateTerms,
+        coefficients: Option<[f64; 6]>,
     ) -> Result<Self, ModelError> {
         let piece = piece.checked()?;
         let PlateTerms { spread: own, edge_mass } = own;
@@ -132,7 +136,7 @@ impl MindlinPlate {
         }
         let y = EdgeBasis::new(0.5 * piece.width, [front, back], Field::RotationY, terms[1]);
         let (along, is_even) = ([x, y], own.losses.is_empty());
-        let (coordinates, blocks) = assemble(&piece, &along, own.rotary_factor, *edge_mass, products);
+        let (coordinates, blocks) = assemble(&piece, &along, own.rotary_factor, *edge_mass, products, coefficients);
         // In each direction n polynomials follow 2n/π half-waves; some nx ny/3 products lie within the ellipse that both
         // span, and the lower half of these hold 1e-4.
         let resolved_modes = terms[0] * terms[1] / 6;

@@ -25,7 +25,7 @@ impl Spans {
     fn edges(&self) -> Vec<f64> {
         let mut edges: Vec<f64> = self.losses.iter().flat_map(|(_, edges)| *edges).collect();
         edges.retain(|edge| edge.abs() < 1.0 - SAME);
-        edges.sort_by(f64::total_cmp);
+        edges.sort_unstable_by(f64::total_cmp);
         edges.dedup_by(|a, b| (*a - *b).abs() < SAME);
         edges
     }

@@ -69,6 +69,13 @@ impl TimoshenkoBeam {
                 Parity::Neither => all.push(function),
             }
         }
+        // By degree, so that functions stand near those that they meet, and rows of the matrices are short. Over spans
+        // that have lost stiffness all strains of shear meet: they stay behind the curvatures, which do not.
+        if !uneven {
+            for block in [&mut even, &mut odd, &mut all] {
+                block.sort_unstable_by_key(|function: &StrainFunction| function.deflection.len());
+            }
+        }
         let functions: Vec<_> = [even, odd, all].into_iter().filter(|block| !block.is_empty()).collect();
         let blocks = functions.iter().map(|block| assemble(block, section, half_length, &terms)).collect();
         let flexibility = StaticFlexibility::with_terms(&piece, boundary, &terms)?;

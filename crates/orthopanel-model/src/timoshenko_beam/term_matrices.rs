@@ -53,7 +53,7 @@ impl<'a> Quadrature<'a> {
         let mut edges: Vec<f64> =
             of.losses.iter().flat_map(|loss| loss.edges(half_length)).map(|x| x / half_length).collect();
         edges.extend([-1.0, 1.0]);
-        edges.sort_by(f64::total_cmp);
+        edges.sort_unstable_by(f64::total_cmp);
         // Products of two functions, and some points more for a cosine: each half-wave wants less than two.
         let rule = gauss_legendre(terms + 2 + of.core_waves.len());
         let stretches = edges.windows(2).filter_map(|pair| match pair {
