@@ -1,6 +1,6 @@
 //! The search through the catalogue: every effect alone, then one more as long as it pays.
 
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::atomic::Ordering;
 
 use orthopanel_model::{Piece, catalogue};
 use rayon::prelude::*;
@@ -13,8 +13,9 @@ use super::other_side::turn_round;
 use super::outcome::{NotTested, Progress};
 use super::record_problem::{Grouping, State};
 use super::records_of_test::TestRecords;
-use super::roughness::is_roughness;
-use super::starts::{Costed, followed, scored_starts};
+use super::roughness::{exceeds_any_test, is_roughness};
+use super::starts::{Costed, Places, followed, scored_starts};
+use super::valley::along_the_valley;
 use super::verdict::{CLEAR, MET};
 use super::whiteness::{independent_part, residuals};
 use crate::IdentifyError;
@@ -41,9 +42,9 @@ const ROOTS: usize = 2;
 const PARTNERS: usize = 3;
 /// Partners that are followed from their starts, the most promising of all.
 const PROMISING: usize = 6;
-/// Lines of the plain beam after which no further effect is added: some 20 s of one processor. Counted rather than timed,
+/// Lines of the plain beam after which no further effect is added: some 25 s of one processor. Counted rather than timed,
 /// so that an answer is the same on any machine.
-const MOST_WORK: u64 = 25_000_000;
+const MOST_WORK: u64 = 30_000_000;
 /// Of what the best effect gains on the widest lines over the worst, another must gain all but this part to be followed on;
 /// [`LITTLE`] is what the narrower lines may still tell apart.
 pub(super) const BEHIND: f64 = 0.2;
@@ -54,6 +55,8 @@ const SETTLED: f64 = 1.0;
 /// Rounds of a search that still goes down by this part: a core's valley beside a delay's is long.
 const MOST_ROUNDS: usize = 8;
 const STILL_FALLING: f64 = 0.05;
+/// A round that falls by less than that and by more than this has crept along a valley's floor.
+const CREEPING: f64 = 1e-4;
 
 /// What a search needs to know.
 pub(super) struct Search<'a> {
@@ -68,45 +71,12 @@ impl Search<'_> {
         self.records.start.hypothesis.effects.len()
     }
 
-    /// Fits the base and every effect of the catalogue.
-    ///
-    /// # Errors
-    /// Where the base itself cannot be fitted.
-    pub(super) fn each_alone(&self) -> Result<Ranking, IdentifyError> {
-        let base = fit(self.records, self.records.start.clone(), 0)?;
-        let declared = &base.state.hypothesis;
-        let tried: Vec<_> = catalogue().iter().filter(|effect| !declared.holds(**effect)).collect();
-        let done = AtomicUsize::new(0);
-        let starts: Vec<_> = tried
-            .par_iter()
-            .map(|effect| {
-                let scored = scored_starts(self.records, &self.records.start, **effect, (&self.piece, 0));
-                let found = scored.map(|starts| followed(self.records, &starts, 0));
-                let number = done.fetch_add(1, Ordering::Relaxed) + 1;
-                (self.progress)(Progress { effect: effect.id(), done: number, of: tried.len() });
-                (effect.id(), found)
-            })
-            .collect();
-        let mut not_tested = Vec::new();
-        let mut begun = Vec::new();
-        for (id, found) in starts {
-            match found {
-                Ok(found) => begun.extend(found),
-                Err(error) => not_tested.push(NotTested { id, reason: error.to_string() }),
-            }
-        }
-        let mut fits = [base].into_iter().chain(self.finish(begun, 0)).collect::<Vec<_>>();
-        turn_round(self.records, &mut fits, self.declared());
-        let mut ranking = Ranking { scale: self.scale(&fits)?, fits, chosen: 0, not_tested, unfinished: false };
-        self.choose(&mut ranking)?;
-        Ok(ranking)
-    }
-
     /// Adds greedily one more effect.
     ///
     /// # Errors
     /// What the model refuses.
     pub(super) fn together(&self, mut ranking: Ranking) -> Result<Ranking, IdentifyError> {
+        self.look_closer(&mut ranking)?;
         for size in 1..MOST_EFFECTS {
             let before = ranking.chosen;
             if self.meets_noise(&ranking.fits[ranking.chosen]) {
@@ -127,7 +97,7 @@ impl Search<'_> {
     }
 
     /// Fits to the end what is not hopelessly behind, widening by widening: the narrow lines cost the most, and few need them.
-    fn finish(&self, begun: Vec<Costed>, from: usize) -> Vec<Fit> {
+    pub(super) fn finish(&self, begun: Vec<Costed>, from: usize) -> Vec<Fit> {
         let (mut running, left) = part(begun);
         let mut behind: Vec<(State, usize)> = left.into_iter().map(|(state, _)| (state, from)).collect();
         for (stage, &patience) in PATIENCE.iter().enumerate().skip(from) {
@@ -151,11 +121,17 @@ impl Search<'_> {
     /// Follows the best to its minimum: what others are held against must be what it can be.
     fn lead_on(&self, running: &mut [Costed]) {
         let Some(best) = running.iter_mut().min_by(|a, b| a.1.total_cmp(&b.1)) else { return };
+        let enough = MET * self.records.problem(LAST).data() as f64;
         for round in 0..MOST_ROUNDS {
             let worth = if round < MORE_ROUNDS { SETTLED } else { STILL_FALLING * best.1 };
-            match polish(self.records, &best.0, LAST, PATIENCE[LAST]) {
-                Ok((state, cost)) if cost < best.1 - worth => *best = (state, cost),
-                _ => break,
+            let Ok(next) = polish(self.records, &best.0, LAST, PATIENCE[LAST]) else { break };
+            if next.1 >= best.1 - worth {
+                break;
+            }
+            let (before, cost) = std::mem::replace(best, next);
+            let fallen = 1.0 - best.1 / cost;
+            if best.1 > enough && (CREEPING..STILL_FALLING).contains(&fallen) {
+                *best = along_the_valley(self.records, &before, best.clone(), enough);
             }
         }
     }
@@ -178,16 +154,19 @@ impl Search<'_> {
     pub(super) fn choose(&self, ranking: &mut Ranking) -> Result<(), IdentifyError> {
         ranking.scale = self.scale(&ranking.fits)?;
         let current = ranking.chosen;
-        let mut order: Vec<usize> = (0..ranking.fits.len()).filter(|&index| index != current).collect();
-        order.retain(|&index| ranking.fits[index].given_up.is_none());
-        order.sort_by(|&a, &b| ranking.price(a).total_cmp(&ranking.price(b)));
+        let is_too_rough: Vec<bool> = ranking.fits.iter().map(|fit| exceeds_any_test(&fit.state.hypothesis)).collect();
+        let mut order: Vec<usize> = (0..ranking.fits.len())
+            .filter(|&index| index != current && ranking.fits[index].given_up.is_none())
+            .filter(|&index| ranking.price(index) < ranking.price(current))
+            .filter(|&index| !is_too_rough[index] || is_too_rough[current])
+            .collect();
+        order.sort_by(|&a, &b| {
+            is_too_rough[a].cmp(&is_too_rough[b]).then(ranking.price(a).total_cmp(&ranking.price(b)))
+        });
         let size = |index: usize| ranking.fits[index].state.hypothesis.size();
         for index in order {
-            if ranking.price(index) >= ranking.price(current) {
-                break;
-            }
-            // What is simpler and pays as well need not foretell better, too.
-            let is_simpler = size(index) < size(current);
+            // What is simpler and pays as well need not foretell better, too; nor need what leaves no more roughness than a test has.
+            let is_simpler = size(index) < size(current) || is_too_rough[current] && !is_too_rough[index];
             let grouping = ranking.grouping(self.records, index);
             let before = held_out(self.records, &ranking.fits[current], grouping)?;
             if is_simpler || held_out(self.records, &ranking.fits[index], grouping)? < before {
@@ -263,7 +242,9 @@ impl Search<'_> {
         let others: Vec<_> = catalogue().iter().filter(|effect| !on.contains(&effect.id())).collect();
         let mut scored: Vec<Vec<Costed>> = others
             .par_iter()
-            .filter_map(|effect| scored_starts(self.records, &root.state, **effect, (&self.piece, stage)).ok())
+            .filter_map(|effect| {
+                scored_starts(self.records, &root.state, **effect, (&self.piece, stage), Places::Usual).ok()
+            })
             .collect();
         scored.sort_by(|a, b| a[0].1.total_cmp(&b[0].1));
         scored.truncate(PROMISING);

@@ -254,12 +254,15 @@ impl TestRecords {
         Ok(scatter)
     }
 
-    /// Undoes [`TestRecords::align_hits`].
-    pub(super) fn as_hit(&mut self, from: usize) {
+    /// The hits as they fell, with `rest` in their lines' variances: undoes [`TestRecords::align_hits`].
+    pub(super) fn as_hit(&mut self, from: usize, rest: Option<RoughRest>) {
         for (widened, &widening) in self.widened.iter_mut().zip(&WIDENINGS).skip(from) {
             *widened = widened_lines(&self.histories, widening, self.band);
+            if let Some(rest) = rest {
+                widened.iter_mut().for_each(|record| rest.widen(record));
+            }
         }
-        self.rest = None;
+        self.rest = rest;
     }
 
     /// Whether there are resonances that the beam has no modes for: then its constants are no start for a plate.

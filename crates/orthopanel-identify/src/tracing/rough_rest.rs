@@ -20,6 +20,10 @@ impl RoughRest {
     /// Where the estimate begins: wide enough that no search follows the strongest peak alone.
     pub(super) const USUAL: Self = Self { part: 2e-3, tuning: 1e-4 };
 
+    /// What all of a test's roughness may make of a plain model's lines: some millimetres of the shortest half-waves, and a core
+    /// half a per cent uneven.
+    pub(super) const OF_PLAIN: Self = Self { part: 1e-2, tuning: 1e-3 };
+
     /// Adds this to the variances of a record and of its hits.
     pub(super) fn widen(&self, record: &mut WidenedLines) {
         for line in 0..record.s.len() {

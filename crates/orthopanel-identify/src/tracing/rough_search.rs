@@ -13,11 +13,16 @@ use super::record_problem::State;
 use super::records_of_test::TestRecords;
 use super::rough_rest::RoughRest;
 use super::roughness::{RoughScales, none_yet};
+use super::starts::{Costed, Places, followed_far};
 use super::verdict::{CLEAR, verdict};
 use super::whiteness::residuals;
 use crate::IdentifyError;
 use crate::least_squares::Ending;
 
+/// The widest peaks but one: up to here a line's tolerance is beyond any roughness.
+const WIDE: usize = 1;
+/// Hypotheses of which one brings the hits together.
+const LEADING: usize = 3;
 /// The widening at which hypotheses that are behind are left: wider ones show no roughness.
 const SIFTED: usize = 2;
 /// What bringing hits to one place may leave of their scatter above noise: hits that differ by more differ by something else,
@@ -26,8 +31,8 @@ const LEFT: f64 = 0.3;
 /// Rounds of estimating the scales, and the change of one that is worth another round.
 const ROUNDS: usize = 3;
 const SETTLED: f64 = 1.2;
-/// Lines of the plain beam after which no further round begins, see [`super::ranking`]: a minute of one processor.
-const MOST_WORK: u64 = 80_000_000;
+/// Lines of the plain beam after which no further round begins, see [`super::ranking`]: some 75 s of one processor.
+const MOST_WORK: u64 = 100_000_000;
 /// Evaluations of each hypothesis at scales that have changed.
 const AGAIN: Ending = Ending::far(8, 0.2);
 
@@ -46,6 +51,10 @@ pub(super) fn rough_search(
     if is_met || !records.hits_differ() {
         return None;
     }
+    let before = (records.start.clone(), records.rough, records.work.load(Ordering::Relaxed));
+    records.as_hit(WIDE, Some(RoughRest::OF_PLAIN));
+    let plain_states = plain.fits.iter().map(|fit| &fit.state);
+    let states = tolerant(&Search { records, piece, progress }, plain_states);
     let declared = records.start.hypothesis.effects.len();
     let roughness = none_yet(&piece, records.problem(LAST).records.len());
     let rough = |state: &State| {
@@ -53,12 +62,10 @@ pub(super) fn rough_search(
         effects.insert(declared, roughness.clone());
         State { hypothesis: Hypothesis { effects }, ..state.clone() }
     };
-    let before = (records.start.clone(), records.rough, records.work.load(Ordering::Relaxed));
-    let states: Vec<State> = plain.fits.iter().map(|fit| rough(&fit.state)).collect();
-    let best = rough(&best.state);
+    let states: Vec<State> = states.iter().map(|(state, _)| rough(state)).collect();
     records.start = rough(&records.start);
     // A model that cannot be made is the plain search's to tell of.
-    if let Ok(Some(mut ranking)) = followed(records, (piece, progress), states, best) {
+    if let Ok(Some(mut ranking)) = followed(records, (piece, progress), states) {
         ranking.not_tested.clone_from(&plain.not_tested);
         return Some(ranking);
     }
@@ -66,7 +73,7 @@ pub(super) fn rough_search(
     let work;
     (records.start, records.rough, work) = before;
     records.work.store(work, Ordering::Relaxed);
-    records.as_hit(SIFTED);
+    records.as_hit(WIDE, None);
     None
 }
 
@@ -74,20 +81,21 @@ fn followed(
     records: &mut TestRecords,
     (piece, progress): (Piece, &(dyn Fn(Progress) + Sync)),
     states: Vec<State>,
-    best: State,
 ) -> Result<Option<Ranking>, IdentifyError> {
     let mut rest = RoughRest::USUAL;
     records.rough = Some(RoughScales::USUAL);
-    // Hits that fall beside each other tell how far their mean may be from the mark.
     let scattered = records.hit_scatter();
+    records.as_hit(SIFTED, Some(rest));
+    // Hits can be brought together by a model whose resonances are where the test's are: one beside its roughness.
+    let leading = polished_all(records, &states[..states.len().min(LEADING)]);
+    let Some((best, _)) = leading.into_iter().min_by(|a, b| a.1.total_cmp(&b.1)) else { return Ok(None) };
+    // Hits that fall beside each other tell how far their mean may be from the mark.
     let mut place = records.align_hits(&best, (SIFTED, rest))?;
     if records.hit_scatter() - 1.0 > LEFT * (scattered - 1.0) {
         return Ok(None);
     }
     records.rough = Some(RoughScales::USUAL.with_hits(place));
-    let polished: Vec<(State, f64)> =
-        states.par_iter().filter_map(|state| polish(records, state, SIFTED, PATIENCE[SIFTED]).ok()).collect();
-    let mut states = sifted(records, polished);
+    let mut states = sifted(records, polished_all(records, &states));
     let mut patience = PATIENCE[LAST];
     let mut ranking = None;
     for round in 1..=ROUNDS {
@@ -128,9 +136,39 @@ fn followed(
     Ok((word != Verdict::Unexplained).then_some(ranking))
 }
 
+fn polished_all(records: &TestRecords, states: &[State]) -> Vec<Costed> {
+    states.par_iter().filter_map(|state| polish(records, state, SIFTED, PATIENCE[SIFTED]).ok()).collect()
+}
+
+/// The base and each effect beside it as far as lines tell that take roughness for noise, the best first: sharp peaks of a rough
+/// test drag a plain fit off. Where the plain fit is better even so, that.
+fn tolerant<'a>(search: &Search, plain: impl Iterator<Item = &'a State>) -> Vec<Costed> {
+    let records = search.records;
+    let to_the_end = |(state, cost): Costed, from: usize| {
+        (from..=SIFTED).try_fold((state, cost), |(state, _), stage| polish(records, &state, stage, PATIENCE[stage]))
+    };
+    let (begun, _) =
+        search.begun_alone((&search.undeclared(), Places::Finer), |starts| followed_far(records, starts, WIDE));
+    let base = [(to_the_end((records.start.clone(), f64::INFINITY), 0))];
+    let mut fits: Vec<Costed> = begun.into_par_iter().filter_map(|begun| to_the_end(begun, SIFTED).ok()).collect();
+    fits.extend(base.into_iter().filter_map(Result::ok));
+    let problem = records.problem(SIFTED);
+    for state in plain {
+        let Ok(at) = problem.linearise(&problem.parameters(state), state) else { continue };
+        let name = state.hypothesis.name();
+        match fits.iter_mut().find(|(fit, _)| fit.hypothesis.name() == name) {
+            Some(fit) if at.cost < fit.1 => *fit = (state.clone(), at.cost),
+            Some(_) => {}
+            None => fits.push((state.clone(), at.cost)),
+        }
+    }
+    fits.sort_by(|a, b| a.1.total_cmp(&b.1));
+    fits
+}
+
 /// The base first, then those that may still win, with none; and those that are behind, with the widening where they are left:
 /// of what the best gains on the base, a part is missing.
-fn sifted(records: &TestRecords, begun: Vec<(State, f64)>) -> Vec<(State, Option<usize>)> {
+fn sifted(records: &TestRecords, begun: Vec<Costed>) -> Vec<(State, Option<usize>)> {
     let (base, others): (Vec<_>, Vec<_>) = begun.into_iter().partition(|(state, _)| is_base(state, records));
     let least = others.iter().map(|(_, cost)| *cost).fold(f64::INFINITY, f64::min);
     let of_base = base.first().map_or(least, |(_, cost)| *cost);

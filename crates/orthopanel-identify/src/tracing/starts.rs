@@ -3,8 +3,8 @@
 use orthopanel_model::{Effect, Piece, Scale};
 use rayon::prelude::*;
 
-use super::fit::{polish, promise};
-use super::hypothesis::{Switched, has_place};
+use super::fit::{PATIENCE, polish, promise};
+use super::hypothesis::{Switched, has_place, is_place};
 use super::record_problem::State;
 use super::records_of_test::TestRecords;
 use super::support_starts::{SUPPORT, support_starts};
@@ -18,6 +18,8 @@ const FOLLOW: Ending = Ending::far(8, 1.0);
 /// and each costs less to follow.
 const FEW_RECORDS: usize = 2;
 const FOLLOWED_OF_FEW: usize = 8;
+/// Starts of an effect with a place that a closer look follows.
+const FOLLOWED_FAR: usize = 30;
 /// A plate's modes of two families change their order: one step foretells little.
 const PLATES_FOLLOWED: usize = 4;
 const PLATES_FOLLOW: Ending = Ending::far(16, 1.0);
@@ -37,12 +39,14 @@ pub(super) fn scored_starts(
     base: &State,
     effect: &'static dyn Effect,
     (piece, stage): (&Piece, usize),
+    places: Places,
 ) -> Result<Vec<Costed>, IdentifyError> {
     let problem = records.problem(stage);
     // Where no end is clamped, the grid's own starts say so.
     let beside =
         if effect.id() == SUPPORT { support_starts(records, base, effect, piece).unwrap_or_default() } else { vec![] };
-    let scored: Vec<Result<Costed, IdentifyError>> = grid(effect, piece, (problem.records.len(), records.band))
+    let test = (problem.records.len(), records.band);
+    let scored: Vec<Result<Costed, IdentifyError>> = grid(effect, piece, test, places)
         .into_par_iter()
         .flat_map_iter(|start| {
             let at = |name: &str| {
@@ -79,26 +83,58 @@ pub(super) fn scored_starts(
 
 /// The best of the first few starts after some steps at one widening.
 pub(super) fn followed(records: &TestRecords, starts: &[Costed], stage: usize) -> Option<Costed> {
+    let many = if records.problem(stage).records.len() <= FEW_RECORDS { FOLLOWED_OF_FEW } else { FOLLOWED };
+    least(followed_each(records, starts, (stage, many)))
+}
+
+/// The best of many starts, followed from the widest lines to those of a widening: where an effect is, one step hardly foretells.
+pub(super) fn followed_far(records: &TestRecords, starts: &[Costed], to: usize) -> Option<Costed> {
+    let mut each = followed_each(records, starts, (0, FOLLOWED_FAR));
+    each.sort_by(|a, b| a.1.total_cmp(&b.1));
+    each.truncate(FOLLOWED_OF_FEW);
+    let to_the_end =
+        |begun: Costed| (0..=to).try_fold(begun, |(state, _), stage| polish(records, &state, stage, PATIENCE[stage]));
+    least(each.into_par_iter().filter_map(|begun| to_the_end(begun).ok()).collect())
+}
+
+fn least(fits: Vec<Costed>) -> Option<Costed> {
+    fits.into_iter().min_by(|a, b| a.1.total_cmp(&b.1))
+}
+
+/// The first few starts after some steps at one widening; of an effect with a place `many`.
+fn followed_each(records: &TestRecords, starts: &[Costed], (stage, many): (usize, usize)) -> Vec<Costed> {
     let is_plate = starts.iter().any(|(state, _)| state.hypothesis.holds_plate());
     let is_hard = is_plate && records.shows_more_than_a_beam();
     let has_place = |(state, _): &Costed| state.hypothesis.effects.last().is_some_and(|on| has_place(on.effect));
     let (follow, patience) = if is_hard {
         (PLATES_FOLLOWED, PLATES_FOLLOW)
-    } else if records.problem(stage).records.len() <= FEW_RECORDS && starts.first().is_some_and(has_place) {
-        (FOLLOWED_OF_FEW, FOLLOW)
+    } else if starts.first().is_some_and(has_place) {
+        (many, FOLLOW)
     } else {
         (FOLLOWED, FOLLOW)
     };
-    let followed: Vec<Costed> =
-        starts.par_iter().take(follow).filter_map(|(state, _)| polish(records, state, stage, patience).ok()).collect();
-    followed.into_iter().min_by(|a, b| a.1.total_cmp(&b.1))
+    starts.par_iter().take(follow).filter_map(|(state, _)| polish(records, state, stage, patience).ok()).collect()
 }
 
 /// Most combinations of starts, beyond which only the first of each but the place, the frequency and the record is taken.
 const MOST_STARTS: usize = 30;
 
+/// Where on the panel starts lie.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Places {
+    /// Where the catalogue says.
+    Usual,
+    /// And halfway between: a mode's half-wave may be as short as the usual places are apart.
+    Finer,
+}
+
 /// Values of all parameters, one list a start, in a test of so many records up to `band` \[Hz\].
-pub(super) fn grid(effect: &'static dyn Effect, piece: &Piece, (records, band): (usize, f64)) -> Vec<Vec<f64>> {
+pub(super) fn grid(
+    effect: &'static dyn Effect,
+    piece: &Piece,
+    (records, band): (usize, f64),
+    places: Places,
+) -> Vec<Vec<f64>> {
     let lists: Vec<(Vec<f64>, bool)> = effect
         .parameters()
         .iter()
@@ -108,16 +144,20 @@ pub(super) fn grid(effect: &'static dyn Effect, piece: &Piece, (records, band): 
                 (_, Some(held)) => vec![held],
                 _ => parameter.starts(piece),
             };
+            if is_place(parameter) && places == Places::Finer {
+                list = with_middles(&list);
+            }
             if parameter.unit == "Hz" && list.len() > 3 {
                 list.retain(|frequency| *frequency < band);
             }
             // Where something is matters more for a search than how much of it there is.
-            (list, parameter.scale == Scale::Index || parameter.name == "x" || parameter.unit == "Hz")
+            (list, parameter.scale == Scale::Index || is_place(parameter) || parameter.unit == "Hz")
         })
         .collect();
+    let most = if places == Places::Finer { 2 * MOST_STARTS } else { MOST_STARTS };
     let whole: usize = lists.iter().map(|(list, _)| list.len()).product();
     let lists = lists.into_iter().map(|(mut list, where_it_is)| {
-        if whole > MOST_STARTS && !where_it_is {
+        if whole > most && !where_it_is {
             list.truncate(1);
         }
         list
@@ -129,4 +169,12 @@ pub(super) fn grid(effect: &'static dyn Effect, piece: &Piece, (records, band): 
         };
         starts.iter().flat_map(longer).collect()
     })
+}
+
+/// Places in rising order with those halfway between.
+fn with_middles(places: &[f64]) -> Vec<f64> {
+    let mut all: Vec<f64> =
+        places.windows(2).map(|pair| 0.5 * (pair[0] + pair[1])).chain(places.iter().copied()).collect();
+    all.sort_by(f64::total_cmp);
+    all
 }
