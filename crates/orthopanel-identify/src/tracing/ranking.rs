@@ -121,7 +121,7 @@ impl Search<'_> {
     /// Follows the best to its minimum: what others are held against must be what it can be.
     fn lead_on(&self, running: &mut [Costed]) {
         let Some(best) = running.iter_mut().min_by(|a, b| a.1.total_cmp(&b.1)) else { return };
-        let enough = MET * self.records.problem(LAST).data() as f64;
+        let enough = self.records.problem(LAST).data() as f64;
         for round in 0..MOST_ROUNDS {
             let worth = if round < MORE_ROUNDS { SETTLED } else { STILL_FALLING * best.1 };
             let Ok(next) = polish(self.records, &best.0, LAST, PATIENCE[LAST]) else { break };

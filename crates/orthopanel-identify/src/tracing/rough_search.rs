@@ -39,7 +39,7 @@ const AGAIN: Ending = Ending::far(8, 0.2);
 /// What a search that each effect went through alone becomes where roughness is allowed for, with the scales that all its
 /// hypotheses share; `None` where the hits do not show any, or where even then nothing explains the records.
 ///
-/// The effects' own fits are where each begins: roughness moves no effect far.
+/// Each begins where [`tolerant`] lines put it: roughness moves no effect far.
 pub(super) fn rough_search(
     records: &mut TestRecords,
     piece: Piece,
@@ -144,14 +144,13 @@ fn polished_all(records: &TestRecords, states: &[State]) -> Vec<Costed> {
 /// test drag a plain fit off. Where the plain fit is better even so, that.
 fn tolerant<'a>(search: &Search, plain: impl Iterator<Item = &'a State>) -> Vec<Costed> {
     let records = search.records;
-    let to_the_end = |(state, cost): Costed, from: usize| {
-        (from..=SIFTED).try_fold((state, cost), |(state, _), stage| polish(records, &state, stage, PATIENCE[stage]))
+    let to_the_end = |begun: Costed, from: usize| {
+        (from..=SIFTED).try_fold(begun, |(state, _), stage| polish(records, &state, stage, PATIENCE[stage]))
     };
     let (begun, _) =
         search.begun_alone((&search.undeclared(), Places::Finer), |starts| followed_far(records, starts, WIDE));
-    let base = [(to_the_end((records.start.clone(), f64::INFINITY), 0))];
     let mut fits: Vec<Costed> = begun.into_par_iter().filter_map(|begun| to_the_end(begun, SIFTED).ok()).collect();
-    fits.extend(base.into_iter().filter_map(Result::ok));
+    fits.extend(to_the_end((records.start.clone(), f64::INFINITY), 0));
     let problem = records.problem(SIFTED);
     for state in plain {
         let Ok(at) = problem.linearise(&problem.parameters(state), state) else { continue };
