@@ -96,6 +96,22 @@ def test_the_documentation_tells_the_identification_and_the_band(tmp_path):
     assert "acceleration_1 under force_1 holds within 1 % up to" in page
 
 
+def test_the_documentation_of_a_traced_panel_tells_the_modes_as_measured(tmp_path):
+    model = beam_model(BEAM)
+    modes = [{"mode": 1, "measured_hz": 321.3}, {"mode": 2, "measured_hz": 837.5, "measured_std_hz": 0.36}]
+    model["provenance"] = {"modes": modes}
+    path = tmp_path / "traced.json"
+    path.write_text(json.dumps(model))
+    words = export_words(path, tmp_path / "traced.fmu", "--force=-0.3", "--response=-0.3")
+    subprocess.run(words, check=True, capture_output=True)
+    with zipfile.ZipFile(tmp_path / "traced.fmu") as archive:
+        page = archive.read("documentation/index.html").decode()
+    root = etree.fromstring(page.split("\n", 1)[1], etree.HTMLParser())
+    rows = [["".join(cell.itertext()) for cell in row] for row in root.iter("tr")]
+    for row in (["1", "321.30", ""], ["2", "837.50", "3.6e-1"]):
+        assert row in rows, (row, rows)
+
+
 def test_the_band_in_the_documentation_is_where_the_modes_left_out_add_a_hundredth(tmp_path):
     """By our own modes, four times as many: a hundredth of the root mean square over an octave, nowhere below and soon above.
 

@@ -84,7 +84,9 @@ impl Origin<'_> {
         let Some(modes) = self.panel.provenance.get(MODES).and_then(|modes| modes.as_array()) else {
             return String::new();
         };
-        let mut text = String::from(MEASURED);
+        // A traced panel's test has rig and measuring chain in it, which no model of the panel has.
+        let has_model = modes.iter().any(|mode| mode.get("model_hz").is_some());
+        let mut text = String::from(if has_model { MEASURED_AND_BY_MODEL } else { MEASURED });
         for mode in modes {
             let number = |key: &str| mode.get(key).and_then(|value| value.as_f64());
             let cell =
@@ -101,7 +103,8 @@ impl Origin<'_> {
                 zeta,
                 small("zeta_std"),
             ];
-            let cells: String = cells.iter().map(|cell| format!("<td>{cell}</td>")).collect();
+            let shown = if has_model { &cells[..] } else { &cells[..3] };
+            let cells: String = shown.iter().map(|cell| format!("<td>{cell}</td>")).collect();
             let _ = writeln!(text, "<tr>{cells}</tr>");
         }
         text + "</table>\n"
@@ -114,7 +117,10 @@ const MODES: &str = "modes";
 /// The effect that brings internal variables.
 const CORE: &str = "viscoelastic-core";
 
-const MEASURED: &str = "<p>Each mode as measured, and by the model as identified:</p>\n<table>\n<tr><th>mode</th>\
+const MEASURED: &str = "<p>Each mode as measured, with whatever was taken out of the panel still on it:</p>\n<table>\n\
+     <tr><th>mode</th><th>measured [Hz]</th><th>standard deviation [Hz]</th></tr>\n";
+
+const MEASURED_AND_BY_MODEL: &str = "<p>Each mode as measured, and by the model as identified:</p>\n<table>\n<tr><th>mode</th>\
      <th>measured [Hz]</th><th>standard deviation [Hz]</th><th>model [Hz]</th><th>error [%]</th><th>damping ratio</th>\
      <th>standard deviation</th></tr>\n";
 

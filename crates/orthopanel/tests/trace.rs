@@ -45,6 +45,10 @@ fn run_writes_the_panel_without_rig_and_channel_and_says_so() {
     let model = bench.read_json("out/model.json");
     assert_eq!(model["provenance"]["removed"], serde_json::json!(["hammer-offset"]));
     assert_eq!(model["provenance"]["trace"], "explained");
+    // Modes as the test shows them; errors of the model without the effect are no longer this model's.
+    let modes = model["provenance"]["modes"].as_array().expect("the measured modes");
+    assert!(modes.len() > 5 && modes.iter().all(|mode| mode["measured_hz"].is_number()), "{modes:?}");
+    assert!(modes.iter().all(|mode| mode.get("model_hz").is_none() && mode.get("zeta").is_none()), "{modes:?}");
     let page = std::fs::read_to_string(bench.path("out/report.html")).expect("a page");
     for said in [
         "What the model lacks",

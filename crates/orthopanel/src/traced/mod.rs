@@ -8,9 +8,13 @@ use std::path::Path;
 use orthopanel_data::ImpactTest;
 use orthopanel_identify::{IdentifyError, Tracing, Verdict, trace_with};
 use orthopanel_model::PanelModel;
+use serde_json::Value;
 
 use crate::{notes, progress};
 pub use tables::{comparison_rows, effect_rows, ranking_rows};
+
+/// What a mode's entry in a model's provenance tells of the test alone.
+const AS_MEASURED: [&str; 4] = ["mode", "nodes", "measured_hz", "measured_std_hz"];
 
 /// A trace of a test.
 pub struct Traced {
@@ -58,8 +62,12 @@ impl Traced {
             model.constants.clone_from(&panel.constants);
             model.damping.clone_from(&panel.damping);
             model.effects.clone_from(&panel.effects);
-            // Those of the model without the effects.
-            model.provenance.remove("modes");
+            if let Some(modes) = model.provenance.get_mut("modes").and_then(Value::as_array_mut) {
+                // The rest is that of the model without the effects.
+                modes.iter_mut().filter_map(Value::as_object_mut).for_each(|mode| {
+                    mode.retain(|key, _| AS_MEASURED.contains(&key.as_str()));
+                });
+            }
             model.provenance.insert("trace".into(), self.tracing.verdict.name().into());
             let removed: Vec<&str> = self.tracing.removed.iter().map(|removed| removed.id).collect();
             if !removed.is_empty() {
