@@ -54,8 +54,9 @@ body { font-family: sans-serif; line-height: 1.4; max-width: 60em; margin: 1em a
 table { border-collapse: collapse; display: block; overflow-x: auto; margin: 1em 0 }
 th, td { border: 1px solid #bbb; padding: 0.2em 0.6em; text-align: left; vertical-align: top }
 th { background: #eee }
-@media (max-width: 40em) { table { display: table; font-size: 0.8em }
-th, td { padding: 0.1em 0.3em; overflow-wrap: anywhere } }
+@media (max-width: 40em) { table { font-size: 0.8em }
+th, td { padding: 0.1em 0.3em }
+td:first-child { overflow-wrap: anywhere; min-width: 7em } }
 </style>\n";
 
 const PARAMETERS: &str = "Parameters are fixed: they are set before or in initialization mode, and stay for the run. Where \
