@@ -5,6 +5,7 @@ use num_complex::Complex64;
 use orthopanel_model::ModelError;
 
 use super::fit::{Fit, LAST};
+use super::hypothesis::{CUBIC, FreeParameter, Hypothesis, Switched};
 use super::record_problem::Grouping;
 use super::records_of_test::TestRecords;
 use super::widened_lines::WidenedLines;
@@ -14,6 +15,17 @@ use super::widened_lines::WidenedLines;
 pub(super) const TRUSTED: f64 = 3e-4;
 /// Part of a resonance's frequency by which a model is wrong: a tenth of a kelvin does that to aluminium.
 const TUNED: f64 = 3e-5;
+
+/// Variance that the same error of the motion leaves of each of a hypothesis' coordinates where forces go with its cube: with
+/// $k_3w^3$, a motion that is wrong by a part is a $k_3$ that is wrong by twice that. Its derivative does not show this: over many
+/// swings that grows so steep that it would tell $k_3$ to any digit.
+pub(super) fn of_amplitude(hypothesis: &Hypothesis) -> Vec<f64> {
+    let part = |(on, free): (&Switched, &FreeParameter)| {
+        let value = on.values[free.at];
+        if on.effect.id() == CUBIC { (2.0 * TRUSTED * value / free.slope(value)).powi(2) } else { 0.0 }
+    };
+    hypothesis.each_free().map(part).collect()
+}
 
 /// $\sum_gv_gv_g^T$ with $v_g = J^TWe_g$ of errors $e_g$ that a model may have beside the noise: what these do to the gradient.
 /// With $N = J^TWJ$, $N^{-1}\sum_gv_gv_g^TN^{-1}$ is what that adds to the covariance.

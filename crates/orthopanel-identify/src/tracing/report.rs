@@ -8,7 +8,7 @@ use super::bare_panel::bare_panel;
 use super::fit::{Fit, covariance};
 use super::held_out::held_out;
 use super::hypothesis::{Hypothesis, PLATE, Switched};
-use super::model_error::spread_of_gradient;
+use super::model_error::{of_amplitude, spread_of_gradient};
 use super::next_experiment::next_experiment;
 use super::outcome::{Candidate, FittedError, Removed, TracedEffect, TracedError, TracedParameter, Tracing};
 use super::ranking::{Ranking, Search};
@@ -95,7 +95,10 @@ fn deviations(search: &Search, ranking: &Ranking, fit: &Fit) -> Result<Vec<Optio
     } else {
         Mat::zeros(fit.size, fit.size)
     };
-    let variance = |i: usize| covariance[(i, i)] + of_model[(i, i)];
+    let hypothesis = &fit.state.hypothesis;
+    let amplitude = std::iter::repeat_n(0.0, fit.size - hypothesis.size()).chain(of_amplitude(hypothesis));
+    let amplitude: Vec<f64> = amplitude.collect();
+    let variance = |i: usize| covariance[(i, i)] + of_model[(i, i)] + amplitude[i];
     Ok((0..fit.size).map(|i| Some(variance(i).sqrt()).filter(|std| std.is_finite())).collect())
 }
 
