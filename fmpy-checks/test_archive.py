@@ -64,6 +64,18 @@ def test_arrays_have_one_terminal_of_all_places(export):
     assert {member.get("variableName") for member in terminal} <= set(sized)
 
 
+def documentation(model, folder):
+    """The page inside a model's FMU, and the cells of its tables' rows."""
+    path = folder / "told.json"
+    path.write_text(json.dumps(model))
+    words = export_words(path, folder / "told.fmu", "--force=-0.3", "--response=-0.3")
+    subprocess.run(words, check=True, capture_output=True)
+    with zipfile.ZipFile(folder / "told.fmu") as archive:
+        page = archive.read("documentation/index.html").decode()
+    root = etree.fromstring(page.split("\n", 1)[1], etree.HTMLParser())
+    return page, [["".join(cell.itertext()) for cell in row] for row in root.iter("tr")]
+
+
 def test_the_documentation_tells_the_identification_and_the_band(tmp_path):
     model = beam_model(BEAM)
     model["constants"]["e_x"] = {"value": BEAM.e_x, "std": 4.5e7}
@@ -73,16 +85,9 @@ def test_the_documentation_tells_the_identification_and_the_band(tmp_path):
     ]
     model["provenance"] = {"piece": "piece <1>", "frequency_rms_percent": 0.21, "modes": modes}
     model["effects"] = [{"id": "local-mass", "owner": "panel", "mass": {"value": 0.03, "std": 2e-4}, "x": 0.11}]
-    path = tmp_path / "told.json"
-    path.write_text(json.dumps(model))
-    words = export_words(path, tmp_path / "told.fmu", "--force=-0.3", "--response=-0.3")
-    subprocess.run(words, check=True, capture_output=True)
-    with zipfile.ZipFile(tmp_path / "told.fmu") as archive:
-        page = archive.read("documentation/index.html").decode()
-    root = etree.fromstring(page.split("\n", 1)[1], etree.HTMLParser())
+    page, rows = documentation(model, tmp_path)
     for text in ("piece &lt;1&gt;", "frequency rms percent", "0.21", "None is tunable"):
         assert text in page, text
-    rows = [["".join(cell.itertext()) for cell in row] for row in root.iter("tr")]
     for row in (
         ["e_x [Pa]", "1.0670e10", "4.5e7"],
         ["width, along y [m]", "0.1", ""],
@@ -100,14 +105,7 @@ def test_the_documentation_of_a_traced_panel_tells_the_modes_as_measured(tmp_pat
     model = beam_model(BEAM)
     modes = [{"mode": 1, "measured_hz": 321.3}, {"mode": 2, "measured_hz": 837.5, "measured_std_hz": 0.36}]
     model["provenance"] = {"modes": modes}
-    path = tmp_path / "traced.json"
-    path.write_text(json.dumps(model))
-    words = export_words(path, tmp_path / "traced.fmu", "--force=-0.3", "--response=-0.3")
-    subprocess.run(words, check=True, capture_output=True)
-    with zipfile.ZipFile(tmp_path / "traced.fmu") as archive:
-        page = archive.read("documentation/index.html").decode()
-    root = etree.fromstring(page.split("\n", 1)[1], etree.HTMLParser())
-    rows = [["".join(cell.itertext()) for cell in row] for row in root.iter("tr")]
+    _, rows = documentation(model, tmp_path)
     for row in (["1", "321.30", ""], ["2", "837.50", "3.6e-1"]):
         assert row in rows, (row, rows)
 
