@@ -1,11 +1,14 @@
 //! One hypothesis fitted to the records, from the widest peaks to the narrowest.
 
+use std::ops::RangeInclusive;
+
 use faer::linalg::solvers::DenseSolveCore;
 use faer::prelude::Solve;
 use faer::{Mat, Side};
 
 use super::record_problem::{Grouping, State, total};
 use super::records_of_test::TestRecords;
+use super::starts::Costed;
 use super::widened_lines::WIDENINGS;
 use crate::IdentifyError;
 use crate::least_squares::{Ending, Quadratic, descend};
@@ -45,11 +48,20 @@ pub(super) const PATIENCE: [Ending; WIDENINGS.len()] =
 /// # Errors
 /// What the model refuses, as where a place comes to lie off the piece.
 pub(super) fn fit(records: &TestRecords, state: State, from: usize) -> Result<Fit, IdentifyError> {
-    let mut state = state;
-    for (stage, &patience) in PATIENCE.iter().enumerate().skip(from) {
-        state = polish(records, &state, stage, patience)?.0;
-    }
+    let (state, _) = polished_through(records, (state, f64::INFINITY), from..=LAST)?;
     settle(records, state, None)
+}
+
+/// A state taken from minimum to minimum through these widenings, each with its patience.
+///
+/// # Errors
+/// As [`polish`].
+pub(super) fn polished_through(
+    records: &TestRecords,
+    begun: Costed,
+    mut stages: RangeInclusive<usize>,
+) -> Result<Costed, IdentifyError> {
+    stages.try_fold(begun, |(state, _), stage| polish(records, &state, stage, PATIENCE[stage]))
 }
 
 /// A hypothesis as it stands; where the search was given up at a widening, with the sum of squares that one more step

@@ -5,7 +5,7 @@ use std::sync::atomic::Ordering;
 use orthopanel_model::Piece;
 use rayon::prelude::*;
 
-use super::fit::{Fit, LAST, PATIENCE, covariance, polish, settle};
+use super::fit::{Fit, LAST, PATIENCE, covariance, polish, polished_through, settle};
 use super::hypothesis::Hypothesis;
 use super::outcome::{Progress, Verdict};
 use super::ranking::{BEHIND, LITTLE, Ranking, Search};
@@ -144,13 +144,11 @@ fn polished_all(records: &TestRecords, states: &[State]) -> Vec<Costed> {
 /// test drag a plain fit off. Where the plain fit is better even so, that.
 fn tolerant<'a>(search: &Search, plain: impl Iterator<Item = &'a State>) -> Vec<Costed> {
     let records = search.records;
-    let to_the_end = |begun: Costed, from: usize| {
-        (from..=SIFTED).try_fold(begun, |(state, _), stage| polish(records, &state, stage, PATIENCE[stage]))
-    };
     let (begun, _) =
         search.begun_alone((&search.undeclared(), Places::Finer), |starts| followed_far(records, starts, WIDE));
-    let mut fits: Vec<Costed> = begun.into_par_iter().filter_map(|begun| to_the_end(begun, SIFTED).ok()).collect();
-    fits.extend(to_the_end((records.start.clone(), f64::INFINITY), 0));
+    let mut fits: Vec<Costed> =
+        begun.into_par_iter().filter_map(|begun| polished_through(records, begun, SIFTED..=SIFTED).ok()).collect();
+    fits.extend(polished_through(records, (records.start.clone(), f64::INFINITY), 0..=SIFTED));
     let problem = records.problem(SIFTED);
     for state in plain {
         let Ok(at) = problem.linearise(&problem.parameters(state), state) else { continue };

@@ -3,7 +3,7 @@
 use orthopanel_model::{Effect, Piece, Scale};
 use rayon::prelude::*;
 
-use super::fit::{PATIENCE, polish, promise};
+use super::fit::{polish, polished_through, promise};
 use super::hypothesis::{Switched, has_place, is_place};
 use super::record_problem::State;
 use super::records_of_test::TestRecords;
@@ -92,9 +92,7 @@ pub(super) fn followed_far(records: &TestRecords, starts: &[Costed], to: usize) 
     let mut each = followed_each(records, starts, (0, FOLLOWED_FAR));
     each.sort_by(|a, b| a.1.total_cmp(&b.1));
     each.truncate(FOLLOWED_OF_FEW);
-    let to_the_end =
-        |begun: Costed| (0..=to).try_fold(begun, |(state, _), stage| polish(records, &state, stage, PATIENCE[stage]));
-    least(each.into_par_iter().filter_map(|begun| to_the_end(begun).ok()).collect())
+    least(each.into_par_iter().filter_map(|begun| polished_through(records, begun, 0..=to).ok()).collect())
 }
 
 fn least(fits: Vec<Costed>) -> Option<Costed> {
