@@ -1,7 +1,9 @@
 r"""Modes of a beam whose core's shear modulus depends on frequency, K(s) = K_bending + g(s) K_shear.
 
 At each g the problem has modes of its own, complex, with phi' M phi = 1; they change smoothly along the path that
-g(s) takes. They are found at a few values of s and read off between them, so a line costs no eigenproblem:
+g(s) takes. They are found at a few g on that path and read off between them by the polynomial in g through these, so a line
+costs no eigenproblem. A polynomial in g is analytic in s, as everything causal is: what an interpolation over |s| misses grows
+with e^{sigma t} into the end of a record, one part in 1e7 of it to the size of the record.
 
 $$ G_{ij}(s) = \sum_k \frac{\phi_k(i)\phi_k(j)}{s^2 + 2\zeta_k\omega_k s + \omega_k^2}
    + \sum_{p=0}^{4} (-s^2)^p R^{(p)}_{ij} ,  $$
@@ -10,14 +12,14 @@ all of phi, omega, R at g(s); R are the moments of the modes above CUT. zeta_k i
 """
 
 import numpy as np
-from scipy.interpolate import BarycentricInterpolator
 from scipy.linalg import eig, eigh
+from scipy.optimize import linear_sum_assignment
 
 from . import beam
 
 CUT = 15e3  # Hz at the least modulus; above, a mode's order could change along the path
 BASIS = 30e3  # Hz: modes of the basis
-KNOTS = 16  # along the logarithm of |s|
+KNOTS = 16  # along the path of g
 MOMENTS = 5
 
 
@@ -60,16 +62,16 @@ class CoreModes:
         self.core, self.rigid, self.points = core, rigid, shape.shape[1]
         self.rigid_shape = shape[:rigid]
         inner = slice(rigid, None)
-        self.ends = np.log(sigma), np.log(np.hypot(sigma, 2.0 * np.pi * highest))
+        path = core(sigma + 2.0j * np.pi * np.linspace(0.0, highest, 4096))
+        length = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(path)))])
         angle = np.pi * (np.arange(KNOTS) + 0.5) / KNOTS
-        place = np.sum(self.ends) / 2.0 + (self.ends[1] - self.ends[0]) / 2.0 * np.cos(angle)
+        place = length[-1] * 0.5 * (1.0 - np.cos(angle))
+        self.knots = np.interp(place, length, path.real) + 1.0j * np.interp(place, length, path.imag)
+        apart = (self.knots[:, None] - self.knots) / length[-1]
+        self.weights = 1.0 / np.prod(apart + np.eye(KNOTS), axis=1)
         flexible = stiffness[inner, inner], shear[inner, inner], shape[inner]
-        size = np.exp(place)
-        along = sigma + 1.0j * np.sqrt(np.maximum(size**2 - sigma**2, 0.0))
-        self.count, table = None, []
-        for s in along[np.argsort(size)]:
-            table.append(self._at(core(s), *flexible))
-        self.table = BarycentricInterpolator(np.sort(place), np.array(table))
+        self.count = self.before = None
+        self.table = np.array([self._at(modulus, *flexible) for modulus in self.knots])
         self.zeta = np.zeros(self.count)
         self.zeta[: min(self.count, len(zeta))] = zeta[: self.count]
 
@@ -81,17 +83,27 @@ class CoreModes:
         vectors = vectors / np.sqrt(np.sum(vectors**2, axis=0))
         if self.count is None:
             self.count = int(np.sum(square.real < (2.0 * np.pi * CUT) ** 2))
-            self.first = vectors
-        # The sign of a vector is free: keep that of the path's first.
-        vectors = vectors * np.where(np.sum(self.first * vectors, axis=0).real < 0.0, -1.0, 1.0)
+        else:
+            # Even and odd modes may cross along the path: each is the one most like what it was a knot before.
+            alike = self.before.T @ vectors
+            order = linear_sum_assignment(-np.abs(alike))[1]
+            square, vectors = square[order], vectors[:, order]
+            # The sign of a vector is free: keep that of the path's first.
+            vectors = vectors * np.where(alike[np.arange(len(order)), order].real < 0.0, -1.0, 1.0)
+        self.before = vectors
         seen = vectors.T @ shape
         upper, far = seen[self.count :], square[self.count :, None]
         moments = [upper.T @ (upper / far**power) for power in range(1, MOMENTS + 1)]
         return np.concatenate([square[: self.count], seen[: self.count].ravel(), *(m.ravel() for m in moments)])
 
+    def _between(self, modulus):
+        """The table's row at each `modulus`, by the barycentric formula."""
+        share = self.weights / (modulus[:, None] - self.knots)
+        return (share @ self.table) / np.sum(share, axis=1)[:, None]
+
     def receptance(self, s, rows, columns):
         """G [m/N] (lines, rows, columns) at `s` [1/s] on the contour."""
-        row = self.table(np.log(np.abs(s)))
+        row = self._between(self.core(s))
         square, rest = row[:, : self.count], row[:, self.count :]
         seen = rest[:, : self.count * self.points].reshape(len(s), self.count, self.points)
         moments = rest[:, self.count * self.points :].reshape(len(s), MOMENTS, self.points, self.points)
