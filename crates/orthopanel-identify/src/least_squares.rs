@@ -197,6 +197,20 @@ pub(crate) fn descend<E>(
     bounds: &[(f64, f64)],
     ending: Ending,
 ) -> Result<(Minimum, bool), Stuck<E>> {
+    descend_along((linearise, |_: &[f64], _: &[f64]| None), start, bounds, ending)
+}
+
+/// The same with steps that bend: `bent` makes of the ends of a straight step the end of one that agrees with it to first order;
+/// where it makes nothing of it, the step is straight.
+///
+/// # Errors
+/// As [`descend`].
+pub(crate) fn descend_along<E>(
+    (linearise, bent): (impl Fn(&[f64]) -> Result<Quadratic, E>, impl Fn(&[f64], &[f64]) -> Option<Vec<f64>>),
+    start: &[f64],
+    bounds: &[(f64, f64)],
+    ending: Ending,
+) -> Result<(Minimum, bool), Stuck<E>> {
     let mut parameters = start.to_vec();
     let mut at = linearise(&parameters).map_err(Stuck::Refused)?;
     let (mut damping, mut growth) = (ending.first_damping, 2.0);
@@ -209,6 +223,9 @@ pub(crate) fn descend<E>(
         // Once that is nothing beside what is left, either end is the minimum.
         let promised = promise(&at, &parameters, &trial);
         let moved = trial.iter().zip(&parameters).fold(0.0_f64, |most, (a, b)| most.max((a - b).abs()));
+        let within = |(value, (low, high)): (f64, &(f64, f64))| value.clamp(*low, *high);
+        let bent = bent(&parameters, &trial).map(|bent| bent.into_iter().zip(bounds).map(within).collect());
+        let trial = bent.unwrap_or(trial);
         if let Ok(next) = linearise(&trial) {
             let (before, after) = (at.cost, next.cost);
             // At the bottom both are equal but for rounding, and either is the minimum.

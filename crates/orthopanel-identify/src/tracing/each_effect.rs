@@ -72,6 +72,8 @@ impl Search<'_> {
         if self.meets_noise(&ranking.fits[ranking.chosen]) {
             return Ok(());
         }
+        // Its starts are counted already: what they cost is not taken from the effects that come after.
+        let before = self.records.work.load(Ordering::Relaxed);
         let mut placed = self.undeclared();
         placed.retain(|effect| has_place(*effect));
         let (begun, _) =
@@ -84,6 +86,7 @@ impl Search<'_> {
                 None => ranking.fits.push(fit),
             }
         }
+        self.records.work.store(before, Ordering::Relaxed);
         self.choose(ranking)
     }
 }

@@ -6,12 +6,13 @@ use faer::linalg::solvers::DenseSolveCore;
 use faer::prelude::Solve;
 use faer::{Mat, Side};
 
+use super::core_modes::{CoreModes, creeps};
 use super::record_problem::{Grouping, State, total};
 use super::records_of_test::TestRecords;
 use super::starts::Costed;
 use super::widened_lines::WIDENINGS;
 use crate::IdentifyError;
-use crate::least_squares::{Ending, Quadratic, descend};
+use crate::least_squares::{Ending, Quadratic, descend_along};
 
 /// A hypothesis with its sums of squares on the narrowest lines.
 #[derive(Clone)]
@@ -87,7 +88,9 @@ pub(super) fn polish(
 ) -> Result<(State, f64), IdentifyError> {
     let problem = records.problem(stage);
     let (start, bounds) = (problem.parameters(state), problem.bounds(state));
-    let searched = descend(|p| problem.linearise(p, state), &start, &bounds, patience);
+    let modes = if creeps(&state.hypothesis) { CoreModes::of(&problem, state) } else { None };
+    let advance = |from: &[f64], trial: &[f64]| modes.as_ref()?.straightened(&state.hypothesis, from, trial);
+    let searched = descend_along((|p| problem.linearise(p, state), advance), &start, &bounds, patience);
     let (minimum, _) = searched.map_err(IdentifyError::refused)?;
     Ok((problem.state(&minimum.parameters, state), minimum.at.cost))
 }

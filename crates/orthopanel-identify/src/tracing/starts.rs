@@ -3,6 +3,7 @@
 use orthopanel_model::{Effect, Piece, Scale};
 use rayon::prelude::*;
 
+use super::core_modes::{CORE, CoreModes};
 use super::fit::{polish, polished_through, promise};
 use super::hypothesis::{Switched, has_place, is_place};
 use super::record_problem::State;
@@ -46,6 +47,8 @@ pub(super) fn scored_starts(
     let beside =
         if effect.id() == SUPPORT { support_starts(records, base, effect, piece).unwrap_or_default() } else { vec![] };
     let test = (problem.records.len(), records.band);
+    // What a core stiffens and takes of energy is in the base's constants and damping already.
+    let modes = if effect.id() == CORE { CoreModes::of(&problem, base) } else { None };
     let scored: Vec<Result<Costed, IdentifyError>> = grid(effect, piece, test, places)
         .into_par_iter()
         .flat_map_iter(|start| {
@@ -61,6 +64,7 @@ pub(super) fn scored_starts(
         .chain(beside.into_par_iter().map(Ok))
         .map(|state| {
             let state = state?;
+            let state = modes.as_ref().map_or(state.clone(), |modes| modes.begun(&problem, state, records.band));
             let at = problem.linearise(&problem.parameters(&state), &state)?;
             Ok((state, promise(&at)))
         })
