@@ -18,10 +18,11 @@ class Panel:
     """One instance, driven by names.
 
     `fmu` is the file, or the folder where it was unpacked; `model_exchange` chooses that interface in place of
-    co-simulation; `messages` keeps what the logger was told.
+    co-simulation; `messages` keeps what the logger was told. `options` are further callbacks of FMI 2.0, or further
+    arguments of an instantiation of FMI 3.0.
     """
 
-    def __init__(self, fmu, guid=None, logging=False, messages=None, model_exchange=False):
+    def __init__(self, fmu, guid=None, logging=False, messages=None, model_exchange=False, **options):
         self.description = read_model_description(str(fmu))
         self.version = int(self.description.fmiVersion[0])
         self.references = {v.name: v.valueReference for v in self.description.modelVariables}
@@ -41,11 +42,14 @@ class Panel:
             callbacks.logger = fmi2CallbackLoggerTYPE(
                 lambda environment, name, status, category, message: self.messages.append(message.decode())
             )
+            for name, callback in options.items():
+                setattr(callbacks, name, callback)
             self.fmu.instantiate(callbacks=callbacks, loggingOn=logging)
         else:
             self.fmu.instantiate(
                 loggingOn=logging,
                 logMessage=lambda environment, status, category, message: self.messages.append(message.decode()),
+                **options,
             )
 
     def initialize(self, force_linear=False, stop_time=None):

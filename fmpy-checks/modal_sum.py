@@ -27,6 +27,12 @@ def staircase(modes, forces, step):
     return _sum(modes, mode)
 
 
+def ramp(modes, rate, duration, t):
+    """A force that grows from 0 at `rate` [N/s] for a while and then stays."""
+    shape = lambda omega, zeta: _unit_ramp(omega, zeta, t) - _unit_ramp(omega, zeta, t - duration)
+    return rate * _sum(modes, shape)
+
+
 def _sum(modes, motion):
     return sum(weight * motion(omega, zeta) for omega, zeta, weight in modes)
 
@@ -64,4 +70,19 @@ def _unit_step(omega, zeta, t):
         rest = 1.0 / omega**2
         motion = _free(omega, zeta, -rest, 0.0, t)
         motion[0] += rest
+    return np.where(on, motion, 0.0)
+
+
+def _unit_ramp(omega, zeta, t):
+    """Unit rate of the modal force from t = 0 on."""
+    on = t > 0.0
+    t = np.where(on, t, 0.0)
+    if omega == 0.0:
+        motion = np.array([t**3 / 6.0, t**2 / 2.0, t])
+    else:
+        # Behind the ramp by 2 zeta / omega, and at rest at its start.
+        behind, slope = 2.0 * zeta / omega**3, 1.0 / omega**2
+        motion = _free(omega, zeta, behind, -slope, t)
+        motion[0] += slope * t - behind
+        motion[1] += slope
     return np.where(on, motion, 0.0)
