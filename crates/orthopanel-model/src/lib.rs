@@ -14,6 +14,7 @@ mod mindlin_plate;
 mod modal_model;
 mod modal_sensitivity;
 mod model_text;
+mod order;
 mod panel_mode;
 mod panel_model;
 mod panel_modes;

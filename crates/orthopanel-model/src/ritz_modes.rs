@@ -2,6 +2,7 @@
 
 use crate::block_krylov::{BlockKrylov, lowest_modes_near};
 use crate::block_pencil::{BlockPencil, Eigenpair};
+use crate::order::{sort, sorted};
 use crate::structure::{Block, RitzMode, Structure};
 use crate::{Constant, ModelError, side_by_side};
 
@@ -225,7 +226,7 @@ impl<'a> SolvedBlock<'a> {
 /// An $\omega^2$ between the mode of number `count` and the next that clearly lies above it.
 fn limit_above(solved: &[SolvedBlock], count: usize) -> f64 {
     let mut all: Vec<f64> = solved.iter().flat_map(SolvedBlock::omega2s).collect();
-    all.sort_unstable_by(f64::total_cmp);
+    sort(&mut all);
     let last = count.checked_sub(1).and_then(|index| all.get(index)).copied().unwrap_or(0.0);
     let clear = all.iter().find(|&&omega2| omega2 > last * (1.0 + CLOSE));
     clear.map_or(last * (1.0 + CLOSE), |next| 0.5 * (last + next))
@@ -263,10 +264,7 @@ fn flexible(solved: impl Iterator<Item = Vec<Eigenpair>>) -> Vec<RitzMode> {
             coordinates,
         })
     };
-    let mut modes: Vec<RitzMode> = solved.enumerate().flat_map(of_block).collect();
-    // Stable sorting would bring 6 KB into every FMU.
-    modes.sort_unstable_by(|a, b| a.angular_frequency.total_cmp(&b.angular_frequency).then(a.block.cmp(&b.block)));
-    modes
+    sorted(solved.enumerate().flat_map(of_block).collect(), |mode| mode.angular_frequency)
 }
 
 #[cfg(test)]

@@ -6,6 +6,7 @@
 use faer::Mat;
 
 use super::dot;
+use crate::order::rising;
 
 /// Turns of one eigenvalue that never are needed: two or three are.
 const MOST_TURNS: usize = 60;
@@ -18,8 +19,7 @@ pub(crate) fn symmetric_eigen(matrix: &Mat<f64>) -> Option<(Vec<f64>, Mat<f64>)>
     let (mut diagonal, mut beside, scales) = to_tridiagonal(&mut reflected, size);
     let mut vectors = product_of_reflections(&reflected, &scales, size);
     to_diagonal(&mut diagonal, &mut beside, &mut vectors)?;
-    let mut order: Vec<usize> = (0..size).collect();
-    order.sort_unstable_by(|&a, &b| diagonal[a].total_cmp(&diagonal[b]));
+    let order = rising(&diagonal);
     let values = order.iter().map(|&index| diagonal[index]).collect();
     Some((values, Mat::from_fn(size, size, |i, j| vectors[order[j] * size + i])))
 }

@@ -5,6 +5,7 @@ use faer::Mat;
 use super::low_modes::{FarAnswers, LowModes};
 use super::{ElementLaw, PointElement};
 use crate::dense::{Cholesky, dot, symmetric_eigen};
+use crate::order::sorted;
 use crate::{Damping, ModelError};
 
 /// $\omega$, $\zeta$ and all coordinates of a mode.
@@ -101,11 +102,9 @@ impl System {
             if lambda > 1e-9 * self.shift { lambda.sqrt() } else { 0.0 }
         };
         let found = found.into_iter().filter(|(theta, _)| *theta > least);
-        let mut modes: Vec<(f64, usize, Vec<f64>)> =
-            found.enumerate().map(|(place, (theta, whole))| (omega(theta), place, whole)).collect();
+        let modes: Vec<(f64, Vec<f64>)> = found.map(|(theta, whole)| (omega(theta), whole)).collect();
         // Rigid modes stay as they come: translation before rotation.
-        modes.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        let modes = modes.into_iter().map(|(omega, _, whole)| {
+        let modes = sorted(modes, |(omega, _)| *omega).into_iter().map(|(omega, whole)| {
             let lost: f64 = damping.iter().map(|&(i, j, value)| whole[i] * value * whole[j]).sum();
             // Below zero by rounding, where nothing is lost.
             let zeta = if omega > 0.0 { (lost / (2.0 * omega)).clamp(0.0, 0.7) } else { 0.0 };
@@ -216,8 +215,7 @@ pub(super) fn uncoupled(matrices: &[&Mat<f64>], coordinates: &[usize]) -> Vec<Ve
                 !meets
             });
         }
-        part.sort_unstable();
-        parts.push(part);
+        parts.push(sorted(part, |&coordinate| coordinate as f64));
     }
     parts
 }

@@ -10,6 +10,7 @@ use super::receptance::modal_base::Row;
 use super::{CoreFit, CoreModulus, DressedMode, ElementLaw};
 use crate::block_pencil::BlockPencil;
 use crate::dense::{Cholesky, dot, product, symmetric_eigen};
+use crate::order::sorted;
 use crate::structure::{Motion, Structure};
 use crate::{ModelError, Place, SymmetricMatrix};
 
@@ -229,7 +230,7 @@ fn shear_directions(stiffness: &Mat<f64>, shear: &Mat<f64>, kept: usize) -> Resu
             found.push((share, whole));
         }
     }
-    found.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+    let found = sorted(found, |(share, _)| *share);
     Ok(found.into_iter().skip(size.saturating_sub(kept)).map(|(_, direction)| direction).collect())
 }
 

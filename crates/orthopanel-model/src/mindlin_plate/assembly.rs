@@ -10,6 +10,7 @@ use faer::{Mat, MatRef};
 
 use super::Field;
 use super::edge_basis::EdgeBasis;
+use crate::order::sorted;
 use crate::skyline::Profile;
 use crate::structure::Block;
 use crate::{Piece, SymmetricMatrix, side_by_side};
@@ -96,14 +97,10 @@ fn block_coordinates(along: &[EdgeBasis; 2], [odd_x, odd_y]: [bool; 2], products
             list.extend(own.map(|j| Coordinate { field, x: i, y: j }));
         }
     }
-    // Keys made once, and small ones: sorting longer ones would bring 7 KB into every FMU.
-    let keyed = |(place, coordinate): (usize, &Coordinate)| {
+    sorted(list, |coordinate| {
         let [first, second] = degrees(along, coordinate);
-        (((first << 16 | second) << 2) + coordinate.field as usize, place)
-    };
-    let mut order: Vec<(usize, usize)> = list.iter().enumerate().map(keyed).collect();
-    order.sort_unstable();
-    order.into_iter().map(|(_, place)| list[place]).collect()
+        (((first << 16 | second) << 2) + coordinate.field as usize) as f64
+    })
 }
 
 /// The side along which rows of the matrices are ordered first: that with more functions, but never one all of whose functions meet

@@ -18,6 +18,7 @@ use super::Field;
 use super::edge_basis::EdgeBasis;
 use crate::End;
 use crate::dense::{product, symmetric_eigen};
+use crate::order::sorted;
 use crate::structure::Motion;
 
 /// The series along x and the functions across in which the membrane falls apart.
@@ -80,8 +81,7 @@ impl Membrane {
     /// are taken to have those of its functions in order.
     pub(super) fn new([x, y]: &[EdgeBasis; 2], half_length: f64, ends: [End; 2], lengths: &[usize]) -> Option<Self> {
         let returned = ends.map(|end| if end == End::Free { 1.0 } else { -1.0 });
-        let mut counts = lengths.to_vec();
-        counts.sort_unstable();
+        let mut counts = sorted(lengths.to_vec(), |&count| count as f64);
         counts.dedup();
         let along = counts.iter().map(|&count| Modes::of(x, count)).collect::<Option<Vec<_>>>()?;
         let along_of = lengths.iter().map(|length| counts.partition_point(|count| count < length)).collect();

@@ -5,6 +5,7 @@
 
 use crate::ShearLoss;
 use crate::legendre::gauss_legendre;
+use crate::order::sort;
 
 /// The spans in $t = x/h$.
 #[derive(Debug, Clone)]
@@ -25,7 +26,7 @@ impl Spans {
     fn edges(&self) -> Vec<f64> {
         let mut edges: Vec<f64> = self.losses.iter().flat_map(|(_, edges)| *edges).collect();
         edges.retain(|edge| edge.abs() < 1.0 - SAME);
-        edges.sort_unstable_by(f64::total_cmp);
+        sort(&mut edges);
         edges.dedup_by(|a, b| (*a - *b).abs() < SAME);
         edges
     }

@@ -3,6 +3,7 @@
 use super::beam_terms::{BeamTerms, ShearLoss, core_waves};
 use super::static_field::StaticField;
 use super::{Section, gauss_points};
+use crate::order::sort;
 use crate::structure::Motion;
 use crate::{Boundary, End, ModelError, Piece};
 
@@ -233,7 +234,7 @@ impl StaticFlexibility {
         let mut nodes: Vec<f64> = self.terms.losses.iter().flat_map(|loss| loss.edges(h)).collect();
         nodes.extend([low, high, a.place(), b.place()]);
         nodes.retain(|x| (low..=high).contains(x));
-        nodes.sort_unstable_by(f64::total_cmp);
+        sort(&mut nodes);
         for pair in nodes.windows(2).filter(|pair| pair[1] > pair[0]) {
             let count = ((pair[1] - pair[0]) / longest).ceil().max(1.0);
             let step = (pair[1] - pair[0]) / count;
@@ -272,8 +273,8 @@ const STRETCHES: usize = 2;
 
 /// Stretches of `[low, high]` on which both fields are polynomials.
 fn segments(a: &StaticField, b: &StaticField, [low, high]: [f64; 2]) -> impl Iterator<Item = [f64; 2]> {
-    let mut nodes = [low, a.place().clamp(low, high), b.place().clamp(low, high), high];
-    nodes.sort_unstable_by(f64::total_cmp);
+    let [a, b] = [a, b].map(|field| field.place().clamp(low, high));
+    let nodes = [low, a.min(b), a.max(b), high];
     (0..3).map(move |i| [nodes[i], nodes[i + 1]]).filter(|[start, end]| end > start)
 }
 

@@ -7,6 +7,7 @@ use super::beam_terms::{BeamTerms, ShearLoss, core_waves};
 use super::strain_basis::StrainFunction;
 use crate::dense::product;
 use crate::legendre::{gauss_legendre, legendre_at, norm};
+use crate::order::sort;
 
 /// $h\int_{-1}^1f_if_j\,dt$ of one Legendre series of each function.
 #[inline(never)] // Four times in one place, it would make every FMU larger.
@@ -53,7 +54,7 @@ impl<'a> Quadrature<'a> {
         let mut edges: Vec<f64> =
             of.losses.iter().flat_map(|loss| loss.edges(half_length)).map(|x| x / half_length).collect();
         edges.extend([-1.0, 1.0]);
-        edges.sort_unstable_by(f64::total_cmp);
+        sort(&mut edges);
         // Products of two functions, and some points more for a cosine: each half-wave wants less than two.
         let rule = gauss_legendre(terms + 2 + of.core_waves.len());
         let stretches = edges.windows(2).filter_map(|pair| match pair {
