@@ -33,6 +33,12 @@ def ramp(modes, rate, duration, t):
     return rate * _sum(modes, shape)
 
 
+def free_motion(modes, starts, t):
+    """No force: each mode from its own position and velocity; the third of each of `modes` is its shape."""
+    parts = zip(modes, starts)
+    return sum(shape * _free_or_rigid(omega, zeta, *start, t) for (omega, zeta, shape), start in parts)
+
+
 def _sum(modes, motion):
     return sum(weight * motion(omega, zeta) for omega, zeta, weight in modes)
 
@@ -43,6 +49,12 @@ def _free(omega, zeta, position, velocity, t):
     amplitude = complex(position, (position * root.real - velocity) / root.imag)
     wave = amplitude * np.exp(root * t)
     return np.array([wave.real, (root * wave).real, (root**2 * wave).real])
+
+
+def _free_or_rigid(omega, zeta, position, velocity, t):
+    if omega > 0.0:
+        return _free(omega, zeta, position, velocity, t)
+    return np.array([position + velocity * t, np.full_like(t, velocity), np.zeros_like(t)])
 
 
 def _sine(omega, zeta, duration, t):

@@ -36,6 +36,7 @@ pub(crate) fn write(resource: &Resource, from: Option<&Origin<'_>>, options: &Fm
     page += LINEAR;
     page += "</p>\n<h2>Modes</h2>\n<p>";
     page += MODES;
+    page += INITIAL_STATE;
     page += "</p>\n<table>\n<tr><th>frequency [Hz]</th><th>damping ratio</th></tr>\n";
     for mode in resource.model().modes() {
         let frequency = mode.angular_frequency / std::f64::consts::TAU;
@@ -70,6 +71,10 @@ const LINEAR: &str = " If the parameter force_linear is true, the force of a ste
      outputs are those of the old value. Each mode is then \
      advanced exactly, whatever the step.";
 const MODES: &str = "Rigid modes have the frequency 0. Outputs are sums over these modes.";
+const INITIAL_STATE: &str = " The panel starts at rest. Where modal_position_1, modal_velocity_1 and so on are set before or in \
+     initialization mode, it starts bent or moving: a displacement is the sum of these positions, each times the shape of its \
+     mode, which in initialization mode is the directional derivative of the displacement by the position. A reset brings it to \
+     rest again.";
 
 /// What the modes left out add to displacements, and up to where an acceleration can do without them: a row a pair of ports.
 fn left_out(resource: &Resource, bands: Option<&AccelerationBands>) -> String {
