@@ -8,7 +8,6 @@ use super::strain_basis::{Parity, StrainFunction, end_motions, steps, strain_fun
 use super::term_matrices::{Quadrature, series_products, support_stiffness};
 use super::{BEAM_CONSTANTS, Section, StaticFlexibility};
 use crate::legendre::legendre;
-use crate::order::sorted;
 use crate::structure::{Block, Flexibility, Motion, Structure, TermDerivative};
 use crate::{Boundary, Constant, ModelError, Piece, Place, SymmetricMatrix};
 
@@ -74,7 +73,7 @@ impl TimoshenkoBeam {
         // that have lost stiffness all strains of shear meet: they stay behind the curvatures, which do not.
         if !uneven {
             for block in [&mut even, &mut odd, &mut all] {
-                *block = sorted(std::mem::take(block), |function: &StrainFunction| function.deflection.len() as f64);
+                block.sort_unstable_by_key(|function: &StrainFunction| function.deflection.len());
             }
         }
         let functions: Vec<_> = [even, odd, all].into_iter().filter(|block| !block.is_empty()).collect();
