@@ -37,9 +37,9 @@ pub use boundary::{Boundary, End};
 pub use constant::Constant;
 pub use effects::{
     Action, CORE_WAVES, ChannelFactor, CoreFit, CoreLine, CoreModulus, Effect, EffectParameter, EffectSetting,
-    EffectState, ElementLaw, ElementLine, FactorLine, FieldTerm, LineDerivatives, LineEvaluator, NaturalFrequencies,
-    Owner, PointElement, ReceptanceModel, ReceptanceSetup, RecordSetting, Reference, RelaxingLines, Scale, Seat, Share,
-    Shift, SuspensionMotion, catalogue, effect, natural_frequencies, roughness,
+    EffectState, ElementLaw, ElementLine, FactorLine, FieldTerm, LineBlock, LineDerivatives, LineEvaluator,
+    NaturalFrequencies, Owner, PointElement, ReceptanceModel, ReceptanceSetup, RecordSetting, Reference, RelaxingLines,
+    Scale, Seat, Share, Shift, SuspensionMotion, catalogue, effect, natural_frequencies, roughness,
 };
 pub use error::{ModelError, Readable};
 pub use mindlin_plate::{MindlinPlate, ModeKind, ModeName, PLATE_CONSTANTS};

@@ -38,6 +38,7 @@ mod report;
 mod rough_rest;
 mod rough_search;
 mod roughness;
+mod row_products;
 mod rows;
 mod starts;
 mod support_starts;

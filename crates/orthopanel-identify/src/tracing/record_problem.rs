@@ -4,11 +4,13 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use faer::Mat;
 use num_complex::Complex64;
-use orthopanel_model::{BEAM_CONSTANTS, Damping, ModelError, ReceptanceModel, ReceptanceSetup};
+use orthopanel_model::{BEAM_CONSTANTS, Damping, LineBlock, ModelError, ReceptanceModel, ReceptanceSetup};
+use rayon::prelude::*;
 
 use super::hypothesis::{CUBIC, Hypothesis, PLATE};
 use super::reaction_lines::{ReactionLines, Taken};
 use super::reactions::Reactions;
+use super::row_products::RowProducts;
 use super::roughness::{ROUGHNESS, RoughScales, add_prior, is_roughness};
 use super::widened_lines::WidenedLines;
 use crate::least_squares::Quadratic;
@@ -58,6 +60,70 @@ pub(super) enum Grouping {
     Places,
     /// One hit of each pair of places.
     Hits,
+}
+
+/// What a state makes of the records.
+struct Made {
+    model: ReceptanceModel,
+    reactions: Option<ReactionLines>,
+    /// Column of the model and factor of each parameter.
+    plan: Vec<(usize, f64)>,
+}
+
+/// Data that rows are about: a record's hits together, or one of them.
+struct Target<'a> {
+    measured: &'a [Complex64],
+    /// One over the noise of each real number.
+    weights: Vec<f64>,
+    taken: Option<Taken>,
+}
+
+impl Made {
+    fn targets<'a>(&self, index: usize, record: &'a WidenedLines, grouping: Grouping) -> Vec<Target<'a>> {
+        let data: Vec<(&[Complex64], &[f64])> = match grouping {
+            Grouping::Places => vec![(&record.value, &record.variance)],
+            Grouping::Hits => record.hits.iter().map(|hit| (&hit.value[..], &hit.variance[..])).collect(),
+        };
+        let taken = self.reactions.as_ref().map(|all| all.taken(index, record, grouping, &self.plan));
+        let mut taken = taken.into_iter().flatten();
+        let target = |(measured, variance): (&'a [Complex64], &[f64])| {
+            // The variance counts real and imaginary part together.
+            let weights = variance.iter().map(|variance| (2.0 / variance).sqrt()).collect();
+            Target { measured, weights, taken: taken.next() }
+        };
+        data.into_iter().map(target).collect()
+    }
+}
+
+impl Target<'_> {
+    /// Real and imaginary parts of a column of rows, for the lines of a block from `first` on: the derivatives by a parameter, its
+    /// number given with its column of the model and factor, or what is missed.
+    fn column(
+        &self,
+        (first, block): (usize, LineBlock),
+        parameter: Option<(usize, (usize, f64))>,
+        [re, im]: [&mut [f64]; 2],
+    ) {
+        let weights = &self.weights[first..first + block.len()];
+        let Some((column, (of_model, factor))) = parameter else {
+            for (line, ((re, im), weight)) in re.iter_mut().zip(im).zip(weights).enumerate() {
+                let taken = self.taken.as_ref().map_or(Complex64::ZERO, |taken| taken.value[first + line]);
+                let missed = *weight * (block.value(line) - taken - self.measured[first + line]);
+                (*re, *im) = (missed.re, missed.im);
+            }
+            return;
+        };
+        let [by_re, by_im] = block.by(of_model);
+        for (part, by) in [(&mut *re, by_re), (&mut *im, by_im)] {
+            part.iter_mut().zip(by).zip(weights).for_each(|((entry, by), weight)| *entry = weight * (factor * by));
+        }
+        if let Some(taken) = &self.taken {
+            for (line, ((re, im), weight)) in re.iter_mut().zip(im).zip(weights).enumerate() {
+                let taken = *weight * taken.by[first + line][column];
+                (*re, *im) = (*re - taken.re, *im - taken.im);
+            }
+        }
+    }
 }
 
 /// Making a model costs as much as so many of its lines.
@@ -121,17 +187,41 @@ impl RecordProblem<'_> {
         let state = self.state(parameters, like);
         let size = parameters.len();
         let all: Vec<usize> = (0..size).collect();
+        let made = self.made(&state)?;
+        // Records side by side, their sums in order: the same for any number of threads.
+        let numbers: Vec<usize> = (0..self.records.len()).collect();
+        let products = numbers.par_iter().map(|&index| self.products(&made, index, grouping));
+        let products: Vec<Vec<Mat<f64>>> = products.collect();
         let mut sums: Vec<Quadratic> = Vec::new();
-        self.rows(&state, grouping, |index, target, rows| {
-            let group = if grouping == Grouping::Hits { target } else { index };
-            if sums.len() <= group {
-                sums.resize_with(group + 1, || Quadratic::zero(size));
+        for (index, targets) in products.iter().enumerate() {
+            for (target, products) in targets.iter().enumerate() {
+                let group = if grouping == Grouping::Hits { target } else { index };
+                if sums.len() <= group {
+                    sums.resize_with(group + 1, || Quadratic::zero(size));
+                }
+                sums[group].add_products(products, &all);
             }
-            sums[group].add_products(&(rows.transpose() * rows), &all);
-        })?;
+        }
         sums.push(self.prior(&state, size));
         sums.iter_mut().for_each(Quadratic::mirror);
         Ok(sums)
+    }
+
+    /// $[J\,r]^T[J\,r]$ of each target of a record.
+    fn products(&self, made: &Made, index: usize, grouping: Grouping) -> Vec<Mat<f64>> {
+        let record = &self.records[index];
+        let Some(mut evaluator) = made.model.evaluator(index) else { return vec![] };
+        let targets = made.targets(index, record, grouping);
+        let mut products: Vec<RowProducts> = targets.iter().map(|_| RowProducts::new(made.plan.len() + 1)).collect();
+        evaluator.blocks(&record.s, |first, block| {
+            for (target, products) in targets.iter().zip(&mut products) {
+                products.add(2 * block.len(), |column, rows| {
+                    let (re, im) = rows.split_at_mut(block.len());
+                    target.column((first, block), made.plan.get(column).map(|plan| (column, *plan)), [re, im]);
+                });
+            }
+        });
+        products.into_iter().map(RowProducts::lower).collect()
     }
 
     /// Hands on, record by record, the rows of each of its targets (all hits together, or each by itself): derivatives by all
@@ -142,32 +232,21 @@ impl RecordProblem<'_> {
         grouping: Grouping,
         mut take: impl FnMut(usize, usize, &Mat<f64>),
     ) -> Result<(), ModelError> {
-        let (model, reactions) = self.model(state)?;
-        self.count(state);
-        let plan = self.columns(state);
-        let size = plan.len();
+        let made = self.made(state)?;
         for (index, record) in self.records.iter().enumerate() {
-            let Some(mut evaluator) = model.evaluator(index) else { continue };
-            let targets: Vec<(&[Complex64], &[f64])> = match grouping {
-                Grouping::Places => vec![(&record.value, &record.variance)],
-                Grouping::Hits => record.hits.iter().map(|hit| (&hit.value[..], &hit.variance[..])).collect(),
-            };
-            let taken: Vec<Taken> =
-                reactions.as_ref().map_or_else(Vec::new, |all| all.taken(index, record, grouping, &plan));
-            let mut rows: Vec<Mat<f64>> = targets.iter().map(|_| Mat::zeros(2 * record.s.len(), size + 1)).collect();
-            evaluator.lines(&record.s, |line, value, by| {
-                for (target, ((measured, variance), rows)) in targets.iter().zip(&mut rows).enumerate() {
-                    // The variance counts real and imaginary part together.
-                    let weight = (2.0 / variance[line]).sqrt();
-                    let taken = taken.get(target);
-                    for (column, &(of_model, factor)) in plan.iter().enumerate() {
-                        let taken = taken.map_or(Complex64::ZERO, |taken| taken.by[line][column]);
-                        let entry = weight * (factor * by.of(of_model) - taken);
-                        (rows[(2 * line, column)], rows[(2 * line + 1, column)]) = (entry.re, entry.im);
+            let Some(mut evaluator) = made.model.evaluator(index) else { continue };
+            let targets = made.targets(index, record, grouping);
+            let columns = made.plan.len() + 1;
+            let mut rows: Vec<Mat<f64>> = targets.iter().map(|_| Mat::zeros(2 * record.s.len(), columns)).collect();
+            let mut parts = [[0.0; LineBlock::MOST]; 2];
+            evaluator.blocks(&record.s, |first, block| {
+                for (target, rows) in targets.iter().zip(&mut rows) {
+                    for column in 0..columns {
+                        let [re, im] = parts.each_mut().map(|part| &mut part[..block.len()]);
+                        target.column((first, block), made.plan.get(column).map(|plan| (column, *plan)), [re, im]);
+                        let rows = rows.col_as_slice_mut(column)[2 * first..].chunks_exact_mut(2);
+                        rows.zip(re.iter().zip(im)).for_each(|(row, (re, im))| (row[0], row[1]) = (*re, *im));
                     }
-                    let value = value - taken.map_or(Complex64::ZERO, |taken| taken.value[line]);
-                    let missed = weight * (value - measured[line]);
-                    (rows[(2 * line, size)], rows[(2 * line + 1, size)]) = (missed.re, missed.im);
                 }
             });
             rows.iter().enumerate().for_each(|(target, rows)| take(index, target, rows));
@@ -255,6 +334,13 @@ impl RecordProblem<'_> {
             start += switched.values.len();
         }
         columns
+    }
+
+    /// What a state makes of the records.
+    fn made(&self, state: &State) -> Result<Made, ModelError> {
+        let (model, reactions) = self.model(state)?;
+        self.count(state);
+        Ok(Made { model, reactions, plan: self.columns(state) })
     }
 
     fn count(&self, state: &State) {

@@ -54,7 +54,7 @@ pub use dressed_modes::{NaturalFrequencies, natural_frequencies};
 pub(crate) use dressed_panel::{DressedPanel, Even, PanelWithEffects, SPARE_MODES};
 pub use parameter::{EffectParameter, Reference, Scale};
 pub use point_element::{ElementLaw, ElementLine, PointElement, Seat, Share};
-pub use receptance::{LineDerivatives, LineEvaluator, ReceptanceModel, ReceptanceSetup};
+pub use receptance::{LineBlock, LineDerivatives, LineEvaluator, ReceptanceModel, ReceptanceSetup};
 pub use relaxing_lines::RelaxingLines;
 pub use roughness::{CORE_WAVES, roughness};
 pub use setting::{EffectSetting, RecordSetting, SuspensionMotion};

@@ -15,5 +15,5 @@ pub(super) mod view;
 mod wide;
 mod wide_plate;
 
-pub use model::{LineDerivatives, LineEvaluator, ReceptanceModel};
+pub use model::{LineBlock, LineDerivatives, LineEvaluator, ReceptanceModel};
 pub use setup::ReceptanceSetup;

@@ -109,13 +109,20 @@ impl LineEvaluator<'_> {
 
     /// The same at every $s$ of a list: tells `take` the line's number, its accelerance and its derivatives.
     pub fn lines(&mut self, s: &[Complex64], mut take: impl FnMut(usize, Complex64, LineDerivatives)) {
+        self.blocks(s, |first, block| {
+            for line in 0..block.len() {
+                take(first + line, block.value(line), LineDerivatives { by: block.by, line });
+            }
+        });
+    }
+
+    /// The same, [`LineBlock::MOST`] lines at once: tells `take` the number of the first, and all of them.
+    pub fn blocks(&mut self, s: &[Complex64], mut take: impl FnMut(usize, LineBlock)) {
         for (chunk, some) in s.chunks(LINES).enumerate() {
             let last = some.len() - 1;
             let lines = Wide::from_fn(|line| some[line.min(last)]);
             let value = pulp::Arch::new().dispatch(SomeLines { evaluator: &mut *self, s: &lines });
-            for line in 0..some.len() {
-                take(chunk * LINES + line, value.at(line), LineDerivatives { by: &self.by, line });
-            }
+            take(chunk * LINES, LineBlock { value: &value, by: &self.by, lines: some.len() });
         }
     }
 
@@ -179,6 +186,35 @@ impl pulp::NullaryFnOnce for SomeLines<'_, '_> {
     #[inline(always)]
     fn call(self) -> Wide {
         self.evaluator.some_lines(self.s)
+    }
+}
+
+/// Some lines side by side, with their derivatives.
+#[derive(Debug, Clone, Copy)]
+pub struct LineBlock<'a> {
+    value: &'a Wide,
+    by: &'a [Wide],
+    lines: usize,
+}
+
+impl<'a> LineBlock<'a> {
+    /// Most lines of a block; all but the last one of a list have as many.
+    pub const MOST: usize = LINES;
+
+    /// Number of lines.
+    #[expect(clippy::len_without_is_empty, reason = "never empty: made of a chunk of lines")]
+    pub fn len(&self) -> usize {
+        self.lines
+    }
+
+    /// The accelerance of a line.
+    pub fn value(&self, line: usize) -> Complex64 {
+        self.value.at(line)
+    }
+
+    /// Real and imaginary parts of the derivatives of all lines by this column.
+    pub fn by(&self, column: usize) -> [&'a [f64]; 2] {
+        self.by[column].parts().map(|part| &part[..self.lines])
     }
 }
 

@@ -26,6 +26,11 @@ impl Wide {
         Complex64::new(self.re[line], self.im[line])
     }
 
+    /// Real parts and imaginary parts.
+    pub(super) fn parts(&self) -> [&[f64; LINES]; 2] {
+        [&self.re, &self.im]
+    }
+
     pub(super) fn set(&mut self, line: usize, number: Complex64) {
         (self.re[line], self.im[line]) = (number.re, number.im);
     }
