@@ -24,6 +24,7 @@ mod hit_noise;
 mod hit_places;
 mod hypothesis;
 mod information;
+mod known_sums;
 mod model_error;
 mod next_experiment;
 mod other_side;

@@ -1,5 +1,6 @@
 //! The records at one widening as a sum of squares, for any effects that are switched on.
 
+use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use faer::Mat;
@@ -7,11 +8,12 @@ use num_complex::Complex64;
 use orthopanel_model::{BEAM_CONSTANTS, Damping, LineBlock, ModelError, ReceptanceModel, ReceptanceSetup};
 use rayon::prelude::*;
 
-use super::hypothesis::{CUBIC, Hypothesis, PLATE};
+use super::hypothesis::{CUBIC, Hypothesis, PLATE, Switched};
+use super::known_sums::KnownSums;
 use super::reaction_lines::{ReactionLines, Taken};
 use super::reactions::Reactions;
-use super::row_products::RowProducts;
 use super::roughness::{ROUGHNESS, RoughScales, add_prior, is_roughness};
+use super::row_products::RowProducts;
 use super::widened_lines::WidenedLines;
 use crate::least_squares::Quadratic;
 
@@ -34,6 +36,8 @@ pub(super) struct RecordProblem<'a> {
     pub work: &'a AtomicU64,
     /// Forces that are not linear, where the test can tell them.
     pub reactions: Option<&'a Reactions>,
+    /// What was worked out before, and the number of these lines there.
+    pub known: Option<(&'a KnownSums, usize)>,
 }
 
 /// Each free mode's $\ln\zeta$ before the records speak: about where it is, and the standard deviation.
@@ -51,6 +55,20 @@ pub(super) struct State {
     /// Logarithms of the damping ratios.
     pub zetas: Vec<f64>,
     pub hypothesis: Hypothesis,
+}
+
+impl State {
+    /// Whether the two are the same, number by number.
+    pub(super) fn is(&self, other: &Self) -> bool {
+        let effects = (&self.hypothesis.effects, &other.hypothesis.effects);
+        let alike = |(one, other): (&Switched, &Switched)| {
+            one.effect.id() == other.effect.id() && one.values == other.values && one.free == other.free
+        };
+        self.constants == other.constants
+            && self.zetas == other.zetas
+            && effects.0.len() == effects.1.len()
+            && effects.0.iter().zip(effects.1).all(alike)
+    }
 }
 
 /// What is left out together when a fit is judged.
@@ -184,10 +202,31 @@ impl RecordProblem<'_> {
         like: &State,
         grouping: Grouping,
     ) -> Result<Vec<Quadratic>, ModelError> {
-        let state = self.state(parameters, like);
+        // As it stands: a logarithm and back would move it by its rounding.
+        let state = if parameters == self.parameters(like) { like.clone() } else { self.state(parameters, like) };
         let size = parameters.len();
+        let known = self.known.and_then(|(known, stage)| known.find((stage, grouping), &state));
+        // Counted either way: which of two threads comes first may not matter.
+        self.count(&state);
+        let data = match known {
+            Some(data) => data,
+            None => {
+                let data = Arc::new(self.data_by_group(&state, size, grouping)?);
+                if let Some((known, stage)) = self.known {
+                    known.keep((stage, grouping), state.clone(), &data);
+                }
+                data
+            }
+        };
+        let mut prior = self.prior(&state, size);
+        prior.mirror();
+        Ok(data.iter().cloned().chain([prior]).collect())
+    }
+
+    /// The sum of squares of each group of data.
+    fn data_by_group(&self, state: &State, size: usize, grouping: Grouping) -> Result<Vec<Quadratic>, ModelError> {
         let all: Vec<usize> = (0..size).collect();
-        let made = self.made(&state)?;
+        let made = self.made(state)?;
         // Records side by side, their sums in order: the same for any number of threads.
         let numbers: Vec<usize> = (0..self.records.len()).collect();
         let products = numbers.par_iter().map(|&index| self.products(&made, index, grouping));
@@ -202,7 +241,6 @@ impl RecordProblem<'_> {
                 sums[group].add_products(products, &all);
             }
         }
-        sums.push(self.prior(&state, size));
         sums.iter_mut().for_each(Quadratic::mirror);
         Ok(sums)
     }
@@ -233,6 +271,7 @@ impl RecordProblem<'_> {
         mut take: impl FnMut(usize, usize, &Mat<f64>),
     ) -> Result<(), ModelError> {
         let made = self.made(state)?;
+        self.count(state);
         for (index, record) in self.records.iter().enumerate() {
             let Some(mut evaluator) = made.model.evaluator(index) else { continue };
             let targets = made.targets(index, record, grouping);
@@ -339,7 +378,6 @@ impl RecordProblem<'_> {
     /// What a state makes of the records.
     fn made(&self, state: &State) -> Result<Made, ModelError> {
         let (model, reactions) = self.model(state)?;
-        self.count(state);
         Ok(Made { model, reactions, plan: self.columns(state) })
     }
 

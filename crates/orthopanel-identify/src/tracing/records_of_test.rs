@@ -13,6 +13,7 @@ use super::base_model::RecordsBase;
 use super::curves::curves;
 use super::fit::{Fit, LAST, by_group, fit};
 use super::hypothesis::{Hypothesis, PLATE, Switched};
+use super::known_sums::KnownSums;
 use super::plate_starts::plate_starts;
 use super::reactions::Reactions;
 use super::record_problem::{DampingPrior, Grouping, RecordProblem, State, total};
@@ -43,6 +44,7 @@ pub(super) struct TestRecords {
     log_zetas: Vec<f64>,
     /// See [`RecordProblem::work`].
     pub work: AtomicU64,
+    known: KnownSums,
     /// Frequencies \[Hz\] of the resonances that the records show.
     pub poles: Vec<f64>,
     /// How many of them the beam has no mode for.
@@ -120,6 +122,7 @@ impl TestRecords {
         records.accelerances = accelerances;
         records.notes = notes;
         records.reactions = Reactions::new(test, histories, (records.summed, records.band))?;
+        records.known.forget();
         records.histories = kept;
         Ok(records)
     }
@@ -173,6 +176,7 @@ impl TestRecords {
             start,
             log_zetas,
             work: AtomicU64::new(0),
+            known: KnownSums::default(),
             poles,
             strange_poles,
             accelerances: vec![],
@@ -251,6 +255,7 @@ impl TestRecords {
             self.widened[stage].iter_mut().for_each(|record| rest.widen(record));
         }
         self.rest = Some(rest);
+        self.known.forget();
         Ok(scatter)
     }
 
@@ -263,6 +268,7 @@ impl TestRecords {
             }
         }
         self.rest = rest;
+        self.known.forget();
     }
 
     /// Whether there are resonances that the beam has no modes for: then its constants are no start for a plate.
@@ -306,13 +312,14 @@ impl TestRecords {
     /// The problem at one widening, counted from the widest.
     pub(super) fn problem(&self, stage: usize) -> RecordProblem<'_> {
         let records = self.widened.get(stage).or(self.widened.last()).map_or(&[][..], Vec::as_slice);
-        let Self { setup, held, usual_log_zeta, work, .. } = self;
+        let Self { setup, held, usual_log_zeta, work, known, .. } = self;
+        let known = Some((known, stage));
         // While peaks are wide a misfit that is no damping would else drag the damping off, and the search with it.
         let about = if stage < LAST { &self.log_zetas[..] } else { &[] };
         let prior = DampingPrior { about, std: LOG_ZETA_STD[stage.min(LAST)] };
         let (held, usual_log_zeta) = (*held, *usual_log_zeta);
         let (reactions, rough) = (self.reactions.as_ref(), self.rough);
-        RecordProblem { setup, records, held, free_damping: true, usual_log_zeta, prior, rough, work, reactions }
+        RecordProblem { setup, records, held, free_damping: true, usual_log_zeta, prior, rough, work, reactions, known }
     }
 }
 

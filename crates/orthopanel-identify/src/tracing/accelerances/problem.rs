@@ -146,6 +146,7 @@ impl AccelerancesProblem {
             rough: None,
             work,
             reactions: None,
+            known: None,
         }
     }
 
