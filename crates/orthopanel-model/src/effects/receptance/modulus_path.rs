@@ -4,8 +4,8 @@ use super::modal_base::{ModalBase, Row, SharedStructure};
 use super::moved_structure::Moved;
 use super::view::{Layout, View};
 use super::wide::Wide;
-use crate::ModelError;
 use crate::effects::CoreModulus;
+use crate::{ModelError, side_by_side};
 
 /// Nodes of the interpolation. On the arc of a core with $\Delta = 1$ nine leave 1e-7 of a receptance.
 const NODES: usize = 9;
@@ -47,13 +47,16 @@ impl NodeBases {
         let count = if core.strength < SOFT { FEW_NODES } else { NODES };
         let angle = |k: usize| std::f64::consts::PI * (k as f64 + 0.5) / count as f64;
         let nodes: Vec<f64> = (0..count).map(|k| 1.0 + half - half * angle(k).cos()).collect();
-        let mut bases: Vec<ModalBase> = Vec::new();
-        for node in &nodes {
+        let at_node = |node: &f64| {
             let mut at = values.to_vec();
             if let Some(modulus) = at.get_mut(SHEAR_MODULUS) {
                 *modulus *= node;
             }
-            let base = ModalBase::new(structure, &at, near, terms, moved)?;
+            ModalBase::new(structure, &at, near, terms, moved)
+        };
+        let mut bases: Vec<ModalBase> = Vec::new();
+        for base in side_by_side::map(&nodes, at_node) {
+            let base = base?;
             bases.push(match bases.first() {
                 Some(first) => base.aligned_with(first),
                 None => base,

@@ -13,6 +13,7 @@ use crate::effects::dressing::Dressing;
 use crate::effects::{CoreModulus, EffectSetting, EffectState, RecordSetting};
 use crate::{
     BEAM_CONSTANTS, BeamTerms, Boundary, Damping, ModalModel, Mode, ModelError, Motion, Piece, Place, TimoshenkoBeam,
+    side_by_side,
 };
 
 /// What stays the same while a search moves constants, damping and the parameters of effects.
@@ -86,7 +87,7 @@ impl ReceptanceSetup {
         let first_effect = constants + free;
         let Based { bases, core, columns: structural, summed } = self.based(values, effects, first_effect)?;
         let shear_modulus = values.get(1).copied().unwrap_or_default();
-        let records = self.records.iter().map(|record| {
+        let record = |record: &RecordSetting| {
             let mut plan = RecordPlan::new(&self.setting_of(record.clone()), effects, first_effect)?;
             plan.columns.structure.clone_from(&structural);
             plan.columns.zetas = (constants, free);
@@ -97,8 +98,9 @@ impl ReceptanceSetup {
                     RecordModel::complex(path, core, shear_modulus, plan)
                 }
             })
-        });
-        let records = records.collect::<Result<Vec<_>, ModelError>>()?;
+        };
+        let records = side_by_side::map(&self.records, record);
+        let records = records.into_iter().collect::<Result<Vec<_>, ModelError>>()?;
         let columns = first_effect + effects.iter().map(|effect| effect.values.len()).sum::<usize>();
         let zetas: Vec<f64> = (1..=summed).map(|mode| damping.ratio(mode)).collect();
         Ok(ReceptanceModel::new(records, zetas, columns))

@@ -1,6 +1,6 @@
 //! What one record sees of the modes: numbers in one list, so that a complex modulus can interpolate between lists.
 
-use faer::Mat;
+use faer::{Mat, MatRef};
 
 use super::modal_base::{BlockModes, ModalBase, Row};
 use crate::ModelError;
@@ -104,7 +104,7 @@ impl View {
             let weighted = Mat::from_fn(active, block.far.len(), |row, i| shapes[(row, i)] * block.powers[(i, k)]);
             let one_way = product(change.as_ref(), weighted.transpose());
             let at = self.layout.series_by(p, k);
-            add(&mut self.numbers[at..], &(&one_way + one_way.transpose()));
+            add(&mut self.numbers[at..], (&one_way + one_way.transpose()).as_ref());
         }
     }
 
@@ -127,40 +127,47 @@ impl View {
 
     fn add_far(&mut self, block: &BlockModes, shapes: &Mat<f64>) {
         let Layout { active, parameters, .. } = self.layout;
-        let rows = self.layout.rows();
-        let far = Mat::from_fn(rows, block.far.len(), |row, i| shapes[(row, block.far[i])]);
+        let (rows, far) = (self.layout.rows(), block.far.len());
+        // All terms of the series below each other, so that one product does for all: row r of term k is r + k rows.
+        let weighted = |rows: usize| {
+            Mat::from_fn(rows * SERIES_TERMS, far, |row, i| {
+                shapes[(row % rows, block.far[i])] * block.powers[(i, row / rows)]
+            })
+        };
+        let (whole, heads) = (weighted(rows), weighted(active));
+        let bare = Mat::from_fn(active, far, |row, i| shapes[(row, block.far[i])]);
         let near = Mat::from_fn(active, block.near.len(), |row, i| shapes[(row, block.near[i].1)]);
-        let heads = far.subrows(0, active);
-        let weighted: Vec<Mat<f64>> = (0..SERIES_TERMS)
-            .map(|k| Mat::from_fn(rows, block.far.len(), |row, i| far[(row, i)] * block.powers[(i, k)]))
-            .collect();
-        let head = |k: usize| weighted[k].subrows(0, active);
-        for (k, matrix) in weighted.iter().enumerate() {
-            let series = product(matrix.as_ref(), heads.transpose());
-            let at = self.layout.series(k);
-            add(&mut self.numbers[at..], &series);
+        let series = product(whole.as_ref(), bare.transpose());
+        for k in 0..SERIES_TERMS {
+            add(&mut self.numbers[self.layout.series(k)..], series.subrows(k * rows, rows));
         }
         for (p, turn) in block.turns.iter().enumerate().take(parameters) {
-            let [stiffness, mass] = &turn.between;
             // What the far modes gain of the near ones.
             let gained = product(near.as_ref(), turn.far.as_ref());
-            let through = |matrix: &Mat<f64>| -> Vec<Mat<f64>> {
-                let terms = if matrix.nrows() > 0 { SERIES_TERMS } else { 0 };
-                (0..terms).map(|j| product(head(j), matrix.as_ref())).collect()
+            let one_way = product(heads.as_ref(), gained.transpose());
+            let between = |matrix: &Mat<f64>| {
+                let is_there = matrix.nrows() > 0;
+                is_there.then(|| product(product(heads.as_ref(), matrix.as_ref()).as_ref(), heads.transpose()))
             };
-            let (stiffness, mass) = (through(stiffness), through(mass));
+            let [stiffness, mass] = turn.between.each_ref().map(between);
             for k in 0..SERIES_TERMS {
-                let one_way = product(head(k), gained.transpose());
-                let mut by = &one_way + one_way.transpose();
+                let own = one_way.subrows(k * active, active);
+                let mut by = own + own.transpose();
                 // Divided differences of λ^-(k+1), and of λ^-k for the mass.
-                for (j, half) in stiffness.iter().take(k + 1).enumerate() {
-                    by -= product(half.as_ref(), head(k - j).transpose());
+                let mut take = |whole: &Mat<f64>, factor: f64, one: usize, other: usize| {
+                    for column in 0..active {
+                        for row in 0..active {
+                            by[(row, column)] += factor * whole[(one * active + row, other * active + column)];
+                        }
+                    }
+                };
+                if let Some(stiffness) = &stiffness {
+                    (0..=k).for_each(|j| take(stiffness, -1.0, j, k - j));
                 }
-                for (j, half) in mass.iter().take(k).enumerate() {
-                    by += product(half.as_ref(), head(k - 1 - j).transpose());
+                if let Some(mass) = &mass {
+                    (0..k).for_each(|j| take(mass, 1.0, j, k - 1 - j));
                 }
-                let at = self.layout.series_by(p, k);
-                add(&mut self.numbers[at..], &by);
+                add(&mut self.numbers[self.layout.series_by(p, k)..], by.as_ref());
             }
         }
     }
@@ -254,7 +261,7 @@ fn add_all(into: &mut [f64], values: impl IntoIterator<Item = f64>) {
     into.iter_mut().zip(values).for_each(|(sum, value)| *sum += value);
 }
 
-fn add(into: &mut [f64], matrix: &Mat<f64>) {
+fn add(into: &mut [f64], matrix: MatRef<'_, f64>) {
     for row in 0..matrix.nrows() {
         for column in 0..matrix.ncols() {
             into[row * matrix.ncols() + column] += matrix[(row, column)];
