@@ -197,7 +197,32 @@ impl SymmetricMatrix {
 
     /// All entries.
     pub(crate) fn to_dense(&self) -> Mat<f64> {
-        Mat::from_fn(self.nrows(), self.nrows(), |row, column| self[(row, column)])
+        let mut all = Mat::zeros(self.nrows(), self.nrows());
+        for row in 0..self.nrows() {
+            let (first, own) = self.row(row);
+            all.col_as_slice_mut(row)[first..=row].copy_from_slice(own);
+            own.iter().enumerate().for_each(|(i, value)| all[(row, first + i)] = *value);
+        }
+        all
+    }
+
+    /// $V^TAV$. Of a diagonal matrix only the rows that are not zero take part.
+    pub(crate) fn congruent(&self, columns: &Mat<f64>) -> Mat<f64> {
+        let is_diagonal = self.profile.first.iter().enumerate().all(|(row, &first)| first == row);
+        if !is_diagonal {
+            return product(columns.transpose(), self.times(columns).as_ref());
+        }
+        let kept: Vec<usize> = (0..self.nrows()).filter(|&row| self.values[row] != 0.0).collect();
+        let part = |factor: &dyn Fn(usize) -> f64| {
+            let mut part = Mat::zeros(kept.len(), columns.ncols());
+            for column in 0..columns.ncols() {
+                let whole = columns.col_as_slice(column);
+                let rows = part.col_as_slice_mut(column).iter_mut().zip(&kept);
+                rows.for_each(|(value, &row)| *value = factor(row) * whole[row]);
+            }
+            part
+        };
+        product(part(&|_| 1.0).transpose(), part(&|row| self.values[row]).as_ref())
     }
 
     /// Number of negative eigenvalues: the negative pivots of $LDL^T$ (Sylvester's law of inertia). `None` where a pivot vanishes.
@@ -358,6 +383,11 @@ mod tests {
         assert!(apart(&skyline.times(&columns), &(&whole * &columns)) < 1e-14);
         let form = columns.col(1).transpose() * (&whole * columns.col(1));
         assert!((skyline.quadratic_form(columns.col_as_slice(1)) - form).abs() < 1e-13);
+        let form = columns.transpose() * (&whole * &columns);
+        assert!(apart(&skyline.congruent(&columns), &form) < 1e-13);
+        let diagonal = Mat::from_fn(23, 23, |i, j| if i == j && i % 3 > 0 { 1.0 + i as f64 } else { 0.0 });
+        let form = columns.transpose() * (&diagonal * &columns);
+        assert!(apart(&SymmetricMatrix::from(diagonal).congruent(&columns), &form) < 1e-13);
         let kept = [0, 2, 3, 7, 8, 15, 22];
         let part = Mat::from_fn(kept.len(), kept.len(), |i, j| whole[(kept[i], kept[j])]);
         assert_eq!(skyline.part(&kept).to_dense(), part);

@@ -42,7 +42,10 @@ pub(super) struct Step {
 impl StrainFunction {
     /// A motion at $t$, given the Legendre polynomials there.
     pub(super) fn at(&self, motion: Motion, t: f64, polynomials: &[f64], half_length: f64) -> f64 {
-        let sum = |series: &[f64]| -> f64 { series.iter().zip(polynomials).map(|(c, p)| c * p).sum() };
+        let sum = |series: &[f64]| {
+            let terms = series.len().min(polynomials.len());
+            dot(&series[..terms], &polynomials[..terms])
+        };
         let [shear, deflection] = self.step.map_or([0.0; 2], |step| step.at(t, half_length));
         match motion {
             Motion::Deflection => sum(&self.deflection) + deflection,

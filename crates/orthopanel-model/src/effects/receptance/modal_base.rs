@@ -88,7 +88,7 @@ impl ModalBase {
             let vectors = Mat::from_fn(block.size(), own.len(), |i, m| own[m].coordinates[i]);
             let in_modes =
                 |matrix: &Mat<f64>| product(vectors.transpose(), product(matrix.as_ref(), vectors.as_ref()).as_ref());
-            let projected = |matrix: &SymmetricMatrix| product(vectors.transpose(), matrix.times(&vectors).as_ref());
+            let projected = |matrix: &SymmetricMatrix| matrix.congruent(&vectors);
             let stiffness: Vec<Mat<f64>> = block.stiffness.iter().map(projected).collect();
             let of_constant = |j: usize| {
                 let mut sum = Mat::zeros(own.len(), own.len());
@@ -198,8 +198,16 @@ impl BlockModes {
         let (all, near, far) = (self.lambda.len(), self.near.len(), self.far.len());
         let between = |kind: usize| {
             let matrix = &self.couplings[p][kind];
-            let size = if matrix.nrows() > 0 { far } else { 0 };
-            Mat::from_fn(size, size, |i, j| matrix[(self.far[i], self.far[j])])
+            match self.far.first() {
+                // The far modes are the upper ones of a block: one piece of the matrix.
+                Some(&first) if matrix.nrows() > 0 && self.far[far - 1] == first + far - 1 => {
+                    matrix.submatrix(first, first, far, far).to_owned()
+                }
+                _ => {
+                    let size = if matrix.nrows() > 0 { far } else { 0 };
+                    Mat::from_fn(size, size, |i, j| matrix[(self.far[i], self.far[j])])
+                }
+            }
         };
         Turn {
             lambda: self.near.iter().map(|&(_, n)| self.perturbation(p, n, n)).collect(),
