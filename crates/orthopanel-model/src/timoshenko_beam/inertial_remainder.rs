@@ -9,9 +9,12 @@
 //! has. That falls as $N^{-3}$ at the driving point. What the series of the curvature lacks falls by $N^{-2}$ more and is left out
 //! (5 % at 40 terms, for a piece 27 times as long as thick), as are the rotation's part and the next power of frequency.
 
+use std::sync::{Arc, Mutex};
+
 use super::Section;
 use super::beam_terms::ShearLoss;
 use super::strain_basis::{JUMPS, is_inside};
+use crate::dense::dot;
 use crate::legendre::{legendre, norm};
 use crate::structure::Motion;
 
@@ -22,11 +25,19 @@ const FOLLOWED: usize = 8;
 const HELD: usize = 4;
 
 /// What a unit load strains at a place: the deflection by $G_{zx}$ times its strain from term $N-1$ on, and what the basis has of it.
+#[derive(Debug)]
 pub(super) struct Unheld {
     pub at: f64,
     whole: Vec<f64>,
     held: Vec<f64>,
+    /// Both times $\int P_n^2\,dt$.
+    weighted: [Vec<f64>; 2],
 }
+
+/// A motion at a place, with what a unit load on it strains.
+type KnownLoad = (Motion, f64, Arc<Unheld>);
+/// Loads that are kept: a test's records share their places, and a search comes back to them.
+const KEPT: usize = 64;
 
 #[derive(Debug, Clone)]
 pub(super) struct InertialRemainder {
@@ -37,13 +48,16 @@ pub(super) struct InertialRemainder {
     losses: Vec<ShearLoss>,
     /// The strains that begin at an edge, as far as they are not in the terms: orthonormal, from [`Self::order`] on.
     steps: Vec<Vec<f64>>,
+    /// The latest loads.
+    known: Arc<Mutex<Vec<KnownLoad>>>,
 }
 
 impl InertialRemainder {
     pub(super) fn new(half_length: f64, section: Section, order: usize, losses: &[ShearLoss]) -> Self {
-        let mut remainder = Self { half_length, section, order, losses: losses.to_vec(), steps: vec![] };
-        let edges = losses.iter().flat_map(|loss| loss.edges(half_length)).map(|x| x / half_length);
-        for edge in edges.filter(|t| is_inside(*t)) {
+        let (losses, known) = (losses.to_vec(), Arc::default());
+        let mut remainder = Self { half_length, section, order, losses, steps: vec![], known };
+        let edges = remainder.losses.iter().flat_map(|loss| loss.edges(half_length)).map(|x| x / half_length);
+        for edge in edges.filter(|t| is_inside(*t)).collect::<Vec<_>>() {
             remainder.add_steps_at(edge);
         }
         remainder
@@ -55,18 +69,39 @@ impl InertialRemainder {
     }
 
     /// What a unit load on a motion strains that the basis does not follow; nothing for other motions than deflection and slope.
-    pub(super) fn unheld(&self, motion: Motion, x: f64) -> Unheld {
-        let Some(strains) = self.strains(motion, x) else { return Unheld { at: x, whole: vec![], held: vec![] } };
-        Unheld { at: x, whole: self.deflections(&strains), held: self.deflections(&self.held(&strains)) }
+    pub(super) fn unheld(&self, motion: Motion, x: f64) -> Arc<Unheld> {
+        let known = |loads: &Vec<KnownLoad>| {
+            loads.iter().find(|load| (load.0, load.1) == (motion, x)).map(|load| Arc::clone(&load.2))
+        };
+        // A lock that a panic has poisoned only costs the repetition.
+        if let Some(load) = self.known.lock().ok().and_then(|loads| known(&loads)) {
+            return load;
+        }
+        let load = Arc::new(self.unheld_anew(motion, x));
+        if let Ok(mut loads) = self.known.lock() {
+            loads.truncate(KEPT - 1);
+            loads.insert(0, (motion, x, Arc::clone(&load)));
+        }
+        load
+    }
+
+    fn unheld_anew(&self, motion: Motion, x: f64) -> Unheld {
+        let strains = self.strains(motion, x);
+        let [whole, held] = strains
+            .map_or([vec![], vec![]], |strains| [self.deflections(&strains), self.deflections(&self.held(&strains))]);
+        let weigh = |(i, value): (usize, &f64)| norm(self.order - 1 + i) * value;
+        let weighted = [&whole, &held].map(|values| values.iter().enumerate().map(weigh).collect());
+        Unheld { at: x, whole, held, weighted }
     }
 
     /// Between two unit loads, times $G_{zx}^2$. Not asked between two slopes, where the sum has no end.
     pub(super) fn between(&self, a: &Unheld, b: &Unheld) -> f64 {
         let sum = |a: &[f64], b: &[f64]| {
-            let terms = a.iter().zip(b).enumerate();
-            terms.map(|(i, (a, b))| norm(self.order - 1 + i) * a * b).sum::<f64>()
+            let terms = a.len().min(b.len());
+            dot(&a[..terms], &b[..terms])
         };
-        self.section.mass * self.half_length * (sum(&a.whole, &b.whole) - sum(&a.held, &b.held))
+        let [whole, held] = &a.weighted;
+        self.section.mass * self.half_length * (sum(whole, &b.whole) - sum(held, &b.held))
     }
 
     /// $g_n$ from $n = N-2$ on, times $G_{zx}$; of a slope their derivatives by the place.
