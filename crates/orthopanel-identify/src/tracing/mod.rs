@@ -25,6 +25,7 @@ mod hit_places;
 mod hypothesis;
 mod information;
 mod known_sums;
+mod made_rows;
 mod model_error;
 mod next_experiment;
 mod other_side;

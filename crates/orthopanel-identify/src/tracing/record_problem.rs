@@ -10,7 +10,8 @@ use rayon::prelude::*;
 
 use super::hypothesis::{CUBIC, Hypothesis, PLATE, Switched};
 use super::known_sums::KnownSums;
-use super::reaction_lines::{ReactionLines, Taken};
+use super::made_rows::Made;
+use super::reaction_lines::ReactionLines;
 use super::reactions::Reactions;
 use super::roughness::{ROUGHNESS, RoughScales, add_prior, is_roughness};
 use super::row_products::RowProducts;
@@ -78,70 +79,6 @@ pub(super) enum Grouping {
     Places,
     /// One hit of each pair of places.
     Hits,
-}
-
-/// What a state makes of the records.
-struct Made {
-    model: ReceptanceModel,
-    reactions: Option<ReactionLines>,
-    /// Column of the model and factor of each parameter.
-    plan: Vec<(usize, f64)>,
-}
-
-/// Data that rows are about: a record's hits together, or one of them.
-struct Target<'a> {
-    measured: &'a [Complex64],
-    /// One over the noise of each real number.
-    weights: Vec<f64>,
-    taken: Option<Taken>,
-}
-
-impl Made {
-    fn targets<'a>(&self, index: usize, record: &'a WidenedLines, grouping: Grouping) -> Vec<Target<'a>> {
-        let data: Vec<(&[Complex64], &[f64])> = match grouping {
-            Grouping::Places => vec![(&record.value, &record.variance)],
-            Grouping::Hits => record.hits.iter().map(|hit| (&hit.value[..], &hit.variance[..])).collect(),
-        };
-        let taken = self.reactions.as_ref().map(|all| all.taken(index, record, grouping, &self.plan));
-        let mut taken = taken.into_iter().flatten();
-        let target = |(measured, variance): (&'a [Complex64], &[f64])| {
-            // The variance counts real and imaginary part together.
-            let weights = variance.iter().map(|variance| (2.0 / variance).sqrt()).collect();
-            Target { measured, weights, taken: taken.next() }
-        };
-        data.into_iter().map(target).collect()
-    }
-}
-
-impl Target<'_> {
-    /// Real and imaginary parts of a column of rows, for the lines of a block from `first` on: the derivatives by a parameter, its
-    /// number given with its column of the model and factor, or what is missed.
-    fn column(
-        &self,
-        (first, block): (usize, LineBlock),
-        parameter: Option<(usize, (usize, f64))>,
-        [re, im]: [&mut [f64]; 2],
-    ) {
-        let weights = &self.weights[first..first + block.len()];
-        let Some((column, (of_model, factor))) = parameter else {
-            for (line, ((re, im), weight)) in re.iter_mut().zip(im).zip(weights).enumerate() {
-                let taken = self.taken.as_ref().map_or(Complex64::ZERO, |taken| taken.value[first + line]);
-                let missed = *weight * (block.value(line) - taken - self.measured[first + line]);
-                (*re, *im) = (missed.re, missed.im);
-            }
-            return;
-        };
-        let [by_re, by_im] = block.by(of_model);
-        for (part, by) in [(&mut *re, by_re), (&mut *im, by_im)] {
-            part.iter_mut().zip(by).zip(weights).for_each(|((entry, by), weight)| *entry = weight * (factor * by));
-        }
-        if let Some(taken) = &self.taken {
-            for (line, ((re, im), weight)) in re.iter_mut().zip(im).zip(weights).enumerate() {
-                let taken = *weight * taken.by[first + line][column];
-                (*re, *im) = (*re - taken.re, *im - taken.im);
-            }
-        }
-    }
 }
 
 /// Making a model costs as much as so many of its lines.
