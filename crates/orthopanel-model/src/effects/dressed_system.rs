@@ -103,8 +103,10 @@ impl System {
         };
         let found = found.into_iter().filter(|(theta, _)| *theta > least);
         let modes: Vec<(f64, Vec<f64>)> = found.map(|(theta, whole)| (omega(theta), whole)).collect();
-        // Rigid modes stay as they come: translation before rotation.
-        let modes = sorted(modes, |(omega, _)| *omega).into_iter().map(|(omega, whole)| {
+        let mut modes = sorted(modes, |(omega, _)| *omega);
+        let rigid = modes.iter().take_while(|(omega, _)| *omega == 0.0).count();
+        turn(&mut modes[..rigid]);
+        let modes = modes.into_iter().map(|(omega, whole)| {
             let lost: f64 = damping.iter().map(|&(i, j, value)| whole[i] * value * whole[j]).sum();
             // Below zero by rounding, where nothing is lost.
             let zeta = if omega > 0.0 { (lost / (2.0 * omega)).clamp(0.0, 0.7) } else { 0.0 };
@@ -187,6 +189,24 @@ impl System {
         kept.extend(residual);
         kept.extend(self.panel..size);
         kept
+    }
+}
+
+/// Turns rigid modes among themselves, so that none has the coordinate of one before it: translation comes before rotation. Which
+/// of them a solution brings is its rounding.
+fn turn(rigid: &mut [(f64, Vec<f64>)]) {
+    for second in 1..rigid.len() {
+        for first in 0..second {
+            let (head, tail) = rigid.split_at_mut(second);
+            let (one, other) = (&mut head[first].1, &mut tail[0].1);
+            let size = one[first].hypot(other[first]);
+            if size > 0.0 {
+                let (cos, sin) = (one[first] / size, other[first] / size);
+                for (one, other) in one.iter_mut().zip(other) {
+                    (*one, *other) = (cos * *one + sin * *other, cos * *other - sin * *one);
+                }
+            }
+        }
     }
 }
 
