@@ -30,7 +30,7 @@ def resonator(model):
 def build_fmus(folder, model=MODEL):
     """Writes car.fmu, bracket.fmu and floor.fmu.
 
-    `export` takes no effects of a plate yet, so the panel goes without and the bracket is a component of its own.
+    The panel goes without the bracket, which is a component of its own, so that the coupling of three is shown.
     """
     folder.mkdir(parents=True, exist_ok=True)
     bare = json.loads(Path(model).read_text())
