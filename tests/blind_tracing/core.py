@@ -64,11 +64,12 @@ class CoreModes:
         inner = slice(rigid, None)
         path = core(sigma + 2.0j * np.pi * np.linspace(0.0, highest, 4096))
         length = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(path)))])
-        angle = np.pi * (np.arange(KNOTS) + 0.5) / KNOTS
-        place = length[-1] * 0.5 * (1.0 - np.cos(angle))
+        # A modulus that does not move has one knot.
+        knots = KNOTS if length[-1] > 0.0 else 1
+        place = length[-1] * 0.5 * (1.0 - np.cos(np.pi * (np.arange(knots) + 0.5) / knots))
         self.knots = np.interp(place, length, path.real) + 1.0j * np.interp(place, length, path.imag)
-        apart = (self.knots[:, None] - self.knots) / length[-1]
-        self.weights = 1.0 / np.prod(apart + np.eye(KNOTS), axis=1)
+        apart = (self.knots[:, None] - self.knots) / max(length[-1], np.finfo(float).tiny)
+        self.weights = 1.0 / np.prod(apart + np.eye(knots), axis=1)
         flexible = stiffness[inner, inner], shear[inner, inner], shape[inner]
         self.count = self.before = None
         self.table = np.array([self._at(modulus, *flexible) for modulus in self.knots])
@@ -98,7 +99,9 @@ class CoreModes:
 
     def _between(self, modulus):
         """The table's row at each `modulus`, by the barycentric formula."""
-        share = self.weights / (modulus[:, None] - self.knots)
+        apart = modulus[:, None] - self.knots
+        at_knot = apart == 0.0
+        share = np.where(at_knot.any(axis=1)[:, None], at_knot, self.weights / np.where(at_knot, 1.0, apart))
         return (share @ self.table) / np.sum(share, axis=1)[:, None]
 
     def receptance(self, s, rows, columns):
