@@ -17,7 +17,7 @@ from scipy.optimize import linear_sum_assignment
 
 from . import beam
 
-CUT = 15e3  # Hz at the least modulus; above, a mode's order could change along the path
+CUT = 15e3  # Hz at the least modulus: modes above count by their moments
 BASIS = 30e3  # Hz: modes of the basis
 KNOTS = 16  # along the path of g
 MOMENTS = 5

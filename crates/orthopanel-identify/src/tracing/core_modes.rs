@@ -135,8 +135,8 @@ impl CoreModes {
     fn most_within(&self, log_zetas: &[f64], core: CoreModulus, band: f64) -> f64 {
         let has_room = |strength: f64| {
             let added = self.added(CoreModulus { strength, ..core });
-            let in_band = added.iter().zip(log_zetas).zip(&self.omega).filter(|(_, omega)| **omega < TAU * band);
-            in_band.map(|(mode, _)| mode).all(|(added, log)| added.im <= log.exp())
+            let mut modes = added.iter().zip(log_zetas).zip(&self.omega);
+            modes.all(|((added, log), omega)| *omega >= TAU * band || added.im <= log.exp())
         };
         let (mut low, mut high) = STRENGTHS;
         for _ in 0..HALVINGS {
@@ -150,10 +150,10 @@ impl CoreModes {
         low
     }
 
-    fn given_back(&self, parameters: Vec<f64>, core: CoreModulus) -> Vec<f64> {
+    /// Parameters of a base with what the core adds taken off its constants and damping.
+    fn given_back(&self, mut given: Vec<f64>, core: CoreModulus) -> Vec<f64> {
         let added = self.added(core);
         let constants = self.by_constants.ncols();
-        let mut given = parameters;
         let wanted = Mat::from_fn(added.len(), 1, |mode, _| -added[mode].re);
         let normal = self.by_constants.transpose() * &self.by_constants;
         if let Ok(factor) = normal.llt(Side::Lower) {

@@ -72,7 +72,7 @@ impl Search<'_> {
         if self.meets_noise(&ranking.fits[ranking.chosen]) {
             return Ok(());
         }
-        // Its starts are counted already: what they cost is not taken from the effects that come after.
+        // What a closer look costs is not taken from the pairs that come after it.
         let before = self.records.work.load(Ordering::Relaxed);
         let mut placed = self.undeclared();
         placed.retain(|effect| has_place(*effect));

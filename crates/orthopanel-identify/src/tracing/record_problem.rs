@@ -8,6 +8,7 @@ use num_complex::Complex64;
 use orthopanel_model::{BEAM_CONSTANTS, Damping, LineBlock, ModelError, ReceptanceModel, ReceptanceSetup};
 use rayon::prelude::*;
 
+use super::core_modes::CORE;
 use super::hypothesis::{CUBIC, Hypothesis, PLATE, Switched};
 use super::known_sums::KnownSums;
 use super::made_rows::Made;
@@ -85,7 +86,7 @@ pub(super) enum Grouping {
 const MAKING: u64 = 4000;
 /// Effects for which modes are solved at several nodes, on a basis with moving edges, of a plate, or with a dozen derivatives
 /// more, and how much more each line of these costs.
-const DEARER: [(&str, u64); 4] = [("viscoelastic-core", 8), ("stiffness-loss", 4), (PLATE, 8), (ROUGHNESS, 4)];
+const DEARER: [(&str, u64); 4] = [(CORE, 8), ("stiffness-loss", 4), (PLATE, 8), (ROUGHNESS, 4)];
 
 impl RecordProblem<'_> {
     /// Positions of the free constants.

@@ -63,8 +63,10 @@ pub(super) fn scored_starts(
         })
         .chain(beside.into_par_iter().map(Ok))
         .map(|state| {
-            let state = state?;
-            let state = modes.as_ref().map_or(state.clone(), |modes| modes.begun(&problem, state, records.band));
+            let state = match &modes {
+                Some(modes) => modes.begun(&problem, state?, records.band),
+                None => state?,
+            };
             let at = problem.linearise(&problem.parameters(&state), &state)?;
             Ok((state, promise(&at)))
         })

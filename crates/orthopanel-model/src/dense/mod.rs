@@ -32,6 +32,13 @@ pub(crate) fn dot(left: &[f64], right: &[f64]) -> f64 {
     sums.iter().sum::<f64>() + rest
 }
 
+/// The same of as many entries as both have.
+#[inline(always)]
+pub(crate) fn dot_of_common(left: &[f64], right: &[f64]) -> f64 {
+    let common = left.len().min(right.len());
+    dot(&left[..common], &right[..common])
+}
+
 #[cfg(test)]
 mod tests {
     use faer::Mat;

@@ -14,7 +14,7 @@ use std::sync::{Arc, Mutex};
 use super::Section;
 use super::beam_terms::ShearLoss;
 use super::strain_basis::{JUMPS, is_inside};
-use crate::dense::dot;
+use crate::dense::dot_of_common;
 use crate::legendre::{legendre, norm};
 use crate::structure::Motion;
 
@@ -96,12 +96,8 @@ impl InertialRemainder {
 
     /// Between two unit loads, times $G_{zx}^2$. Not asked between two slopes, where the sum has no end.
     pub(super) fn between(&self, a: &Unheld, b: &Unheld) -> f64 {
-        let sum = |a: &[f64], b: &[f64]| {
-            let terms = a.len().min(b.len());
-            dot(&a[..terms], &b[..terms])
-        };
         let [whole, held] = &a.weighted;
-        self.section.mass * self.half_length * (sum(whole, &b.whole) - sum(held, &b.held))
+        self.section.mass * self.half_length * (dot_of_common(whole, &b.whole) - dot_of_common(held, &b.held))
     }
 
     /// $g_n$ from $n = N-2$ on, times $G_{zx}$; of a slope their derivatives by the place.

@@ -8,7 +8,7 @@
 //! so the conditions of held ends touch the five coordinates $(w_0, \psi_0, k_0, k_1, g_0)$ alone. [`low_functions`]
 //! lists what remains of these for each pair of ends, chosen so that both stiffnesses stay diagonal.
 
-use crate::dense::dot;
+use crate::dense::{dot, dot_of_common};
 use crate::legendre::{antiderivative, gauss_legendre, legendre_at, norm};
 use crate::structure::Motion;
 use crate::{Boundary, End};
@@ -42,10 +42,7 @@ pub(super) struct Step {
 impl StrainFunction {
     /// A motion at $t$, given the Legendre polynomials there.
     pub(super) fn at(&self, motion: Motion, t: f64, polynomials: &[f64], half_length: f64) -> f64 {
-        let sum = |series: &[f64]| {
-            let terms = series.len().min(polynomials.len());
-            dot(&series[..terms], &polynomials[..terms])
-        };
+        let sum = |series: &[f64]| dot_of_common(series, polynomials);
         let [shear, deflection] = self.step.map_or([0.0; 2], |step| step.at(t, half_length));
         match motion {
             Motion::Deflection => sum(&self.deflection) + deflection,
