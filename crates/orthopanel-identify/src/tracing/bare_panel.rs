@@ -39,7 +39,7 @@ pub(super) fn bare_panel(
         }
     }
     let (in_band, beyond) = damping;
-    let told = if state.hypothesis.holds_plate() { state.zetas.len() } else { in_band };
+    let told = if state.hypothesis.holds_plate() { state.zetas.len() - 1 } else { in_band };
     let mut panel = PanelModel {
         schema: MODEL_SCHEMA.to_owned(),
         piece,

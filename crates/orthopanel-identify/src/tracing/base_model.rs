@@ -30,7 +30,6 @@ pub(super) struct RecordsBase {
     pub std: Vec<Option<f64>>,
     /// Damping ratios among them.
     pub free_zetas: usize,
-    pub usual_log_zeta: f64,
     /// Highest line \[Hz\], and modes below it.
     pub band: f64,
     pub in_band: usize,
@@ -93,7 +92,7 @@ impl RecordsBase {
         let errors: f64 = modes.iter().map(|mode| mode.error_percent().powi(2)).sum();
         let shown: Vec<Accelerance> =
             test.accelerances(estimation)?.into_iter().map(|(_, accelerance)| accelerance).collect();
-        let accelerances = curves(&shown, &self.setup, (&self.state, self.usual_log_zeta), self.band)?;
+        let accelerances = curves(&shown, &self.setup, &self.state, self.band)?;
         let lines = || accelerances.iter().flat_map(|pair| pair.model.iter().zip(&pair.measured));
         let missed: f64 = lines().map(|(model, measured)| (model - measured).norm_sqr()).sum();
         let total: f64 = lines().map(|(_, measured)| measured.norm_sqr()).sum();

@@ -5,7 +5,7 @@ use orthopanel_data::Hit;
 use super::widened_lines::median;
 
 /// Half the width of the window over the force \[s\]: the hammer has left the piece, its channel's noise stays out.
-const HALF_WIDTH: f64 = 4e-3;
+pub(super) const HALF_WIDTH: f64 = 4e-3;
 
 /// A force without its offset, zero outside its window.
 #[derive(Debug, Clone, PartialEq)]

@@ -2,7 +2,7 @@
 
 use num_complex::Complex64;
 use orthopanel_data::Accelerance;
-use orthopanel_model::{Damping, ReceptanceSetup};
+use orthopanel_model::ReceptanceSetup;
 use rayon::prelude::*;
 
 use super::record_problem::State;
@@ -15,12 +15,11 @@ use crate::{AcceleranceFit, IdentifyError};
 pub(super) fn curves(
     accelerances: &[Accelerance],
     setup: &ReceptanceSetup,
-    (state, usual_log_zeta): (&State, f64),
+    state: &State,
     band: f64,
 ) -> Result<Vec<AcceleranceFit>, IdentifyError> {
-    let damping = Damping { ratios: state.zetas.iter().map(|log| log.exp()).collect(), beyond: usual_log_zeta.exp() };
     let effects = state.hypothesis.states(accelerances.len())?;
-    let model = setup.model(&state.constants.map(f64::exp), &damping, &effects)?;
+    let model = setup.model(&state.constants.map(f64::exp), &state.damping(), &effects)?;
     let curve = |(index, record): (usize, &Accelerance)| {
         let lines = record.frequency.partition_point(|&frequency| frequency <= band);
         let frequency = record.frequency[..lines].to_vec();

@@ -52,11 +52,12 @@ impl HitNoise {
         Self { channels: channels(floor), relative: median(&strong).max(TRUSTED * TRUSTED) }
     }
 
-    /// Variance of a line of the motion of one hit.
-    pub(super) fn at(&self, hit: usize, force: Complex64, motion: Complex64) -> f64 {
+    /// Variance of a line of the motion of one hit, and what of it the force's channel makes.
+    pub(super) fn at(&self, hit: usize, force: Complex64, motion: Complex64) -> [f64; 2] {
         let ChannelNoise { motion: floor, force: of_force } = self.channels[hit];
         let power = motion.norm_sqr();
-        floor + power * (of_force / force.norm_sqr().max(f64::MIN_POSITIVE) + self.relative)
+        let by_force = power * of_force / force.norm_sqr().max(f64::MIN_POSITIVE);
+        [floor + by_force + power * self.relative, by_force]
     }
 
     /// Mean square of the hits' scatter over this variance, on some lines; `None` for a single hit.

@@ -24,7 +24,7 @@ pub(super) fn align(hits: &mut [HitSpectra], by_place: &[Complex64]) -> Vec<f64>
                 .enumerate()
                 .map(|(index, hit)| {
                     let (force, motion) = (hit.force[line], hit.motion[line]);
-                    force.norm_sqr() / noise.at(index, force, motion).max(f64::MIN_POSITIVE)
+                    force.norm_sqr() / noise.at(index, force, motion)[0].max(f64::MIN_POSITIVE)
                 })
                 .collect();
             let values: Vec<Complex64> = hits.iter().map(|hit| hit.motion[line] / hit.force[line]).collect();

@@ -3,6 +3,7 @@
 use num_complex::Complex64;
 use orthopanel_model::{LineBlock, ReceptanceModel};
 
+use super::blow_noise::BlowNoise;
 use super::reaction_lines::{ReactionLines, Taken};
 use super::record_problem::Grouping;
 use super::widened_lines::WidenedLines;
@@ -20,21 +21,22 @@ pub(super) struct Target<'a> {
     measured: &'a [Complex64],
     /// One over the noise of each real number.
     weights: Vec<f64>,
+    blow: BlowNoise,
     taken: Option<Taken>,
 }
 
 impl Made {
     pub(super) fn targets<'a>(&self, index: usize, record: &'a WidenedLines, grouping: Grouping) -> Vec<Target<'a>> {
-        let data: Vec<(&[Complex64], &[f64])> = match grouping {
-            Grouping::Places => vec![(&record.value, &record.variance)],
-            Grouping::Hits => record.hits.iter().map(|hit| (&hit.value[..], &hit.variance[..])).collect(),
+        let data: Vec<(&[Complex64], _)> = match grouping {
+            Grouping::Places => vec![(&record.value, record.tied())],
+            Grouping::Hits => record.hits.iter().map(|hit| (&hit.value[..], hit.tied(record.step()))).collect(),
         };
         let taken = self.reactions.as_ref().map(|all| all.taken(index, record, grouping, &self.plan));
         let mut taken = taken.into_iter().flatten();
-        let target = |(measured, variance): (&'a [Complex64], &[f64])| {
+        let target = |(measured, (blow, left)): (&'a [Complex64], (BlowNoise, Vec<f64>))| {
             // The variance counts real and imaginary part together.
-            let weights = variance.iter().map(|variance| (2.0 / variance).sqrt()).collect();
-            Target { measured, weights, taken: taken.next() }
+            let weights = left.iter().map(|variance| (2.0 / variance).sqrt()).collect();
+            Target { measured, weights, blow, taken: taken.next() }
         };
         data.into_iter().map(target).collect()
     }
@@ -44,6 +46,17 @@ impl Target<'_> {
     /// Real and imaginary parts of a column of rows, for the lines of a block from `first` on: the derivatives by a parameter, its
     /// number given with its column of the model and factor, or what is missed.
     pub(super) fn column(
+        &self,
+        at: (usize, LineBlock),
+        parameter: Option<(usize, (usize, f64))>,
+        [re, im]: [&mut [f64]; 2],
+    ) {
+        self.over_noise(at, parameter, [&mut *re, &mut *im]);
+        self.blow.whiten(at.0, [re, im]);
+    }
+
+    /// The same over the noise that lines do not share.
+    fn over_noise(
         &self,
         (first, block): (usize, LineBlock),
         parameter: Option<(usize, (usize, f64))>,

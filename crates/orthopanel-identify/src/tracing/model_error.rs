@@ -53,15 +53,18 @@ pub(super) fn spread_of_gradient(records: &TestRecords, fit: &Fit) -> Result<Mat
         let record = &problem.records[index];
         let lines = record.s.len();
         let stretch = lines.div_ceil(records.in_band.max(1)).max(1);
-        let gradient = |lines: std::ops::Range<usize>, error: &dyn Fn(usize) -> Complex64| {
-            let mut gradient = vec![0.0; size];
-            for line in lines {
-                let error = error(line) * (2.0 / record.variance[line]).sqrt();
-                for (column, sum) in gradient.iter_mut().enumerate() {
-                    *sum += rows[(2 * line, column)] * error.re + rows[(2 * line + 1, column)] * error.im;
-                }
+        let (blow, left) = record.tied();
+        let gradient = |own: std::ops::Range<usize>, error: &dyn Fn(usize) -> Complex64| {
+            let (mut re, mut im) = (vec![0.0; lines], vec![0.0; lines]);
+            for line in own {
+                let error = error(line) * (2.0 / left[line]).sqrt();
+                (re[line], im[line]) = (error.re, error.im);
             }
-            gradient
+            blow.whiten(0, [&mut re, &mut im]);
+            let errors: Vec<f64> = re.into_iter().zip(im).flat_map(|(re, im)| [re, im]).collect();
+            let dot =
+                |column: usize| rows.col_as_slice(column).iter().zip(&errors).map(|(row, error)| row * error).sum();
+            (0..size).map(dot).collect::<Vec<f64>>()
         };
         for (number, from) in (0..lines).step_by(stretch).enumerate() {
             let own = from..(from + stretch).min(lines);

@@ -2,9 +2,7 @@
 
 use num_complex::Complex64;
 use orthopanel_data::ImpactTest;
-use orthopanel_model::{
-    Damping, Effect, EffectState, ModelError, Place, ReceptanceSetup, RecordSetting, Scale, effect,
-};
+use orthopanel_model::{Effect, EffectState, ModelError, Place, ReceptanceSetup, RecordSetting, Scale, effect};
 
 use super::fit::Fit;
 use super::hypothesis::CUBIC;
@@ -147,9 +145,7 @@ fn difference(
             let sensor = with_mass(&mut states, proposal.added_mass)?;
             states.push(sensor);
         }
-        let ratios = fit.state.zetas.iter().map(|log| log.exp()).collect();
-        let damping = Damping { ratios, beyond: problem.usual_log_zeta.exp() };
-        let model = setup.model(&fit.state.constants.map(f64::exp), &damping, &states)?;
+        let model = setup.model(&fit.state.constants.map(f64::exp), &fit.state.damping(), &states)?;
         let Some(mut evaluator) = model.evaluator(0) else { return Ok(vec![]) };
         let mut lines = Vec::with_capacity(record.s.len());
         evaluator.lines(&record.s, |_, value, _| lines.push(value));

@@ -17,7 +17,7 @@ use super::roughness::{exceeds_any_test, is_roughness};
 use super::starts::{Costed, Places, followed, scored_starts};
 use super::valley::along_the_valley;
 use super::verdict::{CLEAR, MET};
-use super::whiteness::{independent_part, residuals};
+use super::whiteness::{independent_part, whitened};
 use crate::IdentifyError;
 
 /// Every hypothesis that was fitted, the base first.
@@ -141,7 +141,7 @@ impl Search<'_> {
         let problem = self.records.problem(LAST);
         let best = fits.iter().filter(|fit| fit.given_up.is_none()).min_by(|a, b| a.cost.total_cmp(&b.cost));
         let Some(best) = best else { return Ok(LikelihoodScale { independent: 1.0, unit: 1.0, data: problem.data() }) };
-        let independent = independent_part(&residuals(self.records, best)?);
+        let independent = independent_part(&whitened(self.records, best)?);
         Ok(LikelihoodScale { independent, unit: best.chi_square(self.records).max(1.0), data: problem.data() })
     }
 

@@ -47,6 +47,8 @@ pub(super) struct RecordProblem<'a> {
 pub(super) struct DampingPrior<'a> {
     pub about: &'a [f64],
     pub std: f64,
+    /// The standard deviation of the last: all modes beyond.
+    pub beyond: f64,
 }
 
 /// Constants, damping and effects at some values.
@@ -54,12 +56,18 @@ pub(super) struct DampingPrior<'a> {
 pub(super) struct State {
     /// Logarithms of all constants.
     pub constants: [f64; 2],
-    /// Logarithms of the damping ratios.
+    /// Logarithms of the damping ratios of the first modes, and last that of all modes beyond.
     pub zetas: Vec<f64>,
     pub hypothesis: Hypothesis,
 }
 
 impl State {
+    pub(super) fn damping(&self) -> Damping {
+        let mut ratios: Vec<f64> = self.zetas.iter().map(|log| log.exp()).collect();
+        let beyond = ratios.pop().unwrap_or_default();
+        Damping { ratios, beyond }
+    }
+
     /// Whether the two are the same, number by number.
     pub(super) fn is(&self, other: &Self) -> bool {
         let effects = (&self.hypothesis.effects, &other.hypothesis.effects);
@@ -292,8 +300,7 @@ impl RecordProblem<'_> {
 
     /// What is linear, and what is not.
     fn model(&self, state: &State) -> Result<(ReceptanceModel, Option<ReactionLines>), ModelError> {
-        let ratios = state.zetas.iter().map(|log| log.exp()).collect();
-        let damping = Damping { ratios, beyond: self.usual_log_zeta.exp() };
+        let damping = state.damping();
         let effects = state.hypothesis.states(self.records.len())?;
         let reactions = ReactionLines::of(self.reactions, state, (&damping, &effects), self.records)?;
         Ok((self.setup.model(&state.constants.map(f64::exp), &damping, &effects)?, reactions))
@@ -331,7 +338,9 @@ impl RecordProblem<'_> {
         let first = self.free_constants().count();
         for (mode, log) in self.free_zetas(state).iter().enumerate() {
             let about = self.prior.about.get(mode).unwrap_or(&self.usual_log_zeta);
-            prior.add_row((log - about) / self.prior.std, &[(first + mode, 1.0 / self.prior.std)]);
+            let is_last = mode + 1 == state.zetas.len();
+            let std = if is_last { self.prior.beyond } else { self.prior.std };
+            prior.add_row((log - about) / std, &[(first + mode, 1.0 / std)]);
         }
         if let Some(scales) = &self.rough {
             add_prior(&mut prior, &state.hypothesis, scales, first + self.free_zetas(state).len());

@@ -19,7 +19,7 @@ use super::reactions::Reactions;
 use super::record_problem::{DampingPrior, Grouping, RecordProblem, State, total};
 use super::rough_rest::RoughRest;
 use super::roughness::RoughScales;
-use super::whiteness::{independent_part, residuals};
+use super::whiteness::{independent_part, whitened};
 use super::widened_lines::{WIDENINGS, WidenedLines, aligned_lines, widened_lines};
 use crate::accelerance_fit::{ResonanceStart, resonance_starts};
 use crate::free_constants::FreeConstants;
@@ -70,9 +70,10 @@ const MOST_MODES: usize = 10;
 /// Damping is free of every mode up to this part of the band, and lines sum modes up to [`SUMMED`] times it.
 const FREE_DAMPING: f64 = 1.6;
 const SUMMED: f64 = 2.5;
-/// Standard deviation of a mode's $\ln\zeta$ before the records speak, at each widening; the last as in the fit of records
-/// without effects.
-const LOG_ZETA_STD: [f64; WIDENINGS.len()] = [0.5, 1.0, 2.0, 2.0];
+/// Standard deviation of a mode's $\ln\zeta$ before the records speak, at each widening; panels' modes differ by a factor of two or three.
+const LOG_ZETA_STD: [f64; WIDENINGS.len()] = [0.5, 1.0, 2.0, 1.0];
+/// The same of all modes beyond: while peaks are wide it would take up whatever is smooth in a misfit, as a mass at an edge.
+const LOG_ZETA_STD_BEYOND: [f64; WIDENINGS.len()] = [0.1, 0.1, 0.1, 1.0];
 /// Scatter of the hits over their noise that may still be the noise's own: beyond, they differ by something that a hypothesis
 /// has to explain, as a force that is not linear, and a misfit may not hide behind it.
 const SCATTERED: f64 = 2.0;
@@ -152,13 +153,13 @@ impl TestRecords {
                 ..RecordSetting::default()
             })
             .collect();
-        let (in_band, summed) = (below(band), below(SUMMED * band));
+        let (in_band, summed) = (below(band), below(SUMMED * band).max(modes + 1));
         let setup = ReceptanceSetup::new(&piece, test.boundary, &test.suspension, &settings, summed)?;
         let usual_log_zeta = start.usual_zeta.ln();
         let poles = start.poles.clone();
         let strange_poles = poles.len().saturating_sub(start.modes.iter().flatten().count());
         let zeta = |mode: usize| start.modes.get(mode).copied().flatten().map_or(usual_log_zeta, |(_, zeta)| zeta.ln());
-        let log_zetas: Vec<f64> = (0..modes).map(zeta).collect();
+        let log_zetas: Vec<f64> = (0..modes).map(zeta).chain([usual_log_zeta]).collect();
         let start = State {
             constants: start.constants.map(f64::ln),
             zetas: log_zetas.clone(),
@@ -201,7 +202,7 @@ impl TestRecords {
     /// # Errors
     /// What the model refuses.
     pub(super) fn curves(&self, fit: &Fit) -> Result<Vec<AcceleranceFit>, IdentifyError> {
-        curves(&self.accelerances, &self.setup, (&fit.state, self.usual_log_zeta), self.band)
+        curves(&self.accelerances, &self.setup, &fit.state, self.band)
     }
 
     /// Scatter of the hits about their mean per datum, over the noise as it is modelled; 1 where a single hit tells none.
@@ -303,7 +304,8 @@ impl TestRecords {
         };
         let states = starts.into_iter().chain([usual]).map(|constants| {
             let modes = self.setup.summed_frequencies(&constants, &effects)?;
-            let zetas = modes.into_iter().take_while(|&f| f < FREE_DAMPING * self.band).map(damping).collect();
+            let own = modes.into_iter().take_while(|&f| f < FREE_DAMPING * self.band).map(damping);
+            let zetas = own.chain(before.zetas.last().copied()).collect();
             Ok(State { constants: constants.map(f64::ln), zetas, hypothesis: after.hypothesis.clone() })
         });
         states.collect()
@@ -316,7 +318,8 @@ impl TestRecords {
         let known = Some((known, stage));
         // While peaks are wide a misfit that is no damping would else drag the damping off, and the search with it.
         let about = if stage < LAST { &self.log_zetas[..] } else { &[] };
-        let prior = DampingPrior { about, std: LOG_ZETA_STD[stage.min(LAST)] };
+        let stage = stage.min(LAST);
+        let prior = DampingPrior { about, std: LOG_ZETA_STD[stage], beyond: LOG_ZETA_STD_BEYOND[stage] };
         let (held, usual_log_zeta) = (*held, *usual_log_zeta);
         let (reactions, rough) = (self.reactions.as_ref(), self.rough);
         RecordProblem { setup, records, held, free_damping: true, usual_log_zeta, prior, rough, work, reactions, known }
@@ -341,7 +344,7 @@ pub(super) fn base_of_histories(test: &ImpactTest) -> Result<RecordsBase, Identi
     let base = fit(&records, records.start.clone(), 0)?;
     let chi_square = base.chi_square(&records);
     let covariance = total(&by_group(&records, &base, Grouping::Places)?).covariance();
-    let unit = chi_square.max(1.0) / independent_part(&residuals(&records, &base)?);
+    let unit = chi_square.max(1.0) / independent_part(&whitened(&records, &base)?);
     let std = |i: usize| covariance.as_ref().map(|matrix| (unit * matrix[(i, i)]).sqrt()).filter(|std| std.is_finite());
     let starts = resonance_starts(&test.pieces[0].piece, test.boundary, records.held, &records.accelerances)?;
     let too_few = IdentifyError::TooFewResonances { found: 0, needed: 1, noise_percent: None };
@@ -349,7 +352,6 @@ pub(super) fn base_of_histories(test: &ImpactTest) -> Result<RecordsBase, Identi
         start: starts.into_iter().next().ok_or(too_few)?,
         std: (0..base.size).map(std).collect(),
         free_zetas: base.state.zetas.len(),
-        usual_log_zeta: records.usual_log_zeta,
         band: records.band,
         in_band: records.in_band,
         chi_square: Some(chi_square),

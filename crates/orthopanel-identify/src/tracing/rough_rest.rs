@@ -92,6 +92,7 @@ mod tests {
             force_at: place,
             response_at: place,
             variance: vec![1e-12; s.len()],
+            by_force: vec![],
             scatter: None,
             hits: vec![],
             s,

@@ -20,6 +20,20 @@ pub(super) fn residuals(records: &TestRecords, fit: &Fit) -> Result<Vec<Vec<Comp
     Ok(whitened.collect())
 }
 
+/// The same over the noise that lines do not share, without what they share.
+pub(super) fn whitened(records: &TestRecords, fit: &Fit) -> Result<Vec<Vec<Complex64>>, IdentifyError> {
+    let problem = records.problem(LAST);
+    let lines = problem.lines(&fit.state)?;
+    let whitened = problem.records.iter().zip(&lines).map(|(record, model)| {
+        let (blow, left) = record.tied();
+        let missed = || record.value.iter().zip(model).zip(&left).map(|((a, b), left)| (a - b) / left.sqrt());
+        let (mut re, mut im): (Vec<f64>, Vec<f64>) = missed().map(|missed| (missed.re, missed.im)).unzip();
+        blow.whiten(0, [&mut re, &mut im]);
+        re.into_iter().zip(im).map(|(re, im)| Complex64::new(re, im)).collect()
+    });
+    Ok(whitened.collect())
+}
+
 /// The part of the lines that counts as independent, $1/(1+2\sum_k\rho_k)$, from 0 to 1: $\rho_k$ is the correlation of
 /// residuals $k$ lines apart, over all records, summed as long as it stands out of its own scatter.
 ///

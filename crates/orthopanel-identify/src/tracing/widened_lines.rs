@@ -9,6 +9,7 @@ use rayon::prelude::*;
 use realfft::RealFftPlanner;
 
 use super::blow::Blow;
+use super::blow_noise::BlowNoise;
 use super::hit_noise::HitNoise;
 use super::hit_places::align;
 
@@ -48,10 +49,34 @@ pub(super) struct WidenedLines {
     pub value: Vec<Complex64>,
     /// $E|\hat H - H|^2$ of each line.
     pub variance: Vec<f64>,
+    /// What of it the force's channel makes; empty where that is not told.
+    pub by_force: Vec<f64>,
     /// Scatter of the hits about their mean over what noise alone makes; `None` for a single hit.
     pub scatter: Option<f64>,
     /// Each hit by itself, with the size of its impulse \[N s\].
     pub hits: Vec<HitLines>,
+}
+
+impl WidenedLines {
+    /// Distance of the lines \[Hz\].
+    pub(super) fn step(&self) -> f64 {
+        match self.s[..] {
+            [first, second, ..] => (second - first).im / TAU,
+            _ => f64::INFINITY,
+        }
+    }
+
+    /// What the noise of the force ties together, and the variance that is left to each line.
+    pub(super) fn tied(&self) -> (BlowNoise, Vec<f64>) {
+        BlowNoise::of(&self.value, [&self.variance, &self.by_force], self.step())
+    }
+}
+
+impl HitLines {
+    /// As [`WidenedLines::tied`], of lines `step` \[Hz\] apart.
+    pub(super) fn tied(&self, step: f64) -> (BlowNoise, Vec<f64>) {
+        BlowNoise::of(&self.value, [&self.variance, &self.by_force], step)
+    }
 }
 
 /// One hit's own accelerance on the same lines.
@@ -59,6 +84,8 @@ pub(super) struct WidenedLines {
 pub(super) struct HitLines {
     pub value: Vec<Complex64>,
     pub variance: Vec<f64>,
+    /// What of it the force's channel makes.
+    pub by_force: Vec<f64>,
     /// Transform of the force, a sum over samples \[N\].
     pub force: Vec<Complex64>,
     /// $\int f\,dt$ \[N s\].
@@ -123,26 +150,36 @@ fn of_record(history: &TimeHistory, widening: Widening, band: f64, by_place: &[C
         s: lines.iter().map(|&line| Complex64::new(widening.decay_rate, TAU * resolution * line as f64)).collect(),
         value: Vec::with_capacity(lines.len()),
         variance: Vec::with_capacity(lines.len()),
+        by_force: Vec::with_capacity(lines.len()),
         scatter: noise.scatter(&spectra, &lines),
         hits: spectra
             .iter()
-            .map(|hit| HitLines { value: vec![], variance: vec![], force: vec![], impulse: hit.impulse })
+            .map(|hit| HitLines {
+                value: vec![],
+                variance: vec![],
+                by_force: vec![],
+                force: vec![],
+                impulse: hit.impulse,
+            })
             .collect(),
     };
     for &line in &lines {
-        let (mut cross, mut power) = (Complex64::ZERO, 0.0);
+        let (mut cross, mut power, mut by_force) = (Complex64::ZERO, 0.0, 0.0);
         for (index, (hit, own)) in spectra.iter().zip(&mut record.hits).enumerate() {
             let (force, motion) = (hit.force[line], hit.motion[line]);
-            let variance = noise.at(index, force, motion);
+            let [variance, of_force] = noise.at(index, force, motion);
             let weight = force.norm_sqr() / variance;
+            by_force += weight * of_force / variance;
             cross += weight * motion / force;
             power += weight;
             own.value.push(motion / force);
             own.variance.push(1.0 / weight);
+            own.by_force.push(of_force / force.norm_sqr());
             own.force.push(force);
         }
         let value = cross / power;
         record.value.push(value);
+        record.by_force.push(by_force / (power * power));
         record.variance.push(1.0 / power + widening.tolerance.powi(2) * value.norm_sqr());
     }
     (record, beside)

@@ -62,7 +62,6 @@ pub(super) fn base_of_accelerances(test: &ImpactTest) -> Result<RecordsBase, Ide
     Ok(RecordsBase {
         std: report::deviations(&search, &base)?,
         free_zetas: 0,
-        usual_log_zeta: search.problem.usual_log_zeta,
         band,
         in_band: start.modes.len(),
         chi_square: None,
@@ -123,7 +122,7 @@ fn begin(test: &ImpactTest) -> Result<Begun, IdentifyError> {
     let declared = hypothesis.effects.len();
     let state = State {
         constants: start.constants.map(f64::ln),
-        zetas: (0..start.modes.len()).map(log_zeta).collect(),
+        zetas: (0..start.modes.len()).map(log_zeta).chain([usual_log_zeta]).collect(),
         hypothesis,
     };
     let problem = AccelerancesProblem::new(test, setup, seen, between, (held, usual_log_zeta))?;

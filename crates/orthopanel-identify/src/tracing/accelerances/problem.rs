@@ -124,6 +124,7 @@ impl AccelerancesProblem {
                 s: frequency.iter().map(|f| Complex64::new(decay_rate, f * std::f64::consts::TAU)).collect(),
                 value: value.clone(),
                 variance: variance.map(|(level, noise)| weighing.relative.powi(2) * level + noise).collect(),
+                by_force: vec![],
                 scatter: None,
                 hits: vec![],
             })
@@ -134,7 +135,7 @@ impl AccelerancesProblem {
     fn problem<'a>(&'a self, lines: &'a [WidenedLines]) -> RecordProblem<'a> {
         let Self { setup, held, usual_log_zeta, work, .. } = self;
         // No damping is free here.
-        let prior = DampingPrior { about: &[], std: f64::INFINITY };
+        let prior = DampingPrior { about: &[], std: f64::INFINITY, beyond: f64::INFINITY };
         let (held, usual_log_zeta) = (*held, *usual_log_zeta);
         RecordProblem {
             setup,

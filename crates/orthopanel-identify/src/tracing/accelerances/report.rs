@@ -81,12 +81,7 @@ pub(super) fn report(
         chi_square: chosen.missed / floor.max(f64::MIN_POSITIVE).powi(2),
         panels: vec![panel],
         removed,
-        accelerances: curves(
-            &search.accelerances,
-            &problem.setup,
-            (&chosen.state, problem.usual_log_zeta),
-            search.band,
-        )?,
+        accelerances: curves(&search.accelerances, &problem.setup, &chosen.state, search.band)?,
         notes,
     })
 }
@@ -147,6 +142,6 @@ fn panel(
     let problem = &search.problem;
     let settings = (0..problem.between.value.len()).filter_map(|index| problem.setup.setting(index));
     let places = settings.map(|setting| [setting.record.force_at, setting.record.response_at]);
-    let damping = (fit.state.zetas.len(), problem.usual_log_zeta);
+    let damping = (fit.state.zetas.len() - 1, problem.usual_log_zeta);
     Ok(bare_panel((test, search.piece), (&fit.state, std), &problem.held, damping, places)?)
 }

@@ -10,7 +10,8 @@
 
 use num_complex::Complex64;
 
-use super::view::{Layout, SERIES_TERMS};
+use super::far_modes::FarModes;
+use super::view::Layout;
 use super::wide::{LINES, Numbers, Wide};
 use crate::effects::ElementLine;
 
@@ -19,7 +20,8 @@ use crate::effects::ElementLine;
 pub(super) struct Columns {
     /// Column of each parameter of the structure.
     pub structure: Vec<usize>,
-    /// First column of the logarithms of the damping ratios, and how many flexible modes have one.
+    /// First column of the logarithms of the damping ratios, and how many flexible modes have one; the next is that of all
+    /// modes beyond.
     pub zetas: (usize, usize),
     /// Element, number of its law, column, factor.
     pub elements: Vec<(usize, usize, usize, f64)>,
@@ -51,8 +53,7 @@ pub(super) struct Coupling {
     loads: [Vec<Wide>; 2],
     /// Effective shapes.
     shapes: [Vec<Wide>; 2],
-    /// $(-s^2)^k$.
-    powers: Vec<Wide>,
+    far: FarModes,
 }
 
 /// A receptance with its derivative by $s$.
@@ -63,7 +64,8 @@ pub(super) struct Receptance {
 
 impl Coupling {
     /// The receptances at some $s$ between force (row 0) and response (row 1) of a view, and into `out` their derivatives,
-    /// a [`Wide`] a column. `elements` has [`LINES`] lines of each element.
+    /// a [`Wide`] a column. `zetas` are those of the flexible modes that are summed and of all beyond, `elements` has [`LINES`]
+    /// lines of each element.
     #[inline(always)]
     pub(super) fn lines(
         &mut self,
@@ -74,14 +76,14 @@ impl Coupling {
         s: &Wide,
         out: &mut [Wide],
     ) -> Receptance {
-        self.sum(layout, numbers, zetas, s);
+        self.sum((layout, numbers), zetas, columns.frequency, s);
         self.join(layout, elements);
         self.effective_shapes((layout, numbers), zetas, s);
         let mut value = self.bare[1];
         for p in 0..elements.len() {
             value.add_product(&self.bare[layout.active + 2 + p], &self.loads[0][2 + p]);
         }
-        self.by_damping(layout, zetas, columns, s, out);
+        self.by_damping((layout, numbers), zetas, columns, s, out);
         for &(p, number, column, factor) in &columns.elements {
             let change = self.change(&elements[p], p, |line| line.by_numbers[number]);
             out[column].add_scaled(factor, &change);
@@ -95,14 +97,15 @@ impl Coupling {
 
     /// Bare receptances between the active rows.
     #[inline(always)]
-    fn sum(&mut self, layout: &Layout, numbers: &impl Numbers, zetas: &[f64], s: &Wide) {
+    fn sum(&mut self, (layout, numbers): (&Layout, &impl Numbers), zetas: &[f64], by_s: bool, s: &Wide) {
         let n = layout.active;
         let s2 = s.times(s);
-        let step = s2.scaled(-1.0);
-        self.powers.clear();
-        self.powers.push(Wide::ONE);
-        for k in 1..SERIES_TERMS {
-            self.powers.push(self.powers[k - 1].times(&step));
+        if layout.modes > layout.rigid {
+            let last = layout.modes - 1;
+            let beyond = zetas[layout.modes - layout.rigid];
+            self.far.set(s, beyond, [&numbers.wide(last), &numbers.root(last)], by_s);
+        } else {
+            self.far.set(s, 0.0, [&Wide::ONE, &Wide::ONE], by_s);
         }
         self.bare.clear();
         self.bare.resize(n * n, Wide::ZERO);
@@ -113,7 +116,7 @@ impl Coupling {
         for a in 0..n {
             for b in (a..n).filter(|&b| needed(a, b)) {
                 let total = &mut self.bare[a * n + b];
-                for (k, power) in self.powers.iter().enumerate() {
+                for (k, power) in self.far.weights.iter().enumerate() {
                     numbers.add(layout.series(k) + a * n + b, power, total);
                 }
             }
@@ -210,12 +213,21 @@ impl Coupling {
 
     /// Derivatives by the damping ratios.
     #[inline(always)]
-    fn by_damping(&self, layout: &Layout, zetas: &[f64], columns: &Columns, s: &Wide, out: &mut [Wide]) {
-        for (i, zeta) in zetas.iter().enumerate().take(columns.zetas.1) {
-            let m = layout.rigid + i;
+    fn by_damping(
+        &self,
+        (layout, numbers): (&Layout, &impl Numbers),
+        zetas: &[f64],
+        columns: &Columns,
+        s: &Wide,
+        out: &mut [Wide],
+    ) {
+        let (first, own) = columns.zetas;
+        for (i, (zeta, m)) in zetas.iter().zip(layout.rigid..layout.modes).enumerate() {
             let loss = self.roots[m].times(s).scaled(-2.0 * zeta);
-            out[columns.zetas.0 + i].add_product(&self.weights[m], &loss);
+            out[first + i.min(own)].add_product(&self.weights[m], &loss);
         }
+        let beyond = first + own.min(layout.modes - layout.rigid);
+        self.add_far((layout, numbers), &self.far.by_damping, |k| layout.series(k), &mut out[beyond]);
     }
 
     /// The derivative by $s$.
@@ -232,10 +244,7 @@ impl Coupling {
         sum.add_product(&s.scaled(-2.0), &weights);
         let flexible = zetas.iter().zip(&self.roots[layout.rigid..]).zip(&self.weights[layout.rigid..]);
         flexible.for_each(|((zeta, root), weight)| sum.add_product(&root.scaled(-2.0 * zeta), weight));
-        for k in 1..SERIES_TERMS {
-            let power = s.times(&self.powers[k - 1]).scaled(-2.0 * k as f64);
-            sum.add_product(&power, &self.form(numbers, layout.series(k), layout.active));
-        }
+        self.add_far((layout, numbers), &self.far.by_s, |k| layout.series(k), &mut sum);
         for (p, element) in elements.iter().enumerate() {
             sum.add(&self.change(element, p, |line| line.by_s));
         }
@@ -253,8 +262,11 @@ impl Coupling {
     #[inline(always)]
     fn by_structure(&self, (layout, numbers): (&Layout, &impl Numbers), columns: &Columns, out: &mut [Wide]) {
         let n = layout.active;
+        let mut far_by_lambda = Wide::ZERO;
+        self.add_far((layout, numbers), &self.far.by_lambda, |k| layout.series(k), &mut far_by_lambda);
         for (p, &column) in columns.structure.iter().enumerate() {
             let mut sum = Wide::ZERO;
+            numbers.add(layout.by(p) + layout.modes - 1, &far_by_lambda, &mut sum);
             for m in 0..layout.modes {
                 let (by, shape) = (layout.shape_by(p, m), layout.shape(m));
                 if n == BARE {
@@ -276,14 +288,7 @@ impl Coupling {
                     numbers.add(layout.by(p) + m, &self.stiffer[m], &mut sum);
                 }
             }
-            for (k, power) in self.powers.iter().enumerate() {
-                let at = layout.series_by(p, k);
-                if n == BARE {
-                    numbers.add(at + n, power, &mut sum);
-                } else {
-                    sum.add_product(power, &self.form(numbers, at, n));
-                }
-            }
+            self.add_far((layout, numbers), &self.far.weights, |k| layout.series_by(p, k), &mut sum);
             out[column].add(&sum);
         }
     }
@@ -304,7 +309,7 @@ impl Coupling {
                         numbers.add(layout.shape(m) + at, &lever, &mut moved);
                     }
                 }
-                for (k, power) in self.powers.iter().enumerate() {
+                for (k, power) in self.far.weights.iter().enumerate() {
                     let mut still = Wide::ZERO;
                     let row = layout.series(k) + at * n;
                     if n == BARE {
@@ -320,6 +325,25 @@ impl Coupling {
             });
             out[column].add_product(&self.loads[0][row], &seen);
             out[column].add_product(&self.loads[1][row], &forced);
+        }
+    }
+
+    /// Adds $\sum_kw_ku_r^TC_ku_f$, with $C_k$ from `at` on.
+    #[inline(always)]
+    fn add_far(
+        &self,
+        (layout, numbers): (&Layout, &impl Numbers),
+        weights: &[Wide],
+        at: impl Fn(usize) -> usize,
+        sum: &mut Wide,
+    ) {
+        let n = layout.active;
+        for (k, weight) in weights.iter().enumerate() {
+            if n == BARE {
+                numbers.add(at(k) + n, weight, sum);
+            } else {
+                sum.add_product(weight, &self.form(numbers, at(k), n));
+            }
         }
     }
 

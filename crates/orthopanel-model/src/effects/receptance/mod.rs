@@ -5,6 +5,7 @@
 //! ([`coupling`]), for each record its own.
 
 mod coupling;
+mod far_modes;
 pub(super) mod modal_base;
 mod model;
 mod modulus_path;

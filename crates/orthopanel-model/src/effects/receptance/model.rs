@@ -12,8 +12,8 @@ use crate::effects::{ChannelFactor, CoreModulus, ElementLine, PointElement};
 /// Accelerances of the records of a test, as [`super::ReceptanceSetup::model`] makes it.
 ///
 /// Each line has its derivatives in one list of [`ReceptanceModel::columns`] numbers: by the constants, by $\ln\zeta_m$ of
-/// the free damping ratios, then by the values of each effect in order (by the values themselves, whatever scale a search
-/// takes).
+/// the listed damping ratios and of that of all modes beyond, then by the values of each effect in order (by the values
+/// themselves, whatever scale a search takes).
 pub struct ReceptanceModel {
     records: Vec<RecordModel>,
     zetas: Vec<f64>,

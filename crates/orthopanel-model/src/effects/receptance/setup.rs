@@ -71,7 +71,7 @@ impl ReceptanceSetup {
     ///
     /// Damping belongs to the modes of the piece without point elements and at its relaxed modulus, but with every term
     /// that is spread over it and with its supports: $\zeta_m$ of $s^2 + 2\zeta_m\omega_ms + \omega_m^2$. Ratios in the list
-    /// have a derivative each; the modes beyond share one that has none.
+    /// have a derivative each, and that of the modes beyond has one.
     ///
     /// # Errors
     /// [`ModelError::EffectValues`], [`ModelError::EffectParameter`] and [`ModelError::EffectNeeds`] where an effect cannot
@@ -84,7 +84,7 @@ impl ReceptanceSetup {
     ) -> Result<ReceptanceModel, ModelError> {
         let constants = BEAM_CONSTANTS.len();
         let free = damping.ratios.len();
-        let first_effect = constants + free;
+        let first_effect = constants + free + 1;
         let Based { bases, core, columns: structural, summed } = self.based(values, effects, first_effect)?;
         let shear_modulus = values.get(1).copied().unwrap_or_default();
         let record = |record: &RecordSetting| {
@@ -102,7 +102,7 @@ impl ReceptanceSetup {
         let records = side_by_side::map(&self.records, record);
         let records = records.into_iter().collect::<Result<Vec<_>, ModelError>>()?;
         let columns = first_effect + effects.iter().map(|effect| effect.values.len()).sum::<usize>();
-        let zetas: Vec<f64> = (1..=summed).map(|mode| damping.ratio(mode)).collect();
+        let zetas: Vec<f64> = (1..=summed + 1).map(|mode| damping.ratio(mode)).collect();
         Ok(ReceptanceModel::new(records, zetas, columns))
     }
 
