@@ -1,9 +1,10 @@
 //! What a fit says of data that it has not seen.
 
+use faer::linalg::solvers::{DenseSolveCore, Llt};
 use faer::prelude::Solve;
 use faer::{Mat, Side};
 
-use super::fit::{Fit, by_group};
+use super::fit::{Fit, LAST, by_group};
 use super::record_problem::{Grouping, total};
 use super::records_of_test::TestRecords;
 use super::roughness::free_of;
@@ -31,10 +32,12 @@ pub(super) fn held_out(records: &TestRecords, fit: &Fit, grouping: Grouping) -> 
     let whole = total(&sums);
     let Some((_, groups)) = sums.split_last() else { return Ok(f64::NAN) };
     let neutral = neutral_steps(fit);
-    let own = |group: usize| if grouping == Grouping::Places { own_roughness(records, fit, group) } else { vec![] };
+    let by_places = grouping == Grouping::Places;
+    let own = |group: usize| if by_places { own_roughness(records, fit, group) } else { vec![] };
+    let above = if by_places { above_band(records, fit)? } else { vec![] };
     let missed = groups.iter().enumerate().map(|(index, group)| {
         let foretold = foretold(&whole, group, &neutral);
-        foretold.map_or(f64::INFINITY, |foretold| foretold.beside(&own(index)))
+        foretold.and_then(|foretold| foretold.beside(&own(index), &above)).unwrap_or(f64::INFINITY)
     });
     let missed: f64 = missed.sum();
     let problem = records.problem(usize::MAX);
@@ -75,12 +78,27 @@ fn own_roughness(records: &TestRecords, fit: &Fit, record: usize) -> Vec<(usize,
     own.map(|(at, free, _)| (first + at, scales.of(free.parameter))).collect()
 }
 
+/// The damping of modes above the band, by its places among the parameters. Other places tell it poorly, for it shows at a driving point
+/// and hardly elsewhere, and it says nothing of the model: it stays free within what they tell.
+fn above_band(records: &TestRecords, fit: &Fit) -> Result<Vec<usize>, IdentifyError> {
+    let hypothesis = &fit.state.hypothesis;
+    let in_band = if hypothesis.holds_plate() {
+        let effects = hypothesis.states(records.problem(LAST).records.len())?;
+        let modes = records.setup.summed_frequencies(&fit.state.constants.map(f64::exp), &effects)?;
+        modes.iter().filter(|frequency| **frequency < records.band).count()
+    } else {
+        records.in_band
+    };
+    let first = fit.parameters.len().saturating_sub(hypothesis.size() + fit.state.zetas.len());
+    Ok((in_band..fit.state.zetas.len()).map(|mode| first + mode).collect())
+}
+
 /// A parameter of which the other groups hold less than this part is the group's own.
 const OWN: f64 = 1e-6;
 
 /// What a group costs where all others alone settle the parameters, to first order.
 pub(super) fn predicted(whole: &Quadratic, group: &Quadratic, neutral: &[f64]) -> f64 {
-    foretold(whole, group, neutral).map_or(f64::INFINITY, |foretold| foretold.beside(&[]))
+    foretold(whole, group, neutral).map_or(f64::INFINITY, |foretold| foretold.cost.max(0.0))
 }
 
 /// A group's sum of squares where the others have settled the parameters.
@@ -89,23 +107,35 @@ struct Foretold<'a> {
     cost: f64,
     /// Half of its derivative there.
     gradient: Vec<f64>,
+    /// How sure the others are of the parameters.
+    others: Llt<f64>,
 }
 
 impl Foretold<'_> {
-    /// The cost where numbers of the group's own, which nothing else tells, have their standard deviations: that under the
-    /// covariance $I + JPJ^T$, $c - g^T(N + P^{-1})^{-1}g$ by Woodbury's identity.
-    fn beside(&self, own: &[(usize, f64)]) -> f64 {
-        let mut cost = self.cost;
-        if !own.is_empty() {
-            let normal = Mat::from_fn(own.len(), own.len(), |i, j| {
-                let beforehand = if i == j { own[i].1.powi(-2) } else { 0.0 };
-                self.group.normal[(own[i].0, own[j].0)] + beforehand
-            });
-            let gradient = Mat::from_fn(own.len(), 1, |i, _| self.gradient[own[i].0]);
-            let Ok(factor) = normal.llt(Side::Lower) else { return f64::INFINITY };
-            cost -= (gradient.transpose() * factor.solve(&gradient))[(0, 0)];
+    /// The cost under the covariance $I + JPJ^T$, $c - g^T(N + P^{-1})^{-1}g$ by Woodbury's identity, where some numbers have the
+    /// covariance $P$: those of the group's own, which nothing else tells, their standard deviations beforehand, and
+    /// others what all other groups leave them. `None` where these tell nothing.
+    fn beside(&self, own: &[(usize, f64)], left: &[usize]) -> Option<f64> {
+        let size = own.len() + left.len();
+        if size == 0 {
+            return Some(self.cost.max(0.0));
         }
-        cost.max(0.0)
+        let at = |i: usize| own.get(i).map_or_else(|| left[i - own.len()], |(at, _)| *at);
+        let mut normal = Mat::from_fn(size, size, |i, j| self.group.normal[(at(i), at(j))]);
+        for (i, (_, deviation)) in own.iter().enumerate() {
+            normal[(i, i)] += deviation.powi(-2);
+        }
+        let covariance = self.others.inverse();
+        let of_left = Mat::from_fn(left.len(), left.len(), |i, j| covariance[(left[i], left[j])]);
+        let sure = of_left.llt(Side::Lower).ok()?.inverse();
+        for i in 0..left.len() {
+            for j in 0..left.len() {
+                normal[(own.len() + i, own.len() + j)] += sure[(i, j)];
+            }
+        }
+        let gradient = Mat::from_fn(size, 1, |i, _| self.gradient[at(i)]);
+        let taken = gradient.transpose() * normal.llt(Side::Lower).ok()?.solve(&gradient);
+        Some((self.cost - taken[(0, 0)]).max(0.0))
     }
 }
 
@@ -126,11 +156,46 @@ fn foretold<'a>(whole: &Quadratic, group: &'a Quadratic, neutral: &[f64]) -> Opt
             normal[(i, i)] *= 1.0 + OWN;
         }
     }
-    let step = normal.llt(Side::Lower).ok()?.solve(&gradient);
+    let others = normal.llt(Side::Lower).ok()?;
+    let step = others.solve(&gradient);
     let step: Vec<f64> = (0..size).map(|i| -step[(i, 0)]).collect();
     let slope: f64 = step.iter().zip(&group.gradient).map(|(a, b)| a * b).sum();
     let bent: Vec<f64> = (0..size).map(|i| (0..size).map(|j| group.normal[(i, j)] * step[j]).sum()).collect();
     let bend: f64 = step.iter().zip(&bent).map(|(a, b)| a * b).sum();
     let gradient = group.gradient.iter().zip(&bent).map(|(own, bent)| own + bent).collect();
-    Some(Foretold { group, cost: group.cost + 2.0 * slope + bend, gradient })
+    Some(Foretold { group, cost: group.cost + 2.0 * slope + bend, gradient, others })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// $\sum_i(a_ix + b_iy - c_i)^2$ about $x = y = 0$.
+    fn sum(rows: &[[f64; 3]]) -> Quadratic {
+        let mut sum = Quadratic::zero(2);
+        rows.iter().for_each(|[a, b, c]| sum.add_row(-c, &[(0, *a), (1, *b)]));
+        sum.mirror();
+        sum
+    }
+
+    /// Where all that others leave open may follow the group, it costs what the group adds to the minimum of all.
+    #[test]
+    fn val_what_others_leave_open_is_left_to_the_group() {
+        let group = sum(&[[1.0, 0.2, 0.5], [0.3, 2.0, -0.7], [0.1, 1.0, 0.4]]);
+        let others = sum(&[[2.0, 0.1, 1.0], [1.0, -0.1, 0.2], [0.5, 0.05, 0.9]]);
+        let whole = total(&[group.clone(), others.clone()]);
+        let least = |of: &Quadratic| {
+            let gradient = Mat::from_fn(2, 1, |i, _| of.gradient[i]);
+            let step = of.normal.llt(Side::Lower).unwrap().solve(&gradient);
+            of.cost - (gradient.transpose() * step)[(0, 0)]
+        };
+        let foretold = foretold(&whole, &group, &[0.0; 2]).unwrap();
+        let added = least(&whole) - least(&others);
+        let found = foretold.beside(&[], &[0, 1]).unwrap();
+        assert!((found / added - 1.0).abs() < 1e-5, "{found} {added}");
+        // With one of the two held to what others say it costs more, and with both the most.
+        let one = foretold.beside(&[], &[1]).unwrap();
+        let none = foretold.beside(&[], &[]).unwrap();
+        assert!(added < one && one < none, "{added} {one} {none}");
+    }
 }
