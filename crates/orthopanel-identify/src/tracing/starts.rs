@@ -89,6 +89,10 @@ pub(super) fn scored_starts(
 
 /// The best of the first few starts after some steps at one widening.
 pub(super) fn followed(records: &TestRecords, starts: &[Costed], stage: usize) -> Option<Costed> {
+    // Springs and the constants beside them share a long valley, from which a spring may run off to infinity.
+    if stage == 0 && starts.first().is_some_and(|(state, _)| latest(state, |effect| effect.id() == SUPPORT)) {
+        return followed_far(records, starts, 0);
+    }
     let many = if records.problem(stage).records.len() <= FEW_RECORDS { FOLLOWED_OF_FEW } else { FOLLOWED };
     least(followed_each(records, starts, (stage, many)))
 }
@@ -105,19 +109,24 @@ fn least(fits: Vec<Costed>) -> Option<Costed> {
     fits.into_iter().min_by(|a, b| a.1.total_cmp(&b.1))
 }
 
-/// The first few starts after some steps at one widening; of an effect with a place `many`.
+/// The first few starts after some steps at one widening; of an effect with a place or of clamps that yield `many`.
 fn followed_each(records: &TestRecords, starts: &[Costed], (stage, many): (usize, usize)) -> Vec<Costed> {
     let is_plate = starts.iter().any(|(state, _)| state.hypothesis.holds_plate());
     let is_hard = is_plate && records.shows_more_than_a_beam();
-    let has_place = |(state, _): &Costed| state.hypothesis.effects.last().is_some_and(|on| has_place(on.effect));
+    let is_wide = |effect: &'static dyn Effect| has_place(effect) || effect.id() == SUPPORT;
     let (follow, patience) = if is_hard {
         (PLATES_FOLLOWED, PLATES_FOLLOW)
-    } else if starts.first().is_some_and(has_place) {
+    } else if starts.first().is_some_and(|(state, _)| latest(state, is_wide)) {
         (many, FOLLOW)
     } else {
         (FOLLOWED, FOLLOW)
     };
     starts.par_iter().take(follow).filter_map(|(state, _)| polish(records, state, stage, patience).ok()).collect()
+}
+
+/// Whether the effect that came last is such a one.
+fn latest(state: &State, is: impl Fn(&'static dyn Effect) -> bool) -> bool {
+    state.hypothesis.effects.last().is_some_and(|on| is(on.effect))
 }
 
 /// Most combinations of starts, beyond which only the first of each but the place, the frequency and the record is taken.
