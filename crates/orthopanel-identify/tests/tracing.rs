@@ -33,20 +33,23 @@ fn val_an_effect_put_in_is_named_and_measured() {
     }
 }
 
-/// The constants fitted with ideal clamps are no start for clamps that yield: this was `unexplained` before the search began from the
-/// resonances.
+/// The constants fitted with ideal clamps are no start for clamps that yield: seed 1101 was `unexplained` before the search began from
+/// the resonances, and 1104 before more of these starts were followed than promised the most.
 #[test]
 fn val_clamps_that_yield_are_found_from_one_pair_of_places() {
-    let folder = tempfile::tempdir().unwrap();
-    let Some((test, case)) = made_with(&folder.path().join("set"), "single-place", "support-compliance", 1101) else {
-        return;
-    };
-    let found = trace(&test).unwrap();
-    assert_eq!((found.verdict.name(), found.effects[0].id), ("explained", "support-compliance"));
-    for parameter in ["rotation", "translation"] {
-        let truth = case["effects"][0]["parameters"][parameter].as_f64().unwrap();
-        let (value, std) = value(&found, parameter);
-        assert!((value - truth).abs() < 3.0 * std, "{parameter}: {value} +- {std}, truth {truth}");
+    for seed in [1101, 1104] {
+        let folder = tempfile::tempdir().unwrap();
+        let Some((test, case)) = made_with(&folder.path().join("set"), "single-place", "support-compliance", seed)
+        else {
+            return;
+        };
+        let found = trace(&test).unwrap();
+        assert_eq!((found.verdict.name(), found.effects[0].id), ("explained", "support-compliance"), "{seed}");
+        for parameter in ["rotation", "translation"] {
+            let truth = case["effects"][0]["parameters"][parameter].as_f64().unwrap();
+            let (value, std) = value(&found, parameter);
+            assert!((value - truth).abs() < 3.0 * std, "{seed}, {parameter}: {value} +- {std}, truth {truth}");
+        }
     }
 }
 
@@ -96,6 +99,18 @@ fn val_nothing_is_missing_where_nothing_was_put_in() {
     // A free piece has no clamp that could yield.
     let reason = found.not_tested.iter().find(|known| known.id == "support-compliance").unwrap();
     assert!(reason.reason.contains("clamped"), "{}", reason.reason);
+}
+
+/// Noise of 0.1 %, and a hammer behind the sensor: a record that was left out was missed by 1.23 of the noise before modes above the
+/// sum were damped and the force's noise counted once for the lines that it moves alike.
+#[test]
+fn val_a_record_that_was_left_out_is_foretold_within_little_noise() {
+    let folder = tempfile::tempdir().unwrap();
+    let Some((test, case)) = made_with(&folder.path().join("set"), "none", "none", 1105) else { return };
+    assert!(case["noise"]["part"].as_f64().unwrap() < 1.1e-3, "{}", case["noise"]);
+    let found = trace(&test).unwrap();
+    assert_eq!(found.verdict, Verdict::NothingMissing);
+    assert!(found.error.after.held_out < 1.05 * found.error.noise_floor, "{:?}", found.error);
 }
 
 /// A second touch and an overload would look like a gain, and like damping.
