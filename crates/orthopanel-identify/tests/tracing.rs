@@ -12,6 +12,15 @@ fn value(found: &Tracing, parameter: &str) -> (f64, f64) {
     (estimate.value, estimate.std.unwrap())
 }
 
+/// Parameters of the effect that came first lie within three of their deviations.
+fn are_told(found: &Tracing, case: &serde_json::Value, parameters: &[&str]) {
+    for parameter in parameters {
+        let truth = case["effects"][0]["parameters"][parameter].as_f64().unwrap();
+        let (value, std) = value(found, parameter);
+        assert!((value - truth).abs() < 3.0 * std, "{case}, {parameter}: {value} +- {std}, truth {truth}");
+    }
+}
+
 #[test]
 fn val_an_effect_put_in_is_named_and_measured() {
     for (kind, parameter) in
@@ -45,11 +54,7 @@ fn val_clamps_that_yield_are_found_from_one_pair_of_places() {
         };
         let found = trace(&test).unwrap();
         assert_eq!((found.verdict.name(), found.effects[0].id), ("explained", "support-compliance"), "{seed}");
-        for parameter in ["rotation", "translation"] {
-            let truth = case["effects"][0]["parameters"][parameter].as_f64().unwrap();
-            let (value, std) = value(&found, parameter);
-            assert!((value - truth).abs() < 3.0 * std, "{seed}, {parameter}: {value} +- {std}, truth {truth}");
-        }
+        are_told(&found, &case, &["rotation", "translation"]);
     }
 }
 
@@ -60,11 +65,7 @@ fn val_a_loss_of_stiffness_between_usual_places_is_found() {
     let Some((test, case)) = made_with(&folder.path().join("set"), "clean", "stiffness-loss", 1101) else { return };
     let found = trace(&test).unwrap();
     assert_eq!((found.verdict.name(), found.effects[0].id), ("explained", "stiffness-loss"));
-    for parameter in ["loss", "span", "x"] {
-        let truth = case["effects"][0]["parameters"][parameter].as_f64().unwrap();
-        let (value, std) = value(&found, parameter);
-        assert!((value - truth).abs() < 3.0 * std, "{parameter}: {value} +- {std}, truth {truth}");
-    }
+    are_told(&found, &case, &["loss", "span", "x"]);
 }
 
 /// Starts of a core whose stiffening and loss were in the base already promised nothing: this was `unexplained` before they gave it back.

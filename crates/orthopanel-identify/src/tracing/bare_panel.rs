@@ -39,14 +39,17 @@ pub(super) fn bare_panel(
         }
     }
     let (in_band, beyond) = damping;
-    let told = if state.hypothesis.holds_plate() { state.zetas.len() - 1 } else { in_band };
+    let mut ratios = state.damping().ratios;
+    if !state.hypothesis.holds_plate() {
+        ratios.truncate(in_band);
+    }
     let mut panel = PanelModel {
         schema: MODEL_SCHEMA.to_owned(),
         piece,
         boundary: test.boundary,
         structure: StructureKind::TimoshenkoBeam,
         constants,
-        damping: Damping { ratios: state.zetas.iter().take(told).map(|log| log.exp()).collect(), beyond: beyond.exp() },
+        damping: Damping { ratios, beyond: beyond.exp() },
         effects: vec![],
         ports,
         provenance: BTreeMap::new(),

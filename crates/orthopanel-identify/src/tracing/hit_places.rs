@@ -71,7 +71,7 @@ mod tests {
                 let value = |line: usize| if line < lines { at(line) + away * slope[line] } else { Complex64::ZERO };
                 let noise = |line: usize| 1e-7 * Complex64::new((line * (index + 2)) as f64, 1.0).sin();
                 let motion = (0..2 * lines).map(|line| value(line) * force[line] + noise(line)).collect();
-                HitSpectra { force, motion, impulse: 1.0, force_noise: 0.0, motion_noise: None }
+                HitSpectra { force, motion, force_noise: 0.0, motion_noise: None }
             })
             .collect();
         let found = align(&mut hits, &slope);

@@ -3,7 +3,7 @@
 use num_complex::Complex64;
 use orthopanel_model::{LineBlock, ReceptanceModel};
 
-use super::blow_noise::BlowNoise;
+use super::line_noise::LineNoise;
 use super::reaction_lines::{ReactionLines, Taken};
 use super::record_problem::Grouping;
 use super::widened_lines::WidenedLines;
@@ -19,26 +19,19 @@ pub(super) struct Made {
 /// Data that rows are about: a record's hits together, or one of them.
 pub(super) struct Target<'a> {
     measured: &'a [Complex64],
-    /// One over the noise of each real number.
-    weights: Vec<f64>,
-    blow: BlowNoise,
+    noise: &'a LineNoise,
     taken: Option<Taken>,
 }
 
 impl Made {
     pub(super) fn targets<'a>(&self, index: usize, record: &'a WidenedLines, grouping: Grouping) -> Vec<Target<'a>> {
-        let data: Vec<(&[Complex64], _)> = match grouping {
-            Grouping::Places => vec![(&record.value, record.tied())],
-            Grouping::Hits => record.hits.iter().map(|hit| (&hit.value[..], hit.tied(record.step()))).collect(),
+        let data: Vec<(&[Complex64], &LineNoise)> = match grouping {
+            Grouping::Places => vec![(&record.value, record.noise())],
+            Grouping::Hits => record.hits.iter().map(|hit| (&hit.value[..], hit.noise(record.step()))).collect(),
         };
         let taken = self.reactions.as_ref().map(|all| all.taken(index, record, grouping, &self.plan));
         let mut taken = taken.into_iter().flatten();
-        let target = |(measured, (blow, left)): (&'a [Complex64], (BlowNoise, Vec<f64>))| {
-            // The variance counts real and imaginary part together.
-            let weights = left.iter().map(|variance| (2.0 / variance).sqrt()).collect();
-            Target { measured, weights, blow, taken: taken.next() }
-        };
-        data.into_iter().map(target).collect()
+        data.into_iter().map(|(measured, noise)| Target { measured, noise, taken: taken.next() }).collect()
     }
 }
 
@@ -52,7 +45,7 @@ impl Target<'_> {
         [re, im]: [&mut [f64]; 2],
     ) {
         self.over_noise(at, parameter, [&mut *re, &mut *im]);
-        self.blow.whiten(at.0, [re, im]);
+        self.noise.whiten(at.0, [re, im]);
     }
 
     /// The same over the noise that lines do not share.
@@ -62,7 +55,7 @@ impl Target<'_> {
         parameter: Option<(usize, (usize, f64))>,
         [re, im]: [&mut [f64]; 2],
     ) {
-        let weights = &self.weights[first..first + block.len()];
+        let weights = &self.noise.weights[first..first + block.len()];
         let Some((column, (of_model, factor))) = parameter else {
             for (line, ((re, im), weight)) in re.iter_mut().zip(im).zip(weights).enumerate() {
                 let taken = self.taken.as_ref().map_or(Complex64::ZERO, |taken| taken.value[first + line]);

@@ -2,7 +2,7 @@
 
 use faer::Mat;
 use num_complex::Complex64;
-use orthopanel_model::ModelError;
+use orthopanel_model::{LineBlock, ModelError};
 
 use super::fit::{Fit, LAST};
 use super::hypothesis::{CUBIC, FreeParameter, Hypothesis, Switched};
@@ -53,17 +53,21 @@ pub(super) fn spread_of_gradient(records: &TestRecords, fit: &Fit) -> Result<Mat
         let record = &problem.records[index];
         let lines = record.s.len();
         let stretch = lines.div_ceil(records.in_band.max(1)).max(1);
-        let (blow, left) = record.tied();
+        let noise = record.noise();
         let gradient = |own: std::ops::Range<usize>, error: &dyn Fn(usize) -> Complex64| {
-            let (mut re, mut im) = (vec![0.0; lines], vec![0.0; lines]);
+            // What lines share reaches as far as their blocks.
+            let first = own.start / LineBlock::MOST * LineBlock::MOST;
+            let count = own.end.next_multiple_of(LineBlock::MOST).min(lines) - first;
+            let (mut re, mut im) = (vec![0.0; count], vec![0.0; count]);
             for line in own {
-                let error = error(line) * (2.0 / left[line]).sqrt();
-                (re[line], im[line]) = (error.re, error.im);
+                let error = error(line) * noise.weights[line];
+                (re[line - first], im[line - first]) = (error.re, error.im);
             }
-            blow.whiten(0, [&mut re, &mut im]);
-            let errors: Vec<f64> = re.into_iter().zip(im).flat_map(|(re, im)| [re, im]).collect();
-            let dot =
-                |column: usize| rows.col_as_slice(column).iter().zip(&errors).map(|(row, error)| row * error).sum();
+            noise.whiten(first, [&mut re, &mut im]);
+            let dot = |column: usize| {
+                let rows = rows.col_as_slice(column)[2 * first..].chunks_exact(2);
+                rows.zip(re.iter().zip(&im)).map(|(row, (re, im))| row[0] * re + row[1] * im).sum()
+            };
             (0..size).map(dot).collect::<Vec<f64>>()
         };
         for (number, from) in (0..lines).step_by(stretch).enumerate() {

@@ -26,12 +26,10 @@ impl RoughRest {
 
     /// Adds this to the variances of a record and of its hits.
     pub(super) fn widen(&self, record: &mut WidenedLines) {
-        for line in 0..record.s.len() {
+        record.widen(|record, line| {
             let [part, tuning] = powers(record, line);
-            let rest = self.part.powi(2) * part + self.tuning.powi(2) * tuning;
-            record.variance[line] += rest;
-            record.hits.iter_mut().for_each(|hit| hit.variance[line] += rest);
-        }
+            self.part.powi(2) * part + self.tuning.powi(2) * tuning
+        });
     }
 
     /// The two numbers at which residuals are likeliest, of all $\sum\ln v + |r|^2/v$ the least; `residuals` are over the
@@ -75,6 +73,8 @@ fn powers(record: &WidenedLines, line: usize) -> [f64; 2] {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::OnceLock;
+
     use num_complex::Complex64;
     use orthopanel_model::Place;
 
@@ -95,6 +95,7 @@ mod tests {
             by_force: vec![],
             scatter: None,
             hits: vec![],
+            noise: OnceLock::new(),
             s,
             value: value.clone(),
         };

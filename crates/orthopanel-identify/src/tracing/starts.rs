@@ -90,7 +90,7 @@ pub(super) fn scored_starts(
 /// The best of the first few starts after some steps at one widening.
 pub(super) fn followed(records: &TestRecords, starts: &[Costed], stage: usize) -> Option<Costed> {
     // Springs and the constants beside them share a long valley, from which a spring may run off to infinity.
-    if stage == 0 && starts.first().is_some_and(|(state, _)| latest(state, |effect| effect.id() == SUPPORT)) {
+    if stage == 0 && latest(starts, |effect| effect.id() == SUPPORT) {
         return followed_far(records, starts, 0);
     }
     let many = if records.problem(stage).records.len() <= FEW_RECORDS { FOLLOWED_OF_FEW } else { FOLLOWED };
@@ -116,7 +116,7 @@ fn followed_each(records: &TestRecords, starts: &[Costed], (stage, many): (usize
     let is_wide = |effect: &'static dyn Effect| has_place(effect) || effect.id() == SUPPORT;
     let (follow, patience) = if is_hard {
         (PLATES_FOLLOWED, PLATES_FOLLOW)
-    } else if starts.first().is_some_and(|(state, _)| latest(state, is_wide)) {
+    } else if latest(starts, is_wide) {
         (many, FOLLOW)
     } else {
         (FOLLOWED, FOLLOW)
@@ -124,9 +124,10 @@ fn followed_each(records: &TestRecords, starts: &[Costed], (stage, many): (usize
     starts.par_iter().take(follow).filter_map(|(state, _)| polish(records, state, stage, patience).ok()).collect()
 }
 
-/// Whether the effect that came last is such a one.
-fn latest(state: &State, is: impl Fn(&'static dyn Effect) -> bool) -> bool {
-    state.hypothesis.effects.last().is_some_and(|on| is(on.effect))
+/// Whether the effect that these starts are about is such a one.
+fn latest(starts: &[Costed], is: impl Fn(&'static dyn Effect) -> bool) -> bool {
+    let on = starts.first().and_then(|(state, _)| state.hypothesis.effects.last());
+    on.is_some_and(|on| is(on.effect))
 }
 
 /// Most combinations of starts, beyond which only the first of each but the place, the frequency and the record is taken.

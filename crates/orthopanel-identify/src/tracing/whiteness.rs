@@ -9,26 +9,31 @@ use crate::IdentifyError;
 /// Most lines apart at which lines are compared.
 const REACH: usize = 60;
 
-/// The residuals of every record at a fit, each over its noise.
-pub(super) fn residuals(records: &TestRecords, fit: &Fit) -> Result<Vec<Vec<Complex64>>, IdentifyError> {
+/// What a fit misses of every record.
+fn missed(records: &TestRecords, fit: &Fit) -> Result<Vec<Vec<Complex64>>, IdentifyError> {
     let problem = records.problem(LAST);
     let lines = problem.lines(&fit.state)?;
-    let whitened = problem.records.iter().zip(&lines).map(|(record, model)| {
-        let pairs = record.value.iter().zip(model).zip(&record.variance);
-        pairs.map(|((measured, model), variance)| (measured - model) / variance.sqrt()).collect()
-    });
-    Ok(whitened.collect())
+    let pairs = problem.records.iter().zip(lines);
+    Ok(pairs.map(|(record, model)| record.value.iter().zip(model).map(|(a, b)| a - b).collect()).collect())
 }
 
-/// The same over the noise that lines do not share, without what they share.
+/// The residuals of every record at a fit, each over its noise.
+pub(super) fn residuals(records: &TestRecords, fit: &Fit) -> Result<Vec<Vec<Complex64>>, IdentifyError> {
+    let mut missed = missed(records, fit)?;
+    for (record, missed) in records.problem(LAST).records.iter().zip(&mut missed) {
+        missed.iter_mut().zip(&record.variance).for_each(|(missed, variance)| *missed /= variance.sqrt());
+    }
+    Ok(missed)
+}
+
+/// The same over the noise that lines do not share, without what they share: each real number has the deviation 1.
 pub(super) fn whitened(records: &TestRecords, fit: &Fit) -> Result<Vec<Vec<Complex64>>, IdentifyError> {
-    let problem = records.problem(LAST);
-    let lines = problem.lines(&fit.state)?;
-    let whitened = problem.records.iter().zip(&lines).map(|(record, model)| {
-        let (blow, left) = record.tied();
-        let missed = || record.value.iter().zip(model).zip(&left).map(|((a, b), left)| (a - b) / left.sqrt());
-        let (mut re, mut im): (Vec<f64>, Vec<f64>) = missed().map(|missed| (missed.re, missed.im)).unzip();
-        blow.whiten(0, [&mut re, &mut im]);
+    let missed = missed(records, fit)?;
+    let whitened = records.problem(LAST).records.iter().zip(missed).map(|(record, missed)| {
+        let noise = record.noise();
+        let own = missed.iter().zip(&noise.weights).map(|(missed, weight)| weight * missed);
+        let (mut re, mut im): (Vec<f64>, Vec<f64>) = own.map(|own| (own.re, own.im)).unzip();
+        noise.whiten(0, [&mut re, &mut im]);
         re.into_iter().zip(im).map(|(re, im)| Complex64::new(re, im)).collect()
     });
     Ok(whitened.collect())

@@ -1,6 +1,7 @@
 //! Accelerances on $s = \sigma + j\omega$: peaks widened as far as a search needs, without leakage.
 
 use std::f64::consts::TAU;
+use std::sync::OnceLock;
 
 use num_complex::Complex64;
 use orthopanel_data::{Hit, TimeHistory};
@@ -9,9 +10,9 @@ use rayon::prelude::*;
 use realfft::RealFftPlanner;
 
 use super::blow::Blow;
-use super::blow_noise::BlowNoise;
 use super::hit_noise::HitNoise;
 use super::hit_places::align;
+use super::line_noise::LineNoise;
 
 /// How far the peaks are widened, and how far the lines stand apart.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -39,7 +40,7 @@ const BESIDE: usize = 25;
 const MEDIAN_OF_NORMAL: f64 = 0.6745;
 
 /// Accelerance of one pair of places at one widening.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub(super) struct WidenedLines {
     pub force_at: Place,
     pub response_at: Place,
@@ -53,8 +54,10 @@ pub(super) struct WidenedLines {
     pub by_force: Vec<f64>,
     /// Scatter of the hits about their mean over what noise alone makes; `None` for a single hit.
     pub scatter: Option<f64>,
-    /// Each hit by itself, with the size of its impulse \[N s\].
+    /// Each hit by itself.
     pub hits: Vec<HitLines>,
+    /// See [`WidenedLines::noise`]: every evaluation asks for it.
+    pub noise: OnceLock<LineNoise>,
 }
 
 impl WidenedLines {
@@ -66,21 +69,32 @@ impl WidenedLines {
         }
     }
 
-    /// What the noise of the force ties together, and the variance that is left to each line.
-    pub(super) fn tied(&self) -> (BlowNoise, Vec<f64>) {
-        BlowNoise::of(&self.value, [&self.variance, &self.by_force], self.step())
+    /// What noise these lines have.
+    pub(super) fn noise(&self) -> &LineNoise {
+        self.noise.get_or_init(|| LineNoise::of(&self.value, [&self.variance, &self.by_force], self.step()))
+    }
+
+    /// Adds to the variance of each line and of its hits.
+    pub(super) fn widen(&mut self, by: impl Fn(&Self, usize) -> f64) {
+        for line in 0..self.s.len() {
+            let by = by(self, line);
+            self.variance[line] += by;
+            self.hits.iter_mut().for_each(|hit| hit.variance[line] += by);
+        }
+        self.noise.take();
+        self.hits.iter_mut().for_each(|hit| drop(hit.noise.take()));
     }
 }
 
 impl HitLines {
-    /// As [`WidenedLines::tied`], of lines `step` \[Hz\] apart.
-    pub(super) fn tied(&self, step: f64) -> (BlowNoise, Vec<f64>) {
-        BlowNoise::of(&self.value, [&self.variance, &self.by_force], step)
+    /// As [`WidenedLines::noise`], of lines `step` \[Hz\] apart.
+    pub(super) fn noise(&self, step: f64) -> &LineNoise {
+        self.noise.get_or_init(|| LineNoise::of(&self.value, [&self.variance, &self.by_force], step))
     }
 }
 
 /// One hit's own accelerance on the same lines.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct HitLines {
     pub value: Vec<Complex64>,
     pub variance: Vec<f64>,
@@ -88,8 +102,8 @@ pub(super) struct HitLines {
     pub by_force: Vec<f64>,
     /// Transform of the force, a sum over samples \[N\].
     pub force: Vec<Complex64>,
-    /// $\int f\,dt$ \[N s\].
-    pub impulse: f64,
+    /// See [`HitLines::noise`].
+    pub noise: OnceLock<LineNoise>,
 }
 
 /// The lines of every record at one widening, up to `band` \[Hz\].
@@ -120,7 +134,6 @@ pub(super) fn aligned_lines<E: Send>(
 pub(super) struct HitSpectra {
     pub force: Vec<Complex64>,
     pub motion: Vec<Complex64>,
-    pub impulse: f64,
     /// Variance of a line of the force by its channel's noise.
     pub force_noise: f64,
     /// Variance of a sample of the motion before the blow \[(m/s²)²\], where the record tells it.
@@ -152,16 +165,8 @@ fn of_record(history: &TimeHistory, widening: Widening, band: f64, by_place: &[C
         variance: Vec::with_capacity(lines.len()),
         by_force: Vec::with_capacity(lines.len()),
         scatter: noise.scatter(&spectra, &lines),
-        hits: spectra
-            .iter()
-            .map(|hit| HitLines {
-                value: vec![],
-                variance: vec![],
-                by_force: vec![],
-                force: vec![],
-                impulse: hit.impulse,
-            })
-            .collect(),
+        hits: vec![HitLines::default(); spectra.len()],
+        noise: OnceLock::new(),
     };
     for &line in &lines {
         let (mut cross, mut power, mut by_force) = (Complex64::ZERO, 0.0, 0.0);
@@ -196,7 +201,6 @@ fn spectra(hit: &Hit, rate: f64, decay_rate: f64) -> HitSpectra {
         blow.force.iter().enumerate().map(|(n, f)| if near(n) { f * fading(n) } else { 0.0 }).collect();
     force.resize(samples, 0.0);
     let mut motion: Vec<f64> = hit.acceleration.iter().enumerate().map(|(n, a)| a * fading(n)).collect();
-    let impulse = blow.force.iter().sum::<f64>() / rate;
     // Read beside the hit: a window over the record would have faded it later.
     let beside = peak.saturating_sub(BESIDE * reach)..(peak + BESIDE * reach).min(samples);
     let quiet: Vec<f64> = beside.filter(|&n| !near(n)).map(|n| (hit.force[n] - offset).abs()).collect();
@@ -209,7 +213,7 @@ fn spectra(hit: &Hit, rate: f64, decay_rate: f64) -> HitSpectra {
     let done = transform.process(&mut force, &mut f).and_then(|()| transform.process(&mut motion, &mut a));
     debug_assert!(done.is_ok());
     let motion_noise = hit.noise_before_blow().map(|noise| noise.acceleration * noise.acceleration);
-    HitSpectra { force: f, motion: a, impulse, force_noise, motion_noise }
+    HitSpectra { force: f, motion: a, force_noise, motion_noise }
 }
 
 pub(super) fn median(values: &[f64]) -> f64 {

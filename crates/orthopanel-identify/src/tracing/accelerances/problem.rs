@@ -1,5 +1,6 @@
 //! Resonances and the lines between them as one sum of squares, each weighed by what it is good for.
 
+use std::sync::OnceLock;
 use std::sync::atomic::AtomicU64;
 
 use num_complex::Complex64;
@@ -127,6 +128,7 @@ impl AccelerancesProblem {
                 by_force: vec![],
                 scatter: None,
                 hits: vec![],
+                noise: OnceLock::new(),
             })
         });
         self.lines = lines.collect();
@@ -265,6 +267,7 @@ impl AccelerancesProblem {
                 s: own.iter().map(|&at| record.s[at]).collect(),
                 value: own.iter().map(|&at| record.value[at]).collect(),
                 variance: own.iter().map(|&at| record.variance[at]).collect(),
+                noise: OnceLock::new(),
                 ..record.clone()
             };
             let lines: Vec<WidenedLines> = self.lines.iter().map(part).collect();

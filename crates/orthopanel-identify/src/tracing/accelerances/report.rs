@@ -142,6 +142,6 @@ fn panel(
     let problem = &search.problem;
     let settings = (0..problem.between.value.len()).filter_map(|index| problem.setup.setting(index));
     let places = settings.map(|setting| [setting.record.force_at, setting.record.response_at]);
-    let damping = (fit.state.zetas.len() - 1, problem.usual_log_zeta);
+    let damping = (fit.state.zetas.len(), problem.usual_log_zeta);
     Ok(bare_panel((test, search.piece), (&fit.state, std), &problem.held, damping, places)?)
 }

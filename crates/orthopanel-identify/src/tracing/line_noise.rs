@@ -1,4 +1,4 @@
-//! Noise of the force's channel in accelerances: one error for some hundred hertz of lines.
+//! Noise of accelerances, and what lines share of it: that of the force's channel is one error for some hundred hertz.
 //!
 //! The blow is cut out of its channel by a window of the length $T$, so the noise in its transform keeps its value over
 //! $1/T$, as does the error $-H\,\delta F/F$ that it makes of all the lines there. Taken for as many errors as there are lines
@@ -18,23 +18,26 @@ const SHARE: f64 = 0.85;
 /// Length of a stretch times that of the window.
 const STRETCH: f64 = 0.77;
 
-/// What the force's noise does to the lines of a record or of a hit.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub(super) struct BlowNoise {
-    /// $z$ of each line, and how many lines make a stretch.
+/// Noise of the lines of a record or of a hit: each line's own, and what the force's makes them share.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct LineNoise {
+    /// One over the deviation of each real number by what no other line shares.
+    pub weights: Vec<f64>,
+    /// $z$ of each line, and how many lines make a stretch; empty where none share anything.
     ties: Vec<Complex64>,
     stretch: usize,
     /// $\gamma$ of each stretch.
     taken: Vec<f64>,
 }
 
-impl BlowNoise {
-    /// Of lines `step` \[Hz\] apart with these values, variances and parts of the variance by the force; and the variance that is
-    /// left to each line.
-    pub(super) fn of(value: &[Complex64], [variance, by_force]: [&[f64]; 2], step: f64) -> (Self, Vec<f64>) {
+impl LineNoise {
+    /// Of lines `step` \[Hz\] apart with these values, variances and parts of the variance by the force.
+    pub(super) fn of(value: &[Complex64], [variance, by_force]: [&[f64]; 2], step: f64) -> Self {
+        // The variance counts real and imaginary part together.
+        let weights = |left: &[f64]| left.iter().map(|left| (2.0 / left).sqrt()).collect();
         let stretch = stretch(step);
         if by_force.len() != value.len() || stretch < 2 {
-            return (Self::default(), variance.to_vec());
+            return Self { weights: weights(variance), ties: vec![], stretch, taken: vec![] };
         }
         let left: Vec<f64> = variance.iter().zip(by_force).map(|(all, by_force)| all - SHARE * by_force).collect();
         let tie = |((value, by_force), left): ((&Complex64, &f64), &f64)| {
@@ -46,10 +49,10 @@ impl BlowNoise {
             if size > 0.0 { (1.0 - (1.0 + size).sqrt().recip()) / size } else { 0.0 }
         });
         let taken = taken.collect();
-        (Self { ties, stretch, taken }, left)
+        Self { weights: weights(&left), ties, stretch, taken }
     }
 
-    /// Takes it off real and imaginary parts of lines from `first` on, which is where a stretch begins.
+    /// Takes what lines share off real and imaginary parts of lines from `first` on, which is where a stretch begins.
     pub(super) fn whiten(&self, first: usize, [re, im]: [&mut [f64]; 2]) {
         if self.ties.is_empty() {
             return;
@@ -93,12 +96,13 @@ mod tests {
             (0..lines).map(|l| Complex64::from_polar(1.0 + 0.1 * l as f64, 0.3 * l as f64)).collect();
         let by_force: Vec<f64> = value.iter().map(|h| 1e-4 * h.norm_sqr()).collect();
         let variance: Vec<f64> = by_force.iter().map(|by_force| by_force + 3e-4).collect();
-        let (blow, left) = BlowNoise::of(&value, [&variance, &by_force], step);
-        assert_eq!(blow.stretch, 16);
+        let noise = LineNoise::of(&value, [&variance, &by_force], step);
+        assert_eq!(noise.stretch, 16);
+        let left: Vec<f64> = noise.weights.iter().map(|weight| 2.0 / (weight * weight)).collect();
         let missed: Vec<Complex64> = (0..lines).map(|l| Complex64::new((l * l) as f64 % 7.0, l as f64 % 5.0)).collect();
         let (mut re, mut im): (Vec<f64>, Vec<f64>) =
             missed.iter().zip(&left).map(|(r, left)| (r.re / left.sqrt(), r.im / left.sqrt())).unzip();
-        blow.whiten(0, [&mut re, &mut im]);
+        noise.whiten(0, [&mut re, &mut im]);
         let found: f64 = re.iter().chain(&im).map(|part| part * part).sum();
         let mut wanted = 0.0;
         for from in (0..lines).step_by(16) {
@@ -129,7 +133,7 @@ mod tests {
     #[test]
     fn lines_far_apart_share_nothing() {
         let value = [Complex64::ONE; 4];
-        let (blow, left) = BlowNoise::of(&value, [&[1.0; 4], &[0.5; 4]], 200.0);
-        assert_eq!((blow, left), (BlowNoise::default(), vec![1.0; 4]));
+        let noise = LineNoise::of(&value, [&[1.0; 4], &[0.5; 4]], 200.0);
+        assert_eq!((noise.ties, noise.weights), (vec![], vec![2.0_f64.sqrt(); 4]));
     }
 }
