@@ -4,7 +4,6 @@ use std::fmt::Write as _;
 
 use orthopanel_fmu::{GENERATOR, Resource};
 
-use crate::acceleration_band::AccelerationBands;
 use crate::origin::Origin;
 use crate::{FmiVersion, FmuOptions};
 
@@ -37,14 +36,18 @@ pub(crate) fn write(resource: &Resource, from: Option<&Origin<'_>>, options: &Fm
     page += "</p>\n<h2>Modes</h2>\n<p>";
     page += MODES;
     page += INITIAL_STATE;
-    page += "</p>\n<table>\n<tr><th>frequency [Hz]</th><th>damping ratio</th></tr>\n";
-    for mode in resource.model().modes() {
-        let frequency = mode.angular_frequency / std::f64::consts::TAU;
-        let _ = writeln!(page, "<tr><td>{frequency:.3}</td><td>{}</td></tr>", mode.damping_ratio);
+    page += "</p>\n<table>\n<tr><th>mode</th><th>frequency [Hz]</th><th>damping ratio</th></tr>\n";
+    for (index, mode) in resource.model().modes().iter().enumerate() {
+        let (number, frequency) = (index + 1, mode.angular_frequency / std::f64::consts::TAU);
+        // Digits enough to tell the FMU's from another's, none that are an accident of binary numbers.
+        let zeta = if mode.damping_ratio == 0.0 { "0".into() } else { format!("{:.4e}", mode.damping_ratio) };
+        let _ = writeln!(page, "<tr><td>{number}</td><td>{frequency:.3}</td><td>{zeta}</td></tr>");
     }
     page += "</table>\n";
-    page += &left_out(resource, from.and_then(|from| from.bands.as_ref()));
-    page += &from.map(Origin::section).unwrap_or_default();
+    if let Some(from) = from {
+        page += &left_out(resource, from);
+        page += &from.section();
+    }
     let _ = write!(page, "<p>Written by {GENERATOR}.</p>\n</body>\n</html>\n");
     page
 }
@@ -70,16 +73,27 @@ const LINEAR: &str = " If the parameter force_linear is true, the force of a ste
      end of the last step to the value now set: set the value of the step's end before the step; until it is done, \
      outputs are those of the old value. Each mode is then \
      advanced exactly, whatever the step.";
-const MODES: &str = "Rigid modes have the frequency 0. Outputs are sums over these modes.";
+const MODES: &str = "Rigid modes have the frequency 0. Outputs are sums over these modes. A mode's number is that of its \
+     modal_position; damping_ratio_1 is of the first flexible one.";
 const INITIAL_STATE: &str = " The panel starts at rest. Where modal_position_1, modal_velocity_1 and so on are set before or in \
      initialization mode, it starts bent or moving: a displacement is the sum of these positions, each times the shape of its \
      mode, which in initialization mode is the directional derivative of the displacement by the position. A reset brings it to \
      rest again.";
 
 /// What the modes left out add to displacements, and up to where an acceleration can do without them: a row a pair of ports.
-fn left_out(resource: &Resource, bands: Option<&AccelerationBands>) -> String {
-    let Some(bands) = bands else { return String::new() };
+fn left_out(resource: &Resource, Origin { bands, .. }: &Origin<'_>) -> String {
     let mut text = String::from(LEFT_OUT);
+    text += &match bands.frequency_change() {
+        Some(change) => {
+            let change = if change < 1e-8 { "less than 1e-8".into() } else { format!("{change:.0e}") };
+            format!(
+                " The modes kept are those of the basis for their number: on that for three times as many their frequencies differ \
+                 by up to {change} of themselves, which near a resonance changes the accelerance by as much over its damping ratio."
+            )
+        }
+        None => BESIDE_CORE.into(),
+    };
+    text += LEFT_OUT_TABLE;
     for (r, row) in resource.static_remainder().iter().enumerate() {
         for (f, &remainder) in row.iter().enumerate() {
             let band = match bands.within_one_percent(r, f) {
@@ -100,8 +114,10 @@ fn left_out(resource: &Resource, bands: Option<&AccelerationBands>) -> String {
 const LEFT_OUT: &str = "<h2>What the modes left out do</h2>\n<p>At rest they would add to displacements what stands on the left, \
      times the force, and this is added. An acceleration lacks what they do: up to the frequency on the right that is less \
      than 1 % of the root mean square of the accelerance over the octave around, by three times as many modes and the static \
-     part of the rest. At an antiresonance, where little is left of the whole, it is a larger part.</p>\n\
-     <table>\n<tr><th>static part of the modes left out</th><th>band</th></tr>\n";
+     part of the rest. At an antiresonance, where little is left of the whole, it is a larger part.";
+const BESIDE_CORE: &str = " At rest the core has its low modulus: where it has stiffened, what is added to displacements is too \
+     much by its share of that. Accelerances are by the core's own law here, without the error of its fit.";
+const LEFT_OUT_TABLE: &str = "</p>\n<table>\n<tr><th>static part of the modes left out</th><th>band</th></tr>\n";
 
 pub(crate) fn escaped(text: &str) -> String {
     quick_xml::escape::escape(text).into_owned()

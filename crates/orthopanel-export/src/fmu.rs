@@ -105,8 +105,7 @@ impl Fmu {
         check(&ports, options)?;
         let (alone, _) = panel.panel_alone().map_err(FmuError::from)?;
         let (resource, core) = Resource::of_panel(&alone, range, ports)?;
-        let bands =
-            if core.is_none() { Some(AccelerationBands::of(&alone, &resource).map_err(FmuError::from)?) } else { None };
+        let bands = AccelerationBands::of(&alone, &resource).map_err(FmuError::from)?;
         Self::of_resource(resource, Some(Origin { panel, core, bands }), options)
     }
 

@@ -13,8 +13,7 @@ pub(crate) struct Origin<'a> {
     pub panel: &'a PanelModel,
     /// How the core's modulus is fitted, where one relaxes.
     pub core: Option<CoreFit>,
-    /// Up to where accelerations hold; not told of a core, in whose modes internal variables mix.
-    pub bands: Option<AccelerationBands>,
+    pub bands: AccelerationBands,
 }
 
 impl Origin<'_> {

@@ -61,6 +61,10 @@ impl Panel {
         Ok((Self { model, flexible_modes }, solution))
     }
 
+    pub(crate) fn flexible_modes(&self) -> usize {
+        self.flexible_modes
+    }
+
     /// Checks what a file says of the panel against the modes and ports beside it: lists are made by these numbers.
     ///
     /// # Errors

@@ -75,6 +75,11 @@ impl Resource {
         &self.model
     }
 
+    /// Flexible modes that are kept; of a panel with a core its own, without the internal variables.
+    pub fn flexible_modes(&self) -> usize {
+        self.panel.as_ref().map_or_else(|| self.model.flexible().count(), Panel::flexible_modes)
+    }
+
     /// Places of forces and responses.
     pub fn ports(&self) -> &Ports {
         &self.ports

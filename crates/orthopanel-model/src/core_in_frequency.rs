@@ -66,6 +66,29 @@ impl PanelModel {
         force: Place,
         response: Place,
     ) -> Result<Option<RelaxingLines>, ModelError> {
+        self.lines_of_core(highest, [force, response], true)
+    }
+
+    /// As [`PanelModel::relaxing_lines`], of the coordinates alone that [`PanelModel::time_model`] steps: without what forces at the
+    /// two places do beyond these.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn relaxing_lines_of_modes(
+        &self,
+        modes: ModeRange,
+        force: Place,
+        response: Place,
+    ) -> Result<Option<RelaxingLines>, ModelError> {
+        self.lines_of_core(modes, [force, response], false)
+    }
+
+    fn lines_of_core(
+        &self,
+        highest: ModeRange,
+        [force, response]: [Place; 2],
+        with_ports: bool,
+    ) -> Result<Option<RelaxingLines>, ModelError> {
         if !self.relaxes() {
             return Ok(None);
         }
@@ -79,7 +102,7 @@ impl PanelModel {
         let count = count.max(1);
         let even = self.even(&setting, count)?;
         let parts = self.on_even(&setting, &even, &values, &effects);
-        RelaxingLines::new(parts, count, [force, response])
+        RelaxingLines::new(parts, count, [force, response], with_ports)
     }
 }
 

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use crate::effects::{DressedPanel, Flexibilities, MOST_SUMMED, SPARE_MODES};
 use crate::mindlin_plate::FixedPlate;
+use crate::time_model::CORE;
 use crate::{
     EffectSetting, MindlinPlate, ModalModel, ModeRange, ModelError, Motion, PanelModel, Place, StaticFlexibility,
     Structure, StructureKind, static_deflections,
@@ -15,7 +16,8 @@ const STATIC_BASIS: usize = 120;
 impl PanelModel {
     /// $\sum_m W_m(r)W_m(f)/\omega_m^2$ \[m/N\] over the flexible modes: a row a response, a column a force. All modes in closed
     /// form for a beam; for a plate all of a basis for `count` modes or 120, whichever is more, since at a point force no
-    /// sum over a plate's modes ends. Effects with shapes of their own for what they and the forces do. `None` beside a core that relaxes.
+    /// sum over a plate's modes ends. Effects with shapes of their own for what they and the forces do; a core that relaxes at its low
+    /// modulus, which it has at rest.
     ///
     /// Less the sum over the modes that a model keeps, it is what the others add at rest.
     ///
@@ -26,9 +28,11 @@ impl PanelModel {
         count: usize,
         forces: &[Place],
         responses: &[Place],
-    ) -> Result<Option<Vec<Vec<f64>>>, ModelError> {
+    ) -> Result<Vec<Vec<f64>>, ModelError> {
         if self.relaxes() {
-            return Ok(None);
+            let mut relaxed = self.clone();
+            relaxed.effects.retain(|entry| entry.id != CORE);
+            return relaxed.static_flexibility(count, forces, responses);
         }
         let flexibility = if self.effects.is_empty() {
             self.bare_flexibility(count, forces, responses)?
@@ -40,7 +44,7 @@ impl PanelModel {
             let dressed = DressedPanel::static_flexibility(parts, count, forces, responses)?;
             self.on_large_basis(dressed, None, (&values, count.min(MOST_SUMMED)), forces, responses)?
         };
-        finite(flexibility).map(Some)
+        finite(flexibility)
     }
 
     /// The modes of a range, as seen from these ports, and [`PanelModel::static_flexibility`] between these, in one.
@@ -55,7 +59,7 @@ impl PanelModel {
             _ => {
                 let modes = self.modal_model(range, forces, responses)?;
                 let all = self.static_flexibility(modes.flexible().count(), forces, responses)?;
-                return Ok((modes, all.unwrap_or_default()));
+                return Ok((modes, all));
             }
         };
         let (values, effects) = self.with_effects()?;

@@ -13,7 +13,7 @@ pub struct TimeModel {
     /// How the core's modulus is fitted, where there is one.
     pub core: Option<CoreFit>,
     /// What the flexible modes that these leave out add to displacements at rest, $\sum W_rW_f/\omega^2$ \[m/N\]: a row a
-    /// response, a column a force. Zero beside a core that relaxes, where the sum over all is not known.
+    /// response, a column a force. Beside a core that relaxes what its internal variables and modes together lack there.
     pub static_remainder: Vec<Vec<f64>>,
 }
 
@@ -39,7 +39,7 @@ impl PanelModel {
     }
 
     /// What the flexible modes that these leave out add to displacements at rest, $\sum W_rW_f/\omega^2$ \[m/N\]: a row a response,
-    /// a column a force. Zero beside a core that relaxes, where the sum over all is not known.
+    /// a column a force.
     ///
     /// # Errors
     /// As [`PanelModel::static_flexibility`].
@@ -50,7 +50,7 @@ impl PanelModel {
         responses: &[Place],
     ) -> Result<Vec<Vec<f64>>, ModelError> {
         let all = self.static_flexibility(modes.flexible().count(), forces, responses)?;
-        Ok(all.map_or_else(|| vec![vec![0.0; forces.len()]; responses.len()], |all| modes.left_of_flexibility(all)))
+        Ok(modes.left_of_flexibility(all))
     }
 
     /// `None` for a panel without a viscoelastic core.
@@ -84,7 +84,7 @@ impl PanelModel {
         let Some((modes, fit)) = found else { return Ok(None) };
         let modes: Vec<_> = modes.into_iter().map(crate::PanelMode::of_dressed).collect();
         let modes = ModalModel::of_modes(&modes, &self.damping, forces, responses)?;
-        let static_remainder = vec![vec![0.0; forces.len()]; responses.len()];
+        let static_remainder = modes.left_of_flexibility(self.static_flexibility(flexible, forces, responses)?);
         Ok(Some(TimeModel { modes, flexible, core: Some(fit), static_remainder }))
     }
 

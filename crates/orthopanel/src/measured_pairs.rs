@@ -58,8 +58,8 @@ pub struct ComparedPair {
     pub hits: Vec<HitComparison>,
     /// The modes that were driven.
     pub modes: ModalModel,
-    /// Static flexibility of all flexible modes \[m/N\], where it is known.
-    pub static_flexibility: Option<f64>,
+    /// Static flexibility of all flexible modes \[m/N\].
+    pub static_flexibility: f64,
 }
 
 impl ComparedPair {
@@ -76,8 +76,10 @@ impl ComparedPair {
         let (force, response) = (history.force_at, history.response_at);
         let seen = modes_up_to(model, history.rate, force, response)?;
         let all = model.static_flexibility(seen.modes().len(), &[force], &[response])?;
-        let static_flexibility = all.map(|all| all[0][0]);
-        let settings = HistorySettings { between_samples, static_flexibility, band, ..HistorySettings::default() };
+        let static_flexibility = all[0][0];
+        let known = Some(static_flexibility);
+        let settings =
+            HistorySettings { between_samples, static_flexibility: known, band, ..HistorySettings::default() };
         let hits = compare_time_history(&seen, &history, &settings)?;
         Ok(Self { verdicts: history.verdicts(), history, hits, modes: seen, static_flexibility })
     }

@@ -14,7 +14,7 @@ use crate::{ModelError, Place};
 /// With the law $g(s)$ of a [`CoreModulus`], and no fit of it,
 /// $$H(s) = s^2\,r^T\big[s^2M + sC + K + (g(s)-1)S\big]^{-1}f$$
 /// in the coordinates in which [`PanelModel::time_model`](crate::PanelModel::time_model) relaxes, with shapes of their own for what
-/// forces at the two places and at the elements do.
+/// forces at the elements do, and at the two places if so asked.
 #[derive(Debug, Clone)]
 pub struct RelaxingLines {
     /// Scaled to a stiffness of one a coordinate.
@@ -33,8 +33,10 @@ impl RelaxingLines {
         parts: PanelWithEffects,
         count: usize,
         [force, response]: [Place; 2],
+        with_ports: bool,
     ) -> Result<Option<Self>, ModelError> {
-        let found = Relaxing::new(parts, count, &[force, response])?;
+        let ports = [force, response];
+        let found = Relaxing::new(parts, count, if with_ports { &ports } else { &[] })?;
         let Some(Relaxing { panel, system, shear, core, .. }) = found else { return Ok(None) };
         let rigid = panel.rigid();
         // Of coordinates that others hold already, none has a stiffness of its own.
