@@ -2,6 +2,7 @@
 
 import shutil
 import subprocess
+from dataclasses import replace
 from pathlib import Path
 
 import fmpy
@@ -13,6 +14,9 @@ from modal_sum import modes_at
 HERE = Path(__file__).resolve().parent / "c_harness"
 PROPAGATOR = ROOT / "benches/fmu_c"
 FLAGS = ["-std=c11", "-O1", "-g", "-Wall", "-Wextra", "-Werror"]
+
+# The parameter that is set anew, and its other value.
+CHANGED, VALUE = "thickness", 0.027
 
 pytestmark = pytest.mark.skipif(not shutil.which("gcc"), reason="needs gcc")
 
@@ -30,9 +34,10 @@ def command(fmu, tmp_path_factory):
     words = ["gcc", *FLAGS, f"-I{headers}", f"-I{PROPAGATOR}", *sources, "-o", program, "-ldl", "-lm"]
     subprocess.run(list(map(str, words)), check=True)
     # The numbers are held against modes of our own, not the FMU's.
-    modes = modes_at(BEAM, ZETAS, FORCES[0], RESPONSES[0])
-    text = folder / "modes.txt"
-    text.write_text("".join(f"{omega:.17g} {zeta:.17g} {shape:.17g} 1.0\n" for omega, zeta, shape in modes))
+    text, changed = folder / "modes.txt", folder / "changed-modes.txt"
+    for file, beam in ((text, BEAM), (changed, replace(BEAM, **{CHANGED: VALUE}))):
+        modes = modes_at(beam, ZETAS, FORCES[0], RESPONSES[0])
+        file.write_text("".join(f"{omega:.17g} {zeta:.17g} {shape:.17g} 1.0\n" for omega, zeta, shape in modes))
     references = {v.name: str(v.valueReference) for v in description.modelVariables}
     library = next((unpacked / "binaries").glob("*/*.so"))
     resources = unpacked / "resources"
@@ -41,6 +46,7 @@ def command(fmu, tmp_path_factory):
     if is_three:
         rates = [unknown.variable for unknown in description.derivatives]
         names += [",".join(str(v.valueReference) for v in list) for list in ([v.derivative for v in rates], rates)]
+    names += [references[CHANGED], VALUE, changed]
     token = description.instantiationToken if is_three else description.guid
     return list(map(str, [program, library, token, *where, *names]))
 

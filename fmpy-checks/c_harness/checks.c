@@ -1,8 +1,10 @@
-/* What an importer in C sees of an FMI 2.0 FMU: numbers, reset, state round trips, derivatives against differences, many instances.
+/* What an importer in C sees of an FMI 2.0 FMU: numbers, reset, state round trips, derivatives against differences, a panel
+ * solved anew, many instances.
  *
- *     checks LIBRARY GUID RESOURCES-URI MODES-TEXT FORCE ACCELERATION DISPLACEMENT INSTANCES
+ *     checks LIBRARY GUID RESOURCES-URI MODES-TEXT FORCE ACCELERATION DISPLACEMENT PARAMETER VALUE MODES-TEXT INSTANCES
  *
- * The three are value references; the modes are those that the numbers are held against. Prints what failed, and returns how many checks did.
+ * The first three are value references, as the parameter; the modes are those that the numbers are held against, the second ones
+ * those of the panel with that value of the parameter. Prints what failed, and returns how many checks did.
  */
 #include "common.h"
 #include "fmi2Functions.h"
@@ -12,7 +14,7 @@ static void logger(fmi2ComponentEnvironment e, fmi2String n, fmi2Status s, fmi2S
 }
 
 int main(int argc, char **argv) {
-    if (argc != 9) return 101;
+    if (argc != 12) return 101;
     void *library = dlopen(argv[1], RTLD_NOW | RTLD_LOCAL);
     if (!library) {
         printf("%s\n", dlerror());
@@ -85,8 +87,24 @@ int main(int argc, char **argv) {
     }
     fmi2FreeInstance_(c);
 
+    /* A parameter set before the start: the modes are solved anew. */
+    const fmi2ValueReference parameter = (fmi2ValueReference)atoi(argv[8]);
+    const double value = atof(argv[9]);
+    c = fmi2Instantiate_("changed", fmi2CoSimulation, argv[2], argv[3], &callbacks, fmi2False, fmi2False);
+    CHECK(c && fmi2SetReal_(c, &parameter, 1, &value) == fmi2OK);
+    CHECK(fmi2EnterInitializationMode_(c) == fmi2OK && fmi2ExitInitializationMode_(c) == fmi2OK);
+    for (int n = 0; n < STEPS; n++) {
+        double pushed = force_at(n);
+        CHECK(fmi2SetReal_(c, &force, 1, &pushed) == fmi2OK && fmi2DoStep_(c, n * STEP, STEP, fmi2False) == fmi2OK);
+        CHECK(fmi2GetReal_(c, outputs, 2, runs[1][n]) == fmi2OK);
+    }
+    CHECK(!as_expected(runs[1], expected));
+    expect(argv[10], expected);
+    CHECK(as_expected(runs[1], expected));
+    fmi2FreeInstance_(c);
+
     /* Many instances, one after the other, each with a state that is never freed: no growth once the heap has settled. */
-    long instances = atol(argv[8]), settled = 0;
+    long instances = atol(argv[11]), settled = 0;
     for (long n = 0; n < instances; n++) {
         c = fmi2Instantiate_("many", fmi2CoSimulation, argv[2], argv[3], &callbacks, fmi2False, fmi2False);
         fmi2FMUstate left = NULL;

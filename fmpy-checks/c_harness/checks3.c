@@ -1,10 +1,12 @@
 /* What an importer in C sees of an FMI 3.0 FMU: numbers, reset, state round trips, derivatives of both interfaces against
- * differences, instances side by side, many instances.
+ * differences, instances side by side, a panel solved anew, many instances.
  *
- *     checks3 LIBRARY TOKEN RESOURCES MODES-TEXT FORCE ACCELERATION DISPLACEMENT STATES DERIVATIVES INSTANCES
+ *     checks3 LIBRARY TOKEN RESOURCES MODES-TEXT FORCE ACCELERATION DISPLACEMENT STATES DERIVATIVES PARAMETER VALUE MODES-TEXT
+ *         INSTANCES
  *
- * The folder of the resources ends in a slash; the three are value references, states and their derivatives lists of such
- * with commas; the modes are those that the numbers are held against. Prints what failed, and returns how many checks did.
+ * The folder of the resources ends in a slash; the first three are value references, as the parameter, states and their
+ * derivatives lists of such with commas; the modes are those that the numbers are held against, the second ones those of the panel
+ * with that value of the parameter. Prints what failed, and returns how many checks did.
  */
 #include "common.h"
 #include "fmi3Functions.h"
@@ -21,7 +23,7 @@ static size_t references(const char *list, fmi3ValueReference *found) {
 }
 
 int main(int argc, char **argv) {
-    if (argc != 11) return 101;
+    if (argc != 14) return 101;
     void *library = dlopen(argv[1], RTLD_NOW | RTLD_LOCAL);
     if (!library) {
         printf("%s\n", dlerror());
@@ -119,6 +121,21 @@ int main(int argc, char **argv) {
     }
     fmi3FreeInstance_(c);
 
+    /* A parameter set before the start: the modes are solved anew. */
+    const fmi3ValueReference parameter = (fmi3ValueReference)atoi(argv[10]);
+    const double value = atof(argv[11]);
+    c = NEW("changed");
+    CHECK(c && fmi3SetFloat64_(c, &parameter, 1, &value, 1) == fmi3OK && INITIALIZED(c));
+    for (int n = 0; n < STEPS; n++) {
+        double pushed = force_at(n);
+        CHECK(fmi3SetFloat64_(c, &force, 1, &pushed, 1) == fmi3OK && STEPPED(c, n));
+        CHECK(fmi3GetFloat64_(c, outputs, 2, runs[1][n], 2) == fmi3OK);
+    }
+    CHECK(!as_expected(runs[1], expected));
+    expect(argv[12], expected);
+    CHECK(as_expected(runs[1], expected));
+    fmi3FreeInstance_(c);
+
     /* Model exchange: the same of the derivatives of all states by all states, along a seed, and the adjoint of it. */
     c = fmi3InstantiateModelExchange_("continuous", argv[2], argv[3], fmi3False, fmi3False, NULL, logger);
     size_t told = 0;
@@ -148,7 +165,7 @@ int main(int argc, char **argv) {
     if (c) fmi3FreeInstance_(c);
 
     /* Many instances, one after the other, each with a state that is never freed: no growth once the heap has settled. */
-    long instances = atol(argv[10]), settled = 0;
+    long instances = atol(argv[13]), settled = 0;
     for (long n = 0; n < instances; n++) {
         c = NEW("many");
         fmi3FMUState left = NULL;
