@@ -26,6 +26,9 @@ unsafe extern "C" {
     fn fmi2GetDerivatives(instance: Pointer, values: *mut f64, count: usize) -> c_int;
     fn fmi2GetNominalsOfContinuousStates(instance: Pointer, values: *mut f64, count: usize) -> c_int;
     fn fmi2GetEventIndicators(instance: Pointer, values: *mut f64, count: usize) -> c_int;
+    fn fmi2GetReal(i: Pointer, references: *const u32, count: usize, values: *mut f64) -> c_int;
+    fn fmi2SetReal(i: Pointer, references: *const u32, count: usize, values: *const f64) -> c_int;
+    fn fmi2SetDebugLogging(i: Pointer, on: c_int, count: usize, categories: *const *const c_char) -> c_int;
     fn fmi2FreeInstance(instance: Pointer);
     fn fmi3EnterInitializationMode(i: Pointer, has: u8, tolerance: f64, start: f64, stops: u8, stop: f64) -> c_int;
     fn fmi3ExitInitializationMode(instance: Pointer) -> c_int;
@@ -35,6 +38,20 @@ unsafe extern "C" {
     fn fmi3GetEventIndicators(instance: Pointer, values: *mut f64, count: usize) -> c_int;
     fn fmi3GetNumberOfContinuousStates(instance: Pointer, count: *mut usize) -> c_int;
     fn fmi3GetNumberOfEventIndicators(instance: Pointer, count: *mut usize) -> c_int;
+    fn fmi3GetFloat64(i: Pointer, references: *const u32, count: usize, values: *mut f64, sizes: usize) -> c_int;
+    fn fmi3SetFloat64(i: Pointer, references: *const u32, count: usize, values: *const f64, sizes: usize) -> c_int;
+    fn fmi3Reset(instance: Pointer) -> c_int;
+    fn fmi3SetDebugLogging(i: Pointer, on: u8, count: usize, categories: *const *const c_char) -> c_int;
+    fn fmi3DoStep(
+        instance: Pointer,
+        start: f64,
+        step: f64,
+        no_state_before: u8,
+        event: *mut u8,
+        terminate: *mut u8,
+        early: *mut u8,
+        reached: *mut f64,
+    ) -> c_int;
     fn fmi3FreeInstance(instance: Pointer);
 }
 
@@ -89,6 +106,140 @@ fn regress_null_pointers_in_status_calls_are_errors() {
         fmi2FreeInstance(instance);
     }
     assert_eq!((real, whole), (0.0, 0));
+}
+
+/// An initialized instance of FMI 3.0 for co-simulation that logs to `last`, which outlives it.
+fn of_fmi3([token, path, _]: &[CString; 3], last: &Mutex<String>) -> Pointer {
+    let (environment, logger) = ((&raw const *last).cast_mut().cast(), log as *mut std::ffi::c_void);
+    let (name, no): (_, Pointer) = (c"panel".as_ptr(), null_mut());
+    // SAFETY: C strings that live through the calls, and an environment that outlives the instance.
+    unsafe {
+        let (token, path) = (token.as_ptr(), path.as_ptr());
+        let instance =
+            fmi3InstantiateCoSimulation(name, token, path, 0, 0, 0, 0, no.cast(), 0, environment, logger, no);
+        assert!(!instance.is_null());
+        assert_eq!(fmi3EnterInitializationMode(instance, 0, 0.0, 0.0, 0, 0.0), 0);
+        assert_eq!(fmi3ExitInitializationMode(instance), 0);
+        instance
+    }
+}
+
+/// Reference of `force_1` in every panel of one force: behind `time` and `force_linear`.
+static FORCE: u32 = 2;
+
+#[test]
+fn regress_null_lists_of_variables_and_values_are_errors() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let fmu = write(folder.path());
+    let last = Mutex::new(String::new());
+    let (two, three) = (of_fmi2(&fmu, 1), of_fmi3(&fmu, &last));
+    let said = || std::mem::take(&mut *last.lock().expect("sound"));
+    let (force, mut value) = (&raw const FORCE, 3.0);
+    let (no_references, nowhere): (*const u32, *mut f64) = (std::ptr::null(), null_mut());
+    // SAFETY: null, or live instances with lists of one entry.
+    unsafe {
+        assert_eq!(fmi2EnterInitializationMode(two), 0);
+        assert_eq!(fmi2ExitInitializationMode(two), 0);
+        assert_eq!(fmi2SetReal(two, force, 1, &value), 0);
+        assert_eq!(fmi3SetFloat64(three, force, 1, &value, 1), 0);
+        value = 7.0;
+        assert_eq!(fmi2GetReal(two, no_references, 1, &mut value), ERROR);
+        assert_eq!(fmi2GetReal(two, force, 1, nowhere), ERROR);
+        assert_eq!(fmi2SetReal(two, no_references, 1, &value), ERROR);
+        assert_eq!(fmi2SetReal(two, force, 1, nowhere), ERROR);
+        assert_eq!(fmi2GetReal(null_mut(), force, 1, &mut value), ERROR);
+        assert_eq!(fmi2SetReal(null_mut(), force, 1, &value), ERROR);
+        assert_eq!(fmi3GetFloat64(three, no_references, 1, &mut value, 1), ERROR);
+        assert!(said().contains("fmi3GetFloat64: valueReferences is a null pointer"));
+        assert_eq!(fmi3GetFloat64(three, force, 1, nowhere, 1), ERROR);
+        assert!(said().contains("fmi3GetFloat64: values is a null pointer"));
+        assert_eq!(fmi3SetFloat64(three, no_references, 1, &value, 1), ERROR);
+        assert!(said().contains("fmi3SetFloat64: valueReferences is a null pointer"));
+        assert_eq!(fmi3SetFloat64(three, force, 1, nowhere, 1), ERROR);
+        assert!(said().contains("fmi3SetFloat64: values is a null pointer"));
+        assert_eq!(fmi3GetFloat64(null_mut(), force, 1, &mut value, 1), ERROR);
+        assert_eq!(fmi3SetFloat64(null_mut(), force, 1, &value, 1), ERROR);
+        // A refused call writes nothing; a list of nothing need not be there.
+        assert_eq!(value, 7.0);
+        assert_eq!(fmi2GetReal(two, no_references, 0, nowhere), 0);
+        assert_eq!(fmi2SetReal(two, no_references, 0, nowhere), 0);
+        assert_eq!(fmi3GetFloat64(three, no_references, 0, nowhere, 0), 0);
+        assert_eq!(fmi3SetFloat64(three, no_references, 0, nowhere, 0), 0);
+        assert_eq!(fmi2GetReal(two, force, 1, &mut value), 0);
+        assert_eq!(value, 3.0, "the force as it was set first");
+        value = 7.0;
+        assert_eq!(fmi3GetFloat64(three, force, 1, &mut value, 1), 0);
+        assert_eq!(value, 3.0, "the force as it was set first");
+        fmi2FreeInstance(two);
+        fmi3FreeInstance(three);
+    }
+}
+
+#[test]
+fn regress_a_step_with_a_null_place_for_an_answer_is_not_taken() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let last = Mutex::new(String::new());
+    let instance = of_fmi3(&write(folder.path()), &last);
+    let (mut flags, mut reached) = ([9_u8; 3], -1.0);
+    let [event, terminate, early] = flags.each_mut().map(std::ptr::from_mut);
+    let (no, end): (*mut u8, _) = (null_mut(), &raw mut reached);
+    let names = ["eventHandlingNeeded", "terminateSimulation", "earlyReturn", "lastSuccessfulTime"];
+    let places = [
+        (no, terminate, early, end),
+        (event, no, early, end),
+        (event, terminate, no, end),
+        (event, terminate, early, null_mut()),
+    ];
+    // SAFETY: a live instance, and null or places for the answers.
+    unsafe {
+        for (name, (event, terminate, early, end)) in names.into_iter().zip(places) {
+            assert_eq!(fmi3DoStep(instance, 0.0, 1e-3, 0, event, terminate, early, end), ERROR);
+            let said = last.lock().expect("sound").clone();
+            assert!(said.contains(&format!("{name} is a null pointer")), "{said}");
+        }
+        assert_eq!(*end, -1.0);
+        // It still stands at its start, so the same step is taken now.
+        assert_eq!(fmi3DoStep(instance, 0.0, 1e-3, 0, event, terminate, early, end), 0);
+        fmi3FreeInstance(instance);
+    }
+    assert_eq!((flags, reached), ([0; 3], 1e-3));
+}
+
+#[test]
+fn regress_unknown_and_null_log_categories_are_errors() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let fmu = write(folder.path());
+    let last = Mutex::new(String::new());
+    let (two, three) = (of_fmi2(&fmu, 1), of_fmi3(&fmu, &last));
+    let said = || std::mem::take(&mut *last.lock().expect("sound"));
+    let lists = [
+        ([c"logEvents".as_ptr(), c"logNothing".as_ptr()], "log category \"logNothing\": there are logEvents"),
+        ([c"logEvents".as_ptr(), std::ptr::null()], "category is a null pointer"),
+        ([c"logEvents".as_ptr(), c"\xff".as_ptr()], "category is not UTF-8 text"),
+    ];
+    // SAFETY: null, or live instances with lists of as many C strings or null as said.
+    unsafe {
+        for (list, message) in lists {
+            assert_eq!(fmi2SetDebugLogging(two, 1, 2, list.as_ptr()), ERROR);
+            assert_eq!(fmi3SetDebugLogging(three, 1, 2, list.as_ptr()), ERROR);
+            let said = said();
+            assert!(said.contains("fmi3SetDebugLogging") && said.contains(message), "{said}");
+        }
+        assert_eq!(fmi2SetDebugLogging(two, 1, 1, std::ptr::null()), ERROR);
+        assert_eq!(fmi3SetDebugLogging(three, 1, 1, std::ptr::null()), ERROR);
+        assert!(said().contains("categories is a null pointer"));
+        assert_eq!(fmi2SetDebugLogging(null_mut(), 1, 0, std::ptr::null()), ERROR);
+        assert_eq!(fmi3SetDebugLogging(null_mut(), 1, 0, std::ptr::null()), ERROR);
+        // None of these switched events on; no list at all means every category, and does.
+        assert_eq!(fmi3Reset(three), 0);
+        assert_eq!(said(), "");
+        assert_eq!(fmi2SetDebugLogging(two, 1, 0, std::ptr::null()), 0);
+        assert_eq!(fmi3SetDebugLogging(three, 1, 0, std::ptr::null()), 0);
+        assert_eq!(fmi3Reset(three), 0);
+        assert_eq!(said(), "reset");
+        fmi2FreeInstance(two);
+        fmi3FreeInstance(three);
+    }
 }
 
 /// Status of states, derivatives, nominals and indicators, asked one after the other.
