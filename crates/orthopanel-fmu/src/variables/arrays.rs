@@ -4,6 +4,8 @@ use std::ops::Range;
 
 use orthopanel_model::{Place, Ports};
 
+use super::HOLD;
+
 /// Variables of one kind as one array; its reference is that of the first.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Array {
@@ -19,18 +21,21 @@ pub struct Array {
 pub(super) fn of(ports: &Ports) -> Vec<Array> {
     // `time` and `force_linear` come first.
     let mut next = 2;
-    let kinds: [(&str, &str, &[Place]); 4] = [
-        ("force", "Forces", &ports.forces),
-        ("acceleration", "The panel's accelerations", &ports.responses),
-        ("velocity", "The panel's velocities", &ports.responses),
-        ("displacement", "The panel's displacements", &ports.responses),
+    let kinds: [(&str, &str, &[Place], Option<&str>); 4] = [
+        ("force", "Forces", &ports.forces, Some(HOLD)),
+        ("acceleration", "The panel's accelerations", &ports.responses, None),
+        ("velocity", "The panel's velocities", &ports.responses, None),
+        ("displacement", "The panel's displacements", &ports.responses, None),
     ];
-    let array = |(name, words, places): (&'static str, &str, &[Place])| {
+    let array = |(name, words, places, also): (&'static str, &str, &[Place], Option<&str>)| {
         let at: Vec<String> = places.iter().map(|place| format!("({}, {})", place.x, place.y)).collect();
         let first = next;
         // As many places fit into memory: the number never reaches 2^32.
         next += u32::try_from(places.len()).unwrap_or(u32::MAX);
-        let description = format!("{words} at (x, y) = {} m from the centre, positive along +z", at.join(", "));
+        let mut description = format!("{words} at (x, y) = {} m from the centre, positive along +z", at.join(", "));
+        if let Some(also) = also {
+            description += &format!(". {also}");
+        }
         Array { name, description, references: first..next }
     };
     kinds.into_iter().map(array).collect()
