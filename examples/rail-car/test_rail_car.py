@@ -3,7 +3,7 @@
 import json
 
 import pytest
-from compare import coupling_error
+from compare import coupling_error, spectra_and_comfort
 from comfort import w_k
 from coupled_runs import in_ecos, in_fmpy
 from monolith import Monolith
@@ -42,6 +42,12 @@ def test_val_ecospy_couples_to_second_order_too(folder):
         coupling_error(in_ecos(folder, None, step, round(2.0 / step)), monolith, step, 1.0) for step in (1e-3, 5e-4)
     )
     assert coarse < 0.01 and 3.5 < coarse / fine < 5.5
+
+
+@pytest.mark.parametrize("with_bracket, coupled, exact", [(False, "0.1546", "0.1548"), (True, "0.1423", "0.1426")])
+def test_comfort_is_what_the_readme_says(folder, bracket, with_bracket, coupled, exact):
+    *_, found, closed = spectra_and_comfort(folder, bracket if with_bracket else None, 6.0, 1e-3)
+    assert (f"{found:.4f}", f"{closed:.4f}") == (coupled, exact)
 
 
 @pytest.mark.parametrize("hertz, factor", [(1.0, 0.482), (4.0, 0.967), (6.3, 1.054), (16.0, 0.768), (31.5, 0.405)])
