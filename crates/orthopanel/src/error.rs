@@ -54,6 +54,11 @@ pub enum CommandError {
     ForceFile { path: PathBuf, line: Option<u64>, problem: String },
     #[error("{}: not an FMU that orthopanel wrote: {problem}", .path.display())]
     ForeignFmu { path: PathBuf, problem: String },
+    #[error(
+        "{}: importers refuse an FMU whose name does not end in .fmu: let it end so, in upper or lower case",
+        .path.display()
+    )]
+    FmuName { path: PathBuf },
     #[error("{}: an FMU, where a model file (JSON) is wanted: name the one that the FMU was made from", .path.display())]
     FmuForModel { path: PathBuf },
     #[error(

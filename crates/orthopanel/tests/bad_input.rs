@@ -240,6 +240,20 @@ fn an_option_that_would_be_ignored_is_refused() {
 }
 
 #[test]
+fn regress_an_fmu_is_named_as_importers_ask() {
+    let bench = Bench::new();
+    for name in ["notfmu.txt", "panel", "panel.fmu.zip"] {
+        let line = format!("export model.json -o {name} --modes 2");
+        refused(&bench, &line, 2, &[name, "does not end in .fmu", "upper or lower case"]);
+        assert!(!bench.path(name).exists());
+    }
+    for name in ["panel.fmu", "panel.FMU"] {
+        bench.done(&format!("export model.json -o {name} --modes 2"));
+        assert!(bench.path(name).exists());
+    }
+}
+
+#[test]
 fn a_band_limited_force_wants_even_times() {
     let bench = Bench::new();
     let line = "simulate model.json --force-file force.csv --hold band-limited";

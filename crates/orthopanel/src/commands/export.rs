@@ -60,6 +60,9 @@ struct Answer<'a> {
 }
 
 pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
+    if !arguments.output.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("fmu")) {
+        return Err(CommandError::FmuName { path: arguments.output.clone() });
+    }
     let path = &arguments.model;
     let model = model_file::read(path)?;
     let ports = arguments.ports.needed(&model, path)?;
