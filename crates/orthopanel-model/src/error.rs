@@ -241,15 +241,15 @@ pub enum ModelError {
         /// Modes that the basis resolves.
         available: usize,
     },
-    /// Modes up to a frequency that the largest basis does not reach.
+    /// Modes up to a frequency that the largest basis, or the most modes of a beam, do not reach.
     #[error(
-        "modes up to {frequency} Hz asked, but the largest basis resolves {available} modes, up to {reached:.0} Hz: ask \
-         for less"
+        "modes up to {frequency} Hz asked, but the model resolves {available} modes at most, up to {} Hz: ask for that \
+         frequency or less", .reached.floor()
     )]
     BeyondBasis {
         /// Frequency asked for \[Hz\].
         frequency: f64,
-        /// Flexible modes that the basis resolves.
+        /// Flexible modes that are resolved.
         available: usize,
         /// Frequency of the last of them \[Hz\].
         reached: f64,

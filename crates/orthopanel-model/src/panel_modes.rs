@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::effects::{DressedPanel, Even, PanelWithEffects};
+use crate::effects::{DressedPanel, Even, PanelWithEffects, SPARE_MODES};
 use crate::{
     BeamConstants, BeamMode, EffectSetting, EffectState, ExactBeam, MindlinPlate, ModalModel, ModelError, Owner,
     PLATE_CONSTANTS, PanelMode, PanelModel, Place, RitzMode, Structure, StructureKind, TimoshenkoBeam, ritz_modes,
@@ -105,9 +105,21 @@ impl PanelModel {
                 // As many as the bare panel has there, and what resonators and masses may bring down.
                 let mut count = self.bare_count(&values, frequency)? + effects.len() + 4;
                 loop {
-                    let modes = first(count.min(ModeRange::MOST))?;
-                    if count >= ModeRange::MOST || modes.last().is_some_and(|mode| mode.angular_frequency > limit) {
+                    let (exhausted, modes) = match first(count.min(ModeRange::MOST)) {
+                        // Those that are spare while it is solved are no modes of it.
+                        Err(ModelError::BasisTooSmall { available, .. }) if available > SPARE_MODES => {
+                            (true, first(available - SPARE_MODES)?)
+                        }
+                        found => (count >= ModeRange::MOST, found?),
+                    };
+                    let reached = modes.last().map_or(0.0, |mode| mode.angular_frequency);
+                    if reached > limit {
                         break modes.into_iter().filter(|mode| mode.angular_frequency <= limit).collect();
+                    }
+                    if exhausted {
+                        let available = modes.iter().filter(|mode| mode.angular_frequency > 0.0).count();
+                        let reached = reached / std::f64::consts::TAU;
+                        return Err(ModelError::BeyondBasis { frequency, available, reached });
                     }
                     count *= 2;
                 }
@@ -228,8 +240,12 @@ impl PanelModel {
         Ok(match range.checked(self.structure)? {
             ModeRange::Count(count) => beam.modes(count),
             ModeRange::UpTo(frequency) => {
-                let flexible =
-                    beam.flexible_modes().take(ModeRange::MOST).take_while(|mode| mode.frequency() <= frequency);
+                let below = beam.flexible_modes().take_while(|mode| mode.frequency() <= frequency);
+                let flexible: Vec<BeamMode> = below.take(ModeRange::MOST + 1).collect();
+                if flexible.len() > ModeRange::MOST {
+                    let reached = flexible[ModeRange::MOST - 1].frequency();
+                    return Err(ModelError::BeyondBasis { frequency, available: ModeRange::MOST, reached });
+                }
                 beam.rigid_modes().into_iter().chain(flexible).collect()
             }
         })

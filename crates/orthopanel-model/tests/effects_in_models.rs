@@ -4,8 +4,8 @@ use std::f64::consts::TAU;
 
 use num_complex::Complex64;
 use orthopanel_model::{
-    Boundary, CoreModulus, Damping, EffectState, ModalStepper, Mode, ModeRange, PanelMode, PanelModel, Piece, Place,
-    ReceptanceSetup, RecordSetting, effect,
+    Boundary, CoreModulus, Damping, EffectState, ModalStepper, Mode, ModeRange, ModelError, PanelMode, PanelModel,
+    Piece, Place, ReceptanceSetup, RecordSetting, effect,
 };
 
 const PIECE: Piece = Piece { length: 0.8, width: 0.1, thickness: 0.03, mass_per_area: 6.88 };
@@ -175,6 +175,24 @@ fn val_an_effect_of_no_size_changes_nothing() {
     }
     let in_band = PanelModel::from_json(&text(none)).unwrap().modes(ModeRange::UpTo(3500.0)).unwrap();
     assert_eq!(in_band.len(), 2 + 5);
+}
+
+/// Modes that were left out in silence would look like a panel that has none there.
+#[test]
+fn regress_more_modes_than_a_beam_may_have_are_refused_with_the_frequency_reached() {
+    for effects in ["", r#"{"id":"edge-mass","owner":"panel","mass":0.05}"#] {
+        let model = PanelModel::from_json(&text(effects)).unwrap();
+        let refused = model.modes(ModeRange::UpTo(1e8)).expect_err("refused");
+        let ModelError::BeyondBasis { frequency: 1e8, available, reached } = refused else { panic!("{refused}") };
+        assert_eq!(available, ModeRange::MOST);
+        assert!(
+            refused.to_string().contains(&format!("1000 modes at most, up to {} Hz", reached.floor())),
+            "{refused}"
+        );
+        let highest = model.modes(ModeRange::Count(available)).unwrap().last().unwrap().frequency();
+        assert!((highest - reached).abs() <= 1e-9 * reached, "{highest} Hz, told {reached} Hz");
+        assert!(model.modes(ModeRange::UpTo(reached.floor())).is_ok(), "the way out that is told");
+    }
 }
 
 #[test]

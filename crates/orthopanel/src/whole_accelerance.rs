@@ -10,8 +10,7 @@ const SUMMED: usize = 300;
 /// Least ratio of the highest summed natural frequency to the highest line.
 const MARGIN: f64 = 20.0;
 
-/// The modes up to `highest` \[Hz\] as seen from two places; of a plate those that its largest basis resolves, where that
-/// does not reach so far.
+/// The modes up to `highest` \[Hz\] as seen from two places; those that can be resolved, where they do not reach so far.
 pub fn modes_up_to(model: &PanelModel, highest: f64, force: Place, response: Place) -> Result<ModalModel, ModelError> {
     let of = |range| model.modal_model(range, &[force], &[response]);
     match of(ModeRange::UpTo(highest)) {
@@ -38,7 +37,7 @@ pub enum WholeAccelerance {
 }
 
 impl WholeAccelerance {
-    /// With modes enough for lines up to `highest` \[Hz\]; of a plate those that its largest basis resolves, and
+    /// With modes enough for lines up to `highest` \[Hz\]; those that can be resolved, and
     /// [`ModelError::BeyondBasis`] where they end below.
     pub fn up_to(model: &PanelModel, highest: f64, force: Place, response: Place) -> Result<Self, ModelError> {
         let margin = ModeRange::UpTo(RELAXING_MARGIN * highest + RELAXING_SPARE);
@@ -65,7 +64,16 @@ impl WholeAccelerance {
         {
             return Ok(usual);
         }
-        Self::of(model, ModeRange::UpTo(MARGIN * highest), force, response)
+        match Self::of(model, ModeRange::UpTo(MARGIN * highest), force, response) {
+            // Fewer than the margin asks for, and enough for the lines.
+            Err(ModelError::BeyondBasis { available, reached, .. }) if reached >= highest => {
+                Self::of(model, ModeRange::Count(available), force, response)
+            }
+            Err(ModelError::BeyondBasis { available, reached, .. }) => {
+                Err(ModelError::BeyondBasis { frequency: highest, available, reached })
+            }
+            whole => whole,
+        }
     }
 
     /// With the modes of `range`, and the static part of all others where it is known.

@@ -240,6 +240,23 @@ fn an_option_that_would_be_ignored_is_refused() {
 }
 
 #[test]
+fn modes_up_to_a_frequency_that_none_reach_are_refused() {
+    let bench = Bench::new();
+    let mass = r#""effects": [{"id": "edge-mass", "owner": "panel", "mass": 0.05}], "damping""#;
+    bench.write("dressed.json", &changed(PLATE, r#""damping""#, mass));
+    for model in ["model.json", "plate.json", "dressed.json"] {
+        let said = [model, "100000000 Hz", "modes at most, up to", "ask for that frequency or less"];
+        refused(&bench, &format!("export {model} -o x.fmu --up-to 1e8"), 2, &said);
+    }
+    assert!(!bench.path("x.fmu").exists());
+    // The lines of a beam's accelerance reach as far as its modes do.
+    let grid = "accelerance model.json --force 0 --response 0.1 --from 1 --lines 3";
+    refused(&bench, &format!("{grid} --to 1e8"), 2, &["100000000 Hz", "1000 modes at most"]);
+    bench.done(&format!("{grid} --to 3e5 -o h.csv"));
+    assert_eq!(bench.rows("h.csv").len(), 3);
+}
+
+#[test]
 fn regress_an_fmu_is_named_as_importers_ask() {
     let bench = Bench::new();
     for name in ["notfmu.txt", "panel", "panel.fmu.zip"] {
