@@ -5,7 +5,7 @@ use orthopanel_data::Accelerance;
 use orthopanel_model::{BEAM_CONSTANTS, BeamConstants, Boundary, ExactBeam, ModelError, Piece};
 
 use super::pole_charge::pole_charge;
-use super::poles::{Pole, poles};
+use super::poles::{Pole, flat_poles, poles};
 use super::records::PlaceRecord;
 use super::start::usual_log_zeta;
 use crate::IdentifyError;
@@ -51,8 +51,11 @@ pub(crate) fn resonance_starts(
     accelerances: &[Accelerance],
 ) -> Result<Vec<ResonanceStart>, IdentifyError> {
     let records: Vec<PlaceRecord> = accelerances.iter().map(PlaceRecord::of).collect();
-    let poles = poles(&records);
     let needed = held.iter().filter(|held| held.is_none()).count().max(1);
+    let mut poles = poles(&records);
+    if poles.len() < needed {
+        poles = flat_poles(&records);
+    }
     if poles.len() < needed {
         return Err(IdentifyError::TooFewResonances { found: poles.len(), needed, noise_percent: None });
     }

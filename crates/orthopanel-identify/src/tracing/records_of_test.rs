@@ -1,11 +1,13 @@
 //! The records of a test, widened, with the model that they are to meet.
 
+use std::sync::OnceLock;
 use std::sync::atomic::AtomicU64;
 
 use num_complex::Complex64;
 use orthopanel_data::{Accelerance, Estimation, ImpactTest, TimeHistory};
 use orthopanel_model::{
-    BEAM_CONSTANTS, BeamConstants, ExactBeam, ModelError, ReceptanceSetup, RecordSetting, SuspensionMotion,
+    BEAM_CONSTANTS, BeamConstants, Boundary, ExactBeam, ModelError, Piece, ReceptanceSetup, RecordSetting,
+    SuspensionMotion,
 };
 use rayon::prelude::*;
 
@@ -15,6 +17,7 @@ use super::fit::{Fit, LAST, by_group, fit};
 use super::hypothesis::{Hypothesis, PLATE, Switched};
 use super::known_sums::KnownSums;
 use super::plate_starts::plate_starts;
+use super::plates_by_poles::{PlateStart, PlatesByPoles};
 use super::reactions::Reactions;
 use super::record_problem::{DampingPrior, Grouping, RecordProblem, State, total};
 use super::rough_rest::RoughRest;
@@ -49,6 +52,10 @@ pub(super) struct TestRecords {
     pub poles: Vec<f64>,
     /// How many of them the beam has no mode for.
     strange_poles: usize,
+    /// The piece and its edges, where all places lie on a centre line that shows nothing of what is odd across.
+    on_centre_line: Option<(Piece, Boundary)>,
+    /// What [`PlatesByPoles`] found there, once it was asked.
+    plates: OnceLock<Vec<PlateStart>>,
     /// As the analyser shows the records.
     accelerances: Vec<Accelerance>,
     reactions: Option<Reactions>,
@@ -157,6 +164,9 @@ impl TestRecords {
         let setup = ReceptanceSetup::new(&piece, test.boundary, &test.suspension, &settings, summed)?;
         let usual_log_zeta = start.usual_zeta.ln();
         let poles = start.poles.clone();
+        let mut places = histories.iter().flat_map(|history| [history.force_at, history.response_at]);
+        let is_even = test.boundary.front == test.boundary.back && places.all(|place| place.y == 0.0);
+        let on_centre_line = is_even.then_some((piece, test.boundary));
         let strange_poles = poles.len().saturating_sub(start.modes.iter().flatten().count());
         let zeta = |mode: usize| start.modes.get(mode).copied().flatten().map_or(usual_log_zeta, |(_, zeta)| zeta.ln());
         let log_zetas: Vec<f64> = (0..modes).map(zeta).chain([usual_log_zeta]).collect();
@@ -180,6 +190,8 @@ impl TestRecords {
             known: KnownSums::default(),
             poles,
             strange_poles,
+            on_centre_line,
+            plates: OnceLock::new(),
             accelerances: vec![],
             reactions: None,
             histories: vec![],
@@ -277,8 +289,8 @@ impl TestRecords {
         self.strange_poles >= STRANGE
     }
 
-    /// States with one more effect, at which a search may begin. A plate has more modes than the beam, each taking the damping
-    /// of the nearest mode before, and the constants of a beam that misses its modes are no start for it.
+    /// States with one more effect, at which a search may begin. A plate has more modes than the beam, and the constants of a beam
+    /// that misses its modes are no start for it.
     ///
     /// # Errors
     /// What the model refuses.
@@ -288,27 +300,48 @@ impl TestRecords {
         if !is_plate {
             return Ok(vec![after]);
         }
-        let effects = |state: &State| state.hypothesis.states(self.widened.first().map_or(0, Vec::len));
         let usual = before.constants.map(f64::exp);
-        let known = self.setup.summed_frequencies(&usual, &effects(before)?)?;
-        let damping = |frequency: f64| {
-            let away = |other: &f64| (other / frequency).ln().abs();
-            let nearest = (0..known.len()).min_by(|&a, &b| away(&known[a]).total_cmp(&away(&known[b])));
-            nearest.and_then(|mode| before.zetas.get(mode)).copied().unwrap_or(self.usual_log_zeta)
-        };
-        let effects = effects(&after)?;
+        let effects = after.hypothesis.states(self.widened.first().map_or(0, Vec::len))?;
         let starts = if self.shows_more_than_a_beam() {
             plate_starts(&self.setup, &effects, (&self.poles, &self.held), usual)?
         } else {
             vec![]
         };
-        let states = starts.into_iter().chain([usual]).map(|constants| {
-            let modes = self.setup.summed_frequencies(&constants, &effects)?;
-            let own = modes.into_iter().take_while(|&f| f < FREE_DAMPING * self.band).map(damping);
-            let zetas = own.chain(before.zetas.last().copied()).collect();
-            Ok(State { constants: constants.map(f64::ln), zetas, hypothesis: after.hypothesis.clone() })
-        });
-        states.collect()
+        let all = starts.into_iter().chain([usual]);
+        all.map(|constants| self.as_plate(before, constants, after.hypothesis.clone())).collect()
+    }
+
+    /// The same of a plate, where the poles alone tell its constants; none where the records show no more than a beam.
+    ///
+    /// # Errors
+    /// What the model refuses.
+    pub(super) fn with_plates_by_poles(&self, before: &State, plate: &Switched) -> Result<Vec<State>, ModelError> {
+        let Some((piece, boundary)) = self.on_centre_line.filter(|_| self.shows_more_than_a_beam()) else {
+            return Ok(vec![]);
+        };
+        let by = PlatesByPoles { piece: &piece, boundary, poles: &self.poles, held: &self.held };
+        let found = self.plates.get_or_init(|| by.found(before.constants[0].exp()));
+        let state = |&(constants, ratios): &PlateStart| {
+            let plate = Switched { values: ratios.to_vec(), ..plate.clone() };
+            self.as_plate(before, constants, before.hypothesis.and(plate))
+        };
+        found.iter().map(state).collect()
+    }
+
+    /// A plate with these constants, each of its modes with the damping of the nearest mode before.
+    fn as_plate(&self, before: &State, constants: [f64; 2], hypothesis: Hypothesis) -> Result<State, ModelError> {
+        let records = self.widened.first().map_or(0, Vec::len);
+        let effects = before.hypothesis.states(records)?;
+        let known = self.setup.summed_frequencies(&before.constants.map(f64::exp), &effects)?;
+        let damping = |frequency: f64| {
+            let away = |other: &f64| (other / frequency).ln().abs();
+            let nearest = (0..known.len()).min_by(|&a, &b| away(&known[a]).total_cmp(&away(&known[b])));
+            nearest.and_then(|mode| before.zetas.get(mode)).copied().unwrap_or(self.usual_log_zeta)
+        };
+        let modes = self.setup.summed_frequencies(&constants, &hypothesis.states(records)?)?;
+        let own = modes.into_iter().take_while(|&f| f < FREE_DAMPING * self.band).map(damping);
+        let zetas = own.chain(before.zetas.last().copied()).collect();
+        Ok(State { constants: constants.map(f64::ln), zetas, hypothesis })
     }
 
     /// The problem at one widening, counted from the widest.

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use super::core_modes::{CORE, CoreModes};
 use super::fit::{polish, polished_through, promise};
-use super::hypothesis::{Switched, has_place, is_place};
+use super::hypothesis::{PLATE, Switched, has_place, is_place};
 use super::record_problem::State;
 use super::records_of_test::TestRecords;
 use super::support_starts::{SUPPORT, support_starts};
@@ -21,7 +21,8 @@ const FEW_RECORDS: usize = 2;
 const FOLLOWED_OF_FEW: usize = 8;
 /// Starts of an effect with a place that a closer look follows.
 const FOLLOWED_FAR: usize = 30;
-/// A plate's modes of two families change their order: one step foretells little.
+/// A plate's modes of two families change their order: one step foretells little. So many of the grid's starts are followed, and as
+/// many that the poles tell.
 const PLATES_FOLLOWED: usize = 4;
 const PLATES_FOLLOW: Ending = Ending::far(16, 1.0);
 
@@ -49,6 +50,9 @@ pub(super) fn scored_starts(
     let test = (problem.records.len(), records.band);
     // What a core stiffens and takes of energy is in the base's constants and damping already.
     let modes = if effect.id() == CORE { CoreModes::of(&problem, base) } else { None };
+    let promised = |state: &State| -> Result<f64, IdentifyError> {
+        Ok(promise(&problem.linearise(&problem.parameters(state), state)?))
+    };
     let scored: Vec<Result<Costed, IdentifyError>> = grid(effect, piece, test, places)
         .into_par_iter()
         .flat_map_iter(|start| {
@@ -67,8 +71,8 @@ pub(super) fn scored_starts(
                 Some(modes) => modes.begun(&problem, state?, records.band),
                 None => state?,
             };
-            let at = problem.linearise(&problem.parameters(&state), &state)?;
-            Ok((state, promise(&at)))
+            let promised = promised(&state)?;
+            Ok((state, promised))
         })
         .collect();
     let mut reason = None;
@@ -80,6 +84,16 @@ pub(super) fn scored_starts(
         }
     }
     starts.sort_by(|a, b| a.1.total_cmp(&b.1));
+    if effect.id() == PLATE {
+        let usual = Switched::new(effect, piece, problem.records.len(), |_| None, |_| false);
+        let by_poles = records.with_plates_by_poles(base, &usual).unwrap_or_default();
+        let by_poles =
+            by_poles.into_par_iter().filter_map(|state| promised(&state).ok().map(|promised| (state, promised)));
+        // One step foretells little: neither kind may keep the other from being followed.
+        starts.truncate(PLATES_FOLLOWED);
+        starts.par_extend(by_poles);
+        starts.sort_by(|a, b| a.1.total_cmp(&b.1));
+    }
     match (starts.is_empty(), reason) {
         (false, _) => Ok(starts),
         (true, Some(reason)) => Err(reason),
@@ -115,7 +129,7 @@ fn followed_each(records: &TestRecords, starts: &[Costed], (stage, many): (usize
     let is_hard = is_plate && records.shows_more_than_a_beam();
     let is_wide = |effect: &'static dyn Effect| has_place(effect) || effect.id() == SUPPORT;
     let (follow, patience) = if is_hard {
-        (PLATES_FOLLOWED, PLATES_FOLLOW)
+        (2 * PLATES_FOLLOWED, PLATES_FOLLOW)
     } else if latest(starts, is_wide) {
         (many, FOLLOW)
     } else {
