@@ -32,6 +32,7 @@ mod next_experiment;
 mod other_side;
 mod outcome;
 mod plate_starts;
+mod plate_states;
 mod plates_by_poles;
 mod ranking;
 mod reaction_lines;

@@ -1,23 +1,20 @@
 //! The records of a test, widened, with the model that they are to meet.
 
-use std::sync::OnceLock;
 use std::sync::atomic::AtomicU64;
 
 use num_complex::Complex64;
 use orthopanel_data::{Accelerance, Estimation, ImpactTest, TimeHistory};
 use orthopanel_model::{
-    BEAM_CONSTANTS, BeamConstants, Boundary, ExactBeam, ModelError, Piece, ReceptanceSetup, RecordSetting,
-    SuspensionMotion,
+    BEAM_CONSTANTS, BeamConstants, ExactBeam, ModelError, ReceptanceSetup, RecordSetting, SuspensionMotion,
 };
 use rayon::prelude::*;
 
 use super::base_model::RecordsBase;
 use super::curves::curves;
 use super::fit::{Fit, LAST, by_group, fit};
-use super::hypothesis::{Hypothesis, PLATE, Switched};
+use super::hypothesis::Hypothesis;
 use super::known_sums::KnownSums;
-use super::plate_starts::plate_starts;
-use super::plates_by_poles::{PlateStart, PlatesByPoles};
+use super::plate_states::PlateEvidence;
 use super::reactions::Reactions;
 use super::record_problem::{DampingPrior, Grouping, RecordProblem, State, total};
 use super::rough_rest::RoughRest;
@@ -50,12 +47,7 @@ pub(super) struct TestRecords {
     known: KnownSums,
     /// Frequencies \[Hz\] of the resonances that the records show.
     pub poles: Vec<f64>,
-    /// How many of them the beam has no mode for.
-    strange_poles: usize,
-    /// The piece and its edges, where all places lie on a centre line that shows nothing of what is odd across.
-    on_centre_line: Option<(Piece, Boundary)>,
-    /// What [`PlatesByPoles`] found there, once it was asked.
-    plates: OnceLock<Vec<PlateStart>>,
+    pub plates: PlateEvidence,
     /// As the analyser shows the records.
     accelerances: Vec<Accelerance>,
     reactions: Option<Reactions>,
@@ -75,7 +67,7 @@ const FLAT: f64 = 1.0 / 2.56;
 /// and above so many modes: more of them tell little that these do not, and every line pays for each.
 const MOST_MODES: usize = 10;
 /// Damping is free of every mode up to this part of the band, and lines sum modes up to [`SUMMED`] times it.
-const FREE_DAMPING: f64 = 1.6;
+pub(super) const FREE_DAMPING: f64 = 1.6;
 const SUMMED: f64 = 2.5;
 /// Standard deviation of a mode's $\ln\zeta$ before the records speak, at each widening; panels' modes differ by a factor of two or three.
 const LOG_ZETA_STD: [f64; WIDENINGS.len()] = [0.5, 1.0, 2.0, 1.0];
@@ -84,8 +76,6 @@ const LOG_ZETA_STD_BEYOND: [f64; WIDENINGS.len()] = [0.1, 0.1, 0.1, 1.0];
 /// Scatter of the hits over their noise that may still be the noise's own: beyond, they differ by something that a hypothesis
 /// has to explain, as a force that is not linear, and a misfit may not hide behind it.
 const SCATTERED: f64 = 2.0;
-/// One resonance more than a beam has may be something loose; so many are a plate's.
-const STRANGE: usize = 2;
 /// Starts that are followed a little way, and the evaluations spent on each before the best is taken.
 const TRIED: usize = 4;
 const TRIAL: Ending = Ending::far(12, 1.0);
@@ -164,10 +154,7 @@ impl TestRecords {
         let setup = ReceptanceSetup::new(&piece, test.boundary, &test.suspension, &settings, summed)?;
         let usual_log_zeta = start.usual_zeta.ln();
         let poles = start.poles.clone();
-        let mut places = histories.iter().flat_map(|history| [history.force_at, history.response_at]);
-        let is_even = test.boundary.front == test.boundary.back && places.all(|place| place.y == 0.0);
-        let on_centre_line = is_even.then_some((piece, test.boundary));
-        let strange_poles = poles.len().saturating_sub(start.modes.iter().flatten().count());
+        let plates = PlateEvidence::of(test, histories, start);
         let zeta = |mode: usize| start.modes.get(mode).copied().flatten().map_or(usual_log_zeta, |(_, zeta)| zeta.ln());
         let log_zetas: Vec<f64> = (0..modes).map(zeta).chain([usual_log_zeta]).collect();
         let start = State {
@@ -189,9 +176,7 @@ impl TestRecords {
             work: AtomicU64::new(0),
             known: KnownSums::default(),
             poles,
-            strange_poles,
-            on_centre_line,
-            plates: OnceLock::new(),
+            plates,
             accelerances: vec![],
             reactions: None,
             histories: vec![],
@@ -282,66 +267,6 @@ impl TestRecords {
         }
         self.rest = rest;
         self.known.forget();
-    }
-
-    /// Whether there are resonances that the beam has no modes for: then its constants are no start for a plate.
-    pub(super) fn shows_more_than_a_beam(&self) -> bool {
-        self.strange_poles >= STRANGE
-    }
-
-    /// States with one more effect, at which a search may begin. A plate has more modes than the beam, and the constants of a beam
-    /// that misses its modes are no start for it.
-    ///
-    /// # Errors
-    /// What the model refuses.
-    pub(super) fn with(&self, before: &State, switched: Switched) -> Result<Vec<State>, ModelError> {
-        let is_plate = switched.effect.id() == PLATE;
-        let after = State { hypothesis: before.hypothesis.and(switched), ..before.clone() };
-        if !is_plate {
-            return Ok(vec![after]);
-        }
-        let usual = before.constants.map(f64::exp);
-        let effects = after.hypothesis.states(self.widened.first().map_or(0, Vec::len))?;
-        let starts = if self.shows_more_than_a_beam() {
-            plate_starts(&self.setup, &effects, (&self.poles, &self.held), usual)?
-        } else {
-            vec![]
-        };
-        let all = starts.into_iter().chain([usual]);
-        all.map(|constants| self.as_plate(before, constants, after.hypothesis.clone())).collect()
-    }
-
-    /// The same of a plate, where the poles alone tell its constants; none where the records show no more than a beam.
-    ///
-    /// # Errors
-    /// What the model refuses.
-    pub(super) fn with_plates_by_poles(&self, before: &State, plate: &Switched) -> Result<Vec<State>, ModelError> {
-        let Some((piece, boundary)) = self.on_centre_line.filter(|_| self.shows_more_than_a_beam()) else {
-            return Ok(vec![]);
-        };
-        let by = PlatesByPoles { piece: &piece, boundary, poles: &self.poles, held: &self.held };
-        let found = self.plates.get_or_init(|| by.found(before.constants[0].exp()));
-        let state = |&(constants, ratios): &PlateStart| {
-            let plate = Switched { values: ratios.to_vec(), ..plate.clone() };
-            self.as_plate(before, constants, before.hypothesis.and(plate))
-        };
-        found.iter().map(state).collect()
-    }
-
-    /// A plate with these constants, each of its modes with the damping of the nearest mode before.
-    fn as_plate(&self, before: &State, constants: [f64; 2], hypothesis: Hypothesis) -> Result<State, ModelError> {
-        let records = self.widened.first().map_or(0, Vec::len);
-        let effects = before.hypothesis.states(records)?;
-        let known = self.setup.summed_frequencies(&before.constants.map(f64::exp), &effects)?;
-        let damping = |frequency: f64| {
-            let away = |other: &f64| (other / frequency).ln().abs();
-            let nearest = (0..known.len()).min_by(|&a, &b| away(&known[a]).total_cmp(&away(&known[b])));
-            nearest.and_then(|mode| before.zetas.get(mode)).copied().unwrap_or(self.usual_log_zeta)
-        };
-        let modes = self.setup.summed_frequencies(&constants, &hypothesis.states(records)?)?;
-        let own = modes.into_iter().take_while(|&f| f < FREE_DAMPING * self.band).map(damping);
-        let zetas = own.chain(before.zetas.last().copied()).collect();
-        Ok(State { constants: constants.map(f64::ln), zetas, hypothesis })
     }
 
     /// The problem at one widening, counted from the widest.
