@@ -74,7 +74,7 @@ const LINEAR: &str = " If the parameter force_linear is true, the force of a ste
      outputs are those of the old value. Each mode is then \
      advanced exactly, whatever the step.";
 const MODES: &str = "Rigid modes have the frequency 0. Outputs are sums over these modes. A mode's number is that of its \
-     modal_position; damping_ratio_1 is of the first flexible one.";
+     modal_position; damping_ratio_1 is of the first flexible mode of the panel without its effects.";
 const INITIAL_STATE: &str = " The panel starts at rest. Where modal_position_1, modal_velocity_1 and so on are set before or in \
      initialization mode, it starts bent or moving: a displacement is the sum of these positions, each times the shape of its \
      mode, which in initialization mode is the directional derivative of the displacement by the position. A reset brings it to \
@@ -84,13 +84,12 @@ const INITIAL_STATE: &str = " The panel starts at rest. Where modal_position_1, 
 fn left_out(resource: &Resource, Origin { bands, .. }: &Origin<'_>) -> String {
     let mut text = String::from(LEFT_OUT);
     text += &match bands.frequency_change() {
-        Some(change) => {
-            let change = if change < 1e-8 { "less than 1e-8".into() } else { format!("{change:.0e}") };
-            format!(
-                " The modes kept are those of the basis for their number: on that for three times as many their frequencies differ \
-                 by up to {change} of themselves, which near a resonance changes the accelerance by as much over its damping ratio."
-            )
-        }
+        // A beam alone has exact modes.
+        Some(change) if change < 1e-9 => String::new(),
+        Some(change) => format!(
+            " The modes kept are those of a basis for their number: on a larger one their frequencies differ by up to {change:.1e} of \
+             themselves, which near a resonance changes the accelerance by as much over its damping ratio."
+        ),
         None => BESIDE_CORE.into(),
     };
     text += LEFT_OUT_TABLE;
@@ -113,10 +112,11 @@ fn left_out(resource: &Resource, Origin { bands, .. }: &Origin<'_>) -> String {
 
 const LEFT_OUT: &str = "<h2>What the modes left out do</h2>\n<p>At rest they would add to displacements what stands on the left, \
      times the force, and this is added. An acceleration lacks what they do: up to the frequency on the right that is less \
-     than 1 % of the root mean square of the accelerance over the octave around, by three times as many modes and the static \
-     part of the rest. At an antiresonance, where little is left of the whole, it is a larger part.";
+     than 1 % of the root mean square of the accelerance over the octave around, by up to three times as many modes and the \
+     static part of the rest. At an antiresonance, where little is left of the whole, it is a larger part.";
 const BESIDE_CORE: &str = " At rest the core has its low modulus: where it has stiffened, what is added to displacements is too \
-     much by its share of that. Accelerances are by the core's own law here, without the error of its fit.";
+     much by its share of that. Accelerances are by the core's own law here, without the \
+     error of its fit, and what they lack holds how far the frequencies of these modes move on a larger basis.";
 const LEFT_OUT_TABLE: &str = "</p>\n<table>\n<tr><th>static part of the modes left out</th><th>band</th></tr>\n";
 
 pub(crate) fn escaped(text: &str) -> String {

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::effects::{DressedPanel, Even, PanelWithEffects, SPARE_MODES};
+use crate::effects::{DressedPanel, Even, PanelWithEffects};
 use crate::{
     BeamConstants, BeamMode, EffectSetting, EffectState, ExactBeam, MindlinPlate, ModalModel, ModelError, Owner,
     PLATE_CONSTANTS, PanelMode, PanelModel, Place, RitzMode, Structure, StructureKind, TimoshenkoBeam, ritz_modes,
@@ -106,10 +106,7 @@ impl PanelModel {
                 let mut count = self.bare_count(&values, frequency)? + effects.len() + 4;
                 loop {
                     let (exhausted, modes) = match first(count.min(ModeRange::MOST)) {
-                        // Those that are spare while it is solved are no modes of it.
-                        Err(ModelError::BasisTooSmall { available, .. }) if available > SPARE_MODES => {
-                            (true, first(available - SPARE_MODES)?)
-                        }
+                        Err(ModelError::BasisTooSmall { available, .. }) if available > 0 => (true, first(available)?),
                         found => (count >= ModeRange::MOST, found?),
                     };
                     let reached = modes.last().map_or(0.0, |mode| mode.angular_frequency);

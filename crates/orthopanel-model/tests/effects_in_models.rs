@@ -195,6 +195,19 @@ fn regress_more_modes_than_a_beam_may_have_are_refused_with_the_frequency_reache
     }
 }
 
+/// More modes than a plate's largest basis resolves are refused with a number that can be had, effects or none.
+#[test]
+fn a_plate_with_effects_tells_how_many_modes_it_can_have() {
+    let text = r#"{"schema":"orthopanel.model/1","structure":"mindlin-plate",
+        "piece":{"length":0.8,"width":0.08,"thickness":0.03,"mass_per_area":6.88},"damping":{"ratios":[],"beyond":0.004},
+        "constants":{"e_x":1.07e10,"e_y":9e9,"nu_xy":0.3,"g_xy":3e9,"g_yz":3e8,"g_zx":5.363e8},
+        "effects":[{"id":"local-mass","owner":"panel","mass":0.02,"x":0.11}]}"#;
+    let model = PanelModel::from_json(text).unwrap();
+    let refused = model.modes(ModeRange::Count(900)).expect_err("refused");
+    let ModelError::BasisTooSmall { asked: 900, available } = refused else { panic!("{refused}") };
+    assert!(model.modes(ModeRange::Count(available)).is_ok(), "the way out that is told: {available}");
+}
+
 #[test]
 fn what_is_no_effect_of_the_panel_is_refused_with_its_reason() {
     let said = |effects: &str| {

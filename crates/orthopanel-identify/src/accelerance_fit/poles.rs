@@ -34,10 +34,11 @@ impl Pole {
     }
 }
 
-/// A peak must rise this much over the valleys beside it, in power; and what one of much damping does.
+/// Power of a peak over that of the valleys beside it, at least.
 const PROMINENCE: f64 = 10.0;
+/// The same of a panel with much damping, whose peaks are low and broad.
 const FLAT: f64 = 2.5;
-/// and this much over the noise.
+/// Power of either over that of the noise, at least.
 const SIGNAL_TO_NOISE: f64 = 30.0;
 /// A resonance has less damping than this.
 pub(super) const MOST_DAMPING: f64 = 0.2;

@@ -63,21 +63,19 @@ impl TestRecords {
         all.map(|constants| self.as_plate(before, constants, after.hypothesis.clone())).collect()
     }
 
-    /// The same of a plate, where the poles alone tell its constants; none where the records show no more than a beam.
-    ///
-    /// # Errors
-    /// What the model refuses.
-    pub(super) fn with_plates_by_poles(&self, before: &State, plate: &Switched) -> Result<Vec<State>, ModelError> {
+    /// The same of a plate, where the poles alone tell its constants; none where the records show no more than a beam, or where places
+    /// or edges show what is odd across. `plate` makes one of ratios.
+    pub(super) fn with_plates_by_poles(&self, before: &State, plate: impl Fn(&[f64; 4]) -> Switched) -> Vec<State> {
         let Some((piece, boundary)) = self.plates.on_centre_line.filter(|_| self.shows_more_than_a_beam()) else {
-            return Ok(vec![]);
+            return vec![];
         };
         let by = PlatesByPoles { piece: &piece, boundary, poles: &self.poles, held: &self.held };
+        // Whose constants come first is all the same: the lowest poles say how stiff the whole is.
         let found = self.plates.by_poles.get_or_init(|| by.found(before.constants[0].exp()));
-        let state = |&(constants, ratios): &PlateStart| {
-            let plate = Switched { values: ratios.to_vec(), ..plate.clone() };
-            self.as_plate(before, constants, before.hypothesis.and(plate))
+        let state = |(constants, ratios): &PlateStart| {
+            self.as_plate(before, *constants, before.hypothesis.and(plate(ratios))).ok()
         };
-        found.iter().map(state).collect()
+        found.iter().filter_map(state).collect()
     }
 
     /// A plate with these constants, each of its modes with the damping of the nearest mode before.

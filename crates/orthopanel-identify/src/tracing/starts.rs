@@ -85,8 +85,13 @@ pub(super) fn scored_starts(
     }
     starts.sort_by(|a, b| a.1.total_cmp(&b.1));
     if effect.id() == PLATE {
-        let usual = Switched::new(effect, piece, problem.records.len(), |_| None, |_| false);
-        let by_poles = records.with_plates_by_poles(base, &usual).unwrap_or_default();
+        let by_poles = records.with_plates_by_poles(base, |ratios| {
+            let at = |name: &str| {
+                let index = effect.parameters().iter().position(|parameter| parameter.name == name);
+                index.and_then(|index| ratios.get(index)).copied()
+            };
+            Switched::new(effect, piece, problem.records.len(), at, |_| false)
+        });
         let by_poles =
             by_poles.into_par_iter().filter_map(|state| promised(&state).ok().map(|promised| (state, promised)));
         // One step foretells little: neither kind may keep the other from being followed.

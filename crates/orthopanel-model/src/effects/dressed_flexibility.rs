@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::dressed_modes::DressedMode;
-use super::dressed_panel::{Dressed, DressedPanel, PanelWithEffects, SPARE_MODES};
+use super::dressed_panel::{Dressed, DressedPanel, PanelWithEffects};
 use super::low_modes::FarAnswers;
 use crate::modal_model::add_flexibility;
 use crate::{Damping, MindlinPlate, ModelError, Place};
@@ -29,7 +29,7 @@ impl DressedPanel {
         forces: &[Place],
         responses: &[Place],
     ) -> Result<Flexibilities, ModelError> {
-        let dressed = Dressed::new(parts, count.min(MOST_SUMMED) + SPARE_MODES)?;
+        let dressed = Dressed::for_modes(parts, count.min(MOST_SUMMED))?;
         let ports: Vec<Place> = forces.iter().chain(responses).copied().collect();
         dressed.static_flexibility(&dressed.far_answers(&ports)?, parts.damping, [forces, responses])
     }
@@ -45,7 +45,7 @@ impl DressedPanel {
         forces: &[Place],
         responses: &[Place],
     ) -> Result<ModesAndFlexibility, ModelError> {
-        let dressed = Dressed::new(parts, count + SPARE_MODES)?;
+        let dressed = Dressed::for_modes(parts, count)?;
         let ports: Vec<Place> = forces.iter().chain(responses).copied().collect();
         let answers = dressed.far_answers(&ports)?;
         let flexibility = dressed.static_flexibility(&answers, parts.damping, [forces, responses])?;

@@ -90,6 +90,17 @@ pub(super) struct Dressed {
 }
 
 impl Dressed {
+    /// On as many modes as `count` flexible ones with the elements want.
+    pub(super) fn for_modes(parts: PanelWithEffects, count: usize) -> Result<Self, ModelError> {
+        Self::new(parts, count + SPARE_MODES).map_err(|error| match error {
+            // Those that are spare are no modes that one could have.
+            ModelError::BasisTooSmall { available, .. } => {
+                ModelError::BasisTooSmall { asked: count, available: available.saturating_sub(SPARE_MODES) }
+            }
+            other => other,
+        })
+    }
+
     /// On the first `summed` flexible modes of the structure with what effects spread over it.
     pub(super) fn new(parts: PanelWithEffects, summed: usize) -> Result<Self, ModelError> {
         let PanelWithEffects { setting, even, values, effects, .. } = parts;
@@ -242,7 +253,7 @@ impl DressedPanel {
 
     /// The modes of the panel and its matrices, in rising order, `count` flexible ones.
     pub(super) fn solve(parts: PanelWithEffects, count: usize) -> Result<(Self, System, Vec<FoundMode>), ModelError> {
-        let dressed = Dressed::new(parts, count + SPARE_MODES)?;
+        let dressed = Dressed::for_modes(parts, count)?;
         let answers = dressed.far_answers(&[])?;
         dressed.solve(&answers, parts.damping, count)
     }
