@@ -44,7 +44,7 @@ use start::{Recorded, Start, start, usual_log_zeta};
 use wide_scan::rough_starts;
 
 pub(crate) use outcome::is_told;
-pub(crate) use pole_charge::pole_charge;
+pub(crate) use pole_charge::{nearest_modes, pole_charge};
 pub(crate) use record_poles::{RecordPole, record_poles};
 pub(crate) use resonance_start::{ResonanceStart, resonance_starts};
 pub use synthesis::DampingLaw;

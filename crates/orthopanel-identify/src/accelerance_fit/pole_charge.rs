@@ -8,18 +8,21 @@ const UNSEEN_MODE: f64 = 0.3;
 /// `reach` from every mode is charged with that, and a mode below `top` \[Hz\] without a pole with a part of it.
 pub(crate) fn pole_charge(poles: &[f64], modes: impl IntoIterator<Item = f64>, top: f64, reach: f64) -> f64 {
     let modes: Vec<f64> = modes.into_iter().take_while(|mode| *mode < top).collect();
-    let mut seen = vec![false; modes.len()];
-    let mut charge = 0.0;
-    for pole in poles {
-        let distance = |mode: usize| (modes[mode] / pole - 1.0).abs();
-        let free = (0..modes.len()).filter(|&mode| !seen[mode] && distance(mode) < reach);
-        match free.min_by(|&a, &b| distance(a).total_cmp(&distance(b))) {
-            Some(mode) => {
-                seen[mode] = true;
-                charge += distance(mode);
-            }
-            None => charge += reach,
-        }
-    }
+    let (distances, seen) = nearest_modes(poles, &modes, reach);
+    let charge: f64 = distances.into_iter().map(|distance| distance.unwrap_or(reach)).sum();
     charge + UNSEEN_MODE * reach * seen.iter().filter(|seen| !**seen).count() as f64
+}
+
+/// The distance of each pole, in turn, from the nearest mode that no pole before it took, in parts of the pole's frequency; none
+/// where that is not below `reach`. And which modes were taken.
+pub(crate) fn nearest_modes(poles: &[f64], modes: &[f64], reach: f64) -> (Vec<Option<f64>>, Vec<bool>) {
+    let mut taken = vec![false; modes.len()];
+    let distances = poles.iter().map(|pole| {
+        let distance = |mode: usize| (modes[mode] / pole - 1.0).abs();
+        let free = (0..modes.len()).filter(|&mode| !taken[mode] && distance(mode) < reach);
+        let nearest = free.min_by(|&a, &b| distance(a).total_cmp(&distance(b)))?;
+        taken[nearest] = true;
+        Some(distance(nearest))
+    });
+    (distances.collect(), taken)
 }

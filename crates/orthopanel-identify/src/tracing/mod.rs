@@ -46,6 +46,7 @@ mod roughness;
 mod row_products;
 mod rows;
 mod starts;
+mod stiffness_grid;
 mod support_starts;
 mod valley;
 mod verdict;

@@ -2,6 +2,7 @@
 
 use orthopanel_model::{BEAM_CONSTANTS, EffectState, ModelError, ReceptanceSetup};
 
+use super::stiffness_grid::StiffnessGrid;
 use crate::accelerance_fit::pole_charge;
 
 /// Ratios $E_x/G_{zx}$ tried: lowest, highest and steps between.
@@ -22,25 +23,16 @@ pub(super) fn plate_starts(
     setup: &ReceptanceSetup,
     effects: &[EffectState],
     (poles, held): (&[f64], &[Option<f64>; 2]),
-    usual: [f64; 2],
+    usual: f64,
 ) -> Result<Vec<[f64; 2]>, ModelError> {
-    let (lowest, highest, steps) = RATIOS;
+    let grid = StiffnessGrid { ratios: RATIOS, anchors: ANCHORS, poles, held };
+    let top = poles.last().copied().unwrap_or(0.0) * (1.0 + REACH);
     let mut found: Vec<(f64, [f64; 2])> = Vec::new();
-    for step in 0..=steps {
-        let ratio = lowest * (highest / lowest).powf(step as f64 / steps as f64);
-        let unit = match *held {
-            [Some(e_x), g_zx] => [e_x, g_zx.unwrap_or(e_x / ratio)],
-            [None, Some(g_zx)] => [ratio * g_zx, g_zx],
-            [None, None] => [usual[0], usual[0] / ratio],
-        };
+    for unit in grid.units(usual) {
         let modes = setup.summed_frequencies(&unit, effects)?;
-        // Frequencies go with the root of a factor on both constants.
-        let anchored = |pole: &f64| modes.iter().take(ANCHORS).map(|mode| pole / mode).collect::<Vec<_>>();
-        let factors: Vec<f64> =
-            if *held == [None; 2] { poles.iter().take(ANCHORS).flat_map(anchored).collect() } else { vec![1.0] };
-        let top = poles.last().copied().unwrap_or(0.0) * (1.0 + REACH);
         let charge = |factor: f64| pole_charge(poles, modes.iter().map(|mode| mode * factor), top, REACH);
-        found.extend(factors.into_iter().map(|factor| (charge(factor), unit.map(|c| c * factor * factor))));
+        let anchored = |factor: f64| (charge(factor), unit.map(|constant| constant * factor * factor));
+        found.extend(grid.factors(&modes).into_iter().map(anchored));
     }
     found.retain(|(_, values)| {
         BEAM_CONSTANTS.iter().zip(values).all(|(constant, &value)| constant.check(value).is_ok())

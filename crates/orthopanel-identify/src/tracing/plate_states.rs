@@ -55,12 +55,13 @@ impl TestRecords {
         let usual = before.constants.map(f64::exp);
         let effects = after.hypothesis.states(self.widened.first().map_or(0, Vec::len))?;
         let starts = if self.shows_more_than_a_beam() {
-            plate_starts(&self.setup, &effects, (&self.poles, &self.held), usual)?
+            plate_starts(&self.setup, &effects, (&self.poles, &self.held), usual[0])?
         } else {
             vec![]
         };
+        let as_plate = self.plates_after(before)?;
         let all = starts.into_iter().chain([usual]);
-        all.map(|constants| self.as_plate(before, constants, after.hypothesis.clone())).collect()
+        all.map(|constants| as_plate(constants, after.hypothesis.clone())).collect()
     }
 
     /// The same of a plate, where the poles alone tell its constants; none where the records show no more than a beam, or where places
@@ -72,25 +73,29 @@ impl TestRecords {
         let by = PlatesByPoles { piece: &piece, boundary, poles: &self.poles, held: &self.held };
         // Whose constants come first is all the same: the lowest poles say how stiff the whole is.
         let found = self.plates.by_poles.get_or_init(|| by.found(before.constants[0].exp()));
-        let state = |(constants, ratios): &PlateStart| {
-            self.as_plate(before, *constants, before.hypothesis.and(plate(ratios))).ok()
-        };
+        let Ok(as_plate) = self.plates_after(before) else { return vec![] };
+        let state = |(constants, ratios): &PlateStart| as_plate(*constants, before.hypothesis.and(plate(ratios))).ok();
         found.iter().filter_map(state).collect()
     }
 
-    /// A plate with these constants, each of its modes with the damping of the nearest mode before.
-    fn as_plate(&self, before: &State, constants: [f64; 2], hypothesis: Hypothesis) -> Result<State, ModelError> {
+    /// Makes plates of constants, each of their modes with the damping of the nearest mode before.
+    fn plates_after(
+        &self,
+        before: &State,
+    ) -> Result<impl Fn([f64; 2], Hypothesis) -> Result<State, ModelError>, ModelError> {
         let records = self.widened.first().map_or(0, Vec::len);
         let effects = before.hypothesis.states(records)?;
         let known = self.setup.summed_frequencies(&before.constants.map(f64::exp), &effects)?;
-        let damping = |frequency: f64| {
+        let damping = move |frequency: f64| {
             let away = |other: &f64| (other / frequency).ln().abs();
             let nearest = (0..known.len()).min_by(|&a, &b| away(&known[a]).total_cmp(&away(&known[b])));
             nearest.and_then(|mode| before.zetas.get(mode)).copied().unwrap_or(self.usual_log_zeta)
         };
-        let modes = self.setup.summed_frequencies(&constants, &hypothesis.states(records)?)?;
-        let own = modes.into_iter().take_while(|&f| f < FREE_DAMPING * self.band).map(damping);
-        let zetas = own.chain(before.zetas.last().copied()).collect();
-        Ok(State { constants: constants.map(f64::ln), zetas, hypothesis })
+        Ok(move |constants: [f64; 2], hypothesis: Hypothesis| {
+            let modes = self.setup.summed_frequencies(&constants, &hypothesis.states(records)?)?;
+            let own = modes.into_iter().take_while(|&f| f < FREE_DAMPING * self.band).map(&damping);
+            let zetas = own.chain(before.zetas.last().copied()).collect();
+            Ok(State { constants: constants.map(f64::ln), zetas, hypothesis })
+        })
     }
 }

@@ -8,6 +8,9 @@ use argmin::solver::neldermead::NelderMead;
 use orthopanel_model::{Boundary, MindlinPlate, PLATE_CONSTANTS, Piece, Structure, ritz_modes};
 use rayon::prelude::*;
 
+use super::stiffness_grid::StiffnessGrid;
+use crate::accelerance_fit::nearest_modes;
+
 /// Constants of a plate: $E_x$, $G_{zx}$, and $E_y/E_x$, $\nu_{xy}$, $G_{xy}/E_x$, $G_{yz}/G_{zx}$.
 pub(super) type PlateStart = ([f64; 2], [f64; 4]);
 
@@ -66,36 +69,20 @@ impl PlatesByPoles<'_> {
 
     /// A grid of ratios; how stiff the whole is follows from the lowest poles.
     fn tried(&self, usual: f64) -> Vec<(f64, PlateStart)> {
-        let (lowest, highest, steps) = RATIOS;
-        let ratios = (0..=steps).map(|step| lowest * (highest / lowest).powf(step as f64 / steps as f64));
+        let grid = StiffnessGrid { ratios: RATIOS, anchors: ANCHORS, poles: self.poles, held: self.held };
         let across = ACROSS.iter().flat_map(|e_y| SHEAR_ACROSS.map(|g_yz| [*e_y, NU_XY, G_XY, g_yz]));
         let across: Vec<[f64; 4]> = across.collect();
-        let units: Vec<PlateStart> = ratios
-            .flat_map(|ratio| {
-                let unit = match *self.held {
-                    [Some(e_x), g_zx] => [e_x, g_zx.unwrap_or(e_x / ratio)],
-                    [None, Some(g_zx)] => [ratio * g_zx, g_zx],
-                    [None, None] => [usual, usual / ratio],
-                };
-                across.iter().map(move |own| (unit, *own))
-            })
-            .collect();
+        let units: Vec<PlateStart> =
+            grid.units(usual).flat_map(|unit| across.iter().map(move |own| (unit, *own))).collect();
         let round = &ROUNDS[0];
         let anchored = |unit: PlateStart| -> Vec<(f64, PlateStart)> {
             let Some(plate) = self.plate(&unit, round) else { return vec![] };
             let Some(modes) = self.modes(&plate, &unit, round) else { return vec![] };
-            // Frequencies go with the root of a factor on both constants.
-            let factors: Vec<f64> = if *self.held == [None; 2] {
-                let of = |pole: &f64| modes.iter().take(ANCHORS).map(|mode| pole / mode).collect::<Vec<_>>();
-                self.poles.iter().take(ANCHORS).flat_map(of).collect()
-            } else {
-                vec![1.0]
-            };
             let start = |factor: f64| {
                 let scaled: Vec<f64> = modes.iter().map(|mode| mode * factor).collect();
                 (self.charge(&scaled, round), (unit.0.map(|constant| constant * factor * factor), unit.1))
             };
-            factors.into_iter().map(start).collect()
+            grid.factors(&modes).into_iter().map(start).collect()
         };
         units.into_par_iter().flat_map_iter(anchored).collect()
     }
@@ -121,15 +108,11 @@ impl PlatesByPoles<'_> {
     fn charge(&self, modes: &[f64], round: &Round) -> f64 {
         let poles = &self.poles[..round.poles.min(self.poles.len())];
         let top = poles.last().copied().unwrap_or(0.0) * (1.0 + round.near);
-        let mut seen = vec![false; modes.len()];
-        let mut charge = 0.0;
-        for pole in poles {
-            let distance = |mode: usize| (modes[mode] / pole - 1.0).abs();
-            let free = (0..modes.len()).filter(|&mode| !seen[mode]);
-            let Some(mode) = free.min_by(|&a, &b| distance(a).total_cmp(&distance(b))) else { return f64::INFINITY };
-            seen[mode] = true;
-            charge += 0.5 * (distance(mode) / round.near).powi(2).ln_1p();
-        }
+        let (distances, seen) = nearest_modes(poles, modes, f64::INFINITY);
+        let charge: f64 = distances
+            .iter()
+            .map(|distance| distance.map_or(f64::INFINITY, |distance| 0.5 * (distance / round.near).powi(2).ln_1p()))
+            .sum();
         let unseen = modes.iter().zip(&seen).filter(|(mode, seen)| **mode < top && !**seen).count();
         charge + UNSEEN_MODE * unseen as f64
     }

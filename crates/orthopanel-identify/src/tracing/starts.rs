@@ -53,17 +53,18 @@ pub(super) fn scored_starts(
     let promised = |state: &State| -> Result<f64, IdentifyError> {
         Ok(promise(&problem.linearise(&problem.parameters(state), state)?))
     };
+    let switched = |values: &[f64]| {
+        let at = |name: &str| {
+            let index = effect.parameters().iter().position(|parameter| parameter.name == name);
+            index.and_then(|index| values.get(index)).copied()
+        };
+        Switched::new(effect, piece, problem.records.len(), at, |_| false)
+    };
     let scored: Vec<Result<Costed, IdentifyError>> = grid(effect, piece, test, places)
         .into_par_iter()
-        .flat_map_iter(|start| {
-            let at = |name: &str| {
-                effect.parameters().iter().position(|parameter| parameter.name == name).map(|index| start[index])
-            };
-            let switched = Switched::new(effect, piece, problem.records.len(), at, |_| false);
-            match records.with(base, switched) {
-                Ok(states) => states.into_iter().map(Ok).collect(),
-                Err(error) => vec![Err(error)],
-            }
+        .flat_map_iter(|start| match records.with(base, switched(&start)) {
+            Ok(states) => states.into_iter().map(Ok).collect(),
+            Err(error) => vec![Err(error)],
         })
         .chain(beside.into_par_iter().map(Ok))
         .map(|state| {
@@ -85,13 +86,7 @@ pub(super) fn scored_starts(
     }
     starts.sort_by(|a, b| a.1.total_cmp(&b.1));
     if effect.id() == PLATE {
-        let by_poles = records.with_plates_by_poles(base, |ratios| {
-            let at = |name: &str| {
-                let index = effect.parameters().iter().position(|parameter| parameter.name == name);
-                index.and_then(|index| ratios.get(index)).copied()
-            };
-            Switched::new(effect, piece, problem.records.len(), at, |_| false)
-        });
+        let by_poles = records.with_plates_by_poles(base, |ratios| switched(ratios));
         let by_poles =
             by_poles.into_par_iter().filter_map(|state| promised(&state).ok().map(|promised| (state, promised)));
         // One step foretells little: neither kind may keep the other from being followed.

@@ -5,6 +5,7 @@ use orthopanel_model::{BEAM_CONSTANTS, Effect, Piece};
 use super::hypothesis::Switched;
 use super::record_problem::State;
 use super::records_of_test::TestRecords;
+use super::stiffness_grid::StiffnessGrid;
 use crate::IdentifyError;
 use crate::accelerance_fit::pole_charge;
 
@@ -45,24 +46,14 @@ pub(super) fn support_starts(
         let constants = constants.map(f64::ln);
         State { constants, hypothesis: base.hypothesis.and(switched), ..base.clone() }
     };
-    let usual = base.constants.map(f64::exp);
-    let (lowest, highest, steps) = RATIOS;
+    let grid = StiffnessGrid { ratios: RATIOS, anchors: ANCHORS, poles, held: &records.held };
     let mut found: Vec<(f64, State)> = Vec::new();
     for (rotation, translation) in ROTATIONS.iter().flat_map(|r| TRANSLATIONS.map(|t| (*r, t))) {
-        for step in 0..=steps {
-            let ratio = lowest * (highest / lowest).powf(step as f64 / steps as f64);
-            let unit = match records.held {
-                [Some(e_x), g_zx] => [e_x, g_zx.unwrap_or(e_x / ratio)],
-                [None, Some(g_zx)] => [ratio * g_zx, g_zx],
-                [None, None] => [usual[0], usual[0] / ratio],
-            };
+        for unit in grid.units(base.constants[0].exp()) {
             let state = with(unit, rotation, translation);
             let modes = records.setup.summed_frequencies(&unit, &state.hypothesis.states(count)?)?;
-            let anchored = |pole: &f64| modes.iter().take(ANCHORS).map(|mode| pole / mode).collect::<Vec<_>>();
-            let is_free = records.held == [None; 2];
-            let factors: Vec<f64> =
-                if is_free { poles.iter().take(ANCHORS).flat_map(anchored).collect() } else { vec![1.0] };
-            let best = factors
+            let best = grid
+                .factors(&modes)
                 .into_iter()
                 .map(|factor| (pole_charge(poles, modes.iter().map(|mode| mode * factor), top, REACH), factor));
             let Some((charge, factor)) = best.min_by(|a, b| a.0.total_cmp(&b.0)) else { continue };
