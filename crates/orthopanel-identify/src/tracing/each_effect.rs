@@ -6,11 +6,11 @@ use orthopanel_model::{Effect, catalogue};
 use rayon::prelude::*;
 
 use super::fit::fit;
-use super::hypothesis::has_place;
+use super::hypothesis::{PLATE, has_place};
 use super::other_side::turn_round;
 use super::outcome::{NotTested, Progress};
 use super::ranking::{Ranking, Search};
-use super::starts::{Costed, Places, followed, followed_far, scored_starts};
+use super::starts::{Costed, Look, followed, followed_far, scored_starts};
 use crate::IdentifyError;
 
 /// The widening up to which the many starts of a closer look are followed.
@@ -24,7 +24,7 @@ impl Search<'_> {
     pub(super) fn each_alone(&self) -> Result<Ranking, IdentifyError> {
         let base = fit(self.records, self.records.start.clone(), 0)?;
         let (begun, not_tested) =
-            self.begun_alone((&self.undeclared(), Places::Usual), |starts| followed(self.records, starts, 0));
+            self.begun_alone((&self.undeclared(), Look::Usual), |starts| followed(self.records, starts, 0));
         let mut fits = [base].into_iter().chain(self.finish(begun, 0)).collect::<Vec<_>>();
         turn_round(self.records, &mut fits, self.declared());
         let mut ranking = Ranking { scale: self.scale(&fits)?, fits, chosen: 0, not_tested, unfinished: false };
@@ -41,14 +41,14 @@ impl Search<'_> {
     /// Each of these effects beside the base, `followed` from its starts on the widest lines; and those that the test cannot tell of.
     pub(super) fn begun_alone(
         &self,
-        (tried, places): (&[&'static dyn Effect], Places),
+        (tried, look): (&[&'static dyn Effect], Look),
         followed: impl Fn(&[Costed]) -> Option<Costed> + Sync,
     ) -> (Vec<Costed>, Vec<NotTested>) {
         let done = AtomicUsize::new(0);
         let starts: Vec<_> = tried
             .par_iter()
             .map(|effect| {
-                let scored = scored_starts(self.records, &self.records.start, *effect, (&self.piece, 0), places);
+                let scored = scored_starts(self.records, &self.records.start, *effect, (&self.piece, 0), look);
                 let found = scored.map(|starts| followed(&starts));
                 let number = done.fetch_add(1, Ordering::Relaxed) + 1;
                 (self.progress)(Progress { effect: effect.id(), done: number, of: tried.len() });
@@ -67,7 +67,7 @@ impl Search<'_> {
     }
 
     /// Where nothing so far meets the noise, looks once more for effects with a place, from twice as many of these: with a place
-    /// too far off a search comes down beside the effect.
+    /// too far off a search comes down beside the effect. And for a plate from the poles, where a beam had modes for all of them.
     pub(super) fn look_closer(&self, ranking: &mut Ranking) -> Result<(), IdentifyError> {
         if self.meets_noise(&ranking.fits[ranking.chosen]) {
             return Ok(());
@@ -75,9 +75,10 @@ impl Search<'_> {
         // What a closer look costs is not taken from the pairs that come after it.
         let before = self.records.work.load(Ordering::Relaxed);
         let mut placed = self.undeclared();
-        placed.retain(|effect| has_place(*effect));
+        let is_new = |effect: &dyn Effect| effect.id() == PLATE && !self.records.shows_more_than_a_beam();
+        placed.retain(|effect| has_place(*effect) || is_new(*effect));
         let (begun, _) =
-            self.begun_alone((&placed, Places::Finer), |starts| followed_far(self.records, starts, FOLLOWED_TO));
+            self.begun_alone((&placed, Look::Closest), |starts| followed_far(self.records, starts, FOLLOWED_TO));
         for fit in self.finish(begun, FOLLOWED_TO + 1).into_iter().filter(|fit| fit.given_up.is_none()) {
             let name = fit.state.hypothesis.name();
             match ranking.fits.iter_mut().find(|other| other.state.hypothesis.name() == name) {

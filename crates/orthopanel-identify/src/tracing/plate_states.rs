@@ -10,6 +10,7 @@ use super::plate_starts::plate_starts;
 use super::plates_by_poles::{PlateStart, PlatesByPoles};
 use super::record_problem::State;
 use super::records_of_test::{FREE_DAMPING, TestRecords};
+use super::starts::Look;
 use crate::accelerance_fit::ResonanceStart;
 
 /// One resonance more than a beam has may be something loose; so many are a plate's.
@@ -41,6 +42,11 @@ impl TestRecords {
         self.plates.strange_poles >= STRANGE
     }
 
+    /// Whether a plate is begun from the poles: the search for one is long then.
+    pub(super) fn asked_the_poles(&self) -> bool {
+        self.shows_more_than_a_beam() || self.plates.by_poles.get().is_some()
+    }
+
     /// States with one more effect, at which a search may begin. A plate has more modes than the beam, and the constants of a beam
     /// that misses its modes are no start for it.
     ///
@@ -66,8 +72,15 @@ impl TestRecords {
 
     /// The same of a plate, where the poles alone tell its constants; none where the records show no more than a beam, or where places
     /// or edges show what is odd across. `plate` makes one of ratios.
-    pub(super) fn with_plates_by_poles(&self, before: &State, plate: impl Fn(&[f64; 4]) -> Switched) -> Vec<State> {
-        let Some((piece, boundary)) = self.plates.on_centre_line.filter(|_| self.shows_more_than_a_beam()) else {
+    pub(super) fn with_plates_by_poles(
+        &self,
+        before: &State,
+        look: Look,
+        plate: impl Fn(&[f64; 4]) -> Switched,
+    ) -> Vec<State> {
+        let Some((piece, boundary)) =
+            self.plates.on_centre_line.filter(|_| self.shows_more_than_a_beam() || look == Look::Closest)
+        else {
             return vec![];
         };
         let by = PlatesByPoles { piece: &piece, boundary, poles: &self.poles, held: &self.held };

@@ -36,10 +36,13 @@ struct Round {
     steps: u64,
 }
 
-const ROUNDS: [Round; 2] = [
-    Round { poles: 10, near: 1e-2, plates: 10, edge: 0.1, steps: 100 },
+const ROUNDS: [Round; 3] = [
+    Round { poles: 10, near: 1e-2, plates: 16, edge: 0.1, steps: 100 },
+    Round { poles: 12, near: 3e-3, plates: 10, edge: 0.05, steps: 120 },
     Round { poles: 14, near: 1e-3, plates: 4, edge: 0.02, steps: 150 },
 ];
+/// Plates none of whose constants differ by more than this part are one.
+const ALIKE: f64 = 0.01;
 /// A mode without a pole costs this: sensor or hammer may sit at its node, but none of many modes may be dreamt up to meet few poles.
 const UNSEEN_MODE: f64 = 0.25;
 
@@ -58,13 +61,12 @@ impl PlatesByPoles<'_> {
     pub(super) fn found(&self, usual: f64) -> Vec<PlateStart> {
         let mut found = self.tried(usual);
         for round in &ROUNDS {
-            found.sort_by(|a, b| a.0.total_cmp(&b.0));
+            found = parted(found);
             found.truncate(round.plates);
             let nearer = |&(_, start): &(f64, PlateStart)| self.nearer(start, round);
             found = found.par_iter().filter_map(nearer).collect();
         }
-        found.sort_by(|a, b| a.0.total_cmp(&b.0));
-        found.into_iter().map(|(_, start)| start).collect()
+        parted(found).into_iter().map(|(_, start)| start).collect()
     }
 
     /// A grid of ratios; how stiff the whole is follows from the lowest poles.
@@ -139,6 +141,22 @@ impl PlatesByPoles<'_> {
             [0, 1].map(|i| if self.held[i].is_some() { constants[i] } else { constants[i] * by(i).exp() });
         ([e_x, g_zx], [e_y * by(2).exp(), nu + by(3), g_xy * by(4).exp(), g_yz * by(5).exp()])
     }
+}
+
+/// The nearest first, without those that are like a nearer one.
+fn parted(mut found: Vec<(f64, PlateStart)>) -> Vec<(f64, PlateStart)> {
+    found.retain(|(charge, _)| charge.is_finite());
+    found.sort_by(|a, b| a.0.total_cmp(&b.0));
+    found.into_iter().fold(vec![], |mut parted: Vec<(f64, PlateStart)>, (charge, start)| {
+        if !parted.iter().any(|(_, other)| alike(other, &start)) {
+            parted.push((charge, start));
+        }
+        parted
+    })
+}
+
+fn alike(a: &PlateStart, b: &PlateStart) -> bool {
+    plate_values(a).iter().zip(&plate_values(b)).all(|(a, b)| (a - b).abs() <= ALIKE * a.abs())
 }
 
 const COORDINATES: usize = 6;

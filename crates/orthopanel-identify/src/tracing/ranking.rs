@@ -14,7 +14,7 @@ use super::outcome::{NotTested, Progress};
 use super::record_problem::{Grouping, State};
 use super::records_of_test::TestRecords;
 use super::roughness::{exceeds_any_test, is_roughness};
-use super::starts::{Costed, Places, followed, scored_starts};
+use super::starts::{Costed, Look, followed, scored_starts};
 use super::valley::along_the_valley;
 use super::verdict::{CLEAR, MET};
 use super::whiteness::{independent_part, whitened};
@@ -243,7 +243,7 @@ impl Search<'_> {
         let mut scored: Vec<Vec<Costed>> = others
             .par_iter()
             .filter_map(|effect| {
-                scored_starts(self.records, &root.state, **effect, (&self.piece, stage), Places::Usual).ok()
+                scored_starts(self.records, &root.state, **effect, (&self.piece, stage), Look::Usual).ok()
             })
             .collect();
         scored.sort_by(|a, b| a[0].1.total_cmp(&b[0].1));

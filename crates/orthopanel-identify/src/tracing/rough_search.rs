@@ -13,7 +13,7 @@ use super::record_problem::State;
 use super::records_of_test::TestRecords;
 use super::rough_rest::RoughRest;
 use super::roughness::{RoughScales, none_yet};
-use super::starts::{Costed, Places, followed_far};
+use super::starts::{Costed, Look, followed_far};
 use super::verdict::{CLEAR, verdict};
 use super::whiteness::residuals;
 use crate::IdentifyError;
@@ -145,7 +145,7 @@ fn polished_all(records: &TestRecords, states: &[State]) -> Vec<Costed> {
 fn tolerant<'a>(search: &Search, plain: impl Iterator<Item = &'a State>) -> Vec<Costed> {
     let records = search.records;
     let (begun, _) =
-        search.begun_alone((&search.undeclared(), Places::Finer), |starts| followed_far(records, starts, WIDE));
+        search.begun_alone((&search.undeclared(), Look::Finer), |starts| followed_far(records, starts, WIDE));
     let mut fits: Vec<Costed> =
         begun.into_par_iter().filter_map(|begun| polished_through(records, begun, SIFTED..=SIFTED).ok()).collect();
     fits.extend(polished_through(records, (records.start.clone(), f64::INFINITY), 0..=SIFTED));

@@ -41,7 +41,7 @@ pub(super) fn scored_starts(
     base: &State,
     effect: &'static dyn Effect,
     (piece, stage): (&Piece, usize),
-    places: Places,
+    look: Look,
 ) -> Result<Vec<Costed>, IdentifyError> {
     let problem = records.problem(stage);
     // Where no end is clamped, the grid's own starts say so.
@@ -60,7 +60,7 @@ pub(super) fn scored_starts(
         };
         Switched::new(effect, piece, problem.records.len(), at, |_| false)
     };
-    let scored: Vec<Result<Costed, IdentifyError>> = grid(effect, piece, test, places)
+    let scored: Vec<Result<Costed, IdentifyError>> = grid(effect, piece, test, look)
         .into_par_iter()
         .flat_map_iter(|start| match records.with(base, switched(&start)) {
             Ok(states) => states.into_iter().map(Ok).collect(),
@@ -86,7 +86,7 @@ pub(super) fn scored_starts(
     }
     starts.sort_by(|a, b| a.1.total_cmp(&b.1));
     if effect.id() == PLATE {
-        let by_poles = records.with_plates_by_poles(base, |ratios| switched(ratios));
+        let by_poles = records.with_plates_by_poles(base, look, |ratios| switched(ratios));
         let by_poles =
             by_poles.into_par_iter().filter_map(|state| promised(&state).ok().map(|promised| (state, promised)));
         // One step foretells little: neither kind may keep the other from being followed.
@@ -126,7 +126,7 @@ fn least(fits: Vec<Costed>) -> Option<Costed> {
 /// The first few starts after some steps at one widening; of an effect with a place or of clamps that yield `many`.
 fn followed_each(records: &TestRecords, starts: &[Costed], (stage, many): (usize, usize)) -> Vec<Costed> {
     let is_plate = starts.iter().any(|(state, _)| state.hypothesis.holds_plate());
-    let is_hard = is_plate && records.shows_more_than_a_beam();
+    let is_hard = is_plate && records.asked_the_poles();
     let is_wide = |effect: &'static dyn Effect| has_place(effect) || effect.id() == SUPPORT;
     let (follow, patience) = if is_hard {
         (2 * PLATES_FOLLOWED, PLATES_FOLLOW)
@@ -147,13 +147,15 @@ fn latest(starts: &[Costed], is: impl Fn(&'static dyn Effect) -> bool) -> bool {
 /// Most combinations of starts, beyond which only the first of each but the place, the frequency and the record is taken.
 const MOST_STARTS: usize = 30;
 
-/// Where on the panel starts lie.
+/// How closely starts are looked for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Places {
-    /// Where the catalogue says.
+pub(super) enum Look {
+    /// At places where the catalogue says.
     Usual,
     /// And halfway between: a mode's half-wave may be as short as the usual places are apart.
     Finer,
+    /// And at plates that the poles tell, though a beam may have modes for all of them.
+    Closest,
 }
 
 /// Values of all parameters, one list a start, in a test of so many records up to `band` \[Hz\].
@@ -161,7 +163,7 @@ pub(super) fn grid(
     effect: &'static dyn Effect,
     piece: &Piece,
     (records, band): (usize, f64),
-    places: Places,
+    look: Look,
 ) -> Vec<Vec<f64>> {
     let lists: Vec<(Vec<f64>, bool)> = effect
         .parameters()
@@ -172,7 +174,7 @@ pub(super) fn grid(
                 (_, Some(held)) => vec![held],
                 _ => parameter.starts(piece),
             };
-            if is_place(parameter) && places == Places::Finer {
+            if is_place(parameter) && look != Look::Usual {
                 list = with_middles(&list);
             }
             if parameter.unit == "Hz" && list.len() > 3 {
@@ -182,7 +184,7 @@ pub(super) fn grid(
             (list, parameter.scale == Scale::Index || is_place(parameter) || parameter.unit == "Hz")
         })
         .collect();
-    let most = if places == Places::Finer { 2 * MOST_STARTS } else { MOST_STARTS };
+    let most = if look != Look::Usual { 4 * MOST_STARTS } else { MOST_STARTS };
     let whole: usize = lists.iter().map(|(list, _)| list.len()).product();
     let lists = lists.into_iter().map(|(mut list, where_it_is)| {
         if whole > most && !where_it_is {

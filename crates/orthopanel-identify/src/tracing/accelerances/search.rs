@@ -15,7 +15,7 @@ use crate::tracing::hypothesis::{PLATE, Switched};
 use crate::tracing::outcome::{NotTested, Progress};
 use crate::tracing::ranking::PAYS;
 use crate::tracing::record_problem::{State, total};
-use crate::tracing::starts::{Places, grid};
+use crate::tracing::starts::{Look, grid};
 
 /// Effects at most.
 const MOST_EFFECTS: usize = 4;
@@ -170,7 +170,7 @@ impl Search<'_> {
         }
         let values = match again {
             Some(switched) => vec![switched],
-            None => grid(effect, &self.piece, (records, self.band), Places::Usual)
+            None => grid(effect, &self.piece, (records, self.band), Look::Usual)
                 .into_iter()
                 .map(|values| {
                     let at = |name: &str| effect.parameters().iter().position(|p| p.name == name).map(|i| values[i]);
