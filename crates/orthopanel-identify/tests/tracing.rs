@@ -68,6 +68,24 @@ fn val_a_loss_of_stiffness_between_usual_places_is_found() {
     are_told(&found, &case, &["loss", "span", "x"]);
 }
 
+/// A plate's modes change places with its constants: seed 1303 was `unexplained` before plates were begun from the poles, and while ten of
+/// those that were followed were alike.
+#[test]
+fn val_a_wide_plate_is_found_from_one_pair_of_places() {
+    let folder = tempfile::tempdir().unwrap();
+    let Some((test, case)) = made_with(&folder.path().join("set"), "single-place", "width-coupling", 1303) else {
+        return;
+    };
+    let found = trace(&test).unwrap();
+    assert_eq!((found.verdict.name(), found.effects[0].id), ("explained", "width-coupling"));
+    let constant = |group: &str, name: &str| case[group][name].as_f64().unwrap();
+    let (nu, std) = value(&found, "nu_xy");
+    assert!((nu - constant("across", "nu_xy")).abs() < 3.0 * std, "{nu} +- {std}, {case}");
+    let (ratio, std) = value(&found, "e_y_ratio");
+    let truth = constant("across", "e_y") / constant("constants", "e_x");
+    assert!((ratio - truth).abs() < 3.0 * std, "{ratio} +- {std}, {case}");
+}
+
 /// Starts of a core whose stiffening and loss were in the base already promised nothing: this was `unexplained` before they gave it back.
 #[test]
 fn val_a_core_beside_a_delay_is_found() {

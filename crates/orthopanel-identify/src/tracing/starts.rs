@@ -208,3 +208,26 @@ fn with_middles(places: &[f64]) -> Vec<f64> {
     all.sort_by(f64::total_cmp);
     all
 }
+
+#[cfg(test)]
+mod tests {
+    use orthopanel_model::effect;
+
+    use super::*;
+
+    /// A loss of 72 % was not found from one of 30 %.
+    #[test]
+    fn a_closer_look_tries_each_loss_and_span_at_every_place() {
+        let piece = Piece { length: 0.8, width: 0.1, thickness: 0.03, mass_per_area: 6.88 };
+        let of = |look| grid(effect("stiffness-loss").unwrap(), &piece, (5, 5000.0), look);
+        let places = |starts: &[Vec<f64>]| {
+            let mut places: Vec<f64> = starts.iter().map(|start| start[2]).collect();
+            places.sort_by(f64::total_cmp);
+            places.dedup();
+            places.len()
+        };
+        let (usual, closest) = (of(Look::Usual), of(Look::Closest));
+        assert!(places(&closest) >= 2 * places(&usual) - 1);
+        assert_eq!(closest.len(), 4 * places(&closest), "two losses and two spans");
+    }
+}
