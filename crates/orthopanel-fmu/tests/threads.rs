@@ -1,7 +1,7 @@
 //! Several instances in several threads, through the C functions of both versions: each runs as if it were alone.
 #![expect(unsafe_code, reason = "an importer in Rust calls C functions")]
 
-use std::ffi::{CString, c_int};
+use std::ffi::CString;
 use std::path::Path;
 use std::ptr::null_mut;
 use std::sync::Barrier;
@@ -9,33 +9,9 @@ use std::sync::Barrier;
 use orthopanel_fmu::{RESOURCE_FILE, Resource, content_token};
 use orthopanel_model::{ModeRange, PanelModel, Place, Ports};
 
-mod instantiation;
+mod c_functions;
 
-use instantiation::{Pointer, fmi2Instantiate, fmi3InstantiateCoSimulation};
-
-unsafe extern "C" {
-    fn fmi2EnterInitializationMode(instance: Pointer) -> c_int;
-    fn fmi2ExitInitializationMode(instance: Pointer) -> c_int;
-    fn fmi2SetReal(instance: Pointer, references: *const u32, count: usize, values: *const f64) -> c_int;
-    fn fmi2GetReal(instance: Pointer, references: *const u32, count: usize, values: *mut f64) -> c_int;
-    fn fmi2DoStep(instance: Pointer, start: f64, step: f64, last: c_int) -> c_int;
-    fn fmi2FreeInstance(instance: Pointer);
-    fn fmi3EnterInitializationMode(i: Pointer, has: u8, tolerance: f64, start: f64, stops: u8, stop: f64) -> c_int;
-    fn fmi3ExitInitializationMode(instance: Pointer) -> c_int;
-    fn fmi3SetFloat64(instance: Pointer, references: *const u32, count: usize, values: *const f64, n: usize) -> c_int;
-    fn fmi3GetFloat64(instance: Pointer, references: *const u32, count: usize, values: *mut f64, n: usize) -> c_int;
-    fn fmi3DoStep(
-        i: Pointer,
-        start: f64,
-        step: f64,
-        last: u8,
-        event: *mut u8,
-        end: *mut u8,
-        early: *mut u8,
-        time: *mut f64,
-    ) -> c_int;
-    fn fmi3FreeInstance(instance: Pointer);
-}
+use c_functions::*;
 
 /// The panel on disk, and the references that the test needs.
 struct Fmu {

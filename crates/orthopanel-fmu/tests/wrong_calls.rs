@@ -9,16 +9,14 @@ use std::sync::Mutex;
 use orthopanel_fmu::{RESOURCE_FILE, Resource, content_token};
 use orthopanel_model::{ModalModel, Mode, Place, Ports};
 
-mod instantiation;
+mod c_functions;
 
-use instantiation::{Pointer, fmi2Instantiate, fmi3InstantiateCoSimulation, fmi3InstantiateModelExchange};
+use c_functions::*;
 
 const DISCARD: c_int = 2;
 const ERROR: c_int = 3;
 
 unsafe extern "C" {
-    fn fmi2EnterInitializationMode(instance: Pointer) -> c_int;
-    fn fmi2ExitInitializationMode(instance: Pointer) -> c_int;
     fn fmi2GetRealStatus(instance: Pointer, kind: c_int, value: *mut f64) -> c_int;
     fn fmi2GetBooleanStatus(instance: Pointer, kind: c_int, value: *mut c_int) -> c_int;
     fn fmi2GetStatus(instance: Pointer, kind: c_int, value: *mut c_int) -> c_int;
@@ -26,33 +24,14 @@ unsafe extern "C" {
     fn fmi2GetDerivatives(instance: Pointer, values: *mut f64, count: usize) -> c_int;
     fn fmi2GetNominalsOfContinuousStates(instance: Pointer, values: *mut f64, count: usize) -> c_int;
     fn fmi2GetEventIndicators(instance: Pointer, values: *mut f64, count: usize) -> c_int;
-    fn fmi2GetReal(i: Pointer, references: *const u32, count: usize, values: *mut f64) -> c_int;
-    fn fmi2SetReal(i: Pointer, references: *const u32, count: usize, values: *const f64) -> c_int;
     fn fmi2SetDebugLogging(i: Pointer, on: c_int, count: usize, categories: *const *const c_char) -> c_int;
-    fn fmi2FreeInstance(instance: Pointer);
-    fn fmi3EnterInitializationMode(i: Pointer, has: u8, tolerance: f64, start: f64, stops: u8, stop: f64) -> c_int;
-    fn fmi3ExitInitializationMode(instance: Pointer) -> c_int;
     fn fmi3GetContinuousStates(instance: Pointer, values: *mut f64, count: usize) -> c_int;
     fn fmi3GetContinuousStateDerivatives(instance: Pointer, values: *mut f64, count: usize) -> c_int;
     fn fmi3GetNominalsOfContinuousStates(instance: Pointer, values: *mut f64, count: usize) -> c_int;
     fn fmi3GetEventIndicators(instance: Pointer, values: *mut f64, count: usize) -> c_int;
     fn fmi3GetNumberOfContinuousStates(instance: Pointer, count: *mut usize) -> c_int;
     fn fmi3GetNumberOfEventIndicators(instance: Pointer, count: *mut usize) -> c_int;
-    fn fmi3GetFloat64(i: Pointer, references: *const u32, count: usize, values: *mut f64, sizes: usize) -> c_int;
-    fn fmi3SetFloat64(i: Pointer, references: *const u32, count: usize, values: *const f64, sizes: usize) -> c_int;
-    fn fmi3Reset(instance: Pointer) -> c_int;
     fn fmi3SetDebugLogging(i: Pointer, on: u8, count: usize, categories: *const *const c_char) -> c_int;
-    fn fmi3DoStep(
-        instance: Pointer,
-        start: f64,
-        step: f64,
-        no_state_before: u8,
-        event: *mut u8,
-        terminate: *mut u8,
-        early: *mut u8,
-        reached: *mut f64,
-    ) -> c_int;
-    fn fmi3FreeInstance(instance: Pointer);
 }
 
 /// The last message of an FMI 3 instance whose environment is the mutex.

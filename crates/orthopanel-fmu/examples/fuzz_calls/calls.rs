@@ -3,8 +3,8 @@
 use std::ffi::c_int;
 use std::ptr::null_mut;
 
-use crate::functions::{Instance, fmi2EnterInitializationMode, fmi2SetupExperiment, fmi3EnterInitializationMode};
-use crate::instantiation::Pointer;
+use crate::c_functions::{Pointer, fmi2EnterInitializationMode, fmi3EnterInitializationMode};
+use crate::functions::{Instance, fmi2SetupExperiment};
 use crate::panels::Fmu;
 
 /// Marsaglia's xorshift: a sequence that a seed brings back.

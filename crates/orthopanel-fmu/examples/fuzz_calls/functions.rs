@@ -2,7 +2,7 @@
 
 use std::ffi::c_int;
 
-use crate::instantiation::Pointer;
+use crate::c_functions::*;
 
 /// Declares the functions that both versions have with the same arguments, and a table of them for each version.
 macro_rules! both {
@@ -34,15 +34,30 @@ both! {
     read fmi2DeSerializeFMUstate fmi3DeserializeFMUState(*const u8, usize, *mut Pointer);
 }
 
+/// Declares functions of FMI 3.0 that multiply a seed by partial derivatives, forwards or backwards.
+macro_rules! partial_derivatives {
+    ($($name:ident)*) => {
+        unsafe extern "C" { $(fn $name(
+            i: Pointer,
+            unknowns: *const u32,
+            unknown_count: usize,
+            knowns: *const u32,
+            known_count: usize,
+            seed: *const f64,
+            seeds: usize,
+            found: *mut f64,
+            sensitivities: usize,
+        ) -> c_int;)* }
+    };
+}
+
+partial_derivatives! { fmi3GetDirectionalDerivative fmi3GetAdjointDerivative }
+
 /// References and their count.
 type List<'a> = &'a [u32];
 
 unsafe extern "C" {
-    pub fn fmi2EnterInitializationMode(instance: Pointer) -> c_int;
     pub fn fmi2SetupExperiment(i: Pointer, has: c_int, tolerance: f64, start: f64, stops: c_int, stop: f64) -> c_int;
-    fn fmi2GetReal(instance: Pointer, references: *const u32, count: usize, values: *mut f64) -> c_int;
-    fn fmi2SetReal(instance: Pointer, references: *const u32, count: usize, values: *const f64) -> c_int;
-    fn fmi2DoStep(instance: Pointer, start: f64, step: f64, last: c_int) -> c_int;
     fn fmi2GetDirectionalDerivative(
         i: Pointer,
         unknowns: *const u32,
@@ -61,42 +76,6 @@ unsafe extern "C" {
     ) -> c_int;
     fn fmi2GetRealOutputDerivatives(i: Pointer, list: *const u32, n: usize, orders: *const c_int, v: *mut f64)
     -> c_int;
-    pub fn fmi2FreeInstance(instance: Pointer);
-    pub fn fmi3EnterInitializationMode(i: Pointer, has: u8, tolerance: f64, start: f64, stops: u8, stop: f64) -> c_int;
-    fn fmi3GetFloat64(instance: Pointer, references: *const u32, count: usize, values: *mut f64, n: usize) -> c_int;
-    fn fmi3SetFloat64(instance: Pointer, references: *const u32, count: usize, values: *const f64, n: usize) -> c_int;
-    fn fmi3DoStep(
-        i: Pointer,
-        start: f64,
-        step: f64,
-        last: u8,
-        event: *mut u8,
-        end: *mut u8,
-        early: *mut u8,
-        time: *mut f64,
-    ) -> c_int;
-    fn fmi3GetDirectionalDerivative(
-        i: Pointer,
-        unknowns: *const u32,
-        unknown_count: usize,
-        knowns: *const u32,
-        known_count: usize,
-        seed: *const f64,
-        seeds: usize,
-        found: *mut f64,
-        sensitivities: usize,
-    ) -> c_int;
-    fn fmi3GetAdjointDerivative(
-        i: Pointer,
-        unknowns: *const u32,
-        unknown_count: usize,
-        knowns: *const u32,
-        known_count: usize,
-        seed: *const f64,
-        seeds: usize,
-        found: *mut f64,
-        sensitivities: usize,
-    ) -> c_int;
     fn fmi3GetOutputDerivatives(
         i: Pointer,
         list: *const u32,
@@ -105,7 +84,6 @@ unsafe extern "C" {
         values: *mut f64,
         count: usize,
     ) -> c_int;
-    pub fn fmi3FreeInstance(instance: Pointer);
 }
 
 /// A live instance of one version.

@@ -10,16 +10,16 @@ use std::ptr::null_mut;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
-#[path = "../../tests/instantiation/mod.rs"]
-mod instantiation;
+#[path = "../../tests/c_functions/mod.rs"]
+mod c_functions;
 
 mod calls;
 mod functions;
 mod panels;
 
+use c_functions::{Pointer, fmi2Instantiate, fmi3InstantiateCoSimulation, fmi3InstantiateModelExchange};
 use calls::{Kept, Random, one_call};
 use functions::Instance;
-use instantiation::{Pointer, fmi2Instantiate, fmi3InstantiateCoSimulation, fmi3InstantiateModelExchange};
 use panels::{Fmu, prepare};
 
 /// The status of a call that is refused; it goes with a message.

@@ -1,5 +1,5 @@
-//! The C functions that make instances, as an importer in Rust declares them.
-#![allow(dead_code, reason = "no test makes instances of every kind")]
+//! The C functions that more than one test calls, as an importer in Rust declares them.
+#![allow(dead_code, reason = "no test calls all")]
 
 use std::ffi::{c_char, c_int, c_void};
 
@@ -38,4 +38,26 @@ unsafe extern "C" {
         environment: Pointer,
         log: Pointer,
     ) -> Pointer;
+    pub fn fmi2EnterInitializationMode(instance: Pointer) -> c_int;
+    pub fn fmi2ExitInitializationMode(instance: Pointer) -> c_int;
+    pub fn fmi2GetReal(instance: Pointer, references: *const u32, count: usize, values: *mut f64) -> c_int;
+    pub fn fmi2SetReal(instance: Pointer, references: *const u32, count: usize, values: *const f64) -> c_int;
+    pub fn fmi2DoStep(instance: Pointer, start: f64, step: f64, last: c_int) -> c_int;
+    pub fn fmi2FreeInstance(instance: Pointer);
+    pub fn fmi3EnterInitializationMode(i: Pointer, has: u8, tolerance: f64, start: f64, stops: u8, stop: f64) -> c_int;
+    pub fn fmi3ExitInitializationMode(instance: Pointer) -> c_int;
+    pub fn fmi3GetFloat64(i: Pointer, references: *const u32, count: usize, values: *mut f64, sizes: usize) -> c_int;
+    pub fn fmi3SetFloat64(i: Pointer, references: *const u32, count: usize, values: *const f64, sizes: usize) -> c_int;
+    pub fn fmi3Reset(instance: Pointer) -> c_int;
+    pub fn fmi3DoStep(
+        instance: Pointer,
+        start: f64,
+        step: f64,
+        no_state_before: u8,
+        event: *mut u8,
+        terminate: *mut u8,
+        early: *mut u8,
+        reached: *mut f64,
+    ) -> c_int;
+    pub fn fmi3FreeInstance(instance: Pointer);
 }
