@@ -24,6 +24,8 @@ pub(crate) struct AccelerationBands {
 
 /// At one frequency \[Hz\]: what the modes left out add to the accelerance, and the whole.
 type Line = (f64, Complex64, Complex64);
+/// Accelerances at one frequency: a row a response, a column a force.
+type Rows = Vec<Vec<Complex64>>;
 
 impl AccelerationBands {
     /// # Errors
@@ -77,27 +79,30 @@ impl AccelerationBands {
         let (count, ports) = (resource.flexible_modes(), resource.ports());
         let last = |modes: Vec<orthopanel_model::PanelMode>| modes.last().map_or(0.0, |mode| mode.angular_frequency());
         let grid = grid(last(panel.modes(ModeRange::Count(count))?) / TAU);
-        let mut bands = Vec::new();
-        for &response in &ports.responses {
-            let mut row = Vec::new();
-            for &force in &ports.forces {
-                let further = |count| panel.relaxing_lines(ModeRange::Count(count), force, response);
-                let whole = match further(FURTHER * count) {
-                    Err(ModelError::BasisTooSmall { available, .. }) => further(available)?,
-                    found => found?,
-                };
-                let own = panel.relaxing_lines_of_modes(ModeRange::Count(count), force, response)?;
-                row.push(whole.zip(own).and_then(|(whole, own)| {
-                    let line = |&frequency: &f64| {
-                        let s = Complex64::new(0.0, TAU * frequency);
-                        let whole = whole.at(s);
-                        (frequency, whole - own.at(s), whole)
-                    };
-                    band(&grid.iter().map(line).collect::<Vec<Line>>())
-                }));
-            }
-            bands.push(row);
-        }
+        let further = |count| panel.relaxing_lines(ModeRange::Count(count), &ports.forces, &ports.responses);
+        let whole = match further(FURTHER * count) {
+            Err(ModelError::BasisTooSmall { available, .. }) => further(available)?,
+            found => found?,
+        };
+        let own = panel.relaxing_lines_of_modes(ModeRange::Count(count), &ports.forces, &ports.responses)?;
+        let Some((whole, own)) = whole.zip(own) else {
+            let never = vec![vec![None; ports.forces.len()]; ports.responses.len()];
+            return Ok(Self { bands: never, frequency_change: None });
+        };
+        let lines = grid.iter().map(|&frequency| {
+            let s = Complex64::new(0.0, TAU * frequency);
+            (frequency, whole.at(s), own.at(s))
+        });
+        let lines: Vec<_> = lines.collect();
+        let one = |response: usize, force: usize| {
+            let line = |(frequency, whole, own): &(f64, Rows, Rows)| {
+                let whole = whole[response][force];
+                (*frequency, whole - own[response][force], whole)
+            };
+            band(&lines.iter().map(line).collect::<Vec<Line>>())
+        };
+        let row = |response: usize| (0..ports.forces.len()).map(|force| one(response, force)).collect();
+        let bands = (0..ports.responses.len()).map(row).collect();
         Ok(Self { bands, frequency_change: None })
     }
 }
@@ -139,9 +144,9 @@ mod tests {
         let (resource, fit) = Resource::of_panel(&panel, ModeRange::Count(5), ports).unwrap();
         assert!(fit.unwrap().error < 1e-3, "small beside a hundredth");
         let told = AccelerationBands::of(&panel, &resource).unwrap().within_one_percent(0, 0).unwrap();
-        let whole = panel.relaxing_lines(ModeRange::Count(30), at(-0.3), at(-0.3)).unwrap().unwrap();
+        let whole = panel.relaxing_lines(ModeRange::Count(30), &[at(-0.3)], &[at(-0.3)]).unwrap().unwrap();
         let share = |frequency: f64| {
-            let whole = |frequency: f64| whole.at(Complex64::new(0.0, TAU * frequency));
+            let whole = |frequency: f64| whole.at(Complex64::new(0.0, TAU * frequency))[0][0];
             let octave = (0..=48).map(|point| whole(frequency * ((f64::from(point) - 24.0) / 48.0).exp2()).norm_sqr());
             let rms = (octave.sum::<f64>() / 49.0).sqrt();
             (resource.model().accelerance(0, 0, frequency) - whole(frequency)).norm() / rms

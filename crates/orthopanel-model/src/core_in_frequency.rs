@@ -55,7 +55,7 @@ impl PanelModel {
         Ok(modes)
     }
 
-    /// Lines of the accelerance of a panel with a viscoelastic core from one place to another, on the modes that lie up to
+    /// Lines of the accelerances of a panel with a viscoelastic core from forces to responses, on the modes that lie up to
     /// about `highest` \[Hz\]; `None` for a panel without a core.
     ///
     /// # Errors
@@ -63,36 +63,36 @@ impl PanelModel {
     pub fn relaxing_lines(
         &self,
         highest: ModeRange,
-        force: Place,
-        response: Place,
+        forces: &[Place],
+        responses: &[Place],
     ) -> Result<Option<RelaxingLines>, ModelError> {
-        self.lines_of_core(highest, [force, response], true)
+        self.lines_of_core(highest, (forces, responses), true)
     }
 
     /// As [`PanelModel::relaxing_lines`], of the coordinates alone that [`PanelModel::time_model`] steps: without what forces at the
-    /// two places do beyond these.
+    /// places do beyond these.
     ///
     /// # Errors
     /// As there.
     pub fn relaxing_lines_of_modes(
         &self,
         modes: ModeRange,
-        force: Place,
-        response: Place,
+        forces: &[Place],
+        responses: &[Place],
     ) -> Result<Option<RelaxingLines>, ModelError> {
-        self.lines_of_core(modes, [force, response], false)
+        self.lines_of_core(modes, (forces, responses), false)
     }
 
     fn lines_of_core(
         &self,
         highest: ModeRange,
-        [force, response]: [Place; 2],
+        (forces, responses): (&[Place], &[Place]),
         with_ports: bool,
     ) -> Result<Option<RelaxingLines>, ModelError> {
         if !self.relaxes() {
             return Ok(None);
         }
-        [force, response].into_iter().try_for_each(|place| self.piece.contains(place))?;
+        forces.iter().chain(responses).try_for_each(|place| self.piece.contains(*place))?;
         let (values, effects) = self.with_effects()?;
         let setting = EffectSetting::of_panel(&self.piece, self.boundary);
         let count = match highest.checked(self.structure)? {
@@ -102,7 +102,7 @@ impl PanelModel {
         let count = count.max(1);
         let even = self.even(&setting, count)?;
         let parts = self.on_even(&setting, &even, &values, &effects);
-        RelaxingLines::new(parts, count, [force, response], with_ports)
+        RelaxingLines::new(parts, count, (forces, responses), with_ports)
     }
 }
 

@@ -77,9 +77,12 @@ impl ComparedPair {
         let seen = modes_up_to(model, history.rate, force, response)?;
         let all = model.static_flexibility(seen.modes().len(), &[force], &[response])?;
         let static_flexibility = all[0][0];
-        let known = Some(static_flexibility);
-        let settings =
-            HistorySettings { between_samples, static_flexibility: known, band, ..HistorySettings::default() };
+        let settings = HistorySettings {
+            between_samples,
+            static_flexibility: Some(static_flexibility),
+            band,
+            ..HistorySettings::default()
+        };
         let hits = compare_time_history(&seen, &history, &settings)?;
         Ok(Self { verdicts: history.verdicts(), history, hits, modes: seen, static_flexibility })
     }

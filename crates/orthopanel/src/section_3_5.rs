@@ -101,8 +101,8 @@ pub fn by_runge_kutta(
     let steps_asked = asked.filter(|asked| *asked != steps);
     let stepped = |stepping: Stepping| {
         let static_flexibility = exact.static_flexibility;
-        let known = Some(static_flexibility);
-        let settings = HistorySettings { between_samples, stepping, static_flexibility: known, band: None };
+        let settings =
+            HistorySettings { between_samples, stepping, static_flexibility: Some(static_flexibility), band: None };
         let hits = compare_time_history(&modes, history, &settings)?;
         Ok::<_, IdentifyError>(ComparedPair {
             history: history.clone(),

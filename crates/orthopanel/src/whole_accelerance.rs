@@ -41,9 +41,9 @@ impl WholeAccelerance {
     /// [`ModelError::BeyondBasis`] where they end below.
     pub fn up_to(model: &PanelModel, highest: f64, force: Place, response: Place) -> Result<Self, ModelError> {
         let margin = ModeRange::UpTo(RELAXING_MARGIN * highest + RELAXING_SPARE);
-        let relaxing = match model.relaxing_lines(margin, force, response) {
+        let relaxing = match model.relaxing_lines(margin, &[force], &[response]) {
             Err(ModelError::BasisTooSmall { available, .. }) => {
-                model.relaxing_lines(ModeRange::Count(available), force, response)
+                model.relaxing_lines(ModeRange::Count(available), &[force], &[response])
             }
             lines => lines,
         };
@@ -78,7 +78,7 @@ impl WholeAccelerance {
 
     /// With the modes of `range`, and the static part of all others where it is known.
     pub fn of(model: &PanelModel, range: ModeRange, force: Place, response: Place) -> Result<Self, ModelError> {
-        if let Some(lines) = model.relaxing_lines(range, force, response)? {
+        if let Some(lines) = model.relaxing_lines(range, &[force], &[response])? {
             return Ok(Self::Relaxing(Box::new(lines)));
         }
         let modes = model.modal_model(range, &[force], &[response])?;
@@ -94,7 +94,7 @@ impl WholeAccelerance {
                 (value.re - (TAU * frequency).powi(2) * beyond, value.im)
             }
             Self::Relaxing(lines) => {
-                let value = lines.at(Complex64::new(0.0, TAU * frequency));
+                let value = lines.at(Complex64::new(0.0, TAU * frequency))[0][0];
                 (value.re, value.im)
             }
         }

@@ -9,12 +9,12 @@ use super::{CoreModulus, PanelWithEffects};
 use crate::structure::Motion;
 use crate::{ModelError, Place};
 
-/// From a force at one place to the acceleration at another.
+/// From forces at some places to the accelerations at others.
 ///
 /// With the law $g(s)$ of a [`CoreModulus`], and no fit of it,
-/// $$H(s) = s^2\,r^T\big[s^2M + sC + K + (g(s)-1)S\big]^{-1}f$$
+/// $$H(s) = s^2\,R^T\big[s^2M + sC + K + (g(s)-1)S\big]^{-1}F$$
 /// in the coordinates in which [`PanelModel::time_model`](crate::PanelModel::time_model) relaxes, with shapes of their own for what
-/// forces at the elements do, and at the two places if so asked.
+/// forces at the elements do, and at the places if so asked.
 #[derive(Debug, Clone)]
 pub struct RelaxingLines {
     /// Scaled to a stiffness of one a coordinate.
@@ -22,8 +22,10 @@ pub struct RelaxingLines {
     damping: Mat<f64>,
     stiffness: Mat<f64>,
     shear: Mat<f64>,
-    force: Vec<f64>,
-    response: Vec<f64>,
+    /// A column a force.
+    forces: Mat<Complex64>,
+    /// A list a response.
+    responses: Vec<Vec<f64>>,
     core: CoreModulus,
 }
 
@@ -32,10 +34,10 @@ impl RelaxingLines {
     pub(crate) fn new(
         parts: PanelWithEffects,
         count: usize,
-        [force, response]: [Place; 2],
+        (forces, responses): (&[Place], &[Place]),
         with_ports: bool,
     ) -> Result<Option<Self>, ModelError> {
-        let ports = [force, response];
+        let ports = [forces, responses].concat();
         let found = Relaxing::new(parts, count, if with_ports { &ports } else { &[] })?;
         let Some(Relaxing { panel, system, shear, core, .. }) = found else { return Ok(None) };
         let rigid = panel.rigid();
@@ -50,32 +52,35 @@ impl RelaxingLines {
             let inside = |i: usize| (rigid..rigid + shear.nrows()).contains(&i);
             if inside(i) && inside(j) { shear[(i - rigid, j - rigid)] } else { 0.0 }
         });
-        let seen = |place: Place| -> Result<Vec<f64>, ModelError> {
-            let row = panel.values_in((Motion::Deflection, place))?;
+        let seen = |place: &Place| -> Result<Vec<f64>, ModelError> {
+            let row = panel.values_in((Motion::Deflection, *place))?;
             Ok(kept.iter().map(|&i| row.get(i).map_or(0.0, |value| scale(i) * value)).collect())
         };
+        let pushed = forces.iter().map(seen).collect::<Result<Vec<Vec<f64>>, ModelError>>()?;
         Ok(Some(Self {
             mass: part(&system.mass),
             damping: part(&system.damping),
             stiffness: part(&system.stiffness),
             shear: part(&whole_shear),
-            force: seen(force)?,
-            response: seen(response)?,
+            forces: Mat::from_fn(kept.len(), forces.len(), |i, force| pushed[force][i].into()),
+            responses: responses.iter().map(seen).collect::<Result<_, _>>()?,
             core,
         }))
     }
 
-    /// The accelerance \[(m/s²)/N\] at $s \ne 0$ \[1/s\].
-    pub fn at(&self, s: Complex64) -> Complex64 {
+    /// The accelerances \[(m/s²)/N\] at $s \ne 0$ \[1/s\]: a row a response, a column a force.
+    pub fn at(&self, s: Complex64) -> Vec<Vec<Complex64>> {
         let excess = self.core.line(s).value - 1.0;
-        let size = self.force.len();
+        let size = self.mass.nrows();
         let dynamic = Mat::from_fn(size, size, |i, j| {
             let at = (i, j);
             self.mass[at] * s * s + self.damping[at] * s + self.stiffness[at] + self.shear[at] * excess
         });
-        let pushed = Mat::from_fn(size, 1, |i, _| Complex64::from(self.force[i]));
-        let moved = dynamic.partial_piv_lu().solve(&pushed);
-        let sum: Complex64 = self.response.iter().enumerate().map(|(i, r)| moved[(i, 0)] * *r).sum();
-        s * s * sum
+        let moved = dynamic.partial_piv_lu().solve(&self.forces);
+        let one = |response: &[f64], force: usize| {
+            let sum: Complex64 = response.iter().enumerate().map(|(i, r)| moved[(i, force)] * *r).sum();
+            s * s * sum
+        };
+        self.responses.iter().map(|response| (0..moved.ncols()).map(|force| one(response, force)).collect()).collect()
     }
 }
