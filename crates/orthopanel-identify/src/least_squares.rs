@@ -109,6 +109,8 @@ pub(crate) struct Ending {
     pub easing: f64,
     /// No parameter moves further in one step.
     pub longest_step: f64,
+    /// Whether a step that promises no more than `little` is left undone: what data tell nothing of would go to its bound.
+    pub rests: bool,
 }
 
 impl Ending {
@@ -123,6 +125,7 @@ impl Ending {
         failed_damping: 0.0,
         easing: 0.1,
         longest_step: f64::INFINITY,
+        rests: false,
     };
     /// For residuals that jump where two modes change places: 1e-6 of the sum of squares moves a parameter by 1e-3 of its
     /// standard deviation, and at a jump steps shrink without end.
@@ -150,6 +153,11 @@ impl Ending {
     /// The same from a start that may be far off, or along a valley that bends: full steps fail there one after the other.
     pub const fn far(most_iterations: usize, little: f64) -> Self {
         Self { first_damping: 1e-2, easing: 0.3, ..Self::short(most_iterations, little) }
+    }
+
+    /// The same that stays where it is as soon as a step promises little.
+    pub const fn resting(self) -> Self {
+        Self { rests: true, ..self }
     }
 
     /// Whether the next step from here, without damping, would promise little.
@@ -222,6 +230,9 @@ pub(crate) fn descend_along<E>(
         };
         // Once that is nothing beside what is left, either end is the minimum.
         let promised = promise(&at, &parameters, &trial);
+        if ending.rests && promised <= ending.little {
+            return Ok((Minimum { parameters, at }, true));
+        }
         let moved = trial.iter().zip(&parameters).fold(0.0_f64, |most, (a, b)| most.max((a - b).abs()));
         let within = |(value, (low, high)): (f64, &(f64, f64))| value.clamp(*low, *high);
         let bent = bent(&parameters, &trial).map(|bent| bent.into_iter().zip(bounds).map(within).collect());
@@ -304,5 +315,20 @@ mod tests {
         let bounds = [(-10.0, 0.5), (-10.0, 10.0)];
         let Ok(minimum) = levenberg_marquardt(rosenbrock, &[-1.2, 1.0], &bounds) else { panic!("no minimum") };
         assert!((minimum.parameters[0] - 0.5).abs() < 1e-8);
+    }
+
+    /// Data that hardly tell a parameter leave it where it is, and do not send it to its bound.
+    #[test]
+    fn what_is_hardly_told_rests() {
+        let flat = |p: &[f64]| -> Result<Quadratic, ()> {
+            let (residuals, rows) = (vec![p[0] - 1.0, 1e-3 * p[1]], [[1.0, 0.0], [0.0, 1e-3]]);
+            Ok(Linearised { residuals, jacobian: Mat::from_fn(2, 2, |i, j| rows[i][j]) }.quadratic())
+        };
+        let found = |ending: Ending| match descend(flat, &[1.0, 20.0], &[(-9.0, 9.0), (-90.0, 90.0)], ending) {
+            Ok((minimum, settled)) => (minimum.parameters[1], settled),
+            Err(_) => panic!("refused"),
+        };
+        assert_eq!(found(Ending::far(9, 1.0).resting()), (20.0, true));
+        assert!(found(Ending::far(9, 1.0)).0 < 10.0, "else nothing was tested");
     }
 }

@@ -10,7 +10,7 @@ use super::hypothesis::{PLATE, has_place};
 use super::other_side::turn_round;
 use super::outcome::{NotTested, Progress};
 use super::ranking::{Ranking, Search};
-use super::starts::{Costed, Look, followed, followed_far, scored_starts};
+use super::starts::{Costed, Look, followed_far, followed_where_told, scored_starts};
 use crate::IdentifyError;
 
 /// The widening up to which the many starts of a closer look are followed.
@@ -23,8 +23,10 @@ impl Search<'_> {
     /// Where the base itself cannot be fitted.
     pub(super) fn each_alone(&self) -> Result<Ranking, IdentifyError> {
         let base = fit(self.records, self.records.start.clone(), 0)?;
-        let (begun, not_tested) =
-            self.begun_alone((&self.undeclared(), Look::Usual), |starts| followed(self.records, starts, 0));
+        let lacking = self.first_that_lacks(&base)?;
+        let (begun, not_tested) = self.begun_alone((&self.undeclared(), Look::Usual), |starts| {
+            followed_where_told(self.records, starts, lacking)
+        });
         let mut fits = [base].into_iter().chain(self.finish(begun, 0)).collect::<Vec<_>>();
         turn_round(self.records, &mut fits, self.declared());
         let mut ranking = Ranking { scale: self.scale(&fits)?, fits, chosen: 0, not_tested, unfinished: false };

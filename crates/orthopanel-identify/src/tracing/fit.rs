@@ -40,9 +40,14 @@ impl Fit {
 /// The narrowest lines.
 pub(super) const LAST: usize = WIDENINGS.len() - 1;
 
-/// Evaluations at each widening: a valley that bends, as a core's modulus over frequency makes one, takes many.
-pub(super) const PATIENCE: [Ending; WIDENINGS.len()] =
-    [Ending::far(16, 1.0), Ending::far(12, 1.0), Ending::far(8, 1.0), Ending::far(30, 0.2)];
+/// Evaluations at each widening: a valley that bends, as a core's modulus over frequency makes one, takes many. What wide lines do not
+/// tell waits for narrow ones where it is.
+pub(super) const PATIENCE: [Ending; WIDENINGS.len()] = [
+    Ending::far(16, 1.0).resting(),
+    Ending::far(12, 1.0).resting(),
+    Ending::far(8, 1.0).resting(),
+    Ending::far(30, 0.2),
+];
 
 /// Fits from `state`, beginning at the widening of this number.
 ///

@@ -224,7 +224,7 @@ impl Search<'_> {
     }
 
     /// The widest lines on which a fit misses more than noise: wider ones cannot tell what it lacks.
-    fn first_that_lacks(&self, fit: &Fit) -> Result<usize, IdentifyError> {
+    pub(super) fn first_that_lacks(&self, fit: &Fit) -> Result<usize, IdentifyError> {
         for stage in 0..LAST {
             let problem = self.records.problem(stage);
             let at = problem.linearise(&problem.parameters(&fit.state), &fit.state)?;

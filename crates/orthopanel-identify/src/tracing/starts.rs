@@ -14,7 +14,7 @@ use crate::least_squares::Ending;
 
 /// Starts that are followed for some steps before the best is taken.
 const FOLLOWED: usize = 3;
-const FOLLOW: Ending = Ending::far(8, 1.0);
+const FOLLOW: Ending = Ending::far(8, 1.0).resting();
 /// One pair of places hardly tells where on the panel something is: wide peaks have more minima there than several pairs leave,
 /// and each costs less to follow.
 const FEW_RECORDS: usize = 2;
@@ -24,7 +24,7 @@ const FOLLOWED_FAR: usize = 30;
 /// A plate's modes of two families change their order: one step foretells little. So many of the grid's starts are followed, and as
 /// many that the poles tell.
 const PLATES_FOLLOWED: usize = 4;
-const PLATES_FOLLOW: Ending = Ending::far(16, 1.0);
+const PLATES_FOLLOW: Ending = Ending::far(16, 1.0).resting();
 
 /// A state at one widening, and the sum of squares that it leaves there or promises to leave.
 pub(super) type Costed = (State, f64);
@@ -99,6 +99,30 @@ pub(super) fn scored_starts(
         (true, Some(reason)) => Err(reason),
         (true, None) => Err(IdentifyError::Unsupported(format!("{}: no start", effect.id()))),
     }
+}
+
+/// Promises of starts that differ by less are alike.
+const TOLD: f64 = 1.0;
+
+/// The best of the first few starts after some steps on the widest lines; where these do not tell one start from another, on
+/// those of the widening `narrow`: a force that goes with the cube of the motion builds up over a record.
+pub(super) fn followed_where_told(records: &TestRecords, starts: &[Costed], narrow: usize) -> Option<Costed> {
+    let promises = || starts.iter().map(|(_, promised)| *promised);
+    let spread = promises().fold(f64::NEG_INFINITY, f64::max) - promises().fold(f64::INFINITY, f64::min);
+    if narrow == 0 || starts.len() < 2 || spread > TOLD {
+        return followed(records, starts, 0);
+    }
+    let problem = records.problem(narrow);
+    let promised = |(state, _): &Costed| {
+        let promised = promise(&problem.linearise(&problem.parameters(state), state).ok()?);
+        Some((state.clone(), promised))
+    };
+    let mut again: Vec<Costed> = starts.par_iter().filter_map(promised).collect();
+    again.sort_by(|a, b| a.1.total_cmp(&b.1));
+    let (state, _) = followed(records, &again, narrow)?;
+    let widest = records.problem(0);
+    let cost = widest.linearise(&widest.parameters(&state), &state).ok()?.cost;
+    Some((state, cost))
 }
 
 /// The best of the first few starts after some steps at one widening.
