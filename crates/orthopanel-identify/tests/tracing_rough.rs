@@ -5,7 +5,7 @@
 mod support;
 
 use orthopanel_identify::{Tracing, Verdict, trace};
-use support::made;
+use support::{made, made_with};
 
 fn tells_that_it_is_rough(found: &Tracing) -> bool {
     found.notes.iter().any(|note| note.starts_with("this test is rough"))
@@ -37,4 +37,19 @@ fn val_an_effect_is_found_beside_roughness() {
         let (value, std) = (known.value, known.std.unwrap());
         assert!((value - truth).abs() < 3.0 * std, "{kind}: {value} +- {std}, truth {truth}");
     }
+}
+
+/// A gain of 3.4 % is more than any record of a rough test has: it was taken for roughness while only the gains of all records together
+/// had a bound, and `unexplained` where it had to pay for itself.
+#[test]
+fn val_a_small_gain_of_one_record_is_no_roughness() {
+    let folder = tempfile::tempdir().unwrap();
+    let Some((test, case)) = made_with(&folder.path().join("set"), "rough", "record-gain", 1682) else { return };
+    let found = trace(&test).unwrap();
+    assert!(matches!(found.verdict, Verdict::Explained | Verdict::Ambiguous), "{}", found.verdict.name());
+    assert_eq!(found.effects[0].id, "record-gain");
+    let truth = case["effects"][0]["parameters"]["gain"].as_f64().unwrap();
+    let gain = found.effects[0].parameters.iter().find(|known| known.name == "gain").unwrap().values[0];
+    // The record has its own roughness of 0.3 % on top.
+    assert!((gain.value / truth - 1.0).abs() < 0.01, "{gain:?}, truth {truth}");
 }

@@ -155,9 +155,12 @@ impl Search<'_> {
         ranking.scale = self.scale(&ranking.fits)?;
         let current = ranking.chosen;
         let is_too_rough: Vec<bool> = ranking.fits.iter().map(|fit| exceeds_any_test(&fit.state.hypothesis)).collect();
+        // No test is so rough: whatever else meets the noise need not pay beside it, as a record's gain of 3 or 4 %.
+        let makes_smooth =
+            |index: usize| is_too_rough[current] && !is_too_rough[index] && self.meets_noise(&ranking.fits[index]);
         let mut order: Vec<usize> = (0..ranking.fits.len())
             .filter(|&index| index != current && ranking.fits[index].given_up.is_none())
-            .filter(|&index| ranking.price(index) < ranking.price(current))
+            .filter(|&index| ranking.price(index) < ranking.price(current) || makes_smooth(index))
             .filter(|&index| !is_too_rough[index] || is_too_rough[current])
             .collect();
         order.sort_by(|&a, &b| {

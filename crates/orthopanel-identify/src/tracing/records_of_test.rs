@@ -76,6 +76,8 @@ const LOG_ZETA_STD_BEYOND: [f64; WIDENINGS.len()] = [0.1, 0.1, 0.1, 1.0];
 /// Scatter of the hits over their noise that may still be the noise's own: beyond, they differ by something that a hypothesis
 /// has to explain, as a force that is not linear, and a misfit may not hide behind it.
 const SCATTERED: f64 = 2.0;
+/// Scatter of the hits over their noise from which a test may be rough: over thousands of lines noise alone gives 0.9 to 1.02.
+const ROUGH: f64 = 1.3;
 /// Starts that are followed a little way, and the evaluations spent on each before the best is taken.
 const TRIED: usize = 4;
 const TRIAL: Ending = Ending::far(12, 1.0);
@@ -232,7 +234,7 @@ impl TestRecords {
 
     /// Whether the hits of a record differ by more than noise.
     pub(super) fn hits_differ(&self) -> bool {
-        self.hit_scatter() > SCATTERED
+        self.hit_scatter() > ROUGH
     }
 
     /// Brings the hits of each record to the place that they hit in the mean, by the model at a state with roughness, on all

@@ -93,18 +93,23 @@ impl RoughScales {
 }
 
 /// Whether the roughness that was found is more than a test by hand has: by its rms, over [`RoughScales::MOST`] and by
-/// [`SPARE`] of that for what a few numbers scatter.
+/// [`SPARE`] of that for what a few numbers scatter, or by one record's place or gain, [`ALONE`] times that.
 pub(super) fn exceeds_any_test(hypothesis: &Hypothesis) -> bool {
     let mut sums = [(0.0, 0.0); 3];
     for (_, free, value) in free_of(hypothesis) {
         let kind = &mut sums[free.parameter.min(2)];
-        kind.0 += (value / RoughScales::MOST.of(free.parameter)).powi(2);
+        let over = value / RoughScales::MOST.of(free.parameter);
+        if free.parameter < 2 && over.abs() > ALONE {
+            return true;
+        }
+        kind.0 += over * over;
         kind.1 += 1.0;
     }
     sums.iter().any(|(sum, count)| *sum > SPARE * SPARE * count)
 }
 
 const SPARE: f64 = 1.3;
+const ALONE: f64 = 2.5;
 const MARK: f64 = 1.5;
 
 /// Whether an effect of a hypothesis is the roughness.
@@ -167,6 +172,12 @@ mod tests {
         assert_eq!(found, RoughScales::MOST);
         assert!(exceeds_any_test(&rough(9e-3, 0.0, 0.0)) && exceeds_any_test(&rough(0.0, 0.05, 0.0)));
         assert!(!exceeds_any_test(&rough(3e-3, 0.01, 1e-3)));
+        let one = |gain: f64| {
+            let gains = (0..RECORDS).map(|record| if record == 2 { gain } else { 0.0 });
+            let coordinates = [vec![0.0; RECORDS], gains.collect(), vec![0.0; CORE_WAVES]].concat();
+            exceeds_any_test(&Hypothesis { effects: vec![none_yet(&PIECE, RECORDS)] }.at(&coordinates))
+        };
+        assert!(one(0.026) && !one(0.02), "an rms of 1 % either way");
     }
 
     /// What hits scatter by bounds how far their mean may lie: 4 mm beside is an offset of the hammer, to be named.
