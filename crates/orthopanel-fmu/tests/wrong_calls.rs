@@ -21,12 +21,10 @@ unsafe extern "C" {
     fn fmi2GetBooleanStatus(instance: Pointer, kind: c_int, value: *mut c_int) -> c_int;
     fn fmi2GetStatus(instance: Pointer, kind: c_int, value: *mut c_int) -> c_int;
     fn fmi2GetContinuousStates(instance: Pointer, values: *mut f64, count: usize) -> c_int;
-    fn fmi2GetDerivatives(instance: Pointer, values: *mut f64, count: usize) -> c_int;
     fn fmi2GetNominalsOfContinuousStates(instance: Pointer, values: *mut f64, count: usize) -> c_int;
     fn fmi2GetEventIndicators(instance: Pointer, values: *mut f64, count: usize) -> c_int;
     fn fmi2SetDebugLogging(i: Pointer, on: c_int, count: usize, categories: *const *const c_char) -> c_int;
     fn fmi3GetContinuousStates(instance: Pointer, values: *mut f64, count: usize) -> c_int;
-    fn fmi3GetContinuousStateDerivatives(instance: Pointer, values: *mut f64, count: usize) -> c_int;
     fn fmi3GetNominalsOfContinuousStates(instance: Pointer, values: *mut f64, count: usize) -> c_int;
     fn fmi3GetEventIndicators(instance: Pointer, values: *mut f64, count: usize) -> c_int;
     fn fmi3GetNumberOfContinuousStates(instance: Pointer, count: *mut usize) -> c_int;

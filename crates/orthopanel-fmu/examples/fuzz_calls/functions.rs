@@ -4,34 +4,44 @@ use std::ffi::c_int;
 
 use crate::c_functions::*;
 
-/// Declares the functions that both versions have with the same arguments, and a table of them for each version.
+/// A table for each version of the functions that both have with the same arguments. Those under `here` are declared too.
 macro_rules! both {
-    ($($field:ident $two:ident $three:ident ($($kind:ty),*);)*) => {
+    (
+        elsewhere { $($field:ident $two:ident $three:ident ($($kind:ty),*);)* }
+        here { $($own:ident $own_two:ident $own_three:ident ($($own_kind:ty),*);)* }
+    ) => {
         unsafe extern "C" { $(
-            fn $two(instance: Pointer, $(_: $kind),*) -> c_int;
-            fn $three(instance: Pointer, $(_: $kind),*) -> c_int;
+            fn $own_two(instance: Pointer, $(_: $own_kind),*) -> c_int;
+            fn $own_three(instance: Pointer, $(_: $own_kind),*) -> c_int;
         )* }
-        pub struct Functions { $(pub $field: unsafe extern "C" fn(Pointer, $($kind),*) -> c_int,)* }
-        pub const TWO: Functions = Functions { $($field: $two,)* };
-        pub const THREE: Functions = Functions { $($field: $three,)* };
+        pub struct Functions {
+            $(pub $field: unsafe extern "C" fn(Pointer, $($kind),*) -> c_int,)*
+            $(pub $own: unsafe extern "C" fn(Pointer, $($own_kind),*) -> c_int,)*
+        }
+        pub const TWO: Functions = Functions { $($field: $two,)* $($own: $own_two,)* };
+        pub const THREE: Functions = Functions { $($field: $three,)* $($own: $own_three,)* };
     };
 }
 
 both! {
-    exit fmi2ExitInitializationMode fmi3ExitInitializationMode();
-    terminate fmi2Terminate fmi3Terminate();
-    reset fmi2Reset fmi3Reset();
-    event fmi2EnterEventMode fmi3EnterEventMode();
-    continuous fmi2EnterContinuousTimeMode fmi3EnterContinuousTimeMode();
-    time fmi2SetTime fmi3SetTime(f64);
-    set_states fmi2SetContinuousStates fmi3SetContinuousStates(*const f64, usize);
-    derivatives fmi2GetDerivatives fmi3GetContinuousStateDerivatives(*mut f64, usize);
-    get_state fmi2GetFMUstate fmi3GetFMUState(*mut Pointer);
-    set_state fmi2SetFMUstate fmi3SetFMUState(Pointer);
-    free_state fmi2FreeFMUstate fmi3FreeFMUState(*mut Pointer);
-    size fmi2SerializedFMUstateSize fmi3SerializedFMUStateSize(Pointer, *mut usize);
-    write fmi2SerializeFMUstate fmi3SerializeFMUState(Pointer, *mut u8, usize);
-    read fmi2DeSerializeFMUstate fmi3DeserializeFMUState(*const u8, usize, *mut Pointer);
+    elsewhere {
+        exit fmi2ExitInitializationMode fmi3ExitInitializationMode();
+        reset fmi2Reset fmi3Reset();
+        derivatives fmi2GetDerivatives fmi3GetContinuousStateDerivatives(*mut f64, usize);
+    }
+    here {
+        terminate fmi2Terminate fmi3Terminate();
+        event fmi2EnterEventMode fmi3EnterEventMode();
+        continuous fmi2EnterContinuousTimeMode fmi3EnterContinuousTimeMode();
+        time fmi2SetTime fmi3SetTime(f64);
+        set_states fmi2SetContinuousStates fmi3SetContinuousStates(*const f64, usize);
+        get_state fmi2GetFMUstate fmi3GetFMUState(*mut Pointer);
+        set_state fmi2SetFMUstate fmi3SetFMUState(Pointer);
+        free_state fmi2FreeFMUstate fmi3FreeFMUState(*mut Pointer);
+        size fmi2SerializedFMUstateSize fmi3SerializedFMUStateSize(Pointer, *mut usize);
+        write fmi2SerializeFMUstate fmi3SerializeFMUState(Pointer, *mut u8, usize);
+        read fmi2DeSerializeFMUstate fmi3DeserializeFMUState(*const u8, usize, *mut Pointer);
+    }
 }
 
 /// Declares functions of FMI 3.0 that multiply a seed by partial derivatives, forwards or backwards.
@@ -57,6 +67,7 @@ partial_derivatives! { fmi3GetDirectionalDerivative fmi3GetAdjointDerivative }
 type List<'a> = &'a [u32];
 
 unsafe extern "C" {
+    fn fmi2Reset(instance: Pointer) -> c_int;
     pub fn fmi2SetupExperiment(i: Pointer, has: c_int, tolerance: f64, start: f64, stops: c_int, stop: f64) -> c_int;
     fn fmi2GetDirectionalDerivative(
         i: Pointer,

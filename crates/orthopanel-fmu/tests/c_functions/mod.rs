@@ -1,4 +1,4 @@
-//! The C functions that more than one test calls, as an importer in Rust declares them.
+//! The C functions that more than one test or example calls, as an importer in Rust declares them.
 #![allow(dead_code, reason = "no test calls all")]
 
 use std::ffi::{c_char, c_int, c_void};
@@ -42,12 +42,14 @@ unsafe extern "C" {
     pub fn fmi2ExitInitializationMode(instance: Pointer) -> c_int;
     pub fn fmi2GetReal(instance: Pointer, references: *const u32, count: usize, values: *mut f64) -> c_int;
     pub fn fmi2SetReal(instance: Pointer, references: *const u32, count: usize, values: *const f64) -> c_int;
+    pub fn fmi2GetDerivatives(instance: Pointer, values: *mut f64, count: usize) -> c_int;
     pub fn fmi2DoStep(instance: Pointer, start: f64, step: f64, last: c_int) -> c_int;
     pub fn fmi2FreeInstance(instance: Pointer);
     pub fn fmi3EnterInitializationMode(i: Pointer, has: u8, tolerance: f64, start: f64, stops: u8, stop: f64) -> c_int;
     pub fn fmi3ExitInitializationMode(instance: Pointer) -> c_int;
     pub fn fmi3GetFloat64(i: Pointer, references: *const u32, count: usize, values: *mut f64, sizes: usize) -> c_int;
     pub fn fmi3SetFloat64(i: Pointer, references: *const u32, count: usize, values: *const f64, sizes: usize) -> c_int;
+    pub fn fmi3GetContinuousStateDerivatives(instance: Pointer, values: *mut f64, count: usize) -> c_int;
     pub fn fmi3Reset(instance: Pointer) -> c_int;
     pub fn fmi3DoStep(
         instance: Pointer,
