@@ -58,6 +58,9 @@ impl PanelModel {
     /// Lines of the accelerances of a panel with a viscoelastic core from forces to responses, on the modes that lie up to
     /// about `highest` \[Hz\]; `None` for a panel without a core.
     ///
+    /// Each place adds shapes of its own to the basis of all lines. So a line differs a little by which places are asked for
+    /// together.
+    ///
     /// # Errors
     /// As [`PanelModel::modes`], and [`ModelError::OffPiece`].
     pub fn relaxing_lines(
