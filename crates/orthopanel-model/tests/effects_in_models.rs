@@ -9,6 +9,7 @@ mod dressed_beam;
 
 use dressed_beam::{DRESSED, SAME, at, line, text};
 
+/// Every natural frequency is a pole of the undamped receptance.
 #[test]
 fn val_modes_are_the_poles_of_the_receptance() {
     let model = PanelModel::from_json(&text(DRESSED)).unwrap();
