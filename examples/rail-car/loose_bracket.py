@@ -1,4 +1,4 @@
-"""The traced effect `resonator` as an FMU that pythonfmu builds: a mass that hangs on one point of the panel."""
+"""The effect `resonator` of the model file as an FMU that pythonfmu builds: a mass that hangs on one point of the panel."""
 
 import numpy as np
 from port_slave import PortSlave

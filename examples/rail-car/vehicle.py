@@ -23,7 +23,7 @@ NAMESPACES = {
 
 
 def resonator(model):
-    """The bracket that tracing found, or None."""
+    """The bracket that the model file names as an effect, or None."""
     return next((effect for effect in model.get("effects", []) if effect["id"] == "resonator"), None)
 
 
