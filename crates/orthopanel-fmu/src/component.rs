@@ -74,9 +74,21 @@ impl Component {
         }
     }
 
-    /// Sets start and stop time; both versions allow it before initialization.
-    pub(crate) fn set_experiment(&mut self, start: f64, stop: Option<f64>) -> Result<(), FmuError> {
+    /// Sets start and stop time; both versions allow it before initialization. A tolerance is of no use to steps that are
+    /// exact, but must be one. Zero, which some importers pass for none, is.
+    pub(crate) fn set_experiment(
+        &mut self,
+        tolerance: Option<f64>,
+        start: f64,
+        stop: Option<f64>,
+    ) -> Result<(), FmuError> {
         self.require(Phase::INSTANTIATED)?;
+        if let Some(value) = tolerance {
+            finite("tolerance", value)?;
+            if value < 0.0 {
+                return Err(FmuError::Tolerance { value });
+            }
+        }
         finite("start time", start)?;
         if let Some(stop) = stop {
             finite("stop time", stop)?;
@@ -146,6 +158,22 @@ impl Component {
 
 fn finite(what: &str, value: f64) -> Result<(), FmuError> {
     if value.is_finite() { Ok(()) } else { Err(FmuError::NotFinite { what: what.into(), value }) }
+}
+
+/// Largest force, force rate, state and seed that may be set, as a number: what a panel answers to it is a number, too.
+const LARGEST_SET: f64 = 1e100;
+
+/// Not so for what is no number.
+#[inline(always)]
+fn fits(value: f64) -> bool {
+    value.abs() <= LARGEST_SET
+}
+
+#[cold]
+fn fitting(what: &str, value: f64) -> Result<(), FmuError> {
+    finite(what, value)?;
+    let largest = LARGEST_SET;
+    if fits(value) { Ok(()) } else { Err(FmuError::TooLarge { what: what.into(), value, largest }) }
 }
 
 #[cfg(test)]

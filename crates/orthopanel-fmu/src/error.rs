@@ -79,6 +79,22 @@ pub enum FmuError {
         /// Its value.
         value: f64,
     },
+    /// A force, rate, state or seed beyond what is reckoned with.
+    #[error("{what} = {value:e}: must lie between -{largest:e} and {largest:e}")]
+    TooLarge {
+        /// What it is.
+        what: String,
+        /// Its value.
+        value: f64,
+        /// Largest size allowed.
+        largest: f64,
+    },
+    /// A relative tolerance below zero.
+    #[error("tolerance = {value}: a relative tolerance is zero or more; or say that none is defined")]
+    Tolerance {
+        /// The tolerance.
+        value: f64,
+    },
     /// A result that no number holds.
     #[error(
         "{what} = {value} under the forces, states and derivatives now set: these are too large together, set smaller ones"

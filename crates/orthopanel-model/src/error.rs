@@ -20,8 +20,9 @@ pub enum ModelError {
     },
     /// A thickness and a mass per area that no solid has together.
     #[error(
-        "a thickness of {thickness} m and {mass_per_area} kg/m2 make {density:.3} kg/m3, and solids have {lightest} to \
-         {heaviest}: sizes are in metres, mass_per_area in kg/m2"
+        "a thickness of {} m and {} kg/m2 make {} kg/m3, and solids have {lightest} to \
+         {heaviest}: sizes are in metres, mass_per_area in kg/m2",
+        Readable(*.thickness), Readable(*.mass_per_area), Readable(to_thousandths(*.density))
     )]
     Density {
         /// Thickness \[m\].
@@ -158,6 +159,16 @@ pub enum ModelError {
         what: &'static str,
         /// Its value.
         value: f64,
+    },
+    /// A number too large to be reckoned with.
+    #[error("{what} = {value:e}: must be at most {largest:e}")]
+    TooLarge {
+        /// What it is.
+        what: &'static str,
+        /// Its value.
+        value: f64,
+        /// Largest value allowed.
+        largest: f64,
     },
     /// A model file whose text cannot be read.
     #[error("line {line}: {problem}")]
@@ -326,6 +337,11 @@ pub enum ModelError {
     /// What this version cannot solve.
     #[error("{0} is not supported by this version of orthopanel")]
     Unsupported(String),
+}
+
+/// What has decimals, with three of them.
+fn to_thousandths(value: f64) -> f64 {
+    if (1e-3..1e9).contains(&value) { (1e3 * value).round() / 1e3 } else { value }
 }
 
 /// A number for people: in exponent form where it is huge or tiny.

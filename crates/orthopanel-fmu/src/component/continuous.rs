@@ -5,7 +5,7 @@
 //! States stand mode after mode: $a_1, \dot a_1, a_2, \dot a_2, \dots$; there are no event indicators.
 
 use super::phase::Phases;
-use super::{Component, Interface, Phase, finite};
+use super::{Component, Interface, Phase, finite, fits, fitting};
 use crate::FmuError;
 
 impl Component {
@@ -38,8 +38,8 @@ impl Component {
     pub(crate) fn set_continuous_states(&mut self, states: &[f64]) -> Result<(), FmuError> {
         self.require_model_exchange(Phase::CONTINUOUS_TIME)?;
         self.same_states(states.len())?;
-        if let Some(&value) = states.iter().find(|state| !state.is_finite()) {
-            return finite("continuous state", value);
+        if let Some(&value) = states.iter().find(|state| !fits(**state)) {
+            return fitting("continuous state", value);
         }
         for (mode, pair) in states.chunks_exact(2).enumerate() {
             if let &[position, velocity] = pair {

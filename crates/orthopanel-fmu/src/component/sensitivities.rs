@@ -4,7 +4,7 @@
 //! is the output itself, asked of a panel whose forces and states *are* that direction. By parameters, which move the modes,
 //! it is differenced (`parameter_sensitivities`).
 
-use super::{Component, Phase, finite};
+use super::{Component, Phase, fitting};
 use crate::{FmuError, Quantity};
 
 impl Component {
@@ -23,7 +23,7 @@ impl Component {
         self.apply()?;
         for (&known, &value) in knowns.iter().zip(seed) {
             self.check_known(known)?;
-            finite("seed", value)?;
+            fitting("seed", value)?;
         }
         self.rest_probe()?;
         for (&known, &value) in knowns.iter().zip(seed) {
@@ -54,7 +54,7 @@ impl Component {
         self.check_unknowns(unknowns)?;
         self.apply()?;
         for &value in seed {
-            finite("seed", value)?;
+            fitting("seed", value)?;
         }
         for &known in knowns {
             self.check_known(known)?;

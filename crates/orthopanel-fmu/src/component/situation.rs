@@ -1,5 +1,6 @@
 //! All that calls can change in an instance, so that it can be kept, put back and carried away.
 
+use orthopanel_model::ModalStepper;
 use serde::{Deserialize, Serialize};
 
 use super::{Component, Interface, Phase};
@@ -98,8 +99,8 @@ impl Component {
         if snapshot.motion.len() != self.mode_count() {
             return Err(FmuError::State("it holds another number of modes"));
         }
-        if snapshot.motion.iter().flatten().any(|number| !number.is_finite()) {
-            return Err(FmuError::State("it holds a number that is not finite"));
+        if !snapshot.motion.iter().flatten().all(|number| number.abs() <= ModalStepper::LARGEST) {
+            return Err(FmuError::State("it holds a motion that is too large or no number"));
         }
         Ok(())
     }

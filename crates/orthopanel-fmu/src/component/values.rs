@@ -1,6 +1,6 @@
 //! Getting and setting variables; a call with one bad entry changes nothing.
 
-use super::{Component, Interface, Phase, finite};
+use super::{Component, Interface, Phase, fits, fitting};
 use crate::{FmuError, Quantity, Variable};
 
 impl Component {
@@ -68,7 +68,7 @@ impl Component {
         // One force, which is what is set at every step, needs no second look.
         if let ([reference], [value]) = (references, values)
             && let Some(Quantity::Force(port)) = self.variables.quantity(*reference)
-            && value.is_finite()
+            && fits(*value)
             && let Some(force) = self.now.forces.get_mut(port)
         {
             *force = *value;
@@ -82,7 +82,7 @@ impl Component {
     fn set_several(&mut self, references: &[u32], values: &[f64]) -> Result<(), FmuError> {
         for (&reference, &value) in references.iter().zip(values) {
             // A force is asked for nothing more.
-            if !(matches!(self.variables.quantity(reference), Some(Quantity::Force(_))) && value.is_finite()) {
+            if !(matches!(self.variables.quantity(reference), Some(Quantity::Force(_))) && fits(value)) {
                 self.check_settable(reference, value)?;
             }
         }
@@ -142,7 +142,7 @@ impl Component {
             if order != 1 {
                 return Err(FmuError::DerivativeOrder { order });
             }
-            finite(&self.variable(reference)?.name, rate)?;
+            fitting(&self.variable(reference)?.name, rate)?;
         }
         for (&reference, &rate) in references.iter().zip(rates) {
             let port = self.force_port(reference)?;
@@ -247,10 +247,10 @@ impl Component {
     #[cold]
     fn check_settable(&self, reference: u32, value: f64) -> Result<(), FmuError> {
         let reason = match self.real(reference)? {
-            Quantity::Force(_) => return finite(&self.variable(reference)?.name, value),
+            Quantity::Force(_) => return fitting(&self.variable(reference)?.name, value),
             Quantity::ModalPosition(_) | Quantity::ModalVelocity(_) => {
                 if Phase::BEFORE_START.contain(self.now.phase) {
-                    return finite(&self.variable(reference)?.name, value);
+                    return fitting(&self.variable(reference)?.name, value);
                 }
                 "the initial state is set before or in initialization mode (model exchange: set continuous states)"
             }

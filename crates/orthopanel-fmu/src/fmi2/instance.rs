@@ -70,9 +70,10 @@ entries! {
         boundary::set_logging(instance, on != 0, count, categories)
     };
     fmi2SetupExperiment(
-        _tolerance_defined: Boolean, _tolerance: f64, start: f64, stop_defined: Boolean, stop: f64
+        tolerance_defined: Boolean, tolerance: f64, start: f64, stop_defined: Boolean, stop: f64
     ) |instance| {
-        instance.component.set_experiment(start, (stop_defined != 0).then_some(stop))
+        let tolerance = (tolerance_defined != 0).then_some(tolerance);
+        instance.component.set_experiment(tolerance, start, (stop_defined != 0).then_some(stop))
     };
 }
 

@@ -27,10 +27,11 @@ impl Lane {
         Self([value; LANES])
     }
 
-    /// Is each number finite? Asked of all at once: an early answer would be a branch a number.
+    /// Is each number at most `largest`? None of those that are none is. Asked of all at once: an early answer would be a
+    /// branch a number.
     #[inline(always)]
-    pub(super) fn is_finite(self) -> bool {
-        self.0.iter().fold(true, |all, value| all & value.is_finite())
+    pub(super) fn is_below(self, largest: f64) -> bool {
+        self.0.iter().fold(true, |all, &value| all & (value <= largest))
     }
 
     /// Sum, one after the other: a sum by halves would let the compiler cut the vectors of the loop before it in half.

@@ -53,6 +53,12 @@ pub(super) struct State {
 }
 
 impl State {
+    /// $a^2 + \dot a^2$ of each mode.
+    #[inline(always)]
+    pub fn squares(&self) -> Lane {
+        self.position * self.position + self.velocity * self.velocity
+    }
+
     /// The state after the step for which the group's coefficients are made.
     #[inline(always)]
     pub fn stepped<const LINEAR: bool>(self, group: &Group) -> Self {

@@ -34,6 +34,10 @@ pub struct ModalStepper {
 }
 
 impl ModalStepper {
+    /// Largest modal coordinate \[m kg^1/2\], rate and modal force, as a number. Its square is a number still, and so is
+    /// each output: a step that is taken never leaves an acceleration that cannot be read.
+    pub const LARGEST: f64 = 1e150;
+
     /// A stepper at rest for the modes and ports of `model`.
     pub fn new(model: &ModalModel) -> Self {
         let modes = model.modes();
@@ -71,7 +75,7 @@ impl ModalStepper {
     /// Sets the force now \[N\], one value a force port; accelerations answer at once (direct feedthrough).
     ///
     /// # Errors
-    /// [`ModelError::ForceCount`], [`ModelError::NotFinite`]; the force stays as it was.
+    /// [`ModelError::ForceCount`], [`ModelError::NotFinite`], [`ModelError::TooLarge`]; the force stays as it was.
     #[inline(always)]
     pub fn set_forces(&mut self, forces: &[f64]) -> Result<(), ModelError> {
         self.check_forces(forces)?;
@@ -82,8 +86,8 @@ impl ModalStepper {
     /// Advances by `step` \[s\] under the force now, held.
     ///
     /// # Errors
-    /// [`ModelError::Size`] for a step that is not above zero, [`ModelError::NotFinite`] where a state would
-    /// overflow; the state stays as it was.
+    /// [`ModelError::Size`] for a step that is not above zero, [`ModelError::TooLarge`] where a state would pass
+    /// [`ModalStepper::LARGEST`]; the state stays as it was.
     #[inline(always)]
     pub fn advance_held(&mut self, step: f64) -> Result<(), ModelError> {
         self.prepare(step)?;
@@ -101,8 +105,8 @@ impl ModalStepper {
             return Err(self.not_one_force());
         };
         let bound = force.abs() * largest;
-        if !bound.is_finite() {
-            return Err(not_finite(&[force], bound));
+        if !fits(bound) {
+            return Err(no_force(&[force], bound));
         }
         // Two branches, since of one condition the compiler works out both sides before it branches.
         if self.coupled.is_some() {
@@ -116,7 +120,7 @@ impl ModalStepper {
             group.force = w * Lane::all(force);
             let after = group.state(self.now).stepped::<false>(group);
             *group.state_mut(self.now.next()) = after;
-            all = all + (after.position + after.velocity);
+            all = all + after.squares();
         }
         self.arrive(all)
     }
@@ -215,13 +219,14 @@ impl ModalStepper {
     /// Puts back what [`ModalStepper::state`] gave.
     ///
     /// # Errors
-    /// [`ModelError::StateCount`] for another number of modes, [`ModelError::NotFinite`]; the state stays as it was.
+    /// [`ModelError::StateCount`] for another number of modes, [`ModelError::NotFinite`], [`ModelError::TooLarge`] beyond
+    /// [`ModalStepper::LARGEST`]; the state stays as it was.
     pub fn set_state(&mut self, state: &[[f64; 2]]) -> Result<(), ModelError> {
         if state.len() != self.mode_count {
             return Err(ModelError::StateCount { found: state.len(), expected: self.mode_count });
         }
-        if let Some(&value) = state.iter().flatten().find(|value| !value.is_finite()) {
-            return Err(ModelError::NotFinite { what: "modal state", value });
+        if let Some(&value) = state.iter().flatten().find(|value| !fits(**value)) {
+            return Err(refused("modal state", value));
         }
         for (group, modes) in self.groups.iter_mut().zip(state.chunks(LANES)) {
             let state = group.state_mut(self.now);
@@ -235,10 +240,10 @@ impl ModalStepper {
     /// Sets $a$ and $\dot a$ of one mode, counted from 0.
     ///
     /// # Errors
-    /// [`ModelError::StateCount`] where there is no such mode, [`ModelError::NotFinite`]; the state stays as it was.
+    /// [`ModelError::StateCount`] where there is no such mode, else as [`ModalStepper::set_state`]; the state stays as it was.
     pub fn set_mode_state(&mut self, mode: usize, state: [f64; 2]) -> Result<(), ModelError> {
-        if let Some(&value) = state.iter().find(|value| !value.is_finite()) {
-            return Err(ModelError::NotFinite { what: "modal state", value });
+        if let Some(&value) = state.iter().find(|value| !fits(**value)) {
+            return Err(refused("modal state", value));
         }
         let group = self.groups.get_mut(mode / LANES).filter(|_| mode < self.mode_count);
         let group = group.ok_or(ModelError::StateCount { found: mode.saturating_add(1), expected: self.mode_count })?;
@@ -252,12 +257,12 @@ impl ModalStepper {
         if forces.len() != self.at_forces.len() {
             return Err(ModelError::ForceCount { found: forces.len(), expected: self.at_forces.len() });
         }
-        // Where this bound is a number, so is every force and every modal force.
+        // Where this bound fits, so does every modal force, and every force is a number.
         let mut bound = 0.0;
         for (force, largest) in forces.iter().zip(&self.largest_at_forces) {
             bound += force.abs() * largest;
         }
-        if bound.is_finite() { Ok(()) } else { Err(not_finite(forces, bound)) }
+        if fits(bound) { Ok(()) } else { Err(no_force(forces, bound)) }
     }
 
     /// Makes the coefficients for `step`, unless the last step had the same size.
@@ -304,8 +309,8 @@ impl ModalStepper {
             })
         });
         let after = coupled.advance(numbers);
-        if let Some(&value) = after.iter().flatten().find(|value| !value.is_finite()) {
-            return Err(ModelError::NotFinite { what: "modal state after the step", value });
+        if let Some(&value) = after.iter().flatten().find(|value| !fits(**value)) {
+            return Err(refused(AFTER, value));
         }
         for (group, modes) in self.groups.iter_mut().zip(after.chunks(LANES)) {
             let state = group.state_mut(now);
@@ -327,33 +332,45 @@ impl ModalStepper {
         for group in &mut self.groups {
             let after = group.state(self.now).stepped::<LINEAR>(group);
             *group.state_mut(self.now.next()) = after;
-            all = all + (after.position + after.velocity);
+            all = all + after.squares();
         }
         self.arrive(all)
     }
 
-    /// Takes the state after the step, unless the sum of `all` its numbers is spoiled by an infinity or a NaN: cheaper than
-    /// asking each.
+    /// Takes the state after the step, unless the sum of the squares of `all` its numbers tells that one is too large or none:
+    /// cheaper than asking each.
     #[inline(always)]
     fn arrive(&mut self, all: Lane) -> Result<(), ModelError> {
-        if !all.is_finite() {
-            return Err(overflown(all.sum()));
+        if !all.is_below(Self::LARGEST * Self::LARGEST) {
+            return Err(refused(AFTER, all.sum().sqrt()));
         }
         self.now = self.now.next();
         Ok(())
     }
 }
 
-#[cold]
-fn overflown(value: f64) -> ModelError {
-    ModelError::NotFinite { what: "modal state after the step", value }
+const AFTER: &str = "modal state after the step";
+
+/// Not so for what is no number.
+#[inline(always)]
+fn fits(value: f64) -> bool {
+    value.abs() <= ModalStepper::LARGEST
 }
 
-/// Which force, or with these forces which modal force, is not finite.
 #[cold]
-fn not_finite(forces: &[f64], bound: f64) -> ModelError {
+fn refused(what: &'static str, value: f64) -> ModelError {
+    if value.is_finite() {
+        ModelError::TooLarge { what, value, largest: ModalStepper::LARGEST }
+    } else {
+        ModelError::NotFinite { what, value }
+    }
+}
+
+/// Which force is no number, or that with these forces a modal force is too large.
+#[cold]
+fn no_force(forces: &[f64], bound: f64) -> ModelError {
     match forces.iter().find(|force| !force.is_finite()) {
-        Some(&value) => ModelError::NotFinite { what: "force", value },
-        None => ModelError::NotFinite { what: "modal force", value: bound },
+        Some(&value) => refused("force", value),
+        None => refused("modal force", bound),
     }
 }
