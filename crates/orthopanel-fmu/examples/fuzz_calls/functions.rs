@@ -47,7 +47,7 @@ both! {
 /// Declares functions of FMI 3.0 that multiply a seed by partial derivatives, forwards or backwards.
 macro_rules! partial_derivatives {
     ($($name:ident)*) => {
-        unsafe extern "C" { $(fn $name(
+        unsafe extern "C" { $(pub fn $name(
             i: Pointer,
             unknowns: *const u32,
             unknown_count: usize,
@@ -78,6 +78,8 @@ unsafe extern "C" {
         seed: *const f64,
         found: *mut f64,
     ) -> c_int;
+    fn fmi2SetBoolean(i: Pointer, list: *const u32, n: usize, values: *const c_int) -> c_int;
+    fn fmi3SetBoolean(i: Pointer, list: *const u32, n: usize, values: *const u8, count: usize) -> c_int;
     fn fmi2SetRealInputDerivatives(
         i: Pointer,
         list: *const u32,
@@ -95,6 +97,10 @@ unsafe extern "C" {
         values: *mut f64,
         count: usize,
     ) -> c_int;
+}
+
+fn done(status: c_int, what: &str) -> Result<(), String> {
+    if status == 0 { Ok(()) } else { Err(format!("it was refused {what}")) }
 }
 
 /// A live instance of one version.
@@ -121,14 +127,48 @@ impl Instance {
         }
     }
 
-    pub fn set(self, reference: u32, value: f64) -> c_int {
+    pub fn set(self, list: List<'_>, values: &[f64]) -> c_int {
+        let (pointer, n) = (self.pointer, list.len().min(values.len()));
+        // SAFETY: a live instance, and arrays of at least this length.
+        unsafe {
+            if self.three {
+                fmi3SetFloat64(pointer, list.as_ptr(), n, values.as_ptr(), n)
+            } else {
+                fmi2SetReal(pointer, list.as_ptr(), n, values.as_ptr())
+            }
+        }
+    }
+
+    pub fn set_boolean(self, reference: u32, value: bool) -> c_int {
         // SAFETY: a live instance, one reference and one value.
         unsafe {
             if self.three {
-                fmi3SetFloat64(self.pointer, &reference, 1, &value, 1)
+                fmi3SetBoolean(self.pointer, &reference, 1, &u8::from(value), 1)
             } else {
-                fmi2SetReal(self.pointer, &reference, 1, &value)
+                fmi2SetBoolean(self.pointer, &reference, 1, &c_int::from(value))
             }
+        }
+    }
+
+    /// Keeps where the instance stands; where `state` holds a state of it, in its place.
+    pub fn get_state(self, state: &mut Pointer) -> Result<(), String> {
+        // SAFETY: a live instance and a place for the handle.
+        done(unsafe { (self.functions().get_state)(self.pointer, state) }, "to keep a state")
+    }
+
+    pub fn free_state(self, state: &mut Pointer) -> Result<(), String> {
+        // SAFETY: a live instance and a handle.
+        done(unsafe { (self.functions().free_state)(self.pointer, state) }, "to free a state")
+    }
+
+    pub fn serialize(self, state: Pointer) -> Result<Vec<u8>, String> {
+        let (mut size, functions) = (0, self.functions());
+        // SAFETY: a live instance; the handle is checked by the library; the buffer is as long as said.
+        unsafe {
+            done((functions.size)(self.pointer, state, &mut size), "to tell a state's size")?;
+            let mut bytes = vec![0; size];
+            done((functions.write)(self.pointer, state, bytes.as_mut_ptr(), size), "to write a state")?;
+            Ok(bytes)
         }
     }
 

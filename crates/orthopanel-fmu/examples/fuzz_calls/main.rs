@@ -1,7 +1,8 @@
 //! Random calls in random order on the C functions of both versions: `fuzz_calls SECONDS [SEED]`.
 //!
-//! No call may panic, crash or give an output that is not a number; a call that is refused must leave outputs as they
-//! were, and tell the logger why. On a failure the seed of the sequence is printed, and `fuzz_calls 0 SEED` runs that
+//! No call may panic, crash or give an output that is not a number, nor take an instance where its outputs cannot be read;
+//! a call that is refused must leave all that an FMU state holds and all values as they were, and tell the logger why. No
+//! call may touch another instance. On a failure the seed of the sequence is printed, and `fuzz_calls 0 SEED` runs that
 //! sequence alone. With `FUZZ_TELL` set each seed is printed before it runs, to find a call that does not return.
 #![expect(unsafe_code, reason = "an importer in Rust calls C functions")]
 
@@ -14,13 +15,18 @@ use std::time::{Duration, Instant};
 mod c_functions;
 
 mod calls;
+mod driven;
 mod functions;
+mod null_calls;
 mod panels;
+mod random;
 
 use c_functions::{Pointer, fmi2Instantiate, fmi3InstantiateCoSimulation, fmi3InstantiateModelExchange};
-use calls::{Kept, Random, one_call};
+use calls::{Made, one_call};
+use driven::Driven;
 use functions::Instance;
 use panels::{Fmu, prepare};
+use random::Random;
 
 /// The status of a call that is refused; it goes with a message.
 const ERROR: c_int = 3;
@@ -94,36 +100,42 @@ fn instantiate(fmu: &Fmu, [three, exchange, logging]: [bool; 3], messages: &Atom
     Instance { pointer, three }
 }
 
-/// One instance from its making to its end; returns the number of calls.
+/// Two instances of one FMU, perhaps of different versions, from their making to their end; returns the number of calls.
 fn sequence(fmu: &Fmu, random: &mut Random, messages: &AtomicU64) -> Result<u64, String> {
-    let chosen = [0; 3].map(|_| random.below(2) == 1);
-    let instance = instantiate(fmu, chosen, messages);
-    if instance.pointer.is_null() {
+    let mut both = [(); 2].map(|()| {
+        let chosen = [0; 3].map(|_| random.one_in(2));
+        Driven::new(instantiate(fmu, chosen, messages))
+    });
+    if both.iter().any(|driven| driven.instance.pointer.is_null()) {
         return Err("not instantiated".into());
     }
-    let outputs = || {
-        let mut values = vec![0.0; fmu.outputs.len()];
-        (instance.get(&fmu.outputs, &mut values) == 0).then_some(values)
-    };
-    let mut kept = Kept::default();
+    let mut written = vec![];
     let count = 1 + random.below(60);
     for _ in 0..count {
-        let before = outputs();
+        let [one, other] = &mut both;
+        let (driven, idle) = if random.one_in(4) { (other, one) } else { (one, other) };
+        let before = (driven.bytes()?, driven.values(fmu));
+        let idle_before = idle.bytes()?;
         let told = messages.load(Ordering::Relaxed);
-        let (status, call) = one_call(fmu, random, instance, &mut kept)?;
+        let Made { status, call, may_end_reading } = one_call(fmu, random, driven, &mut written)?;
         if status == ERROR && messages.load(Ordering::Relaxed) == told {
             return Err(format!("call {call} was refused without a message"));
         }
-        let after = outputs();
-        if let (true, Some(before), Some(after)) = (status != 0, &before, &after)
-            && before != after
-        {
-            return Err(format!("call {call} was refused and changed the outputs from {before:?} to {after:?}"));
+        if idle.bytes()? != idle_before {
+            return Err(format!("call {call} changed another instance"));
         }
-        if let Some(wrong) = after.iter().flatten().find(|value| !value.is_finite()) {
-            return Err(format!("after call {call} an output is {wrong}, of {after:?}"));
+        let after = (driven.bytes()?, driven.values(fmu));
+        if status != 0 && before != after {
+            return Err(format!("call {call} was refused and changed the instance from {before:?} to {after:?}"));
+        }
+        let outputs = driven.outputs(fmu);
+        if let Some(wrong) = outputs.iter().flatten().find(|value| !value.is_finite()) {
+            return Err(format!("after call {call} an output is {wrong}, of {outputs:?}"));
+        }
+        if outputs.is_none() && before.1.is_some() && status == 0 && !may_end_reading {
+            return Err(format!("after call {call} no output can be read any more"));
         }
     }
-    instance.free();
+    both.into_iter().for_each(|driven| driven.instance.free());
     Ok(count)
 }

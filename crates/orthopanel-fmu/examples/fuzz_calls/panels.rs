@@ -3,7 +3,7 @@
 use std::ffi::CString;
 use std::path::Path;
 
-use orthopanel_fmu::{RESOURCE_FILE, Resource, content_token};
+use orthopanel_fmu::{Quantity, RESOURCE_FILE, Resource, content_token};
 use orthopanel_model::{ModeRange, PanelModel, Place, Ports};
 
 /// A panel on disk, and what an importer knows of it.
@@ -12,8 +12,15 @@ pub struct Fmu {
     pub path: CString,
     pub uri: CString,
     pub variables: u32,
+    /// References of all real variables.
+    pub reals: Vec<u32>,
+    /// What each variable, by its reference, starts from; zero where it has no start.
+    pub starts: Vec<f64>,
     pub outputs: Vec<u32>,
     pub forces: Vec<u32>,
+    pub parameters: Vec<u32>,
+    pub force_linear: u32,
+    pub time: u32,
     pub states: usize,
 }
 
@@ -58,8 +65,13 @@ fn written(folder: &Path, panel: &str, effects: &str, modes: usize) -> Result<Fm
         path: CString::new(path)?,
         uri: CString::new(format!("file://{path}"))?,
         variables: u32::try_from(all.len())?,
+        reals: all.iter().filter(|v| v.quantity != Quantity::ForceLinear).map(|v| v.reference).collect(),
+        starts: all.iter().map(|v| v.start.as_ref().and_then(|text| text.parse().ok()).unwrap_or(0.0)).collect(),
         outputs: of("output"),
         forces: of("input"),
+        parameters: of("parameter"),
+        time: all.iter().find(|v| v.quantity == Quantity::Time).ok_or("no time")?.reference,
+        force_linear: all.iter().find(|v| v.quantity == Quantity::ForceLinear).ok_or("no force_linear")?.reference,
         states: 2 * resource.model().modes().len(),
     })
 }
