@@ -17,9 +17,18 @@ const ALLOWED: f64 = 0.01;
 /// What the modes left out do to the accelerance of each pair of ports.
 pub(crate) struct AccelerationBands {
     /// Up to where each holds: a row a response, a column a force.
-    bands: Vec<Vec<Option<f64>>>,
+    bands: Vec<Vec<Band>>,
     /// See [`AccelerationBands::frequency_change`].
     frequency_change: Option<f64>,
+}
+
+/// Up to where an acceleration lacks less than a hundredth \[Hz\]; `None` where it never does.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(crate) struct Band {
+    /// Of the accelerance's root mean square over the octave around.
+    pub of_octave: Option<f64>,
+    /// Of the accelerance at each line by itself, those near antiresonances too.
+    pub of_each_line: Option<f64>,
 }
 
 /// At one frequency \[Hz\]: what the modes left out add to the accelerance, and the whole.
@@ -34,10 +43,9 @@ impl AccelerationBands {
         if panel.relaxes() { Self::beside_core(panel, resource) } else { Self::of_modes(panel, resource) }
     }
 
-    /// Highest frequency \[Hz\] up to which what the modes left out add is within 1 % of the accelerance's root mean square over
-    /// the octave around; `None` where it never is.
-    pub(crate) fn within_one_percent(&self, response: usize, force: usize) -> Option<f64> {
-        *self.bands.get(response)?.get(force)?
+    /// Up to where what the modes left out add is within 1 %.
+    pub(crate) fn within_one_percent(&self, response: usize, force: usize) -> Band {
+        self.bands.get(response).and_then(|row| row.get(force)).copied().unwrap_or_default()
     }
 
     /// By how much of itself the frequency of a mode of the FMU differs at most on the larger basis of three times as many modes;
@@ -86,7 +94,7 @@ impl AccelerationBands {
         };
         let own = panel.relaxing_lines_of_modes(ModeRange::Count(count), &ports.forces, &ports.responses)?;
         let Some((whole, own)) = whole.zip(own) else {
-            let never = vec![vec![None; ports.forces.len()]; ports.responses.len()];
+            let never = vec![vec![Band::default(); ports.forces.len()]; ports.responses.len()];
             return Ok(Self { bands: never, frequency_change: None });
         };
         let lines = grid.iter().map(|&frequency| {
@@ -115,13 +123,18 @@ fn grid(highest: f64) -> Vec<f64> {
 }
 
 /// See [`AccelerationBands::within_one_percent`].
-fn band(lines: &[Line]) -> Option<f64> {
-    let held = lines.windows(POINTS_AN_OCTAVE + 1).map_while(|octave| {
+fn band(lines: &[Line]) -> Band {
+    let of_octave = lines.windows(POINTS_AN_OCTAVE + 1).map_while(|octave| {
         let (frequency, missing, _) = octave.get(POINTS_AN_OCTAVE / 2)?;
         let mean = octave.iter().map(|(.., whole)| whole.norm_sqr()).sum::<f64>() / octave.len() as f64;
         (missing.norm_sqr() <= ALLOWED * ALLOWED * mean).then_some(*frequency)
     });
-    held.last()
+    let of_octave = of_octave.last();
+    let each = lines.iter().map_while(|(frequency, missing, whole)| {
+        let within = missing.norm() <= ALLOWED * whole.norm() && of_octave.is_some_and(|band| *frequency <= band);
+        within.then_some(*frequency)
+    });
+    Band { of_octave, of_each_line: each.last() }
 }
 
 #[cfg(test)]
@@ -143,7 +156,7 @@ mod tests {
         let ports = Ports { forces: vec![at(-0.3)], responses: vec![at(-0.3)] };
         let (resource, fit) = Resource::of_panel(&panel, ModeRange::Count(5), ports).unwrap();
         assert!(fit.unwrap().error < 1e-3, "small beside a hundredth");
-        let told = AccelerationBands::of(&panel, &resource).unwrap().within_one_percent(0, 0).unwrap();
+        let told = AccelerationBands::of(&panel, &resource).unwrap().within_one_percent(0, 0).of_octave.unwrap();
         let whole = panel.relaxing_lines(ModeRange::Count(30), &[at(-0.3)], &[at(-0.3)]).unwrap().unwrap();
         let share = |frequency: f64| {
             let whole = |frequency: f64| whole.at(Complex64::new(0.0, TAU * frequency))[0][0];

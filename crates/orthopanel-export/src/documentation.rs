@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 
 use orthopanel_fmu::{GENERATOR, Resource};
 
+use crate::acceleration_band::Band;
 use crate::origin::Origin;
 use crate::{FmiVersion, FmuOptions};
 
@@ -73,7 +74,8 @@ const LINEAR: &str = " If the parameter force_linear is true, the force of a ste
      end of the last step to the value now set: set the value of the step's end before the step; until it is done, \
      outputs are those of the old value. Each mode is then \
      advanced exactly, whatever the step.";
-const MODES: &str = "Rigid modes have the frequency 0. Outputs are sums over these modes. A mode's number is that of its \
+const MODES: &str = "These are the modes as exported; where a parameter is set they are others. Rigid modes have the frequency 0. Outputs are sums \
+     over the modes. A mode's number is that of its \
      modal_position; damping_ratio_1 is of the first flexible mode of the panel without its effects.";
 const INITIAL_STATE: &str = " The panel starts at rest. Where modal_position_1, modal_velocity_1 and so on are set before or in \
      initialization mode, it starts bent or moving: a displacement is the sum of these positions, each times the shape of its \
@@ -95,15 +97,15 @@ fn left_out(resource: &Resource, Origin { bands, .. }: &Origin<'_>) -> String {
     text += LEFT_OUT_TABLE;
     for (r, row) in resource.static_remainder().iter().enumerate() {
         for (f, &remainder) in row.iter().enumerate() {
-            let band = match bands.within_one_percent(r, f) {
-                Some(band) => format!("holds within 1 % up to {band:.0} Hz"),
-                None => "is never within 1 %".into(),
-            };
+            let Band { of_octave, of_each_line } = bands.within_one_percent(r, f);
+            let up_to = |band: Option<f64>| band.map_or("nowhere".into(), |band| format!("up to {band:.0} Hz"));
+            let (octave, line) = (up_to(of_octave), up_to(of_each_line));
             let (response, force) = (r + 1, f + 1);
             let added = if remainder == 0.0 { "none".into() } else { format!("{remainder:.3e} m/N") };
             let _ = writeln!(
                 text,
-                "<tr><td>displacement_{response}: {added}</td><td>acceleration_{response} under force_{force} {band}</td></tr>"
+                "<tr><td>displacement_{response}: {added}</td><td>acceleration_{response} under force_{force}: over octaves {octave}, \
+                 line by line {line}</td></tr>"
             );
         }
     }
@@ -111,13 +113,15 @@ fn left_out(resource: &Resource, Origin { bands, .. }: &Origin<'_>) -> String {
 }
 
 const LEFT_OUT: &str = "<h2>What the modes left out do</h2>\n<p>At rest they would add to displacements what stands on the left, \
-     times the force, and this is added. An acceleration lacks what they do: up to the frequency on the right that is less \
-     than 1 % of the root mean square of the accelerance over the octave around, by up to three times as many modes and the \
-     static part of the rest. At an antiresonance, where little is left of the whole, it is a larger part.";
+     times the force, and this is added. An acceleration lacks what they do. On the right stands up to where that is less \
+     than 1 %, by up to three times as many modes and the static part of the rest: first of the root mean square of the accelerance \
+     over the octave around, then of the accelerance at each line by itself. The second ends earlier, as a rule at an antiresonance, \
+     where little is left of the whole. Both are of the panel as exported, before parameters are set.";
 const BESIDE_CORE: &str = " At rest the core has its low modulus: where it has stiffened, what is added to displacements is too \
      much by its share of that. Accelerances are by the core's own law here, without the \
      error of its fit, and what they lack holds how far the frequencies of these modes move on a larger basis.";
-const LEFT_OUT_TABLE: &str = "</p>\n<table>\n<tr><th>static part of the modes left out</th><th>band</th></tr>\n";
+const LEFT_OUT_TABLE: &str =
+    "</p>\n<table>\n<tr><th>static part of the modes left out</th><th>acceleration within 1 %</th></tr>\n";
 
 pub(crate) fn escaped(text: &str) -> String {
     quick_xml::escape::escape(text).into_owned()

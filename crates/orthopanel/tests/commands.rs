@@ -209,6 +209,16 @@ fn run_leaves_models_fmus_response_and_pictures() {
 }
 
 #[test]
+fn an_fmu_without_a_flexible_mode_is_told_of() {
+    let bench = Bench::new();
+    for (words, told) in [("--modes 0", true), ("--up-to 10", true), ("--modes 1", false)] {
+        let run = bench.run(&format!("export model.json -o panel.fmu {words}"));
+        let said = String::from_utf8_lossy(&run.stderr);
+        assert!(run.status.success() && said.contains("no flexible mode is kept") == told, "{words}: {said}");
+    }
+}
+
+#[test]
 fn help_shows_an_example_of_every_command() {
     let bench = Bench::new();
     for command in ["run", "identify", "modes", "accelerance", "export", "simulate", "report", "trace"] {

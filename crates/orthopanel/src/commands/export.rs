@@ -100,6 +100,9 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
         let percent = 100.0 * fit.error;
         eprintln!("viscoelastic-core: fitted within {percent:.2} % of its modulus from {from:.0} to {to:.0} Hz");
     }
+    if answer.flexible_modes == 0 {
+        eprintln!("no flexible mode is kept: this panel only moves as a whole; ask for more by --modes or --up-to");
+    }
     if !answer.left_out.is_empty() {
         eprintln!("left out, as no part of the panel: {}", answer.left_out.join(", "));
     }
