@@ -33,6 +33,19 @@ def ramp(modes, rate, duration, t):
     return rate * _sum(modes, shape)
 
 
+def straight_lines(modes, forces, step):
+    """A force that runs in straight lines from 0 through forces[n] at (n + 1) step; the motion at the end of each step."""
+    slopes = np.diff(forces, prepend=0.0) / step
+    bends = np.diff(slopes, prepend=0.0)
+    ends = step * np.arange(1, len(forces) + 1)
+
+    def mode(omega, zeta):
+        since = ends[:, None] - step * np.arange(len(forces))[None, :]
+        return np.einsum("ktn,n->kt", _unit_ramp(omega, zeta, since), bends)
+
+    return _sum(modes, mode)
+
+
 def free_motion(modes, starts, t):
     """No force: each mode from its own position and velocity; the third of each of `modes` is its shape."""
     parts = zip(modes, starts)
