@@ -5,9 +5,9 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use orthopanel_model::{Effect, catalogue};
 use rayon::prelude::*;
 
+use super::elsewhere::put_elsewhere;
 use super::fit::fit;
 use super::hypothesis::{PLATE, has_place};
-use super::other_side::turn_round;
 use super::outcome::{NotTested, Progress};
 use super::ranking::{Ranking, Search};
 use super::starts::{Costed, Look, followed_far, followed_where_told, scored_starts};
@@ -28,7 +28,7 @@ impl Search<'_> {
             followed_where_told(self.records, starts, lacking)
         });
         let mut fits = [base].into_iter().chain(self.finish(begun, 0)).collect::<Vec<_>>();
-        turn_round(self.records, &mut fits, self.declared());
+        put_elsewhere(self.records, &mut fits, self.declared());
         let mut ranking = Ranking { scale: self.scale(&fits)?, fits, chosen: 0, not_tested, unfinished: false };
         self.choose(&mut ranking)?;
         Ok(ranking)

@@ -30,7 +30,7 @@ pub(super) struct FreeParameter {
     /// The record it belongs to, where each has its own.
     pub record: Option<usize>,
     scale: Scale,
-    range: (f64, f64),
+    pub range: (f64, f64),
 }
 
 impl FreeParameter {

@@ -5,11 +5,11 @@ use std::sync::atomic::Ordering;
 use orthopanel_model::{Piece, catalogue};
 use rayon::prelude::*;
 
+use super::elsewhere::put_elsewhere;
 use super::fit::{Fit, LAST, PATIENCE, fit, polish, settle};
 use super::held_out::held_out;
 use super::hypothesis::Hypothesis;
 use super::information::LikelihoodScale;
-use super::other_side::turn_round;
 use super::outcome::{NotTested, Progress};
 use super::record_problem::{Grouping, State};
 use super::records_of_test::TestRecords;
@@ -199,7 +199,7 @@ impl Search<'_> {
                 break;
             }
         }
-        turn_round(self.records, &mut more, self.declared());
+        put_elsewhere(self.records, &mut more, self.declared());
         ranking.fits.extend(each_once(more));
         Ok(())
     }

@@ -252,6 +252,6 @@ mod tests {
         };
         let (usual, closest) = (of(Look::Usual), of(Look::Closest));
         assert!(places(&closest) >= 2 * places(&usual) - 1);
-        assert_eq!(closest.len(), 4 * places(&closest), "two losses and two spans");
+        assert_eq!(closest.len(), 6 * places(&closest), "two losses and three spans");
     }
 }

@@ -14,7 +14,7 @@ pub(super) struct StiffnessLoss;
 
 const PARAMETERS: [EffectParameter; 3] = [
     EffectParameter::linear("loss", "1", [-0.5, 0.98], &[0.3, 0.8]),
-    EffectParameter::linear("span", "m", [0.01, 1.0], &[0.1, 0.3]).of(Reference::Length),
+    EffectParameter::linear("span", "m", [0.01, 1.0], &[0.1, 0.3, 0.04]).of(Reference::Length),
     EffectParameter::place(),
 ];
 
