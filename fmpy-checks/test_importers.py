@@ -1,5 +1,7 @@
 """The same force in ecospy and libcosimpy as in FMPy: the same motion, to 1e-9 of its peak."""
 
+import shutil
+
 import numpy as np
 import pytest
 from masters import OUTPUTS, panel, worst
@@ -16,17 +18,29 @@ def loaded(name):
         pytest.skip(f"{name} does not load: {reason}")
 
 
+# How the folder is called that the FMU lies in, and, where the importer unpacks below it, is unpacked in.
+FOLDERS = pytest.mark.parametrize("folder", ["plain", "50% of ü a%20b"])
+
+
+def laid_in(folder, fmu):
+    folder.mkdir()
+    return shutil.copy(fmu, folder)
+
+
 def in_fmpy(fmu):
     with panel(fmu) as instance:
         return instance.initialize().run(FORCES, STEP)
 
 
-def test_ecospy_agrees_with_fmpy(fmu):
+@FOLDERS
+def test_ecospy_agrees_with_fmpy(fmu, folder, tmp_path, monkeypatch):
     # Wants libtbb.so.12 (Debian: libtbb12).
     ecospy = loaded("ecospy")
     motion = np.empty((len(OUTPUTS), COUNT))
     structure = ecospy.EcosSimulationStructure()
-    structure.add_model("panel", str(fmu))
+    structure.add_model("panel", str(laid_in(tmp_path / folder, fmu)))
+    # Where it unpacks.
+    monkeypatch.setenv("TMPDIR", str(tmp_path / folder))
     with ecospy.EcosSimulation(STEP, structure=structure) as simulation:
         simulation.init()
         for n, force in enumerate(FORCES):
@@ -37,8 +51,10 @@ def test_ecospy_agrees_with_fmpy(fmu):
     assert np.all(worst(motion, in_fmpy(fmu)) < TOLERANCE), worst(motion, in_fmpy(fmu))
 
 
-def test_libcosimpy_agrees_with_fmpy(fmu2):
+@FOLDERS
+def test_libcosimpy_agrees_with_fmpy(fmu2, folder, tmp_path, monkeypatch):
     loaded("libcosimpy")
+    monkeypatch.setenv("TMPDIR", str(tmp_path / folder))
     from libcosimpy.CosimExecution import CosimExecution
     from libcosimpy.CosimManipulator import CosimManipulator
     from libcosimpy.CosimObserver import CosimObserver
@@ -47,7 +63,7 @@ def test_libcosimpy_agrees_with_fmpy(fmu2):
     with panel(fmu2) as instance:
         references = instance.references
     execution = CosimExecution.from_step_size(round(STEP * 1e9))
-    slave = execution.add_local_slave(CosimLocalSlave(str(fmu2), "panel"))
+    slave = execution.add_local_slave(CosimLocalSlave(str(laid_in(tmp_path / folder, fmu2)), "panel"))
     observer, manipulator = CosimObserver.create_last_value(), CosimManipulator.create_override()
     execution.add_observer(observer)
     execution.add_manipulator(manipulator)
