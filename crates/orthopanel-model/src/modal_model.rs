@@ -1,6 +1,8 @@
 //! The hinge of the house: everything that can vibrate becomes a [`ModalModel`]; accelerance, time response and
 //! the FMU need nothing else.
 
+use std::ops::Range;
+
 use serde::{Deserialize, Serialize};
 
 use crate::ModelError;
@@ -100,20 +102,20 @@ impl ModalModel {
         }
     }
 
-    /// The same modes with one of the force ports alone.
+    /// The same modes with some of the force ports alone.
     ///
     /// # Errors
-    /// [`ModelError::PortCount`] where there is no such port.
-    pub fn with_force(&self, port: usize) -> Result<Self, ModelError> {
-        let mut one = Self { force_count: 1, ..self.clone() };
-        for (index, mode) in one.modes.iter_mut().enumerate() {
-            let Some(&shape) = mode.at_forces.get(port) else {
-                let (found, expected) = (mode.at_forces.len(), port + 1);
+    /// [`ModelError::PortCount`] where there are no such ports.
+    pub fn with_forces(&self, ports: Range<usize>) -> Result<Self, ModelError> {
+        let mut some = Self { force_count: ports.len(), ..self.clone() };
+        for (index, mode) in some.modes.iter_mut().enumerate() {
+            let Some(shapes) = mode.at_forces.get(ports.clone()) else {
+                let (found, expected) = (mode.at_forces.len(), ports.end);
                 return Err(ModelError::PortCount { mode: index + 1, ports: "forces", found, expected });
             };
-            mode.at_forces = vec![shape];
+            mode.at_forces = shapes.to_vec();
         }
-        Ok(one)
+        Ok(some)
     }
 
     /// Number of force ports.

@@ -12,9 +12,11 @@ const PASSES: usize = 2;
 ///
 /// Of hits $h$ at places $\bar x + \delta_h$ the accelerances are $\bar H + \delta_h\,\partial H/\partial x$ to first order, so
 /// $\delta_h$ is a least-squares fit of one number over all lines. `by_place` is $\partial H/\partial x$ on the lines from 0 up,
-/// by a model: an error of a few per cent of it leaves as much of what the hits scattered by.
-pub(super) fn align(hits: &mut [HitSpectra], by_place: &[Complex64]) -> Vec<f64> {
+/// by a model: an error of a few per cent of it leaves as much of what the hits scattered by. `taken` is what forces that are not
+/// linear take off the accelerance of each hit, on the same lines, or nothing: hits of unequal strength differ by that too.
+pub(super) fn align(hits: &mut [HitSpectra], (by_place, taken): (&[Complex64], &[Vec<Complex64>])) -> Vec<f64> {
     let mut beside = vec![0.0; hits.len()];
+    give_back(hits, taken, 1.0);
     for _ in 0..PASSES {
         let noise = HitNoise::of(hits, by_place.len());
         let mut sums = vec![[0.0, f64::MIN_POSITIVE]; hits.len()];
@@ -48,7 +50,17 @@ pub(super) fn align(hits: &mut [HitSpectra], by_place: &[Complex64]) -> Vec<f64>
             }
         }
     }
+    give_back(hits, taken, -1.0);
     beside
+}
+
+/// Adds `sign` times what was taken off.
+fn give_back(hits: &mut [HitSpectra], taken: &[Vec<Complex64>], sign: f64) {
+    for (hit, taken) in hits.iter_mut().zip(taken) {
+        for ((motion, force), taken) in hit.motion.iter_mut().zip(&hit.force).zip(taken) {
+            *motion += sign * taken * force;
+        }
+    }
 }
 
 #[cfg(test)]
@@ -74,7 +86,7 @@ mod tests {
                 HitSpectra { force, motion, force_noise: 0.0, motion_noise: None }
             })
             .collect();
-        let found = align(&mut hits, &slope);
+        let found = align(&mut hits, (&slope, &[]));
         for (found, away) in found.iter().zip(away) {
             assert!((found - away).abs() < 1e-6, "{found} {away}");
         }

@@ -5,6 +5,7 @@ use orthopanel_model::{Damping, EffectState, ModelError, ReceptanceModel};
 
 use super::reactions::{Ratios, Reactions, cubic};
 use super::record_problem::{Grouping, State};
+use super::roughness::offsets;
 use super::widened_lines::WidenedLines;
 
 /// The forces of a suspension at one state, in all records.
@@ -27,7 +28,7 @@ pub(super) struct Taken {
 }
 
 impl ReactionLines {
-    /// `None` where no such force is on, or the records cannot tell it.
+    /// On the lines of some records, each by its number. `None` where no such force is on, or the records cannot tell it.
     ///
     /// # Errors
     /// What the model refuses.
@@ -35,14 +36,19 @@ impl ReactionLines {
         reactions: Option<&Reactions>,
         state: &State,
         (damping, effects): (&Damping, &[EffectState]),
-        lines: &[WidenedLines],
+        lines: &[(usize, &WidenedLines)],
     ) -> Result<Option<Self>, ModelError> {
         let first = state.constants.len() + state.zetas.len();
         let (Some(reactions), Some((k3, column))) = (reactions, cubic(&state.hypothesis, first)) else {
             return Ok(None);
         };
         let constants = state.constants.map(f64::exp);
-        let ratios = reactions.ratios(k3, &constants, (damping, effects), lines)?;
+        let mut ratios = vec![vec![]; lines.iter().map(|(index, _)| index + 1).max().unwrap_or(0)];
+        let offsets = offsets(&state.hypothesis);
+        let found = reactions.ratios((k3, offsets), &constants, (damping, effects), lines)?;
+        for ((index, _), found) in lines.iter().zip(found) {
+            ratios[*index] = found;
+        }
         let (reach, points) = reactions.reach(&constants, damping, effects)?;
         Ok(Some(Self { reach, points, ratios, column }))
     }

@@ -34,6 +34,8 @@ pub(super) struct Reactions {
 /// One record's hits.
 struct Played {
     force_at: Place,
+    /// By how much each hit fell beside the place of all \[m\].
+    beside: Vec<f64>,
     rate: f64,
     samples: usize,
     blows: Vec<Blow>,
@@ -78,6 +80,7 @@ impl Reactions {
             let samples = history.hits.first().map_or(0, |hit| hit.force.len());
             Played {
                 force_at: history.force_at,
+                beside: vec![0.0; history.hits.len()],
                 rate: history.rate,
                 samples,
                 blows: history.hits.iter().map(|hit| Blow::of(hit, history.rate)).collect(),
@@ -101,25 +104,45 @@ impl Reactions {
         Ok((self.setup.model(constants, damping, effects)?, self.supports.len()))
     }
 
-    /// $R_j/F$ of every record on its lines.
+    /// $R_j/F$ of every record on its lines, where its force falls `offsets` beside the place written down \[m\].
     ///
     /// # Errors
     /// What the model refuses, and a motion without bounds.
     pub(super) fn ratios(
         &self,
-        k3: f64,
+        (k3, offsets): (f64, &[f64]),
         constants: &[f64],
         (damping, effects): (&Damping, &[EffectState]),
-        lines: &[WidenedLines],
+        lines: &[(usize, &WidenedLines)],
     ) -> Result<Vec<Ratios>, ModelError> {
-        let struck: Vec<Place> = self.records.iter().map(|record| record.force_at).collect();
+        let mut struck = Vec::new();
+        let mut ports = Vec::with_capacity(self.records.len());
+        for (index, record) in self.records.iter().enumerate() {
+            let offset = offsets.get(index).copied().unwrap_or(0.0);
+            let first = struck.len();
+            struck.extend(
+                record.beside.iter().map(|beside| Place { x: record.force_at.x + offset + beside, ..record.force_at }),
+            );
+            ports.push(first..struck.len());
+        }
         let modes = self.setup.summed_modes(constants, (damping, effects), [&struck, &self.supports], self.band)?;
-        self.records
-            .par_iter()
-            .zip(lines)
-            .enumerate()
-            .map(|(index, (record, lines))| record.ratios(&modes.with_force(index)?, k3, lines))
-            .collect()
+        let of_record = |&(index, lines): &(usize, &WidenedLines)| match (self.records.get(index), ports.get(index)) {
+            (Some(record), Some(ports)) => record.ratios(&modes.with_forces(ports.clone())?, k3, lines),
+            _ => Ok(vec![]),
+        };
+        lines.par_iter().map(of_record).collect()
+    }
+
+    /// Takes note of how far beside the place of all hits of its record each fell \[m\].
+    pub(super) fn put_hits(&mut self, beside: &[Vec<f64>]) {
+        for (record, beside) in self.records.iter_mut().zip(beside) {
+            record.beside.clone_from(beside);
+        }
+    }
+
+    /// Undoes [`Reactions::put_hits`].
+    pub(super) fn put_hits_together(&mut self) {
+        self.records.iter_mut().for_each(|record| record.beside.fill(0.0));
     }
 }
 

@@ -298,11 +298,26 @@ impl RecordProblem<'_> {
         Ok(by_place)
     }
 
+    /// What forces that are not linear take off each hit of a record, one value for each of `lines`; empty where there are none.
+    pub(super) fn taken_off_hits(
+        &self,
+        state: &State,
+        index: usize,
+        lines: &WidenedLines,
+    ) -> Result<Vec<Vec<Complex64>>, ModelError> {
+        let damping = state.damping();
+        let effects = state.hypothesis.states(self.records.len())?;
+        let found = ReactionLines::of(self.reactions, state, (&damping, &effects), &[(index, lines)])?;
+        let taken = found.map_or_else(Vec::new, |found| found.taken(index, lines, Grouping::Hits, &[]));
+        Ok(taken.into_iter().map(|taken| taken.value).collect())
+    }
+
     /// What is linear, and what is not.
     fn model(&self, state: &State) -> Result<(ReceptanceModel, Option<ReactionLines>), ModelError> {
         let damping = state.damping();
         let effects = state.hypothesis.states(self.records.len())?;
-        let reactions = ReactionLines::of(self.reactions, state, (&damping, &effects), self.records)?;
+        let records: Vec<_> = self.records.iter().enumerate().collect();
+        let reactions = ReactionLines::of(self.reactions, state, (&damping, &effects), &records)?;
         Ok((self.setup.model(&state.constants.map(f64::exp), &damping, &effects)?, reactions))
     }
 

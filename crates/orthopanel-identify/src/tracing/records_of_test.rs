@@ -2,7 +2,6 @@
 
 use std::sync::atomic::AtomicU64;
 
-use num_complex::Complex64;
 use orthopanel_data::{Accelerance, Estimation, ImpactTest, TimeHistory};
 use orthopanel_model::{
     BEAM_CONSTANTS, BeamConstants, ExactBeam, ModelError, ReceptanceSetup, RecordSetting, SuspensionMotion,
@@ -20,7 +19,7 @@ use super::record_problem::{DampingPrior, Grouping, RecordProblem, State, total}
 use super::rough_rest::RoughRest;
 use super::roughness::RoughScales;
 use super::whiteness::{independent_part, whitened};
-use super::widened_lines::{WIDENINGS, WidenedLines, aligned_lines, widened_lines};
+use super::widened_lines::{HitModel, WIDENINGS, WidenedLines, aligned_lines, widened_lines};
 use crate::accelerance_fit::{ResonanceStart, resonance_starts};
 use crate::free_constants::FreeConstants;
 use crate::least_squares::{Ending, descend};
@@ -245,14 +244,22 @@ impl TestRecords {
     /// What the model refuses.
     pub(super) fn align_hits(&mut self, state: &State, (from, rest): (usize, RoughRest)) -> Result<f64, ModelError> {
         let mut scatter = 0.0;
+        let mut beside = vec![];
         for (stage, &widening) in WIDENINGS.iter().enumerate().skip(from) {
             let problem = self.problem(stage);
-            let by_place = |index: usize, s: &[Complex64]| problem.by_place(state, index, s);
-            let aligned = aligned_lines(&self.histories, widening, self.band, by_place)?;
+            let told = |index: usize, lines: &WidenedLines| {
+                let by_place = problem.by_place(state, index, &lines.s)?;
+                Ok::<_, ModelError>(HitModel { by_place, taken: problem.taken_off_hits(state, index, lines)? })
+            };
+            let aligned = aligned_lines(&self.histories, widening, self.band, told)?;
             let (lines, places): (Vec<_>, Vec<_>) = aligned.into_iter().unzip();
             self.widened[stage] = lines;
             scatter = of_means(&places);
+            beside = places;
             self.widened[stage].iter_mut().for_each(|record| rest.widen(record));
+        }
+        if let Some(reactions) = &mut self.reactions {
+            reactions.put_hits(&beside);
         }
         self.rest = Some(rest);
         self.known.forget();
@@ -266,6 +273,9 @@ impl TestRecords {
             if let Some(rest) = rest {
                 widened.iter_mut().for_each(|record| rest.widen(record));
             }
+        }
+        if let Some(reactions) = &mut self.reactions {
+            reactions.put_hits_together();
         }
         self.rest = rest;
         self.known.forget();

@@ -91,7 +91,8 @@ fn followed(
     let Some((best, _)) = leading.into_iter().min_by(|a, b| a.1.total_cmp(&b.1)) else { return Ok(None) };
     // Hits that fall beside each other tell how far their mean may be from the mark.
     let mut place = records.align_hits(&best, (SIFTED, rest))?;
-    if records.hit_scatter() - 1.0 > LEFT * (scattered - 1.0) {
+    let left = records.problem(LAST).scatter_beside_reactions(&best)?.unwrap_or_else(|| records.hit_scatter());
+    if left - 1.0 > LEFT * (scattered - 1.0) {
         return Ok(None);
     }
     records.rough = Some(RoughScales::USUAL.with_hits(place));

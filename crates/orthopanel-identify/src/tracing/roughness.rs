@@ -113,6 +113,15 @@ const ALONE: f64 = 2.5;
 const MARK: f64 = 1.5;
 
 /// Whether an effect of a hypothesis is the roughness.
+/// By how much the force of each record falls beside the place written down \[m\]; empty without roughness.
+///
+/// It is the first parameter of the roughness, one a record.
+pub(super) fn offsets(hypothesis: &Hypothesis) -> &[f64] {
+    let Some(rough) = hypothesis.effects.iter().find(|on| is_roughness(on)) else { return &[] };
+    let each = rough.free.iter().filter(|free| free.parameter == 0).count();
+    rough.values.get(..each).unwrap_or_default()
+}
+
 pub(super) fn is_roughness(on: &Switched) -> bool {
     on.effect.id() == ROUGHNESS
 }

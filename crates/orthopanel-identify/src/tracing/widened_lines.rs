@@ -108,26 +108,54 @@ pub(super) struct HitLines {
 
 /// The lines of every record at one widening, up to `band` \[Hz\].
 pub(super) fn widened_lines(histories: &[TimeHistory], widening: Widening, band: f64) -> Vec<WidenedLines> {
-    histories.par_iter().map(|history| of_record(history, widening, band, &[]).0).collect()
+    histories.par_iter().map(|history| of_record(history, widening, band, None).0).collect()
 }
 
 /// The same with all hits of a record brought to the place that they hit in the mean, see [`align`], and by how much each was
-/// beside that \[m\]. `by_place` is $\partial H/\partial x$ of a record, by its number, at any $s$.
+/// beside that \[m\]. `told` tells of a record, by its number and its hits' forces on all lines, what [`align`] wants to know.
 ///
 /// # Errors
-/// What `by_place` refuses.
+/// What `told` refuses.
 pub(super) fn aligned_lines<E: Send>(
     histories: &[TimeHistory],
     widening: Widening,
     band: f64,
-    by_place: impl Fn(usize, &[Complex64]) -> Result<Vec<Complex64>, E> + Sync,
+    told: impl Fn(usize, &WidenedLines) -> Result<HitModel, E> + Sync,
 ) -> Result<Vec<(WidenedLines, Vec<f64>)>, E> {
     let records = histories.par_iter().enumerate().map(|(index, history)| {
-        let (s, _) = lines_of(history, widening, band);
-        let slopes = by_place(index, &s)?;
-        Ok(of_record(history, widening, band, &slopes))
+        let told = told(index, &every_line(history, widening, band))?;
+        Ok(of_record(history, widening, band, Some(&told)))
     });
     records.collect()
+}
+
+/// What a model tells of the hits of a record, on all lines.
+pub(super) struct HitModel {
+    /// $\partial H/\partial x$ by the place of the force.
+    pub by_place: Vec<Complex64>,
+    /// What forces that are not linear take off each hit; empty where there are none.
+    pub taken: Vec<Vec<Complex64>>,
+}
+
+/// The forces of all hits on every line below the band, without the motions.
+fn every_line(history: &TimeHistory, widening: Widening, band: f64) -> WidenedLines {
+    let (s, _) = lines_of(history, widening, band);
+    let of_hit = |hit: &Hit| {
+        let mut force = spectra(hit, history.rate, widening.decay_rate).force;
+        force.truncate(s.len());
+        HitLines { variance: vec![1.0; s.len()], force, ..HitLines::default() }
+    };
+    WidenedLines {
+        force_at: history.force_at,
+        response_at: history.response_at,
+        hits: history.hits.iter().map(of_hit).collect(),
+        s,
+        value: vec![],
+        variance: vec![],
+        by_force: vec![],
+        scatter: None,
+        noise: OnceLock::new(),
+    }
 }
 
 /// Both channels' transforms of one hit.
@@ -148,12 +176,17 @@ fn lines_of(history: &TimeHistory, widening: Widening, band: f64) -> (Vec<Comple
     ((0..end).map(|line| Complex64::new(widening.decay_rate, TAU * resolution * line as f64)).collect(), resolution)
 }
 
-fn of_record(history: &TimeHistory, widening: Widening, band: f64, by_place: &[Complex64]) -> (WidenedLines, Vec<f64>) {
+fn of_record(
+    history: &TimeHistory,
+    widening: Widening,
+    band: f64,
+    told: Option<&HitModel>,
+) -> (WidenedLines, Vec<f64>) {
     let mut spectra: Vec<HitSpectra> =
         history.hits.iter().map(|hit| spectra(hit, history.rate, widening.decay_rate)).collect();
     let (all, resolution) = lines_of(history, widening, band);
     let end = all.len();
-    let beside = if by_place.is_empty() { vec![] } else { align(&mut spectra, by_place) };
+    let beside = told.map_or_else(Vec::new, |told| align(&mut spectra, (&told.by_place, &told.taken)));
     let noise = HitNoise::of(&spectra, end);
     let stride = (widening.step / resolution).round().max(1.0) as usize;
     let lines: Vec<usize> = (stride.max(1)..=end).step_by(stride).collect();

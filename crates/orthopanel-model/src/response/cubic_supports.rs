@@ -4,37 +4,38 @@ use super::lane::{LANES, Lane};
 use super::propagator::Coefficients;
 use crate::{ModalModel, ModelError};
 
-/// The forces of springs $f_j = k_3w_j^3$ at the responses of `model` \[N\] under hits at its first force, and their
+/// The forces of springs $f_j = k_3w_j^3$ at the responses of `model` \[N\] under hits, and their
 /// derivatives by $k_3$ \[m³\].
 ///
-/// `hits` are samples of the force \[N\], `step` \[s\] apart, each from where everything is at rest; the forces run over `samples`
+/// Each hit falls at a force of its own, or all at the only one. `hits` are samples of the force \[N\], `step` \[s\] apart, each from where everything is at rest; the forces run over `samples`
 /// of them. Each sample of a force acts as an impulse, between which modes move freely and exactly. For a load whose band ends
 /// below half the rate this leaves of a mode's motion what it is at its own frequency, and the springs' own stiffness may not be
 /// such that it swings within a few samples.
 ///
 /// # Errors
-/// [`ModelError::PortCount`] for a model without a force, [`ModelError::NotFinite`] where the motion has no bounds.
+/// [`ModelError::PortCount`] for a model with another number of forces, [`ModelError::NotFinite`] where the motion has no bounds.
 pub fn cubic_support_forces(
     model: &ModalModel,
     k3: f64,
     hits: &[&[f64]],
     (step, samples): (f64, usize),
 ) -> Result<Vec<CubicForces>, ModelError> {
-    if model.force_count() == 0 {
-        return Err(ModelError::PortCount { mode: 1, ports: "forces", found: 0, expected: 1 });
+    let found = model.force_count();
+    if found != 1 && found != hits.len() {
+        return Err(ModelError::PortCount { mode: 1, ports: "forces", found, expected: hits.len() });
     }
     let modes: Vec<Stepped> = model
         .modes()
         .iter()
         .map(|mode| Stepped {
             free: FreeMotion::new(mode.angular_frequency, mode.damping_ratio, step),
-            struck: Lane::all(step * mode.at_forces[0]),
+            struck: mode.at_forces.iter().map(|shape| step * shape).collect(),
             held: mode.at_responses.iter().map(|shape| (Lane::all(*shape), Lane::all(step * shape))).collect(),
         })
         .collect();
     let mut found = Vec::with_capacity(hits.len());
-    for some in hits.chunks(LANES) {
-        found.extend(side_by_side(&modes, model.response_count(), k3, some, samples)?);
+    for (index, some) in hits.chunks(LANES).enumerate() {
+        found.extend(side_by_side(&modes, model.response_count(), k3, (index * LANES, some), samples)?);
     }
     Ok(found)
 }
@@ -50,8 +51,8 @@ pub struct CubicForces {
 
 struct Stepped {
     free: FreeMotion,
-    /// Shape times the step, of the hammer's place.
-    struck: Lane,
+    /// Shape times the step, of each hit's place or of all hits'.
+    struck: Vec<f64>,
     /// Shape of each spring's place, and the same times the step.
     held: Vec<(Lane, Lane)>,
 }
@@ -81,9 +82,14 @@ fn side_by_side(
     modes: &[Stepped],
     springs: usize,
     k3: f64,
-    hits: &[&[f64]],
+    (first, hits): (usize, &[&[f64]]),
     samples: usize,
 ) -> Result<Vec<CubicForces>, ModelError> {
+    let struck = |mode: &Stepped| match &mode.struck[..] {
+        [shape] => Lane::all(*shape),
+        each => Lane::of(each.get(first..).unwrap_or_default()),
+    };
+    let struck: Vec<Lane> = modes.iter().map(struck).collect();
     let empty = || vec![vec![0.0; samples]; springs];
     let mut found: Vec<CubicForces> = hits.iter().map(|_| CubicForces { force: empty(), by_k3: empty() }).collect();
     let mut motion = vec![[Lane::default(); 2]; modes.len()];
@@ -105,8 +111,8 @@ fn side_by_side(
                 (hit.force[spring][sample], hit.by_k3[spring][sample]) = (force.0[lane], slope.0[lane]);
             }
         }
-        for ((mode, motion), by_k3) in modes.iter().zip(&mut motion).zip(&mut by_k3) {
-            let (mut kick, mut by) = (blow * mode.struck, Lane::default());
+        for (((mode, struck), motion), by_k3) in modes.iter().zip(&struck).zip(&mut motion).zip(&mut by_k3) {
+            let (mut kick, mut by) = (blow * *struck, Lane::default());
             for ((_, held), [force, slope]) in mode.held.iter().zip(&forces) {
                 kick = kick - *force * *held;
                 by = by - *slope * *held;
