@@ -53,3 +53,17 @@ fn val_a_small_gain_of_one_record_is_no_roughness() {
     // The record has its own roughness of 0.3 % on top.
     assert!((gain.value / truth - 1.0).abs() < 0.01, "{gain:?}, truth {truth}");
 }
+
+/// Hits of unequal strength differ by the cube of the motion: that was taken for places beside the mark, and no rough test with such
+/// springs was explained.
+#[test]
+fn val_a_cubic_suspension_is_found_beside_roughness() {
+    let folder = tempfile::tempdir().unwrap();
+    let Some((test, case)) = made_with(&folder.path().join("set"), "rough", "cubic-stiffness", 1802) else { return };
+    let found = trace(&test).unwrap();
+    assert_eq!((found.verdict.name(), found.effects[0].id), ("explained", "cubic-stiffness"));
+    assert!(tells_that_it_is_rough(&found));
+    let truth = case["effects"][0]["parameters"]["k3"].as_f64().unwrap();
+    let k3 = found.effects[0].parameters[0].values[0];
+    assert!((k3.value - truth).abs() < 3.0 * k3.std.unwrap(), "{k3:?}, truth {truth}");
+}

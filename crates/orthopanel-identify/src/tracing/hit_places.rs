@@ -67,32 +67,67 @@ fn give_back(hits: &mut [HitSpectra], taken: &[Vec<Complex64>], sign: f64) {
 mod tests {
     use super::*;
 
-    /// Three hits of different strength on one made-up accelerance, each its own way beside the place.
+    const LINES: usize = 400;
+    const AWAY: [f64; 3] = [1e-3, -0.4e-3, -0.6e-3];
+
+    fn at(line: usize) -> Complex64 {
+        Complex64::new((0.05 * line as f64).sin() + 1.5, (0.03 * line as f64).cos())
+    }
+
+    fn slopes() -> Vec<Complex64> {
+        (0..LINES).map(|line| Complex64::new(0.0, 7.0) * at(line) + 3.0).collect()
+    }
+
+    /// Three hits of different strength on one made-up accelerance, each its own way beside the place, less what is `taken` off.
+    fn hits(slope: &[Complex64], taken: &[Vec<Complex64>]) -> Vec<HitSpectra> {
+        let of_hit = |(index, away): (usize, &f64)| {
+            let force = vec![Complex64::new(1.0 + index as f64, 0.2); 2 * LINES];
+            // Above the band stands what little noise there is.
+            let value = |line: usize| {
+                let off = taken.get(index).map_or(Complex64::ZERO, |taken| taken[line]);
+                at(line) + away * slope[line] - off
+            };
+            let seen = |line: usize| if line < LINES { value(line) } else { Complex64::ZERO };
+            let noise = |line: usize| 1e-7 * Complex64::new((line * (index + 2)) as f64, 1.0).sin();
+            let motion = (0..2 * LINES).map(|line| seen(line) * force[line] + noise(line)).collect();
+            HitSpectra { force, motion, force_noise: 0.0, motion_noise: None }
+        };
+        AWAY.iter().enumerate().map(of_hit).collect()
+    }
+
     #[test]
     fn val_hits_beside_their_place_are_brought_together() {
-        let lines = 400;
-        let at = |line: usize| Complex64::new((0.05 * line as f64).sin() + 1.5, (0.03 * line as f64).cos());
-        let slope: Vec<Complex64> = (0..lines).map(|line| Complex64::new(0.0, 7.0) * at(line) + 3.0).collect();
-        let away = [1e-3, -0.4e-3, -0.6e-3];
-        let mut hits: Vec<HitSpectra> = away
-            .iter()
-            .enumerate()
-            .map(|(index, away)| {
-                let force = vec![Complex64::new(1.0 + index as f64, 0.2); 2 * lines];
-                // Above the band stands what little noise there is.
-                let value = |line: usize| if line < lines { at(line) + away * slope[line] } else { Complex64::ZERO };
-                let noise = |line: usize| 1e-7 * Complex64::new((line * (index + 2)) as f64, 1.0).sin();
-                let motion = (0..2 * lines).map(|line| value(line) * force[line] + noise(line)).collect();
-                HitSpectra { force, motion, force_noise: 0.0, motion_noise: None }
-            })
-            .collect();
+        let slope = slopes();
+        let mut hits = hits(&slope, &[]);
         let found = align(&mut hits, (&slope, &[]));
-        for (found, away) in found.iter().zip(away) {
+        for (found, away) in found.iter().zip(AWAY) {
             assert!((found - away).abs() < 1e-6, "{found} {away}");
         }
-        for line in 1..lines {
+        for line in 1..LINES {
             let values: Vec<Complex64> = hits.iter().map(|hit| hit.motion[line] / hit.force[line]).collect();
             assert!((values[0] - values[2]).norm() < 1e-4 * at(line).norm(), "{line}: {values:?}");
         }
+    }
+
+    /// What a strong hit lacks is no place, and it still lacks it afterwards.
+    #[test]
+    fn val_forces_that_go_with_the_cube_are_not_taken_for_places() {
+        let slope = slopes();
+        let taken: Vec<Vec<Complex64>> = (1..=3)
+            .map(|size| (0..LINES).map(|line| 0.01 * f64::from(size * size) * at(line + 40)).collect())
+            .collect();
+        let mut together = hits(&slope, &taken);
+        let found = align(&mut together, (&slope, &taken));
+        for (found, away) in found.iter().zip(AWAY) {
+            assert!((found - away).abs() < 1e-6, "{found} {away}");
+        }
+        for line in 1..LINES {
+            for (hit, taken) in together.iter().zip(&taken) {
+                let linear = hit.motion[line] / hit.force[line] + taken[line];
+                assert!((linear - at(line)).norm() < 1e-4 * at(line).norm(), "{line}: {linear}");
+            }
+        }
+        let misled = align(&mut hits(&slope, &taken), (&slope, &[]));
+        assert!((misled[2] - AWAY[2]).abs() > 1e-3, "{misled:?}");
     }
 }

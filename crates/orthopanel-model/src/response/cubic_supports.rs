@@ -168,6 +168,24 @@ mod tests {
         assert!((most / (k3 * amplitude.powi(3)) - 1.0).abs() < 1e-4);
     }
 
+    #[test]
+    fn val_each_hit_may_fall_at_a_place_of_its_own() {
+        let places = [1.9, -0.4, 0.7, 1.1, -1.6];
+        let of = |struck: &[f64]| {
+            let rigid = Mode { at_forces: vec![1.3; struck.len()], ..mode(0.0, 0.0, 0.0, &[1.3]) };
+            let flexible = Mode { at_forces: struck.to_vec(), ..mode(2100.0, 0.01, 0.0, &[0.3]) };
+            ModalModel::new(struck.len(), 1, vec![rigid, flexible]).unwrap()
+        };
+        let hits: Vec<Vec<f64>> = (1..=5).map(|size| vec![0.0, 40.0 * f64::from(size)]).collect();
+        let hits: Vec<&[f64]> = hits.iter().map(Vec::as_slice).collect();
+        let together = cubic_support_forces(&of(&places), 3e10, &hits, (STEP, 500)).unwrap();
+        for ((found, hit), place) in together.iter().zip(&hits).zip(places) {
+            assert_eq!(found, &cubic_support_forces(&of(&[place]), 3e10, &[hit], (STEP, 500)).unwrap()[0]);
+        }
+        let refused = cubic_support_forces(&of(&places[..2]), 3e10, &hits, (STEP, 500));
+        assert!(matches!(refused, Err(ModelError::PortCount { found: 2, expected: 5, .. })), "{refused:?}");
+    }
+
     /// Two springs, rigid and flexible modes, five hits: more than stand side by side.
     #[test]
     fn val_the_derivative_is_that_of_differences() {
