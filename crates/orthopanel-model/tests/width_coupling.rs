@@ -38,8 +38,8 @@ fn val_width_coupling_is_the_plate() {
     }
 }
 
-/// With nearly twice the modes and a basis to match, the receptance stays within 1.5e-11 m/N: at 1 kHz 0.0006 (m/s2)/N beside
-/// 1/m = 0.7.
+/// With nearly twice the modes and a basis to match, the receptance stays within 5e-12 m/N: at 1 kHz 0.0002 (m/s2)/N beside
+/// 1/m = 0.7. Twice as much is seen in records of little noise, and made traces of plates `unexplained`.
 #[test]
 fn val_width_coupling_has_converged() {
     let record = RecordSetting { force_at: Some(at(-0.31)), response_at: Some(at(0.27)), ..RecordSetting::default() };
@@ -54,7 +54,7 @@ fn val_width_coupling_has_converged() {
     };
     for ((few, many), frequency) in lines(14).iter().zip(lines(26)).zip(WIDE_LINES) {
         let error = (few - many).norm() / (TAU * frequency).powi(2) / (many.norm() * piece.mass()).max(1.0);
-        assert!(error < 1.5e-11, "{frequency} Hz: {few} {many}, {error:e} m/N");
+        assert!(error < 5e-12, "{frequency} Hz: {few} {many}, {error:e} m/N");
     }
 }
 
