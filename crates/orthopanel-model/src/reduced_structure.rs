@@ -137,9 +137,10 @@ fn shapes(block: &Block, coefficients: &[f64], modes: &[&RitzMode], forces: Mat<
     let loads = Mat::from_fn(block.size(), count * images.len(), load);
     let pencil = BlockPencil::new(block, coefficients)?;
     let mut changes = pencil.solve(loads);
+    let own_images = block.mass.times(&own);
     let without_modes = |vectors: &mut Mat<f64>| {
         for _ in 0..2 {
-            let shares = between(&own, &block.mass, vectors);
+            let shares = product(own_images.transpose(), vectors.as_ref());
             *vectors -= product(own.as_ref(), shares.as_ref());
         }
     };

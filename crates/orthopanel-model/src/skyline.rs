@@ -173,11 +173,28 @@ impl SymmetricMatrix {
         if !self.is_thin() && columns.ncols() > 1 {
             return product(self.to_dense().as_ref(), columns.as_ref());
         }
-        let mut images = Mat::zeros(columns.nrows(), columns.ncols());
-        for column in 0..columns.ncols() {
-            images.col_as_slice_mut(column).copy_from_slice(&self.image(columns.col_as_slice(column)));
+        // Rows of all columns lie together in the transposed ones: each entry then works on them all at once, and zeros on none.
+        let rows = columns.transpose().to_owned();
+        let mut images = Mat::zeros(columns.ncols(), columns.nrows());
+        let (own, from, to) = (self, &rows, &mut images);
+        wide!(|own: &'a SymmetricMatrix, from: &'a Mat<f64>, to: &'a mut Mat<f64>| -> () { own.add_images(from, to) });
+        images.transpose().to_owned()
+    }
+
+    /// Adds $(AV)^T$ by $V^T$.
+    #[inline(always)]
+    fn add_images(&self, rows: &Mat<f64>, images: &mut Mat<f64>) {
+        for (row, &first) in self.profile.first.iter().enumerate() {
+            for (at, &value) in self.profile.row(&self.values, row).iter().enumerate() {
+                let column = first + at;
+                if value != 0.0 {
+                    add(images.col_as_slice_mut(row), value, rows.col_as_slice(column));
+                    if column < row {
+                        add(images.col_as_slice_mut(column), value, rows.col_as_slice(row));
+                    }
+                }
+            }
         }
-        images
     }
 
     /// $v^TAv$.

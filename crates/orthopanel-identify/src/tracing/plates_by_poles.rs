@@ -3,9 +3,11 @@
 //! A plate's modes of two families pass each other as the constants change, so lines between them promise nothing unless each mode
 //! is near its own pole. Frequencies alone find such constants, and cost a thousandth of the lines.
 
+use std::sync::Arc;
+
 use argmin::core::{CostFunction, Error, Executor, State as _};
 use argmin::solver::neldermead::NelderMead;
-use orthopanel_model::{Boundary, MindlinPlate, PLATE_CONSTANTS, Piece, Structure, ritz_modes};
+use orthopanel_model::{Boundary, MindlinPlate, Piece, ReducedStructure, RitzMode, Structure, ritz_modes};
 use rayon::prelude::*;
 
 use super::stiffness_grid::StiffnessGrid;
@@ -97,12 +99,14 @@ impl PlatesByPoles<'_> {
 
     /// Frequencies \[Hz\] of the flexible modes.
     fn modes(&self, plate: &MindlinPlate, start: &PlateStart, round: &Round) -> Option<Vec<f64>> {
-        let values = plate_values(start);
-        let is_sound = PLATE_CONSTANTS.iter().zip(&values).all(|(constant, &value)| constant.check(value).is_ok());
-        let count = (2 * round.poles + 6).min(plate.resolved_modes());
-        let modes = is_sound.then(|| ritz_modes(plate, &values, count).ok()).flatten()?;
-        let frequencies = modes.iter().map(|mode| mode.angular_frequency / std::f64::consts::TAU);
-        Some(frequencies.filter(|frequency| *frequency > 0.0).collect())
+        Some(frequencies(&ritz_modes(plate, &plate_values(start), round.modes(plate)).ok()?))
+    }
+
+    /// The plate on the shapes that these modes take near a start: a simplex asks for them hundreds of times.
+    fn reduced(&self, start: &PlateStart, round: &Round) -> Option<ReducedStructure<MindlinPlate>> {
+        let plate = self.plate(start, round)?;
+        let count = round.modes(&plate);
+        ReducedStructure::near(Arc::new(plate), &plate_values(start), count).ok()
     }
 
     /// $\sum\frac12\ln(1+d^2/\delta^2)$ of the poles' distances from their nearest modes, each mode for one pole, and what modes without
@@ -121,12 +125,12 @@ impl PlatesByPoles<'_> {
 
     /// By downhill simplex: the charge has no derivative where modes change their poles.
     fn nearer(&self, start: PlateStart, round: &Round) -> Option<(f64, PlateStart)> {
-        let plate = self.plate(&start, round)?;
+        let near = self.reduced(&start, round)?;
         let corner = |moved: usize| (1..=COORDINATES).map(|i| if i == moved { round.edge } else { 0.0 }).collect();
         let corners: Vec<Vec<f64>> = (0..=COORDINATES).map(corner).collect();
         let cost = Charge(|at: &[f64]| {
-            let modes = self.modes(&plate, &self.moved(&start, at), round);
-            modes.map_or(f64::INFINITY, |modes| self.charge(&modes, round))
+            let modes = near.modes(&plate_values(&self.moved(&start, at))).ok();
+            modes.as_deref().map(frequencies).map_or(f64::INFINITY, |modes| self.charge(&modes, round))
         });
         let done = Executor::new(cost, NelderMead::new(corners)).configure(|state| state.max_iters(round.steps)).run();
         let done = done.ok()?;
@@ -141,6 +145,19 @@ impl PlatesByPoles<'_> {
             [0, 1].map(|i| if self.held[i].is_some() { constants[i] } else { constants[i] * by(i).exp() });
         ([e_x, g_zx], [e_y * by(2).exp(), nu + by(3), g_xy * by(4).exp(), g_yz * by(5).exp()])
     }
+}
+
+impl Round {
+    /// How many modes of a plate are held against the poles.
+    fn modes(&self, plate: &MindlinPlate) -> usize {
+        (2 * self.poles + 6).min(plate.resolved_modes())
+    }
+}
+
+/// \[Hz\], of the flexible ones.
+fn frequencies(modes: &[RitzMode]) -> Vec<f64> {
+    let all = modes.iter().map(|mode| mode.angular_frequency / std::f64::consts::TAU);
+    all.filter(|frequency| *frequency > 0.0).collect()
 }
 
 /// The nearest first, without those that are like a nearer one.
