@@ -196,6 +196,8 @@ fn plate_values(([e_x, g_zx], [e_y, nu_xy, g_xy, g_yz]): &PlateStart) -> [f64; 6
 
 #[cfg(test)]
 mod tests {
+    use orthopanel_model::PLATE_CONSTANTS;
+
     use super::*;
 
     /// A plate, some of whose modes no record shows, is found again from the others' frequencies alone.
