@@ -41,6 +41,7 @@ mod record_problem;
 mod records_of_test;
 mod report;
 mod rough_rest;
+mod rough_rounds;
 mod rough_search;
 mod roughness;
 mod row_products;

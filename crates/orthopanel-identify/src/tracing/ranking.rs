@@ -158,21 +158,23 @@ impl Search<'_> {
         // No test is so rough: whatever else meets the noise need not pay beside it, as a record's gain of 3 or 4 %.
         let makes_smooth =
             |index: usize| is_too_rough[current] && !is_too_rough[index] && self.meets_noise(&ranking.fits[index]);
+        // More roughness than a test has has paid what it costs beforehand, and pays this besides.
+        let price = |index: usize| ranking.price(index) + if is_too_rough[index] { CLEAR } else { 0.0 };
         let mut order: Vec<usize> = (0..ranking.fits.len())
             .filter(|&index| index != current && ranking.fits[index].given_up.is_none())
-            .filter(|&index| ranking.price(index) < ranking.price(current) || makes_smooth(index))
-            .filter(|&index| !is_too_rough[index] || is_too_rough[current])
+            .filter(|&index| price(index) < price(current) || makes_smooth(index))
             .collect();
-        order.sort_by(|&a, &b| {
-            is_too_rough[a].cmp(&is_too_rough[b]).then(ranking.price(a).total_cmp(&ranking.price(b)))
-        });
+        order.sort_by(|&a, &b| price(a).total_cmp(&price(b)));
         let size = |index: usize| ranking.fits[index].state.hypothesis.size();
         for index in order {
-            // What is simpler and pays as well need not foretell better, too; nor need what leaves no more roughness than a test has.
+            // What is simpler and pays as well need not foretell better, too; nor need what leaves no more roughness than a test has,
+            // nor what pays by roughness that it spares: what all hits of a record share, as their place, none left out tells.
+            let spared = ranking.beforehand(current) - ranking.beforehand(index);
+            let pays_by_roughness = spared > 0.5 * (ranking.price(current) - ranking.price(index));
             let is_simpler = size(index) < size(current) || is_too_rough[current] && !is_too_rough[index];
             let grouping = ranking.grouping(self.records, index);
             let before = held_out(self.records, &ranking.fits[current], grouping)?;
-            if is_simpler || held_out(self.records, &ranking.fits[index], grouping)? < before {
+            if is_simpler || pays_by_roughness || held_out(self.records, &ranking.fits[index], grouping)? < before {
                 ranking.chosen = index;
                 break;
             }
@@ -312,10 +314,16 @@ impl Ranking {
     /// Criterion of one of the fits.
     pub(super) fn bic(&self, index: usize) -> f64 {
         let fit = &self.fits[index];
-        let rough = fit.state.hypothesis.effects.iter().any(is_roughness);
         // What is known beforehand is no line that errs with its neighbours.
-        let beforehand = fit.places.last().filter(|_| rough).map_or(0.0, |prior| prior.cost);
+        let beforehand = self.beforehand(index);
         self.scale.bic((fit.cost - beforehand).max(0.0), fit.size) + beforehand
+    }
+
+    /// What the roughness of one of the fits costs, where it has any.
+    fn beforehand(&self, index: usize) -> f64 {
+        let fit = &self.fits[index];
+        let rough = fit.state.hypothesis.effects.iter().any(is_roughness);
+        fit.places.last().filter(|_| rough).map_or(0.0, |prior| prior.cost)
     }
 
     /// Criterion with what each effect and each of its parameters must pay.

@@ -15,7 +15,7 @@ use super::ranking::{Ranking, Search};
 use super::record_problem::Grouping;
 use super::records_of_test::TestRecords;
 use super::roughness::ROUGHNESS;
-use super::verdict::verdict;
+use super::verdict::{is_too_rough, on_bound, verdict};
 use super::widened_lines::WIDENINGS;
 use crate::IdentifyError;
 
@@ -23,6 +23,12 @@ const MEASURE: &str = "misfit of the accelerances over the noise of the hits, rm
 
 const UNFINISHED: &str = "the search ended at the work that it may cost before all further effects were tried: what is \
                           named fits, but has not been compared with all that might fit better";
+
+const ON_BOUND: &str =
+    "a number of what is named lies on the bound of what is looked for: the name fits, the number is the bound's";
+
+const TOO_ROUGH: &str =
+    "what is named leaves more roughness than a test by hand has: it may not be all that is missing";
 
 /// Says what a ranking of hypotheses over records means.
 ///
@@ -76,7 +82,14 @@ pub(super) fn report(test: &ImpactTest, search: &Search, ranking: &Ranking) -> R
 
 fn notes(records: &TestRecords, ranking: &Ranking) -> Vec<String> {
     let rough = records.rough.map(|scales| scales.note());
-    records.notes.iter().cloned().chain(rough).chain(ranking.unfinished.then(|| UNFINISHED.to_owned())).collect()
+    let chosen = &ranking.fits[ranking.chosen];
+    let doubts = [
+        (ranking.unfinished, UNFINISHED),
+        (on_bound(chosen), ON_BOUND),
+        (ranking.chosen > 0 && is_too_rough(chosen), TOO_ROUGH),
+    ];
+    let doubts = doubts.into_iter().filter(|(is_so, _)| *is_so).map(|(_, doubt)| doubt.to_owned());
+    records.notes.iter().cloned().chain(rough).chain(doubts).collect()
 }
 
 /// The ids of the effects that the file does not declare.

@@ -26,9 +26,10 @@ pub(super) fn verdict(records: &TestRecords, ranking: &Ranking) -> Result<(Verdi
         return Ok((if is_met { Verdict::NothingMissing } else { Verdict::Unexplained }, vec![]));
     }
     let rivals = rivals(ranking);
-    let verdict = if left > EXPLAINED || on_bound(ranking) || is_too_rough(chosen) {
+    let is_sound = !ranking.unfinished && !on_bound(chosen) && !is_too_rough(chosen);
+    let verdict = if left > EXPLAINED {
         Verdict::Unexplained
-    } else if rivals.is_empty() && !ranking.unfinished {
+    } else if rivals.is_empty() && is_sound {
         Verdict::Explained
     } else {
         Verdict::Ambiguous
@@ -57,15 +58,12 @@ fn rivals(ranking: &Ranking) -> Vec<usize> {
 }
 
 /// Whether a fit needs more roughness than a test has: then that stands for something else.
-fn is_too_rough(fit: &Fit) -> bool {
+pub(super) fn is_too_rough(fit: &Fit) -> bool {
     exceeds_any_test(&fit.state.hypothesis)
 }
 
-/// Whether a parameter of the chosen hypothesis lies on its bound: then it is the bound's, not the data's.
-fn on_bound(ranking: &Ranking) -> bool {
-    ranking.fits[ranking.chosen]
-        .state
-        .hypothesis
-        .each_free()
-        .any(|(switched, free)| free.on_bound(switched.values[free.at]))
+/// Whether a parameter lies on its bound: then its number is the bound's, not the data's.
+pub(super) fn on_bound(fit: &Fit) -> bool {
+    let hypothesis = &fit.state.hypothesis;
+    hypothesis.each_free().any(|(switched, free)| free.on_bound(switched.values[free.at]))
 }
