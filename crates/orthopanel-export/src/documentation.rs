@@ -79,7 +79,8 @@ const PARAMETERS: &str = "All parameters may be set before or in initialization 
      jump; where a place is set, outputs are from then on those of the new place. Sizes, mass and constants are fixed once \
      initialization has ended: with others the modes would have other shapes, and their coordinates another meaning. Where a \
      parameter is set, the modes are found anew, which takes milliseconds for a beam or a plate, some hundredths of a second \
-     beside a core; damping ratios of a panel without effects take no more than a step does. The number of modes is that of the export.";
+     beside a core; for damping ratios alone, of a panel without effects, some hundredths of a millisecond. The number of modes is \
+     that of the export.";
 const HELD: &str = "The force is held at the value set before the step, over the whole step.";
 const BY_DERIVATIVES: &str = " If the importer gives the first derivative of a force \
      (fmi2SetRealInputDerivatives), the force of the next step runs at that rate from the value set.";

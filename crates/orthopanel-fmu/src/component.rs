@@ -42,7 +42,6 @@ pub(crate) struct Component {
     forces_after: Vec<f64>,
     /// A panel of the same modes that derivatives are asked of.
     probe: Probe,
-    nominals: Vec<[f64; 2]>,
     /// Are the nominals others than the importer was told?
     nominals_changed: bool,
     states: FmuStates,
@@ -74,7 +73,6 @@ impl Component {
             forces_changed: false,
             parameters_changed: false,
             forces_after: forces,
-            nominals: crate::nominals::of(model),
             nominals_changed: false,
             states: FmuStates::new(token),
         }

@@ -18,6 +18,8 @@ pub(super) struct Seen {
     pub(super) modes: ModalModel,
     /// Static part of the modes left out \[m/N\]: a row a response.
     pub(super) static_remainder: Vec<Vec<f64>>,
+    /// Sizes of the states to be expected.
+    pub(super) nominals: Vec<[f64; 2]>,
 }
 
 impl Seen {
@@ -28,6 +30,7 @@ impl Seen {
             values: parameters.map(|parameter| parameter.start).collect(),
             modes: resource.model().clone(),
             static_remainder: resource.static_remainder().to_vec(),
+            nominals: nominals::of(resource.model()),
         }
     }
 }
@@ -75,9 +78,7 @@ impl Component {
         stepper.set_state(&self.stepper.state())?;
         self.probe = Probe { stepper: stepper.clone(), forces: vec![0.0; self.now.forces.len()] };
         self.stepper = stepper;
-        let nominals = nominals::of(&seen.modes);
-        self.nominals_changed |= nominals != self.nominals;
-        self.nominals = nominals;
+        self.nominals_changed |= seen.nominals != self.in_use.nominals;
         self.in_use = seen;
         self.forces_changed = true;
         Ok(())
@@ -91,14 +92,15 @@ impl Component {
         }
         for known in [exported, &self.in_use] {
             if let Some(modes) = panel.redamped(&known.modes, &known.values, values) {
-                let static_remainder = known.static_remainder.clone();
-                return Ok(Arc::new(Seen { values: values.to_vec(), modes, static_remainder }));
+                let (static_remainder, nominals) = (known.static_remainder.clone(), known.nominals.clone());
+                return Ok(Arc::new(Seen { values: values.to_vec(), modes, static_remainder, nominals }));
             }
         }
         let Solution { modes, static_remainder, .. } = panel.solve(values)?;
         if modes.modes().len() != self.mode_count() {
             return Err(FmuError::ModeCount { found: modes.modes().len(), expected: self.mode_count() });
         }
-        Ok(Arc::new(Seen { values: values.to_vec(), modes, static_remainder }))
+        let nominals = nominals::of(&modes);
+        Ok(Arc::new(Seen { values: values.to_vec(), modes, static_remainder, nominals }))
     }
 }
