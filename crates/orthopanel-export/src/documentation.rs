@@ -18,15 +18,16 @@ pub(crate) fn write(resource: &Resource, from: Option<&Origin<'_>>, options: &Fm
     page += &escaped(&options.name);
     page += "</h1>\n<p>";
     page += &escaped(&options.description);
-    page += "</p>\n<h2>Variables</h2>\n<table>\n<tr><th>name</th><th>unit</th><th>kind</th><th>what</th></tr>\n";
-    for variable in resource.variables().variables() {
-        let unit = variable.unit.unwrap_or("");
-        let (name, kind) = (&variable.name, kind(variable));
-        let what = escaped(&variable.description);
-        // Writing to a String has nothing to fail on, here and below.
-        let _ = writeln!(page, "<tr><td>{name}</td><td>{unit}</td><td>{kind}</td><td>{what}</td></tr>");
-    }
-    page += "</table>\n<p>";
+    page += "</p>\n<h2>Variables</h2>\n";
+    let table = resource.variables();
+    // There are four of each mode, which few come here for.
+    let (of_modes, others): (Vec<_>, Vec<_>) =
+        table.variables().iter().partition(|variable| variable.quantity.causality() == "local");
+    page += &listed(&others);
+    let _ = write!(page, "<details>\n<summary>Coordinates and velocities of the modes: {}", of_modes.len());
+    page += " variables</summary>\n";
+    page += &listed(&of_modes);
+    page += "</details>\n<p>";
     page += PARAMETERS;
     page += "</p>\n<h2>Force over a step</h2>\n<p>";
     page += HELD;
@@ -53,6 +54,19 @@ pub(crate) fn write(resource: &Resource, from: Option<&Origin<'_>>, options: &Fm
     page
 }
 
+/// A table of variables.
+fn listed(variables: &[&Variable]) -> String {
+    let mut table = String::from("<table>\n<tr><th>name</th><th>unit</th><th>kind</th><th>what</th></tr>\n");
+    for variable in variables {
+        let unit = variable.unit.unwrap_or("");
+        let (name, kind) = (&variable.name, kind(variable));
+        let what = escaped(&variable.description);
+        // Writing to a String has nothing to fail on, here and elsewhere.
+        let _ = writeln!(table, "<tr><td>{name}</td><td>{unit}</td><td>{kind}</td><td>{what}</td></tr>");
+    }
+    table + "</table>\n"
+}
+
 /// What a variable is; of a parameter, when it may be set.
 fn kind(variable: &Variable) -> String {
     match variable.quantity.causality() {
@@ -67,6 +81,7 @@ body { font-family: sans-serif; line-height: 1.4; max-width: 60em; margin: 1em a
 table { border-collapse: collapse; display: block; overflow-x: auto; margin: 1em 0 }
 th, td { border: 1px solid #bbb; padding: 0.2em 0.6em; text-align: left; vertical-align: top }
 th { background: #eee }
+@media (min-width: 40em) { td:nth-child(3) { white-space: nowrap } }
 @media (max-width: 40em) { table { font-size: 0.8em }
 th, td { padding: 0.1em 0.3em }
 td:first-child { overflow-wrap: anywhere; min-width: 7em } }

@@ -89,7 +89,10 @@ impl Panel {
     /// Everything that may be set, with the values it was exported with.
     pub(crate) fn parameters(&self) -> Vec<PanelParameter> {
         let named = self.parts().into_iter().map(|part| {
-            let (name, unit, description) = describe(&part);
+            let (name, unit, mut description) = describe(&part);
+            if part.is_damping() && self.has_effects() {
+                description += " of the panel without its effects";
+            }
             PanelParameter { name, unit, description, start: self.value(&part), tunable: part.is_tunable() }
         });
         named.collect()

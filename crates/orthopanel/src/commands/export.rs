@@ -14,7 +14,8 @@ use crate::{model_file, output};
 ///
 /// No compiler is needed. Inputs are force_1, force_2, ... in N, outputs acceleration_1, velocity_1,
 /// displacement_1, ... in SI units, numbered in the order of the places given. Sizes, mass, constants, damping ratios
-/// and places are parameters of the FMU, which solves its modes anew where one is set.
+/// and places are parameters of the FMU, which solves its modes anew where one is set;
+/// damping ratios and places may be set while it runs, too.
 ///
 /// The edges are held as the model file's "boundary" says (see `orthopanel modes --help`): left and right, of a plate front and
 /// back too.
