@@ -102,7 +102,8 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
         eprintln!("viscoelastic-core: fitted within {percent:.2} % of its modulus from {from:.0} to {to:.0} Hz");
     }
     if answer.flexible_modes == 0 {
-        eprintln!("no flexible mode is kept: this panel only moves as a whole; ask for more by --modes or --up-to");
+        let does = if rigid_modes == 0 { "yields at once, without inertia" } else { "only moves as a whole" };
+        eprintln!("no flexible mode is kept: this panel {does}; ask for more by --modes or --up-to");
     }
     if !answer.left_out.is_empty() {
         eprintln!("left out, as no part of the panel: {}", answer.left_out.join(", "));
