@@ -27,7 +27,7 @@ def exporter(folder, content, forces, responses, modes):
     """The fixture `export`: exports the panel with these ports, or others, to a file of a name; returns its path."""
     usual = modes, forces
 
-    def export(name, *options, modes=usual[0], forces=usual[1], **changes):
+    def export(name, *options, modes=usual[0], forces=usual[1], responses=responses, **changes):
         path = folder / name
         done = run_export(content(**changes), path, "--modes", str(modes), *options, forces=forces, responses=responses)
         assert done.returncode == 0, done.stderr

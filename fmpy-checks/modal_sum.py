@@ -52,6 +52,16 @@ def free_motion(modes, starts, t):
     return sum(shape * _free_or_rigid(omega, zeta, *start, t) for (omega, zeta, shape), start in parts)
 
 
+def held_step(omega, zeta, state, force, step):
+    """Position and velocity of one mode after a step under a modal force that is held over it."""
+    if omega == 0.0:
+        position, velocity = state
+        return position + velocity * step + force * step**2 / 2.0, velocity + force * step
+    rest = force / omega**2
+    position, velocity, _ = _free(omega, zeta, state[0] - rest, state[1], step)
+    return position + rest, velocity
+
+
 def _sum(modes, motion):
     return sum(weight * motion(omega, zeta) for omega, zeta, weight in modes)
 

@@ -86,7 +86,7 @@ def test_the_documentation_tells_the_identification_and_the_band(tmp_path):
     model["provenance"] = {"piece": "piece <1>", "frequency_rms_percent": 0.21, "modes": modes}
     model["effects"] = [{"id": "local-mass", "owner": "panel", "mass": {"value": 0.03, "std": 2e-4}, "x": 0.11}]
     page, rows = documentation(model, tmp_path)
-    for text in ("piece &lt;1&gt;", "frequency rms percent", "0.21", "None is tunable"):
+    for text in ("piece &lt;1&gt;", "frequency rms percent", "0.21", "<td>tunable parameter</td>", "<td>fixed parameter</td>", "between two steps"):
         assert text in page, text
     for row in (
         ["e_x [Pa]", "1.0670e10", "4.5e7"],

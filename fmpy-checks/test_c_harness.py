@@ -17,6 +17,8 @@ FLAGS = ["-std=c11", "-O1", "-g", "-Wall", "-Wextra", "-Werror"]
 
 # The parameter that is set anew, and its other value.
 CHANGED, VALUE = "thickness", 0.027
+# The one that is set under way, and its other value: of the second flexible mode.
+TUNABLE, TUNED = "damping_ratio_2", 0.05
 
 pytestmark = pytest.mark.skipif(not shutil.which("gcc"), reason="needs gcc")
 
@@ -34,9 +36,10 @@ def command(fmu, tmp_path_factory):
     words = ["gcc", *FLAGS, f"-I{headers}", f"-I{PROPAGATOR}", *sources, "-o", program, "-ldl", "-lm"]
     subprocess.run(list(map(str, words)), check=True)
     # The numbers are held against modes of our own, not the FMU's.
-    text, changed = folder / "modes.txt", folder / "changed-modes.txt"
-    for file, beam in ((text, BEAM), (changed, replace(BEAM, **{CHANGED: VALUE}))):
-        modes = modes_at(beam, ZETAS, FORCES[0], RESPONSES[0])
+    text, changed, tuned = (folder / f"{kind}.txt" for kind in ("modes", "changed-modes", "tuned-modes"))
+    zetas = [ZETAS[0], TUNED, *ZETAS[2:]]
+    for file, beam, ratios in ((text, BEAM, ZETAS), (changed, replace(BEAM, **{CHANGED: VALUE}), ZETAS), (tuned, BEAM, zetas)):
+        modes = modes_at(beam, ratios, FORCES[0], RESPONSES[0])
         file.write_text("".join(f"{omega:.17g} {zeta:.17g} {shape:.17g} 1.0\n" for omega, zeta, shape in modes))
     references = {v.name: str(v.valueReference) for v in description.modelVariables}
     library = next((unpacked / "binaries").glob("*/*.so"))
@@ -46,7 +49,7 @@ def command(fmu, tmp_path_factory):
     if is_three:
         rates = [unknown.variable for unknown in description.derivatives]
         names += [",".join(str(v.valueReference) for v in list) for list in ([v.derivative for v in rates], rates)]
-    names += [references[CHANGED], VALUE, changed]
+    names += [references[CHANGED], VALUE, changed, references[TUNABLE], TUNED, tuned]
     token = description.instantiationToken if is_three else description.guid
     return list(map(str, [program, library, token, *where, *names]))
 

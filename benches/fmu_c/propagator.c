@@ -43,6 +43,10 @@ void panel_free(panel *p) {
     free(p);
 }
 
+void panel_go_on_from(panel *p, const panel *other) {
+    for (int m = 0; m < p->count && m < other->count; m++) p->q[m] = other->q[m], p->v[m] = other->v[m];
+}
+
 void panel_set_force(panel *p, double force) { p->force = force; }
 
 double panel_acceleration(const panel *p) {

@@ -7,6 +7,8 @@ typedef struct panel panel;
 
 panel *panel_new(int count, const double *omega, const double *zeta, const double *at_force, const double *at_response);
 void panel_free(panel *p);
+/* Goes on from where another stands that has as many modes. */
+void panel_go_on_from(panel *p, const panel *other);
 void panel_set_force(panel *p, double force);
 double panel_acceleration(const panel *p);
 

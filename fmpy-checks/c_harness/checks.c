@@ -1,10 +1,11 @@
 /* What an importer in C sees of an FMI 2.0 FMU: numbers, reset, state round trips, derivatives against differences, a panel
- * solved anew, many instances.
+ * solved anew, one that is tuned, many instances.
  *
- *     checks LIBRARY GUID RESOURCES-URI MODES-TEXT FORCE ACCELERATION DISPLACEMENT PARAMETER VALUE MODES-TEXT INSTANCES
+ *     checks LIBRARY GUID RESOURCES-URI MODES-TEXT FORCE ACCELERATION DISPLACEMENT PARAMETER VALUE MODES-TEXT
+ *         TUNABLE VALUE MODES-TEXT INSTANCES
  *
- * The first three are value references, as the parameter; the modes are those that the numbers are held against, the second ones
- * those of the panel with that value of the parameter. Prints what failed, and returns how many checks did.
+ * The first three are value references, as the parameters; the modes are those that the numbers are held against, the others those
+ * of the panel with that value of the fixed or tunable parameter. Prints what failed, and returns how many checks did.
  */
 #include "common.h"
 #include "fmi2Functions.h"
@@ -14,7 +15,7 @@ static void logger(fmi2ComponentEnvironment e, fmi2String n, fmi2Status s, fmi2S
 }
 
 int main(int argc, char **argv) {
-    if (argc != 12) return 101;
+    if (argc != 15) return 101;
     void *library = dlopen(argv[1], RTLD_NOW | RTLD_LOCAL);
     if (!library) {
         printf("%s\n", dlerror());
@@ -103,8 +104,36 @@ int main(int argc, char **argv) {
     CHECK(as_expected(runs[1], expected));
     fmi2FreeInstance_(c);
 
+    /* A tunable parameter set half way: the motion goes on as another panel's. The state from before brings the old one back. */
+    const fmi2ValueReference tunable = (fmi2ValueReference)atoi(argv[11]);
+    const double tuned = atof(argv[12]), nowhere = 1e3;
+    c = fmi2Instantiate_("tuned", fmi2CoSimulation, argv[2], argv[3], &callbacks, fmi2False, fmi2False);
+    half = NULL;
+    CHECK(c && fmi2EnterInitializationMode_(c) == fmi2OK && fmi2ExitInitializationMode_(c) == fmi2OK);
+    for (int n = 0; n < STEPS; n++) {
+        double pushed = force_at(n);
+        if (n == STEPS / 2) {
+            CHECK(fmi2GetFMUstate_(c, &half) == fmi2OK && fmi2SetReal_(c, &tunable, 1, &nowhere) == fmi2Error);
+            CHECK(fmi2SetReal_(c, &parameter, 1, &value) == fmi2Error && fmi2SetReal_(c, &tunable, 1, &tuned) == fmi2OK);
+        }
+        CHECK(fmi2SetReal_(c, &force, 1, &pushed) == fmi2OK && fmi2DoStep_(c, n * STEP, STEP, fmi2False) == fmi2OK);
+        CHECK(fmi2GetReal_(c, outputs, 2, runs[1][n]) == fmi2OK);
+    }
+    expect(argv[4], expected);
+    CHECK(memcmp(runs[1], runs[0], sizeof runs[0] / 2) == 0 && !as_expected(runs[1], expected));
+    expect_in_halves(argv[4], argv[13], expected);
+    CHECK(as_expected(runs[1], expected));
+    CHECK(fmi2SetFMUstate_(c, half) == fmi2OK && fmi2FreeFMUstate_(c, &half) == fmi2OK);
+    for (int n = STEPS / 2; n < STEPS; n++) {
+        double pushed = force_at(n);
+        CHECK(fmi2SetReal_(c, &force, 1, &pushed) == fmi2OK && fmi2DoStep_(c, n * STEP, STEP, fmi2False) == fmi2OK);
+        CHECK(fmi2GetReal_(c, outputs, 2, runs[1][n]) == fmi2OK);
+    }
+    CHECK(memcmp(runs[1], runs[0], sizeof runs[0]) == 0);
+    fmi2FreeInstance_(c);
+
     /* Many instances, one after the other, each with a state that is never freed: no growth once the heap has settled. */
-    long instances = atol(argv[11]), settled = 0;
+    long instances = atol(argv[14]), settled = 0;
     for (long n = 0; n < instances; n++) {
         c = fmi2Instantiate_("many", fmi2CoSimulation, argv[2], argv[3], &callbacks, fmi2False, fmi2False);
         fmi2FMUstate left = NULL;

@@ -1,12 +1,12 @@
 /* What an importer in C sees of an FMI 3.0 FMU: numbers, reset, state round trips, derivatives of both interfaces against
- * differences, instances side by side, a panel solved anew, many instances.
+ * differences, instances side by side, a panel solved anew, one that is tuned, many instances.
  *
  *     checks3 LIBRARY TOKEN RESOURCES MODES-TEXT FORCE ACCELERATION DISPLACEMENT STATES DERIVATIVES PARAMETER VALUE MODES-TEXT
- *         INSTANCES
+ *         TUNABLE VALUE MODES-TEXT INSTANCES
  *
  * The folder of the resources ends in a slash; the first three are value references, as the parameter, states and their
- * derivatives lists of such with commas; the modes are those that the numbers are held against, the second ones those of the panel
- * with that value of the parameter. Prints what failed, and returns how many checks did.
+ * derivatives lists of such with commas; the modes are those that the numbers are held against, the others those of the panel
+ * with that value of the fixed or tunable parameter. Prints what failed, and returns how many checks did.
  */
 #include "common.h"
 #include "fmi3Functions.h"
@@ -23,7 +23,7 @@ static size_t references(const char *list, fmi3ValueReference *found) {
 }
 
 int main(int argc, char **argv) {
-    if (argc != 14) return 101;
+    if (argc != 17) return 101;
     void *library = dlopen(argv[1], RTLD_NOW | RTLD_LOCAL);
     if (!library) {
         printf("%s\n", dlerror());
@@ -136,6 +136,34 @@ int main(int argc, char **argv) {
     CHECK(as_expected(runs[1], expected));
     fmi3FreeInstance_(c);
 
+    /* A tunable parameter set half way: the motion goes on as another panel's. The state from before brings the old one back. */
+    const fmi3ValueReference tunable = (fmi3ValueReference)atoi(argv[13]);
+    const double tuned = atof(argv[14]), nowhere = 1e3;
+    c = NEW("tuned");
+    half = NULL;
+    CHECK(c && INITIALIZED(c));
+    for (int n = 0; n < STEPS; n++) {
+        double pushed = force_at(n);
+        if (n == STEPS / 2) {
+            CHECK(fmi3GetFMUState_(c, &half) == fmi3OK && fmi3SetFloat64_(c, &tunable, 1, &nowhere, 1) == fmi3Error);
+            CHECK(fmi3SetFloat64_(c, &parameter, 1, &value, 1) == fmi3Error && fmi3SetFloat64_(c, &tunable, 1, &tuned, 1) == fmi3OK);
+        }
+        CHECK(fmi3SetFloat64_(c, &force, 1, &pushed, 1) == fmi3OK && STEPPED(c, n));
+        CHECK(fmi3GetFloat64_(c, outputs, 2, runs[1][n], 2) == fmi3OK);
+    }
+    expect(argv[4], expected);
+    CHECK(memcmp(runs[1], runs[0], sizeof runs[0] / 2) == 0 && !as_expected(runs[1], expected));
+    expect_in_halves(argv[4], argv[15], expected);
+    CHECK(as_expected(runs[1], expected));
+    CHECK(fmi3SetFMUState_(c, half) == fmi3OK && fmi3FreeFMUState_(c, &half) == fmi3OK);
+    for (int n = STEPS / 2; n < STEPS; n++) {
+        double pushed = force_at(n);
+        CHECK(fmi3SetFloat64_(c, &force, 1, &pushed, 1) == fmi3OK && STEPPED(c, n));
+        CHECK(fmi3GetFloat64_(c, outputs, 2, runs[1][n], 2) == fmi3OK);
+    }
+    CHECK(memcmp(runs[1], runs[0], sizeof runs[0]) == 0);
+    fmi3FreeInstance_(c);
+
     /* Model exchange: the same of the derivatives of all states by all states, along a seed, and the adjoint of it. */
     c = fmi3InstantiateModelExchange_("continuous", argv[2], argv[3], fmi3False, fmi3False, NULL, logger);
     size_t told = 0;
@@ -165,7 +193,7 @@ int main(int argc, char **argv) {
     if (c) fmi3FreeInstance_(c);
 
     /* Many instances, one after the other, each with a state that is never freed: no growth once the heap has settled. */
-    long instances = atol(argv[13]), settled = 0;
+    long instances = atol(argv[16]), settled = 0;
     for (long n = 0; n < instances; n++) {
         c = NEW("many");
         fmi3FMUState left = NULL;

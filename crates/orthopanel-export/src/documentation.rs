@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use orthopanel_fmu::{GENERATOR, Resource};
+use orthopanel_fmu::{GENERATOR, Resource, Variable};
 
 use crate::acceleration_band::Band;
 use crate::origin::Origin;
@@ -18,15 +18,16 @@ pub(crate) fn write(resource: &Resource, from: Option<&Origin<'_>>, options: &Fm
     page += &escaped(&options.name);
     page += "</h1>\n<p>";
     page += &escaped(&options.description);
-    page += "</p>\n<h2>Variables</h2>\n<table>\n<tr><th>name</th><th>unit</th><th>kind</th><th>what</th></tr>\n";
-    for variable in resource.variables().variables() {
-        let unit = variable.unit.unwrap_or("");
-        let (name, kind) = (&variable.name, variable.quantity.causality());
-        let what = escaped(&variable.description);
-        // Writing to a String has nothing to fail on, here and below.
-        let _ = writeln!(page, "<tr><td>{name}</td><td>{unit}</td><td>{kind}</td><td>{what}</td></tr>");
-    }
-    page += "</table>\n<p>";
+    page += "</p>\n<h2>Variables</h2>\n";
+    let table = resource.variables();
+    // There are four of each mode, which few come here for.
+    let (of_modes, others): (Vec<_>, Vec<_>) =
+        table.variables().iter().partition(|variable| variable.quantity.causality() == "local");
+    page += &listed(&others);
+    let _ = write!(page, "<details>\n<summary>Coordinates and velocities of the modes: {}", of_modes.len());
+    page += " variables</summary>\n";
+    page += &listed(&of_modes);
+    page += "</details>\n<p>";
     page += PARAMETERS;
     page += "</p>\n<h2>Force over a step</h2>\n<p>";
     page += HELD;
@@ -53,20 +54,48 @@ pub(crate) fn write(resource: &Resource, from: Option<&Origin<'_>>, options: &Fm
     page
 }
 
+/// A table of variables.
+fn listed(variables: &[&Variable]) -> String {
+    let mut table = String::from("<table>\n<tr><th>name</th><th>unit</th><th>kind</th><th>what</th></tr>\n");
+    for variable in variables {
+        let unit = variable.unit.unwrap_or("");
+        let (name, kind) = (&variable.name, kind(variable));
+        let what = escaped(&variable.description);
+        // Writing to a String has nothing to fail on, here and elsewhere.
+        let _ = writeln!(table, "<tr><td>{name}</td><td>{unit}</td><td>{kind}</td><td>{what}</td></tr>");
+    }
+    table + "</table>\n"
+}
+
+/// What a variable is; of a parameter, when it may be set.
+fn kind(variable: &Variable) -> String {
+    match variable.quantity.causality() {
+        "parameter" => format!("{} parameter", variable.variability()),
+        causality => causality.into(),
+    }
+}
+
 /// Legible without any file beside it, and on a narrow screen, where long names break rather than the table scrolls.
 const STYLE: &str = "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<style>
 body { font-family: sans-serif; line-height: 1.4; max-width: 60em; margin: 1em auto; padding: 0 1em; color: #222; background: #fff }
 table { border-collapse: collapse; display: block; overflow-x: auto; margin: 1em 0 }
 th, td { border: 1px solid #bbb; padding: 0.2em 0.6em; text-align: left; vertical-align: top }
 th { background: #eee }
+@media (min-width: 40em) { td:nth-child(3) { white-space: nowrap } }
 @media (max-width: 40em) { table { font-size: 0.8em }
 th, td { padding: 0.1em 0.3em }
 td:first-child { overflow-wrap: anywhere; min-width: 7em } }
 </style>\n";
 
-const PARAMETERS: &str = "Parameters are fixed: they are set before or in initialization mode, and stay for the run. Where \
-     one of the panel's is set, the modes are solved anew, which takes milliseconds for a beam or a plate, some hundredths \
-     of a second beside a core. The number of modes is that of the export. None is tunable.";
+const PARAMETERS: &str = "All parameters may be set before or in initialization mode. The tunable ones, which are the damping \
+     ratios and the places of forces and responses, may also be set while the simulation runs: in co-simulation between two steps, \
+     in model exchange in event mode. The modes are those of the undamped panel, which neither damping nor a port changes, so their \
+     coordinates and velocities go on as they are. Where damping is set, displacements and velocities run on and accelerations \
+     jump; where a place is set, outputs are from then on those of the new place. Sizes, mass and constants are fixed once \
+     initialization has ended: with others the modes would have other shapes, and their coordinates another meaning. Where a \
+     parameter is set, the modes are found anew, which takes milliseconds for a beam or a plate, some hundredths of a second \
+     beside a core; for damping ratios alone, of a panel without effects, some hundredths of a millisecond. The number of modes is \
+     that of the export.";
 const HELD: &str = "The force is held at the value set before the step, over the whole step.";
 const BY_DERIVATIVES: &str = " If the importer gives the first derivative of a force \
      (fmi2SetRealInputDerivatives), the force of the next step runs at that rate from the value set.";

@@ -5,7 +5,9 @@ mod fmi3;
 
 use std::io;
 
-use orthopanel_fmu::{GENERATOR, LOG_CATEGORIES, MODEL_IDENTIFIER, Resource, UNITS, Variable, VariableTable};
+use orthopanel_fmu::{
+    Dependency, Factor, GENERATOR, LOG_CATEGORIES, MODEL_IDENTIFIER, Resource, UNITS, Variable, VariableTable,
+};
 use quick_xml::Writer;
 use quick_xml::events::{BytesDecl, Event};
 
@@ -29,6 +31,10 @@ impl Description<'_> {
         let outputs = all.iter().filter(|variable| variable.quantity.causality() == "output");
         let derivatives = all.iter().filter(|variable| variable.derivative_of.is_some());
         outputs.map(|variable| (Unknown::Output, variable)).chain(derivatives.map(|v| (Unknown::Derivative, v)))
+    }
+
+    fn causality(&self, reference: u32) -> Option<&'static str> {
+        self.variables.get(reference).map(|variable| variable.quantity.causality())
     }
 }
 
@@ -103,7 +109,7 @@ fn common_attributes(variable: &Variable) -> Vec<(&'static str, String)> {
         ("valueReference", variable.reference.to_string()),
         ("description", variable.description.clone()),
         ("causality", quantity.causality().into()),
-        ("variability", quantity.variability().into()),
+        ("variability", variable.variability().into()),
     ];
     attributes.extend(quantity.initial().map(|initial| ("initial", initial.into())));
     attributes
@@ -132,16 +138,21 @@ fn empty(xml: &mut Xml, element: &str, attributes: &[(&str, String)]) -> io::Res
     Ok(())
 }
 
-/// An unknown of the model structure: `id` names it, `names` what it depends on; without names, on nothing.
-///
-/// Each dependency is a factor that stays as it is once initialization ends; before, it is only said to be there.
-fn unknown(xml: &mut Xml, element: &str, id: (&str, String), names: &[String], initial: bool) -> io::Result<()> {
+/// An unknown of the model structure: `id` names it, `on` what it depends on, each with the kind; where there is none, on nothing.
+fn unknown(xml: &mut Xml, element: &str, id: (&str, String), on: &[(String, Factor)]) -> io::Result<()> {
+    let names: Vec<&str> = on.iter().map(|(name, _)| name.as_str()).collect();
+    let kinds: Vec<&str> = on.iter().map(|(_, factor)| factor.name()).collect();
     let mut attributes = vec![id, ("dependencies", names.join(" "))];
-    if !names.is_empty() {
-        let kind = if initial { "dependent" } else { "fixed" };
-        attributes.push(("dependenciesKind", vec![kind; names.len()].join(" ")));
+    if !on.is_empty() {
+        attributes.push(("dependenciesKind", kinds.join(" ")));
     }
     empty(xml, element, &attributes)
+}
+
+/// What an unknown depends on. While the FMU is initialized, the standard has no more to say of a dependency than that it is there.
+fn dependencies(variable: &Variable, initial: bool) -> Vec<Dependency> {
+    let whole = |&reference: &u32| Dependency { reference, factor: Factor::Dependent };
+    if initial { variable.initial_dependencies.iter().map(whole).collect() } else { variable.dependencies.clone() }
 }
 
 /// A step of at most a twentieth of the shortest period (1, 2 or 5 times a power of ten), and a thousand steps.

@@ -11,11 +11,14 @@ mod situation;
 mod step;
 mod values;
 
+use std::sync::Arc;
+
+use crate::panel::Panel;
 use crate::wide_stepper::WideStepper;
 use crate::{FmuError, Quantity, Resource, VariableTable};
 
 use fmu_states::FmuStates;
-use parameters::Solved;
+use parameters::{Seen, Settable};
 pub(crate) use phase::{Interface, Phase};
 use situation::Situation;
 
@@ -27,19 +30,20 @@ pub(crate) struct Component {
     now: Situation,
     /// Where [`Component::reset`] goes back to.
     start: Situation,
-    /// The panel, where its modes may be solved again.
-    solved: Option<Solved>,
-    /// Static part of the modes left out \[m/N\]: a row a response.
-    static_remainder: Vec<Vec<f64>>,
+    /// The panel, where its modes may be found anew.
+    settable: Option<Settable>,
+    /// What the stepper's modes are.
+    in_use: Arc<Seen>,
     /// Has the stepper yet to be told the forces?
     forces_changed: bool,
-    /// Were parameters set for which the modes have yet to be solved?
+    /// Were parameters set for which the modes have yet to be found?
     parameters_changed: bool,
     /// Force at the end of a step at given rates, while it is computed.
     forces_after: Vec<f64>,
     /// A panel of the same modes that derivatives are asked of.
     probe: Probe,
-    nominals: Vec<[f64; 2]>,
+    /// Are the nominals others than the importer was told?
+    nominals_changed: bool,
     states: FmuStates,
 }
 
@@ -55,21 +59,21 @@ impl Component {
         let model = resource.model();
         let stepper = WideStepper::new(model);
         let forces = vec![0.0; model.force_count()];
-        let solved = resource.panel().map(Solved::new);
-        let parameters = solved.as_ref().map(|solved| solved.values.clone()).unwrap_or_default();
-        let start = Situation::new(interface, forces.len(), parameters);
+        let in_use = Arc::new(Seen::exported(resource));
+        let start = Situation::new(interface, forces.len(), in_use.values.clone());
+        let settable = |panel: &Panel| Settable { panel: panel.clone(), exported: Arc::clone(&in_use) };
         Self {
-            variables: resource.variables(),
+            variables: VariableTable::new(resource),
             probe: Probe { stepper: stepper.clone(), forces: forces.clone() },
             stepper,
             now: start.clone(),
             start,
-            solved,
-            static_remainder: resource.static_remainder().to_vec(),
+            settable: resource.panel().map(settable),
+            in_use,
             forces_changed: false,
             parameters_changed: false,
             forces_after: forces,
-            nominals: crate::nominals::of(model),
+            nominals_changed: false,
             states: FmuStates::new(token),
         }
     }
@@ -180,3 +184,7 @@ fn fitting(what: &str, value: f64) -> Result<(), FmuError> {
 mod panel_tests;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod tunable_tests;
+#[cfg(test)]
+mod tuned_state_tests;

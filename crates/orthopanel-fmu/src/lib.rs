@@ -19,4 +19,4 @@ pub use capabilities::{
 };
 pub use error::FmuError;
 pub use resource::{GENERATOR, RESOURCE_FILE, RESOURCE_SCHEMA, Resource, content_token};
-pub use variables::{Array, Quantity, UNITS, Unit, Variable, VariableTable};
+pub use variables::{Array, Dependency, Factor, Quantity, UNITS, Unit, Variable, VariableTable};

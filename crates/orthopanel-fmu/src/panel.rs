@@ -1,9 +1,17 @@
-//! The panel behind the modes: what of it may be set before a simulation starts, and its modes solved again.
+//! The panel behind the modes: what of it may be set, and its modes solved again.
 
-use orthopanel_model::{CoreFit, Estimate, ModalModel, ModeRange, ModelError, PanelModel, Ports, TimeModel};
+mod parts;
+
+use orthopanel_model::{
+    CoreFit, ModalModel, ModeRange, ModelError, PanelModel, Piece, Place, Ports, StructureKind, TimeModel,
+};
 use serde::{Deserialize, Serialize};
 
 use crate::FmuError;
+
+pub(crate) use parts::{PanelParameter, Part};
+
+use parts::{describe, set};
 
 /// A panel as identified, with the number of flexible modes that its FMU keeps.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -11,30 +19,6 @@ use crate::FmuError;
 pub(crate) struct Panel {
     model: PanelModel,
     flexible_modes: usize,
-}
-
-/// What a parameter of the FMU is of the panel; ports and modes are counted from 0.
-#[derive(Debug, Clone, PartialEq)]
-enum Part {
-    Length,
-    Width,
-    Thickness,
-    MassPerArea,
-    Constant(String),
-    Damping(usize),
-    ForceX(usize),
-    ForceY(usize),
-    ResponseX(usize),
-    ResponseY(usize),
-}
-
-/// A parameter of the FMU, as its table of variables shows it.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct PanelParameter {
-    pub name: String,
-    pub unit: &'static str,
-    pub description: String,
-    pub start: f64,
 }
 
 /// What a stepper needs.
@@ -105,8 +89,11 @@ impl Panel {
     /// Everything that may be set, with the values it was exported with.
     pub(crate) fn parameters(&self) -> Vec<PanelParameter> {
         let named = self.parts().into_iter().map(|part| {
-            let (name, unit, description) = describe(&part);
-            PanelParameter { name, unit, description, start: self.value(&part) }
+            let (name, unit, mut description) = describe(&part);
+            if part.is_damping() && self.has_effects() {
+                description += " of the panel without its effects";
+            }
+            PanelParameter { name, unit, description, start: self.value(&part), tunable: part.is_tunable() }
         });
         named.collect()
     }
@@ -127,6 +114,44 @@ impl Panel {
             }
             _ => Ok(()),
         }
+    }
+
+    /// Refuses a place off the piece with these values of the parameters, of which all but places and damping stay.
+    pub(crate) fn check_place(&self, index: usize, value: f64, values: &[f64]) -> Result<(), ModelError> {
+        let at = |index: usize| values.get(index).copied().unwrap_or(0.0);
+        let place = match self.parts().get(index) {
+            Some(Part::ForceX(_) | Part::ResponseX(_)) => Place { x: value, y: at(index + 1) },
+            Some(Part::ForceY(_) | Part::ResponseY(_)) => Place { x: at(index.saturating_sub(1)), y: value },
+            _ => return Ok(()),
+        };
+        // Length and width come first.
+        Piece { length: at(0), width: at(1), ..self.model.piece }.contains(place)
+    }
+
+    /// These modes with the damping ratios of `values`, where they are known for all the others: without any solution. `None` where
+    /// something else differs, or where effects mix the damping of the bare modes.
+    pub(crate) fn redamped(&self, modes: &ModalModel, known: &[f64], values: &[f64]) -> Option<ModalModel> {
+        let parts = self.parts();
+        let alike = |(part, (known, value)): (&Part, (&f64, &f64))| part.is_damping() || known == value;
+        if !self.model.effects.is_empty() || !parts.iter().zip(known.iter().zip(values)).all(alike) {
+            return None;
+        }
+        let mut ratios = parts.iter().zip(values).filter(|(part, _)| part.is_damping()).map(|(_, value)| *value);
+        let mut damped = modes.modes().to_vec();
+        for mode in damped.iter_mut().filter(|mode| mode.angular_frequency > 0.0) {
+            mode.damping_ratio = ratios.next()?;
+        }
+        ModalModel::new(modes.force_count(), modes.response_count(), damped).ok()
+    }
+
+    /// Whether effects are in the modes, so that damping may couple them.
+    pub(crate) fn has_effects(&self) -> bool {
+        !self.model.effects.is_empty()
+    }
+
+    /// Whether nothing depends on a place across the panel.
+    pub(crate) fn is_beam(&self) -> bool {
+        self.model.structure == StructureKind::TimoshenkoBeam
     }
 
     /// Sizes by which the parameters are differenced: their own values, and for places the length. What may be zero has one of
@@ -159,81 +184,6 @@ impl Panel {
             in_range("e_x over g_zx", e_x.value / g_zx.value, 1e-2, 1e4)?;
         }
         Ok(solve(&model, ModeRange::Count(self.flexible_modes))?)
-    }
-
-    fn parts(&self) -> Vec<Part> {
-        let mut parts = vec![Part::Length, Part::Width, Part::Thickness, Part::MassPerArea];
-        parts.extend(self.model.constants.keys().cloned().map(Part::Constant));
-        parts.extend((0..self.flexible_modes).map(Part::Damping));
-        parts.extend((0..self.model.ports.forces.len()).flat_map(|port| [Part::ForceX(port), Part::ForceY(port)]));
-        let responses = 0..self.model.ports.responses.len();
-        parts.extend(responses.flat_map(|port| [Part::ResponseX(port), Part::ResponseY(port)]));
-        parts
-    }
-
-    fn value(&self, part: &Part) -> f64 {
-        let (piece, ports) = (&self.model.piece, &self.model.ports);
-        let value = match part {
-            Part::Length => Some(piece.length),
-            Part::Width => Some(piece.width),
-            Part::Thickness => Some(piece.thickness),
-            Part::MassPerArea => Some(piece.mass_per_area),
-            Part::Constant(name) => self.model.constants.get(name).map(|estimate| estimate.value),
-            Part::Damping(mode) => Some(self.model.damping.ratio(mode + 1)),
-            Part::ForceX(port) => ports.forces.get(*port).map(|place| place.x),
-            Part::ForceY(port) => ports.forces.get(*port).map(|place| place.y),
-            Part::ResponseX(port) => ports.responses.get(*port).map(|place| place.x),
-            Part::ResponseY(port) => ports.responses.get(*port).map(|place| place.y),
-        };
-        // The parts are those of this panel: none is ever missing.
-        value.unwrap_or(f64::NAN)
-    }
-}
-
-fn set(model: &mut PanelModel, part: &Part, value: f64) {
-    let (piece, ports) = (&mut model.piece, &mut model.ports);
-    let place = match part {
-        Part::Length => Some(&mut piece.length),
-        Part::Width => Some(&mut piece.width),
-        Part::Thickness => Some(&mut piece.thickness),
-        Part::MassPerArea => Some(&mut piece.mass_per_area),
-        Part::Constant(name) => {
-            model.constants.insert(name.clone(), Estimate { value, std: None });
-            None
-        }
-        Part::Damping(mode) => model.damping.ratios.get_mut(*mode),
-        Part::ForceX(port) => ports.forces.get_mut(*port).map(|place| &mut place.x),
-        Part::ForceY(port) => ports.forces.get_mut(*port).map(|place| &mut place.y),
-        Part::ResponseX(port) => ports.responses.get_mut(*port).map(|place| &mut place.x),
-        Part::ResponseY(port) => ports.responses.get_mut(*port).map(|place| &mut place.y),
-    };
-    if let Some(place) = place {
-        *place = value;
-    }
-}
-
-fn describe(part: &Part) -> (String, &'static str, String) {
-    let place = |what: &str, port: &usize, axis: &str| {
-        let text = format!("Place of {what} {} along {axis}, from the centre", port + 1);
-        (format!("{what}_{}_{axis}", port + 1), "m", text)
-    };
-    match part {
-        Part::Length => ("length".into(), "m", "Length of the piece, along x".into()),
-        Part::Width => ("width".into(), "m", "Width of the piece, along y".into()),
-        Part::Thickness => ("thickness".into(), "m", "Thickness of the piece".into()),
-        Part::MassPerArea => ("mass_per_area".into(), "kg/m2", "Mass per area of the piece".into()),
-        Part::Constant(name) => {
-            let unit = if name.starts_with("nu") { "1" } else { "Pa" };
-            (name.clone(), unit, format!("Elastic constant {name}"))
-        }
-        Part::Damping(mode) => {
-            let text = format!("Modal damping ratio of flexible mode {}", mode + 1);
-            (format!("damping_ratio_{}", mode + 1), "1", text)
-        }
-        Part::ForceX(port) => place("force", port, "x"),
-        Part::ForceY(port) => place("force", port, "y"),
-        Part::ResponseX(port) => place("response", port, "x"),
-        Part::ResponseY(port) => place("response", port, "y"),
     }
 }
 

@@ -14,7 +14,7 @@ use crate::{FmuError, VariableTable};
 pub const RESOURCE_FILE: &str = "panel.json";
 
 /// What the file says it is; a library reads one schema alone.
-pub const RESOURCE_SCHEMA: &str = "orthopanel.fmu/3";
+pub const RESOURCE_SCHEMA: &str = "orthopanel.fmu/4";
 
 /// Program and version, as FMUs name the tool that made them.
 pub const GENERATOR: &str = concat!("orthopanel ", env!("CARGO_PKG_VERSION"));
@@ -97,7 +97,7 @@ impl Resource {
 
     /// The variables of this FMU.
     pub fn variables(&self) -> VariableTable {
-        VariableTable::new(self)
+        VariableTable::with_dependencies(self)
     }
 
     /// Text of the file; the same content gives the same text.

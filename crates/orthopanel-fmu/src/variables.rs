@@ -12,6 +12,7 @@ use crate::panel::Panel;
 use crate::{Resource, nominals};
 
 pub use arrays::Array;
+pub use dependencies::{Dependency, Factor};
 pub use units::{UNITS, Unit};
 
 /// What a variable stands for; ports are counted from 0.
@@ -71,11 +72,6 @@ impl Quantity {
         }
     }
 
-    /// FMI variability.
-    pub fn variability(self) -> &'static str {
-        if matches!(self, Self::ForceLinear | Self::Parameter(_)) { "fixed" } else { "continuous" }
-    }
-
     /// FMI attribute `initial`; `None` where the standard has none.
     pub fn initial(self) -> Option<&'static str> {
         match self {
@@ -110,15 +106,28 @@ pub struct Variable {
     pub unit: Option<&'static str>,
     /// Start value as the XML says it; `None` for what is calculated.
     pub start: Option<String>,
-    /// References of the inputs and continuous states on which an output or a derivative depends directly (without an
+    /// The inputs, continuous states and tunable parameters on which an output or a derivative depends directly (without an
     /// integration between); empty for what is neither.
-    pub dependencies: Vec<u32>,
-    /// The same while the FMU is initialized, when parameters count too.
+    pub dependencies: Vec<Dependency>,
+    /// References of the same while the FMU is initialized, when all parameters count.
     pub initial_dependencies: Vec<u32>,
     /// Of a derivative: reference of the continuous state.
     pub derivative_of: Option<u32>,
     /// Of a continuous state: the size to be expected.
     pub nominal: Option<f64>,
+    /// Of a parameter: whether it may be set while the simulation runs.
+    pub tunable: bool,
+}
+
+impl Variable {
+    /// FMI variability.
+    pub fn variability(&self) -> &'static str {
+        match self.quantity {
+            Quantity::Parameter(_) if self.tunable => "tunable",
+            Quantity::ForceLinear | Quantity::Parameter(_) => "fixed",
+            _ => "continuous",
+        }
+    }
 }
 
 /// The variables of a panel; a variable's reference is its index.
@@ -153,12 +162,20 @@ impl VariableTable {
             table.push(Quantity::Parameter(index), parameter.name, parameter.description);
             if let Some(variable) = table.variables.last_mut() {
                 (variable.unit, variable.start) = (Some(parameter.unit), Some(parameter.start.to_string()));
+                variable.tunable = parameter.tunable;
             }
         }
-        dependencies::fill(&mut table.variables, resource);
         if resource.arrays() {
             table.arrays = arrays::of(ports);
         }
+        table
+    }
+
+    /// The same, with what each variable depends on: for the XML alone, so that an instance does without the work, and the library
+    /// without its code.
+    pub(crate) fn with_dependencies(resource: &Resource) -> Self {
+        let mut table = Self::new(resource);
+        dependencies::fill(&mut table.variables, resource);
         table
     }
 
@@ -204,6 +221,7 @@ impl VariableTable {
             initial_dependencies: Vec::new(),
             derivative_of: None,
             nominal: None,
+            tunable: false,
         });
         reference
     }

@@ -102,6 +102,18 @@ impl ModalModel {
         }
     }
 
+    /// The same modes, those whose entry of `turn` is true in the other sense: what they are to stays the same motion.
+    pub(crate) fn turned(mut self, turn: &[bool]) -> Self {
+        let flip = |value: &mut f64| *value = -*value;
+        for (mode, _) in self.modes.iter_mut().zip(turn).filter(|(_, turn)| **turn) {
+            mode.at_forces.iter_mut().chain(&mut mode.at_responses).for_each(flip);
+        }
+        for (row, one) in self.damping_coupling.iter_mut().zip(turn) {
+            row.iter_mut().zip(turn).filter(|(_, other)| *other != one).for_each(|(value, _)| flip(value));
+        }
+        self
+    }
+
     /// The same modes with some of the force ports alone.
     ///
     /// # Errors

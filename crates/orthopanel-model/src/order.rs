@@ -21,6 +21,25 @@ pub(crate) fn sorted<T>(items: Vec<T>, key: impl FnMut(&T) -> f64) -> Vec<T> {
     order.into_iter().filter_map(|place| items.get_mut(place)?.take()).collect()
 }
 
+/// The same of modes by their frequencies, but that those which agree to [`COINCIDENT`] stay as they come: which of them is the
+/// lower would be rounding's choice, another one with each solver.
+pub(crate) fn sorted_modes<T>(modes: Vec<T>, frequency: impl FnMut(&T) -> f64) -> Vec<T> {
+    let frequencies: Vec<f64> = modes.iter().map(frequency).collect();
+    let mut ranks = vec![0.0; frequencies.len()];
+    let (mut rank, mut last) = (0.0, f64::NEG_INFINITY);
+    for place in rising(&frequencies) {
+        if frequencies[place] > last + COINCIDENT * last.abs() {
+            rank += 1.0;
+        }
+        (ranks[place], last) = (rank, frequencies[place]);
+    }
+    let mut ranks = ranks.into_iter();
+    sorted(modes, |_| ranks.next().unwrap_or(rank))
+}
+
+/// Share of itself within which a frequency is another one's: solvers differ by some 1e-10.
+const COINCIDENT: f64 = 1e-8;
+
 #[inline(never)]
 fn pairs(keys: &[f64]) -> Vec<(f64, usize)> {
     let mut pairs: Vec<_> = keys.iter().copied().zip(0..).collect();
@@ -30,7 +49,7 @@ fn pairs(keys: &[f64]) -> Vec<(f64, usize)> {
 
 #[cfg(test)]
 mod tests {
-    use super::{rising, sort, sorted};
+    use super::{rising, sort, sorted, sorted_modes};
 
     #[test]
     fn equal_keys_stay_as_they_come() {
@@ -38,6 +57,13 @@ mod tests {
         assert_eq!(rising(&keys), [1, 5, 4, 0, 2, 3]);
         let words = vec!["three", "a", "cab", "two", "b"];
         assert_eq!(sorted(words, |word| word.len() as f64), ["a", "b", "cab", "two", "three"]);
+    }
+
+    #[test]
+    fn modes_that_coincide_stay_as_they_come() {
+        let frequencies = vec![7.0, 3.0 + 1e-10, 0.0, 3.0, 3.001, 7.0 - 1e-9, 0.0, 5.0];
+        let expected = [0.0, 0.0, 3.0 + 1e-10, 3.0, 3.001, 5.0, 7.0, 7.0 - 1e-9];
+        assert_eq!(sorted_modes(frequencies, |frequency| *frequency), expected);
     }
 
     #[test]

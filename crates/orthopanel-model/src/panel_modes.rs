@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use crate::effects::{DressedPanel, Even, PanelWithEffects};
+use crate::structure_modes::NaturalMode as _;
 use crate::{
     BeamConstants, BeamMode, EffectSetting, EffectState, ExactBeam, MindlinPlate, ModalModel, ModelError, Owner,
     PLATE_CONSTANTS, PanelMode, PanelModel, Place, RitzMode, Structure, StructureKind, TimoshenkoBeam, ritz_modes,
@@ -34,6 +35,9 @@ impl ModeRange {
         }
     }
 }
+
+/// A place, in lengths and widths from the centre, on no line of symmetry; modes have their nodes elsewhere.
+const MARK: [f64; 2] = [0.463_7, 0.381_9];
 
 impl PanelModel {
     /// The rigid modes, then the flexible ones of `range`, in rising order, of whatever structure the model has: exact
@@ -265,6 +269,23 @@ impl PanelModel {
         if self.relaxes() {
             return Err(ModelError::Unsupported("viscoelastic-core in a sum of modes".into()));
         }
-        ModalModel::of_modes(&self.modes_without_core(range)?, &self.damping, forces, responses)
+        self.as_seen(&self.modes_without_core(range)?, forces, responses)
+    }
+
+    /// These modes as seen from ports, each in the sense in which it is up at one place of the piece.
+    ///
+    /// The sense of a mode is free, and what a solver leaves to its rounding. An FMU solves its modes again where parameters are
+    /// set, by other loops than the command that exported it, and its states must mean the same motion before and after.
+    pub(crate) fn as_seen(
+        &self,
+        modes: &[PanelMode],
+        forces: &[Place],
+        responses: &[Place],
+    ) -> Result<ModalModel, ModelError> {
+        let model = ModalModel::of_modes(modes, &self.damping, forces, responses)?;
+        let mark = Place { x: MARK[0] * self.piece.length, y: MARK[1] * self.piece.width };
+        let down: Vec<bool> =
+            PanelMode::deflections_at(modes, mark).into_iter().map(|deflection| deflection < 0.0).collect();
+        Ok(model.turned(&down))
     }
 }

@@ -68,7 +68,7 @@ impl PanelModel {
         let parts = self.on_even(&setting, &even, &values, &effects);
         let (modes, dressed, plate) = DressedPanel::modes_and_flexibility(parts, count, forces, responses)?;
         let modes: Vec<_> = modes.into_iter().map(crate::PanelMode::of_dressed).collect();
-        let modes = ModalModel::of_modes(&modes, &self.damping, forces, responses)?;
+        let modes = self.as_seen(&modes, forces, responses)?;
         let all = self.on_large_basis(dressed, plate, (&values, count), forces, responses)?;
         Ok((modes, finite(all)?))
     }

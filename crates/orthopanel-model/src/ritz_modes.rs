@@ -2,7 +2,7 @@
 
 use crate::block_krylov::{BlockKrylov, lowest_modes_near};
 use crate::block_pencil::{BlockPencil, Eigenpair};
-use crate::order::{sort, sorted};
+use crate::order::{sort, sorted_modes};
 use crate::structure::{Block, RitzMode, Structure};
 use crate::{Constant, ModelError, side_by_side};
 
@@ -255,7 +255,7 @@ fn rigid(blocks: &[Block]) -> impl Iterator<Item = RitzMode> {
     })
 }
 
-/// The modes of all blocks, rising.
+/// The modes of all blocks, rising; those that coincide in the order of their blocks.
 fn flexible(solved: impl Iterator<Item = Vec<Eigenpair>>) -> Vec<RitzMode> {
     let of_block = |(block, modes): (usize, Vec<Eigenpair>)| {
         modes.into_iter().map(move |(omega2, coordinates)| RitzMode {
@@ -264,7 +264,7 @@ fn flexible(solved: impl Iterator<Item = Vec<Eigenpair>>) -> Vec<RitzMode> {
             coordinates,
         })
     };
-    sorted(solved.enumerate().flat_map(of_block).collect(), |mode| mode.angular_frequency)
+    sorted_modes(solved.enumerate().flat_map(of_block).collect(), |mode| mode.angular_frequency)
 }
 
 #[cfg(test)]

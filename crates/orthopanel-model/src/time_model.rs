@@ -83,7 +83,7 @@ impl PanelModel {
         let found = DressedPanel::relaxing_modes(parts, flexible)?;
         let Some((modes, fit)) = found else { return Ok(None) };
         let modes: Vec<_> = modes.into_iter().map(crate::PanelMode::of_dressed).collect();
-        let modes = ModalModel::of_modes(&modes, &self.damping, forces, responses)?;
+        let modes = self.as_seen(&modes, forces, responses)?;
         let static_remainder = modes.left_of_flexibility(self.static_flexibility(flexible, forces, responses)?);
         Ok(Some(TimeModel { modes, flexible, core: Some(fit), static_remainder }))
     }

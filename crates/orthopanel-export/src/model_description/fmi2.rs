@@ -4,7 +4,7 @@ use std::io;
 
 use orthopanel_fmu::{FMI2_CO_SIMULATION, FMI2_MODEL_EXCHANGE, Variable};
 
-use super::{Description, Unknown, Xml, common_attributes, empty, unknown, value_attributes};
+use super::{Description, Unknown, Xml, common_attributes, dependencies, empty, unknown, value_attributes};
 
 pub(super) const INTERFACES: [(&str, &[(&str, &str)]); 2] =
     [("ModelExchange", FMI2_MODEL_EXCHANGE), ("CoSimulation", FMI2_CO_SIMULATION)];
@@ -35,9 +35,11 @@ pub(super) fn structure(xml: &mut Xml, description: &Description) -> io::Result<
         xml.create_element(list).write_inner_content(|xml| {
             for variable in variables {
                 let initial = only.is_none();
-                let on = if initial { &variable.initial_dependencies } else { &variable.dependencies };
-                let names: Vec<String> = on.iter().map(|&reference| index(reference)).collect();
-                unknown(xml, "Unknown", ("index", index(variable.reference)), &names, initial)?;
+                let mut on = dependencies(variable, initial);
+                // Once initialization has ended, FMI 2.0 counts no parameter among what an unknown may depend on (2.2.8).
+                on.retain(|on| initial || description.causality(on.reference) != Some("parameter"));
+                let on: Vec<_> = on.into_iter().map(|on| (index(on.reference), on.factor)).collect();
+                unknown(xml, "Unknown", ("index", index(variable.reference)), &on)?;
             }
             Ok(())
         })?;

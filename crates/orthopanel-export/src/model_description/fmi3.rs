@@ -4,7 +4,7 @@ use std::io;
 
 use orthopanel_fmu::{Array, FMI3_CO_SIMULATION, FMI3_MODEL_EXCHANGE, Variable, VariableTable};
 
-use super::{Description, Unknown, Xml, common_attributes, empty, unknown, value_attributes};
+use super::{Description, Unknown, Xml, common_attributes, dependencies, empty, unknown, value_attributes};
 
 pub(super) const INTERFACES: [(&str, &[(&str, &str)]); 2] =
     [("ModelExchange", FMI3_MODEL_EXCHANGE), ("CoSimulation", FMI3_CO_SIMULATION)];
@@ -52,14 +52,12 @@ pub(super) fn structure(xml: &mut Xml, description: &Description) -> io::Result<
             .array_of(variable.reference)
             .map_or(variable.reference..variable.reference + 1, |array| array.references.clone());
         let all = elements.filter_map(|reference| table.get(reference));
-        let mut on: Vec<u32> = all
-            .flat_map(|one| if initial { &one.initial_dependencies } else { &one.dependencies })
-            .map(|&reference| seen_as(reference))
-            .collect();
+        let mut on: Vec<_> =
+            all.flat_map(|one| dependencies(one, initial)).map(|on| (seen_as(on.reference), on.factor)).collect();
         on.sort_unstable();
         on.dedup();
-        let names: Vec<String> = on.iter().map(u32::to_string).collect();
-        unknown(xml, element, ("valueReference", variable.reference.to_string()), &names, initial)
+        let on: Vec<_> = on.into_iter().map(|(reference, factor)| (reference.to_string(), factor)).collect();
+        unknown(xml, element, ("valueReference", variable.reference.to_string()), &on)
     };
     let unknowns: Vec<_> = description.unknowns().filter(|(_, one)| seen_as(one.reference) == one.reference).collect();
     for &(kind, variable) in &unknowns {

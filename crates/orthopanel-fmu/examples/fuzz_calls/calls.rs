@@ -46,7 +46,7 @@ pub struct Made {
 /// # Errors
 /// A derivative that is no number.
 pub fn one_call(fmu: &Fmu, random: &mut Random, driven: &mut Driven, written: &mut Vec<u8>) -> Result<Made, String> {
-    let call = random.below(28);
+    let call = random.below(30);
     let (a, b) = (random.number(), random.number());
     let any = |random: &mut Random| random.below(u64::from(fmu.variables) + 2) as u32;
     let (reference, other) = (any(random), any(random));
@@ -54,6 +54,7 @@ pub fn one_call(fmu: &Fmu, random: &mut Random, driven: &mut Driven, written: &m
     let list: Vec<u32> = (0..2 + random.below(5)).map(|_| any(random)).collect();
     let (instance, mut found) = (driven.instance, 0.0);
     let (pointer, functions) = (instance.pointer, instance.functions());
+    let mut may_end_tuning = false;
     // SAFETY: a live instance; arrays have the lengths given; states are handles that the library checks itself.
     let status = unsafe {
         match call {
@@ -96,6 +97,19 @@ pub fn one_call(fmu: &Fmu, random: &mut Random, driven: &mut Driven, written: &m
                 instance.set(&list, &values)
             }
             24 => null_call(driven, fmu, random),
+            25 | 26 => {
+                let tunable = random.below(fmu.tunable.len() as u64) as usize;
+                let chosen = fmu.tunable.get(tunable).copied().unwrap_or(reference);
+                // Sizes that were set before the start and places are judged together, later.
+                may_end_tuning = !driven.has_started(fmu);
+                let before = driven.states(fmu);
+                let status = instance.set(&[chosen], &[value_for(chosen, fmu, random)]);
+                let after = driven.states(fmu);
+                if before.is_some() && after.is_some() && before != after {
+                    return Err(format!("call {call} moved the states from {before:?} to {after:?}"));
+                }
+                status
+            }
             _ => {
                 let backwards = random.one_in(8);
                 let step = 1e-3 * if backwards { -a.abs() } else { a.abs() };
@@ -113,6 +127,7 @@ pub fn one_call(fmu: &Fmu, random: &mut Random, driven: &mut Driven, written: &m
     let may_end_reading = match call {
         5 | 12 => true,
         16 | 17 => of_parameter(&reference),
+        25 | 26 => may_end_tuning,
         23 => list.iter().any(of_parameter),
         _ => false,
     };

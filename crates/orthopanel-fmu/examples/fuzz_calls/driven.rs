@@ -35,6 +35,18 @@ impl Driven {
         (self.instance.get(&fmu.outputs, &mut values) == 0).then_some(values)
     }
 
+    /// Whether initialization has ended: then a fixed parameter, set to the value that it has, is refused.
+    pub fn has_started(&self, fmu: &Fmu) -> bool {
+        let mut value = [0.0];
+        self.instance.get(&[fmu.fixed], &mut value) == 0 && self.instance.set(&[fmu.fixed], &value) != 0
+    }
+
+    /// Modal coordinates and velocities, where they can be read.
+    pub fn states(&self, fmu: &Fmu) -> Option<Vec<f64>> {
+        let mut values = vec![0.0; fmu.modal.len()];
+        (self.instance.get(&fmu.modal, &mut values) == 0).then_some(values)
+    }
+
     /// All that the instance holds, as the bytes of an FMU state.
     pub fn bytes(&self) -> Result<Vec<u8>, String> {
         let mut state = null_mut();

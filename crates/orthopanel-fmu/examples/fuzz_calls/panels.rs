@@ -19,6 +19,12 @@ pub struct Fmu {
     pub outputs: Vec<u32>,
     pub forces: Vec<u32>,
     pub parameters: Vec<u32>,
+    /// One of the parameters that stay once initialization has ended.
+    pub fixed: u32,
+    /// Those of the parameters that may be set under way.
+    pub tunable: Vec<u32>,
+    /// References of all modal coordinates and velocities.
+    pub modal: Vec<u32>,
     pub force_linear: u32,
     pub time: u32,
     pub states: usize,
@@ -70,6 +76,9 @@ fn written(folder: &Path, panel: &str, effects: &str, modes: usize) -> Result<Fm
         outputs: of("output"),
         forces: of("input"),
         parameters: of("parameter"),
+        fixed: all.iter().find(|v| v.name == "length").ok_or("no length")?.reference,
+        tunable: all.iter().filter(|v| v.tunable).map(|v| v.reference).collect(),
+        modal: all.iter().filter(|v| v.nominal.is_some()).map(|v| v.reference).collect(),
         time: all.iter().find(|v| v.quantity == Quantity::Time).ok_or("no time")?.reference,
         force_linear: all.iter().find(|v| v.quantity == Quantity::ForceLinear).ok_or("no force_linear")?.reference,
         states: 2 * resource.model().modes().len(),

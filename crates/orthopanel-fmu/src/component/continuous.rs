@@ -11,7 +11,7 @@ use crate::FmuError;
 impl Component {
     /// Number of modes, rigid ones included.
     pub(super) fn mode_count(&self) -> usize {
-        self.nominals.len()
+        self.in_use.modes.modes().len()
     }
 
     /// Number of continuous states: two a mode.
@@ -70,7 +70,7 @@ impl Component {
         self.require_model_exchange(if once_instantiated { Phase::ANY } else { Phase::READABLE })?;
         self.same_states(nominals.len())?;
         self.apply()?;
-        self.fill(nominals, |mode| self.nominals.get(mode).copied())
+        self.fill(nominals, |mode| self.in_use.nominals.get(mode).copied())
     }
 
     /// There are none; `count` is the number asked for.

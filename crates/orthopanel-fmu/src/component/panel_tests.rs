@@ -4,29 +4,32 @@ use orthopanel_model::{ModeRange, PanelModel, Place, Ports};
 
 use super::*;
 
-const PLATE: &str = r#"{"schema": "orthopanel.model/1", "structure": "mindlin-plate",
+pub(super) const PLATE: &str = r#"{"schema": "orthopanel.model/1", "structure": "mindlin-plate",
     "piece": {"length": 0.8, "width": 0.5, "thickness": 0.03, "mass_per_area": 6.88},
     "constants": {"e_x": 1.067e10, "e_y": 0.9e10, "nu_xy": 0.3, "g_xy": 3e9, "g_yz": 4e8, "g_zx": 5.304e8},
     "damping": {"beyond": 0.003}}"#;
 
-const BEAM: &str = r#"{"schema": "orthopanel.model/1", "structure": "timoshenko-beam",
+pub(super) const BEAM: &str = r#"{"schema": "orthopanel.model/1", "structure": "timoshenko-beam",
     "piece": {"length": 0.8, "width": 0.1, "thickness": 0.03, "mass_per_area": 6.88},
     "constants": {"e_x": 1.067e10, "g_zx": 5.304e8}, "damping": {"beyond": 0.003}}"#;
 
-fn instance(text: &str, interface: Interface) -> Component {
+fn resource(text: &str) -> Resource {
     let place = |x| Place { x, y: 0.02 };
     let ports = Ports { forces: vec![place(-0.3)], responses: vec![place(0.1)] };
     let panel = PanelModel::from_json(text).expect("a sound model");
-    let (resource, _) = Resource::of_panel(&panel, ModeRange::Count(4), ports).expect("a sound panel");
-    Component::new(&resource, interface, "")
+    Resource::of_panel(&panel, ModeRange::Count(4), ports).expect("a sound panel").0
 }
 
-fn reference(component: &Component, name: &str) -> u32 {
+fn instance(text: &str, interface: Interface) -> Component {
+    Component::new(&resource(text), interface, "")
+}
+
+pub(super) fn reference(component: &Component, name: &str) -> u32 {
     let all = component.variables.variables();
     all.iter().find(|variable| variable.name == name).expect("a variable").reference
 }
 
-fn set(component: &mut Component, name: &str, value: f64) -> Result<(), FmuError> {
+pub(super) fn set(component: &mut Component, name: &str, value: f64) -> Result<(), FmuError> {
     component.set_reals(&[reference(component, name)], &[value])
 }
 
@@ -192,7 +195,7 @@ fn regress_every_initial_dependency_has_its_derivative() {
             set(&mut component, &format!("modal_velocity_{mode}"), 0.1 / mode as f64).expect("a state");
         }
         let unknown = reference(&component, "acceleration_1");
-        let variable = component.variables.get(unknown).expect("there").clone();
+        let variable = resource(text).variables().get(unknown).expect("there").clone();
         assert!(variable.initial_dependencies.len() > variable.dependencies.len());
         for known in variable.initial_dependencies {
             let (name, mut start) = (component.variables.get(known).expect("there").name.clone(), [0.0]);

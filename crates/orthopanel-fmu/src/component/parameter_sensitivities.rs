@@ -1,12 +1,11 @@
-//! Derivatives by parameters while the instance is initialized: the modes are solved for parameters beside those set, and the
-//! outputs differenced.
+//! Derivatives by parameters: the modes are found for parameters beside those set, and the outputs differenced.
 //!
 //! Rules of five points, of fourth order in the step \[B. Fornberg, Math. Comp. 51 (1988) 699-706\]: good to about 1e-7 for a
 //! beam, and to about 1e-5 for a plate, whose solver's rounding is divided by the step. Where two modes lie so close that they
 //! change their order within the step, the derivatives by the one and by the other are mixed.
 
 use super::Component;
-use crate::panel::Solution;
+use super::parameters::Settable;
 use crate::wide_stepper::WideStepper;
 use crate::{FmuError, Quantity};
 
@@ -28,13 +27,13 @@ impl Component {
         knowns: &[u32],
         seed: &[f64],
     ) -> Result<Vec<f64>, FmuError> {
-        let Some(solved) = &self.solved else { return Ok(Vec::new()) };
+        let Some(Settable { panel, .. }) = &self.settable else { return Ok(Vec::new()) };
         let is_parameter = |known: &u32| matches!(self.quantity(*known), Ok(Quantity::Parameter(_)));
         // Importers ask for derivatives by inputs and states at every step.
         if !knowns.iter().any(is_parameter) {
             return Ok(Vec::new());
         }
-        let mut direction = vec![0.0; solved.values.len()];
+        let mut direction = vec![0.0; self.in_use.values.len()];
         for (&known, &value) in knowns.iter().zip(seed) {
             if let Quantity::Parameter(index) = self.quantity(known)?
                 && let Some(place) = direction.get_mut(index)
@@ -42,7 +41,7 @@ impl Component {
                 *place += value;
             }
         }
-        let sizes = solved.panel.sizes(&solved.values);
+        let sizes = panel.sizes(&self.in_use.values);
         let longest = direction.iter().zip(sizes).fold(0.0, |most: f64, (value, size)| most.max((value / size).abs()));
         if longest == 0.0 {
             return Ok(Vec::new());
@@ -65,18 +64,19 @@ impl Component {
 
     /// The unknowns, with the forces and states of now, of a panel `along` the direction from the parameters set.
     fn outputs_at(&self, unknowns: &[u32], direction: &[f64], along: f64) -> Result<Vec<f64>, FmuError> {
-        let Some(solved) = &self.solved else { return Ok(Vec::new()) };
-        let beside: Vec<f64> = solved.values.iter().zip(direction).map(|(value, way)| value + along * way).collect();
+        let Some(Settable { panel, .. }) = &self.settable else { return Ok(Vec::new()) };
+        let set = &self.in_use.values;
+        let beside: Vec<f64> = set.iter().zip(direction).map(|(value, way)| value + along * way).collect();
         for (index, &value) in beside.iter().enumerate() {
-            solved.panel.check(index, value)?;
+            panel.check(index, value)?;
         }
-        let Solution { modes, static_remainder, .. } = solved.panel.solve(&beside)?;
-        let mut stepper = WideStepper::new(&modes);
+        let seen = self.seen_with(&beside)?;
+        let mut stepper = WideStepper::new(&seen.modes);
         stepper.set_state(&self.stepper.state())?;
         let forces = self.now.forces_in_effect();
         stepper.set_forces(forces)?;
         let value = |&unknown: &u32| {
-            let found = self.panel_value(self.quantity(unknown)?, &stepper, &static_remainder, forces);
+            let found = self.panel_value(self.quantity(unknown)?, &stepper, &seen.static_remainder, forces);
             Ok(found.unwrap_or(f64::NAN))
         };
         unknowns.iter().map(value).collect()

@@ -1,53 +1,106 @@
-//! Parameters of the panel: set before the start, and the modes solved again when they are next needed.
+//! Parameters of the panel: set before the start, or the tunable ones between steps or at an event. The modes are found for them
+//! when they are next needed.
 
-use super::{Component, Probe, finite};
+use std::sync::Arc;
+
+use orthopanel_model::ModalModel;
+
+use super::{Component, Phase, Probe, finite, values};
 use crate::panel::{Panel, Solution};
 use crate::wide_stepper::WideStepper;
-use crate::{FmuError, nominals};
+use crate::{FmuError, Resource, Variable, nominals};
 
-/// The panel of an instance, with the values for which its modes stand solved.
+/// The panel as some values of its parameters make it.
 #[derive(Debug)]
-pub(super) struct Solved {
-    pub(super) panel: Panel,
+pub(super) struct Seen {
+    /// Of the parameters; none where nothing of the panel can be set.
     pub(super) values: Vec<f64>,
+    pub(super) modes: ModalModel,
+    /// Static part of the modes left out \[m/N\]: a row a response.
+    pub(super) static_remainder: Vec<Vec<f64>>,
+    /// Sizes of the states to be expected.
+    pub(super) nominals: Vec<[f64; 2]>,
 }
 
-impl Solved {
-    pub(super) fn new(panel: &Panel) -> Self {
-        let values = panel.parameters().into_iter().map(|parameter| parameter.start).collect();
-        Self { panel: panel.clone(), values }
+impl Seen {
+    /// As it was exported.
+    pub(super) fn exported(resource: &Resource) -> Self {
+        let parameters = resource.panel().into_iter().flat_map(Panel::parameters);
+        Self {
+            values: parameters.map(|parameter| parameter.start).collect(),
+            modes: resource.model().clone(),
+            static_remainder: resource.static_remainder().to_vec(),
+            nominals: nominals::of(resource.model()),
+        }
     }
+}
+
+/// Where the modes can be found anew.
+#[derive(Debug)]
+pub(super) struct Settable {
+    pub(super) panel: Panel,
+    pub(super) exported: Arc<Seen>,
 }
 
 impl Component {
-    /// Refuses a value that no panel could have.
-    pub(super) fn check_parameter(&self, index: usize, name: &str, value: f64) -> Result<(), FmuError> {
-        finite(name, value)?;
-        match &self.solved {
-            Some(solved) => Ok(solved.panel.check(index, value)?),
-            None => Ok(()),
+    /// Refuses a value that no panel could have, and what is not set now.
+    pub(super) fn check_parameter(&self, index: usize, variable: &Variable, value: f64) -> Result<(), FmuError> {
+        let started = !Phase::BEFORE_START.contain(self.now.phase);
+        if started && !variable.tunable {
+            let reason = "a fixed parameter is set before or in initialization mode";
+            return Err(values::not_settable(variable, reason));
         }
+        if !Phase::TUNABLE.contain(self.now.phase) {
+            let reason = "a tunable parameter is set in event mode (model exchange) or between steps (co-simulation), or before \
+                          the start";
+            return Err(values::not_settable(variable, reason));
+        }
+        finite(&variable.name, value)?;
+        if let Some(Settable { panel, .. }) = &self.settable {
+            panel.check(index, value)?;
+            // Before the start sizes may be set later: then all are judged together.
+            if started {
+                panel.check_place(index, value, &self.now.parameters)?;
+            }
+        }
+        Ok(())
     }
 
-    /// Solves the modes for these values of the parameters, unless they are solved for them; on an error the old
-    /// modes stay.
+    /// Finds the modes for these values of the parameters, unless they are those in use; on an error these stay. The states go on
+    /// as they are.
     #[cold]
     pub(super) fn solve_for(&mut self, values: &[f64]) -> Result<(), FmuError> {
-        let Some(solved) = self.solved.as_mut().filter(|solved| solved.values != values) else {
+        if self.in_use.values == values {
             return Ok(());
-        };
-        let Solution { modes, static_remainder, .. } = solved.panel.solve(values)?;
-        if modes.modes().len() != self.nominals.len() {
-            return Err(FmuError::ModeCount { found: modes.modes().len(), expected: self.nominals.len() });
         }
-        let mut stepper = WideStepper::new(&modes);
+        let seen = self.seen_with(values)?;
+        let mut stepper = WideStepper::new(&seen.modes);
         stepper.set_state(&self.stepper.state())?;
-        solved.values = values.to_vec();
         self.probe = Probe { stepper: stepper.clone(), forces: vec![0.0; self.now.forces.len()] };
         self.stepper = stepper;
-        self.nominals = nominals::of(&modes);
-        self.static_remainder = static_remainder;
+        self.nominals_changed |= seen.nominals != self.in_use.nominals;
+        self.in_use = seen;
         self.forces_changed = true;
         Ok(())
+    }
+
+    /// The panel with these values. What comes out depends on them alone, not on those before.
+    pub(super) fn seen_with(&self, values: &[f64]) -> Result<Arc<Seen>, FmuError> {
+        let Some(Settable { panel, exported }) = &self.settable else { return Ok(Arc::clone(&self.in_use)) };
+        if exported.values == values {
+            return Ok(Arc::clone(exported));
+        }
+        for known in [exported, &self.in_use] {
+            if let Some(modes) = panel.redamped(&known.modes, &known.values, values) {
+                let (static_remainder, nominals) = (known.static_remainder.clone(), known.nominals.clone());
+                return Ok(Arc::new(Seen { values: values.to_vec(), modes, static_remainder, nominals }));
+            }
+        }
+        let Solution { modes, static_remainder, .. } = panel.solve(values)?;
+        if modes.modes().len() != self.mode_count() {
+            return Err(FmuError::ModeCount { found: modes.modes().len(), expected: self.mode_count() });
+        }
+        let nominals = nominals::of(&modes);
+        Ok(Arc::new(Seen { values: values.to_vec(), modes, static_remainder, nominals }))
     }
 }

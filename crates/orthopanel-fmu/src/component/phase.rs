@@ -63,7 +63,9 @@ impl Phase {
     pub(super) const READABLE: Phases =
         Phases::of(&[Self::Initialization, Self::Step, Self::Event, Self::ContinuousTime, Self::Terminated]);
     pub(super) const ANY: Phases = Phases::of(&Self::ALL);
-    /// Until here parameters and the initial state are set.
+    /// Here tunable parameters are set: in model exchange only at an event, for the states go on from other equations.
+    pub(super) const TUNABLE: Phases = Phases::of(&[Self::Instantiated, Self::Initialization, Self::Step, Self::Event]);
+    /// Until here fixed parameters and the initial state are set.
     pub(super) const BEFORE_START: Phases = Phases::of(&[Self::Instantiated, Self::Initialization]);
 
     fn name(self) -> &'static str {
@@ -106,6 +108,7 @@ impl Component {
         self.require(Phase::INITIALIZATION)?;
         self.apply()?;
         self.now.forces_before.copy_from_slice(&self.now.forces);
+        self.nominals_changed = false;
         let next = match self.now.interface {
             Interface::CoSimulation => Phase::Step,
             Interface::ModelExchange => Phase::Event,
@@ -123,12 +126,15 @@ impl Component {
         self.change(Phase::EVENT, Phase::ContinuousTime)
     }
 
-    /// An event needs nothing of a linear panel: this only asks whether it is allowed now.
-    pub(crate) fn update_discrete_states(&self) -> Result<(), FmuError> {
-        self.require_model_exchange(Phase::EVENT)
+    /// Ends a turn of an event, which needs nothing of a linear panel but that tunable parameters set in it are taken in; whether
+    /// these have changed the sizes of states to be expected.
+    pub(crate) fn update_discrete_states(&mut self) -> Result<bool, FmuError> {
+        self.require_model_exchange(Phase::EVENT)?;
+        self.apply()?;
+        Ok(std::mem::take(&mut self.nominals_changed))
     }
 
-    /// As [`Component::update_discrete_states`], after a step of the importer's integrator.
+    /// After a step of the importer's integrator, where nothing is to be done: this only asks whether it is allowed now.
     pub(crate) fn completed_integrator_step(&self) -> Result<(), FmuError> {
         self.require_model_exchange(Phase::CONTINUOUS_TIME)
     }

@@ -1,8 +1,8 @@
 //! Derivatives: of outputs and state derivatives by inputs and states, and of outputs by time.
 //!
 //! Every output is linear in forces and modal states and zero where these are. So its derivative along a direction
-//! is the output itself, asked of a panel whose forces and states *are* that direction. By parameters, which move the modes,
-//! it is differenced (`parameter_sensitivities`).
+//! is the output itself, asked of a panel whose forces and states *are* that direction. By parameters, which move the modes
+//! or their damping, it is differenced (`parameter_sensitivities`).
 
 use super::{Component, Phase, fitting};
 use crate::{FmuError, Quantity};
@@ -129,9 +129,10 @@ impl Component {
         match self.quantity(known)? {
             Quantity::Force(_) | Quantity::ModalPosition(_) | Quantity::ModalVelocity(_) | Quantity::Time => Ok(()),
             Quantity::Parameter(_) if Phase::INITIALIZATION.contain(self.now.phase) => Ok(()),
+            Quantity::Parameter(_) if self.variable(known)?.tunable => Ok(()),
             _ => Err(self.not_differentiable(
                 known,
-                "knowns are inputs and continuous states, until initialization ends parameters",
+                "knowns are inputs, continuous states and tunable parameters, until initialization ends all parameters",
             )),
         }
     }
@@ -167,7 +168,7 @@ impl Component {
 
     fn probe_output(&self, reference: u32) -> Result<f64, FmuError> {
         let (quantity, probe) = (self.quantity(reference)?, &self.probe);
-        let value = self.panel_value(quantity, &probe.stepper, &self.static_remainder, &probe.forces);
+        let value = self.panel_value(quantity, &probe.stepper, &self.in_use.static_remainder, &probe.forces);
         let value = value.unwrap_or(f64::NAN);
         if value.is_finite() { Ok(value) } else { Err(self.overflow(reference, value)) }
     }

@@ -118,11 +118,12 @@ impl Component {
 
     /// Back to where instantiation left it.
     pub(crate) fn reset(&mut self) -> Result<(), FmuError> {
+        // As exported: nothing is solved for.
         self.solve_for(&self.start.parameters.clone())?;
         let at_rest = vec![[0.0; 2]; self.mode_count()];
         self.stepper.set_state(&at_rest)?;
         self.now.clone_from(&self.start);
-        (self.forces_changed, self.parameters_changed) = (true, false);
+        (self.forces_changed, self.parameters_changed, self.nominals_changed) = (true, false, false);
         Ok(())
     }
 }

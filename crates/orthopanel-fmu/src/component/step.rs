@@ -69,6 +69,9 @@ impl Component {
     }
 
     fn step_between_values(&mut self, step: f64) -> Result<(), FmuError> {
+        if self.parameters_changed {
+            self.apply()?;
+        }
         // Until the step succeeds the stepper holds the old force: then the values set are still to be told.
         self.forces_changed = true;
         self.stepper.set_forces(&self.now.forces_before)?;

@@ -55,13 +55,13 @@ impl Component {
             // The table has the ports and modes of the stepper: none of these is ever missing.
             Some(Quantity::Force(port)) => Ok(self.now.forces.get(port).copied().unwrap_or(f64::NAN)),
             Some(quantity) => {
-                let (remainder, forces) = (&self.static_remainder, self.now.forces_in_effect());
+                let (remainder, forces) = (&self.in_use.static_remainder, self.now.forces_in_effect());
                 Ok(self.panel_value(quantity, &self.stepper, remainder, forces).unwrap_or(f64::NAN))
             }
         }
     }
 
-    /// Sets forces \[N\], and before the start parameters and the initial state of the modes.
+    /// Sets forces \[N\], tunable parameters, and before the start all parameters and the initial state of the modes.
     pub(crate) fn set_reals(&mut self, references: &[u32], values: &[f64]) -> Result<(), FmuError> {
         self.require(Phase::SETTABLE)?;
         same_count(values.len(), references.len())?;
@@ -200,7 +200,7 @@ impl Component {
         }
     }
 
-    fn variable(&self, reference: u32) -> Result<&Variable, FmuError> {
+    pub(super) fn variable(&self, reference: u32) -> Result<&Variable, FmuError> {
         self.variables.get(reference).ok_or_else(|| self.unknown_reference(reference))
     }
 
@@ -254,12 +254,7 @@ impl Component {
                 }
                 "the initial state is set before or in initialization mode (model exchange: set continuous states)"
             }
-            Quantity::Parameter(index) => {
-                if Phase::BEFORE_START.contain(self.now.phase) {
-                    return self.check_parameter(index, &self.variable(reference)?.name, value);
-                }
-                "a fixed parameter is set before or in initialization mode"
-            }
+            Quantity::Parameter(index) => return self.check_parameter(index, self.variable(reference)?, value),
             Quantity::Time => "time follows the steps",
             Quantity::ModalPositionRate(_) | Quantity::ModalVelocityRate(_) => "it is the derivative of a state",
             _ => "it is an output",
@@ -276,7 +271,7 @@ fn wrong_type(variable: &Variable, asked: &'static str) -> FmuError {
     FmuError::VariableType { name: variable.name.clone(), reference: variable.reference, expected, asked }
 }
 
-fn not_settable(variable: &Variable, reason: &'static str) -> FmuError {
+pub(super) fn not_settable(variable: &Variable, reason: &'static str) -> FmuError {
     FmuError::NotSettable { name: variable.name.clone(), reference: variable.reference, reason }
 }
 

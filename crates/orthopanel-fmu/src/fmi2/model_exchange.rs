@@ -22,11 +22,11 @@ transitions! {
 entries! {
     fmi2NewDiscreteStates(info: *mut EventInfo) |instance| {
         let info = place(info, "eventInfo")?;
-        instance.component.update_discrete_states()?;
+        let nominals_changed = instance.component.update_discrete_states()?;
         *info = EventInfo {
             new_discrete_states_needed: 0,
             terminate_simulation: 0,
-            nominals_of_continuous_states_changed: 0,
+            nominals_of_continuous_states_changed: Boolean::from(nominals_changed),
             values_of_continuous_states_changed: 0,
             next_event_time_defined: 0,
             next_event_time: 0.0,

@@ -16,12 +16,12 @@ entries! {
         let answers = [
             place(states_need_update, "discreteStatesNeedUpdate")?,
             place(terminate, "terminateSimulation")?,
-            place(nominals_changed, "nominalsOfContinuousStatesChanged")?,
             place(values_changed, "valuesOfContinuousStatesChanged")?,
             place(next_event_defined, "nextEventTimeDefined")?,
         ];
+        let nominals_changed = place(nominals_changed, "nominalsOfContinuousStatesChanged")?;
         let next_event_time = place(next_event_time, "nextEventTime")?;
-        instance.component.update_discrete_states()?;
+        *nominals_changed = Boolean::from(instance.component.update_discrete_states()?);
         answers.into_iter().for_each(|answer| *answer = 0);
         *next_event_time = 0.0;
         Ok(())

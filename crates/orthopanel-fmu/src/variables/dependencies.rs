@@ -7,49 +7,95 @@ use orthopanel_model::{ModalModel, Mode};
 
 use super::{Quantity, Variable};
 use crate::Resource;
+use crate::panel::{Panel, Part};
+
+/// One variable on which another depends.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Dependency {
+    /// Its reference.
+    pub reference: u32,
+    /// How it enters.
+    pub factor: Factor,
+}
+
+/// FMI `dependenciesKind`: what becomes of the factor before a known once initialization has ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Factor {
+    /// It stays as it is.
+    Fixed,
+    /// It changes where a tunable parameter is set.
+    Tunable,
+    /// There is none: the unknown is not linear in this known.
+    Dependent,
+}
+
+impl Factor {
+    /// As the XML says it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Fixed => "fixed",
+            Self::Tunable => "tunable",
+            Self::Dependent => "dependent",
+        }
+    }
+}
 
 /// Fills in the dependencies of every variable, in rising order.
 pub(super) fn fill(variables: &mut [Variable], resource: &Resource) {
     let references: HashMap<_, _> = variables.iter().map(|variable| (variable.quantity, variable.reference)).collect();
     let parameter = |variable: &Variable| matches!(variable.quantity, Quantity::Parameter(_));
     let parameters: Vec<u32> = variables.iter().filter(|v| parameter(v)).map(|v| v.reference).collect();
+    let parts = resource.panel().map(Panel::parts).unwrap_or_default();
     for variable in variables {
-        let knowns = knowns(variable.quantity, resource);
-        variable.dependencies = knowns.iter().filter_map(|known| references.get(known).copied()).collect();
-        variable.dependencies.sort_unstable();
-        variable.dependencies.dedup();
-        variable.initial_dependencies.clone_from(&variable.dependencies);
+        let mut knowns = knowns(variable.quantity, resource);
+        let mut initial: Vec<u32> = knowns.iter().filter_map(|(known, _)| references.get(known).copied()).collect();
         // The rate of a modal coordinate is the modal velocity, whatever the panel.
         if !knowns.is_empty() && !matches!(variable.quantity, Quantity::ModalPositionRate(_)) {
-            variable.initial_dependencies.extend(&parameters);
+            initial.extend(&parameters);
         }
+        initial.sort_unstable();
+        initial.dedup();
+        variable.initial_dependencies = initial;
+        let moving = parts.iter().enumerate().filter(|(_, part)| moves(part, variable.quantity, resource));
+        knowns.extend(moving.map(|(index, _)| (Quantity::Parameter(index), Factor::Dependent)));
+        let named = |(known, factor)| references.get(&known).map(|&reference| Dependency { reference, factor });
+        variable.dependencies = knowns.into_iter().filter_map(named).collect();
+        variable.dependencies.sort_unstable();
+        variable.dependencies.dedup();
     }
 }
 
 /// Inputs and states, some perhaps more than once.
 ///
-/// Where the modes may be solved again, a port that now lies on a node may move away from it: then all count.
-fn knowns(quantity: Quantity, resource: &Resource) -> Vec<Quantity> {
+/// Where the modes may be solved again, a port that now lies on a node may move away from it: then all count, and shapes at
+/// ports and damping are tunable.
+fn knowns(quantity: Quantity, resource: &Resource) -> Vec<(Quantity, Factor)> {
     let any = resource.panel().is_some();
+    let moving = if any { Factor::Tunable } else { Factor::Fixed };
     let model = resource.model();
     let modes = model.modes().iter().enumerate();
     let seen = |response: usize| modes.filter(move |(_, mode)| any || is_set(&mode.at_responses, response));
+    let all = |quantities: Vec<Quantity>| quantities.into_iter().map(|known| (known, moving)).collect();
     match quantity {
         Quantity::Displacement(port) => {
             let direct = resource.static_remainder().get(port).into_iter().flatten().enumerate();
-            let direct = direct.filter(|&(_, &value)| value != 0.0).map(|(force, _)| Quantity::Force(force));
-            seen(port).map(|(mode, _)| Quantity::ModalPosition(mode)).chain(direct).collect()
+            let direct = direct.filter(|&(_, &value)| any || value != 0.0).map(|(force, _)| Quantity::Force(force));
+            all(seen(port).map(|(mode, _)| Quantity::ModalPosition(mode)).chain(direct).collect())
         }
-        Quantity::Velocity(port) => seen(port).map(|(mode, _)| Quantity::ModalVelocity(mode)).collect(),
+        Quantity::Velocity(port) => all(seen(port).map(|(mode, _)| Quantity::ModalVelocity(mode)).collect()),
         Quantity::Acceleration(port) => {
-            let of_modes = seen(port)
-                .flat_map(|(index, mode)| of_acceleration(index, mode, any).into_iter().chain(coupled(index, model)));
-            of_modes.collect()
+            let of_modes = seen(port).flat_map(|(index, mode)| {
+                of_acceleration(index, mode, any).into_iter().chain(coupled(index, model, resource.panel()))
+            });
+            all(of_modes.collect())
         }
-        Quantity::ModalPositionRate(mode) => vec![Quantity::ModalVelocity(mode)],
+        Quantity::ModalPositionRate(mode) => vec![(Quantity::ModalVelocity(mode), Factor::Fixed)],
         Quantity::ModalVelocityRate(index) => {
             let own = model.modes().get(index).map(|mode| of_acceleration(index, mode, any)).unwrap_or_default();
-            own.into_iter().chain(coupled(index, model)).collect()
+            let all = own.into_iter().chain(coupled(index, model, resource.panel()));
+            // The stiffness of a mode is neither its damping's matter nor a port's.
+            let factor = |known| if known == Quantity::ModalPosition(index) { Factor::Fixed } else { moving };
+            all.map(|known| (known, factor(known))).collect()
         }
         _ => Vec::new(),
     }
@@ -64,13 +110,31 @@ fn of_acceleration(index: usize, mode: &Mode, any: bool) -> Vec<Quantity> {
     forces.chain(elastic).chain(damping).collect()
 }
 
-/// Modal velocities that dampers of an effect hand on to a mode. Only where the panel is there are such effects, and their
-/// parameters are none of the FMU's: a coupling that is zero stays so, but for rounding.
-fn coupled(index: usize, model: &ModalModel) -> impl Iterator<Item = Quantity> {
+/// Modal velocities that dampers of an effect hand on to a mode, or may where damping ratios are set: each mode with effects holds
+/// several bare ones.
+fn coupled(index: usize, model: &ModalModel, panel: Option<&Panel>) -> impl Iterator<Item = Quantity> {
     let flexible = model.modes().get(index).is_some_and(|mode| mode.angular_frequency > 0.0);
-    let any = flexible && !model.damping_coupling().is_empty();
+    let any = flexible && (!model.damping_coupling().is_empty() || panel.is_some_and(Panel::has_effects));
     let others = model.modes().iter().enumerate().filter(move |(_, mode)| any && mode.angular_frequency > 0.0);
     others.map(|(other, _)| Quantity::ModalVelocity(other))
+}
+
+/// Whether a quantity changes at once where this part of the panel is set while the simulation runs.
+fn moves(part: &Part, quantity: Quantity, resource: &Resource) -> bool {
+    let Some(panel) = resource.panel().filter(|panel| !(panel.is_beam() && part.is_along_y())) else { return false };
+    let of_response = |port: usize| [Part::ResponseX(port), Part::ResponseY(port)].contains(part);
+    match quantity {
+        Quantity::Displacement(port) => of_response(port) || part.is_of_force(),
+        Quantity::Velocity(port) => of_response(port),
+        Quantity::Acceleration(port) => of_response(port) || part.is_of_force() || part.is_damping(),
+        Quantity::ModalVelocityRate(index) => {
+            let modes = resource.model().modes();
+            let rigid = modes.iter().take_while(|mode| mode.angular_frequency == 0.0).count();
+            let damps = part.is_damping() && index >= rigid;
+            part.is_of_force() || damps && (panel.has_effects() || *part == Part::Damping(index - rigid))
+        }
+        _ => false,
+    }
 }
 
 fn is_set(values: &[f64], port: usize) -> bool {

@@ -5,7 +5,7 @@ use faer::Mat;
 use super::low_modes::{FarAnswers, LowModes};
 use super::{ElementLaw, PointElement};
 use crate::dense::{Cholesky, dot, symmetric_eigen};
-use crate::order::sorted;
+use crate::order::{sorted, sorted_modes};
 use crate::{Damping, ModelError};
 
 /// $\omega$, $\zeta$ and all coordinates of a mode.
@@ -86,7 +86,7 @@ impl System {
         }
     }
 
-    /// $\omega$, $\zeta$ and all coordinates of each mode, rising. As in [`crate::ritz_modes()`], by the inverse
+    /// $\omega$, $\zeta$ and all coordinates of each mode, rising, those that coincide part by part. As in [`crate::ritz_modes()`], by the inverse
     /// of a shifted stiffness; a mass matrix that negative masses make indefinite leaves modes without meaning, which go.
     pub(super) fn solve(&self) -> Result<Vec<FoundMode>, ModelError> {
         let mut found: Vec<(f64, Vec<f64>)> = Vec::new();
@@ -103,7 +103,7 @@ impl System {
         };
         let found = found.into_iter().filter(|(theta, _)| *theta > least);
         let modes: Vec<(f64, Vec<f64>)> = found.map(|(theta, whole)| (omega(theta), whole)).collect();
-        let mut modes = sorted(modes, |(omega, _)| *omega);
+        let mut modes = sorted_modes(modes, |(omega, _)| *omega);
         let rigid = modes.iter().take_while(|(omega, _)| *omega == 0.0).count();
         turn(&mut modes[..rigid]);
         let modes = modes.into_iter().map(|(omega, whole)| {

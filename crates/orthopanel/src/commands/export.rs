@@ -14,7 +14,8 @@ use crate::{model_file, output};
 ///
 /// No compiler is needed. Inputs are force_1, force_2, ... in N, outputs acceleration_1, velocity_1,
 /// displacement_1, ... in SI units, numbered in the order of the places given. Sizes, mass, constants, damping ratios
-/// and places are parameters of the FMU, which solves its modes anew where one is set.
+/// and places are parameters of the FMU, which solves its modes anew where one is set;
+/// damping ratios and places may be set while it runs, too.
 ///
 /// The edges are held as the model file's "boundary" says (see `orthopanel modes --help`): left and right, of a plate front and
 /// back too.
@@ -101,7 +102,8 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
         eprintln!("viscoelastic-core: fitted within {percent:.2} % of its modulus from {from:.0} to {to:.0} Hz");
     }
     if answer.flexible_modes == 0 {
-        eprintln!("no flexible mode is kept: this panel only moves as a whole; ask for more by --modes or --up-to");
+        let does = if rigid_modes == 0 { "yields at once, without inertia" } else { "only moves as a whole" };
+        eprintln!("no flexible mode is kept: this panel {does}; ask for more by --modes or --up-to");
     }
     if !answer.left_out.is_empty() {
         eprintln!("left out, as no part of the panel: {}", answer.left_out.join(", "));

@@ -1,0 +1,135 @@
+//! The parts of a panel that are parameters of its FMU.
+
+use orthopanel_model::{Estimate, PanelModel};
+
+use super::Panel;
+
+/// What a parameter of the FMU is of the panel; ports and modes are counted from 0.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Part {
+    Length,
+    Width,
+    Thickness,
+    MassPerArea,
+    Constant(String),
+    Damping(usize),
+    ForceX(usize),
+    ForceY(usize),
+    ResponseX(usize),
+    ResponseY(usize),
+}
+
+impl Part {
+    /// Whether it may be set while the simulation runs: modal coordinates go on meaning the same motion. Modes are those of the
+    /// undamped panel, so that neither damping nor a port moves them; with sizes, mass or constants they would be other shapes.
+    pub(crate) fn is_tunable(&self) -> bool {
+        self.is_damping() || self.is_of_force() || self.is_of_response()
+    }
+
+    pub(crate) fn is_damping(&self) -> bool {
+        matches!(self, Self::Damping(_))
+    }
+
+    /// Whether it is the place of a force.
+    pub(crate) fn is_of_force(&self) -> bool {
+        matches!(self, Self::ForceX(_) | Self::ForceY(_))
+    }
+
+    /// Whether it is the place of a response.
+    pub(crate) fn is_of_response(&self) -> bool {
+        matches!(self, Self::ResponseX(_) | Self::ResponseY(_))
+    }
+
+    /// Whether it is the place of a port across the panel.
+    pub(crate) fn is_along_y(&self) -> bool {
+        matches!(self, Self::ForceY(_) | Self::ResponseY(_))
+    }
+}
+
+/// A parameter of the FMU, as its table of variables shows it.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct PanelParameter {
+    pub name: String,
+    pub unit: &'static str,
+    pub description: String,
+    pub start: f64,
+    pub tunable: bool,
+}
+
+impl Panel {
+    /// All of them, in the order of the FMU's parameters.
+    pub(crate) fn parts(&self) -> Vec<Part> {
+        let mut parts = vec![Part::Length, Part::Width, Part::Thickness, Part::MassPerArea];
+        parts.extend(self.model.constants.keys().cloned().map(Part::Constant));
+        parts.extend((0..self.flexible_modes).map(Part::Damping));
+        parts.extend((0..self.model.ports.forces.len()).flat_map(|port| [Part::ForceX(port), Part::ForceY(port)]));
+        let responses = 0..self.model.ports.responses.len();
+        parts.extend(responses.flat_map(|port| [Part::ResponseX(port), Part::ResponseY(port)]));
+        parts
+    }
+
+    pub(super) fn value(&self, part: &Part) -> f64 {
+        let (piece, ports) = (&self.model.piece, &self.model.ports);
+        let value = match part {
+            Part::Length => Some(piece.length),
+            Part::Width => Some(piece.width),
+            Part::Thickness => Some(piece.thickness),
+            Part::MassPerArea => Some(piece.mass_per_area),
+            Part::Constant(name) => self.model.constants.get(name).map(|estimate| estimate.value),
+            Part::Damping(mode) => Some(self.model.damping.ratio(mode + 1)),
+            Part::ForceX(port) => ports.forces.get(*port).map(|place| place.x),
+            Part::ForceY(port) => ports.forces.get(*port).map(|place| place.y),
+            Part::ResponseX(port) => ports.responses.get(*port).map(|place| place.x),
+            Part::ResponseY(port) => ports.responses.get(*port).map(|place| place.y),
+        };
+        // The parts are those of this panel: none is ever missing.
+        value.unwrap_or(f64::NAN)
+    }
+}
+
+pub(super) fn set(model: &mut PanelModel, part: &Part, value: f64) {
+    let (piece, ports) = (&mut model.piece, &mut model.ports);
+    let place = match part {
+        Part::Length => Some(&mut piece.length),
+        Part::Width => Some(&mut piece.width),
+        Part::Thickness => Some(&mut piece.thickness),
+        Part::MassPerArea => Some(&mut piece.mass_per_area),
+        Part::Constant(name) => {
+            model.constants.insert(name.clone(), Estimate { value, std: None });
+            None
+        }
+        Part::Damping(mode) => model.damping.ratios.get_mut(*mode),
+        Part::ForceX(port) => ports.forces.get_mut(*port).map(|place| &mut place.x),
+        Part::ForceY(port) => ports.forces.get_mut(*port).map(|place| &mut place.y),
+        Part::ResponseX(port) => ports.responses.get_mut(*port).map(|place| &mut place.x),
+        Part::ResponseY(port) => ports.responses.get_mut(*port).map(|place| &mut place.y),
+    };
+    if let Some(place) = place {
+        *place = value;
+    }
+}
+
+pub(super) fn describe(part: &Part) -> (String, &'static str, String) {
+    let place = |what: &str, port: &usize, axis: &str| {
+        let text = format!("Place of {what} {} along {axis}, from the centre", port + 1);
+        (format!("{what}_{}_{axis}", port + 1), "m", text)
+    };
+    match part {
+        Part::Length => ("length".into(), "m", "Length of the piece, along x".into()),
+        Part::Width => ("width".into(), "m", "Width of the piece, along y".into()),
+        Part::Thickness => ("thickness".into(), "m", "Thickness of the piece".into()),
+        Part::MassPerArea => ("mass_per_area".into(), "kg/m2", "Mass per area of the piece".into()),
+        Part::Constant(name) => {
+            let unit = if name.starts_with("nu") { "1" } else { "Pa" };
+            (name.clone(), unit, format!("Elastic constant {name}"))
+        }
+        Part::Damping(mode) => {
+            let text = format!("Modal damping ratio of flexible mode {}", mode + 1);
+            (format!("damping_ratio_{}", mode + 1), "1", text)
+        }
+        Part::ForceX(port) => place("force", port, "x"),
+        Part::ForceY(port) => place("force", port, "y"),
+        Part::ResponseX(port) => place("response", port, "x"),
+        Part::ResponseY(port) => place("response", port, "y"),
+    }
+}
