@@ -120,17 +120,16 @@ impl ListFit {
         self.residuals.iter().map(|r| r * r).sum()
     }
 
-    /// $\sum(r_i/\sigma_i)^2$ and its mean, where the lists tell $\sigma$.
-    pub(super) fn chi_square(&self) -> Option<(f64, f64)> {
+    /// $\sum(r_i/\sigma_i)^2$, where the lists tell $\sigma$.
+    fn chi_square(&self) -> Option<f64> {
         let scatter = self.scatter.as_ref()?;
-        let sum: f64 = self.residuals.iter().zip(scatter).map(|(residual, scatter)| (residual / scatter).powi(2)).sum();
-        Some((sum, sum / self.residuals.len().max(1) as f64))
+        Some(self.residuals.iter().zip(scatter).map(|(residual, scatter)| (residual / scatter).powi(2)).sum())
     }
 
     /// $\sum(r_i/\sigma_i)^2 + k\ln n$ where the lists tell $\sigma$, else $n\ln(R/n) + k\ln n$.
     pub(super) fn bic(&self) -> f64 {
         let count = self.residuals.len().max(1) as f64;
-        if let Some((sum, _)) = self.chi_square() {
+        if let Some(sum) = self.chi_square() {
             return sum + self.size as f64 * count.ln();
         }
         count * (self.square() / count).max(f64::MIN_POSITIVE).ln() + self.size as f64 * count.ln()

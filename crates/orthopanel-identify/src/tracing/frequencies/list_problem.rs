@@ -103,10 +103,12 @@ impl ListProblem {
         (!told.is_empty() && told.len() == self.count()).then_some(told)
     }
 
-    /// Rms that rounding to the bins alone makes, where every list tells its bins.
-    pub(super) fn rounding(&self) -> Option<f64> {
-        let told: Vec<f64> = self.lists.iter().flat_map(|list| list.rounding.iter().copied()).collect();
-        let square: f64 = told.iter().map(|part| part * part).sum();
-        (told.len() == self.count()).then(|| (square / self.count().max(1) as f64).sqrt())
+    /// Relative standard deviation of every frequency by its scatter or else by rounding to a bin, where every list tells one.
+    pub(super) fn noise(&self) -> Option<Vec<f64>> {
+        let of_list = |list: &FrequencyList| {
+            if list.scatter.is_empty() { list.rounding.clone() } else { list.scatter.clone() }
+        };
+        let told: Vec<f64> = self.lists.iter().flat_map(of_list).collect();
+        (!told.is_empty() && told.len() == self.count()).then_some(told)
     }
 }

@@ -4,10 +4,13 @@
 //! relative errors, and what is held out is one frequency after the other.
 
 mod declared;
+mod lacking;
 mod list_fit;
 mod list_problem;
 mod parting;
 mod report;
+mod trust;
+mod verdict;
 mod width;
 
 use orthopanel_data::{ImpactTest, Measurement, MeasurementData};
@@ -37,6 +40,7 @@ pub(super) fn trace_frequencies(test: &ImpactTest, declared: &Hypothesis) -> Res
     let count: usize = test.measurements.iter().map(frequencies).sum();
     let mut fits = vec![base];
     let mut not_tested = Vec::new();
+    let mut wants_more = Vec::new();
     for &effect in catalogue() {
         let id = effect.id();
         if declared.holds(effect) {
@@ -56,6 +60,7 @@ pub(super) fn trace_frequencies(test: &ImpactTest, declared: &Hypothesis) -> Res
             let reason =
                 format!("{count} frequencies for {unknowns} unknowns: measure {DATA_FOR_EACH} or more for each");
             not_tested.push(NotTested { id, reason });
+            wants_more.push(id);
             continue;
         }
         if id == PLATE && !declared.effects.is_empty() {
@@ -74,7 +79,7 @@ pub(super) fn trace_frequencies(test: &ImpactTest, declared: &Hypothesis) -> Res
             Err(error) => not_tested.push(NotTested { id, reason: error.to_string() }),
         }
     }
-    report::report(test, &problem, fits, not_tested, declared.effects.len())
+    report::report(test, &problem, fits, (not_tested, wants_more), declared.effects.len())
 }
 
 /// Frequencies for each unknown: with fewer an effect with a place or two parameters fits by chance.
