@@ -24,6 +24,7 @@ pub(super) struct FrequencyList {
 const USUAL: [f64; 2] = [1e10, 5e8];
 
 /// All lists.
+#[derive(Clone)]
 pub(super) struct ListProblem {
     pub lists: Vec<FrequencyList>,
     pub constants: FreeConstants,
@@ -45,6 +46,13 @@ impl ListProblem {
             Some(FrequencyList { piece: measurement.piece, setting, measured: data.values.clone(), rounding, scatter })
         });
         Ok(Self { lists: lists.collect(), constants })
+    }
+
+    /// Without what the lists tell of their scatter.
+    pub(super) fn unweighed(&self) -> Self {
+        let mut alike = self.clone();
+        alike.lists.iter_mut().for_each(|list| list.scatter.clear());
+        alike
     }
 
     /// Number of frequencies.

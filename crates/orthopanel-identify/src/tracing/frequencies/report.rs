@@ -6,6 +6,7 @@ use orthopanel_data::ImpactTest;
 use orthopanel_model::{Damping, Estimate, MODEL_SCHEMA, Owner, PanelModel, Ports, StructureKind, effect};
 
 use super::DATA_FOR_EACH;
+use super::bounds::on_bound;
 use super::lacking::{self, what_to_check};
 use super::list_fit::ListFit;
 use super::list_problem::ListProblem;
@@ -20,6 +21,8 @@ use crate::tracing::outcome::{
 use crate::tracing::report::{effects_of, removal};
 
 const UNTOLD: &str = "no list of frequencies tells its scatter: the criterion takes it from the residuals themselves, and a margin of 10 is clear";
+const MIRRORED: &str = "frequencies of a piece held alike at both ends are the same with an effect at x and at -x: places are given \
+                        with x > 0, and a record of hits at one end tells the side";
 const TOLD: &str =
     "the criterion weighs each frequency by the scatter that the test file tells, and a margin of 10 is clear";
 
@@ -47,7 +50,8 @@ pub(super) fn report(
         .filter(|&index| index != 0 && index != chosen && chosen != 0 && fits[index].bic() < fits[chosen].bic() + CLEAR)
         .collect();
     let trust = Trust::of(problem);
-    let choice = Choice { chosen, rivals, wants_more };
+    let on_bound = on_bound(&fits[chosen], declared, &problem.largest_piece());
+    let choice = Choice { chosen, rivals, on_bound, wants_more };
     let verdict = choice.verdict(&fits, &trust);
     let told = problem.scatter();
     let floor = problem.noise().map(|noise| rms(&noise));
@@ -72,6 +76,17 @@ pub(super) fn report(
     };
     let mut notes = vec![if told.is_some() { TOLD } else { UNTOLD }.to_owned()];
     notes.push(trust.note());
+    if choice.rivals.iter().chain([&chosen]).any(|&index| fits[index].mirrored) {
+        notes.push(MIRRORED.to_owned());
+    }
+    if let Some(parameter) = &choice.on_bound {
+        notes.push(format!(
+            "{parameter} lies on its bound: the bound tells that value, not the data, so it explains nothing"
+        ));
+    }
+    // The chosen one, then the others by the criterion.
+    let mut ranked = order.clone();
+    ranked.sort_by(|&a, &b| (a != chosen).cmp(&(b != chosen)).then(fits[a].bic().total_cmp(&fits[b].bic())));
     let mut panels = panels(test, problem, &fits[chosen]);
     let removed = take_out(problem, &fits[chosen], declared, &mut panels);
     Ok(Tracing {
@@ -84,7 +99,7 @@ pub(super) fn report(
             after: error(&fits[chosen]),
             noise_floor: 100.0 * floor.unwrap_or_else(|| fits[chosen].scatter()),
         },
-        candidates: order.iter().map(candidate).collect(),
+        candidates: ranked.iter().map(candidate).collect(),
         not_tested,
         next_experiment,
         chi_square: match trust {
@@ -99,7 +114,7 @@ pub(super) fn report(
     })
 }
 
-fn rms(told: &[f64]) -> f64 {
+pub(super) fn rms(told: &[f64]) -> f64 {
     (told.iter().map(|std| std * std).sum::<f64>() / told.len().max(1) as f64).sqrt()
 }
 

@@ -13,6 +13,8 @@ const LEFT: f64 = 0.6;
 pub(super) struct Choice {
     pub chosen: usize,
     pub rivals: Vec<usize>,
+    /// The parameter of the chosen one that lies on its bound.
+    pub on_bound: Option<String>,
     /// Effects that only more frequencies would test.
     pub wants_more: Vec<&'static str>,
 }
@@ -25,7 +27,7 @@ impl Choice {
 
     pub(super) fn verdict(&self, fits: &[ListFit], trust: &Trust) -> Verdict {
         let chosen = &fits[self.chosen];
-        if !trust.is_met(chosen) {
+        if !trust.is_met(chosen) || self.on_bound.is_some() {
             return Verdict::Unexplained;
         }
         if self.chosen == 0 {
