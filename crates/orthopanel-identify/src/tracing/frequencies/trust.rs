@@ -27,7 +27,10 @@ pub(super) enum Trust {
 impl Trust {
     pub(super) fn of(problem: &ListProblem) -> Self {
         if let Some(noise) = problem.noise() {
-            return Self::Told(noise.iter().map(|std| std.hypot(TRUST)).collect());
+            // Scatter is what the tester saw frequencies miss; rounding is the least of what they do.
+            let scatters = problem.lists.iter().flat_map(|list| list.measured.iter().map(|_| !list.scatter.is_empty()));
+            let together = |(std, scatters): (f64, bool)| if scatters { std.max(TRUST) } else { std.hypot(TRUST) };
+            return Self::Told(noise.into_iter().zip(scatters).map(together).collect());
         }
         let free = |list: &super::list_problem::FrequencyList| {
             [list.setting.boundary.left, list.setting.boundary.right] == [End::Free, End::Free]
@@ -61,8 +64,8 @@ impl Trust {
     pub(super) fn note(&self) -> String {
         match self {
             Self::Told(_) => format!(
-                "the verdict holds what is left against the noise that the test file tells (scatter, or rounding to the \
-                 resolution), and {} % that a model of a panel is trusted to",
+                "the verdict holds what is left against the noise that the test file tells: scatter, and no less than {0} %, or \
+                 rounding to the resolution beside {0} %, which a model of a panel is trusted to",
                 100.0 * TRUST
             ),
             Self::Untold(rms) => format!(
