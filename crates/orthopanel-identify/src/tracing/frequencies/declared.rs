@@ -5,6 +5,8 @@ use orthopanel_model::StructureKind;
 
 use super::list_fit::fit;
 use super::list_problem::ListProblem;
+use super::repeats::without_repeats;
+use super::seen::only_seen;
 use crate::frequency_fit::identified_constants;
 use crate::structures::bending_nodes;
 use crate::tracing::hypothesis::Hypothesis;
@@ -19,8 +21,12 @@ pub(in crate::tracing) fn identify_lists(
     test: &ImpactTest,
     declared: &Hypothesis,
 ) -> Result<Identification, IdentifyError> {
+    let (test, mut notes) = without_repeats(test);
+    let test = &test;
     let problem = ListProblem::of(test)?;
-    let found = fit(&problem, declared, &problem.usual())?;
+    let (declared, held) = only_seen(&problem, &problem.usual(), declared.clone())?;
+    notes.extend(held);
+    let found = fit(&problem, &declared, &problem.usual())?;
     let (constants, _) = found.parameters.split_at(problem.constants.count());
     problem.constants.refuse_bounds(constants)?;
     let std: Vec<Option<f64>> = found.std.iter().map(|std| Some(*std).filter(|std| std.is_finite())).collect();
@@ -51,6 +57,6 @@ pub(in crate::tracing) fn identify_lists(
         chi_square: None,
         accelerances: vec![],
         effects: effects_of(&found.hypothesis, of_effects),
-        notes: vec![],
+        notes,
     })
 }

@@ -26,6 +26,8 @@ pub(super) struct ListFit {
     pub scatter: Option<Vec<f64>>,
     /// The plate in place of the beam, where that is the hypothesis.
     pub plate: Option<crate::Identification>,
+    /// Whether an effect's place may as well be on the other side of the middle.
+    pub mirrored: bool,
 }
 
 /// Step of the differences in logarithms, or in parts of a linear parameter's range.
@@ -57,7 +59,17 @@ pub(super) fn fit(problem: &ListProblem, from: &Hypothesis, constants_from: &[f6
     let start: Vec<f64> = constants_from.iter().copied().chain(from.coordinates()).collect();
     let bounds: Vec<(f64, f64)> = constants.bounds().into_iter().chain(from.bounds()).collect();
     let linearise = |parameters: &[f64]| linearise(problem, parameters, from, &bounds);
-    let searched = descend(|p: &[f64]| Ok::<_, ModelError>(linearise(p)?.quadratic()), &start, &bounds, ENDING);
+    // What moves nothing here must not stop the rest.
+    let definite = |p: &[f64]| {
+        let mut quadratic = linearise(p)?.quadratic();
+        for index in 0..start.len() {
+            if quadratic.normal[(index, index)] == 0.0 {
+                quadratic.normal[(index, index)] = 1.0;
+            }
+        }
+        Ok::<_, ModelError>(quadratic)
+    };
+    let searched = descend(definite, &start, &bounds, ENDING);
     let (minimum, _) = searched.map_err(IdentifyError::refused)?;
     let parameters = minimum.parameters;
     let at = linearise(&parameters)?;
@@ -81,7 +93,7 @@ pub(super) fn fit(problem: &ListProblem, from: &Hypothesis, constants_from: &[f6
     let (_, coordinates) = parameters.split_at(constants.count());
     let hypothesis = from.at(coordinates);
     let residuals = in_parts(at.residuals, scatter.as_deref());
-    Ok(ListFit { hypothesis, residuals, left_out, std, size, parameters, scatter, plate: None })
+    Ok(ListFit { hypothesis, residuals, left_out, std, size, parameters, scatter, plate: None, mirrored: false })
 }
 
 /// From units of the scatter to parts of each frequency.
@@ -120,17 +132,16 @@ impl ListFit {
         self.residuals.iter().map(|r| r * r).sum()
     }
 
-    /// $\sum(r_i/\sigma_i)^2$ and its mean, where the lists tell $\sigma$.
-    pub(super) fn chi_square(&self) -> Option<(f64, f64)> {
+    /// $\sum(r_i/\sigma_i)^2$, where the lists tell $\sigma$.
+    fn chi_square(&self) -> Option<f64> {
         let scatter = self.scatter.as_ref()?;
-        let sum: f64 = self.residuals.iter().zip(scatter).map(|(residual, scatter)| (residual / scatter).powi(2)).sum();
-        Some((sum, sum / self.residuals.len().max(1) as f64))
+        Some(self.residuals.iter().zip(scatter).map(|(residual, scatter)| (residual / scatter).powi(2)).sum())
     }
 
     /// $\sum(r_i/\sigma_i)^2 + k\ln n$ where the lists tell $\sigma$, else $n\ln(R/n) + k\ln n$.
     pub(super) fn bic(&self) -> f64 {
         let count = self.residuals.len().max(1) as f64;
-        if let Some((sum, _)) = self.chi_square() {
+        if let Some(sum) = self.chi_square() {
             return sum + self.size as f64 * count.ln();
         }
         count * (self.square() / count).max(f64::MIN_POSITIVE).ln() + self.size as f64 * count.ln()

@@ -24,6 +24,7 @@ pub(super) struct FrequencyList {
 const USUAL: [f64; 2] = [1e10, 5e8];
 
 /// All lists.
+#[derive(Clone)]
 pub(super) struct ListProblem {
     pub lists: Vec<FrequencyList>,
     pub constants: FreeConstants,
@@ -45,6 +46,13 @@ impl ListProblem {
             Some(FrequencyList { piece: measurement.piece, setting, measured: data.values.clone(), rounding, scatter })
         });
         Ok(Self { lists: lists.collect(), constants })
+    }
+
+    /// Without what the lists tell of their scatter.
+    pub(super) fn unweighed(&self) -> Self {
+        let mut alike = self.clone();
+        alike.lists.iter_mut().for_each(|list| list.scatter.clear());
+        alike
     }
 
     /// Number of frequencies.
@@ -103,10 +111,12 @@ impl ListProblem {
         (!told.is_empty() && told.len() == self.count()).then_some(told)
     }
 
-    /// Rms that rounding to the bins alone makes, where every list tells its bins.
-    pub(super) fn rounding(&self) -> Option<f64> {
-        let told: Vec<f64> = self.lists.iter().flat_map(|list| list.rounding.iter().copied()).collect();
-        let square: f64 = told.iter().map(|part| part * part).sum();
-        (told.len() == self.count()).then(|| (square / self.count().max(1) as f64).sqrt())
+    /// Relative standard deviation of every frequency by its scatter or else by rounding to a bin, where every list tells one.
+    pub(super) fn noise(&self) -> Option<Vec<f64>> {
+        let of_list = |list: &FrequencyList| {
+            if list.scatter.is_empty() { list.rounding.clone() } else { list.scatter.clone() }
+        };
+        let told: Vec<f64> = self.lists.iter().flat_map(of_list).collect();
+        (!told.is_empty() && told.len() == self.count()).then_some(told)
     }
 }

@@ -1,32 +1,44 @@
 //! Tracing in lists of natural frequencies: the same question over modes.
 //!
-//! Noise is not told, so the criterion is that of an unknown variance, $n\ln(R/n) + k\ln n$ with the sum of squares $R$ of the
-//! relative errors, and what is held out is one frequency after the other.
+//! Where the scatter is not told, the criterion is that of an unknown variance, $n\ln(R/n) + k\ln n$ with the sum of squares $R$ of the
+//! relative errors, and what is held out is one frequency after the other. Whatever the ranking says, the verdict goes by what is missed
+//! ([`trust`]).
 
+mod across;
+mod bounds;
 mod declared;
+mod lacking;
 mod list_fit;
 mod list_problem;
 mod parting;
+mod repeats;
 mod report;
+mod seen;
+mod trust;
+mod verdict;
 mod width;
 
-use orthopanel_data::{ImpactTest, Measurement, MeasurementData};
-use orthopanel_model::{Effect, Owner, catalogue};
+use orthopanel_data::ImpactTest;
+use orthopanel_model::{Effect, catalogue};
 use rayon::prelude::*;
 
-use super::hypothesis::{Hypothesis, PLATE, Switched, has_place};
+use super::hypothesis::{Hypothesis, PLATE, Switched, has_place, is_place};
 use super::outcome::{NotTested, Tracing};
 use crate::IdentifyError;
 pub(super) use declared::identify_lists;
 use list_fit::{ListFit, fit};
 use list_problem::ListProblem;
+use repeats::without_repeats;
+use seen::{never_shows, not_seen, only_seen};
 
 /// Names the effect that the base model lacks in the natural frequencies of a test.
 ///
 /// # Errors
 /// As [`super::trace`].
 pub(super) fn trace_frequencies(test: &ImpactTest, declared: &Hypothesis) -> Result<Tracing, IdentifyError> {
+    let (test, notes) = &without_repeats(test);
     let problem = ListProblem::of(test)?;
+    let (declared, held) = &only_seen(&problem, &problem.usual(), declared.clone())?;
     let base = fit(&problem, declared, &problem.usual())?;
     if problem.count() <= base.size {
         let (found, needed) = (problem.count(), base.size + 1);
@@ -34,17 +46,18 @@ pub(super) fn trace_frequencies(test: &ImpactTest, declared: &Hypothesis) -> Res
         return Err(IdentifyError::TooFewFrequencies { found, needed, names });
     }
     let constants = base.parameters[..problem.constants.count()].to_vec();
-    let count: usize = test.measurements.iter().map(frequencies).sum();
+    let count = problem.count();
     let mut fits = vec![base];
     let mut not_tested = Vec::new();
+    let mut wants_more = Vec::new();
     for &effect in catalogue() {
         let id = effect.id();
         if declared.holds(effect) {
             continue;
         }
         let refused = |reason: &str| NotTested { id, reason: reason.to_owned() };
-        if effect.owner() == Owner::Channel {
-            not_tested.push(refused("natural frequencies do not pass through the measuring chain's gain and phase"));
+        if let Some(reason) = never_shows(effect) {
+            not_tested.push(refused(reason));
             continue;
         }
         if has_place(effect) && problem.pieces() > 1 {
@@ -56,6 +69,7 @@ pub(super) fn trace_frequencies(test: &ImpactTest, declared: &Hypothesis) -> Res
             let reason =
                 format!("{count} frequencies for {unknowns} unknowns: measure {DATA_FOR_EACH} or more for each");
             not_tested.push(NotTested { id, reason });
+            wants_more.push(id);
             continue;
         }
         if id == PLATE && !declared.effects.is_empty() {
@@ -69,12 +83,23 @@ pub(super) fn trace_frequencies(test: &ImpactTest, declared: &Hypothesis) -> Res
             }
             continue;
         }
-        match alone(&problem, declared, effect, &constants) {
+        let usual = Switched::new(effect, &problem.largest_piece(), 1, |_| None, |_| false);
+        let found = match not_seen(&problem, &constants, declared, usual) {
+            Ok(Ok(on)) => alone(&problem, declared, &on, &constants),
+            Ok(Err(reason)) => {
+                not_tested.push(refused(reason));
+                continue;
+            }
+            Err(error) => Err(error),
+        };
+        match found {
             Ok(found) => fits.push(found),
             Err(error) => not_tested.push(NotTested { id, reason: error.to_string() }),
         }
     }
-    report::report(test, &problem, fits, not_tested, declared.effects.len())
+    let mut found = report::report(test, &problem, fits, (not_tested, wants_more), declared.effects.len())?;
+    found.notes.extend(notes.iter().chain(held).cloned());
+    Ok(found)
 }
 
 /// Frequencies for each unknown: with fewer an effect with a place or two parameters fits by chance.
@@ -88,13 +113,6 @@ fn free_parameters(effect: &dyn Effect) -> usize {
     }
 }
 
-fn frequencies(measurement: &Measurement) -> usize {
-    match &measurement.data {
-        MeasurementData::NaturalFrequencies(data) => data.values.len(),
-        _ => 0,
-    }
-}
-
 /// Starts that are followed to their minimum.
 const FOLLOWED: usize = 4;
 
@@ -102,9 +120,10 @@ const FOLLOWED: usize = 4;
 fn alone(
     problem: &ListProblem,
     declared: &Hypothesis,
-    effect: &'static dyn Effect,
+    seen: &Switched,
     constants: &[f64],
 ) -> Result<ListFit, IdentifyError> {
+    let effect = seen.effect;
     let piece = problem.largest_piece();
     let lists = effect
         .parameters()
@@ -118,27 +137,34 @@ fn alone(
         .map(|start| {
             let at =
                 |name: &str| effect.parameters().iter().position(|parameter| parameter.name == name).map(|i| start[i]);
-            declared.and(Switched::new(effect, &piece, 1, at, |_| false))
+            let mut on = Switched::new(effect, &piece, 1, at, |_| false);
+            on.free.retain(|free| seen.free.contains(free));
+            declared.and(on)
         })
         .collect();
-    let mut scored: Vec<(f64, &Hypothesis)> = switched
-        .par_iter()
-        .map(|hypothesis| {
-            let parameters = [constants, &hypothesis.coordinates()].concat();
-            let square = problem.weighed(&parameters, hypothesis).map(|list| list.iter().map(|r| r * r).sum());
-            (square.unwrap_or(f64::INFINITY), hypothesis)
-        })
-        .collect();
-    scored.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let fitted: Vec<Result<ListFit, IdentifyError>> = scored
-        .into_par_iter()
-        .take(FOLLOWED)
-        .map(|(_, hypothesis)| {
-            let found = fit(problem, hypothesis, constants)?;
-            let mut rested = found.hypothesis.clone();
-            if rested.rest_on_bounds() { fit(problem, &rested, constants) } else { Ok(found) }
-        })
-        .collect();
+    let followed = |problem: &ListProblem| -> Vec<Result<ListFit, IdentifyError>> {
+        let mut scored: Vec<(f64, &Hypothesis)> = switched
+            .par_iter()
+            .map(|hypothesis| {
+                let parameters = [constants, &hypothesis.coordinates()].concat();
+                let square = problem.weighed(&parameters, hypothesis).map(|list| list.iter().map(|r| r * r).sum());
+                (square.unwrap_or(f64::INFINITY), hypothesis)
+            })
+            .collect();
+        scored.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let best = scored.into_par_iter().take(FOLLOWED);
+        best.map(|(_, hypothesis)| rested(problem, hypothesis, constants)).collect()
+    };
+    let mut fitted = followed(problem);
+    if problem.scatter().is_some() {
+        // Weights sharpen the valleys between minima: without them the way is found, with them the minimum.
+        let found: Vec<ListFit> = followed(&problem.unweighed()).into_iter().flatten().collect();
+        let polished = |found: ListFit| {
+            let (constants, _) = found.parameters.split_at(problem.constants.count());
+            rested(problem, &found.hypothesis, constants)
+        };
+        fitted.extend(found.into_par_iter().map(polished).collect::<Vec<_>>());
+    }
     let mut best: Option<ListFit> = None;
     let mut reason = None;
     for found in fitted {
@@ -148,5 +174,33 @@ fn alone(
             Err(error) => reason = reason.or(Some(error)),
         }
     }
+    let best = best.map(|found| mirrored(problem, found, declared.effects.len()));
     best.ok_or_else(|| reason.unwrap_or_else(|| IdentifyError::Unsupported(format!("{}: no start", effect.id()))))
 }
+
+fn rested(problem: &ListProblem, from: &Hypothesis, constants: &[f64]) -> Result<ListFit, IdentifyError> {
+    let found = fit(problem, from, constants)?;
+    let mut rested = found.hypothesis.clone();
+    if rested.rest_on_bounds() { fit(problem, &rested, constants) } else { Ok(found) }
+}
+
+/// The same with its place at x > 0, where the frequencies are the same there.
+fn mirrored(problem: &ListProblem, mut found: ListFit, from: usize) -> ListFit {
+    let mut hypothesis = found.hypothesis.clone();
+    let Some(on) = hypothesis.effects.get_mut(from) else { return found };
+    let Some(at) = on.effect.parameters().iter().position(is_place) else { return found };
+    let Some(x) = on.values.get_mut(at) else { return found };
+    *x = -*x;
+    let turned = *x > 0.0;
+    let (constants, _) = found.parameters.split_at(problem.constants.count());
+    let parameters = [constants, &hypothesis.coordinates()].concat();
+    let Ok(there) = problem.residuals(&parameters, &hypothesis) else { return found };
+    found.mirrored = there.iter().zip(&found.residuals).all(|(a, b)| (a - b).abs() < ALIKE);
+    if found.mirrored && turned {
+        (found.hypothesis, found.parameters) = (hypothesis, parameters);
+    }
+    found
+}
+
+/// Relative difference of frequencies that are the same.
+const ALIKE: f64 = 1e-8;

@@ -2,15 +2,18 @@
 
 use orthopanel_model::{ModelError, Place};
 
+use super::across;
 use super::list_fit::ListFit;
 use super::list_problem::{FrequencyList, ListProblem};
-use super::report::name;
+use super::report::{name, rms};
 use crate::tracing::further_list::{Further, further_frequencies};
 
 /// Masses that a tester adds, in parts of the piece's \[1\].
 const ADDED: [f64; 3] = [0.05, 0.1, 0.2];
 /// Places along the piece to which the sensor may move.
 const PLACES: usize = 11;
+/// Differences below this many times the scatter part nothing.
+const SHOWN: f64 = 2.0;
 /// Modes that a further list is taken to hold beyond those of the first.
 const MORE: usize = 1;
 
@@ -35,10 +38,9 @@ pub(super) fn next_experiment(
     };
     let first = name(one, false, 0);
     let second = others.iter().map(|other| name(other, false, 0)).collect::<Vec<_>>().join(", ");
-    if one.plate.is_some() || others.iter().any(|other| other.plate.is_some()) {
-        return format!(
-            "hit and measure on a line across the width: {first} has modes there that bend or twist, {second} has none"
-        );
+    if let Some(plate) = one.plate.as_ref().or_else(|| others.iter().find_map(|other| other.plate.as_ref())) {
+        let beams = if one.plate.is_some() { second } else { first };
+        return across::words(problem, plate, &beams);
     }
     let mut best: Option<(f64, String)> = None;
     let mut try_out = |words: String, place: Option<Place>, added: f64| {
@@ -50,24 +52,35 @@ pub(super) fn next_experiment(
         }
     };
     let (piece, sensor) = (&list.setting.piece, list.setting.record.response_at);
-    for part in ADDED {
-        let added = part * piece.mass();
-        try_out(format!("add {:.1} g at the sensor", 1e3 * added), sensor, added);
-    }
-    for step in 0..PLACES {
-        let x = piece.length * (step as f64 / (PLACES - 1) as f64 - 0.5);
-        let place = Place { x: (x * 1e3).round() / 1e3, y: 0.0 };
-        if piece.contains(place).is_ok() && sensor.is_some() {
+    let places = (0..PLACES)
+        .map(|step| piece.length * (step as f64 / (PLACES - 1) as f64 - 0.5))
+        .map(|x| Place { x: (x * 1e3).round() / 1e3, y: 0.0 })
+        .filter(|place| piece.contains(*place).is_ok());
+    let masses = ADDED.map(|part| part * piece.mass());
+    if sensor.is_some() {
+        for added in masses {
+            try_out(format!("add {:.1} g at the sensor", 1e3 * added), sensor, added);
+        }
+        for place in places {
             try_out(format!("move the sensor to x = {:.3} m", place.x), Some(place), 0.0);
         }
+        try_out("listen without a sensor (microphone, laser)".to_owned(), None, 0.0);
+    } else {
+        for place in places {
+            for added in masses {
+                try_out(format!("fix {:.1} g at x = {:.3} m", 1e3 * added, place.x), Some(place), added);
+            }
+        }
     }
-    try_out("listen without a sensor (microphone, laser)".to_owned(), None, 0.0);
     match best {
-        Some((apart, words)) => format!(
+        Some((apart, words)) if apart > SHOWN => format!(
             "{words} and read the first {} frequencies again: there {first} differs from {second} by {apart:.1} times the scatter (rms)",
             list.measured.len() + MORE
         ),
-        None => format!("{first} and {second} cannot be parted by sensor or mass"),
+        _ => format!(
+            "hit the piece at several places and record it (kind = \"time-history\"): its shapes tell what frequencies do not; no added \
+             mass parts the frequencies of {first} and {second} by {SHOWN} times their scatter or more"
+        ),
     }
 }
 
@@ -87,5 +100,6 @@ fn apart(
     };
     let (first, second) = (frequencies(one)?, frequencies(other)?);
     let square: f64 = first.iter().zip(&second).map(|(a, b)| (a / b - 1.0).powi(2)).sum();
-    Ok((square / count as f64).sqrt() / one.scatter().max(f64::MIN_POSITIVE))
+    let noise = problem.noise().map_or(0.0, |noise| rms(&noise));
+    Ok((square / count as f64).sqrt() / one.scatter().max(noise).max(f64::MIN_POSITIVE))
 }

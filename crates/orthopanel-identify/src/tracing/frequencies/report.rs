@@ -5,9 +5,14 @@ use std::collections::BTreeMap;
 use orthopanel_data::ImpactTest;
 use orthopanel_model::{Damping, Estimate, MODEL_SCHEMA, Owner, PanelModel, Ports, StructureKind, effect};
 
+use super::DATA_FOR_EACH;
+use super::bounds::on_bound;
+use super::lacking::{self, what_to_check};
 use super::list_fit::ListFit;
 use super::list_problem::ListProblem;
 use super::parting::next_experiment;
+use super::trust::Trust;
+use super::verdict::{CLEAR, Choice};
 use crate::IdentifyError;
 use crate::tracing::hypothesis::PLATE;
 use crate::tracing::outcome::{
@@ -15,15 +20,9 @@ use crate::tracing::outcome::{
 };
 use crate::tracing::report::{effects_of, removal};
 
-/// By so much the criterion must fall for an effect, and so far behind a rival must stay: odds of a hundred and fifty to one.
-const CLEAR: f64 = 10.0;
-/// An effect that leaves more than this of the error explains little.
-const LEFT: f64 = 0.6;
-/// Where the scatter is told, its mean square may stand above one by so many of its own standard deviations.
-const SURE: f64 = 3.0;
-
-const UNTOLD: &str =
-    "noise is not told by a list: the criterion takes it from the residuals themselves, and a margin of 10 is clear";
+const UNTOLD: &str = "no list of frequencies tells its scatter: the criterion takes it from the residuals themselves, and a margin of 10 is clear";
+const MIRRORED: &str = "frequencies of a piece held alike at both ends are the same with an effect at x and at -x: places are given \
+                        with x > 0, and a record of hits at one end tells the side";
 const TOLD: &str =
     "the criterion weighs each frequency by the scatter that the test file tells, and a margin of 10 is clear";
 
@@ -31,7 +30,7 @@ pub(super) fn report(
     test: &ImpactTest,
     problem: &ListProblem,
     fits: Vec<ListFit>,
-    not_tested: Vec<NotTested>,
+    (not_tested, wants_more): (Vec<NotTested>, Vec<&'static str>),
     declared: usize,
 ) -> Result<Tracing, IdentifyError> {
     let mut order: Vec<usize> = (0..fits.len()).collect();
@@ -50,22 +49,12 @@ pub(super) fn report(
         .copied()
         .filter(|&index| index != 0 && index != chosen && chosen != 0 && fits[index].bic() < fits[chosen].bic() + CLEAR)
         .collect();
-    let misses =
-        fits[0].chi_square().is_some_and(|(_, mean)| mean > 1.0 + SURE * (2.0 / fits[0].residuals.len() as f64).sqrt());
-    let verdict = if chosen == 0 && misses {
-        Verdict::Unexplained
-    } else if chosen == 0 {
-        Verdict::NothingMissing
-    } else if !rivals.is_empty() {
-        Verdict::Ambiguous
-    } else if fits[chosen].percent() > LEFT * fits[0].percent() {
-        Verdict::Unexplained
-    } else {
-        Verdict::Explained
-    };
+    let trust = Trust::of(problem);
+    let on_bound = on_bound(&fits[chosen], declared, &problem.largest_piece());
+    let choice = Choice { chosen, rivals, on_bound, wants_more };
+    let verdict = choice.verdict(&fits, &trust);
     let told = problem.scatter();
-    let rms = |told: &Vec<f64>| (told.iter().map(|std| std * std).sum::<f64>() / told.len().max(1) as f64).sqrt();
-    let floor = told.as_ref().map(rms).or_else(|| problem.rounding());
+    let floor = problem.noise().map(|noise| rms(&noise));
     let error = |fit: &ListFit| FittedError { fitted: fit.percent(), held_out: fit.left_out_percent() };
     let candidate = |&index: &usize| Candidate {
         left_behind: None,
@@ -74,30 +63,59 @@ pub(super) fn report(
         held_out: fits[index].left_out_percent(),
         effects: traced(problem, &fits[index], declared),
     };
+    let too_few = verdict == Verdict::Ambiguous && chosen == 0;
+    let alternatives = if too_few {
+        choice.wants_more.iter().map(|id| (*id).to_owned()).collect()
+    } else {
+        choice.rivals.iter().map(|&index| name(&fits[index], false, declared)).collect()
+    };
+    let next_experiment = match verdict {
+        Verdict::Unexplained => what_to_check(test, problem, &fits[chosen], &trust),
+        _ if too_few => lacking::too_few(problem, DATA_FOR_EACH),
+        _ => next_experiment(problem, &fits, chosen, &choice.rivals, &order),
+    };
+    let mut notes = vec![if told.is_some() { TOLD } else { UNTOLD }.to_owned()];
+    notes.push(trust.note());
+    if choice.rivals.iter().chain([&chosen]).any(|&index| fits[index].mirrored) {
+        notes.push(MIRRORED.to_owned());
+    }
+    if let Some(parameter) = &choice.on_bound {
+        notes.push(format!(
+            "{parameter} lies on its bound: the bound tells that value, not the data, so it explains nothing"
+        ));
+    }
+    // The chosen one, then the others by the criterion.
+    let mut ranked = order.clone();
+    ranked.sort_by(|&a, &b| (a != chosen).cmp(&(b != chosen)).then(fits[a].bic().total_cmp(&fits[b].bic())));
     let mut panels = panels(test, problem, &fits[chosen]);
     let removed = take_out(problem, &fits[chosen], declared, &mut panels);
     Ok(Tracing {
         verdict,
         effects: if chosen == 0 { vec![] } else { traced(problem, &fits[chosen], declared) },
-        alternatives: rivals.iter().map(|&index| name(&fits[index], false, declared)).collect(),
+        alternatives,
         error: TracedError {
             measure: "natural frequencies, % rms; held out: each predicted from the others".to_owned(),
             before: error(&fits[0]),
             after: error(&fits[chosen]),
             noise_floor: 100.0 * floor.unwrap_or_else(|| fits[chosen].scatter()),
         },
-        candidates: order.iter().map(candidate).collect(),
+        candidates: ranked.iter().map(candidate).collect(),
         not_tested,
-        next_experiment: next_experiment(problem, &fits, chosen, &rivals, &order),
-        chi_square: match fits[chosen].chi_square() {
-            Some((_, mean)) => mean,
-            None => floor.map_or(1.0, |floor| (fits[chosen].percent() / 100.0 / floor).powi(2)),
+        next_experiment,
+        chi_square: match trust {
+            Trust::Told(_) => trust.chi_square(&fits[chosen]),
+            // Noise is then taken from what is left, up to what is usual.
+            Trust::Untold(_) => trust.chi_square(&fits[chosen]).max(1.0),
         },
         panels,
         removed,
         accelerances: vec![],
-        notes: vec![if told.is_some() { TOLD } else { UNTOLD }.to_owned()],
+        notes,
     })
+}
+
+pub(super) fn rms(told: &[f64]) -> f64 {
+    (told.iter().map(|std| std * std).sum::<f64>() / told.len().max(1) as f64).sqrt()
 }
 
 pub(super) fn name(fit: &ListFit, is_base: bool, declared: usize) -> String {

@@ -33,5 +33,6 @@ pub(super) fn fit_plate(test: &ImpactTest, problem: &ListProblem) -> Result<List
         size,
         scatter: problem.scatter(),
         plate: Some(found),
+        mirrored: false,
     })
 }

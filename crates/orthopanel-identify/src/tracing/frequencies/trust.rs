@@ -1,0 +1,91 @@
+//! How far a fit may miss a list, and whether it does by more.
+
+use orthopanel_model::End;
+
+use super::list_fit::ListFit;
+use super::list_problem::ListProblem;
+
+/// What any model of a panel is trusted to beside the noise \[1\]: the paper's piece 1 is met to 0.22 % rms, of which rounding to
+/// the analyser's bins makes half.
+const TRUST: f64 = 2.5e-3;
+/// Where a list does not tell its noise, this rms error is too much for a panel that hangs free \[1\]: the paper's four pieces are
+/// met to 0.2 to 1.04 % rms by a beam.
+const FREE: f64 = 1.25e-2;
+/// and this where an end is held: no clamp is an edge of a drawing, a length to it is good to a millimetre or two.
+const HELD: f64 = 2e-2;
+/// Where the noise is told, its mean square may stand above one by so many of its own standard deviations.
+const SURE: f64 = 3.0;
+
+/// What a test may miss.
+pub(super) enum Trust {
+    /// Relative standard deviation of each frequency, noise and model together.
+    Told(Vec<f64>),
+    /// Rms error \[1\].
+    Untold(f64),
+}
+
+impl Trust {
+    pub(super) fn of(problem: &ListProblem) -> Self {
+        if let Some(noise) = problem.noise() {
+            // Scatter is what the tester saw frequencies miss; rounding is the least of what they do.
+            let scatters = problem.lists.iter().flat_map(|list| list.measured.iter().map(|_| !list.scatter.is_empty()));
+            let together = |(std, scatters): (f64, bool)| if scatters { std.max(TRUST) } else { std.hypot(TRUST) };
+            return Self::Told(noise.into_iter().zip(scatters).map(together).collect());
+        }
+        let free = |list: &super::list_problem::FrequencyList| {
+            [list.setting.boundary.left, list.setting.boundary.right] == [End::Free, End::Free]
+        };
+        Self::Untold(if problem.lists.iter().all(free) { FREE } else { HELD })
+    }
+
+    /// Mean square of what a fit misses, over what it may miss.
+    pub(super) fn chi_square(&self, fit: &ListFit) -> f64 {
+        let count = fit.residuals.len().max(1) as f64;
+        let sum: f64 = match self {
+            Self::Told(std) => fit.residuals.iter().zip(std).map(|(miss, std)| (miss / std).powi(2)).sum(),
+            Self::Untold(rms) => fit.residuals.iter().map(|miss| (miss / rms).powi(2)).sum(),
+        };
+        sum / count
+    }
+
+    /// Up to which [`Self::chi_square`] a fit meets the lists.
+    fn most(&self) -> f64 {
+        match self {
+            Self::Told(std) => 1.0 + SURE * (2.0 / std.len().max(1) as f64).sqrt(),
+            Self::Untold(_) => 1.0,
+        }
+    }
+
+    pub(super) fn is_met(&self, fit: &ListFit) -> bool {
+        self.chi_square(fit) <= self.most()
+    }
+
+    /// What the verdict goes by, a sentence.
+    pub(super) fn note(&self) -> String {
+        match self {
+            Self::Told(_) => format!(
+                "the verdict holds what is left against the noise that the test file tells: scatter, and no less than {0} %, or \
+                 rounding to the resolution beside {0} %, which a model of a panel is trusted to",
+                100.0 * TRUST
+            ),
+            Self::Untold(rms) => format!(
+                "the verdict takes up to {:.2} % rms for usual, since no noise is told: give scatter or resolution [Hz] in the \
+                 measurement to be judged by that",
+                100.0 * rms
+            ),
+        }
+    }
+
+    /// The error of a fit beside what it may be, in words.
+    pub(super) fn said(&self, fit: &ListFit) -> String {
+        let percent = fit.percent();
+        match self {
+            Self::Told(_) => format!(
+                "{percent:.2} % rms; mean square {:.1} times that of the noise told and the {} % that a model of a panel is trusted to",
+                self.chi_square(fit),
+                100.0 * TRUST
+            ),
+            Self::Untold(rms) => format!("{percent:.2} % rms, where up to {:.2} % is usual", 100.0 * rms),
+        }
+    }
+}

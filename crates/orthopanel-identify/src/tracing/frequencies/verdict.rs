@@ -1,0 +1,44 @@
+//! Which word the fits of the lists deserve.
+
+use super::list_fit::ListFit;
+use super::trust::Trust;
+use crate::tracing::outcome::Verdict;
+
+/// By so much the criterion must fall for an effect, and so far behind a rival must stay: odds of a hundred and fifty to one.
+pub(super) const CLEAR: f64 = 10.0;
+/// An effect that leaves more than this of the error explains little.
+const LEFT: f64 = 0.6;
+
+/// What is chosen of the fits, and what comes near it.
+pub(super) struct Choice {
+    pub chosen: usize,
+    pub rivals: Vec<usize>,
+    /// The parameter of the chosen one that lies on its bound.
+    pub on_bound: Option<String>,
+    /// Effects that only more frequencies would test.
+    pub wants_more: Vec<&'static str>,
+}
+
+impl Choice {
+    /// Whether lists are too short to test more than one effect: then the base pays by default.
+    pub(super) fn tested_too_little(&self, fits: &[ListFit]) -> bool {
+        fits.len() <= 2 && self.wants_more.len() >= fits.len()
+    }
+
+    pub(super) fn verdict(&self, fits: &[ListFit], trust: &Trust) -> Verdict {
+        let chosen = &fits[self.chosen];
+        if !trust.is_met(chosen) || self.on_bound.is_some() {
+            return Verdict::Unexplained;
+        }
+        if self.chosen == 0 {
+            return if self.tested_too_little(fits) { Verdict::Ambiguous } else { Verdict::NothingMissing };
+        }
+        if !self.rivals.is_empty() {
+            Verdict::Ambiguous
+        } else if chosen.percent() > LEFT * fits[0].percent() {
+            Verdict::Unexplained
+        } else {
+            Verdict::Explained
+        }
+    }
+}
