@@ -67,6 +67,17 @@ pub fn write(path: &Path, content: impl Into<Vec<u8>>) -> Result<(), CommandErro
     files.write().map(drop)
 }
 
+/// As [`write`], into a folder that is made where it is not there.
+pub fn write_with_folder(path: &Path, content: impl Into<Vec<u8>>) -> Result<(), CommandError> {
+    let (Some(folder), Some(name)) = (path.parent(), path.file_name()) else { return write(path, content) };
+    if folder.as_os_str().is_empty() {
+        return write(path, content);
+    }
+    let mut files = Files::default();
+    files.add(name, content);
+    files.write_into(folder).map(drop)
+}
+
 /// Where a file really goes: behind a link, the file it points to. What is there must be a file, since renaming onto a
 /// device or a pipe would take its place.
 fn destination(path: PathBuf) -> Result<PathBuf, CommandError> {

@@ -72,9 +72,19 @@ length"#;
 fn a_page_that_cannot_be_written() {
     let bench = Bench::new();
     bench.done("identify test.toml");
-    let output = bench.run("report test.toml -o nowhere/page.html");
+    let output = bench.run("report test.toml -o test.toml/page.html");
     assert_eq!(output.status.code(), Some(2));
     let message = String::from_utf8_lossy(&output.stderr);
-    assert!(message.contains("nowhere/page.html: cannot be written"), "{message}");
+    assert!(message.contains("test.toml: cannot be written"), "{message}");
     refused(&bench, "report nowhere.toml -o page.html", 2, &["nowhere.toml", "cannot be read"]);
+}
+
+#[test]
+fn a_page_goes_into_a_folder_of_its_own_and_json_says_where() {
+    let bench = Bench::new();
+    let answer = bench.json("report test.toml -o new/folder/page.html");
+    assert_eq!(answer["schema"], "orthopanel.report/1");
+    assert_eq!(answer["page"], "new/folder/page.html");
+    assert_eq!(answer["verdict"], "nothing-missing");
+    assert!(bench.path("new/folder/page.html").is_file());
 }

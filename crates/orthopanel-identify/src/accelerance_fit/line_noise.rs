@@ -34,6 +34,15 @@ pub(super) fn line_variance(accelerance: &Accelerance) -> (Vec<f64>, f64) {
     most_likely(&power, |shape| raw.iter().zip(shape).map(|(v, s)| v / s).collect())
 }
 
+/// The same where the records tell a variance: what a residual is held against.
+pub(crate) fn told_variance(accelerance: &Accelerance) -> Option<Vec<f64>> {
+    accelerance.variance.as_ref()?;
+    let (mut variance, _) = line_variance(accelerance);
+    let by_force = accelerance.force_noise.iter().flat_map(|noise| &noise.variance);
+    variance.iter_mut().zip(by_force).for_each(|(all, of)| *all = all.max(*of));
+    Some(variance)
+}
+
 /// The same of a record whose hits do not tell its noise by their scatter, from the misfit $e$ of a model to its lines.
 ///
 /// What a model lacks runs smoothly from line to line, noise does not: of $u = e/\sqrt{1 + r|H|^2}$ the mean square of

@@ -43,6 +43,7 @@ use sharpening::{Rough, line_by_line_with_noise, problem_at, sharpened_lines};
 use start::{Recorded, Start, start, usual_log_zeta};
 use wide_scan::rough_starts;
 
+pub(crate) use line_noise::told_variance;
 pub(crate) use outcome::is_told;
 pub(crate) use pole_charge::{nearest_modes, pole_charge};
 pub(crate) use record_poles::{RecordPole, record_poles};

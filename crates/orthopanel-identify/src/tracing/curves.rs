@@ -6,6 +6,7 @@ use orthopanel_model::ReceptanceSetup;
 use rayon::prelude::*;
 
 use super::record_problem::State;
+use crate::accelerance_fit::told_variance;
 use crate::{AcceleranceFit, IdentifyError};
 
 /// Measured and calculated, up to `band` \[Hz\], record by record; `setup` has the records in the same order.
@@ -35,7 +36,8 @@ pub(super) fn curves(
             model: of_model,
             measured: record.value[..lines].to_vec(),
             decay_rate: record.decay_rate,
-            variance: record.variance.as_ref().map(|variance| variance[..lines].to_vec()),
+            // Smooth: over what a few hits scatter line by line, noise alone would leave 1.4 where there are three.
+            variance: told_variance(record).map(|variance| variance[..lines].to_vec()),
             frequency,
         }
     };

@@ -1,6 +1,8 @@
 //! `report`: one HTML page of a test.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
+
+use serde::Serialize;
 
 use crate::error::CommandError;
 use crate::evidence::Evidence;
@@ -20,19 +22,41 @@ use crate::{output, report};
 pub struct Arguments {
     /// Test file (test.toml)
     test: PathBuf,
-    /// Page to write
+    /// Page to write; its folder is made where it is not there
     #[arg(short, long, value_name = "X.html")]
     output: PathBuf,
     #[command(flatten)]
     options: IdentifyOptions,
+    /// Print one JSON object (orthopanel.report/1) on standard output
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Serialize)]
+struct Answer<'a> {
+    schema: &'static str,
+    page: &'a Path,
+    /// What the trace says; `null` where the test cannot be traced.
+    verdict: Option<&'static str>,
+    /// Why it cannot.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    not_traced: Option<&'a str>,
 }
 
 pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
-    let Arguments { test, output, options } = arguments;
+    let Arguments { test, output, options, json } = arguments;
     let identified = Identified::from_test(test, options)?;
-    let evidence = Evidence::of(&identified, options.settings()?.estimation, test)?;
     let traced = Traced::where_possible(&identified.test, test);
-    output::write(output, report::page(test, &identified, &traced, &evidence)?)?;
+    let evidence = Evidence::of(&identified, traced.as_ref().ok(), options.settings()?.estimation, test)?;
+    output::write_with_folder(output, report::page(test, &identified, &traced, &evidence)?)?;
     eprintln!("wrote {}", output.display());
+    if *json {
+        output::print_json(&Answer {
+            schema: "orthopanel.report/1",
+            page: output,
+            verdict: traced.as_ref().ok().map(|traced| traced.tracing.verdict.name()),
+            not_traced: traced.as_ref().err().map(String::as_str),
+        });
+    }
     Ok(())
 }

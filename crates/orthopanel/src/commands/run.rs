@@ -83,7 +83,7 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
     let traced = Traced::where_possible(&identified.test, test);
     let models =
         traced.as_ref().map_or_else(|_| identified.models.clone(), |traced| traced.applied_to(&identified.models));
-    let evidence = Evidence::of(&identified, options.settings()?.estimation, test)?;
+    let evidence = Evidence::of(&identified, traced.as_ref().ok(), options.settings()?.estimation, test)?;
     let mut files = output::Files::default();
     files.add("identified.json", output::json(&identified.answer));
     files.add("report.html", report::page(test, &identified, &traced, &evidence)?);

@@ -1,20 +1,23 @@
 //! What a test shows for the models identified from it, gathered once: `run` writes it into its folder, `report` onto a
 //! page.
 
+mod hits_with_effects;
 mod records;
 mod residual;
 
 use std::path::Path;
 
-use orthopanel_data::{Accelerance, Estimation, MeasurementData};
+use orthopanel_data::{Accelerance, Estimation, HitVerdict, MeasurementData};
 use orthopanel_identify::{AcceleranceFit, ForceBetweenSamples, PieceFit};
 use orthopanel_model::{PanelModel, Place};
 
 use crate::error::{CommandError, InFile as _};
 use crate::identified::Identified;
 use crate::measured_pairs::{ComparedPair, HitMisfit};
+use crate::traced::Traced;
 use crate::whole_accelerance::WholeAccelerance;
 use crate::{pictures, progress};
+pub use hits_with_effects::HitsWithEffects;
 pub use records::RecordRow;
 pub use residual::{PairResidual, ResidualUnit, banded};
 
@@ -29,6 +32,8 @@ pub struct PieceEvidence {
     pub records: Vec<RecordRow>,
     /// Coherence of all records that tell it.
     pub coherence: Option<String>,
+    /// Natural frequencies \[Hz\] of the model with the effects, one a mode of the fit: of lists where effects were found.
+    pub with_effects: Option<Vec<f64>>,
     /// Natural frequencies, measured and calculated.
     pub frequencies: Option<String>,
     /// Measured and calculated, one a pair of places; without records that of the model alone.
@@ -37,18 +42,28 @@ pub struct PieceEvidence {
     pub time_histories: Vec<String>,
     /// One a measured accelerance.
     pub residuals: Vec<PairResidual>,
+    /// How far the base model and that with the effects are from the hits of each pair, where effects were found that act on
+    /// every hit alike.
+    pub hits_with_effects: Vec<HitsWithEffects>,
     /// How far the model is from each measured hit.
     pub hits: Vec<HitMisfit>,
 }
 
 impl Evidence {
-    /// `path` names the test in messages.
-    pub fn of(identified: &Identified, estimation: Estimation, path: &Path) -> Result<Self, CommandError> {
+    /// With what a trace found; `path` names the test in messages.
+    pub fn of(
+        identified: &Identified,
+        traced: Option<&Traced>,
+        estimation: Estimation,
+        path: &Path,
+    ) -> Result<Self, CommandError> {
         let Identified { test, found, models, .. } = identified;
+        let with_effects = traced.and_then(|traced| traced.frequencies(test, &found.pieces));
+        let with_effects = |index: usize| with_effects.as_ref()?.get(index).filter(|modes| !modes.is_empty()).cloned();
         let mut pieces = Vec::with_capacity(found.pieces.len());
         for (index, (fit, model)) in found.pieces.iter().zip(models).enumerate() {
             let own: Vec<_> = found.accelerances.iter().filter(|pair| pair.piece == index).collect();
-            pieces.push(PieceEvidence::of_fit(fit, model, &own, path)?);
+            pieces.push(PieceEvidence::of_fit((fit, model), &own, with_effects(index), path)?);
         }
         let mut accelerances: Vec<(usize, Accelerance)> = Vec::new();
         let histories = test.time_histories()?;
@@ -64,6 +79,11 @@ impl Evidence {
             let places = (history.force_at, history.response_at);
             let mut own = found.accelerances.iter().filter(|pair| pair.piece == piece);
             let pair = own.find(|pair| (pair.force_at, pair.response_at) == places);
+            let with = traced.and_then(|traced| traced.accelerance_of(places));
+            if let (Some(base), Some(with)) = (pair, with) {
+                let kept: Vec<bool> = accelerance.verdicts.iter().map(HitVerdict::is_kept).collect();
+                evidence.hits_with_effects.extend(HitsWithEffects::of(&history, &kept, base, with));
+            }
             let band = pair.and_then(|pair| Some(*pair.frequency.first()?..=*pair.frequency.last()?));
             let compared = ComparedPair::of(model, history, ForceBetweenSamples::BandLimited, band)
                 .map_err(|source| CommandError::Identify { path: path.into(), source })?;
@@ -97,14 +117,14 @@ impl Evidence {
 
 impl PieceEvidence {
     fn of_fit(
-        fit: &PieceFit,
-        model: &PanelModel,
+        (fit, model): (&PieceFit, &PanelModel),
         pairs: &[&AcceleranceFit],
+        with_effects: Option<Vec<f64>>,
         path: &Path,
     ) -> Result<Self, CommandError> {
-        let mut evidence = Self::default();
+        let mut evidence = Self { with_effects, ..Self::default() };
         if !fit.modes.is_empty() {
-            evidence.frequencies = Some(pictures::frequencies(fit)?);
+            evidence.frequencies = Some(pictures::frequencies(fit, evidence.with_effects.as_deref())?);
         }
         for pair in pairs {
             evidence.accelerances.push(pictures::measured_accelerance(&fit.name, pair)?);

@@ -16,7 +16,8 @@ use crate::record_options::IdentifyOptions;
 use crate::{notes, progress};
 pub use answer::{Answer, called};
 pub use mode_rows::{Digits, ModeRows};
-use models::{ASSUMED_DAMPING, model};
+use models::model;
+pub use models::{ASSUMED_DAMPING, to_digits};
 
 /// A test, what was identified from it, and a model of each of its pieces.
 pub struct Identified {

@@ -5,7 +5,7 @@ use orthopanel_identify::{DampingLaw, Identification, ModeFit, PieceFit};
 use orthopanel_model::{PanelModel, Piece, Place, Ports, StructureKind};
 
 /// Modal damping ratio assumed where a test measures none: typical of the paper's table 9.
-pub(super) const ASSUMED_DAMPING: f64 = 0.003;
+pub const ASSUMED_DAMPING: f64 = 0.003;
 
 pub(super) fn model(
     test: &ImpactTest,
@@ -62,7 +62,7 @@ fn measured_mode(mode: &ModeFit) -> serde_json::Value {
 }
 
 /// So many significant digits of a value.
-fn to_digits(value: f64, digits: usize) -> f64 {
+pub fn to_digits(value: f64, digits: usize) -> f64 {
     format!("{value:.behind$e}", behind = digits - 1).parse().unwrap_or(value)
 }
 

@@ -5,7 +5,7 @@ use plotters::prelude::*;
 
 use super::curve::curve;
 use super::envelope::envelope;
-use super::{FONT, GRID, MODEL, titled};
+use super::{FONT, GRID, LAST_LABEL, MODEL, titled};
 use crate::error::CommandError;
 
 const SIZE: (u32, u32) = (900, 300);
@@ -23,6 +23,7 @@ pub fn coherence(piece: &str, records: &[&Accelerance]) -> Result<Option<String>
     let drawn = titled("coherence", &title, SIZE, |area| {
         let mut chart = ChartBuilder::on(&area)
             .margin(12)
+            .margin_right(LAST_LABEL)
             .x_label_area_size(45)
             .y_label_area_size(70)
             .build_cartesian_2d(0.0..highest, 0.0..1.05)?;

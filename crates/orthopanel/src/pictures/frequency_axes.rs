@@ -7,7 +7,7 @@ use plotters::coord::ranged1d::{DefaultFormatting, KeyPointHint};
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 
-use super::{Area, Chart, FONT, GRID};
+use super::{Area, Chart, FONT, GRID, LAST_LABEL};
 
 type OverFrequency<'a, 'b, Y> = Chart<'a, 'b, RangedCoordf64, Y>;
 type Built<T> = Result<T, Box<dyn std::error::Error>>;
@@ -21,6 +21,7 @@ pub fn magnitude<'a, 'b>(
 ) -> Built<OverFrequency<'a, 'b, LogCoord<f64>>> {
     let mut chart = ChartBuilder::on(area)
         .margin(12)
+        .margin_right(LAST_LABEL)
         .x_label_area_size(30)
         .y_label_area_size(70)
         .build_cartesian_2d(0.0..highest, (low..high).log_scale())?;
@@ -63,6 +64,7 @@ impl Ranged for Phases {
 pub fn phase<'a, 'b>(area: &'b Area<'a>, highest: f64) -> Built<OverFrequency<'a, 'b, Phases>> {
     let mut chart = ChartBuilder::on(area)
         .margin(12)
+        .margin_right(LAST_LABEL)
         .x_label_area_size(45)
         .y_label_area_size(70)
         .build_cartesian_2d(0.0..highest, Phases((-100.0..280.0).into()))?;

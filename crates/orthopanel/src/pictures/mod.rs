@@ -30,9 +30,14 @@ use crate::error::CommandError;
 
 const MEASURED: RGBColor = RGBColor(213, 94, 0);
 const MODEL: RGBColor = RGBColor(0, 90, 170);
+/// What the model says with the effects that were found, where it stands beside the base model.
+const WITH_EFFECTS: RGBColor = RGBColor(0, 140, 100);
 const ERROR: RGBColor = RGBColor(90, 90, 90);
 const GRID: RGBColor = RGBColor(225, 225, 225);
 const FONT: &str = "sans-serif";
+
+/// Room on the right for the half of the last tick's label that stands beyond the axis \[pixels\].
+const LAST_LABEL: u32 = 32;
 
 const SIZE: (u32, u32) = (900, 640);
 

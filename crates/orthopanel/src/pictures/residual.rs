@@ -1,10 +1,13 @@
 //! What the model leaves unexplained: against frequency, against the place, against the level of the hit.
 
-use plotters::coord::ranged1d::SegmentedCoord;
+use std::ops::Range;
+
+use plotters::coord::ranged1d::{DefaultFormatting, KeyPointHint};
+use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 
 use super::curve::curve;
-use super::{ERROR, FONT, GRID, MEASURED, MODEL, spaced, titled};
+use super::{ERROR, FONT, GRID, LAST_LABEL, MEASURED, MODEL, spaced, titled};
 use crate::error::CommandError;
 use crate::evidence::{PairResidual, ResidualUnit, banded};
 use crate::measured_pairs::{HitMisfit, place_text};
@@ -36,6 +39,7 @@ pub fn residual_by_frequency(residuals: &[PairResidual]) -> Result<String, Comma
     titled("residual by frequency", "Residual against frequency", (WIDTH, 340), |area| {
         let mut chart = ChartBuilder::on(&area)
             .margin(12)
+            .margin_right(LAST_LABEL)
             .x_label_area_size(45)
             .y_label_area_size(70)
             .build_cartesian_2d(0.0..highest, (low..high).log_scale())?;
@@ -71,47 +75,64 @@ pub fn residual_by_place(residuals: &[PairResidual]) -> Result<String, CommandEr
     let noise = residuals.iter().all(|pair| pair.unit == ResidualUnit::Noise);
     let highest = if highest > 0.0 { highest.max(if noise { 1.2 } else { 0.0 }) } else { 1.0 };
     let height = 105 + ROW * count.max(1) as u32;
-    titled("residual by place", "Residual of each pair of places", (WIDTH, height), |area| {
-        // The first pair on top.
-        let row = |position: &SegmentValue<usize>| match position {
-            SegmentValue::Exact(row) | SegmentValue::CenterOf(row) => {
-                let pair = count.checked_sub(row + 1).and_then(|index| residuals.get(index));
-                pair.map_or(String::new(), |pair| {
-                    format!("{} to {}", place_text(pair.force), place_text(pair.response))
-                })
-            }
-            SegmentValue::Last => String::new(),
+    let title = "Residual of each pair of places, force to response [m]";
+    titled("residual by place", title, (WIDTH, height), |area| {
+        // The first pair on top, each one high about its middle.
+        let height_of = |index: usize| (count - 1 - index) as f64 + 0.5;
+        let named = |height: &f64| {
+            let index = (0..count).find(|&index| (height_of(index) - height).abs() < 0.25);
+            let pair = index.and_then(|index| residuals.get(index));
+            pair.map_or(String::new(), |pair| format!("{} to {}", place_text(pair.force), place_text(pair.response)))
         };
-        let rows: SegmentedCoord<_> = (0..count.saturating_sub(1)).into_segmented();
         let mut chart = ChartBuilder::on(&area)
             .margin(12)
+            .margin_right(LAST_LABEL)
             .x_label_area_size(45)
-            .y_label_area_size(170)
-            .build_cartesian_2d(0.0..1.05 * highest, rows)?;
+            .y_label_area_size(150)
+            .build_cartesian_2d(0.0..1.05 * highest, Rows { count, range: (0.0..count as f64).into() })?;
         chart
             .configure_mesh()
             .disable_y_mesh()
             .light_line_style(TRANSPARENT)
             .bold_line_style(GRID)
-            .y_labels(count)
-            .y_label_formatter(&row)
+            .y_label_formatter(&named)
             .x_desc(unit_text(residuals))
-            .y_desc("force to response [m]")
             .label_style((FONT, 15))
             .draw()?;
         for (index, pair) in residuals.iter().enumerate() {
-            let row = count - 1 - index;
-            let corners = [(0.0, SegmentValue::Exact(row)), (pair.rms(), SegmentValue::Exact(row + 1))];
-            let mut bar = Rectangle::new(corners, MODEL.filled());
+            let middle = height_of(index);
+            let mut bar = Rectangle::new([(0.0, middle - 0.5), (pair.rms(), middle + 0.5)], MODEL.filled());
             bar.set_margin(4, 4, 0, 0);
             chart.draw_series([bar])?;
         }
         if noise {
-            let ends = [(1.0, SegmentValue::Exact(0)), (1.0, SegmentValue::Exact(count))];
-            chart.draw_series(LineSeries::new(ends, ERROR.stroke_width(2)))?;
+            chart.draw_series(LineSeries::new([(1.0, 0.0), (1.0, count as f64)], ERROR.stroke_width(2)))?;
         }
         Ok(())
     })
+}
+
+/// An axis of so many rows, a tick in the middle of each.
+struct Rows {
+    count: usize,
+    range: RangedCoordf64,
+}
+
+impl Ranged for Rows {
+    type FormatOption = DefaultFormatting;
+    type ValueType = f64;
+
+    fn map(&self, value: &f64, limit: (i32, i32)) -> i32 {
+        self.range.map(value, limit)
+    }
+
+    fn key_points<Hint: KeyPointHint>(&self, _: Hint) -> Vec<f64> {
+        (0..self.count).map(|row| row as f64 + 0.5).collect()
+    }
+
+    fn range(&self) -> Range<f64> {
+        self.range.range()
+    }
 }
 
 /// A dot a hit: how far the calculated acceleration is from the measured one.
@@ -122,6 +143,7 @@ pub fn residual_by_level(hits: &[HitMisfit]) -> Result<String, CommandError> {
     titled("residual by level", "Misfit of each hit against its level", (WIDTH, 300), |area| {
         let mut chart = ChartBuilder::on(&area)
             .margin(12)
+            .margin_right(LAST_LABEL)
             .x_label_area_size(45)
             .y_label_area_size(70)
             .build_cartesian_2d(across, 0.0..highest(|point| point.1))?;
@@ -137,4 +159,30 @@ pub fn residual_by_level(hits: &[HitMisfit]) -> Result<String, CommandError> {
         chart.draw_series(points.iter().map(|&point| Circle::new(point, 5, MEASURED.filled())))?;
         Ok(())
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use orthopanel_model::Place;
+
+    use super::*;
+
+    /// Bars are the blue rectangles.
+    #[test]
+    fn every_pair_of_places_has_its_bar_and_its_name() {
+        let pair = |x: f64| PairResidual {
+            force: Place { x, y: 0.0 },
+            response: Place { x: 0.3, y: 0.0 },
+            unit: ResidualUnit::Noise,
+            lines: vec![(10.0, 2.0)],
+        };
+        for count in [1, 2, 5] {
+            let pairs: Vec<PairResidual> = (0..count).map(|index| pair(-0.1 * index as f64)).collect();
+            let picture = residual_by_place(&pairs).expect("a picture");
+            let bars: Vec<&str> = picture.split("<rect ").filter(|part| part.contains("#005AAA")).collect();
+            assert_eq!(bars.len(), count, "{picture}");
+            assert!(bars.iter().all(|bar| !bar.contains("width=\"0\"") && !bar.contains("height=\"0\"")), "{bars:?}");
+            assert_eq!(picture.matches(" to 0.3").count(), count);
+        }
+    }
 }

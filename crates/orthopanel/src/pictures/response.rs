@@ -3,7 +3,7 @@
 use plotters::prelude::*;
 
 use super::curve::curve;
-use super::{FONT, GRID, MEASURED, MODEL, spaced, stacked};
+use super::{FONT, GRID, LAST_LABEL, MEASURED, MODEL, spaced, stacked};
 use crate::error::CommandError;
 use crate::force_file::ForceHistory;
 use crate::time_response::Motion;
@@ -25,6 +25,7 @@ pub fn response(force: &ForceHistory, motions: &[Motion]) -> Result<String, Comm
             };
             let mut chart = ChartBuilder::on(area)
                 .margin(12)
+                .margin_right(LAST_LABEL)
                 .x_label_area_size(if below.is_empty() { 30 } else { 45 })
                 .y_label_area_size(70)
                 .build_cartesian_2d(0.0..last, spaced(motion().map(|(_, value)| value)))?;

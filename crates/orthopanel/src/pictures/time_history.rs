@@ -5,7 +5,7 @@ use plotters::prelude::*;
 
 use super::curve::curve;
 use super::envelope::envelope;
-use super::{Area, Drawn, ERROR, FONT, GRID, MEASURED, MODEL, spaced, stacked};
+use super::{Area, Drawn, ERROR, FONT, GRID, LAST_LABEL, MEASURED, MODEL, spaced, stacked};
 use crate::error::CommandError;
 use crate::measured_pairs::{ComparedPair, place_text};
 
@@ -60,6 +60,7 @@ fn draw(area: &Area, rate: f64, samples: std::ops::Range<usize>, what: &str, sig
     let heights = signals.iter().flat_map(|signal| points(signal.values)).map(|(_, height)| height);
     let mut chart = ChartBuilder::on(area)
         .margin(12)
+        .margin_right(LAST_LABEL)
         .x_label_area_size(40)
         .y_label_area_size(70)
         .build_cartesian_2d(time(samples.start)..time(samples.end), spaced(heights))?;

@@ -16,6 +16,12 @@ fn to_std(value: f64, std: f64) -> String {
     format!("{value:.digits$e}")
 }
 
+/// The 95 % interval about an estimate.
+pub fn interval(value: f64, std: f64) -> String {
+    let [low, high] = [-INTERVAL, INTERVAL].map(|widths| to_std(value + widths * std, std));
+    format!("{low} to {high}")
+}
+
 /// Percent to three digits behind the point, or two significant ones below a hundredth.
 fn percent(value: f64) -> String {
     if value == 0.0 || value >= 0.01 { format!("{value:.3} %") } else { format!("{value:.1e} %") }
@@ -54,10 +60,7 @@ pub fn table(found: &Identification) -> Table {
             None => (*name).to_owned(),
         };
         let (deviation, interval) = match std {
-            Some(std) => {
-                let [low, high] = [-INTERVAL, INTERVAL].map(|widths| to_std(value + widths * std, *std));
-                (format!("{std:.1e}"), format!("{low} to {high}"))
-            }
+            Some(std) => (format!("{std:.1e}"), interval(*value, *std)),
             None if *held => ("held".into(), String::new()),
             None => ("unknown".into(), String::new()),
         };

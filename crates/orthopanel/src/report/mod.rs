@@ -10,7 +10,7 @@ use std::path::Path;
 use askama::Template;
 
 use crate::error::CommandError;
-use crate::evidence::Evidence;
+use crate::evidence::{Evidence, HitsWithEffects};
 use crate::identified::Identified;
 use crate::notes;
 use crate::traced::Traced;
@@ -46,6 +46,9 @@ impl Figure {
     }
 }
 
+const SUPERSEDED: &str = "These are the constants of the base model, before effects. Those of the model that is written stand \
+                          under \"What the model lacks\".";
+
 /// The page of a test at `path`.
 pub fn page(
     path: &Path,
@@ -56,15 +59,22 @@ pub fn page(
     let found = &identified.found;
     let pieces = found.pieces.iter().zip(&evidence.pieces);
     let piece_name = found.pieces.first().map_or("", |piece| piece.name.as_str());
+    let has_effects = traced.as_ref().is_ok_and(|traced| !traced.tracing.effects.is_empty());
+    let superseded = traced.as_ref().is_ok_and(Traced::explains);
+    let mut about_constants = constants::remarks(found);
+    if superseded {
+        about_constants.insert(0, SUPERSEDED.into());
+    }
+    let hits: Vec<&HitsWithEffects> = evidence.pieces.iter().flat_map(|piece| &piece.hits_with_effects).collect();
     let page = Page {
         title: format!("Hammer test {}", path.display()),
         made_by: concat!("Written by orthopanel ", env!("CARGO_PKG_VERSION")).to_owned(),
         lead: constants::lead(found),
         constants: constants::table(found),
-        about_constants: constants::remarks(found),
-        trace: traced.as_ref().ok().map(|traced| TraceSection::of(piece_name, traced)).transpose()?,
+        about_constants,
+        trace: traced.as_ref().ok().map(|traced| TraceSection::of(piece_name, traced, &hits)).transpose()?,
         not_traced: traced.as_ref().err().cloned(),
-        pieces: pieces.map(|(fit, shown)| PieceSection::of(fit, shown)).collect::<Result<_, _>>()?,
+        pieces: pieces.map(|(fit, shown)| PieceSection::of(fit, shown, has_effects)).collect::<Result<_, _>>()?,
         notes: notes::counted(&found.notes).collect(),
     };
     page.render().map_err(|error| CommandError::Picture { name: "report", problem: error.to_string() })

@@ -13,6 +13,10 @@ use crate::pictures;
 pub struct PieceSection {
     pub name: String,
     pub sizes: String,
+    /// Behind the headings of what shows the base model alone, where effects were found.
+    pub of_base: &'static str,
+    /// Behind those of what shows the model with the effects beside it.
+    pub of_both: &'static str,
     pub records: Option<Table>,
     pub coherence: Option<Figure>,
     pub modes: Option<Table>,
@@ -40,7 +44,8 @@ impl Gallery {
 }
 
 impl PieceSection {
-    pub fn of(fit: &PieceFit, shown: &PieceEvidence) -> Result<Self, CommandError> {
+    /// `has_effects`: whether a trace found any, so that the base model is not the last word.
+    pub fn of(fit: &PieceFit, shown: &PieceEvidence, has_effects: bool) -> Result<Self, CommandError> {
         let piece = fit.piece;
         let accelerance_caption = match shown.residuals.is_empty() {
             true => "Accelerance of the model; the vertical lines are the measured natural frequencies.",
@@ -50,15 +55,18 @@ impl PieceSection {
             Gallery::new("Accelerances", accelerance_caption, &shown.accelerances),
             Gallery::new("Time histories", HIT_CAPTION, &shown.time_histories),
         ];
+        let of_base = if has_effects { ": the base model, before effects" } else { "" };
         Ok(Self {
             name: fit.name.clone(),
             sizes: format!(
                 "{} x {} x {} m, {:.4} kg/m².",
                 piece.length, piece.width, piece.thickness, piece.mass_per_area
             ),
+            of_base,
+            of_both: if shown.with_effects.is_some() { ", before and with the effects" } else { of_base },
             records: (!shown.records.is_empty()).then(|| records(&shown.records)),
             coherence: shown.coherence.as_ref().map(|picture| Figure::new(picture, COHERENCE_CAPTION)),
-            modes: (!fit.modes.is_empty() || !fit.hidden.is_empty()).then(|| modes(fit)),
+            modes: (!fit.modes.is_empty() || !fit.hidden.is_empty()).then(|| modes(fit, shown.with_effects.as_deref())),
             frequencies: shown.frequencies.as_ref().map(|picture| Figure::new(picture, FREQUENCIES_CAPTION)),
             galleries: galleries.into_iter().flatten().collect(),
             residual: residual(&shown.residuals, &shown.hits)?,
@@ -86,18 +94,30 @@ fn records(rows: &[RecordRow]) -> Table {
     Table::new(&headings, rows.iter().map(row).collect())
 }
 
-fn modes(fit: &PieceFit) -> Table {
+/// With the model with the effects behind the base model, where there is one.
+fn modes(fit: &PieceFit, with_effects: Option<&[f64]>) -> Table {
     let rows = ModeRows::of(fit, &Digits { frequency: 2, error: 4 });
-    let (headings, rows) = rows.shown([
+    let model = if with_effects.is_some() { "base model [Hz]" } else { "model [Hz]" };
+    let (mut headings, mut rows) = rows.shown([
         "mode",
         "nodes along x, y",
         "measured [Hz]",
         "std [Hz]",
-        "model [Hz]",
+        model,
         "error [%]",
         "zeta",
         "std of zeta",
     ]);
+    if let Some(with_effects) = with_effects {
+        headings.extend(["with effects [Hz]", "error [%]"]);
+        // Rows rise, and lists hide no mode.
+        let mut found: Vec<_> = fit.modes.iter().zip(with_effects).collect();
+        found.sort_by_key(|(mode, _)| mode.mode);
+        for (row, (mode, model)) in rows.iter_mut().zip(found) {
+            row.push(format!("{model:.2}"));
+            row.push(format!("{:+.4}", 100.0 * (model / mode.measured - 1.0)));
+        }
+    }
     Table::new(&headings, rows)
 }
 

@@ -1,12 +1,15 @@
 //! What the model lacks: the verdict, the errors before and after, and the ranking.
 
-use orthopanel_identify::AcceleranceFit;
+use orthopanel_identify::{AcceleranceFit, FittedError, TracedEffect, Tracing};
+use orthopanel_model::Estimate;
 
 use super::Figure;
+use super::constants::interval;
 use super::pieces::Gallery;
 use super::table::Table;
 use crate::error::CommandError;
-use crate::evidence::PairResidual;
+use crate::evidence::{HitsWithEffects, PairResidual};
+use crate::measured_pairs::place_text;
 use crate::traced::{Traced, comparison_rows, effect_rows, ranking_rows};
 use crate::{notes, pictures};
 
@@ -17,7 +20,11 @@ pub struct TraceSection {
     pub constants: Option<Table>,
     pub measure: String,
     pub comparison: Table,
+    /// Why what was held out may be met better than what was fitted, where it is.
+    pub about_held_out: Option<&'static str>,
     pub ranking: Table,
+    /// Whether the ranking has hypotheses that the search did not follow to the end.
+    pub has_left_behind: bool,
     /// What stays in the model, what was taken out and why.
     pub ownership: Vec<String>,
     pub next_experiment: String,
@@ -28,22 +35,23 @@ pub struct TraceSection {
     /// The records beside the model with the effects, and what it leaves of them; none where no effect was found.
     pub fit: Option<Gallery>,
     pub residual: Option<Figure>,
+    /// How far both models are from the hits themselves.
+    pub hits: Option<Table>,
 }
 
 impl TraceSection {
-    pub fn of(name: &str, traced: &Traced) -> Result<Self, CommandError> {
+    pub fn of(name: &str, traced: &Traced, compared: &[&HitsWithEffects]) -> Result<Self, CommandError> {
         let tracing = &traced.tracing;
-        let constants = traced.constant_rows();
-        let effects = ["effect", "owner", "parameter", "value", "std", "unit"];
         let ranking = ["hypothesis", "BIC above best", "error held out", "\"parameters"];
         let fitted = if tracing.effects.is_empty() { &[][..] } else { &tracing.accelerances[..] };
         Ok(Self {
             verdict: traced.verdict(),
-            effects: (!tracing.effects.is_empty()).then(|| Table::new(&effects, effect_rows(&tracing.effects))),
-            constants: (!constants.is_empty())
-                .then(|| Table::new(&["constant with it", "value", "std", "unit"], constants)),
+            effects: effects(&tracing.effects),
+            constants: constants_with_it(traced),
             measure: tracing.error.measure.clone(),
             comparison: Table::new(&["", "fitted", "held out"], comparison_rows(tracing)),
+            about_held_out: about_held_out(tracing),
+            has_left_behind: tracing.candidates.iter().any(|candidate| candidate.left_behind.is_some()),
             ranking: Table::new(&ranking, ranking_rows(tracing, usize::MAX)),
             ownership: traced.ownership(),
             next_experiment: tracing.next_experiment.clone(),
@@ -51,8 +59,65 @@ impl TraceSection {
             not_tested: tracing.not_tested.iter().map(|of| format!("{}: {}", of.id, of.reason)).collect(),
             fit: gallery(name, fitted)?,
             residual: residual(fitted)?,
+            hits: hits(compared),
         })
     }
+}
+
+fn effects(found: &[TracedEffect]) -> Option<Table> {
+    let estimates = found.iter().flat_map(|effect| effect.parameters.iter().flat_map(|of| &of.values));
+    let rows = with_intervals(effect_rows(found), estimates);
+    let headings = ["effect", "owner", "parameter", "value", "std", "95 % interval", "unit"];
+    (!rows.is_empty()).then(|| Table::new(&headings, rows))
+}
+
+fn constants_with_it(traced: &Traced) -> Option<Table> {
+    let rows = with_intervals(traced.constant_rows(), traced.constants().map(|(_, estimate)| estimate));
+    (!rows.is_empty()).then(|| Table::new(&["constant with it", "value", "std", "95 % interval", "unit"], rows))
+}
+
+/// The interval of each row's estimate before its unit, which stands last.
+fn with_intervals<'a>(mut rows: Vec<Vec<String>>, estimates: impl Iterator<Item = &'a Estimate>) -> Vec<Vec<String>> {
+    for (row, of) in rows.iter_mut().zip(estimates) {
+        let interval = of.std.map_or(String::new(), |std| interval(of.value, std));
+        row.insert(row.len().saturating_sub(1), interval);
+    }
+    rows
+}
+
+/// With fewer pairs of places it is a hit that is held out.
+const LEAST_PLACES: usize = 3;
+const HIT_HELD_OUT: &str = "Held out is one hit after the other, and fitted is the mean of all hits. A single hit is noisier than the \
+                            mean, so the same misfit counts for less beside its noise: the figure held out may stand below the \
+                            fitted one.";
+const PLACE_HELD_OUT: &str = "Held out is one pair of places after the other. What only its own record tells, as damping above \
+                              the band, stays open within what the others leave: the figure held out may stand below the fitted one.";
+
+fn about_held_out(tracing: &Tracing) -> Option<&'static str> {
+    let is_below = |error: FittedError| error.held_out < error.fitted;
+    let pairs = tracing.accelerances.len();
+    let is_odd = pairs > 0 && (is_below(tracing.error.before) || is_below(tracing.error.after));
+    // A record's own parameter, which leaving its place out would leave untold, is judged by hits too.
+    let is_own = tracing
+        .effects
+        .iter()
+        .any(|effect| effect.parameters.iter().any(|of| of.values.len() > 1 || of.name == "record"));
+    is_odd.then_some(if pairs < LEAST_PLACES || is_own { HIT_HELD_OUT } else { PLACE_HELD_OUT })
+}
+
+/// A row a pair of places.
+fn hits(compared: &[&HitsWithEffects]) -> Option<Table> {
+    let row = |pair: &&HitsWithEffects| {
+        let [low, high] = pair.band;
+        vec![
+            format!("{} to {}", place_text(pair.force), place_text(pair.response)),
+            format!("{low:.1} to {high:.1} Hz"),
+            format!("{:.3}", pair.before),
+            format!("{:.3}", pair.after),
+        ]
+    };
+    let headings = ["force to response [m]", "band", "before [% of peak]", "with the effects [% of peak]"];
+    (!compared.is_empty()).then(|| Table::new(&headings, compared.iter().map(row).collect()))
 }
 
 fn gallery(name: &str, fitted: &[AcceleranceFit]) -> Result<Option<Gallery>, CommandError> {
@@ -72,4 +137,26 @@ fn residual(fitted: &[AcceleranceFit]) -> Result<Option<Figure>, CommandError> {
     }
     let caption = "What the model with the effects leaves: compare the same picture without them, further down.";
     Ok(Some(Figure::new(&pictures::residual_by_frequency(&residuals)?, caption)))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use orthopanel_data::ImpactTest;
+
+    use super::*;
+
+    /// The picture of what is left stands where the table beside it has its number.
+    #[test]
+    fn val_what_the_picture_shows_left_is_what_the_table_says() {
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/misplaced-hit/test.toml");
+        let test = ImpactTest::read(Path::new(path)).expect("a test");
+        let traced = Traced::from_test(&test).expect("a trace");
+        let told = traced.tracing.error.after.fitted;
+        for pair in &traced.tracing.accelerances {
+            let shown = PairResidual::of(pair).rms();
+            assert!((shown / told - 1.0).abs() < 0.1, "{shown} in the picture, {told} in the table");
+        }
+    }
 }

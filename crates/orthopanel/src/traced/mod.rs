@@ -1,20 +1,25 @@
 //! What a trace found, as text for people and as the panel's model; its JSON (`orthopanel.trace/1`) is the layer's own.
 
+mod lists;
 mod sentences;
 mod tables;
 
 use std::path::Path;
 
 use orthopanel_data::ImpactTest;
-use orthopanel_identify::{IdentifyError, Tracing, Verdict, trace_with};
-use orthopanel_model::PanelModel;
+use orthopanel_identify::{AcceleranceFit, IdentifyError, Tracing, Verdict, trace_with};
+use orthopanel_model::{Damping, PanelModel, Place};
 use serde_json::Value;
 
+use crate::identified::{ASSUMED_DAMPING, to_digits};
 use crate::{notes, progress};
 pub use tables::{comparison_rows, effect_rows, ranking_rows};
 
 /// What a mode's entry in a model's provenance tells of the test alone.
 const AS_MEASURED: [&str; 4] = ["mode", "nodes", "measured_hz", "measured_std_hz"];
+
+const DAMPING_OF_RECORDS: &str = "with the effects, the ratios with which the records as a whole fit best; beyond the band \
+                                  assumed, one usual for their resonances";
 
 /// A trace of a test.
 pub struct Traced {
@@ -24,10 +29,15 @@ pub struct Traced {
 impl Traced {
     /// Traces; shows on standard error how far it is, and says what was noted.
     pub fn from_test(test: &ImpactTest) -> Result<Self, IdentifyError> {
-        let tracing = {
+        let mut tracing = {
             let shown = progress::counted("tracing what the model lacks");
             trace_with(test, &|at| shown.at(at.done, at.of, at.effect))?
         };
+        for panel in tracing.panels.iter_mut().filter(|panel| panel.damping == Damping::default()) {
+            // Lists tell no damping, and a panel without any would ring for ever.
+            panel.damping.beyond = ASSUMED_DAMPING;
+            panel.provenance.insert("damping".into(), "assumed, not measured".into());
+        }
         notes::say("", &tracing.notes);
         Ok(Self { tracing })
     }
@@ -46,6 +56,16 @@ impl Traced {
     fn panels(&self) -> Option<&[PanelModel]> {
         let found = matches!(self.tracing.verdict, Verdict::Explained | Verdict::Ambiguous);
         (found && !self.tracing.effects.is_empty()).then_some(&self.tracing.panels)
+    }
+
+    /// The accelerance of the model with the effects from one place to another; `None` where no effect was found, and
+    /// where one makes of each hit something else.
+    pub fn accelerance_of(&self, places: (Place, Place)) -> Option<&AcceleranceFit> {
+        let effects = &self.tracing.effects;
+        if effects.is_empty() || effects.iter().any(|effect| effect.id == "cubic-stiffness") {
+            return None;
+        }
+        self.tracing.accelerances.iter().find(|pair| (pair.force_at, pair.response_at) == places)
     }
 
     /// Whether effects were found that explain the data.
@@ -68,6 +88,7 @@ impl Traced {
                     mode.retain(|key, _| AS_MEASURED.contains(&key.as_str()));
                 });
             }
+            self.put_own_errors(model);
             model.provenance.insert("trace".into(), self.tracing.verdict.name().into());
             let removed: Vec<&str> = self.tracing.removed.iter().map(|removed| removed.id).collect();
             if !removed.is_empty() {
@@ -75,5 +96,31 @@ impl Traced {
             }
         }
         models
+    }
+
+    /// The errors and the damping that a provenance tells are those of the model without the effects: in their place come
+    /// this model's own, as far as the trace tells them.
+    fn put_own_errors(&self, model: &mut PanelModel) {
+        let provenance = &mut model.provenance;
+        for key in ["frequency_rms_percent", "accelerance_rms_percent"] {
+            provenance.remove(key);
+        }
+        let Some(accelerances) = self.accelerance_rms_percent() else {
+            let error = to_digits(self.tracing.error.after.fitted, 2);
+            provenance.insert("frequency_rms_percent".into(), error.into());
+            return;
+        };
+        provenance.insert("accelerance_rms_percent".into(), to_digits(accelerances, 2).into());
+        provenance.remove("damping_law");
+        provenance.insert("damping".into(), DAMPING_OF_RECORDS.into());
+    }
+
+    /// Rms of what the model with the effects leaves of the records over the rms measured \[%\]; `None` where lists
+    /// were traced.
+    fn accelerance_rms_percent(&self) -> Option<f64> {
+        let lines = || self.tracing.accelerances.iter().flat_map(|pair| pair.measured.iter().zip(&pair.model));
+        let measured: f64 = lines().map(|(measured, _)| measured.norm_sqr()).sum();
+        let left: f64 = lines().map(|(measured, model)| (measured - model).norm_sqr()).sum();
+        (measured > 0.0).then(|| 100.0 * (left / measured).sqrt())
     }
 }

@@ -35,8 +35,14 @@ impl Traced {
 
     /// What the panel's model keeps of the effects found, and what was taken out and why.
     pub fn ownership(&self) -> Vec<String> {
-        let kept = self.panels().unwrap_or_default().iter().flat_map(|panel| &panel.effects);
-        let kept = kept.map(|effect| format!("{} stays in the model: it belongs to the panel.", effect.id));
+        // Pieces have their effects in common.
+        let mut kept: Vec<&str> = Vec::new();
+        for effect in self.panels().unwrap_or_default().iter().flat_map(|panel| &panel.effects) {
+            if !kept.contains(&&*effect.id) {
+                kept.push(&effect.id);
+            }
+        }
+        let kept = kept.into_iter().map(|id| format!("{id} stays in the model: it belongs to the panel."));
         let removed = self.tracing.removed.iter();
         kept.chain(removed.map(|of| format!("{} is taken out of the model: {}.", of.id, of.why))).collect()
     }

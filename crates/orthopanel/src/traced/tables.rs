@@ -78,13 +78,17 @@ impl Traced {
     /// Constants of the panel beside the effects that were found: those of the model that is written; none where no
     /// effect was found.
     pub fn constant_rows(&self) -> Vec<Vec<String>> {
-        let panel = self.panels().and_then(|panels| panels.first());
         let row = |(name, of): (&String, &Estimate)| {
             let std = of.std.map_or("held".into(), |std| format!("{std:.1e}"));
             let unit = if name == "nu_xy" { "" } else { "Pa" };
             vec![name.clone(), format!("{:.4e}", of.value), std, unit.to_owned()]
         };
-        panel.into_iter().flat_map(|panel| &panel.constants).map(row).collect()
+        self.constants().map(row).collect()
+    }
+
+    /// The same as numbers.
+    pub fn constants(&self) -> impl Iterator<Item = (&String, &Estimate)> {
+        self.panels().and_then(|panels| panels.first()).into_iter().flat_map(|panel| &panel.constants)
     }
 
     /// Verdict, effects, errors, ranking, ownership and the next experiment.

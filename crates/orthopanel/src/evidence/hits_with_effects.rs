@@ -1,0 +1,98 @@
+//! Each measured hit beside the base model and the model with the effects, both in the band of the trace.
+//!
+//! Effects of rig and measuring chain act on the accelerance, so a hit's force goes through that: with both channels faded as the
+//! window has them, $A(s) = H(s)F(s)$ on every line of the record. What else the record holds is left out of all alike.
+
+use num_complex::Complex64;
+use orthopanel_data::{Hit, TimeHistory};
+use orthopanel_identify::AcceleranceFit;
+use orthopanel_model::Place;
+use realfft::RealFftPlanner;
+
+/// A line stands at a whole multiple of the record's resolution, to this part of it.
+const ON_LINE: f64 = 1e-3;
+
+/// The hits of one pair of places.
+pub struct HitsWithEffects {
+    pub force: Place,
+    pub response: Place,
+    /// Lowest and highest line \[Hz\].
+    pub band: [f64; 2],
+    /// Rms over the kept hits of measured less calculated, over each hit's peak \[%\]: by the base model and with the effects.
+    pub before: f64,
+    pub after: f64,
+}
+
+impl HitsWithEffects {
+    /// `None` where the accelerances of both models do not stand on the record's own lines.
+    pub fn of(history: &TimeHistory, kept: &[bool], base: &AcceleranceFit, with: &AcceleranceFit) -> Option<Self> {
+        let samples = history.hits.first()?.force.len();
+        if base.decay_rate != with.decay_rate || samples == 0 {
+            return None;
+        }
+        let resolution = history.rate / samples as f64;
+        let on_line = |frequency: f64| {
+            let line = frequency / resolution;
+            ((line - line.round()).abs() < ON_LINE).then_some(line.round() as usize)
+        };
+        let first = on_line(base.frequency.first()?.max(*with.frequency.first()?))?;
+        let last = on_line(base.frequency.last()?.min(*with.frequency.last()?))?;
+        let lines = |pair: &AcceleranceFit| {
+            let all = pair.frequency.iter().zip(&pair.model);
+            let told = all.map(|(&frequency, &value)| Some((on_line(frequency)?, value)));
+            let told: Option<Vec<_>> = told.collect();
+            let told: Vec<_> = told?.into_iter().filter(|(line, _)| (first..=last).contains(line)).collect();
+            (told.len() == last + 1 - first).then_some(told)
+        };
+        let (base_lines, with_lines) = (lines(base)?, lines(with)?);
+        let hits = history.hits.iter().zip(kept).filter(|(_, kept)| **kept);
+        let misfits: Option<Vec<[f64; 2]>> = hits
+            .map(|(hit, _)| {
+                let [force, motion] = spectra(hit, with.decay_rate / history.rate)?;
+                Some([&base_lines, &with_lines].map(|model| misfit(&force, &motion, model, samples)))
+            })
+            .collect();
+        let misfits = misfits?;
+        let rms = |of: usize| {
+            (misfits.iter().map(|misfit| misfit[of] * misfit[of]).sum::<f64>() / misfits.len().max(1) as f64).sqrt()
+        };
+        let (force, response) = (history.force_at, history.response_at);
+        let band = [first, last].map(|line| line as f64 * resolution);
+        (!misfits.is_empty()).then(|| Self { force, response, band, before: rms(0), after: rms(1) })
+    }
+}
+
+/// Transforms of force and acceleration, both faded by this much a sample.
+fn spectra(hit: &Hit, fading: f64) -> Option<[Vec<Complex64>; 2]> {
+    let transform = RealFftPlanner::<f64>::new().plan_fft_forward(hit.force.len());
+    let of = |samples: &[f64]| {
+        let faded = samples.iter().enumerate().map(|(n, value)| value * (-fading * n as f64).exp());
+        let (mut faded, mut lines) = (faded.collect::<Vec<_>>(), transform.make_output_vec());
+        transform.process(&mut faded, &mut lines).ok()?;
+        Some(lines)
+    };
+    Some([of(&hit.force)?, of(&hit.acceleration)?])
+}
+
+/// Rms of what the model leaves of the acceleration on its lines, over the peak of that \[%\].
+fn misfit(force: &[Complex64], motion: &[Complex64], model: &[(usize, Complex64)], samples: usize) -> f64 {
+    let mut measured = vec![Complex64::ZERO; motion.len()];
+    let mut left = 0.0;
+    for &(line, value) in model {
+        let (Some(force), Some(&motion), Some(measured)) = (force.get(line), motion.get(line), measured.get_mut(line))
+        else {
+            continue;
+        };
+        *measured = motion;
+        left += 2.0 * (motion - value * force).norm_sqr();
+    }
+    let back = RealFftPlanner::<f64>::new().plan_fft_inverse(samples);
+    let mut signal = back.make_output_vec();
+    // The first and the last line of a real signal are real; the trace uses neither.
+    if back.process(&mut measured, &mut signal).is_err() {
+        return f64::NAN;
+    }
+    let peak = signal.iter().fold(0.0_f64, |peak, value| peak.max(value.abs()));
+    // Parseval: the mean square of a signal is that of its lines over the samples, and both stand unscaled.
+    100.0 * left.sqrt() / peak
+}
