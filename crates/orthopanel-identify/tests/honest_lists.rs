@@ -153,7 +153,7 @@ fn a_complete_list_has_the_base_first_and_the_others_by_their_criterion() {
     assert!(found.candidates[1..].windows(2).all(|pair| pair[0].bic <= pair[1].bic), "{:?}", found.candidates);
 }
 
-/// Where a plate would show what a beam does not is computed: the paper's wide piece bends across near 4.3 kHz.
+/// Where a plate would show what a beam does not is computed: the paper's wide piece bends across near 4.4 kHz.
 #[test]
 fn val_the_next_experiment_says_where_a_plate_bends_across() {
     let path = format!("{}/../../examples/pieces-1-2/test.toml", env!("CARGO_MANIFEST_DIR"));
