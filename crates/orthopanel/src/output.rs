@@ -67,7 +67,7 @@ pub fn write(path: &Path, content: impl Into<Vec<u8>>) -> Result<(), CommandErro
     files.write().map(drop)
 }
 
-/// As [`write`], into a folder that is made where it is not there.
+/// As [`write()`], into a folder that is made where it is not there.
 pub fn write_with_folder(path: &Path, content: impl Into<Vec<u8>>) -> Result<(), CommandError> {
     let (Some(folder), Some(name)) = (path.parent(), path.file_name()) else { return write(path, content) };
     if folder.as_os_str().is_empty() {
