@@ -17,6 +17,7 @@ mod core_modes;
 mod curves;
 mod each_effect;
 mod elsewhere;
+mod error_clusters;
 mod fit;
 mod frequencies;
 mod further_list;

@@ -4,6 +4,7 @@ use faer::Mat;
 use num_complex::Complex64;
 use orthopanel_model::{LineBlock, ModelError};
 
+use super::error_clusters::add_square;
 use super::fit::{Fit, LAST};
 use super::hypothesis::{CUBIC, FreeParameter, Hypothesis, Switched};
 use super::record_problem::Grouping;
@@ -19,10 +20,17 @@ const TUNED: f64 = 3e-5;
 /// Variance that the same error of the motion leaves of each of a hypothesis' coordinates where forces go with its cube: with
 /// $k_3w^3$, a motion that is wrong by a part is a $k_3$ that is wrong by twice that. Its derivative does not show this: over many
 /// swings that grows so steep that it would tell $k_3$ to any digit.
-pub(super) fn of_amplitude(hypothesis: &Hypothesis) -> Vec<f64> {
+///
+/// In a rough test that part is what its roughness leaves, and with it the gains of its records in the mean: no record tells which of
+/// its channels a gain belongs to, and one of the force's is one of the motion under it.
+pub(super) fn of_amplitude(records: &TestRecords, hypothesis: &Hypothesis) -> Vec<f64> {
+    let many = records.problem(LAST).records.len().max(1) as f64;
+    let trusted = records.rest.map_or(TRUSTED, |rest| rest.part.max(TRUSTED));
+    let of_gains = records.rough.map_or(0.0, |scales| scales.gain.powi(2) / many);
+    let motion = trusted.powi(2) + of_gains;
     let part = |(on, free): (&Switched, &FreeParameter)| {
         let value = on.values[free.at];
-        if on.effect.id() == CUBIC { (2.0 * TRUSTED * value / free.slope(value)).powi(2) } else { 0.0 }
+        if on.effect.id() == CUBIC { 4.0 * motion * (value / free.slope(value)).powi(2) } else { 0.0 }
     };
     hypothesis.each_free().map(part).collect()
 }
@@ -43,11 +51,6 @@ pub(super) fn spread_of_gradient(records: &TestRecords, fit: &Fit) -> Result<Mat
     let (trusted, tuned) =
         records.rest.map_or((TRUSTED, TUNED), |rest| (rest.part.max(TRUSTED), rest.tuning.max(TUNED)));
     let mut sum = Mat::zeros(size, size);
-    let mut add = |gradient: &[f64]| {
-        for (column, factor) in gradient.iter().enumerate() {
-            sum.col_as_slice_mut(column).iter_mut().zip(gradient).for_each(|(sum, value)| *sum += factor * value);
-        }
-    };
     let mut shifts: Vec<Vec<f64>> = Vec::new();
     problem.rows(&fit.state, Grouping::Places, |index, _, rows| {
         let record = &problem.records[index];
@@ -72,8 +75,8 @@ pub(super) fn spread_of_gradient(records: &TestRecords, fit: &Fit) -> Result<Mat
         };
         for (number, from) in (0..lines).step_by(stretch).enumerate() {
             let own = from..(from + stretch).min(lines);
-            add(&gradient(own.clone(), &|line| trusted * record.value[line]));
-            add(&gradient(own.clone(), &|line| trusted * Complex64::I * record.value[line]));
+            add_square(&mut sum, 1.0, &gradient(own.clone(), &|line| trusted * record.value[line]));
+            add_square(&mut sum, 1.0, &gradient(own.clone(), &|line| trusted * Complex64::I * record.value[line]));
             if shifts.len() <= number {
                 shifts.push(vec![0.0; size]);
             }
@@ -81,7 +84,7 @@ pub(super) fn spread_of_gradient(records: &TestRecords, fit: &Fit) -> Result<Mat
             shifts[number].iter_mut().zip(shift).for_each(|(sum, own)| *sum += own);
         }
     })?;
-    shifts.iter().for_each(|shift| add(shift));
+    shifts.iter().for_each(|shift| add_square(&mut sum, 1.0, shift));
     Ok(sum)
 }
 

@@ -5,6 +5,7 @@ use orthopanel_data::ImpactTest;
 use orthopanel_model::{Estimate, Owner, PanelModel};
 
 use super::bare_panel::bare_panel;
+use super::error_clusters::clustered_spread;
 use super::fit::{Fit, covariance};
 use super::held_out::held_out;
 use super::hypothesis::{Hypothesis, PLATE, Switched};
@@ -98,20 +99,24 @@ pub(super) fn name(fit: &Fit, declared: usize) -> String {
 }
 
 /// Standard deviation of everything that a search moved: [`covariance`], widened as the likelihood is, and what a model that is
-/// wrong by a little adds, see [`spread_of_gradient`].
+/// wrong by a little adds, see [`spread_of_gradient`]. In a rough test residuals err together: where [`clustered_spread`] leaves
+/// more than [`covariance`], that takes its place.
 fn deviations(search: &Search, ranking: &Ranking, fit: &Fit) -> Result<Vec<Option<f64>>, IdentifyError> {
-    let unit = ranking.scale.independent.recip() * fit.chi_square(search.records).max(1.0);
+    let records = search.records;
+    let unit = ranking.scale.independent.recip() * fit.chi_square(records).max(1.0);
     let Some(covariance) = covariance(fit, unit) else { return Ok(vec![None; fit.size]) };
-    let of_model = if fit.given_up.is_none() {
-        let spread = spread_of_gradient(search.records, fit)?;
-        faer::Scale(unit.powi(-2)) * (&covariance * spread * &covariance)
-    } else {
-        Mat::zeros(fit.size, fit.size)
-    };
+    let left_by = |spread: Mat<f64>| faer::Scale(unit.powi(-2)) * (&covariance * spread * &covariance);
+    let (mut of_model, mut clustered) = (Mat::zeros(fit.size, fit.size), Mat::zeros(fit.size, fit.size));
+    if fit.given_up.is_none() {
+        of_model = left_by(spread_of_gradient(records, fit)?);
+        if records.rough.is_some() {
+            clustered = left_by(clustered_spread(records, fit)?);
+        }
+    }
     let hypothesis = &fit.state.hypothesis;
-    let amplitude = std::iter::repeat_n(0.0, fit.size - hypothesis.size()).chain(of_amplitude(hypothesis));
-    let amplitude: Vec<f64> = amplitude.collect();
-    let variance = |i: usize| covariance[(i, i)] + of_model[(i, i)] + amplitude[i];
+    let none = std::iter::repeat_n(0.0, fit.size - hypothesis.size());
+    let amplitude: Vec<f64> = none.chain(of_amplitude(records, hypothesis)).collect();
+    let variance = |i: usize| covariance[(i, i)].max(clustered[(i, i)]) + of_model[(i, i)] + amplitude[i];
     Ok((0..fit.size).map(|i| Some(variance(i).sqrt()).filter(|std| std.is_finite())).collect())
 }
 

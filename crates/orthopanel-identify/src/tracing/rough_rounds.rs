@@ -24,7 +24,7 @@ pub(super) const SIFTED: usize = 2;
 const ROUNDS: usize = 3;
 const SETTLED: f64 = 1.2;
 /// Lines of the plain beam after which no further round begins, see [`super::ranking`]: some 75 s of one processor.
-const MOST_WORK: u64 = 100_000_000;
+pub(super) const MOST_WORK: u64 = 100_000_000;
 /// Evaluations of a hypothesis at scales that have changed since it was fitted.
 const AGAIN: Ending = Ending::far(8, 0.2);
 
@@ -35,7 +35,7 @@ pub(super) struct Begun {
 }
 
 impl Begun {
-    fn new(state: State, left: Option<usize>) -> Self {
+    pub(super) fn new(state: State, left: Option<usize>) -> Self {
         Self { state, followed: left.map_or(Ok(PATIENCE[LAST]), Err) }
     }
 
@@ -146,14 +146,22 @@ impl<'a> Rounds<'a> {
     }
 }
 
-/// The base first, then those that may still win; and those that are behind: of what the best gains on the base, a part is missing.
-pub(super) fn sifted(records: &TestRecords, begun: Vec<Costed>) -> Vec<Begun> {
-    let (base, others): (Vec<_>, Vec<_>) = begun.into_iter().partition(|(state, _)| is_base(state, records));
-    let least = others.iter().map(|(_, cost)| *cost).fold(f64::INFINITY, f64::min);
-    let of_base = base.first().map_or(least, |(_, cost)| *cost);
+/// The base and those that may still win; and those that are behind: of what the best gains on the base, a part is missing.
+pub(super) fn parted<'a>(records: &TestRecords, begun: &'a [Costed]) -> (Vec<&'a Costed>, Vec<&'a Costed>) {
+    let base = begun.iter().find(|(state, _)| is_base(state, records));
+    let others = begun.iter().filter(|(state, _)| !is_base(state, records));
+    let least = others.map(|(_, cost)| *cost).fold(f64::INFINITY, f64::min);
+    let of_base = base.map_or(least, |(_, cost)| *cost);
     let limit = least + BEHIND * (of_base - least).max(0.0) + LITTLE;
-    let others = others.into_iter().map(|(state, cost)| Begun::new(state, (cost > limit).then_some(SIFTED)));
-    base.into_iter().map(|(state, _)| Begun::new(state, None)).chain(others).collect()
+    begun.iter().partition(|(state, cost)| is_base(state, records) || *cost <= limit)
+}
+
+/// The same, the base first.
+pub(super) fn sifted(records: &TestRecords, begun: Vec<Costed>) -> Vec<Begun> {
+    let (mut near, behind) = parted(records, &begun);
+    near.sort_by_key(|(state, _)| !is_base(state, records));
+    let near = near.into_iter().map(|(state, _)| Begun::new(state.clone(), None));
+    near.chain(behind.into_iter().map(|(state, _)| Begun::new(state.clone(), Some(SIFTED)))).collect()
 }
 
 /// The same of a ranking: the base, and what lies or promises to lie so near to the chosen one that it may win.

@@ -12,9 +12,9 @@ use super::ranking::{Ranking, Search};
 use super::record_problem::State;
 use super::records_of_test::TestRecords;
 use super::rough_rest::RoughRest;
-use super::rough_rounds::{Rounds, SIFTED, sifted};
+use super::rough_rounds::{Begun, MOST_WORK, Rounds, SIFTED, parted, sifted};
 use super::roughness::{RoughScales, none_yet};
-use super::starts::{Costed, Look, followed_far};
+use super::starts::{Costed, Look, followed, followed_far};
 use crate::IdentifyError;
 
 /// The widest peaks but one: up to here a line's tolerance is beyond any roughness.
@@ -28,7 +28,8 @@ const LEFT: f64 = 0.3;
 /// What a search that each effect went through alone becomes where roughness is allowed for, with the scales that all its
 /// hypotheses share; `None` where the hits do not show any, or where even then nothing explains the records.
 ///
-/// Each begins where [`tolerant`] lines put it: roughness moves no effect far.
+/// Each begins where [`tolerant`] lines put it: roughness moves no effect far. From the usual places first, and only where that explains
+/// nothing from those between, which costs as much as all the rest. Those that `tolerant` lines leave behind are not looked at.
 pub(super) fn rough_search(
     records: &mut TestRecords,
     piece: Piece,
@@ -40,10 +41,36 @@ pub(super) fn rough_search(
     if is_met || !records.hits_differ() {
         return None;
     }
-    let before = (records.start.clone(), records.rough, records.work.load(Ordering::Relaxed));
+    for look in [Look::Usual, Look::Finer] {
+        let before = (records.start.clone(), records.rough, records.work.load(Ordering::Relaxed));
+        let found = looked_for(records, (piece, progress), plain, look);
+        if let Some(mut ranking) = found {
+            ranking.not_tested.clone_from(&plain.not_tested);
+            return Some(ranking);
+        }
+        let spent = records.work.load(Ordering::Relaxed) - before.2;
+        // The plain search goes on as if nothing had been.
+        let work;
+        (records.start, records.rough, work) = before;
+        records.work.store(work, Ordering::Relaxed);
+        records.as_hit(WIDE, None);
+        if spent > MOST_WORK {
+            break;
+        }
+    }
+    None
+}
+
+/// The same from starts of one look; `None` also where a model cannot be made, which is the plain search's to tell of.
+fn looked_for(
+    records: &mut TestRecords,
+    (piece, progress): (Piece, &(dyn Fn(Progress) + Sync)),
+    plain: &Ranking,
+    look: Look,
+) -> Option<Ranking> {
     records.as_hit(WIDE, Some(RoughRest::OF_PLAIN));
     let plain_states = plain.fits.iter().map(|fit| &fit.state);
-    let states = tolerant(&Search { records, piece, progress }, plain_states);
+    let states = tolerant(&Search { records, piece, progress }, plain_states, look);
     let declared = records.start.hypothesis.effects.len();
     let roughness = none_yet(&piece, records.problem(LAST).records.len());
     let rough = |state: &State| {
@@ -51,32 +78,22 @@ pub(super) fn rough_search(
         effects.insert(declared, roughness.clone());
         State { hypothesis: Hypothesis { effects }, ..state.clone() }
     };
-    let states: Vec<State> = states.iter().map(|(state, _)| rough(state)).collect();
+    let states: Vec<Costed> = states.iter().map(|(state, cost)| (rough(state), *cost)).collect();
     records.start = rough(&records.start);
-    // A model that cannot be made is the plain search's to tell of.
-    if let Ok(Some(mut ranking)) = followed(records, (piece, progress), states) {
-        ranking.not_tested.clone_from(&plain.not_tested);
-        return Some(ranking);
-    }
-    // The plain search goes on as if nothing had been.
-    let work;
-    (records.start, records.rough, work) = before;
-    records.work.store(work, Ordering::Relaxed);
-    records.as_hit(WIDE, None);
-    None
+    in_rounds(records, (piece, progress), states).ok()?
 }
 
-fn followed(
+fn in_rounds(
     records: &mut TestRecords,
     (piece, progress): (Piece, &(dyn Fn(Progress) + Sync)),
-    states: Vec<State>,
+    states: Vec<Costed>,
 ) -> Result<Option<Ranking>, IdentifyError> {
     let rest = RoughRest::USUAL;
     records.rough = Some(RoughScales::USUAL);
     let scattered = records.hit_scatter();
     records.as_hit(SIFTED, Some(rest));
     // Hits can be brought together by a model whose resonances are where the test's are: one beside its roughness.
-    let leading = polished_all(records, &states[..states.len().min(LEADING)]);
+    let leading = polished_all(records, states.iter().take(LEADING));
     let Some((best, _)) = leading.into_iter().min_by(|a, b| a.1.total_cmp(&b.1)) else { return Ok(None) };
     // Hits that fall beside each other tell how far their mean may be from the mark.
     let place = records.align_hits(&best, (SIFTED, rest))?;
@@ -85,8 +102,9 @@ fn followed(
         return Ok(None);
     }
     records.rough = Some(RoughScales::USUAL.with_hits(place));
-    let begun = polished_all(records, &states);
-    let states = sifted(records, begun);
+    let (near, behind) = parted(records, &states);
+    let mut states = sifted(records, polished_all(records, near.into_iter()));
+    states.extend(behind.into_iter().map(|(state, _)| Begun::new(state.clone(), Some(SIFTED))));
     let mut rounds = Rounds::new(records, (piece, progress), (rest, place));
     let Some(mut ranking) = rounds.settled(states)? else { return Ok(None) };
     if rounds.is_doubtful(&ranking)? {
@@ -98,16 +116,19 @@ fn followed(
     Ok((rounds.word(&ranking)? != Verdict::Unexplained).then_some(ranking))
 }
 
-fn polished_all(records: &TestRecords, states: &[State]) -> Vec<Costed> {
-    states.par_iter().filter_map(|state| polish(records, state, SIFTED, PATIENCE[SIFTED]).ok()).collect()
+fn polished_all<'a>(records: &TestRecords, states: impl Iterator<Item = &'a Costed>) -> Vec<Costed> {
+    let states: Vec<&Costed> = states.collect();
+    states.into_par_iter().filter_map(|(state, _)| polish(records, state, SIFTED, PATIENCE[SIFTED]).ok()).collect()
 }
 
 /// The base and each effect beside it as far as lines tell that take roughness for noise, the best first: sharp peaks of a rough
 /// test drag a plain fit off. Where the plain fit is better even so, that.
-fn tolerant<'a>(search: &Search, plain: impl Iterator<Item = &'a State>) -> Vec<Costed> {
+fn tolerant<'a>(search: &Search, plain: impl Iterator<Item = &'a State>, look: Look) -> Vec<Costed> {
     let records = search.records;
-    let (begun, _) =
-        search.begun_alone((&search.undeclared(), Look::Finer), |starts| followed_far(records, starts, WIDE));
+    let (begun, _) = search.begun_alone((&search.undeclared(), look), |starts| match look {
+        Look::Usual => polished_through(records, followed(records, starts, 0)?, WIDE..=WIDE).ok(),
+        _ => followed_far(records, starts, WIDE),
+    });
     let mut fits: Vec<Costed> =
         begun.into_par_iter().filter_map(|begun| polished_through(records, begun, SIFTED..=SIFTED).ok()).collect();
     fits.extend(polished_through(records, (records.start.clone(), f64::INFINITY), 0..=SIFTED));
