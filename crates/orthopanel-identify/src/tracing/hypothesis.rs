@@ -58,10 +58,17 @@ impl FreeParameter {
 
     /// Whether a value lies on a bound, to a part in a thousand of the range that the search moves through.
     pub(super) fn on_bound(&self, value: f64) -> bool {
-        let ((low, high), at) = (self.bounds(), self.coordinate(value));
-        let margin = 1e-3 * (high - low);
-        at - low < margin || high - at < margin
+        ends_of_range(self.scale, self.range, value).contains(&true)
     }
+}
+
+/// Part of a range that counts as its end.
+const MARGIN: f64 = 1e-3;
+
+/// Whether a value lies at the low and at the high end of a range, in the coordinate that a search moves.
+pub(super) fn ends_of_range(scale: Scale, (low, high): (f64, f64), value: f64) -> [bool; 2] {
+    let part = if scale == Scale::Log { (value / low).ln() / (high / low).ln() } else { (value - low) / (high - low) };
+    [part < MARGIN, part > 1.0 - MARGIN]
 }
 
 /// Whether an effect sits at a place of its own: a piece may have several of it.
