@@ -63,6 +63,7 @@ pub use outcome::{
 };
 
 pub(crate) use base_model::identify_with_effects;
+pub(crate) use frequencies::without_repeats;
 pub use rows::TRACE_SCHEMA;
 
 use crate::IdentifyError;
