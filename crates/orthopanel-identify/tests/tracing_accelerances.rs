@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use orthopanel_data::{Estimation, ImpactTest, MeasurementData, RecordedResponse};
-use orthopanel_identify::{TracedEffect, Tracing, Verdict, trace};
+use orthopanel_identify::{Settings, TracedEffect, Tracing, Verdict, identify, trace};
 use orthopanel_model::Place;
 use support::{made, shared_data};
 
@@ -159,4 +159,28 @@ fn measurements_of_two_kinds_are_refused_with_the_way_out() {
     std::fs::write(folder.path().join("0.csv"), "frequency_hz,real,imag\n1.0,1.0,0.0\n2.0,1.0,0.0\n").unwrap();
     let refused = trace(&ImpactTest::from_toml(text, folder.path().join("test.toml")).unwrap()).unwrap_err();
     assert!(refused.to_string().contains("one kind"), "{refused}");
+}
+
+#[test]
+fn a_gain_of_a_record_that_the_test_has_not_is_refused_with_the_count() {
+    let folder = tempfile::tempdir().unwrap();
+    let of_record = |record: &str| {
+        let mut text = "[piece]\nlength = 1.0\nwidth = 0.1\nthickness = 0.01\nmass_per_area = 5.0\n".to_owned();
+        for place in [-0.4, 0.2] {
+            write!(text, "[[measurement]]\nkind = \"accelerance\"\nfile = \"0.csv\"\nforce_at = [{place:?}, 0.0]\n")
+                .unwrap();
+            text += "response_at = [0.4, 0.0]\n";
+        }
+        text += &format!("[[effect]]\nid = \"record-gain\"\ngain = 1.1\nrecord = {record}\n");
+        ImpactTest::from_toml(&text, folder.path().join("test.toml")).unwrap()
+    };
+    std::fs::write(folder.path().join("0.csv"), "frequency_hz,real,imag\n1.0,1.0,0.0\n2.0,1.0,0.0\n").unwrap();
+    let test = of_record("3");
+    for refused in [trace(&test).unwrap_err(), identify(&test, Settings::default()).unwrap_err()] {
+        let said = refused.to_string();
+        assert!(said.contains("record = 3") && said.contains("from 1 to 2"), "{said}");
+    }
+    // Two lines show no resonance; of the record nothing is said.
+    let said = trace(&of_record("2")).unwrap_err().to_string();
+    assert!(!said.contains("record = "), "{said}");
 }
