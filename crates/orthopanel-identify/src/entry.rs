@@ -18,11 +18,22 @@ use crate::{Identification, IdentifyError, Settings, accelerance_fit, frequency_
 pub fn identify(test: &ImpactTest, settings: impl Into<Settings>) -> Result<Identification, IdentifyError> {
     let settings = settings.into();
     settings.paper_weights.check()?;
+    let is_frequencies = |data: &MeasurementData| matches!(data, MeasurementData::NaturalFrequencies(_));
+    let lists = test.measurements.iter().filter(|measurement| is_frequencies(&measurement.data)).count();
+    if lists == test.measurements.len() {
+        let (once, notes) = tracing::without_repeats(test);
+        let mut found = of_once(&once, lists - notes.len(), settings)?;
+        found.notes.extend(notes);
+        return Ok(found);
+    }
+    of_once(test, lists, settings)
+}
+
+/// The same where each list stands once; `lists` is their number.
+fn of_once(test: &ImpactTest, lists: usize, settings: Settings) -> Result<Identification, IdentifyError> {
     if !test.effects.is_empty() {
         return tracing::identify_with_effects(test, settings)?.determined();
     }
-    let is_frequencies = |data: &MeasurementData| matches!(data, MeasurementData::NaturalFrequencies(_));
-    let lists = test.measurements.iter().filter(|measurement| is_frequencies(&measurement.data)).count();
     let of_held = |error| of_held_constants(test, error);
     if lists == test.measurements.len() {
         frequency_fit::identify_frequencies(test, settings.search).map_err(of_held)?.determined()

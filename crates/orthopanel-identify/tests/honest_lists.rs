@@ -119,6 +119,16 @@ fn a_list_that_stands_twice_counts_once() {
     let twice = List { of_list: &again, ..List::default() }.traced();
     assert_eq!((twice.verdict, twice.error.before), (once.verdict, once.error.before));
     assert!(twice.notes.iter().any(|note| note.contains("counts once")), "{:?}", twice.notes);
+    // A copy once made the constants surer by the root of two.
+    for of_test in ["", "[[effect]]\nid = \"edge-mass\"\nmass = 0.001"] {
+        let found =
+            |of_list| identify(&List { of_list, of_test, ..List::default() }.test(), Settings::default()).unwrap();
+        let (once, twice) = (found(""), found(&again));
+        assert_eq!(twice.constants, once.constants);
+        assert_eq!(twice.pieces[0].modes.len(), PIECE_1.len());
+        assert!(twice.notes.iter().any(|note| note.contains("counts once")), "{:?}", twice.notes);
+        assert!(!once.notes.iter().any(|note| note.contains("counts once")), "{:?}", once.notes);
+    }
 }
 
 #[test]

@@ -5,8 +5,9 @@ mod support;
 use std::fmt::Write as _;
 use std::path::Path;
 
-use orthopanel_data::{Estimation, ImpactTest};
-use orthopanel_identify::{TracedEffect, Tracing, Verdict, trace};
+use orthopanel_data::{Estimation, ImpactTest, MeasurementData, RecordedResponse};
+use orthopanel_identify::{Settings, TracedEffect, Tracing, Verdict, identify, trace};
+use orthopanel_model::Place;
 use support::{made, shared_data};
 
 fn parameter(effect: &TracedEffect, name: &str) -> Vec<(f64, f64)> {
@@ -19,10 +20,16 @@ fn effect<'a>(found: &'a Tracing, id: &str) -> &'a TracedEffect {
     found.effects.iter().find(|effect| effect.id == id).unwrap_or_else(|| panic!("{id} is not among {ids:?}"))
 }
 
+/// The numbers of the note that holds these words.
+fn numbers_of(found: &Tracing, words: &str) -> Vec<f64> {
+    let note = found.notes.iter().find(|note| note.contains(words));
+    let note = note.unwrap_or_else(|| panic!("{words}: {:?}", found.notes));
+    note.split_whitespace().filter_map(|word| word.parse().ok()).collect()
+}
+
 /// Rms error of the natural frequencies \[%\], before and after, as a note tells it.
 fn frequency_errors(found: &Tracing) -> (f64, f64) {
-    let note = found.notes.iter().find(|note| note.contains("natural frequencies")).unwrap();
-    let numbers: Vec<f64> = note.split_whitespace().filter_map(|word| word.parse().ok()).collect();
+    let numbers = numbers_of(found, "natural frequencies");
     (numbers[1], numbers[2])
 }
 
@@ -50,9 +57,22 @@ fn val_the_free_beam_shows_an_oblique_hit_and_hides_its_sensor() {
     );
     assert!(found.next_experiment.contains("sensor"), "{}", found.next_experiment);
     let (before, after) = frequency_errors(&found);
-    assert!(before > 0.01 && after < 0.003, "{before} {after}");
+    println!("natural frequencies: {before} % rms before, {after} % after");
+    assert!((before - 0.012).abs() < 0.001 && after < 0.003, "{before} {after}");
     let error = &found.error;
+    println!("between the peaks, neighbours averaged: {error:?}");
     assert!(error.after.fitted < 7.0 && error.after.held_out < 7.0 && error.before.fitted > 9.0, "{error:?}");
+    let band = numbers_of(&found, "between the resonances");
+    assert!(band[0] > 18.0 && band[0] < 25.0 && (band[1] - 1000.0).abs() < 5.0, "{band:?}");
+    // A prototype's base missed 14.5 % line by line. Of that 10 % is what one line differs from the next by, which no effect takes away:
+    // so 7 % or less is asked of the mean of neighbouring lines, above.
+    let every_line = numbers_of(&found, "line by line");
+    println!("between the peaks, line by line: {every_line:?}");
+    assert!((every_line[0] - 14.5).abs() < 0.5, "{every_line:?}");
+    let beside_scatter = every_line.iter().take(2).map(|error| (error.powi(2) - every_line[2].powi(2)).sqrt());
+    let beside_scatter: Vec<f64> = beside_scatter.collect();
+    assert!((beside_scatter[0] - error.before.fitted).abs() < 1.0, "{beside_scatter:?} {error:?}");
+    assert!((beside_scatter[1] - error.after.fitted).abs() < 1.0, "{beside_scatter:?} {error:?}");
     // The floor is that of the lines between the resonances; what the model misses there is no noise.
     assert!(error.noise_floor < 2.0, "{error:?}");
     let scale = found.not_tested.iter().find(|not| not.id == "gain").unwrap();
@@ -103,6 +123,33 @@ fn val_effects_put_in_are_found_without_the_hits() {
     }
 }
 
+fn records_of(test: &mut ImpactTest) -> impl Iterator<Item = &mut RecordedResponse> {
+    test.measurements.iter_mut().filter_map(|measurement| match &mut measurement.data {
+        MeasurementData::Accelerance(record) => Some(record),
+        _ => None,
+    })
+}
+
+/// The hits of each record stand at the place of the next one: no gain, offset or effect of the panel mends that, and the resonances,
+/// which are right, tell nothing of it. As much as moves between them is missed, where a careful test misses 9 %.
+#[test]
+fn val_files_at_each_others_places_are_not_explained() {
+    let folder = tempfile::tempdir().unwrap();
+    let Some((test, _)) = made(&folder.path().join("set"), "none", "none") else { return };
+    let test = without_hits(&test, folder.path());
+    let mut moved = test.clone();
+    let mut places: Vec<Place> = records_of(&mut moved).map(|record| record.force_at).collect();
+    places.rotate_left(1);
+    records_of(&mut moved).zip(places).for_each(|(record, place)| record.force_at = place);
+    let found = trace(&moved).unwrap();
+    assert_eq!((found.verdict, found.effects.len()), (Verdict::Unexplained, 0), "{:?}", found.effects);
+    assert!(found.error.before.fitted > 30.0, "{:?}", found.error);
+    assert!(found.next_experiment.contains("check the places of hammer and sensor"), "{}", found.next_experiment);
+    // Else all would be well: the resonances meet the model within their scatter.
+    let resonances = numbers_of(&found, "natural frequencies");
+    assert!(resonances[1] < 3.0 * resonances[3], "{:?}", found.notes);
+}
+
 #[test]
 fn measurements_of_two_kinds_are_refused_with_the_way_out() {
     let text = "[piece]\nlength = 1.0\nwidth = 0.1\nthickness = 0.01\nmass_per_area = 5.0\n[[measurement]]\n\
@@ -112,4 +159,28 @@ fn measurements_of_two_kinds_are_refused_with_the_way_out() {
     std::fs::write(folder.path().join("0.csv"), "frequency_hz,real,imag\n1.0,1.0,0.0\n2.0,1.0,0.0\n").unwrap();
     let refused = trace(&ImpactTest::from_toml(text, folder.path().join("test.toml")).unwrap()).unwrap_err();
     assert!(refused.to_string().contains("one kind"), "{refused}");
+}
+
+#[test]
+fn a_gain_of_a_record_that_the_test_has_not_is_refused_with_the_count() {
+    let folder = tempfile::tempdir().unwrap();
+    let of_record = |record: &str| {
+        let mut text = "[piece]\nlength = 1.0\nwidth = 0.1\nthickness = 0.01\nmass_per_area = 5.0\n".to_owned();
+        for place in [-0.4, 0.2] {
+            write!(text, "[[measurement]]\nkind = \"accelerance\"\nfile = \"0.csv\"\nforce_at = [{place:?}, 0.0]\n")
+                .unwrap();
+            text += "response_at = [0.4, 0.0]\n";
+        }
+        text += &format!("[[effect]]\nid = \"record-gain\"\ngain = 1.1\nrecord = {record}\n");
+        ImpactTest::from_toml(&text, folder.path().join("test.toml")).unwrap()
+    };
+    std::fs::write(folder.path().join("0.csv"), "frequency_hz,real,imag\n1.0,1.0,0.0\n2.0,1.0,0.0\n").unwrap();
+    let test = of_record("3");
+    for refused in [trace(&test).unwrap_err(), identify(&test, Settings::default()).unwrap_err()] {
+        let said = refused.to_string();
+        assert!(said.contains("record = 3") && said.contains("from 1 to 2"), "{said}");
+    }
+    // Two lines show no resonance; of the record nothing is said.
+    let said = trace(&of_record("2")).unwrap_err().to_string();
+    assert!(!said.contains("record = "), "{said}");
 }

@@ -161,3 +161,25 @@ fn a_declared_plate_is_written_as_the_plate_that_was_identified() {
     }
     refused(&bench, "trace examples/pieces-1-2-plate/test.toml", 2, &["plate", "not traced", "width-coupling"]);
 }
+
+/// Where the file is likelier wrong than the model, no effect is blamed; where a list is too short, the words say what would do.
+#[test]
+fn lists_that_cannot_name_an_effect_say_what_to_do() {
+    let bench = Bench::new();
+    let list = |values: &str, length: f64| {
+        format!(
+            "[piece]\nlength = {length}\nwidth = 0.1\nthickness = 0.03\nmass_per_area = 6.88\n[[measurement]]\n\
+             kind = \"natural-frequencies\"\nvalues = [{values}]\n"
+        )
+    };
+    bench.write("short.toml", &list("321.3, 837.5, 1520.0", 0.8));
+    let said = bench.done("trace short.toml");
+    let verdict = said.lines().next().expect("a verdict");
+    assert!(verdict.contains("cannot tell") && verdict.contains("Next: read 3 more natural frequencies"), "{verdict}");
+    // The second and the third read the wrong way round.
+    bench.write("swapped.toml", &list("321.3, 1520.0, 1620.0, 2312.5, 3950.0, 3987.5, 4900.0", 0.8));
+    let said = bench.done("trace swapped.toml");
+    let verdict = said.lines().next().expect("a verdict");
+    assert!(verdict.contains("wrong sizes") && verdict.contains("before an effect is blamed"), "{verdict}");
+    assert!(!verdict.contains("the nearest is"), "{verdict}");
+}

@@ -2,7 +2,7 @@
 
 use orthopanel_data::{Accelerance, Estimation, ImpactTest, MeasurementData};
 use orthopanel_model::{
-    BEAM_CONSTANTS, EffectSetting, Estimate, ModelError, NaturalFrequencies, ReceptanceSetup, RecordSetting,
+    BEAM_CONSTANTS, EffectSetting, Estimate, ModelError, NaturalFrequencies, Place, ReceptanceSetup, RecordSetting,
     StructureKind,
 };
 
@@ -60,6 +60,8 @@ pub(crate) fn identify_with_effects(test: &ImpactTest, settings: Settings) -> Re
     if test.pieces.len() > 1 {
         return refused("declared effects with records of several pieces: give each piece a test file of its own");
     }
+    // Said here, for starts that fail are passed over.
+    Hypothesis::declared(test, &piece, pairs_of_places(test))?;
     if kinds(|data| matches!(data, MeasurementData::Accelerance(_))) {
         return base_of_accelerances(test)?.identification(test, settings.estimation);
     }
@@ -67,6 +69,20 @@ pub(crate) fn identify_with_effects(test: &ImpactTest, settings: Settings) -> Re
         return base_of_histories(test)?.identification(test, settings.estimation);
     }
     refused("declared effects want measurements of one kind: put others into a test file of their own")
+}
+
+/// Records of a test: files of the same places are hits of one.
+fn pairs_of_places(test: &ImpactTest) -> usize {
+    let mut pairs: Vec<[Place; 2]> = Vec::new();
+    for measurement in &test.measurements {
+        if let MeasurementData::TimeHistory(record) | MeasurementData::Accelerance(record) = &measurement.data {
+            let pair = [record.force_at, record.response_at];
+            if !pairs.contains(&pair) {
+                pairs.push(pair);
+            }
+        }
+    }
+    pairs.len()
 }
 
 impl RecordsBase {

@@ -1,6 +1,6 @@
 //! Effects that are switched on, and which of their parameters a search moves.
 
-use orthopanel_data::ImpactTest;
+use orthopanel_data::{ImpactTest, Measurement, MeasurementData};
 use orthopanel_model::{Effect, EffectParameter, EffectState, ModelError, Piece, Scale, effect};
 
 use crate::IdentifyError;
@@ -58,10 +58,17 @@ impl FreeParameter {
 
     /// Whether a value lies on a bound, to a part in a thousand of the range that the search moves through.
     pub(super) fn on_bound(&self, value: f64) -> bool {
-        let ((low, high), at) = (self.bounds(), self.coordinate(value));
-        let margin = 1e-3 * (high - low);
-        at - low < margin || high - at < margin
+        ends_of_range(self.scale, self.range, value).contains(&true)
     }
+}
+
+/// Part of a range that counts as its end.
+const MARGIN: f64 = 1e-3;
+
+/// Whether a value lies at the low and at the high end of a range, in the coordinate that a search moves.
+pub(super) fn ends_of_range(scale: Scale, (low, high): (f64, f64), value: f64) -> [bool; 2] {
+    let part = if scale == Scale::Log { (value / low).ln() / (high / low).ln() } else { (value - low) / (high - low) };
+    [part < MARGIN, part > 1.0 - MARGIN]
 }
 
 /// Whether an effect sits at a place of its own: a piece may have several of it.
@@ -186,6 +193,9 @@ impl Hypothesis {
     /// parameter that the effect does not have or may not be.
     pub(super) fn declared(test: &ImpactTest, piece: &Piece, records: usize) -> Result<Self, IdentifyError> {
         let mut hypothesis = Self::default();
+        // A list of frequencies has no records that could differ.
+        let is_list = |measurement: &Measurement| matches!(measurement.data, MeasurementData::NaturalFrequencies(_));
+        let lists = test.measurements.iter().all(is_list);
         for told in &test.effects {
             let effect = effect(&told.id)?;
             let refused = |why: &str| Err(IdentifyError::Unsupported(format!("effect {:?}: {why}", told.id)));
@@ -211,6 +221,14 @@ impl Hypothesis {
                     let (effect, name, unit) = (effect.id(), parameter.name, parameter.unit);
                     return Err(ModelError::EffectParameter { effect, name, value, unit, low, high }.into());
                 }
+                let is_in_test = value.round() >= 1.0 && value.round() <= records as f64;
+                if parameter.scale == Scale::Index && !lists && !is_in_test {
+                    let name = parameter.name;
+                    return refused(&format!(
+                        "{name} = {value}, and the test has {records} of them: give the number of one, from 1 to {records} in the \
+                         order of the file's measurements"
+                    ));
+                }
             }
             hypothesis.effects.push(switched);
         }
@@ -234,5 +252,26 @@ impl Hypothesis {
 
     pub(super) fn states(&self, records: usize) -> Result<Vec<EffectState>, ModelError> {
         self.effects.iter().map(|switched| switched.state(records)).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A thousandth of the range is the end: of three decades that is 0.7 %, of a linear range a thousandth of its width.
+    #[test]
+    fn ends_are_those_of_what_a_search_moves() {
+        let range = (1.0, 1e3);
+        for (scale, value, ends) in [
+            (Scale::Log, 1.006, [true, false]),
+            (Scale::Log, 1.008, [false, false]),
+            (Scale::Log, 995.0, [false, true]),
+            (Scale::Linear, 1.008, [true, false]),
+            (Scale::Linear, 995.0, [false, false]),
+            (Scale::Linear, 999.5, [false, true]),
+        ] {
+            assert_eq!(ends_of_range(scale, range, value), ends, "{scale:?} {value}");
+        }
     }
 }

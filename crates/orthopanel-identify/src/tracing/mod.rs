@@ -64,6 +64,7 @@ pub use outcome::{
 };
 
 pub(crate) use base_model::identify_with_effects;
+pub(crate) use frequencies::without_repeats;
 pub use rows::TRACE_SCHEMA;
 
 use crate::IdentifyError;
@@ -114,8 +115,10 @@ pub fn trace_with(test: &ImpactTest, progress: &(dyn Fn(Progress) + Sync)) -> Re
         return Err(IdentifyError::Unsupported(message.to_owned()));
     }
     let histories: Vec<TimeHistory> = test.time_histories()?.into_iter().map(|(_, history)| history).collect();
-    let mut records = TestRecords::new(test, &histories)?;
     let piece = named.piece;
+    // Starts that fail are passed over: what the file declares wrongly would be said as too few resonances.
+    Hypothesis::declared(test, &piece, histories.len())?;
+    let mut records = TestRecords::new(test, &histories)?;
     let alone = Search { records: &records, piece, progress }.each_alone()?;
     let ranking = match rough_search::rough_search(&mut records, piece, progress, &alone) {
         Some(ranking) => ranking,

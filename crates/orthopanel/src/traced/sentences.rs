@@ -4,6 +4,9 @@ use orthopanel_identify::{TracedEffect, Verdict};
 
 use super::Traced;
 
+/// How a next experiment begins that is none: the test file is likelier wrong than the model.
+const CHECK_FIRST: &str = "before another measurement check";
+
 impl Traced {
     /// The verdict in one plain sentence.
     pub fn verdict(&self) -> String {
@@ -15,10 +18,16 @@ impl Traced {
             }
             Verdict::Explained => format!("The model lacked {named}, clearly ahead of every other effect."),
             Verdict::Ambiguous if tracing.effects.is_empty() => {
-                format!("These data cannot tell whether something is missing; possible are {}.", self.alternatives())
+                let (possible, next) = (self.alternatives(), &tracing.next_experiment);
+                format!("These data cannot tell whether something is missing; possible are {possible}. Next: {next}.")
             }
             Verdict::Ambiguous => {
                 format!("The model lacked something: {named}, but these fit alike: {}.", self.alternatives())
+            }
+            Verdict::Unexplained if tracing.next_experiment.starts_with(CHECK_FIRST) => {
+                "The base model misses these data in a way that wrong sizes, places, mass or boundary make: check these before an \
+                 effect is blamed."
+                    .into()
             }
             Verdict::Unexplained if tracing.effects.is_empty() => {
                 "Something is missing that no effect of the catalogue explains.".into()

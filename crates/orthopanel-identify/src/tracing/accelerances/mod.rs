@@ -4,6 +4,7 @@
 //! resonances ([`resonances`]) and the lines between them ([`between_peaks`]) are weighed apart ([`problem`]).
 
 mod between_peaks;
+mod every_line;
 mod parting;
 mod problem;
 mod report;
@@ -88,6 +89,7 @@ fn begin(test: &ImpactTest) -> Result<Begun, IdentifyError> {
     let piece = test.pieces[0].piece;
     let accelerances: Vec<Accelerance> =
         test.accelerances(Estimation::default())?.into_iter().map(|(_, accelerance)| accelerance).collect();
+    let declared = Hypothesis::declared(test, &piece, accelerances.len())?;
     let tops = accelerances.iter().filter_map(|accelerance| accelerance.frequency.last().copied());
     let band = tops.fold(f64::INFINITY, f64::min);
     let constants = FreeConstants::of(test, &BEAM_CONSTANTS)?.held;
@@ -112,7 +114,6 @@ fn begin(test: &ImpactTest) -> Result<Begun, IdentifyError> {
     let modes = beam.flexible_modes().take(MOST_MODES).map(|mode| mode.frequency());
     let summed = modes.take_while(|frequency| *frequency < SUMMED * band).count();
     let setup = ReceptanceSetup::new(&piece, test.boundary, &test.suspension, &settings, summed)?;
-    let declared = Hypothesis::declared(test, &piece, accelerances.len())?;
     let free_scale = declared.effects.iter().all(|on| on.effect.id() != SCALE);
     let hypothesis = if free_scale {
         declared.and(Switched::new(effect(SCALE)?, &piece, accelerances.len(), |_| None, |_| false))

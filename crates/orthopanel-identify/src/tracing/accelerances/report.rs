@@ -3,6 +3,7 @@
 use orthopanel_data::ImpactTest;
 use orthopanel_model::PanelModel;
 
+use super::every_line::EveryLine;
 use super::parting::next_experiment;
 use super::problem::AccelerancesFit;
 use super::search::{Found, Search};
@@ -56,6 +57,10 @@ pub(super) fn report(
             "errors are those of the lines between the resonances, {low:.0} to {high:.0} Hz, over the rms of all records there"
         ));
     }
+    let [without, with] =
+        [&base.state, &chosen.state].map(|state| curves(&search.accelerances, &problem.setup, state, search.band));
+    let (without, with) = (without?, with?);
+    notes.extend(EveryLine::of(&search.accelerances, &problem.between, [&without, &with]).and_then(|told| told.note()));
     let scale = effects.get(search.declared.saturating_sub(1)).filter(|_| free_scale);
     if let Some(scale) = scale {
         let value = scale.parameters.first().and_then(|parameter| parameter.values.first());
@@ -93,7 +98,7 @@ pub(super) fn report(
         chi_square: chosen.missed / floor.max(f64::MIN_POSITIVE).powi(2),
         panels: vec![panel],
         removed,
-        accelerances: curves(&search.accelerances, &problem.setup, &chosen.state, search.band)?,
+        accelerances: with,
         notes,
     })
 }

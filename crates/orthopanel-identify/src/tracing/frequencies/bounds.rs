@@ -1,10 +1,7 @@
 //! Parameters that ended on a bound: then their value is the bound's, not the data's.
 
 use super::list_fit::ListFit;
-use crate::tracing::hypothesis::{Switched, is_place};
-
-/// Part of a range that counts as its end.
-const MARGIN: f64 = 1e-3;
+use crate::tracing::hypothesis::{Switched, ends_of_range, is_place};
 
 /// Effect and parameter on a bound, of the effects beyond the first `declared`.
 pub(super) fn on_bound(fit: &ListFit, declared: usize, piece: &orthopanel_model::Piece) -> Option<String> {
@@ -22,13 +19,9 @@ fn of_effect(on: &Switched, piece: &orthopanel_model::Piece) -> Option<String> {
         if is_place(parameter) || parameter.held_at.is_some() || parameter.name == "zeta" {
             return None;
         }
-        let (low, high) = parameter.range(piece);
-        let part = if parameter.scale == orthopanel_model::Scale::Log {
-            (value / low).ln() / (high / low).ln()
-        } else {
-            (value - low) / (high - low)
-        };
-        let ends = part < MARGIN || part > 1.0 - MARGIN && !is_rigid;
+        // A parameter that ended on its bound was left there, and is no longer free: so all values are looked at.
+        let [low, high] = ends_of_range(parameter.scale, parameter.range(piece), value);
+        let ends = low || high && !is_rigid;
         ends.then(|| format!("{} of {}", parameter.name, on.effect.id()))
     })
 }

@@ -28,7 +28,7 @@ use crate::IdentifyError;
 pub(super) use declared::identify_lists;
 use list_fit::{ListFit, fit};
 use list_problem::ListProblem;
-use repeats::without_repeats;
+pub(crate) use repeats::without_repeats;
 use seen::{never_shows, not_seen, only_seen};
 
 /// Names the effect that the base model lacks in the natural frequencies of a test.

@@ -3,7 +3,7 @@
 use orthopanel_data::{ImpactTest, Measurement};
 
 /// The test with each list once, and what was left out, a sentence each.
-pub(super) fn without_repeats(test: &ImpactTest) -> (ImpactTest, Vec<String>) {
+pub(crate) fn without_repeats(test: &ImpactTest) -> (ImpactTest, Vec<String>) {
     let mut once = test.clone();
     once.measurements.clear();
     let mut notes = Vec::new();
