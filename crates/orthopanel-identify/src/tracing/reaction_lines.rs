@@ -89,7 +89,7 @@ impl ReactionLines {
 fn mean(hits: &Ratios, record: &WidenedLines, (group, point, line): (&[usize], usize, usize)) -> [Complex64; 2] {
     let (mut sums, mut weights) = ([Complex64::ZERO; 2], 0.0);
     for &hit in group {
-        let weight = record.hits.get(hit).map_or(0.0, |hit| 1.0 / hit.variance[line]);
+        let weight = record.hits.get(hit).map_or(0.0, |hit| hit.weight[line]);
         let [ratio, slope] = &hits[hit][point];
         sums[0] += weight * ratio[line];
         sums[1] += weight * slope[line];

@@ -13,7 +13,7 @@ use super::hypothesis::{CUBIC, Hypothesis, PLATE, Switched};
 use super::known_sums::KnownSums;
 use super::made_rows::Made;
 use super::reaction_lines::ReactionLines;
-use super::reactions::Reactions;
+use super::reactions::{Reactions, cubic};
 use super::roughness::{ROUGHNESS, RoughScales, add_prior, is_roughness};
 use super::row_products::RowProducts;
 use super::widened_lines::WidenedLines;
@@ -310,6 +310,20 @@ impl RecordProblem<'_> {
         let found = ReactionLines::of(self.reactions, state, (&damping, &effects), &[(index, lines)])?;
         let taken = found.map_or_else(Vec::new, |found| found.taken(index, lines, Grouping::Hits, &[]));
         Ok(taken.into_iter().map(|taken| taken.value).collect())
+    }
+
+    /// $|2k_3\,\partial h/\partial k_3|^2$ on the lines of each hit of a record: what a motion that is wrong by a part does there through
+    /// its cube, over that part squared. The force of $\lambda$ times a motion is that of the motion itself on springs
+    /// $\lambda^2k_3$. Empty where no such force is on.
+    ///
+    /// # Errors
+    /// What the model refuses.
+    pub(super) fn by_motion(&self, state: &State, index: usize) -> Result<Vec<Vec<f64>>, ModelError> {
+        let first = state.constants.len() + state.zetas.len();
+        let Some((k3, column)) = cubic(&state.hypothesis, first) else { return Ok(vec![]) };
+        let (_, Some(reactions)) = self.model(state)? else { return Ok(vec![]) };
+        let taken = reactions.taken(index, &self.records[index], Grouping::Hits, &[(column, 2.0 * k3)]);
+        Ok(taken.into_iter().map(|taken| taken.by.iter().map(|by| by[0].norm_sqr()).collect()).collect())
     }
 
     /// What is linear, and what is not.

@@ -74,6 +74,20 @@ impl WidenedLines {
         self.noise.get_or_init(|| LineNoise::of(&self.value, [&self.variance, &self.by_force], self.step()))
     }
 
+    /// Adds to the variance of each line of each hit what is its own, and to that of the mean of the hits what this leaves there.
+    pub(super) fn widen_hits(&mut self, by: &[Vec<f64>]) {
+        for line in 0..self.s.len() {
+            let weights: f64 = self.hits.iter().map(|hit| hit.weight[line]).sum();
+            for (hit, by) in self.hits.iter_mut().zip(by) {
+                let part = hit.weight[line] / weights;
+                self.variance[line] += part * part * by[line];
+                hit.variance[line] += by[line];
+            }
+        }
+        self.noise.take();
+        self.hits.iter_mut().for_each(|hit| drop(hit.noise.take()));
+    }
+
     /// Adds to the variance of each line and of its hits.
     pub(super) fn widen(&mut self, by: impl Fn(&Self, usize) -> f64) {
         for line in 0..self.s.len() {
@@ -97,6 +111,8 @@ impl HitLines {
 #[derive(Debug, Clone, Default)]
 pub(super) struct HitLines {
     pub value: Vec<Complex64>,
+    /// What each line weighs in the mean of the record's hits, whatever its variance becomes later.
+    pub weight: Vec<f64>,
     pub variance: Vec<f64>,
     /// What of it the force's channel makes.
     pub by_force: Vec<f64>,
@@ -143,7 +159,7 @@ fn every_line(history: &TimeHistory, widening: Widening, band: f64) -> WidenedLi
     let of_hit = |hit: &Hit| {
         let mut force = spectra(hit, history.rate, widening.decay_rate).force;
         force.truncate(s.len());
-        HitLines { variance: vec![1.0; s.len()], force, ..HitLines::default() }
+        HitLines { weight: vec![1.0; s.len()], variance: vec![1.0; s.len()], force, ..HitLines::default() }
     };
     WidenedLines {
         force_at: history.force_at,
@@ -211,6 +227,7 @@ fn of_record(
             cross += weight * motion / force;
             power += weight;
             own.value.push(motion / force);
+            own.weight.push(weight);
             own.variance.push(1.0 / weight);
             own.by_force.push(of_force / force.norm_sqr());
             own.force.push(force);
@@ -256,4 +273,44 @@ pub(super) fn median(values: &[f64]) -> f64 {
         return 0.0;
     }
     *sorted.select_nth_unstable_by(middle, f64::total_cmp).1
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// One line of two hits, of which the first was four times as hard.
+    fn record() -> WidenedLines {
+        let place = Place { x: 0.0, y: 0.0 };
+        let hit = |weight: f64| HitLines {
+            value: vec![Complex64::ONE],
+            weight: vec![weight],
+            variance: vec![1.0 / weight],
+            by_force: vec![0.0],
+            force: vec![Complex64::ONE],
+            noise: OnceLock::new(),
+        };
+        WidenedLines {
+            force_at: place,
+            response_at: place,
+            s: vec![Complex64::I],
+            value: vec![Complex64::ONE],
+            variance: vec![1.0 / 20.0],
+            by_force: vec![],
+            scatter: None,
+            hits: vec![hit(16.0), hit(4.0)],
+            noise: OnceLock::new(),
+        }
+    }
+
+    /// The mean of the hits has been taken: what is told of them later moves no weight in it.
+    #[test]
+    fn val_what_hits_err_by_comes_into_their_mean_as_they_were_weighed() {
+        let mut record = record();
+        record.widen_hits(&[vec![0.5], vec![0.1]]);
+        assert_eq!((record.hits[0].variance[0], record.hits[1].variance[0]), (1.0 / 16.0 + 0.5, 0.25 + 0.1));
+        assert!((record.variance[0] - (0.05 + 0.64 * 0.5 + 0.04 * 0.1)).abs() < 1e-15, "{}", record.variance[0]);
+        record.widen(|_, _| 1.0);
+        assert_eq!((record.hits[0].weight[0], record.hits[1].weight[0]), (16.0, 4.0));
+    }
 }
