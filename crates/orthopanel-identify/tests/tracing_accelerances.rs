@@ -123,6 +123,18 @@ fn val_effects_put_in_are_found_without_the_hits() {
     }
 }
 
+/// What a curve's smooth misfit asks for is not there: the best name for it is a resonator of 25 Hz so damped that its ratio ends on
+/// its bound, which was called `explained`.
+#[test]
+fn val_a_number_on_its_bound_explains_no_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let Some((test, _)) = made(&folder.path().join("set"), "none", "none") else { return };
+    let found = trace(&without_hits(&test, folder.path())).unwrap();
+    assert_ne!(found.verdict, Verdict::Explained, "{:?}", found.effects);
+    let says = |text: &str| found.notes.iter().any(|note| note.contains(text));
+    assert!(found.effects.is_empty() || says("lies on its bound"), "{:?}", found.notes);
+}
+
 fn records_of(test: &mut ImpactTest) -> impl Iterator<Item = &mut RecordedResponse> {
     test.measurements.iter_mut().filter_map(|measurement| match &mut measurement.data {
         MeasurementData::Accelerance(record) => Some(record),

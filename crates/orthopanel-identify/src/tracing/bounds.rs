@@ -1,14 +1,21 @@
 //! Parameters that ended on a bound: then their value is the bound's, not the data's.
 
-use super::list_fit::ListFit;
-use crate::tracing::hypothesis::{Switched, ends_of_range, is_place};
+use orthopanel_model::Piece;
 
-/// Effect and parameter on a bound, of the effects beyond the first `declared`.
-pub(super) fn on_bound(fit: &ListFit, declared: usize, piece: &orthopanel_model::Piece) -> Option<String> {
-    fit.hypothesis.effects.iter().skip(declared).find_map(|on| of_effect(on, piece))
+use super::hypothesis::{Hypothesis, Switched, ends_of_range, is_place};
+
+/// Effect and parameter on a bound, of the effects beyond the first `declared`; parameters of the names that are `untold` show in no
+/// data of this kind.
+pub(super) fn on_bound(hypothesis: &Hypothesis, declared: usize, piece: &Piece, untold: &[&str]) -> Option<String> {
+    hypothesis.effects.iter().skip(declared).find_map(|on| of_effect(on, piece, untold))
 }
 
-fn of_effect(on: &Switched, piece: &orthopanel_model::Piece) -> Option<String> {
+/// What is said of it.
+pub(super) fn note(parameter: &str) -> String {
+    format!("{parameter} lies on its bound: the bound tells that value, not the data, so it explains nothing")
+}
+
+fn of_effect(on: &Switched, piece: &Piece, untold: &[&str]) -> Option<String> {
     let parameters = on.effect.parameters();
     if on.values.len() != parameters.len() {
         return None;
@@ -16,7 +23,7 @@ fn of_effect(on: &Switched, piece: &orthopanel_model::Piece) -> Option<String> {
     parameters.iter().zip(&on.values).find_map(|(parameter, &value)| {
         // The end of a piece is a place, a spring without give is a clamp, and what was held was not looked for.
         let is_rigid = on.effect.id() == "support-compliance";
-        if is_place(parameter) || parameter.held_at.is_some() || parameter.name == "zeta" {
+        if is_place(parameter) || parameter.held_at.is_some() || untold.contains(&parameter.name) {
             return None;
         }
         // A parameter that ended on its bound was left there, and is no longer free: so all values are looked at.

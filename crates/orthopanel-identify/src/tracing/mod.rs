@@ -13,6 +13,7 @@ mod accelerances;
 mod bare_panel;
 mod base_model;
 mod blow;
+mod bounds;
 mod core_modes;
 mod curves;
 mod each_effect;

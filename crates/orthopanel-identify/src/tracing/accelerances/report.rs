@@ -9,6 +9,7 @@ use super::problem::AccelerancesFit;
 use super::search::{Found, Search};
 use crate::IdentifyError;
 use crate::tracing::bare_panel::bare_panel;
+use crate::tracing::bounds;
 use crate::tracing::curves::curves;
 use crate::tracing::outcome::{Candidate, FittedError, TracedEffect, TracedError, Tracing, Verdict};
 use crate::tracing::record_problem::total;
@@ -73,7 +74,9 @@ pub(super) fn report(
         }
     }
     let floor = problem.between.noise_floor();
-    let verdict = verdict(search, found);
+    let on_bound = bounds::on_bound(&chosen.state.hypothesis, search.declared, &test.pieces[0].piece, &[]);
+    notes.extend(on_bound.as_deref().map(bounds::note));
+    let verdict = verdict(search, found, on_bound.is_some());
     let next_experiment = match verdict {
         Verdict::Unexplained if found.chosen == 0 => format!(
             "before another measurement check the places of hammer and sensor, the unit of the acceleration, the sizes, the \
@@ -103,7 +106,8 @@ pub(super) fn report(
     })
 }
 
-fn verdict(search: &Search, found: &Found) -> Verdict {
+/// A fit with a number on its bound is no explanation: the bound tells that number.
+fn verdict(search: &Search, found: &Found, is_on_bound: bool) -> Verdict {
     let (base, chosen) = (&found.fits[0], &found.fits[found.chosen]);
     if found.chosen == 0 {
         let count = search.problem.resonances.len().max(1) as f64;
@@ -116,7 +120,11 @@ fn verdict(search: &Search, found: &Found) -> Verdict {
         return Verdict::Ambiguous;
     }
     let explained = chosen.missed < LEFT * LEFT * base.missed || chosen.resonances < LEFT * LEFT * base.resonances;
-    if explained { Verdict::Explained } else { Verdict::Unexplained }
+    match (explained, is_on_bound) {
+        (true, false) => Verdict::Explained,
+        (true, true) => Verdict::Ambiguous,
+        (false, _) => Verdict::Unexplained,
+    }
 }
 
 /// The ids of the effects beyond the base.

@@ -5,7 +5,6 @@
 //! ([`trust`]).
 
 mod across;
-mod bounds;
 mod declared;
 mod lacking;
 mod list_fit;

@@ -6,7 +6,6 @@ use orthopanel_data::ImpactTest;
 use orthopanel_model::{Damping, Estimate, MODEL_SCHEMA, Owner, PanelModel, Ports, StructureKind, effect};
 
 use super::DATA_FOR_EACH;
-use super::bounds::on_bound;
 use super::lacking::{self, what_to_check};
 use super::list_fit::ListFit;
 use super::list_problem::ListProblem;
@@ -14,6 +13,7 @@ use super::parting::next_experiment;
 use super::trust::Trust;
 use super::verdict::{CLEAR, Choice};
 use crate::IdentifyError;
+use crate::tracing::bounds;
 use crate::tracing::hypothesis::PLATE;
 use crate::tracing::outcome::{
     Candidate, FittedError, NotTested, Removed, TracedEffect, TracedError, TracedParameter, Tracing, Verdict,
@@ -50,7 +50,7 @@ pub(super) fn report(
         .filter(|&index| index != 0 && index != chosen && chosen != 0 && fits[index].bic() < fits[chosen].bic() + CLEAR)
         .collect();
     let trust = Trust::of(problem);
-    let on_bound = on_bound(&fits[chosen], declared, &problem.largest_piece());
+    let on_bound = bounds::on_bound(&fits[chosen].hypothesis, declared, &problem.largest_piece(), &["zeta"]);
     let choice = Choice { chosen, rivals, on_bound, wants_more };
     let verdict = choice.verdict(&fits, &trust);
     let told = problem.scatter();
@@ -80,9 +80,7 @@ pub(super) fn report(
         notes.push(MIRRORED.to_owned());
     }
     if let Some(parameter) = &choice.on_bound {
-        notes.push(format!(
-            "{parameter} lies on its bound: the bound tells that value, not the data, so it explains nothing"
-        ));
+        notes.push(bounds::note(parameter));
     }
     // The chosen one, then the others by the criterion.
     let mut ranked = order.clone();
