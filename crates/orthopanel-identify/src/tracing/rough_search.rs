@@ -15,6 +15,7 @@ use super::rough_rest::RoughRest;
 use super::rough_rounds::{Begun, MOST_WORK, Rounds, SIFTED, parted, sifted};
 use super::roughness::{RoughScales, none_yet};
 use super::starts::{Costed, Look, followed, followed_far};
+use super::verdict::{is_too_rough, on_bound};
 use crate::IdentifyError;
 
 /// The widest peaks but one: up to here a line's tolerance is beyond any roughness.
@@ -28,8 +29,9 @@ const LEFT: f64 = 0.3;
 /// What a search that each effect went through alone becomes where roughness is allowed for, with the scales that all its
 /// hypotheses share; `None` where the hits do not show any, or where even then nothing explains the records.
 ///
-/// Each begins where [`tolerant`] lines put it: roughness moves no effect far. From the usual places first, and only where that explains
-/// nothing from those between, which costs as much as all the rest. Those that `tolerant` lines leave behind are not looked at.
+/// Each begins where [`tolerant`] lines put it: roughness moves no effect far. From the usual places first, without what
+/// `tolerant` lines leave behind; where that explains nothing, or not surely, once more from the places between and with all, which
+/// costs twice as much.
 pub(super) fn rough_search(
     records: &mut TestRecords,
     piece: Piece,
@@ -80,13 +82,14 @@ fn looked_for(
     };
     let states: Vec<Costed> = states.iter().map(|(state, cost)| (rough(state), *cost)).collect();
     records.start = rough(&records.start);
-    in_rounds(records, (piece, progress), states).ok()?
+    in_rounds(records, (piece, progress), states, look).ok()?
 }
 
 fn in_rounds(
     records: &mut TestRecords,
     (piece, progress): (Piece, &(dyn Fn(Progress) + Sync)),
     states: Vec<Costed>,
+    look: Look,
 ) -> Result<Option<Ranking>, IdentifyError> {
     let rest = RoughRest::USUAL;
     records.rough = Some(RoughScales::USUAL);
@@ -102,7 +105,8 @@ fn in_rounds(
         return Ok(None);
     }
     records.rough = Some(RoughScales::USUAL.with_hits(place));
-    let (near, behind) = parted(records, &states);
+    let is_first = look == Look::Usual;
+    let (near, behind) = if is_first { parted(records, &states) } else { (states.iter().collect(), vec![]) };
     let mut states = sifted(records, polished_all(records, near.into_iter()));
     states.extend(behind.into_iter().map(|(state, _)| Begun::new(state.clone(), Some(SIFTED))));
     let mut rounds = Rounds::new(records, (piece, progress), (rest, place));
@@ -113,7 +117,9 @@ fn in_rounds(
         ranking = again;
     }
     ranking.prefer_the_simpler();
-    Ok((rounds.word(&ranking)? != Verdict::Unexplained).then_some(ranking))
+    let chosen = &ranking.fits[ranking.chosen];
+    let is_sure = !is_first || !(is_too_rough(chosen) || on_bound(chosen));
+    Ok((is_sure && rounds.word(&ranking)? != Verdict::Unexplained).then_some(ranking))
 }
 
 fn polished_all<'a>(records: &TestRecords, states: impl Iterator<Item = &'a Costed>) -> Vec<Costed> {
