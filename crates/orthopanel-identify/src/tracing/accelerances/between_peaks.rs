@@ -21,8 +21,6 @@ pub(super) struct BetweenPeaks {
     pub level: Vec<f64>,
     /// The gap between two resonances that each frequency lies in.
     pub gap: Vec<usize>,
-    /// Resonances \[Hz\], each with how far its lines reach to either side.
-    peaks: Vec<(f64, f64)>,
 }
 
 /// Lines this near to a resonance, as a part of its frequency and in damping ratios, measure drift and damping: a drift of
@@ -61,7 +59,6 @@ impl BetweenPeaks {
             noise: vec![vec![]; accelerances.len()],
             level: vec![],
             gap: vec![],
-            peaks: peaks.clone(),
         };
         let lowest = peaks.first().map_or(bottom, |(first, _)| bottom.max(LOWEST * first));
         let starts = [lowest].into_iter().chain(peaks.iter().map(|(peak, apart)| peak + apart));
@@ -106,11 +103,6 @@ impl BetweenPeaks {
         self.value.iter().map(Vec::len).sum()
     }
 
-    /// Whether a frequency \[Hz\] measures a resonance rather than what lies between.
-    pub(super) fn is_at_a_peak(&self, frequency: f64) -> bool {
-        self.peaks.iter().any(|(peak, apart)| (frequency - peak).abs() < *apart)
-    }
-
     /// Lowest and highest frequency.
     pub(super) fn band(&self) -> Option<(f64, f64)> {
         let lines = self.frequency.first()?;
@@ -152,7 +144,7 @@ impl Averaged {
 
 /// Variance of one line, from what three neighbours leave of a straight line:
 /// $E|h_k - (h_{k-1}+h_{k+1})/2|^2 = \tfrac32 E|n|^2$.
-pub(super) fn line_noise(lines: &[Complex64]) -> f64 {
+fn line_noise(lines: &[Complex64]) -> f64 {
     let bends = lines.windows(3).map(|three| (three[1] - 0.5 * (three[0] + three[2])).norm_sqr());
     bends.sum::<f64>() / 1.5 / lines.len().saturating_sub(2).max(1) as f64
 }

@@ -4,7 +4,6 @@
 //! resonances ([`resonances`]) and the lines between them ([`between_peaks`]) are weighed apart ([`problem`]).
 
 mod between_peaks;
-mod every_line;
 mod parting;
 mod problem;
 mod report;

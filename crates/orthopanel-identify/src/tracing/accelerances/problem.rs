@@ -163,6 +163,18 @@ impl AccelerancesProblem {
         Ok(missed.collect())
     }
 
+    /// $\sqrt{\sum|H^{cal}-H^{exp}|^2/\sum|H^{exp}|^2}$ over all lines of all records together.
+    ///
+    /// # Errors
+    /// What the model refuses.
+    pub(super) fn part_missed(&self, state: &State) -> Result<f64, ModelError> {
+        let residuals = self.residuals(state)?;
+        let by_level = residuals.iter().flat_map(|record| record.iter().zip(&self.between.level));
+        let missed: f64 = by_level.map(|(residual, level)| residual.norm_sqr() * level).sum();
+        let whole: f64 = self.between.value.iter().flatten().map(Complex64::norm_sqr).sum();
+        Ok((missed / whole.max(f64::MIN_POSITIVE)).sqrt())
+    }
+
     /// $f_{cal}/f_{exp} - 1$ of every resonance.
     pub(super) fn frequency_errors(&self, state: &State) -> Result<Vec<f64>, ModelError> {
         let states = state.hypothesis.states(self.lines.len())?;

@@ -3,7 +3,6 @@
 use orthopanel_data::ImpactTest;
 use orthopanel_model::PanelModel;
 
-use super::every_line::EveryLine;
 use super::parting::next_experiment;
 use super::problem::AccelerancesFit;
 use super::search::{Found, Search};
@@ -58,10 +57,13 @@ pub(super) fn report(
             "errors are those of the lines between the resonances, {low:.0} to {high:.0} Hz, over the rms of all records there"
         ));
     }
-    let [without, with] =
-        [&base.state, &chosen.state].map(|state| curves(&search.accelerances, &problem.setup, state, search.band));
-    let (without, with) = (without?, with?);
-    notes.extend(EveryLine::of(&search.accelerances, &problem.between, [&without, &with]).and_then(|told| told.note()));
+    let [without, with] = [problem.part_missed(&base.state)?, problem.part_missed(&chosen.state)?];
+    notes.push(format!(
+        "as one number for all these lines and places together, where the loudest weigh most, {:.1} % of the motion is missed \
+         without effects and {:.1} % with them",
+        100.0 * without,
+        100.0 * with
+    ));
     let scale = effects.get(search.declared.saturating_sub(1)).filter(|_| free_scale);
     if let Some(scale) = scale {
         let value = scale.parameters.first().and_then(|parameter| parameter.values.first());
@@ -101,7 +103,7 @@ pub(super) fn report(
         chi_square: chosen.missed / floor.max(f64::MIN_POSITIVE).powi(2),
         panels: vec![panel],
         removed,
-        accelerances: with,
+        accelerances: curves(&search.accelerances, &problem.setup, &chosen.state, search.band)?,
         notes,
     })
 }
