@@ -30,7 +30,7 @@ const LEFT: f64 = 0.3;
 /// hypotheses share; `None` where the hits do not show any, or where even then nothing explains the records.
 ///
 /// Each begins where [`tolerant`] lines put it: roughness moves no effect far. From the usual places first, without what
-/// `tolerant` lines leave behind; where that explains nothing, or not surely, once more from the places between and with all, which
+/// `tolerant` lines leave behind; where that names nothing, or nothing surely, once more from the places between and with all, which
 /// costs twice as much.
 pub(super) fn rough_search(
     records: &mut TestRecords,
@@ -118,7 +118,7 @@ fn in_rounds(
     }
     ranking.prefer_the_simpler();
     let chosen = &ranking.fits[ranking.chosen];
-    let is_sure = !is_first || !(is_too_rough(chosen) || on_bound(chosen));
+    let is_sure = !is_first || ranking.chosen > 0 && !is_too_rough(chosen) && !on_bound(chosen);
     Ok((is_sure && rounds.word(&ranking)? != Verdict::Unexplained).then_some(ranking))
 }
 
