@@ -148,3 +148,27 @@ fn val_hits_that_are_left_out_are_left_out_of_the_trace() {
         assert!(found.notes.iter().any(told), "{hit}: {:?}", found.notes);
     }
 }
+
+/// One hit at one place: what it leaves may be noise or an effect, and nothing is there to judge by.
+#[test]
+fn a_single_hit_at_a_single_place_is_too_little_and_says_what_is_missing() {
+    let folder = tempfile::tempdir().unwrap();
+    let Some(test) = hammer_test(&folder.path().join("set"), &["--hits", "1"]) else { return };
+    let found = trace(&test).unwrap();
+    assert_eq!(test.measurements.len(), 1);
+    assert!(matches!(found.verdict, Verdict::Ambiguous | Verdict::Unexplained), "{}", found.verdict.name());
+    assert!(found.notes.iter().any(|note| note.contains("nothing can be left out to judge by")), "{:?}", found.notes);
+    assert!(found.next_experiment.contains("hit each place three times"), "{}", found.next_experiment);
+}
+
+/// The gain of the only record is the gain.
+#[test]
+fn val_the_gain_of_a_single_record_has_one_name() {
+    let folder = tempfile::tempdir().unwrap();
+    let Some((test, case)) = made(&folder.path().join("set"), "single-place", "gain") else { return };
+    let found = trace(&test).unwrap();
+    assert_eq!(found.effects[0].id, "gain", "{:?}", found.alternatives);
+    are_told(&found, &case, &["gain"]);
+    let reason = found.not_tested.iter().find(|known| known.id == "record-gain").unwrap();
+    assert!(reason.reason.contains("no other to differ from"), "{}", reason.reason);
+}

@@ -1,6 +1,6 @@
 //! Parameters that ended on a bound: then their value is the bound's, not the data's.
 
-use orthopanel_model::Piece;
+use orthopanel_model::{Piece, Scale};
 
 use super::hypothesis::{Hypothesis, Switched, ends_of_range, is_place};
 
@@ -21,9 +21,10 @@ fn of_effect(on: &Switched, piece: &Piece, untold: &[&str]) -> Option<String> {
         return None;
     }
     parameters.iter().zip(&on.values).find_map(|(parameter, &value)| {
-        // The end of a piece is a place, a spring without give is a clamp, and what was held was not looked for.
+        // A number of a record has no bounds, the end of a piece is a place, a spring without give is a clamp, and what was held was not looked for.
         let is_rigid = on.effect.id() == "support-compliance";
-        if is_place(parameter) || parameter.held_at.is_some() || untold.contains(&parameter.name) {
+        let is_number = parameter.scale == Scale::Index;
+        if is_number || is_place(parameter) || parameter.held_at.is_some() || untold.contains(&parameter.name) {
             return None;
         }
         // A parameter that ended on its bound was left there, and is no longer free: so all values are looked at.

@@ -12,7 +12,7 @@ use crate::IdentifyError;
 use crate::least_squares::Quadratic;
 
 /// Places from which leaving one out still leaves a test.
-const LEAST_PLACES: usize = 3;
+pub(super) const LEAST_PLACES: usize = 3;
 
 /// What is left out of a test to judge its fits: a pair of places where there are several, else a hit.
 pub(super) fn grouping(records: &TestRecords) -> Grouping {

@@ -11,6 +11,7 @@ use rayon::prelude::*;
 use super::base_model::RecordsBase;
 use super::curves::curves;
 use super::fit::{Fit, LAST, by_group, fit};
+use super::held_out::LEAST_PLACES;
 use super::hypothesis::Hypothesis;
 use super::known_sums::KnownSums;
 use super::plate_states::PlateEvidence;
@@ -229,6 +230,12 @@ impl TestRecords {
     /// What the model refuses.
     pub(super) fn misfit_over_floor(&self, fit: &Fit) -> Result<f64, IdentifyError> {
         Ok(fit.chi_square(self) / self.noise_floor(fit)?.clamp(1.0, SCATTERED))
+    }
+
+    /// Whether nothing can be left out to judge by: neither a place nor a hit.
+    pub(super) fn are_too_few(&self) -> bool {
+        let records = &self.problem(0).records;
+        records.len() < LEAST_PLACES && records.iter().all(|record| record.hits.len() < 2)
     }
 
     /// Whether the hits of a record differ by more than noise.

@@ -31,6 +31,9 @@ const ON_BOUND: &str =
 const TOO_ROUGH: &str =
     "what is named leaves more roughness than a test by hand has: it may not be all that is missing";
 
+const TOO_FEW: &str = "one hit at each of fewer than three pairs of places: nothing can be left out to judge by, and what hits scatter \
+                       by is taken to be 0.1 % of the motion. Hit each place three times, or hit three places";
+
 /// Says what a ranking of hypotheses over records means.
 ///
 /// # Errors
@@ -85,6 +88,7 @@ fn notes(records: &TestRecords, ranking: &Ranking) -> Vec<String> {
     let rough = records.rough.map(|scales| scales.note());
     let chosen = &ranking.fits[ranking.chosen];
     let doubts = [
+        (records.are_too_few(), TOO_FEW),
         (ranking.unfinished, UNFINISHED),
         (on_bound(chosen), ON_BOUND),
         (ranking.chosen > 0 && is_too_rough(chosen), TOO_ROUGH),

@@ -44,6 +44,7 @@ pub(super) fn scored_starts(
     look: Look,
 ) -> Result<Vec<Costed>, IdentifyError> {
     let problem = records.problem(stage);
+    can_differ(effect, problem.records.len())?;
     // Where no end is clamped, the grid's own starts say so.
     let beside =
         if effect.id() == SUPPORT { support_starts(records, base, effect, piece).unwrap_or_default() } else { vec![] };
@@ -99,6 +100,18 @@ pub(super) fn scored_starts(
         (true, Some(reason)) => Err(reason),
         (true, None) => Err(IdentifyError::Unsupported(format!("{}: no start", effect.id()))),
     }
+}
+
+/// What belongs to one record wants another that is without it: the gain of the only record is the gain.
+///
+/// # Errors
+/// Where so many records cannot tell it.
+pub(super) fn can_differ(effect: &dyn Effect, records: usize) -> Result<(), IdentifyError> {
+    let is_of_one = effect.parameters().iter().any(|parameter| parameter.scale == Scale::Index);
+    if is_of_one && records < 2 {
+        return Err(IdentifyError::Unsupported("one record has no other to differ from".to_owned()));
+    }
+    Ok(())
 }
 
 /// Promises of starts that differ by less are alike.

@@ -23,10 +23,15 @@ pub(super) fn verdict(records: &TestRecords, ranking: &Ranking) -> Result<(Verdi
     let left = records.misfit_over_floor(chosen)?;
     if ranking.chosen == 0 {
         let is_met = left <= MET && !is_too_rough(chosen);
-        return Ok((if is_met { Verdict::NothingMissing } else { Verdict::Unexplained }, vec![]));
+        let word = match (is_met, records.are_too_few()) {
+            (true, false) => Verdict::NothingMissing,
+            (true, true) => Verdict::Ambiguous,
+            (false, _) => Verdict::Unexplained,
+        };
+        return Ok((word, vec![]));
     }
     let rivals = rivals(ranking);
-    let is_sound = !ranking.unfinished && !on_bound(chosen) && !is_too_rough(chosen);
+    let is_sound = !records.are_too_few() && !ranking.unfinished && !on_bound(chosen) && !is_too_rough(chosen);
     let verdict = if left > EXPLAINED {
         Verdict::Unexplained
     } else if rivals.is_empty() && is_sound {

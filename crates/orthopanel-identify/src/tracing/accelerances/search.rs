@@ -15,7 +15,7 @@ use crate::tracing::hypothesis::{PLATE, Switched};
 use crate::tracing::outcome::{NotTested, Progress};
 use crate::tracing::ranking::PAYS;
 use crate::tracing::record_problem::{State, total};
-use crate::tracing::starts::{Look, grid};
+use crate::tracing::starts::{Look, can_differ, grid};
 
 /// Effects at most.
 const MOST_EFFECTS: usize = 4;
@@ -160,9 +160,7 @@ impl Search<'_> {
         again: Option<Switched>,
     ) -> Result<AccelerancesFit, IdentifyError> {
         let records = self.problem.between.value.len();
-        if records < 2 && effect.parameters().iter().any(|parameter| parameter.name == "record") {
-            return Err(IdentifyError::Unsupported("one record has no other to differ from".to_owned()));
-        }
+        can_differ(effect, records)?;
         if effect.id() == PLATE {
             let message = "width-coupling in files of accelerances (hammer records and lists of natural frequencies are \
                            tested for it), or say structure = \"mindlin-plate\"";

@@ -26,10 +26,14 @@ pub(super) fn next_experiment(
     if verdict == Verdict::NothingMissing {
         return "none: the base model meets the records within their noise".to_owned();
     }
+    if search.records.are_too_few() {
+        return "hit each place three times, or hit three places: so far nothing can be left out to judge by"
+            .to_owned();
+    }
     let compared: Vec<usize> =
         if rivals.is_empty() { ranking.nearest().into_iter().collect() } else { rivals.to_vec() };
     if compared.is_empty() {
-        return "none: no other effect of the catalogue can be compared".to_owned();
+        return "none: every other effect of the catalogue that could be tried stayed far behind".to_owned();
     }
     let sureness = if rivals.is_empty() { "to be surer still: " } else { "" };
     let chosen = &ranking.fits[ranking.chosen];
