@@ -12,7 +12,7 @@ use super::core_modes::CORE;
 use super::hypothesis::{CUBIC, Hypothesis, PLATE, Switched};
 use super::known_sums::KnownSums;
 use super::made_rows::Made;
-use super::reaction_lines::ReactionLines;
+use super::reaction_lines::{ReactionLines, Taken};
 use super::reactions::{Reactions, cubic};
 use super::roughness::{ROUGHNESS, RoughScales, add_prior, is_roughness};
 use super::row_products::RowProducts;
@@ -305,11 +305,21 @@ impl RecordProblem<'_> {
         index: usize,
         lines: &WidenedLines,
     ) -> Result<Vec<Vec<Complex64>>, ModelError> {
+        let taken = self.taken_from_hits(state, (index, lines), &[])?;
+        Ok(taken.into_iter().map(|taken| taken.value).collect())
+    }
+
+    /// The same with derivatives by these columns, each times its factor.
+    fn taken_from_hits(
+        &self,
+        state: &State,
+        (index, lines): (usize, &WidenedLines),
+        columns: &[(usize, f64)],
+    ) -> Result<Vec<Taken>, ModelError> {
         let damping = state.damping();
         let effects = state.hypothesis.states(self.records.len())?;
         let found = ReactionLines::of(self.reactions, state, (&damping, &effects), &[(index, lines)])?;
-        let taken = found.map_or_else(Vec::new, |found| found.taken(index, lines, Grouping::Hits, &[]));
-        Ok(taken.into_iter().map(|taken| taken.value).collect())
+        Ok(found.map_or_else(Vec::new, |found| found.taken(index, lines, Grouping::Hits, columns)))
     }
 
     /// $|2k_3\,\partial h/\partial k_3|^2$ on the lines of each hit of a record: what a motion that is wrong by a part does there through
@@ -321,8 +331,7 @@ impl RecordProblem<'_> {
     pub(super) fn by_motion(&self, state: &State, index: usize) -> Result<Vec<Vec<f64>>, ModelError> {
         let first = state.constants.len() + state.zetas.len();
         let Some((k3, column)) = cubic(&state.hypothesis, first) else { return Ok(vec![]) };
-        let (_, Some(reactions)) = self.model(state)? else { return Ok(vec![]) };
-        let taken = reactions.taken(index, &self.records[index], Grouping::Hits, &[(column, 2.0 * k3)]);
+        let taken = self.taken_from_hits(state, (index, &self.records[index]), &[(column, 2.0 * k3)])?;
         Ok(taken.into_iter().map(|taken| taken.by.iter().map(|by| by[0].norm_sqr()).collect()).collect())
     }
 
