@@ -69,11 +69,39 @@ def test_all_six_constants_come_back_and_their_intervals_hold_them(modes, tmp_pa
     assert np.mean(held) > 0.85, np.mean(held)
 
 
-def test_bending_modes_alone_do_not_show_every_constant(modes, tmp_path):
-    found = identify(written(modes[:2], 1, keep=lambda nodes: nodes[1] == 0), tmp_path)
-    unseen = {entry["name"] for entry in found["not_identified"]}
-    assert "g_xy" in unseen, unseen
-    for entry in found["not_identified"]:
-        assert found["constants"][entry["name"]]["std"] is None
-        assert entry["direction"], entry
-    assert found["constants"]["e_x"]["value"] == pytest.approx(TRUTH["e_x"], rel=0.02)
+def test_bending_modes_of_one_piece_do_not_show_every_constant(modes, tmp_path):
+    for seed in SEEDS[:6]:
+        found = identify(written(modes[:1], seed, keep=lambda nodes: nodes[1] == 0), tmp_path)
+        unseen = {entry["name"] for entry in found["not_identified"]}
+        assert {"g_xy", "nu_xy"} <= unseen, (seed, unseen)
+        for entry in found["not_identified"]:
+            assert found["constants"][entry["name"]]["std"] is None
+            assert entry["direction"], entry
+        assert found["constants"]["e_x"]["value"] == pytest.approx(TRUTH["e_x"], rel=0.02)
+
+
+def test_bending_modes_of_two_widths_show_all_and_rounding_changes_nothing(modes, tmp_path):
+    """Some of them veer with modes across the piece, and so know of these: a search near a veering is easily led astray."""
+    missed = []
+    for seed in SEEDS[:6]:
+        text = written(modes[:2], seed, keep=lambda nodes: nodes[1] == 0)
+        found, again = identify(text, tmp_path), identify(rounded_off(text, seed), tmp_path)
+        assert not found["not_identified"] and not again["not_identified"], seed
+        for name, truth in TRUTH.items():
+            constant = found["constants"][name]
+            assert abs(again["constants"][name]["value"] - constant["value"]) < 1e-2 * constant["std"], (seed, name)
+            missed.append(abs(constant["value"] - truth) / constant["std"])
+    # 36 intervals of 95 %, of which those of one list miss together.
+    assert np.mean(np.array(missed) < 1.96) > 0.85, missed
+
+
+def rounded_off(text, seed):
+    """The same lines to the ninth digit."""
+    random = np.random.default_rng(seed)
+    lines = []
+    for line in text.splitlines():
+        if line.startswith("values = "):
+            values = [f * (1.0 + 1e-9 * random.standard_normal()) for f in json.loads(line.removeprefix("values = "))]
+            line = f"values = {values}"
+        lines.append(line)
+    return "\n".join(lines) + "\n"
