@@ -62,6 +62,13 @@ fn val_modes_from_near_ones_are_those_from_nothing() {
         let own = reduced.modes(&values).unwrap();
         let by_pencil = ritz_modes(&reduced, &values, COUNT).unwrap();
         assert_alike(&flexible(&own)[..COUNT], &flexible(&by_pencil), 1e-9);
+        let alone: Vec<f64> = reduced
+            .natural_frequencies(&values)
+            .unwrap()
+            .iter()
+            .map(|frequency| frequency * std::f64::consts::TAU)
+            .collect();
+        assert_alike(&alone, &flexible(&own), 1e-10);
 
         let expected = ritz_modes(plate.as_ref(), &values, COUNT).unwrap();
         let near: Vec<RitzMode> = own.iter().map(|mode| reduced.in_whole(mode)).take(COUNT + 9).collect();

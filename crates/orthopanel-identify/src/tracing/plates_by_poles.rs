@@ -129,8 +129,8 @@ impl PlatesByPoles<'_> {
         let corner = |moved: usize| (1..=COORDINATES).map(|i| if i == moved { round.edge } else { 0.0 }).collect();
         let corners: Vec<Vec<f64>> = (0..=COORDINATES).map(corner).collect();
         let cost = Charge(|at: &[f64]| {
-            let modes = near.modes(&plate_values(&self.moved(&start, at))).ok();
-            modes.as_deref().map(frequencies).map_or(f64::INFINITY, |modes| self.charge(&modes, round))
+            let modes = near.natural_frequencies(&plate_values(&self.moved(&start, at)));
+            modes.map_or(f64::INFINITY, |modes| self.charge(&modes, round))
         });
         let done = Executor::new(cost, NelderMead::new(corners)).configure(|state| state.max_iters(round.steps)).run();
         let done = done.ok()?;

@@ -5,7 +5,7 @@ use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::evd::{ComputeEigenvectors, SelfAdjointEvdParams, self_adjoint_evd, self_adjoint_evd_scratch};
 use faer::linalg::solvers::Llt;
 use faer::linalg::triangular_solve::{solve_lower_triangular_in_place, solve_upper_triangular_in_place};
-use faer::{Auto, Col, Mat, MatRef, Par, Side, Spec};
+use faer::{Auto, Col, Mat, MatMut, MatRef, Par, Side, Spec};
 
 /// $AB$.
 pub(crate) fn product(left: MatRef<'_, f64>, right: MatRef<'_, f64>) -> Mat<f64> {
@@ -51,21 +51,25 @@ pub(crate) fn negative_pivots(matrix: &Mat<f64>) -> Option<usize> {
 /// all the others (0.24), which would cost the higher modes all their digits. Its QR iteration leaves rounding alone,
 /// so we ask for that at every size.
 pub(crate) fn symmetric_eigen(matrix: &Mat<f64>) -> Option<(Vec<f64>, Mat<f64>)> {
+    let mut vectors = Mat::<f64>::zeros(matrix.nrows(), matrix.nrows());
+    let values = eigenvalues(matrix, Some(vectors.as_mut()))?;
+    Some((values, vectors))
+}
+
+/// The rising eigenvalues alone, in a fifth of the time: to turn the vectors is most of the work.
+pub(crate) fn symmetric_eigenvalues(matrix: &Mat<f64>) -> Option<Vec<f64>> {
+    eigenvalues(matrix, None)
+}
+
+fn eigenvalues(matrix: &Mat<f64>, vectors: Option<MatMut<'_, f64>>) -> Option<Vec<f64>> {
     let size = matrix.nrows();
+    let asked = if vectors.is_some() { ComputeEigenvectors::Yes } else { ComputeEigenvectors::No };
     let parameters = SelfAdjointEvdParams { recursion_threshold: usize::MAX, ..Auto::<f64>::auto() };
     let spec: Spec<SelfAdjointEvdParams, f64> = parameters.into();
-    let scratch = self_adjoint_evd_scratch::<f64>(size, ComputeEigenvectors::Yes, Par::Seq, spec);
+    let scratch = self_adjoint_evd_scratch::<f64>(size, asked, Par::Seq, spec);
     let mut buffer = MemBuffer::try_new(scratch).ok()?;
     let mut values = Col::<f64>::zeros(size);
-    let mut vectors = Mat::<f64>::zeros(size, size);
-    self_adjoint_evd(
-        matrix.as_ref(),
-        DiagMut::from(values.as_mut().as_diagonal_mut()),
-        Some(vectors.as_mut()),
-        Par::Seq,
-        MemStack::new(&mut buffer),
-        spec,
-    )
-    .ok()?;
-    Some((values.iter().copied().collect(), vectors))
+    let diagonal = DiagMut::from(values.as_mut().as_diagonal_mut());
+    self_adjoint_evd(matrix.as_ref(), diagonal, vectors, Par::Seq, MemStack::new(&mut buffer), spec).ok()?;
+    Some(values.iter().copied().collect())
 }

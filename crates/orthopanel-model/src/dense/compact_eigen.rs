@@ -24,6 +24,11 @@ pub(crate) fn symmetric_eigen(matrix: &Mat<f64>) -> Option<(Vec<f64>, Mat<f64>)>
     Some((values, Mat::from_fn(size, size, |i, j| vectors[order[j] * size + i])))
 }
 
+/// The rising eigenvalues alone.
+pub(crate) fn symmetric_eigenvalues(matrix: &Mat<f64>) -> Option<Vec<f64>> {
+    symmetric_eigen(matrix).map(|(values, _)| values)
+}
+
 /// Diagonal and next diagonal of $H_{n-3}\dots H_0AH_0\dots H_{n-3}$, $H_k = 1 - \tau_kv_kv_k^T$, with the $\tau_k$. Reads the lower
 /// triangle, and leaves $v_k$ below the diagonal of column `k`.
 fn to_tridiagonal(matrix: &mut [f64], size: usize) -> (Vec<f64>, Vec<f64>, Vec<f64>) {

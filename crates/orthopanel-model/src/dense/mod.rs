@@ -11,11 +11,11 @@ mod compact;
 mod compact_eigen;
 
 #[cfg(not(feature = "compact"))]
-pub(crate) use by_faer::{Cholesky, negative_pivots, product, symmetric_eigen};
+pub(crate) use by_faer::{Cholesky, negative_pivots, product, symmetric_eigen, symmetric_eigenvalues};
 #[cfg(feature = "compact")]
 pub(crate) use compact::{Cholesky, negative_pivots, product};
 #[cfg(feature = "compact")]
-pub(crate) use compact_eigen::symmetric_eigen;
+pub(crate) use compact_eigen::{symmetric_eigen, symmetric_eigenvalues};
 
 /// $a^Tb$, in four sums, which the compiler may keep side by side.
 #[inline(always)]
@@ -106,9 +106,14 @@ mod tests {
         let symmetric = &matrix + matrix.transpose();
         for shift in [-6.0, -0.5, 0.1, 2.0, 40.0] {
             let shifted = &symmetric - shift * Mat::<f64>::identity(25, 25);
+            let alone = [by_faer::symmetric_eigenvalues(&shifted), compact_eigen::symmetric_eigenvalues(&shifted)]
+                .map(Option::unwrap);
             for (values, vectors) in
                 [by_faer::symmetric_eigen(&shifted), compact_eigen::symmetric_eigen(&shifted)].map(Option::unwrap)
             {
+                for alone in &alone {
+                    assert!(values.iter().zip(alone).all(|(value, alone)| (value - alone).abs() < 1e-12));
+                }
                 let images = by_faer::product(shifted.as_ref(), vectors.as_ref());
                 let scaled = Mat::from_fn(25, 25, |i, j| vectors[(i, j)] * values[j]);
                 assert!(apart(&images, &scaled) < 1e-12);
