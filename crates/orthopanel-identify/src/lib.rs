@@ -26,6 +26,6 @@ pub use time_history::{
     ComparedSignals, ForceBetweenSamples, HistorySettings, HitComparison, Misfit, Stepping, compare_time_history,
 };
 pub use tracing::{
-    Candidate, FittedError, NotTested, Progress, Removed, TRACE_SCHEMA, TracedEffect, TracedError, TracedParameter,
-    Tracing, Verdict, trace, trace_with,
+    Candidate, FittedError, IndependentLines, NotTested, Progress, Removed, TRACE_SCHEMA, TracedEffect, TracedError,
+    TracedParameter, Tracing, Verdict, trace, trace_with,
 };

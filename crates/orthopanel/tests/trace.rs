@@ -22,6 +22,9 @@ fn val_a_misplaced_hammer_is_named_and_its_way_found() {
     let error = |path: &str| number(&answer, &format!("/error/{path}"));
     assert!(error("after/held_out") < 0.1 * error("before/held_out"));
     assert!(error("after/held_out") < 1.2 * error("noise_floor"));
+    // What is left is white: its lines are as independent as those of noise under the same window.
+    assert!((error("independent/after") / error("independent/noise") - 1.0).abs() < 0.1, "{}", answer["error"]);
+    assert!(error("independent/before") < 0.2 * error("independent/noise"));
     assert!(answer["candidates"].as_array().is_some_and(|candidates| candidates.len() > 5));
     assert!(answer["next_experiment"].is_string());
     // It belongs to the measuring chain, so the panel's model does not have it, and its constants are right again.
@@ -71,6 +74,9 @@ fn run_writes_the_panel_without_rig_and_channel_and_says_so() {
         "Error before and after",
         "Accelerances with the effects",
         "What the model with the effects leaves",
+        "The same by place",
+        "The same by level",
+        "what is left is white where it is as independent as noise",
         "Ranking",
     ] {
         assert!(page.contains(said), "the page does not say {said:?}");

@@ -61,7 +61,8 @@ use orthopanel_data::{ImpactTest, MeasurementData, TimeHistory};
 use orthopanel_model::StructureKind;
 
 pub use outcome::{
-    Candidate, FittedError, NotTested, Progress, Removed, TracedEffect, TracedError, TracedParameter, Tracing, Verdict,
+    Candidate, FittedError, IndependentLines, NotTested, Progress, Removed, TracedEffect, TracedError, TracedParameter,
+    Tracing, Verdict,
 };
 
 pub(crate) use base_model::identify_with_effects;

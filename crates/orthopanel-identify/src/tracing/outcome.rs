@@ -103,6 +103,20 @@ pub struct TracedError {
     pub after: FittedError,
     /// The error that noise alone makes.
     pub noise_floor: f64,
+    /// How white the residuals are; `None` for lists, which have no neighbouring lines.
+    pub independent: Option<IndependentLines>,
+}
+
+/// The part of the records' lines that errs by itself, $1/(1+2\sum_k|\rho_k|^2)$ with the correlations $\rho_k$ of residuals $k$ lines
+/// apart (M. S. Bartlett, J. Roy. Stat. Soc. 98 (1935) 536). The window ties even the lines of white noise together, so what is left is white where it is as independent as noise.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct IndependentLines {
+    /// Of what the base model leaves.
+    pub before: f64,
+    /// Of what the model with the effects leaves.
+    pub after: f64,
+    /// Of white noise on the same lines.
+    pub noise: f64,
 }
 
 /// An error on what was fitted and on what was held out.

@@ -1,23 +1,27 @@
 //! From the ranking to what is said.
 
 use faer::Mat;
+use num_complex::Complex64;
 use orthopanel_data::ImpactTest;
 use orthopanel_model::{Estimate, Owner, PanelModel};
 
 use super::bare_panel::bare_panel;
 use super::error_clusters::clustered_spread;
-use super::fit::{Fit, covariance};
+use super::fit::{Fit, LAST, covariance};
 use super::held_out::held_out;
-use super::hypothesis::{Hypothesis, PLATE, Switched};
+use super::hypothesis::{Hypothesis, PLATE, Switched, WINDOW};
 use super::model_error::{of_amplitude, spread_of_gradient};
 use super::next_experiment::next_experiment;
-use super::outcome::{Candidate, FittedError, Removed, TracedEffect, TracedError, TracedParameter, Tracing};
+use super::outcome::{
+    Candidate, FittedError, IndependentLines, Removed, TracedEffect, TracedError, TracedParameter, Tracing,
+};
 use super::ranking::{Ranking, Search};
 use super::record_problem::Grouping;
 use super::records_of_test::TestRecords;
 use super::roughness::ROUGHNESS;
 use super::verdict::{is_too_rough, on_bound, verdict};
-use super::widened_lines::WIDENINGS;
+use super::whiteness::{independent_lines, whitened};
+use super::widened_lines::{WIDENINGS, WidenedLines};
 use crate::IdentifyError;
 
 const MEASURE: &str = "misfit of the accelerances over the noise of the hits, rms over all lines (1: noise alone)";
@@ -72,6 +76,7 @@ pub(super) fn report(test: &ImpactTest, search: &Search, ranking: &Ranking) -> R
             before: error(&ranking.fits[0], grouping)?,
             after: error(chosen, grouping)?,
             noise_floor: records.noise_floor(chosen)?.sqrt(),
+            independent: Some(independent(records, [&ranking.fits[0], chosen])?),
         },
         candidates,
         not_tested: ranking.not_tested.clone(),
@@ -82,6 +87,15 @@ pub(super) fn report(test: &ImpactTest, search: &Search, ranking: &Ranking) -> R
         accelerances: records.curves(chosen)?,
         notes: notes(records, ranking),
     })
+}
+
+/// How white what the base and the chosen fit leave is. A window left on in the recorder fades the noise too.
+fn independent(records: &TestRecords, [base, chosen]: [&Fit; 2]) -> Result<IndependentLines, IdentifyError> {
+    let windows = chosen.state.hypothesis.effects.iter().filter(|on| on.effect.id() == WINDOW);
+    let fading: f64 = windows.filter_map(|on| on.values.first()).map(|tau| tau.recip()).sum();
+    let faded = |record: &WidenedLines| record.s.iter().map(|s| s + fading).collect();
+    let lines: Vec<Vec<Complex64>> = records.problem(LAST).records.iter().map(faded).collect();
+    Ok(independent_lines(&whitened(records, base)?, &whitened(records, chosen)?, &lines))
 }
 
 fn notes(records: &TestRecords, ranking: &Ranking) -> Vec<String> {

@@ -52,6 +52,15 @@ struct ErrorRow<'a> {
     before: PairRow,
     after: PairRow,
     noise_floor: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    independent: Option<IndependentRow>,
+}
+
+#[derive(Serialize)]
+struct IndependentRow {
+    before: f64,
+    after: f64,
+    noise: f64,
 }
 
 #[derive(Serialize)]
@@ -101,6 +110,11 @@ impl Serialize for Tracing {
                 before: PairRow { fitted: error.before.fitted, held_out: error.before.held_out },
                 after: PairRow { fitted: error.after.fitted, held_out: error.after.held_out },
                 noise_floor: error.noise_floor,
+                independent: error.independent.map(|of| IndependentRow {
+                    before: of.before,
+                    after: of.after,
+                    noise: of.noise,
+                }),
             },
             chi_square: self.chi_square,
             candidates: self

@@ -3,6 +3,7 @@
 use num_complex::Complex64;
 
 use super::fit::{Fit, LAST};
+use super::outcome::IndependentLines;
 use super::records_of_test::TestRecords;
 use crate::IdentifyError;
 
@@ -62,6 +63,44 @@ pub(super) fn independent_part(residuals: &[Vec<Complex64>]) -> f64 {
     1.0 / (1.0 + 2.0 * sum)
 }
 
+/// How white the residuals of two fits are beside noise on the lines $s$ of every record.
+///
+/// Of the lines' power as much is independent as $1/(1+2\sum_k|\rho_k|^2)$ tells (Bartlett): unlike [`independent_part`] it is the same
+/// whatever moment the phases count from.
+pub(super) fn independent_lines(
+    before: &[Vec<Complex64>],
+    after: &[Vec<Complex64>],
+    lines: &[Vec<Complex64>],
+) -> IndependentLines {
+    let [before, after] = [before, after].map(|residuals| {
+        let power: f64 = residuals.iter().flatten().map(Complex64::norm_sqr).sum();
+        if power > 0.0 { independent_power(residuals, |a, b| a.conj() * b / power) } else { 1.0 }
+    });
+    let count: usize = lines.iter().map(Vec::len).sum();
+    let noise = independent_power(lines, |a, b| {
+        // Lines D apart in white noise under a window $e^{-\sigma t}$.
+        let window = 2.0 * a.re;
+        if window > 0.0 { window / (window + (b - a)) / count as f64 } else { Complex64::ZERO }
+    });
+    IndependentLines { before, after, noise }
+}
+
+/// From the share that each pair of lines so many apart has in their correlation.
+fn independent_power(records: &[Vec<Complex64>], share: impl Fn(Complex64, Complex64) -> Complex64) -> f64 {
+    let lines: usize = records.iter().map(Vec::len).sum();
+    let scatter = 1.0 / (lines.max(1) as f64).sqrt();
+    let mut sum = 0.0;
+    for apart in 1..=REACH {
+        let pairs = records.iter().flat_map(|record| record.iter().zip(record.iter().skip(apart)));
+        let correlation: Complex64 = pairs.map(|(a, b)| share(*a, *b)).sum();
+        if correlation.norm() < 2.0 * scatter {
+            break;
+        }
+        sum += correlation.norm_sqr();
+    }
+    1.0 / (1.0 + 2.0 * sum)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -72,6 +111,34 @@ mod tests {
         z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
         z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
         ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    }
+
+    /// White noise in time, faded as records are, on every line of its transform.
+    #[test]
+    fn val_faded_noise_is_as_dependent_as_its_window_says() {
+        let (samples, duration, decay_rate) = (1024, 0.6, 6.0);
+        let faded: Vec<f64> =
+            (0..samples).map(|n| draw(n) * f64::exp(-decay_rate * duration * n as f64 / samples as f64)).collect();
+        let line = |k: usize| {
+            let turn = |n: usize| Complex64::cis(-std::f64::consts::TAU * (k * n % samples) as f64 / samples as f64);
+            faded.iter().enumerate().map(|(n, value)| turn(n) * value).sum()
+        };
+        let residuals: Vec<Complex64> = (1..samples / 2).map(line).collect();
+        let s = |k: usize| Complex64::new(decay_rate, std::f64::consts::TAU * k as f64 / duration);
+        let lines: Vec<Complex64> = (1..samples / 2).map(s).collect();
+        // Phases that count from another moment change nothing.
+        let shifted: Vec<Complex64> =
+            residuals.iter().zip(&lines).map(|(r, s)| r * Complex64::cis(0.02 * s.im)).collect();
+        let IndependentLines { before, after, noise } = independent_lines(&[shifted], &[residuals], &[lines]);
+        // tanh(x)/x with x = sigma T, if the sum went on for ever.
+        let x = decay_rate * duration;
+        assert!((noise / (x.tanh() / x) - 1.0).abs() < 0.2, "{noise}");
+        assert!(
+            (after / noise - 1.0).abs() < 0.2 && (before / after - 1.0).abs() < 1e-9,
+            "{before} {after}, noise {noise}"
+        );
+        let without_window = [Complex64::new(0.0, 1.0), Complex64::new(0.0, 2.0)];
+        assert_eq!(independent_lines(&[], &[], &[without_window.to_vec()]).noise, 1.0);
     }
 
     #[test]

@@ -114,13 +114,18 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
             files: &files,
         });
     } else {
+        let has_effects = traced.as_ref().is_ok_and(|traced| !traced.tracing.effects.is_empty());
+        if has_effects {
+            output::print("the base model, before effects\n");
+        }
         output::print(&identified.tables());
         match &traced {
             Ok(traced) => output::print(&format!("\n{}", traced.text())),
             Err(why) => output::print(&format!("\n{why}\n")),
         }
         if !hits.is_empty() {
-            output::print(&format!("\nmeasured hits, and the model driven by their forces\n{}", misfit_table(hits)));
+            let model = if has_effects { "the base model, before effects," } else { "the model" };
+            output::print(&format!("\nmeasured hits, and {model} driven by their forces\n{}", misfit_table(hits)));
         }
     }
     Ok(())

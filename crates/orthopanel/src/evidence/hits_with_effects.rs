@@ -21,6 +21,8 @@ pub struct HitsWithEffects {
     /// Rms over the kept hits of measured less calculated, over each hit's peak \[%\]: by the base model and with the effects.
     pub before: f64,
     pub after: f64,
+    /// Of each kept hit the greatest force \[N\] and what the model with the effects leaves \[% of peak\].
+    pub levels: Vec<(f64, f64)>,
 }
 
 impl HitsWithEffects {
@@ -57,8 +59,11 @@ impl HitsWithEffects {
             (misfits.iter().map(|misfit| misfit[of] * misfit[of]).sum::<f64>() / misfits.len().max(1) as f64).sqrt()
         };
         let (force, response) = (history.force_at, history.response_at);
+        let peak = |hit: &Hit| hit.force.iter().fold(0.0_f64, |peak, value| peak.max(value.abs()));
+        let hits = history.hits.iter().zip(kept).filter(|(_, kept)| **kept);
+        let levels = hits.zip(&misfits).map(|((hit, _), misfit)| (peak(hit), misfit[1])).collect();
         let band = [first, last].map(|line| line as f64 * resolution);
-        (!misfits.is_empty()).then(|| Self { force, response, band, before: rms(0), after: rms(1) })
+        (!misfits.is_empty()).then(|| Self { force, response, band, before: rms(0), after: rms(1), levels })
     }
 }
 

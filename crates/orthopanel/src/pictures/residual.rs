@@ -10,7 +10,7 @@ use super::curve::curve;
 use super::{ERROR, FONT, GRID, LAST_LABEL, MEASURED, MODEL, spaced, titled};
 use crate::error::CommandError;
 use crate::evidence::{PairResidual, ResidualUnit, banded};
-use crate::measured_pairs::{HitMisfit, place_text};
+use crate::measured_pairs::place_text;
 
 const WIDTH: u32 = 900;
 /// Bands of frequency over which residuals are averaged.
@@ -135,9 +135,8 @@ impl Ranged for Rows {
     }
 }
 
-/// A dot a hit: how far the calculated acceleration is from the measured one.
-pub fn residual_by_level(hits: &[HitMisfit]) -> Result<String, CommandError> {
-    let points: Vec<(f64, f64)> = hits.iter().map(|hit| (hit.peak_force_n, hit.rms_percent())).collect();
+/// A dot a hit: its greatest force \[N\], and how far the calculated acceleration is from the measured one \[% of peak\].
+pub fn residual_by_level(points: &[(f64, f64)]) -> Result<String, CommandError> {
     let highest = |of: fn(&(f64, f64)) -> f64| 1.1 * points.iter().map(of).fold(f64::MIN_POSITIVE, f64::max);
     let across = spaced(points.iter().map(|point| point.0));
     titled("residual by level", "Misfit of each hit against its level", (WIDTH, 300), |area| {

@@ -139,8 +139,9 @@ fn residual(residuals: &[PairResidual], hits: &[HitMisfit]) -> Result<Vec<Figure
         ));
     }
     if hits.len() > 1 {
+        let levels: Vec<(f64, f64)> = hits.iter().map(|hit| (hit.peak_force_n, hit.rms_percent())).collect();
         figures.push(Figure::new(
-            &pictures::residual_by_level(hits)?,
+            &pictures::residual_by_level(&levels)?,
             "A misfit that grows with the force points to something that is not linear.",
         ));
     }

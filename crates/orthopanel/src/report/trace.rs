@@ -10,7 +10,7 @@ use super::table::Table;
 use crate::error::CommandError;
 use crate::evidence::{HitsWithEffects, PairResidual};
 use crate::measured_pairs::place_text;
-use crate::traced::{Traced, comparison_rows, effect_rows, ranking_rows};
+use crate::traced::{INDEPENDENT, Traced, comparison, effect_rows, ranking_rows};
 use crate::{notes, pictures};
 
 pub struct TraceSection {
@@ -20,6 +20,10 @@ pub struct TraceSection {
     pub constants: Option<Table>,
     pub measure: String,
     pub comparison: Table,
+    /// What its last column is, of records.
+    pub independent: Option<&'static str>,
+    /// Where most is left of records that no effect explains.
+    pub left: Option<String>,
     /// Why what was held out may be met better than what was fitted, where it is.
     pub about_held_out: Option<&'static str>,
     pub ranking: Table,
@@ -34,7 +38,7 @@ pub struct TraceSection {
     pub not_tested: Vec<String>,
     /// The records beside the model with the effects, and what it leaves of them; none where no effect was found.
     pub fit: Option<Gallery>,
-    pub residual: Option<Figure>,
+    pub residual: Vec<Figure>,
     /// How far both models are from the hits themselves.
     pub hits: Option<Table>,
 }
@@ -43,13 +47,16 @@ impl TraceSection {
     pub fn of(name: &str, traced: &Traced, compared: &[&HitsWithEffects]) -> Result<Self, CommandError> {
         let tracing = &traced.tracing;
         let ranking = ["hypothesis", "BIC above best", "error held out", "\"parameters"];
+        let (headings, rows) = comparison(tracing);
         let fitted = if tracing.effects.is_empty() { &[][..] } else { &tracing.accelerances[..] };
         Ok(Self {
             verdict: traced.verdict(),
             effects: effects(&tracing.effects),
             constants: constants_with_it(traced),
             measure: tracing.error.measure.clone(),
-            comparison: Table::new(&["", "fitted", "held out"], comparison_rows(tracing)),
+            comparison: Table::new(&headings, rows),
+            independent: tracing.error.independent.map(|_| INDEPENDENT),
+            left: traced.left(),
             about_held_out: about_held_out(tracing),
             has_left_behind: tracing.candidates.iter().any(|candidate| candidate.left_behind.is_some()),
             ranking: Table::new(&ranking, ranking_rows(tracing, usize::MAX)),
@@ -58,7 +65,7 @@ impl TraceSection {
             notes: notes::counted(&tracing.notes).collect(),
             not_tested: tracing.not_tested.iter().map(|of| format!("{}: {}", of.id, of.reason)).collect(),
             fit: gallery(name, fitted)?,
-            residual: residual(fitted)?,
+            residual: residual(fitted, compared)?,
             hits: hits(compared),
         })
     }
@@ -130,13 +137,25 @@ fn gallery(name: &str, fitted: &[AcceleranceFit]) -> Result<Option<Gallery>, Com
     ))
 }
 
-fn residual(fitted: &[AcceleranceFit]) -> Result<Option<Figure>, CommandError> {
+/// Against frequency, place and level, where these are told.
+fn residual(fitted: &[AcceleranceFit], compared: &[&HitsWithEffects]) -> Result<Vec<Figure>, CommandError> {
     let residuals: Vec<PairResidual> = fitted.iter().map(PairResidual::of).collect();
-    if residuals.is_empty() {
-        return Ok(None);
+    let mut figures = Vec::new();
+    if !residuals.is_empty() {
+        let caption = "What the model with the effects leaves: compare the same picture without them, further down.";
+        figures.push(Figure::new(&pictures::residual_by_frequency(&residuals)?, caption));
     }
-    let caption = "What the model with the effects leaves: compare the same picture without them, further down.";
-    Ok(Some(Figure::new(&pictures::residual_by_frequency(&residuals)?, caption)))
+    if residuals.len() > 1 {
+        let caption = "The same by place: where an effect at one place, or of one record, is all that was missing, none stands out.";
+        figures.push(Figure::new(&pictures::residual_by_place(&residuals)?, caption));
+    }
+    let levels: Vec<(f64, f64)> = compared.iter().flat_map(|pair| &pair.levels).copied().collect();
+    if levels.len() > 1 {
+        let caption =
+            "The same by level, in the band of the trace: a misfit that still grows with the force is not linear.";
+        figures.push(Figure::new(&pictures::residual_by_level(&levels)?, caption));
+    }
+    Ok(figures)
 }
 
 #[cfg(test)]

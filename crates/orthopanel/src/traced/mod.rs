@@ -1,5 +1,6 @@
 //! What a trace found, as text for people and as the panel's model; its JSON (`orthopanel.trace/1`) is the layer's own.
 
+mod left;
 mod lists;
 mod sentences;
 mod tables;
@@ -13,7 +14,7 @@ use serde_json::Value;
 
 use crate::identified::{ASSUMED_DAMPING, to_digits};
 use crate::{notes, progress};
-pub use tables::{comparison_rows, effect_rows, ranking_rows};
+pub use tables::{INDEPENDENT, comparison, effect_rows, ranking_rows};
 
 /// What a mode's entry in a model's provenance tells of the test alone.
 const AS_MEASURED: [&str; 4] = ["mode", "nodes", "measured_hz", "measured_std_hz"];

@@ -23,15 +23,20 @@ fn parameter_rows(effect: &TracedEffect, parameter: &TracedParameter) -> Vec<Vec
     (1..).zip(&parameter.values).map(row).collect()
 }
 
-/// The base, the model with the effects, and the noise: error on what was fitted and on what was held out.
-pub fn comparison_rows(tracing: &Tracing) -> Vec<Vec<String>> {
+/// The base, the model with the effects, and the noise: error on what was fitted and on what was held out, and of records the
+/// part of the lines that errs by itself. Headings first.
+pub fn comparison(tracing: &Tracing) -> (Vec<&'static str>, Vec<Vec<String>>) {
+    let error = &tracing.error;
     let row = |name: &str, error: FittedError| vec![name.into(), number(error.fitted), number(error.held_out)];
-    let floor = tracing.error.noise_floor;
-    vec![
-        row("before", tracing.error.before),
-        row("after", tracing.error.after),
-        vec!["noise floor".into(), number(floor), number(floor)],
-    ]
+    let floor = FittedError { fitted: error.noise_floor, held_out: error.noise_floor };
+    let mut headings = vec!["", "fitted", "held out"];
+    let mut rows = vec![row("before", error.before), row("after", error.after), row("noise floor", floor)];
+    if let Some(of) = error.independent {
+        headings.push("independent");
+        let parts = [of.before, of.after, of.noise];
+        rows.iter_mut().zip(parts).for_each(|(row, part)| row.push(format!("{:.0} %", 100.0 * part)));
+    }
+    (headings, rows)
 }
 
 /// Candidate, how much worse its information criterion is than the best, error held out and parameters.
@@ -71,6 +76,10 @@ fn number(value: f64) -> String {
     if (0.01..1e4).contains(&value) { format!("{value:.3}") } else { format!("{value:.2e}") }
 }
 
+/// What the last column of the comparison is.
+pub const INDEPENDENT: &str = "Independent: the part of the lines that do not err as their neighbours do; what is left is white \
+     where it is as independent as noise, whose lines the window ties together too";
+
 /// Hypotheses listed for people; JSON holds all.
 const LISTED: usize = 10;
 
@@ -104,7 +113,12 @@ impl Traced {
             text += &format!("\n{}", aligned(&["constant with it", "value", "std", "unit"], &constants));
         }
         text += &format!("\n{}\n", tracing.error.measure);
-        text += &aligned(&["", "fitted", "held out"], &comparison_rows(tracing));
+        let (headings, rows) = comparison(tracing);
+        text += &aligned(&headings, &rows);
+        if tracing.error.independent.is_some() {
+            text += &format!("{INDEPENDENT}\n");
+        }
+        text.extend(self.left().map(|left| left + "\n"));
         let headings = ["hypothesis", "BIC above best", "held out", "parameters"];
         text += &format!("\n{}", ending_in_words(&headings, &ranking_rows(tracing, LISTED)));
         for of in &tracing.not_tested {

@@ -96,6 +96,7 @@ pub(super) fn report(
             before: error(&fits[0]),
             after: error(&fits[chosen]),
             noise_floor: 100.0 * floor.unwrap_or_else(|| fits[chosen].scatter()),
+            independent: None,
         },
         candidates: ranked.iter().map(candidate).collect(),
         not_tested,

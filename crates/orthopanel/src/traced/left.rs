@@ -1,0 +1,85 @@
+//! Where the residual of records that no effect explains stands out: in frequency, by place, from hit to hit.
+
+use orthopanel_identify::Verdict;
+
+use super::Traced;
+use crate::evidence::{PairResidual, ResidualUnit, banded};
+use crate::measured_pairs::place_text;
+
+/// Bands of frequency that are told apart.
+const BANDS: usize = 8;
+/// Less than this over the noise stands out nowhere.
+const NOISE: f64 = 1.1;
+/// Hits that scatter by more than so many times their noise do not repeat.
+const SCATTERED: f64 = 2.0;
+
+impl Traced {
+    /// Sentences on what is left where no effect explains the records; `None` with any other verdict.
+    pub fn left(&self) -> Option<String> {
+        let tracing = &self.tracing;
+        if tracing.verdict != Verdict::Unexplained || tracing.accelerances.is_empty() {
+            return None;
+        }
+        let pairs: Vec<PairResidual> = tracing.accelerances.iter().map(PairResidual::of).collect();
+        let floor = tracing.error.noise_floor;
+        let of_noise = pairs.iter().all(|pair| pair.unit == ResidualUnit::Noise);
+        let by_level = (of_noise && floor > SCATTERED).then(|| {
+            format!(
+                "The hits of a place scatter by {floor:.1} times their noise: what is missing changes from hit to hit, as with their \
+                 level or place"
+            )
+        });
+        let sentences: Vec<String> = standing_out(&pairs).into_iter().chain(by_level).collect();
+        (!sentences.is_empty()).then(|| sentences.join(". "))
+    }
+}
+
+/// The band of frequency and the pair of places at which most is left; `None` where only noise is.
+fn standing_out(pairs: &[PairResidual]) -> Option<String> {
+    let lines = || pairs.iter().flat_map(|pair| &pair.lines);
+    let highest = lines().map(|(frequency, _)| *frequency).fold(0.0, f64::max);
+    let (_, over_all) = *banded(lines(), highest, 1).first()?;
+    let (middle, most) = banded(lines(), highest, BANDS).into_iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
+    let half = 0.5 * highest / BANDS as f64;
+    let unit = if pairs.iter().all(|pair| pair.unit == ResidualUnit::Noise) {
+        if over_all < NOISE {
+            return None;
+        }
+        "times the noise of the mean of the hits"
+    } else {
+        "% of the motion measured"
+    };
+    let (low, high) = (middle - half, middle + half);
+    let mut told =
+        format!("What is left is {over_all:.1} {unit} over all lines: most from {low:.0} to {high:.0} Hz, {most:.1}");
+    if pairs.len() > 1 {
+        let worst = pairs.iter().max_by(|a, b| a.rms().total_cmp(&b.rms()))?;
+        let [force, response] = [worst.force, worst.response].map(place_text);
+        told += &format!(", and with the force at {force} m and the response at {response} m, {:.1}", worst.rms());
+    }
+    Some(told)
+}
+
+#[cfg(test)]
+mod tests {
+    use orthopanel_model::Place;
+
+    use super::*;
+
+    fn pair(x: f64, size: impl Fn(f64) -> f64) -> PairResidual {
+        let lines = (1..=800).map(|line| (f64::from(line), size(f64::from(line)))).collect();
+        let at = |x| Place { x, y: 0.0 };
+        PairResidual { force: at(x), response: at(0.3), unit: ResidualUnit::Noise, lines }
+    }
+
+    #[test]
+    fn the_band_and_the_place_of_most_residual_are_told() {
+        let lump = |frequency: f64| if (300.0..400.0).contains(&frequency) { 5.0 } else { 1.0 };
+        let told = standing_out(&[pair(-0.1, |_| 1.0), pair(0.2, lump)]).expect("a sentence");
+        assert!(told.contains("most from 300 to 400 Hz, 3.6"), "{told}");
+        assert!(told.contains("the force at 0.2 m and the response at 0.3 m, 2.0"), "{told}");
+        assert_eq!(standing_out(&[pair(-0.1, |_| 1.0), pair(0.2, |_| 1.0)]), None);
+        let single = standing_out(&[pair(0.2, lump)]).expect("a sentence");
+        assert!(!single.contains("the force at"), "{single}");
+    }
+}
