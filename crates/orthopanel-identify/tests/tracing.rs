@@ -82,11 +82,44 @@ fn val_a_wide_plate_is_found_from_one_pair_of_places() {
     let found = trace(&test).unwrap();
     assert_eq!((found.verdict.name(), found.effects[0].id), ("explained", "width-coupling"));
     let constant = |group: &str, name: &str| case[group][name].as_f64().unwrap();
-    let (nu, std) = value(&found, "nu_xy");
-    assert!((nu - constant("across", "nu_xy")).abs() < 3.0 * std, "{nu} +- {std}, {case}");
-    let (ratio, std) = value(&found, "e_y_ratio");
-    let truth = constant("across", "e_y") / constant("constants", "e_x");
-    assert!((ratio - truth).abs() < 3.0 * std, "{ratio} +- {std}, {case}");
+    let [e_x, g_zx] = ["e_x", "g_zx"].map(|name| constant("constants", name));
+    for (name, truth) in [
+        ("e_y_ratio", constant("across", "e_y") / e_x),
+        ("nu_xy", constant("across", "nu_xy")),
+        ("g_xy_ratio", constant("across", "g_xy") / e_x),
+        ("g_yz_ratio", constant("across", "g_yz") / g_zx),
+    ] {
+        let (told, std) = value(&found, name);
+        assert!((told - truth).abs() < 3.0 * std, "{name}: {told} +- {std}, {case}");
+    }
+}
+
+/// A mass at the sensor's place may be the sensor's or the panel's: with the sensor elsewhere the two stand apart.
+#[test]
+fn val_a_mass_at_the_sensor_is_ambiguous_and_what_parts_it_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let Some((test, _)) = made_with(&folder.path().join("set"), "clean", "sensor-mass", 1000) else {
+        return;
+    };
+    let found = trace(&test).unwrap();
+    assert_eq!((found.verdict, found.effects[0].id), (Verdict::Ambiguous, "sensor-mass"));
+    assert_eq!(found.alternatives, ["local-mass"]);
+    let next = &found.next_experiment;
+    let (_, apart) = next.split_once("differ by ").unwrap_or_else(|| panic!("{next}"));
+    let apart: f64 = apart.split(' ').next().and_then(|number| number.parse().ok()).unwrap_or_else(|| panic!("{next}"));
+    assert!(next.starts_with("move the sensor to x = ") && apart > 10.0, "{next}");
+}
+
+/// A core that softens as it is strained more is in no catalogue: what is left is no more white than it was.
+#[test]
+fn val_what_no_effect_makes_stays_unexplained() {
+    let folder = tempfile::tempdir().unwrap();
+    let Some((test, _)) = made_with(&folder.path().join("set"), "outside", "softening-core", 1000) else { return };
+    let found = trace(&test).unwrap();
+    assert_eq!(found.verdict, Verdict::Unexplained, "{:?}", found.effects);
+    assert!(found.error.after.held_out > 1.5 * found.error.noise_floor, "{:?}", found.error);
+    let independent = found.error.independent.unwrap();
+    assert!(independent.after < 0.5 * independent.noise, "{independent:?}");
 }
 
 /// Starts of a core whose stiffening and loss were in the base already promised nothing: this was `unexplained` before they gave it back.

@@ -1,7 +1,7 @@
 //! Tracing in lists of natural frequencies: real tables, and what they can and cannot say.
 
 use orthopanel_data::ImpactTest;
-use orthopanel_identify::{Tracing, Verdict, trace};
+use orthopanel_identify::{FittedError, Tracing, Verdict, trace};
 
 /// Aluminium cantilevers 50 x 2 mm with an accelerometer of 5 g at the tip: free length \[m\], f1, f2 \[Hz\].
 /// github EnesDemirkaya/Vibration-Tester-ADXL357-FFT, commit b01a8aaa (MIT).
@@ -68,4 +68,8 @@ fn val_wide_pieces_of_the_paper_want_a_plate() {
 fn val_thick_pieces_of_the_paper_lack_nothing_that_their_frequencies_show() {
     let found = of_example("pieces-3-4");
     assert_eq!((found.verdict, found.effects.len()), (Verdict::NothingMissing, 0));
+    let FittedError { fitted, held_out } = found.error.before;
+    assert!((fitted - 0.433).abs() < 1e-3 && (held_out - 0.543).abs() < 1e-3, "{:?}", found.error);
+    let plate = found.candidates.iter().find(|candidate| candidate.id == "width-coupling").unwrap();
+    assert!((plate.held_out - 0.527).abs() < 1e-3, "{}", plate.held_out);
 }
