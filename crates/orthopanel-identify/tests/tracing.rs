@@ -110,7 +110,7 @@ fn val_a_mass_at_the_sensor_is_ambiguous_and_what_parts_it_is_told() {
     assert!(next.starts_with("move the sensor to x = ") && apart > 10.0, "{next}");
 }
 
-/// A core that softens as it is strained more is in no catalogue: what is left is no more white than it was.
+/// A core that softens as it is strained more is in no catalogue: what is left is not white.
 #[test]
 fn val_what_no_effect_makes_stays_unexplained() {
     let folder = tempfile::tempdir().unwrap();

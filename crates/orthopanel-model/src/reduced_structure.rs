@@ -102,7 +102,7 @@ impl<S: Structure + Send + Sync> ReducedStructure<S> {
         Ok(modes)
     }
 
-    /// Natural frequencies \[Hz\] of its flexible modes, rising, in a fifth of the time that the modes take.
+    /// Natural frequencies \[Hz\] of its flexible modes, rising; to turn their shapes is most of what [`Self::modes`] does.
     ///
     /// # Errors
     /// As [`ritz_modes`].
@@ -112,7 +112,9 @@ impl<S: Structure + Send + Sync> ReducedStructure<S> {
         for own in &self.blocks {
             let omega2 = symmetric_eigenvalues(&flexible_stiffness(own, &coefficients));
             let omega2 = omega2.ok_or(ModelError::Eigenproblem)?;
-            frequencies.extend(omega2.iter().map(|omega2| omega2.max(0.0).sqrt() / std::f64::consts::TAU));
+            frequencies.extend(
+                omega2.iter().filter(|omega2| **omega2 > 0.0).map(|omega2| omega2.sqrt() / std::f64::consts::TAU),
+            );
         }
         frequencies.sort_by(f64::total_cmp);
         Ok(frequencies)

@@ -76,7 +76,7 @@ fn run_writes_the_panel_without_rig_and_channel_and_says_so() {
         "What the model with the effects leaves",
         "The same by place",
         "The same by level",
-        "what is left is white where it is as independent as noise",
+        "what is left is white where this is that of noise",
         "Ranking",
     ] {
         assert!(page.contains(said), "the page does not say {said:?}");

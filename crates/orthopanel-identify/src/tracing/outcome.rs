@@ -103,11 +103,12 @@ pub struct TracedError {
     pub after: FittedError,
     /// The error that noise alone makes.
     pub noise_floor: f64,
-    /// How white the residuals are; `None` for lists, which have no neighbouring lines.
+    /// How white the residuals of records of hits are; `None` for lists and for files of accelerances, of which means of lines
+    /// between the resonances are judged, as far from each other as these leave.
     pub independent: Option<IndependentLines>,
 }
 
-/// The part of the records' lines that errs by itself, $1/(1+2\sum_k|\rho_k|^2)$ with the correlations $\rho_k$ of residuals $k$ lines
+/// The effective number of independent lines over that of all, $1/(1+2\sum_k|\rho_k|^2)$ with the correlations $\rho_k$ of residuals $k$ lines
 /// apart (M. S. Bartlett, J. Roy. Stat. Soc. 98 (1935) 536). The window ties even the lines of white noise together, so what is left is white where it is as independent as noise.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct IndependentLines {

@@ -74,7 +74,7 @@ pub(super) fn independent_lines(
 ) -> IndependentLines {
     let [before, after] = [before, after].map(|residuals| {
         let power: f64 = residuals.iter().flatten().map(Complex64::norm_sqr).sum();
-        if power > 0.0 { independent_power(residuals, |a, b| a.conj() * b / power) } else { 1.0 }
+        if power > 0.0 && power.is_finite() { independent_power(residuals, |a, b| a.conj() * b / power) } else { 1.0 }
     });
     let count: usize = lines.iter().map(Vec::len).sum();
     let noise = independent_power(lines, |a, b| {
@@ -93,7 +93,7 @@ fn independent_power(records: &[Vec<Complex64>], share: impl Fn(Complex64, Compl
     for apart in 1..=REACH {
         let pairs = records.iter().flat_map(|record| record.iter().zip(record.iter().skip(apart)));
         let correlation: Complex64 = pairs.map(|(a, b)| share(*a, *b)).sum();
-        if correlation.norm() < 2.0 * scatter {
+        if correlation.norm().max(0.0) < 2.0 * scatter {
             break;
         }
         sum += correlation.norm_sqr();

@@ -61,7 +61,11 @@ impl HitsWithEffects {
         let (force, response) = (history.force_at, history.response_at);
         let peak = |hit: &Hit| hit.force.iter().fold(0.0_f64, |peak, value| peak.max(value.abs()));
         let hits = history.hits.iter().zip(kept).filter(|(_, kept)| **kept);
-        let levels = hits.zip(&misfits).map(|((hit, _), misfit)| (peak(hit), misfit[1])).collect();
+        let levels = hits
+            .zip(&misfits)
+            .map(|((hit, _), misfit)| (peak(hit), misfit[1]))
+            .filter(|(_, misfit)| misfit.is_finite())
+            .collect();
         let band = [first, last].map(|line| line as f64 * resolution);
         (!misfits.is_empty()).then(|| Self { force, response, band, before: rms(0), after: rms(1), levels })
     }

@@ -17,13 +17,13 @@ impl Traced {
     /// Sentences on what is left where no effect explains the records; `None` with any other verdict.
     pub fn left(&self) -> Option<String> {
         let tracing = &self.tracing;
-        if tracing.verdict != Verdict::Unexplained || tracing.accelerances.is_empty() {
+        // Files of accelerances tell neither hits nor, at the resonances, how far they drift.
+        if tracing.verdict != Verdict::Unexplained || tracing.error.independent.is_none() {
             return None;
         }
         let pairs: Vec<PairResidual> = tracing.accelerances.iter().map(PairResidual::of).collect();
         let floor = tracing.error.noise_floor;
-        let of_noise = pairs.iter().all(|pair| pair.unit == ResidualUnit::Noise);
-        let by_level = (of_noise && floor > SCATTERED).then(|| {
+        let by_level = (floor > SCATTERED).then(|| {
             format!(
                 "The hits of a place scatter by {floor:.1} times their noise: what is missing changes from hit to hit, as with their \
                  level or place"
@@ -36,22 +36,22 @@ impl Traced {
 
 /// The band of frequency and the pair of places at which most is left; `None` where only noise is.
 fn standing_out(pairs: &[PairResidual]) -> Option<String> {
+    if pairs.iter().any(|pair| pair.unit != ResidualUnit::Noise) {
+        return None;
+    }
     let lines = || pairs.iter().flat_map(|pair| &pair.lines);
+    let lowest = lines().map(|(frequency, _)| *frequency).fold(f64::INFINITY, f64::min);
     let highest = lines().map(|(frequency, _)| *frequency).fold(0.0, f64::max);
     let (_, over_all) = *banded(lines(), highest, 1).first()?;
     let (middle, most) = banded(lines(), highest, BANDS).into_iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
     let half = 0.5 * highest / BANDS as f64;
-    let unit = if pairs.iter().all(|pair| pair.unit == ResidualUnit::Noise) {
-        if over_all < NOISE {
-            return None;
-        }
-        "times the noise of the mean of the hits"
-    } else {
-        "% of the motion measured"
-    };
-    let (low, high) = (middle - half, middle + half);
-    let mut told =
-        format!("What is left is {over_all:.1} {unit} over all lines: most from {low:.0} to {high:.0} Hz, {most:.1}");
+    if over_all < NOISE {
+        return None;
+    }
+    let (low, high) = ((middle - half).max(lowest), middle + half);
+    let mut told = format!(
+        "What is left is {over_all:.1} times the noise of the mean of the hits over all lines: most from {low:.0} to {high:.0} Hz, {most:.1}"
+    );
     if pairs.len() > 1 {
         let worst = pairs.iter().max_by(|a, b| a.rms().total_cmp(&b.rms()))?;
         let [force, response] = [worst.force, worst.response].map(place_text);

@@ -24,7 +24,7 @@ fn parameter_rows(effect: &TracedEffect, parameter: &TracedParameter) -> Vec<Vec
 }
 
 /// The base, the model with the effects, and the noise: error on what was fitted and on what was held out, and of records the
-/// part of the lines that errs by itself. Headings first.
+/// effective number of independent lines. Headings first.
 pub fn comparison(tracing: &Tracing) -> (Vec<&'static str>, Vec<Vec<String>>) {
     let error = &tracing.error;
     let row = |name: &str, error: FittedError| vec![name.into(), number(error.fitted), number(error.held_out)];
@@ -77,8 +77,8 @@ fn number(value: f64) -> String {
 }
 
 /// What the last column of the comparison is.
-pub const INDEPENDENT: &str = "Independent: the part of the lines that do not err as their neighbours do; what is left is white \
-     where it is as independent as noise, whose lines the window ties together too";
+pub const INDEPENDENT: &str = "Independent: the effective number of independent lines, of all; what is left is white where this is that of noise, whose \
+     lines the window ties together too.";
 
 /// Hypotheses listed for people; JSON holds all.
 const LISTED: usize = 10;
@@ -118,7 +118,7 @@ impl Traced {
         if tracing.error.independent.is_some() {
             text += &format!("{INDEPENDENT}\n");
         }
-        text.extend(self.left().map(|left| left + "\n"));
+        text.extend(self.left().map(|left| left + ".\n"));
         let headings = ["hypothesis", "BIC above best", "held out", "parameters"];
         text += &format!("\n{}", ending_in_words(&headings, &ranking_rows(tracing, LISTED)));
         for of in &tracing.not_tested {

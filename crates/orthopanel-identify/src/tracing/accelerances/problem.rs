@@ -11,9 +11,8 @@ use super::between_peaks::BetweenPeaks;
 use super::resonances::Resonance;
 use crate::IdentifyError;
 use crate::least_squares::{Ending, Quadratic, descend};
-use crate::tracing::outcome::IndependentLines;
 use crate::tracing::record_problem::{DampingPrior, Grouping, RecordProblem, State, total};
-use crate::tracing::whiteness::{independent_lines, independent_part};
+use crate::tracing::whiteness::independent_part;
 use crate::tracing::widened_lines::WidenedLines;
 
 /// What a trace of accelerances holds on to.
@@ -110,15 +109,6 @@ impl AccelerancesProblem {
         let constants = fit.parameters.len() - fit.state.hypothesis.size();
         self.by_constants = self.differences(&fit.parameters, &fit.state, 0..constants)?;
         Ok(())
-    }
-
-    /// How white what a base and a chosen state leave is.
-    ///
-    /// # Errors
-    /// What the model refuses.
-    pub(super) fn independent_lines(&self, [base, chosen]: [&State; 2]) -> Result<IndependentLines, ModelError> {
-        let lines: Vec<Vec<Complex64>> = self.lines.iter().map(|record| record.s.clone()).collect();
-        Ok(independent_lines(&self.residuals(base)?, &self.residuals(chosen)?, &lines))
     }
 
     fn weigh(&mut self, weighing: Weighing) {

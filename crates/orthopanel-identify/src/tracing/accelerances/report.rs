@@ -96,7 +96,7 @@ pub(super) fn report(
             before: error(base)?,
             after: error(chosen)?,
             noise_floor: 100.0 * floor,
-            independent: Some(problem.independent_lines([&base.state, &chosen.state])?),
+            independent: None,
         },
         candidates: order.iter().map(candidate).collect::<Result<_, _>>()?,
         not_tested: found.not_tested.clone(),
