@@ -74,7 +74,6 @@ fn run_writes_the_panel_without_rig_and_channel_and_says_so() {
         "Error before and after",
         "Accelerances with the effects",
         "What the model with the effects leaves",
-        "The same by place",
         "The same by level",
         "what is left is white where this is that of noise",
         "Ranking",
