@@ -70,6 +70,23 @@ def test_a_pair_needs_both():
     assert [reached("pairs", pair, given)[name] for given in (one, both)] == [0.0, 1.0]
 
 
+@pytest.mark.parametrize("verdict, counts", [("explained", 1.0), ("ambiguous", 1.0), ("unexplained", 0.0)])
+@pytest.mark.parametrize(
+    "name, rate",
+    [
+        ("clean", "right effect named first"),
+        ("single-place", "right effect named or among the alternatives"),
+        ("pairs", "both effects of the pair named"),
+    ],
+)
+def test_a_right_name_counts_only_where_it_is_said_to_explain(name, rate, verdict, counts):
+    """An answer that says of itself that it does not explain the records names nothing, whatever stands in it."""
+    pair = [("sensor-mass", mass(0.01, 0.001)), ("gain", {})]
+    truth = TRUTH | ({"effects": [*TRUTH["effects"], {"id": "gain", "parameters": {}}]} if name == "pairs" else {})
+    given = answer(verdict, *(pair if name == "pairs" else pair[:1]))
+    assert reached(name, truth, given)[rate] == counts
+
+
 def test_small_gains_and_offsets_are_passed_over_in_the_rough_set_only():
     """A record's gain of 0.4 % named before the mass: true of a rough test, a wrong name in a clean one."""
     given = answer(
