@@ -185,6 +185,12 @@ fn val_each_fault_gets_line_key_and_remedy() {
         ("1520]", "1520]\nresolution = -1", "measurement[1].resolution = -1"),
         (
             "1520]",
+            "1520]\nresolution = 1e6",
+            "measurement[1].resolution = 1000000: must lie below the natural frequency",
+        ),
+        ("1520]", "1520]\nscatter = [1, 840, 2]", "measurement[1].scatter[2] = 840: must lie below"),
+        (
+            "1520]",
             "1520]\nresolution = \"1\"",
             "test.toml:9: measurement[1].resolution: text \"1\" given, wanted is one number [Hz], or a list with one",
         ),

@@ -74,6 +74,24 @@ fn a_list_too_short_to_test_an_effect_is_ambiguous_with_the_count() {
     assert!(found.next_experiment.starts_with("read 3 more"), "{}", found.next_experiment);
 }
 
+/// Six frequencies met by six unknowns foretell nothing: a rotary inertia was said to explain them, with a held-out error of 21761 %.
+#[test]
+fn open_numbers_of_a_declared_effect_want_frequencies_too() {
+    let found = List { of_test: "[[effect]]\nid = \"stiffness-loss\"", ..List::default() }.traced();
+    assert_eq!((found.verdict, found.effects.len()), (Verdict::Ambiguous, 0), "{:?}", found.effects);
+    let said = &found.next_experiment;
+    assert!(said.contains("6 for 2 constants, 3 numbers of declared effects"), "{said}");
+    let untested = found.not_tested.iter().find(|effect| effect.id == "rotary-inertia").expect("too few for it");
+    assert!(untested.reason.contains("6 frequencies for 6 unknowns"), "{}", untested.reason);
+}
+
+/// With every constant of the plate at rest there is none that a line could tell alone: this was a panic.
+#[test]
+fn a_coarse_resolution_leaves_every_constant_of_a_plate_open() {
+    let found = List { of_list: "resolution = 300.0", ..List::default() }.traced();
+    assert_eq!((found.verdict, found.effects.len()), (Verdict::NothingMissing, 0), "{:?}", found.effects);
+}
+
 /// An effect that moves nothing once stopped the fit at its starting values (e_x 1.000e10), and the rest was laid to an edge mass.
 #[test]
 fn a_declared_effect_that_cannot_be_seen_is_refused_or_said() {

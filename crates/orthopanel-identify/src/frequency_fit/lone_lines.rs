@@ -16,7 +16,9 @@ const FAR_ELSEWHERE: f64 = 0.05;
 /// Without line $i$ the fit misses it by $r_i/(1-h_i)$ ([`super::uncertainty::left_one_out_percent`]), and with the line's row $a$ of the
 /// Jacobian the variance of constant $j$ is $C_{jj} + (Ca)_j^2/(1-h_i)$ in place of $C_{jj}$: the one that grows most is named.
 pub(super) fn lone_lines(test: &ImpactTest, problem: &FrequencyProblem, at: &Linearised) -> Vec<String> {
-    if problem.structure.shown() == Shown::Wholly || problem.count() <= problem.constants.count() {
+    let free = problem.constants.count();
+    // Where every constant rests, none rests on a line.
+    if problem.structure.shown() == Shown::Wholly || free == 0 || problem.count() <= free {
         return Vec::new();
     }
     let Some(covariance) = at.quadratic().covariance() else { return Vec::new() };

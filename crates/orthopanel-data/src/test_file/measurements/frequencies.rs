@@ -67,8 +67,8 @@ impl Entry<'_> {
             }
             values.push(value);
         }
-        let resolution = self.each_mode(entry.resolution.as_ref(), "resolution", values.len())?;
-        let scatter = self.each_mode(entry.scatter.as_ref(), "scatter", values.len())?;
+        let resolution = self.each_mode(entry.resolution.as_ref(), "resolution", &values)?;
+        let scatter = self.each_mode(entry.scatter.as_ref(), "scatter", &values)?;
         let response_at = {
             let place = entry.response_at.as_ref();
             place.map(|place| self.place(place, "response_at", &named.piece)).transpose()?
@@ -95,27 +95,36 @@ impl Entry<'_> {
         Ok(shape)
     }
 
-    /// One number \[Hz\] for all modes, or one a mode.
+    /// One number \[Hz\] for all modes, or one a mode; below the frequency it belongs to, or it would say that nothing was measured.
     fn each_mode(
         &self,
         given: Option<&Spanned<syntax::OneOrEach>>,
         key: &str,
-        modes: usize,
+        values: &[f64],
     ) -> Result<Vec<f64>, DataError> {
         let Some(given) = given else { return Ok(Vec::new()) };
+        let modes = values.len();
+        let below = |number: &Spanned<f64>, key: &str, frequency: f64| {
+            let value = self.source.positive(number, &self.name(key), "Hz")?;
+            if value < frequency {
+                return Ok(value);
+            }
+            let range = format!("must lie below the natural frequency that it belongs to, {frequency} Hz");
+            Err(DataError::OutOfRange { at: self.at(number.span(), key), value, range })
+        };
         match given.get_ref() {
             syntax::OneOrEach::One(value) => {
                 let number = Spanned::new(given.span(), *value);
-                Ok(vec![self.source.positive(&number, &self.name(key), "Hz")?; modes])
+                let lowest = values.iter().copied().fold(f64::INFINITY, f64::min);
+                Ok(vec![below(&number, key, lowest)?; modes])
             }
             syntax::OneOrEach::Each(list) if list.len() != modes => {
                 let remedy = format!("give one number in Hz, or one a mode, {modes} in all");
                 Err(DataError::Count { at: self.at(given.span(), key), found: list.len(), remedy })
             }
             syntax::OneOrEach::Each(list) => {
-                let each = list.iter().enumerate();
-                let name = |index: usize| self.name(&format!("{key}[{}]", index + 1));
-                each.map(|(index, number)| self.source.positive(number, &name(index), "Hz")).collect()
+                let each = list.iter().zip(values).enumerate();
+                each.map(|(index, (number, &value))| below(number, &format!("{key}[{}]", index + 1), value)).collect()
             }
         }
     }

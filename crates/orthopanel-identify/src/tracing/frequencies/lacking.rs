@@ -80,13 +80,18 @@ pub(super) fn what_to_check(test: &ImpactTest, problem: &ListProblem, fit: &List
     )
 }
 
-/// What is missing where hardly any effect could be tested.
-pub(super) fn too_few(problem: &ListProblem, for_each: usize) -> String {
-    let needed = for_each * (problem.constants.count() + 1);
+/// What is missing where hardly any effect could be tested, beside a base with so many numbers of effects left open.
+pub(super) fn too_few(problem: &ListProblem, for_each: usize, open: usize) -> String {
+    let unknowns = problem.constants.count() + open + 1;
+    let needed = for_each * unknowns;
     let more = needed.saturating_sub(problem.count()).max(1);
+    let (beside, or) = match open {
+        0 => (String::new(), String::new()),
+        _ => (format!(", {open} numbers of declared effects"), ", or say the numbers of declared effects".to_owned()),
+    };
     format!(
-        "read {more} more natural frequencies or more: {} for {} constants and one effect are too few to judge by, {needed} are \
-         the least; or hold a constant that you know under [constants]",
+        "read {more} more natural frequencies or more: {} for {} constants{beside} and one effect are too few to judge by, {needed} are \
+         the least; or hold a constant that you know under [constants]{or}",
         problem.count(),
         problem.constants.count()
     )

@@ -63,7 +63,7 @@ pub(super) fn trace_frequencies(test: &ImpactTest, declared: &Hypothesis) -> Res
             not_tested.push(refused("each piece would have a place of its own: trace one piece in a test file"));
             continue;
         }
-        let unknowns = problem.constants.count() + free_parameters(effect);
+        let unknowns = problem.constants.count() + declared.size() + free_parameters(effect);
         if count < DATA_FOR_EACH * unknowns {
             let reason =
                 format!("{count} frequencies for {unknowns} unknowns: measure {DATA_FOR_EACH} or more for each");

@@ -42,6 +42,7 @@ pub(super) fn report(
         bic_a.total_cmp(&bic_b).then(size_a.cmp(&size_b)).then(at_a.cmp(&at_b))
     });
     let best = order.first().copied().unwrap_or(0);
+    let trust = Trust::of(problem);
     let pays = fits[0].bic() - fits[best].bic() > CLEAR && fits[best].left_out_percent() < fits[0].left_out_percent();
     let chosen = if pays { best } else { 0 };
     let rivals: Vec<usize> = order
@@ -49,7 +50,6 @@ pub(super) fn report(
         .copied()
         .filter(|&index| index != 0 && index != chosen && chosen != 0 && fits[index].bic() < fits[chosen].bic() + CLEAR)
         .collect();
-    let trust = Trust::of(problem);
     let on_bound = bounds::on_bound(&fits[chosen].hypothesis, declared, &problem.largest_piece(), &["zeta"]);
     let choice = Choice { chosen, rivals, on_bound, wants_more };
     let verdict = choice.verdict(&fits, &trust);
@@ -71,7 +71,7 @@ pub(super) fn report(
     };
     let next_experiment = match verdict {
         Verdict::Unexplained => what_to_check(test, problem, &fits[chosen], &trust),
-        _ if too_few => lacking::too_few(problem, DATA_FOR_EACH),
+        _ if too_few => lacking::too_few(problem, DATA_FOR_EACH, fits[0].hypothesis.size()),
         _ => next_experiment(problem, &fits, chosen, &choice.rivals, &order),
     };
     let mut notes = vec![if told.is_some() { TOLD } else { UNTOLD }.to_owned()];

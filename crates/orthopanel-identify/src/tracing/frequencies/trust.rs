@@ -15,6 +15,9 @@ const FREE: f64 = 1.25e-2;
 const HELD: f64 = 2e-2;
 /// Where the noise is told, its mean square may stand above one by so many of its own standard deviations.
 const SURE: f64 = 3.0;
+/// A frequency may miss what the others foretell of it by so many times what a fit may miss: two of three frequencies fix an unknown
+/// each where the fewest are measured that an effect is tried on, and the ends of a list lean on themselves the most.
+const FORETOLD: f64 = 5.0;
 
 /// What a test may miss.
 pub(super) enum Trust {
@@ -40,12 +43,15 @@ impl Trust {
 
     /// Mean square of what a fit misses, over what it may miss.
     pub(super) fn chi_square(&self, fit: &ListFit) -> f64 {
-        let count = fit.residuals.len().max(1) as f64;
+        self.mean_square(&fit.residuals)
+    }
+
+    fn mean_square(&self, missed: &[f64]) -> f64 {
         let sum: f64 = match self {
-            Self::Told(std) => fit.residuals.iter().zip(std).map(|(miss, std)| (miss / std).powi(2)).sum(),
-            Self::Untold(rms) => fit.residuals.iter().map(|miss| (miss / rms).powi(2)).sum(),
+            Self::Told(std) => missed.iter().zip(std).map(|(miss, std)| (miss / std).powi(2)).sum(),
+            Self::Untold(rms) => missed.iter().map(|miss| (miss / rms).powi(2)).sum(),
         };
-        sum / count
+        sum / missed.len().max(1) as f64
     }
 
     /// Up to which [`Self::chi_square`] a fit meets the lists.
@@ -58,6 +64,11 @@ impl Trust {
 
     pub(super) fn is_met(&self, fit: &ListFit) -> bool {
         self.chi_square(fit) <= self.most()
+    }
+
+    /// Whether the others foretell each frequency: a fit with an unknown for almost every one meets all and foretells none.
+    pub(super) fn is_foretold(&self, fit: &ListFit) -> bool {
+        self.mean_square(&fit.left_out) <= FORETOLD.powi(2) * self.most()
     }
 
     /// What the verdict goes by, a sentence.

@@ -31,9 +31,13 @@ impl Choice {
             return Verdict::Unexplained;
         }
         if self.chosen == 0 {
-            return if self.tested_too_little(fits) { Verdict::Ambiguous } else { Verdict::NothingMissing };
+            let is_told = trust.is_foretold(chosen) && !self.tested_too_little(fits);
+            return if is_told { Verdict::NothingMissing } else { Verdict::Ambiguous };
         }
-        if !self.rivals.is_empty() {
+        // What foretells nothing explains nothing, though the base foretold even less.
+        if !trust.is_foretold(chosen) {
+            Verdict::Unexplained
+        } else if !self.rivals.is_empty() {
             Verdict::Ambiguous
         } else if chosen.percent() > LEFT * fits[0].percent() {
             Verdict::Unexplained
