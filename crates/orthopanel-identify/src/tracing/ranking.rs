@@ -15,7 +15,7 @@ use super::record_problem::{Grouping, State};
 use super::records_of_test::TestRecords;
 use super::roughness::{exceeds_any_test, is_roughness};
 use super::starts::{Costed, Look, followed, scored_starts};
-use super::valley::along_the_valley;
+use super::valley::lead_on;
 use super::verdict::{CLEAR, MET};
 use super::whiteness::{independent_part, whitened};
 use crate::IdentifyError;
@@ -49,14 +49,6 @@ const MOST_WORK: u64 = 30_000_000;
 /// [`LITTLE`] is what the narrower lines may still tell apart.
 pub(super) const BEHIND: f64 = 0.2;
 pub(super) const LITTLE: f64 = 300.0;
-/// Rounds on the narrowest lines that the best hypothesis may take beyond the first, and the gain that is worth another.
-const MORE_ROUNDS: usize = 3;
-const SETTLED: f64 = 1.0;
-/// Rounds of a search that still goes down by this part: a core's valley beside a delay's is long.
-const MOST_ROUNDS: usize = 8;
-const STILL_FALLING: f64 = 0.05;
-/// A round that falls by less than that and by more than this has crept along a valley's floor.
-const CREEPING: f64 = 1e-4;
 
 /// What a search needs to know.
 pub(super) struct Search<'a> {
@@ -77,6 +69,8 @@ impl Search<'_> {
     /// What the model refuses.
     pub(super) fn together(&self, mut ranking: Ranking) -> Result<Ranking, IdentifyError> {
         self.look_closer(&mut ranking)?;
+        // A plate that is dear to find alone must not keep a gain beside it from being tried.
+        self.records.work.store(0, Ordering::Relaxed);
         for size in 1..MOST_EFFECTS {
             let before = ranking.chosen;
             if self.meets_noise(&ranking.fits[ranking.chosen]) {
@@ -111,29 +105,13 @@ impl Search<'_> {
                 behind.extend(left.into_iter().map(|(state, _)| (state, stage)));
             }
         }
-        self.lead_on(&mut running);
+        if let Some(best) = running.iter_mut().min_by(|a, b| a.1.total_cmp(&b.1)) {
+            lead_on(self.records, best);
+        }
         let ahead = running.into_iter().map(|(state, _)| (state, None));
         let behind = behind.into_iter().map(|(state, stage)| (state, Some(stage)));
         let ends: Vec<(State, Option<usize>)> = ahead.chain(behind).collect();
         ends.into_par_iter().filter_map(|(state, given_up)| settle(self.records, state, given_up).ok()).collect()
-    }
-
-    /// Follows the best to its minimum: what others are held against must be what it can be.
-    fn lead_on(&self, running: &mut [Costed]) {
-        let Some(best) = running.iter_mut().min_by(|a, b| a.1.total_cmp(&b.1)) else { return };
-        let enough = self.records.problem(LAST).data() as f64;
-        for round in 0..MOST_ROUNDS {
-            let worth = if round < MORE_ROUNDS { SETTLED } else { STILL_FALLING * best.1 };
-            let Ok(next) = polish(self.records, &best.0, LAST, PATIENCE[LAST]) else { break };
-            if next.1 >= best.1 - worth {
-                break;
-            }
-            let (before, cost) = std::mem::replace(best, next);
-            let fallen = 1.0 - best.1 / cost;
-            if best.1 > enough && (CREEPING..STILL_FALLING).contains(&fallen) {
-                *best = along_the_valley(self.records, &before, best.clone(), enough);
-            }
-        }
     }
 
     /// Whiteness and misfit of the best fit so far make the measure for all.
