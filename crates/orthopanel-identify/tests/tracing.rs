@@ -120,6 +120,22 @@ fn val_what_no_effect_makes_stays_unexplained() {
     assert!(found.error.after.held_out > 1.5 * found.error.noise_floor, "{:?}", found.error);
     let independent = found.error.independent.unwrap();
     assert!(independent.after < 0.5 * independent.noise, "{independent:?}");
+    // No place or mass parts what does not fit: what may be wrong is to be looked at.
+    assert!(found.next_experiment.contains("check the sizes and their units"), "{}", found.next_experiment);
+}
+
+/// The search for a plate spent what its partners may cost, creeping along a floor that only the gain lowers: this was `unexplained`.
+#[test]
+fn val_a_gain_beside_a_plate_is_found() {
+    let folder = tempfile::tempdir().unwrap();
+    let kind = "width-coupling + gain";
+    let Some((test, case)) = made_with(&folder.path().join("set"), "pairs", kind, 1200) else { return };
+    let found = trace(&test).unwrap();
+    let named: Vec<&str> = found.effects.iter().map(|effect| effect.id).collect();
+    assert_eq!((found.verdict.name(), &named[..]), ("explained", &["width-coupling", "gain"][..]));
+    let truth = case["effects"][1]["parameters"]["gain"].as_f64().unwrap();
+    let gain = found.effects[1].parameters[0].values[0];
+    assert!((gain.value - truth).abs() < 3.0 * gain.std.unwrap(), "{gain:?}, {truth}");
 }
 
 /// Starts of a core whose stiffening and loss were in the base already promised nothing: this was `unexplained` before they gave it back.

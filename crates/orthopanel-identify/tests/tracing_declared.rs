@@ -60,3 +60,38 @@ fn val_what_is_missing_beside_a_declared_sensor_is_named_and_measured() {
     // Mass of the panel stays in its model, the sensor does not.
     assert_eq!((found.panels[0].effects.len(), found.removed.len()), (1, 1));
 }
+
+/// The hits of `examples/made-hits`, in which nothing is missing, with something declared.
+fn made_hits(declared: &str) -> Result<Tracing, String> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/made-hits");
+    let text = std::fs::read_to_string(folder.join("test.toml")).unwrap() + declared;
+    let test = ImpactTest::from_toml(&text, folder.join("test.toml")).unwrap();
+    trace(&test).map_err(|error| error.to_string())
+}
+
+/// A core whose three numbers are open was left at its first start, and an edge mass of half a milligram stood beside it.
+#[test]
+fn val_open_numbers_of_a_declared_effect_are_searched_as_closely_as_a_rival() {
+    let found = made_hits("[[effect]]\nid = \"viscoelastic-core\"\n").unwrap();
+    assert_eq!((found.verdict, found.effects.len()), (Verdict::NothingMissing, 0), "{:?}", found.effects);
+    assert!(found.error.before.fitted < 1.1, "{:?}", found.error);
+}
+
+#[test]
+fn val_a_declared_number_that_is_wrong_is_doubted_with_the_right_one() {
+    let found = made_hits("[[effect]]\nid = \"gain\"\ngain = 1.05\n").unwrap();
+    assert_eq!(found.verdict, Verdict::Unexplained, "{:?}", found.effects);
+    let doubt = found.notes.iter().find(|note| note.contains("the declared gain may have a wrong number"));
+    let doubt = doubt.unwrap_or_else(|| panic!("{:?}", found.notes));
+    let (_, told) = doubt.split_once("gain = ").unwrap_or_else(|| panic!("{doubt}"));
+    let told: f64 = told.split(' ').next().and_then(|number| number.parse().ok()).unwrap_or_else(|| panic!("{doubt}"));
+    assert!((told - 1.0).abs() < 1e-3 && doubt.contains("in place of 1.0500e0"), "{doubt}");
+    assert!(found.next_experiment.contains("the numbers of what is declared (gain)"), "{}", found.next_experiment);
+}
+
+/// This was told as records that show no resonance.
+#[test]
+fn an_effect_that_cannot_act_is_refused_with_what_it_needs() {
+    let refused = made_hits("[[effect]]\nid = \"support-compliance\"\n").unwrap_err();
+    assert!(refused.contains("needs an end that is clamped"), "{refused}");
+}

@@ -61,7 +61,7 @@ pub(crate) fn identify_with_effects(test: &ImpactTest, settings: Settings) -> Re
         return refused("declared effects with records of several pieces: give each piece a test file of its own");
     }
     // Said here, for starts that fail are passed over.
-    Hypothesis::declared(test, &piece, pairs_of_places(test))?;
+    Hypothesis::declared(test, &piece, pairs_of_places(test))?.check_that_each_acts(test, &piece)?;
     if kinds(|data| matches!(data, MeasurementData::Accelerance(_))) {
         return base_of_accelerances(test)?.identification(test, settings.estimation);
     }

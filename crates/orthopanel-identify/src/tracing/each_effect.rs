@@ -5,8 +5,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use orthopanel_model::{Effect, catalogue};
 use rayon::prelude::*;
 
+use super::declared_starts::base_fit;
 use super::elsewhere::put_elsewhere;
-use super::fit::fit;
 use super::hypothesis::{PLATE, has_place};
 use super::outcome::{NotTested, Progress};
 use super::ranking::{Ranking, Search};
@@ -22,7 +22,7 @@ impl Search<'_> {
     /// # Errors
     /// Where the base itself cannot be fitted.
     pub(super) fn each_alone(&self) -> Result<Ranking, IdentifyError> {
-        let base = fit(self.records, self.records.start.clone(), 0)?;
+        let base = base_fit(self.records)?;
         let lacking = self.first_that_lacks(&base)?;
         let (begun, not_tested) = self.begun_alone((&self.undeclared(), Look::Usual), |starts| {
             followed_where_told(self.records, starts, lacking)

@@ -1,7 +1,9 @@
 //! Effects that are switched on, and which of their parameters a search moves.
 
 use orthopanel_data::{ImpactTest, Measurement, MeasurementData};
-use orthopanel_model::{Effect, EffectParameter, EffectState, ModelError, Piece, Scale, effect};
+use orthopanel_model::{
+    Effect, EffectParameter, EffectSetting, EffectState, ModelError, Piece, RecordSetting, Scale, effect,
+};
 
 use crate::IdentifyError;
 
@@ -235,6 +237,32 @@ impl Hypothesis {
             hypothesis.effects.push(switched);
         }
         Ok(hypothesis)
+    }
+
+    /// Whether each effect can act in this test at all, as where its clamp is: a search would pass over starts that fail.
+    ///
+    /// # Errors
+    /// [`ModelError::EffectNeeds`] with what the test lacks, and what an effect refuses of its numbers.
+    pub(super) fn check_that_each_acts(&self, test: &ImpactTest, piece: &Piece) -> Result<(), IdentifyError> {
+        let history = test.measurements.iter().find_map(|measurement| match &measurement.data {
+            MeasurementData::TimeHistory(record) | MeasurementData::Accelerance(record) => Some(record),
+            MeasurementData::NaturalFrequencies(_) => None,
+        });
+        let record = RecordSetting {
+            number: 1,
+            force_at: history.map(|record| record.force_at),
+            response_at: history.map(|record| record.response_at),
+            ..RecordSetting::default()
+        };
+        let (boundary, suspension) = (test.boundary, test.suspension.clone());
+        let setting = EffectSetting { piece: *piece, boundary, suspension, record };
+        for on in &self.effects {
+            // With a value in each record these are no values of one.
+            if on.values.len() == on.effect.parameters().len() {
+                on.effect.act(&on.values, &setting)?;
+            }
+        }
+        Ok(())
     }
 
     /// Whether an effect is on and cannot be there once more.

@@ -16,6 +16,8 @@ mod blow;
 mod bounds;
 mod core_modes;
 mod curves;
+mod declared_doubt;
+mod declared_starts;
 mod each_effect;
 mod elsewhere;
 mod error_clusters;
@@ -119,7 +121,7 @@ pub fn trace_with(test: &ImpactTest, progress: &(dyn Fn(Progress) + Sync)) -> Re
     let histories: Vec<TimeHistory> = test.time_histories()?.into_iter().map(|(_, history)| history).collect();
     let piece = named.piece;
     // Starts that fail are passed over: what the file declares wrongly would be said as too few resonances.
-    Hypothesis::declared(test, &piece, histories.len())?;
+    Hypothesis::declared(test, &piece, histories.len())?.check_that_each_acts(test, &piece)?;
     let mut records = TestRecords::new(test, &histories)?;
     let alone = Search { records: &records, piece, progress }.each_alone()?;
     let ranking = match rough_search::rough_search(&mut records, piece, progress, &alone) {

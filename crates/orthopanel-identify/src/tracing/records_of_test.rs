@@ -10,7 +10,8 @@ use rayon::prelude::*;
 
 use super::base_model::RecordsBase;
 use super::curves::curves;
-use super::fit::{Fit, LAST, by_group, fit};
+use super::declared_starts::{base_fit, begun_where_declared};
+use super::fit::{Fit, LAST, by_group};
 use super::held_out::LEAST_PLACES;
 use super::hypothesis::Hypothesis;
 use super::known_sums::KnownSums;
@@ -124,6 +125,7 @@ impl TestRecords {
         records.reactions = Reactions::new(test, histories, (records.summed, records.band))?;
         records.known.forget();
         records.histories = kept;
+        records.start = begun_where_declared(&records, &test.pieces[0].piece);
         Ok(records)
     }
 
@@ -339,7 +341,7 @@ fn of_means(beside: &[Vec<f64>]) -> f64 {
 pub(super) fn base_of_histories(test: &ImpactTest) -> Result<RecordsBase, IdentifyError> {
     let histories: Vec<TimeHistory> = test.time_histories()?.into_iter().map(|(_, history)| history).collect();
     let records = TestRecords::new(test, &histories)?;
-    let base = fit(&records, records.start.clone(), 0)?;
+    let base = base_fit(&records)?;
     let chi_square = base.chi_square(&records);
     let covariance = total(&by_group(&records, &base, Grouping::Places)?).covariance();
     let unit = chi_square.max(1.0) / independent_part(&whitened(&records, &base)?);

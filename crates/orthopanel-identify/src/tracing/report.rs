@@ -6,6 +6,7 @@ use orthopanel_data::ImpactTest;
 use orthopanel_model::{Estimate, Owner, PanelModel};
 
 use super::bare_panel::bare_panel;
+use super::declared_doubt::doubtful_numbers;
 use super::error_clusters::clustered_spread;
 use super::fit::{Fit, LAST, covariance};
 use super::held_out::held_out;
@@ -13,7 +14,7 @@ use super::hypothesis::{Hypothesis, PLATE, Switched, WINDOW};
 use super::model_error::{of_amplitude, spread_of_gradient};
 use super::next_experiment::next_experiment;
 use super::outcome::{
-    Candidate, FittedError, IndependentLines, Removed, TracedEffect, TracedError, TracedParameter, Tracing,
+    Candidate, FittedError, IndependentLines, Removed, TracedEffect, TracedError, TracedParameter, Tracing, Verdict,
 };
 use super::ranking::{Ranking, Search};
 use super::record_problem::Grouping;
@@ -31,6 +32,9 @@ const UNFINISHED: &str = "the search ended at the work that it may cost before a
 
 const ON_BOUND: &str =
     "a number of what is named lies on the bound of what is looked for: the name fits, the number is the bound's";
+
+/// Less of the independent lines that noise has is no white residual: twelve effects of the catalogue leave within 15 % of noise's.
+const COLOURED: f64 = 0.7;
 
 const TOO_ROUGH: &str =
     "what is named leaves more roughness than a test by hand has: it may not be all that is missing";
@@ -67,6 +71,13 @@ pub(super) fn report(test: &ImpactTest, search: &Search, ranking: &Ranking) -> R
     let std = deviations(search, ranking, chosen)?;
     let mut panel = panel(test, search, chosen, &std)?;
     let removed = take_out(traced(chosen, &std, 0), search.declared(), &mut panel);
+    let independent = independent(records, [&ranking.fits[0], chosen])?;
+    let mut notes = notes(records, ranking);
+    if verdict == Verdict::Unexplained {
+        notes.extend(doubtful_numbers(search, ranking)?);
+    } else if independent.after < COLOURED * independent.noise {
+        notes.push(not_white(&independent));
+    }
     Ok(Tracing {
         verdict,
         effects: traced(chosen, &std, search.declared()),
@@ -76,7 +87,7 @@ pub(super) fn report(test: &ImpactTest, search: &Search, ranking: &Ranking) -> R
             before: error(&ranking.fits[0], grouping)?,
             after: error(chosen, grouping)?,
             noise_floor: records.noise_floor(chosen)?.sqrt(),
-            independent: Some(independent(records, [&ranking.fits[0], chosen])?),
+            independent: Some(independent),
         },
         candidates,
         not_tested: ranking.not_tested.clone(),
@@ -85,8 +96,16 @@ pub(super) fn report(test: &ImpactTest, search: &Search, ranking: &Ranking) -> R
         panels: vec![panel],
         removed,
         accelerances: records.curves(chosen)?,
-        notes: notes(records, ranking),
+        notes,
     })
+}
+
+fn not_white(independent: &IndependentLines) -> String {
+    format!(
+        "what is left is small, but not white ({:.0} % independent lines, {:.0} % of noise): something small may still be missing",
+        100.0 * independent.after,
+        100.0 * independent.noise
+    )
 }
 
 /// How white what the base and the chosen fit leave is. A window left on in the recorder fades the noise too.
@@ -119,7 +138,7 @@ pub(super) fn name(fit: &Fit, declared: usize) -> String {
 /// Standard deviation of everything that a search moved: [`covariance`], widened as the likelihood is, and what a model that is
 /// wrong by a little adds, see [`spread_of_gradient`]. In a rough test residuals err together: where [`clustered_spread`] leaves
 /// more than [`covariance`], that takes its place.
-fn deviations(search: &Search, ranking: &Ranking, fit: &Fit) -> Result<Vec<Option<f64>>, IdentifyError> {
+pub(super) fn deviations(search: &Search, ranking: &Ranking, fit: &Fit) -> Result<Vec<Option<f64>>, IdentifyError> {
     let records = search.records;
     let unit = ranking.scale.independent.recip() * fit.chi_square(records).max(1.0);
     let Some(covariance) = covariance(fit, unit) else { return Ok(vec![None; fit.size]) };

@@ -6,6 +6,7 @@
 mod foretold;
 mod harder;
 mod places;
+mod to_check;
 
 use orthopanel_data::ImpactTest;
 
@@ -29,6 +30,10 @@ pub(super) fn next_experiment(
     if search.records.are_too_few() {
         return "hit each place three times, or hit three places: so far nothing can be left out to judge by"
             .to_owned();
+    }
+    if verdict == Verdict::Unexplained {
+        let left = ranking.fits[ranking.chosen].chi_square(search.records).sqrt();
+        return to_check::to_check(test, left);
     }
     let compared: Vec<usize> =
         if rivals.is_empty() { ranking.nearest().into_iter().collect() } else { rivals.to_vec() };

@@ -1,0 +1,72 @@
+//! Whether a declared number is wrong, where nothing that is tried beside it explains the records.
+
+use rayon::prelude::*;
+
+use super::fit::{Fit, fit};
+use super::hypothesis::Switched;
+use super::ranking::{Ranking, Search};
+use super::record_problem::State;
+use super::report::{deviations, effects_of};
+use super::verdict::MET;
+use crate::IdentifyError;
+
+/// A sentence for each declared effect that lets the records be met once its numbers are free.
+///
+/// # Errors
+/// What the model refuses of a fit that was found.
+pub(super) fn doubtful_numbers(search: &Search, ranking: &Ranking) -> Result<Vec<String>, IdentifyError> {
+    let begun: Vec<(usize, State)> =
+        (0..search.declared()).filter_map(|index| Some((index, freed(search, index)?))).collect();
+    let fitted = |(index, state): (usize, State)| Some((index, fit(search.records, state, 0).ok()?));
+    let fits: Vec<(usize, Fit)> = begun.into_par_iter().filter_map(fitted).collect();
+    let mut sentences = Vec::new();
+    for (index, fit) in fits {
+        let left = search.records.misfit_over_floor(&fit)?;
+        if left <= MET {
+            sentences.push(doubt(search, ranking, index, (&fit, left))?);
+        }
+    }
+    Ok(sentences)
+}
+
+/// The base with all numbers of one of its effects free that a search may move; `None` where the file holds none of them.
+fn freed(search: &Search, index: usize) -> Option<State> {
+    let mut state = search.records.start.clone();
+    let on = state.hypothesis.effects.get(index)?;
+    let records = search.records.problem(0).records.len();
+    let parameters = on.effect.parameters();
+    let position = |name: &str| parameters.iter().position(|parameter| parameter.name == name);
+    // A number of its own in each record is no single value that could be carried over: those are free already, or told one by one.
+    if parameters.iter().any(|parameter| parameter.each_record) {
+        return None;
+    }
+    let value = |name: &str| position(name).and_then(|at| on.values.get(at)).copied();
+    let free = Switched::new(on.effect, &search.piece, records, value, |_| false);
+    if free.free.len() == on.free.len() {
+        return None;
+    }
+    state.hypothesis.effects[index] = free;
+    Some(state)
+}
+
+fn doubt(search: &Search, ranking: &Ranking, index: usize, (fit, left): (&Fit, f64)) -> Result<String, IdentifyError> {
+    let std = deviations(search, ranking, fit)?;
+    let at = fit.size - fit.state.hypothesis.size();
+    let all = effects_of(&fit.state.hypothesis, std.get(at..).unwrap_or_default());
+    let declared = &search.records.start.hypothesis.effects[index];
+    let mut changed = Vec::new();
+    for ((parameter, told), was) in all[index].parameters.iter().zip(declared.effect.parameters()).zip(&declared.values)
+    {
+        let Some(estimate) = parameter.values.first() else { continue };
+        let unit = if told.unit == "1" { String::new() } else { format!(" {}", told.unit) };
+        if let Some(std) = estimate.std {
+            changed.push(format!("{} = {:.4e} +- {std:.1e}{unit} in place of {was:.4e}", told.name, estimate.value));
+        }
+    }
+    Ok(format!(
+        "the declared {} may have a wrong number: the records are met ({:.2} times the noise) with {}",
+        declared.effect.id(),
+        left.sqrt(),
+        changed.join(", ")
+    ))
+}

@@ -1,0 +1,23 @@
+//! What to look at where nothing of the catalogue explains the records: another measurement would not part what does not fit.
+
+use orthopanel_data::ImpactTest;
+
+/// What may be wrong in the test file, the declared effects among it, and what is left over the noise.
+pub(super) fn to_check(test: &ImpactTest, left: f64) -> String {
+    let declared: Vec<&str> = test.effects.iter().map(|effect| effect.id.as_str()).collect();
+    let mut told = vec!["the sizes and their units (m, kg/m2)".to_owned(), "the boundary".to_owned()];
+    told.push("the places of hammer and sensor".to_owned());
+    told.push("the unit and sign of both channels".to_owned());
+    if !test.constants.is_empty() {
+        told.push("the constants held".to_owned());
+    }
+    if !declared.is_empty() {
+        told.push(format!("the numbers of what is declared ({})", declared.join(", ")));
+    }
+    let last = told.pop().unwrap_or_default();
+    format!(
+        "before another measurement check {} and {last}: {left:.1} times the noise is left. If all that is right, the cause is not in the \
+         catalogue: hit further places, for how what is left goes with the place shows where it sits",
+        told.join(", ")
+    )
+}
