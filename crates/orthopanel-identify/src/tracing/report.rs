@@ -85,6 +85,7 @@ pub(super) fn report(test: &ImpactTest, search: &Search, ranking: &Ranking) -> R
         panels: vec![panel],
         removed,
         accelerances: records.curves(chosen)?,
+        base_accelerances: records.curves(&ranking.fits[0])?,
         notes: notes(records, ranking),
     })
 }
