@@ -48,3 +48,15 @@ fn where_the_base_model_is_refused_too_no_model_is_written() {
     let told: serde_json::Value = serde_json::from_slice(&output.stdout).expect("one JSON object");
     assert_eq!(told["verdict"], "unexplained");
 }
+
+/// With all constants held the plate has nothing free: it is judged by its own error, and every candidate has a number.
+#[test]
+fn every_candidate_has_an_error_held_out() {
+    let bench = Bench::new();
+    let held = "[constants]\ne_x = 1.07e10\ng_zx = 5.363e8\n[[measurement]]";
+    bench.write("held.toml", &changed(support::TEST, "[[measurement]]", held));
+    let answer = bench.json("trace held.toml");
+    let candidates = answer["candidates"].as_array().expect("candidates");
+    assert!(candidates.iter().any(|of| of["id"] == "width-coupling"), "{answer}");
+    assert!(candidates.iter().all(|of| of["held_out"].is_number()), "{answer}");
+}
