@@ -52,6 +52,18 @@ impl fmt::Display for Location {
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum DataError {
+    /// A declared effect that is said to belong to another than it does.
+    #[error("{at}: {given:?} given, but {effect} belongs to the {owner}: write owner = {owner:?}, or leave it out")]
+    EffectOwner {
+        /// The key.
+        at: Box<Location>,
+        /// Id of the effect.
+        effect: String,
+        /// The owner in the test file.
+        given: String,
+        /// The owner in the catalogue.
+        owner: &'static str,
+    },
     /// A file that cannot be opened or read.
     #[error("{at}: cannot be read: {source}")]
     Unreadable {

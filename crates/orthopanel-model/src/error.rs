@@ -37,7 +37,7 @@ pub enum ModelError {
         heaviest: f64,
     },
     /// An elastic constant outside its bounds.
-    #[error("{name} = {value:e}{}: must lie between {low:e} and {high:e}", spaced(.unit))]
+    #[error("{name} = {value:e}{}: must lie between {} and {}", spaced(.unit), short(.low), short(.high))]
     Constant {
         /// Name of the constant.
         name: &'static str,
@@ -295,7 +295,7 @@ pub enum ModelError {
         expected: usize,
     },
     /// A parameter of an effect outside its bounds.
-    #[error("effect {effect}: {name} = {value:e}{}: must lie between {low:e} and {high:e}", spaced(.unit))]
+    #[error("effect {effect}: {name} = {value:e}{}: must lie between {} and {}", spaced(.unit), short(.low), short(.high))]
     EffectParameter {
         /// Id of the effect.
         effect: &'static str,
@@ -359,4 +359,10 @@ impl std::fmt::Display for Readable {
 /// A unit behind its number; pure numbers have none.
 fn spaced(unit: &str) -> String {
     if unit == "1" { String::new() } else { format!(" {unit}") }
+}
+
+/// A bound, which is worked out from sizes, to four digits.
+fn short(bound: &f64) -> String {
+    let rounded = format!("{bound:.3e}");
+    rounded.parse::<f64>().map_or(rounded, |value| format!("{value:e}"))
 }

@@ -25,6 +25,11 @@ pub enum CommandError {
     Data(#[from] DataError),
     #[error("{}: {source}", .path.display())]
     Identify { path: PathBuf, source: IdentifyError },
+    #[error(
+        "{}: no model is written: no effect explains {}, and its base model is refused: {source}",
+        .path.display(), .test.display()
+    )]
+    NoModel { path: PathBuf, test: PathBuf, source: Box<IdentifyError> },
     #[error("{}: {source}", .path.display())]
     Model { path: PathBuf, source: ModelError },
     #[error("{}: no {kind} place: give --{kind} X[,Y], or write ports.{key} into the model file", .path.display())]
@@ -89,6 +94,7 @@ impl CommandError {
             | Self::Data(DataError::NoUsableHit { .. })
             | Self::Identify { source: IdentifyError::Data(DataError::NoUsableHit { .. }), .. }
             | Self::FmuCall { .. }
+            | Self::NoModel { .. }
             | Self::Picture { .. }
             | Self::Export(ExportError::Assemble(_)) => SAYS_NO,
             Self::Identify { source, .. } if !source.is_bad_input() => SAYS_NO,

@@ -2,6 +2,7 @@
 
 mod arguments;
 mod commands;
+mod contradicted;
 mod driving_force;
 mod error;
 mod evidence;

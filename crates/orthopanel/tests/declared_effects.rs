@@ -74,3 +74,45 @@ fn a_wrong_effect_is_refused_with_its_numbers() {
     bench.write("test.toml", &plate);
     refused(&bench, "identify test.toml", 2, &["effect", "beam"]);
 }
+
+/// As copied from a model file; the catalogue knows whose an effect is.
+#[test]
+fn an_owner_may_be_told_and_must_be_right() {
+    let bench = Bench::new();
+    let effect =
+        |owner: &str| test_file(&format!("[[effect]]\nid = \"sensor-mass\"\nowner = \"{owner}\"\nmass = 0.005"));
+    bench.write("test.toml", &effect("rig"));
+    bench.done("identify test.toml");
+    bench.write("test.toml", &effect("panel"));
+    refused(&bench, "identify test.toml", 2, &["owner", "\"panel\" given", "sensor-mass belongs to the rig"]);
+}
+
+/// Bounds that follow from the sizes are told with few digits.
+#[test]
+fn bounds_in_messages_are_short() {
+    let bench = Bench::new();
+    bench.write("test.toml", &test_file("[[effect]]\nid = \"sensor-mass\"\nmass = 1e6"));
+    let message = String::from_utf8_lossy(&bench.run("identify test.toml").stderr).into_owned();
+    let (_, bounds) = message.split_once("must lie between ").unwrap_or_else(|| panic!("no bounds: {message}"));
+    let bounds = bounds.trim().split(" and ").map(|bound| bound.split([' ', ':', ',']).next().unwrap_or_default());
+    let bounds: Vec<&str> = bounds.collect();
+    assert!(
+        bounds.len() == 2 && bounds.iter().all(|bound| bound.len() <= 9 && bound.parse::<f64>().is_ok()),
+        "{message}"
+    );
+}
+
+/// A suspension of a free beam whose springs nobody gave, and which no record shows.
+#[test]
+fn a_declared_number_on_its_bound_is_told_as_such() {
+    let bench = Bench::new();
+    let test = std::fs::read_to_string(bench.path("examples/made-hits/test.toml")).expect("a test");
+    let hung = "[suspension]\nat = [-0.22, 0.22]\n[[effect]]\nid = \"suspension\"\n[[measurement]]";
+    bench.write("examples/made-hits/hung.toml", &test.replacen("[[measurement]]", hung, 1));
+    let answer = bench.json("trace examples/made-hits/hung.toml");
+    assert_eq!(answer["verdict"], "nothing-missing");
+    let notes = answer["notes"].to_string();
+    assert!(notes.contains("stiffness = 1.0e0 N/m of suspension lies on the bound"), "{notes}");
+    assert!(notes.contains("the test file declares it without this number"), "{notes}");
+    assert!(!notes.contains("the name fits") && !notes.contains("is named fits"), "{notes}");
+}

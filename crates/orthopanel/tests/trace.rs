@@ -31,6 +31,8 @@ fn val_a_misplaced_hammer_is_named_and_its_way_found() {
     let model = bench.read_json("model.json");
     assert!(model.get("effects").is_none(), "{model}");
     assert_eq!(answer["removed"][0]["id"], "hammer-offset");
+    assert_eq!(model["provenance"]["removed"], serde_json::json!(["hammer-offset"]));
+    assert_eq!(model["provenance"]["trace"], "explained");
     let truth = bench.read_json("examples/made-hits/truth.json");
     for name in ["e_x", "g_zx"] {
         let found = number(&model, &format!("/constants/{name}/value"));

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use orthopanel_model::{Place, StructureKind};
+use orthopanel_model::{Place, StructureKind, effect};
 use toml::Spanned;
 
 use super::{pieces::NamedPiece, source::Source, syntax};
@@ -96,13 +96,17 @@ pub(super) fn effects(
     for (index, entry) in given.into_iter().enumerate() {
         let key = format!("effect[{}]", index + 1);
         let table = source.at(entry.span(), format!("{key}.id"));
-        let (mut id, mut parameters) = (None, BTreeMap::new());
+        let (mut id, mut owner, mut parameters) = (None, None, BTreeMap::new());
         for (name, value) in entry.into_inner() {
             let span = value.span();
             let key = format!("{key}.{name}");
             let number = match (name.as_str(), value.into_inner()) {
                 ("id", toml::Value::String(text)) => {
                     id = Some(text);
+                    continue;
+                }
+                ("owner", toml::Value::String(text)) => {
+                    owner = Some((source.at(span, key), text));
                     continue;
                 }
                 ("id", _) => {
@@ -120,6 +124,13 @@ pub(super) fn effects(
         }
         let remedy = "give the effect's id, such as \"sensor-mass\"";
         let id = id.ok_or(DataError::Missing { at: table, remedy })?;
+        // Copied from a model file, where an effect tells its owner. An id that is unknown is judged later.
+        if let (Some((at, given)), Ok(effect)) = (owner, effect(&id)) {
+            let owner = effect.owner().name();
+            if given != owner {
+                return Err(DataError::EffectOwner { at, effect: id, given, owner });
+            }
+        }
         effects.push(DeclaredEffect { id, parameters });
     }
     Ok(effects)

@@ -2,7 +2,9 @@
 
 use orthopanel_model::{Piece, Scale};
 
-use super::hypothesis::{Hypothesis, Switched, ends_of_range, is_place};
+use super::hypothesis::{FreeParameter, Hypothesis, Switched, ends_of_range, is_place};
+use super::outcome::Verdict;
+use super::roughness::ROUGHNESS;
 
 /// Effect and parameter on a bound, of the effects beyond the first `declared`; parameters of the names that are `untold` show in no
 /// data of this kind.
@@ -13,6 +15,37 @@ pub(super) fn on_bound(hypothesis: &Hypothesis, declared: usize, piece: &Piece, 
 /// What is said of it.
 pub(super) fn note(parameter: &str) -> String {
     format!("{parameter} lies on its bound: the bound tells that value, not the data, so it explains nothing")
+}
+
+/// A sentence on each number that a search of records left on a bound. The first `declared` effects are the test file's, which left
+/// these numbers out.
+pub(super) fn notes_on_bound(hypothesis: &Hypothesis, declared: usize, verdict: Verdict) -> Vec<String> {
+    let mut notes = Vec::new();
+    for (index, on) in hypothesis.effects.iter().enumerate() {
+        for free in on.free.iter().filter(|free| free.on_bound(on.values[free.at])) {
+            let Some(told) = value_text(on, free) else { continue };
+            let id = on.effect.id();
+            let means = match (index < declared, verdict) {
+                _ if id == ROUGHNESS => "no test by hand is so rough, so it stands for something else",
+                (true, _) => {
+                    "the test file declares it without this number, and the data do not tell it: give the number, or leave the \
+                     effect out"
+                }
+                (false, Verdict::Unexplained) => "the bound tells that number, not the data",
+                (false, _) => "the name fits, the number is the bound's",
+            };
+            notes.push(format!("{told} of {id} lies on the bound of what is looked for: {means}"));
+        }
+    }
+    notes
+}
+
+/// Such as `stiffness = 1.0e0 N/m`; of a number that each record has of its own, with the record's.
+fn value_text(on: &Switched, free: &FreeParameter) -> Option<String> {
+    let (parameter, value) = (on.effect.parameters().get(free.parameter)?, on.values.get(free.at)?);
+    let unit = if parameter.unit == "1" { String::new() } else { format!(" {}", parameter.unit) };
+    let record = free.record.map_or(String::new(), |record| format!(" in record {}", record + 1));
+    Some(format!("{} = {value:.1e}{unit}{record}", parameter.name))
 }
 
 fn of_effect(on: &Switched, piece: &Piece, untold: &[&str]) -> Option<String> {

@@ -54,6 +54,8 @@ pub struct Tracing {
     pub removed: Vec<Removed>,
     /// Every record with the accelerance that the model with the effects foretells; empty where none was measured.
     pub accelerances: Vec<AcceleranceFit>,
+    /// The same records with the accelerance that the base model foretells.
+    pub base_accelerances: Vec<AcceleranceFit>,
     /// What was assumed or left out, a sentence each.
     pub notes: Vec<String>,
 }

@@ -6,6 +6,7 @@ use orthopanel_data::ImpactTest;
 use orthopanel_model::{Estimate, Owner, PanelModel};
 
 use super::bare_panel::bare_panel;
+use super::bounds::notes_on_bound;
 use super::declared_doubt::doubtful_numbers;
 use super::error_clusters::clustered_spread;
 use super::fit::{Fit, LAST, covariance};
@@ -20,7 +21,7 @@ use super::ranking::{Ranking, Search};
 use super::record_problem::Grouping;
 use super::records_of_test::TestRecords;
 use super::roughness::ROUGHNESS;
-use super::verdict::{is_too_rough, on_bound, verdict};
+use super::verdict::{is_too_rough, verdict};
 use super::whiteness::{independent_lines, whitened};
 use super::widened_lines::{WIDENINGS, WidenedLines};
 use crate::IdentifyError;
@@ -29,9 +30,8 @@ const MEASURE: &str = "misfit of the accelerances over the noise of the hits, rm
 
 const UNFINISHED: &str = "the search ended at the work that it may cost before all further effects were tried: what is \
                           named fits, but has not been compared with all that might fit better";
-
-const ON_BOUND: &str =
-    "a number of what is named lies on the bound of what is looked for: the name fits, the number is the bound's";
+const UNFINISHED_UNEXPLAINED: &str = "the search ended at the work that it may cost before all further effects were tried: one of \
+                                      those may explain what these do not";
 
 /// Less of the independent lines that noise has is no white residual: twelve effects of the catalogue leave within 15 % of noise's.
 const COLOURED: f64 = 0.7;
@@ -72,7 +72,7 @@ pub(super) fn report(test: &ImpactTest, search: &Search, ranking: &Ranking) -> R
     let mut panel = panel(test, search, chosen, &std)?;
     let removed = take_out(traced(chosen, &std, 0), search.declared(), &mut panel);
     let independent = independent(records, [&ranking.fits[0], chosen])?;
-    let mut notes = notes(records, ranking);
+    let mut notes = notes(search, ranking, verdict);
     if verdict == Verdict::Unexplained {
         notes.extend(doubtful_numbers(search, ranking)?);
     } else if independent.after < COLOURED * independent.noise {
@@ -96,6 +96,7 @@ pub(super) fn report(test: &ImpactTest, search: &Search, ranking: &Ranking) -> R
         panels: vec![panel],
         removed,
         accelerances: records.curves(chosen)?,
+        base_accelerances: records.curves(&ranking.fits[0])?,
         notes,
     })
 }
@@ -117,17 +118,19 @@ fn independent(records: &TestRecords, [base, chosen]: [&Fit; 2]) -> Result<Indep
     Ok(independent_lines(&whitened(records, base)?, &whitened(records, chosen)?, &lines))
 }
 
-fn notes(records: &TestRecords, ranking: &Ranking) -> Vec<String> {
+fn notes(search: &Search, ranking: &Ranking, verdict: Verdict) -> Vec<String> {
+    let records = search.records;
     let rough = records.rough.map(|scales| scales.note());
     let chosen = &ranking.fits[ranking.chosen];
+    let unfinished = if verdict == Verdict::Unexplained { UNFINISHED_UNEXPLAINED } else { UNFINISHED };
     let doubts = [
         (records.are_too_few(), TOO_FEW),
-        (ranking.unfinished, UNFINISHED),
-        (on_bound(chosen), ON_BOUND),
+        (ranking.unfinished, unfinished),
         (ranking.chosen > 0 && is_too_rough(chosen), TOO_ROUGH),
     ];
     let doubts = doubts.into_iter().filter(|(is_so, _)| *is_so).map(|(_, doubt)| doubt.to_owned());
-    records.notes.iter().cloned().chain(rough).chain(doubts).collect()
+    let on_bound = notes_on_bound(&chosen.state.hypothesis, search.declared(), verdict);
+    records.notes.iter().cloned().chain(rough).chain(doubts).chain(on_bound).collect()
 }
 
 /// The ids of the effects that the file does not declare.

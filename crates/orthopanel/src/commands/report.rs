@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
+use crate::contradicted::Contradicted;
 use crate::error::CommandError;
 use crate::evidence::Evidence;
 use crate::identified::Identified;
@@ -15,6 +16,9 @@ use crate::{output, report};
 ///
 /// Constants with their intervals, the effect that the model lacks with its rivals, every record and what became of its hits, coherence, the fit, and what the model
 /// leaves against frequency, place and level of the hit. `run` writes the same page into its folder.
+///
+/// Records that no beam could give have their page too: what was measured, and what the trace tells of it. Where that explains
+/// nothing, the exit status is 1.
 ///
 /// Example: orthopanel report examples/made-hits/test.toml -o report.html
 #[derive(clap::Args)]
@@ -45,18 +49,34 @@ struct Answer<'a> {
 
 pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
     let Arguments { test, output, options, json } = arguments;
-    let identified = Identified::from_test(test, options)?;
+    let identified = match Identified::from_test(test, options) {
+        Err(refused) => return trace_alone(arguments, Contradicted::of(test, refused)?),
+        Ok(identified) => identified,
+    };
     let traced = Traced::where_possible(&identified.test, test);
     let evidence = Evidence::of(&identified, traced.as_ref().ok(), options.settings()?.estimation, test)?;
     output::write_with_folder(output, report::page(test, &identified, &traced, &evidence)?)?;
-    eprintln!("wrote {}", output.display());
-    if *json {
+    say(output, *json, traced.as_ref().map_err(String::as_str));
+    Ok(())
+}
+
+/// The page of a test whose base model was refused: it shows what was measured and what the trace tells.
+fn trace_alone(arguments: &Arguments, contradicted: Contradicted) -> Result<(), CommandError> {
+    let Arguments { test, output, options, json } = arguments;
+    output::write_with_folder(output, contradicted.page(test, options)?)?;
+    say(output, *json, Ok(&contradicted.traced));
+    contradicted.end()
+}
+
+/// Says what was written.
+fn say(page: &Path, json: bool, traced: Result<&Traced, &str>) {
+    eprintln!("wrote {}", page.display());
+    if json {
         output::print_json(&Answer {
             schema: "orthopanel.report/1",
-            page: output,
-            verdict: traced.as_ref().ok().map(|traced| traced.tracing.verdict.name()),
-            not_traced: traced.as_ref().err().map(String::as_str),
+            page,
+            verdict: traced.ok().map(|traced| traced.tracing.verdict.name()),
+            not_traced: traced.err(),
         });
     }
-    Ok(())
 }

@@ -2,13 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
-use orthopanel_data::ImpactTest;
 use orthopanel_export::{FmiVersion, Fmu, FmuOptions};
-use orthopanel_identify::{IdentifyError, Tracing};
-use orthopanel_model::{ModelError, PanelModel, StructureKind};
+use orthopanel_identify::Tracing;
+use orthopanel_model::{ModelError, PanelModel};
 use serde::Serialize;
 
 use crate::arguments::USUAL_MODES;
+use crate::contradicted::Contradicted;
 use crate::driving_force::DrivingForce;
 use crate::error::{CommandError, InFile as _};
 use crate::evidence::{Evidence, PieceEvidence};
@@ -29,7 +29,8 @@ use crate::{output, pictures, report, time_response};
 /// Where the test can be traced, model and FMUs are those after tracing: effects of the panel stay in them, effects of
 /// rig and measuring chain are taken out, and trace.json tells which (see `orthopanel trace --help`). A test that declares a
 /// plate is not traced yet: model and FMUs are those of the plate identified. Records that no beam
-/// could give are traced all the same: where the trace explains them, as by a plate, its model and FMUs are written.
+/// could give are traced all the same: trace.json and report.html tell what was found, and where it explains them, as by a
+/// plate, its model and FMUs are written too.
 ///
 /// Of records, each pair of places gets a picture of the accelerance, measured and calculated, and one of a hit with
 /// the accelerations measured and calculated under it; time-histories.json tells how far the model is from every hit.
@@ -75,10 +76,8 @@ struct HitsAnswer<'a> {
 pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
     let Arguments { test, output, options, json } = arguments;
     let identified = match Identified::from_test(test, options) {
-        Err(CommandError::Identify { path, source: source @ IdentifyError::Contradiction { .. } }) => {
-            return trace_alone(arguments, CommandError::Identify { path, source });
-        }
-        identified => identified?,
+        Err(refused) => return trace_alone(arguments, Contradicted::of(test, refused)?),
+        Ok(identified) => identified,
     };
     let traced = Traced::where_possible(&identified.test, test);
     let models =
@@ -131,21 +130,15 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
     Ok(())
 }
 
-/// Records that no beam could give may be a plate's: the trace tells. Where it explains nothing, the refusal stands.
-fn trace_alone(arguments: &Arguments, refused: CommandError) -> Result<(), CommandError> {
-    let Arguments { test: path, output, json, .. } = arguments;
-    let test = ImpactTest::read(path)?;
-    if test.structure == Some(StructureKind::MindlinPlate) {
-        return Err(refused);
-    }
-    eprintln!("not identified: {refused}");
-    let traced = Traced::from_test(&test).map_err(|source| CommandError::Identify { path: path.clone(), source })?;
+/// What there is of a test whose base model was refused.
+fn trace_alone(arguments: &Arguments, contradicted: Contradicted) -> Result<(), CommandError> {
+    let Arguments { test: path, output, options, json } = arguments;
+    let Contradicted { test, traced, .. } = &contradicted;
     let mut files = output::Files::default();
     files.add("trace.json", output::json(&traced.tracing));
-    let models = traced.applied_to(&traced.tracing.panels);
-    let explained = traced.explains();
-    if explained {
-        for (named, model) in test.pieces.iter().zip(&models) {
+    files.add("report.html", contradicted.page(path, options)?);
+    if traced.explains() {
+        for (named, model) in test.pieces.iter().zip(&traced.applied_to(&traced.tracing.panels)) {
             add_model(&mut files, path, &suffix(&named.name, test.pieces.len()), model)?;
         }
     }
@@ -163,7 +156,7 @@ fn trace_alone(arguments: &Arguments, refused: CommandError) -> Result<(), Comma
     } else {
         output::print(&traced.text());
     }
-    if explained { Ok(()) } else { Err(refused) }
+    contradicted.end()
 }
 
 fn written(files: output::Files, folder: &Path) -> Result<Vec<PathBuf>, CommandError> {

@@ -17,6 +17,7 @@ use crate::{model_file, output};
 /// unexplained.
 ///
 /// -o writes the panel's model: effects of the panel stay in it, those of the rig and of the measuring chain are taken out.
+/// Where the verdict is unexplained, it is the base model; where no base model meets the data either, none is written.
 /// With several pieces in the test there is one model a piece: MODEL-NAME.json.
 ///
 /// Example: orthopanel trace examples/misplaced-hit/test.toml -o traced.json
@@ -37,14 +38,18 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
     let path = &arguments.test;
     let test = ImpactTest::read(path)?;
     let traced = Traced::from_test(&test).map_err(|source| CommandError::Identify { path: path.clone(), source })?;
-    if let Some(output) = &arguments.output {
-        let panels = test.pieces.iter().zip(&traced.tracing.panels);
-        model_file::write_each(output, panels.map(|(named, panel)| (suffix(&named.name, test.pieces.len()), panel)))?;
-    }
+    // What was found is told even where no model can be written.
     if arguments.json {
         output::print_json(&traced.tracing);
     } else {
         output::print(&traced.text());
     }
-    Ok(())
+    let Some(output) = &arguments.output else { return Ok(()) };
+    let models = traced.models(&test).map_err(|source| CommandError::NoModel {
+        path: output.clone(),
+        test: path.clone(),
+        source: Box::new(source),
+    })?;
+    let panels = test.pieces.iter().zip(&models);
+    model_file::write_each(output, panels.map(|(named, panel)| (suffix(&named.name, test.pieces.len()), panel)))
 }

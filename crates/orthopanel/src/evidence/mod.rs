@@ -7,7 +7,7 @@ mod residual;
 
 use std::path::Path;
 
-use orthopanel_data::{Accelerance, Estimation, HitVerdict, MeasurementData};
+use orthopanel_data::{Accelerance, Estimation, HitVerdict, ImpactTest, MeasurementData};
 use orthopanel_identify::{AcceleranceFit, ForceBetweenSamples, PieceFit};
 use orthopanel_model::{PanelModel, Place};
 
@@ -47,6 +47,8 @@ pub struct PieceEvidence {
     pub hits_with_effects: Vec<HitsWithEffects>,
     /// How far the model is from each measured hit.
     pub hits: Vec<HitMisfit>,
+    /// Of each hit the greatest force \[N\] and what the model leaves \[% of peak\].
+    pub levels: Vec<(f64, f64)>,
 }
 
 impl Evidence {
@@ -88,10 +90,51 @@ impl Evidence {
             let compared = ComparedPair::of(model, history, ForceBetweenSamples::BandLimited, band)
                 .map_err(|source| CommandError::Identify { path: path.into(), source })?;
             evidence.time_histories.push(pictures::time_history(&fit.name, &compared)?);
-            evidence.hits.extend(compared.misfits());
+            let misfits = compared.misfits();
+            evidence.levels.extend(misfits.iter().map(|hit| (hit.peak_force_n, hit.rms_percent())));
+            evidence.hits.extend(misfits);
             accelerances.push((piece, accelerance));
             shown.step();
         }
+        Self::with_coherence(test, pieces, accelerances)
+    }
+
+    /// What a trace alone shows, of a test of which no base model was identified.
+    pub fn of_trace(test: &ImpactTest, traced: &Traced, estimation: Estimation) -> Result<Self, CommandError> {
+        let base = &traced.tracing.base_accelerances;
+        let mut pieces = Vec::with_capacity(test.pieces.len());
+        for (index, named) in test.pieces.iter().enumerate() {
+            let mut evidence = PieceEvidence::default();
+            evidence.add_pairs(&named.name, base.iter().filter(|pair| pair.piece == index))?;
+            pieces.push(evidence);
+        }
+        let mut accelerances: Vec<(usize, Accelerance)> = Vec::new();
+        for (piece, history) in test.time_histories()? {
+            let Some(evidence) = pieces.get_mut(piece) else { continue };
+            let accelerance = history.accelerance(estimation)?;
+            evidence.records.push(RecordRow::of_hits(&history, &accelerance));
+            let places = (history.force_at, history.response_at);
+            let mut own = base.iter().filter(|pair| pair.piece == piece);
+            if let Some(base) = own.find(|pair| (pair.force_at, pair.response_at) == places) {
+                let kept: Vec<bool> = accelerance.verdicts.iter().map(HitVerdict::is_kept).collect();
+                let alone = HitsWithEffects::of(&history, &kept, base, base);
+                evidence.levels.extend(alone.into_iter().flat_map(|hits| hits.levels));
+                let with = traced.accelerance_of(places);
+                evidence
+                    .hits_with_effects
+                    .extend(with.and_then(|with| HitsWithEffects::of(&history, &kept, base, with)));
+            }
+            accelerances.push((piece, accelerance));
+        }
+        Self::with_coherence(test, pieces, accelerances)
+    }
+
+    /// Adds the accelerances that are files of their own to those of the hits, and draws the coherence of both.
+    fn with_coherence(
+        test: &ImpactTest,
+        mut pieces: Vec<PieceEvidence>,
+        mut accelerances: Vec<(usize, Accelerance)>,
+    ) -> Result<Self, CommandError> {
         for measurement in &test.measurements {
             if let (MeasurementData::Accelerance(recorded), Some(evidence)) =
                 (&measurement.data, pieces.get_mut(measurement.piece))
@@ -101,10 +144,10 @@ impl Evidence {
                 accelerances.push((measurement.piece, accelerance));
             }
         }
-        for (index, (evidence, fit)) in pieces.iter_mut().zip(&found.pieces).enumerate() {
+        for (index, (evidence, named)) in pieces.iter_mut().zip(&test.pieces).enumerate() {
             let own: Vec<&Accelerance> =
                 accelerances.iter().filter(|(piece, _)| *piece == index).map(|(_, accelerance)| accelerance).collect();
-            evidence.coherence = pictures::coherence(&fit.name, &own)?;
+            evidence.coherence = pictures::coherence(&named.name, &own)?;
         }
         Ok(Self { pieces })
     }
@@ -126,16 +169,26 @@ impl PieceEvidence {
         if !fit.modes.is_empty() {
             evidence.frequencies = Some(pictures::frequencies(fit, evidence.with_effects.as_deref())?);
         }
-        for pair in pairs {
-            evidence.accelerances.push(pictures::measured_accelerance(&fit.name, pair)?);
-            evidence.residuals.push(PairResidual::of(pair));
-        }
+        evidence.add_pairs(&fit.name, pairs.iter().copied())?;
         if let (true, Some(&force), Some(&response)) =
             (pairs.is_empty(), model.ports.forces.first(), model.ports.responses.first())
         {
             evidence.accelerances.push(calculated(fit, model, [force, response], path)?);
         }
         Ok(evidence)
+    }
+
+    /// The picture and the residual of each pair of places.
+    fn add_pairs<'a>(
+        &mut self,
+        name: &str,
+        pairs: impl Iterator<Item = &'a AcceleranceFit>,
+    ) -> Result<(), CommandError> {
+        for pair in pairs {
+            self.accelerances.push(pictures::measured_accelerance(name, pair)?);
+            self.residuals.push(PairResidual::of(pair));
+        }
+        Ok(())
     }
 }
 

@@ -8,7 +8,7 @@ mod report;
 use std::path::Path;
 
 use orthopanel_data::ImpactTest;
-use orthopanel_identify::{Identification, PieceFit, identify};
+use orthopanel_identify::{Identification, IdentifyError, PieceFit, Settings, identify};
 use orthopanel_model::PanelModel;
 
 use crate::error::CommandError;
@@ -40,9 +40,7 @@ impl Identified {
             identify(&test, settings).map_err(|source| CommandError::Identify { path: path.into(), source })?
         };
         notes::say("", &found.notes);
-        let law = settings.damping_law;
-        let models =
-            found.pieces.iter().enumerate().map(|(index, fit)| model(&test, &found, index, fit, law)).collect();
+        let models = models_of(&test, &found, settings);
         if let Some(sentence) = assumed_damping(&found) {
             eprintln!("{sentence}");
         }
@@ -54,6 +52,16 @@ impl Identified {
     pub fn suffix(&self, piece: &PieceFit) -> String {
         suffix(&piece.name, self.found.pieces.len())
     }
+}
+
+/// The models that [`Identified::from_test`] makes of a test, without a word on standard error.
+pub fn base_models(test: &ImpactTest, settings: Settings) -> Result<Vec<PanelModel>, IdentifyError> {
+    Ok(models_of(test, &identify(test, settings)?, settings))
+}
+
+fn models_of(test: &ImpactTest, found: &Identification, settings: Settings) -> Vec<PanelModel> {
+    let of_piece = |(index, fit)| model(test, found, index, fit, settings.damping_law);
+    found.pieces.iter().enumerate().map(of_piece).collect()
 }
 
 /// What has to be said where no mode's damping was measured.

@@ -8,6 +8,7 @@ mod trace;
 use std::path::Path;
 
 use askama::Template;
+use orthopanel_data::ImpactTest;
 
 use crate::error::CommandError;
 use crate::evidence::{Evidence, HitsWithEffects};
@@ -25,7 +26,8 @@ struct Page {
     title: String,
     made_by: String,
     lead: Vec<String>,
-    constants: Table,
+    /// None where nothing was identified.
+    constants: Option<Table>,
     about_constants: Vec<String>,
     trace: Option<TraceSection>,
     /// Why there is no trace.
@@ -49,6 +51,10 @@ impl Figure {
 const SUPERSEDED: &str = "These are the constants of the base model, before effects. Those of the model that is written stand \
                           under \"What the model lacks\".";
 
+const MADE_BY: &str = concat!("Written by orthopanel ", env!("CARGO_PKG_VERSION"));
+const TRACED_ALONE: &str =
+    "The records were traced all the same: from the best that a beam can do with them, for what it lacks.";
+
 /// The page of a test at `path`.
 pub fn page(
     path: &Path,
@@ -67,15 +73,50 @@ pub fn page(
     }
     let hits: Vec<&HitsWithEffects> = evidence.pieces.iter().flat_map(|piece| &piece.hits_with_effects).collect();
     let page = Page {
-        title: format!("Hammer test {}", path.display()),
-        made_by: concat!("Written by orthopanel ", env!("CARGO_PKG_VERSION")).to_owned(),
+        title: title(path),
+        made_by: MADE_BY.to_owned(),
         lead: constants::lead(found),
-        constants: constants::table(found),
+        constants: Some(constants::table(found)),
         about_constants,
         trace: traced.as_ref().ok().map(|traced| TraceSection::of(piece_name, traced, &hits)).transpose()?,
         not_traced: traced.as_ref().err().cloned(),
         pieces: pieces.map(|(fit, shown)| PieceSection::of(fit, shown, has_effects)).collect::<Result<_, _>>()?,
         notes: notes::counted(&found.notes).collect(),
     };
-    page.render().map_err(|error| CommandError::Picture { name: "report", problem: error.to_string() })
+    page.rendered()
+}
+
+/// The page of a test at `path` whose records its base model contradicts, as `refused` says: what its trace tells.
+pub fn page_of_trace(
+    path: &Path,
+    test: &ImpactTest,
+    refused: &str,
+    traced: &Traced,
+    evidence: &Evidence,
+) -> Result<String, CommandError> {
+    let pieces = test.pieces.iter().zip(&evidence.pieces);
+    let piece_name = test.pieces.first().map_or("", |named| named.name.as_str());
+    let hits: Vec<&HitsWithEffects> = evidence.pieces.iter().flat_map(|piece| &piece.hits_with_effects).collect();
+    let page = Page {
+        title: title(path),
+        made_by: MADE_BY.to_owned(),
+        lead: vec![format!("No base model was identified: {refused}."), TRACED_ALONE.to_owned()],
+        constants: None,
+        about_constants: vec![],
+        trace: Some(TraceSection::of(piece_name, traced, &hits)?),
+        not_traced: None,
+        pieces: pieces.map(|(named, shown)| PieceSection::of_trace(named, shown)).collect::<Result<_, _>>()?,
+        notes: vec![],
+    };
+    page.rendered()
+}
+
+fn title(path: &Path) -> String {
+    format!("Hammer test {}", path.display())
+}
+
+impl Page {
+    fn rendered(&self) -> Result<String, CommandError> {
+        self.render().map_err(|error| CommandError::Picture { name: "report", problem: error.to_string() })
+    }
 }

@@ -1,13 +1,15 @@
 //! One piece of the test: its records, the fit, and what the model leaves.
 
+use orthopanel_data::NamedPiece;
 use orthopanel_identify::PieceFit;
+use orthopanel_model::Piece;
 
 use super::Figure;
 use super::table::Table;
 use crate::error::CommandError;
 use crate::evidence::{PairResidual, PieceEvidence, RecordRow, ResidualUnit};
 use crate::identified::{Digits, ModeRows};
-use crate::measured_pairs::{HitMisfit, place_text};
+use crate::measured_pairs::place_text;
 use crate::pictures;
 
 pub struct PieceSection {
@@ -46,22 +48,18 @@ impl Gallery {
 impl PieceSection {
     /// `has_effects`: whether a trace found any, so that the base model is not the last word.
     pub fn of(fit: &PieceFit, shown: &PieceEvidence, has_effects: bool) -> Result<Self, CommandError> {
-        let piece = fit.piece;
         let accelerance_caption = match shown.residuals.is_empty() {
             true => "Accelerance of the model; the vertical lines are the measured natural frequencies.",
-            false => "Measured in orange, calculated in blue.",
+            false => MEASURED_CAPTION,
         };
         let galleries = [
             Gallery::new("Accelerances", accelerance_caption, &shown.accelerances),
             Gallery::new("Time histories", HIT_CAPTION, &shown.time_histories),
         ];
-        let of_base = if has_effects { ": the base model, before effects" } else { "" };
+        let of_base = if has_effects { BASE } else { "" };
         Ok(Self {
             name: fit.name.clone(),
-            sizes: format!(
-                "{} x {} x {} m, {:.4} kg/m².",
-                piece.length, piece.width, piece.thickness, piece.mass_per_area
-            ),
+            sizes: sizes(&fit.piece),
             of_base,
             of_both: if shown.with_effects.is_some() { ", before and with the effects" } else { of_base },
             records: (!shown.records.is_empty()).then(|| records(&shown.records)),
@@ -69,15 +67,37 @@ impl PieceSection {
             modes: (!fit.modes.is_empty() || !fit.hidden.is_empty()).then(|| modes(fit, shown.with_effects.as_deref())),
             frequencies: shown.frequencies.as_ref().map(|picture| Figure::new(picture, FREQUENCIES_CAPTION)),
             galleries: galleries.into_iter().flatten().collect(),
-            residual: residual(&shown.residuals, &shown.hits)?,
+            residual: residual(&shown.residuals, &shown.levels)?,
+        })
+    }
+
+    /// Of a trace alone: what is calculated is the base model of the trace.
+    pub fn of_trace(named: &NamedPiece, shown: &PieceEvidence) -> Result<Self, CommandError> {
+        Ok(Self {
+            name: named.name.clone(),
+            sizes: sizes(&named.piece),
+            of_base: BASE,
+            of_both: BASE,
+            records: (!shown.records.is_empty()).then(|| records(&shown.records)),
+            coherence: shown.coherence.as_ref().map(|picture| Figure::new(picture, COHERENCE_CAPTION)),
+            modes: None,
+            frequencies: None,
+            galleries: Gallery::new("Accelerances", MEASURED_CAPTION, &shown.accelerances).into_iter().collect(),
+            residual: residual(&shown.residuals, &shown.levels)?,
         })
     }
 }
 
+const BASE: &str = ": the base model, before effects";
+const MEASURED_CAPTION: &str = "Measured in orange, calculated in blue.";
 const HIT_CAPTION: &str =
     "A measured hit, the accelerations measured and calculated under it, and their difference over the whole record.";
 const COHERENCE_CAPTION: &str = "How much of the acceleration answers the force: 1 where all of it does; it falls at valleys and where the hammer has no force.";
 const FREQUENCIES_CAPTION: &str = "Natural frequencies, measured and calculated, and the error of each.";
+
+fn sizes(piece: &Piece) -> String {
+    format!("{} x {} x {} m, {:.4} kg/m².", piece.length, piece.width, piece.thickness, piece.mass_per_area)
+}
 
 fn records(rows: &[RecordRow]) -> Table {
     let row = |record: &RecordRow| {
@@ -121,7 +141,7 @@ fn modes(fit: &PieceFit, with_effects: Option<&[f64]>) -> Table {
     Table::new(&headings, rows)
 }
 
-fn residual(residuals: &[PairResidual], hits: &[HitMisfit]) -> Result<Vec<Figure>, CommandError> {
+fn residual(residuals: &[PairResidual], levels: &[(f64, f64)]) -> Result<Vec<Figure>, CommandError> {
     let mut figures = Vec::new();
     if !residuals.is_empty() {
         let unit = match residuals.iter().all(|pair| pair.unit == ResidualUnit::Noise) {
@@ -138,10 +158,9 @@ fn residual(residuals: &[PairResidual], hits: &[HitMisfit]) -> Result<Vec<Figure
             "A place that stands out points to something at that place, or to its record.",
         ));
     }
-    if hits.len() > 1 {
-        let levels: Vec<(f64, f64)> = hits.iter().map(|hit| (hit.peak_force_n, hit.rms_percent())).collect();
+    if levels.len() > 1 {
         figures.push(Figure::new(
-            &pictures::residual_by_level(&levels)?,
+            &pictures::residual_by_level(levels)?,
             "A misfit that grows with the force points to something that is not linear.",
         ));
     }

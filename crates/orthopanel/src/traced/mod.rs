@@ -8,11 +8,11 @@ mod tables;
 use std::path::Path;
 
 use orthopanel_data::ImpactTest;
-use orthopanel_identify::{AcceleranceFit, IdentifyError, Tracing, Verdict, trace_with};
+use orthopanel_identify::{AcceleranceFit, IdentifyError, Removed, Settings, Tracing, Verdict, trace_with};
 use orthopanel_model::{Damping, PanelModel, Place};
 use serde_json::Value;
 
-use crate::identified::{ASSUMED_DAMPING, to_digits};
+use crate::identified::{ASSUMED_DAMPING, base_models, to_digits};
 use crate::{notes, progress};
 pub use tables::{INDEPENDENT, comparison, effect_rows, ranking_rows};
 
@@ -74,8 +74,9 @@ impl Traced {
         self.panels().is_some()
     }
 
-    /// The identified models with what the trace found: its constants, its damping and the panel's own effects. Effects
-    /// of rig and measuring chain are in none of them.
+    /// The identified models with what the trace found, where it explains the data: its constants, its damping and the
+    /// panel's own effects. Effects of rig and measuring chain are in none of them. Each tells the verdict and what was taken
+    /// out.
     pub fn applied_to(&self, models: &[PanelModel]) -> Vec<PanelModel> {
         let mut models = models.to_vec();
         for (model, panel) in models.iter_mut().zip(self.panels().unwrap_or_default()) {
@@ -90,13 +91,34 @@ impl Traced {
                 });
             }
             self.put_own_errors(model);
+        }
+        let removed: Vec<&str> = self.taken_out().map(|removed| removed.id).collect();
+        for model in &mut models {
             model.provenance.insert("trace".into(), self.tracing.verdict.name().into());
-            let removed: Vec<&str> = self.tracing.removed.iter().map(|removed| removed.id).collect();
             if !removed.is_empty() {
-                model.provenance.insert("removed".into(), removed.into());
+                model.provenance.insert("removed".into(), removed.clone().into());
             }
         }
         models
+    }
+
+    /// The models of the test as `run` would write them.
+    ///
+    /// # Errors
+    /// Where no effect explains the data, what refuses the base model, which is then all that could be written.
+    pub fn models(&self, test: &ImpactTest) -> Result<Vec<PanelModel>, IdentifyError> {
+        // The panels of the trace hold constants beside effects that explain nothing.
+        if self.tracing.verdict == Verdict::Unexplained {
+            return Ok(self.applied_to(&base_models(test, Settings::default())?));
+        }
+        Ok(self.applied_to(&self.tracing.panels))
+    }
+
+    /// Effects of rig and measuring chain that the models that are written do not have: found ones only where they explain
+    /// the data.
+    fn taken_out(&self) -> impl Iterator<Item = &Removed> {
+        let is_found = |id: &str| self.tracing.effects.iter().any(|effect| effect.id == id);
+        self.tracing.removed.iter().filter(move |removed| self.explains() || !is_found(removed.id))
     }
 
     /// The errors and the damping that a provenance tells are those of the model without the effects: in their place come

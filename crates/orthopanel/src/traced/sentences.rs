@@ -52,8 +52,11 @@ impl Traced {
             }
         }
         let kept = kept.into_iter().map(|id| format!("{id} stays in the model: it belongs to the panel."));
-        let removed = self.tracing.removed.iter();
-        kept.chain(removed.map(|of| format!("{} is taken out of the model: {}.", of.id, of.why))).collect()
+        let removed = self.taken_out().map(|of| format!("{} is taken out of the model: {}.", of.id, of.why));
+        let found = &self.tracing.effects;
+        let unfit = (!self.explains() && !found.is_empty())
+            .then(|| format!("What was found goes into no model, for it does not explain the data: {}.", names(found)));
+        kept.chain(removed).chain(unfit).collect()
     }
 }
 

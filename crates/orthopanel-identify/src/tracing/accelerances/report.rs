@@ -105,6 +105,7 @@ pub(super) fn report(
         panels: vec![panel],
         removed,
         accelerances: curves(&search.accelerances, &problem.setup, &chosen.state, search.band)?,
+        base_accelerances: curves(&search.accelerances, &problem.setup, &base.state, search.band)?,
         notes,
     })
 }

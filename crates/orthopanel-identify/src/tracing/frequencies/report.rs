@@ -109,6 +109,7 @@ pub(super) fn report(
         panels,
         removed,
         accelerances: vec![],
+        base_accelerances: vec![],
         notes,
     })
 }

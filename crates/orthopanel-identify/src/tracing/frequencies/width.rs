@@ -20,14 +20,26 @@ pub(super) fn fit_plate(test: &ImpactTest, problem: &ListProblem) -> Result<List
     let residuals: Vec<f64> =
         found.pieces.iter().flat_map(|piece| &piece.modes).map(|mode| mode.error_percent() / 100.0).collect();
     let size = found.constants.iter().filter(|constant| constant.std.is_some()).count();
-    let left_out = found.left_one_out_percent.map_or(f64::INFINITY, |percent| percent / 100.0);
+    let left_out = match found.left_one_out_percent {
+        Some(percent) => vec![percent / 100.0; residuals.len()],
+        // A plate of which nothing is free foretells each frequency without the others.
+        None if size == 0 => residuals.clone(),
+        None => {
+            let why = format!(
+                "without one of these {} frequencies a constant of the plate is not determined, so none can be held out \
+                 to judge by: measure more modes, or hold constants that are known",
+                residuals.len()
+            );
+            return Err(IdentifyError::Unsupported(why));
+        }
+    };
     if residuals.len() != problem.count() {
         return Err(IdentifyError::Unsupported("the plate's modes are not those of the list".to_owned()));
     }
     Ok(ListFit {
         hypothesis: Hypothesis::default(),
         parameters: vec![],
-        left_out: vec![left_out; residuals.len()],
+        left_out,
         residuals,
         std: vec![],
         size,

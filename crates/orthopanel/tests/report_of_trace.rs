@@ -1,0 +1,47 @@
+//! The page of records that no beam of the test file could give.
+
+mod support;
+
+use support::{Bench, changed};
+
+/// A free beam's hits in a file that says clamped: refused, and that is where a page is needed most.
+#[test]
+fn records_that_contradict_the_beam_have_their_page() {
+    let bench = Bench::new();
+    let test = std::fs::read_to_string(bench.path("examples/made-hits/test.toml")).expect("a test");
+    let clamped = "[boundary]\nleft = \"clamped\"\nright = \"free\"\n[[measurement]]";
+    bench.write("examples/made-hits/clamped.toml", &changed(&test, "[[measurement]]", clamped));
+    let output = bench.run("run examples/made-hits/clamped.toml -o out --json");
+    let message = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{message}");
+    assert!(message.contains("half of all lines miss the model"), "{message}");
+    let answer: serde_json::Value = serde_json::from_slice(&output.stdout).expect("one JSON object");
+    assert_eq!(answer["trace"]["verdict"], "unexplained");
+    assert!(answer["files"].to_string().contains("report.html"), "{answer}");
+    assert!(!bench.path("out/model.json").exists());
+    let text = std::fs::read_to_string(bench.path("out/report.html")).expect("a page");
+    for said in [
+        "No base model was identified: half of all lines miss the model",
+        "What the model lacks",
+        "goes into no model",
+        "Error before and after",
+        "Hits before and with the effects",
+        "What the model with the effects leaves",
+        "Ranking",
+        "<h3>Records</h3>",
+        "3 hits",
+        "coherence of 1 records",
+        "Accelerances: the base model, before effects",
+        "What the model leaves: the base model, before effects",
+        "A misfit that grows with the force",
+    ] {
+        assert!(text.contains(said), "the page does not say {said:?}");
+    }
+    // No table of constants that were not identified.
+    assert!(!text.contains("<th>constant</th>"), "{text}");
+    let output = bench.run("report examples/made-hits/clamped.toml -o page.html --json");
+    assert_eq!(output.status.code(), Some(1));
+    let answer: serde_json::Value = serde_json::from_slice(&output.stdout).expect("one JSON object");
+    assert_eq!(answer["verdict"], "unexplained");
+    assert_eq!(std::fs::read_to_string(bench.path("page.html")).expect("a page"), text);
+}
