@@ -16,7 +16,7 @@ pub(super) fn to_check(test: &ImpactTest, left: f64) -> String {
     }
     let last = told.pop().unwrap_or_default();
     format!(
-        "before another measurement check {} and {last}: {left:.1} times the noise is left. If all that is right, the cause is not in the \
+        "before you measure again, check {} and {last}: {left:.1} times the noise is left. If all that is right, the cause is not in the \
          catalogue: hit further places, for how what is left goes with the place shows where it sits",
         told.join(", ")
     )
