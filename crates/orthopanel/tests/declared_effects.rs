@@ -106,10 +106,8 @@ fn bounds_in_messages_are_short() {
 #[test]
 fn a_declared_number_on_its_bound_is_told_as_such() {
     let bench = Bench::new();
-    let test = std::fs::read_to_string(bench.path("examples/made-hits/test.toml")).expect("a test");
-    let hung = "[suspension]\nat = [-0.22, 0.22]\n[[effect]]\nid = \"suspension\"\n[[measurement]]";
-    bench.write("examples/made-hits/hung.toml", &test.replacen("[[measurement]]", hung, 1));
-    let answer = bench.json("trace examples/made-hits/hung.toml");
+    let hung = bench.made_hits("[suspension]\nat = [-0.22, 0.22]\n[[effect]]\nid = \"suspension\"\n");
+    let answer = bench.json(&format!("trace {hung}"));
     assert_eq!(answer["verdict"], "nothing-missing");
     let notes = answer["notes"].to_string();
     assert!(notes.contains("stiffness = 1.0e0 N/m of suspension lies on the bound"), "{notes}");

@@ -2,16 +2,14 @@
 
 mod support;
 
-use support::{Bench, changed};
+use support::Bench;
 
 /// A free beam's hits in a file that says clamped: refused, and that is where a page is needed most.
 #[test]
 fn records_that_contradict_the_beam_have_their_page() {
     let bench = Bench::new();
-    let test = std::fs::read_to_string(bench.path("examples/made-hits/test.toml")).expect("a test");
-    let clamped = "[boundary]\nleft = \"clamped\"\nright = \"free\"\n[[measurement]]";
-    bench.write("examples/made-hits/clamped.toml", &changed(&test, "[[measurement]]", clamped));
-    let output = bench.run("run examples/made-hits/clamped.toml -o out --json");
+    let clamped = bench.made_hits("[boundary]\nleft = \"clamped\"\nright = \"free\"\n");
+    let output = bench.run(&format!("run {clamped} -o out --json"));
     let message = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(1), "{message}");
     assert!(message.contains("half of all lines miss the model"), "{message}");
@@ -39,7 +37,7 @@ fn records_that_contradict_the_beam_have_their_page() {
     }
     // No table of constants that were not identified.
     assert!(!text.contains("<th>constant</th>"), "{text}");
-    let output = bench.run("report examples/made-hits/clamped.toml -o page.html --json");
+    let output = bench.run(&format!("report {clamped} -o page.html --json"));
     assert_eq!(output.status.code(), Some(1));
     let answer: serde_json::Value = serde_json::from_slice(&output.stdout).expect("one JSON object");
     assert_eq!(answer["verdict"], "unexplained");

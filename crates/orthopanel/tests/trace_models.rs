@@ -4,18 +4,12 @@ mod support;
 
 use support::{Bench, changed};
 
-/// The example's hits of a free beam under a file that says something else of it.
-fn made_hits(bench: &Bench, said: &str) {
-    let test = std::fs::read_to_string(bench.path("examples/made-hits/test.toml")).expect("a test");
-    bench.write("examples/made-hits/said.toml", &changed(&test, "[[measurement]]", &format!("{said}[[measurement]]")));
-}
-
 /// Constants held beside the truth: the nearest effects do not explain what is missed, and are not in the file.
 #[test]
 fn what_does_not_explain_the_data_is_in_no_model() {
     let bench = Bench::new();
-    made_hits(&bench, "[constants]\ne_x = 1.07e10\ng_zx = 5.363e8\n");
-    let said = bench.done("trace examples/made-hits/said.toml -o traced.json");
+    let test = bench.made_hits("[constants]\ne_x = 1.07e10\ng_zx = 5.363e8\n");
+    let said = bench.done(&format!("trace {test} -o traced.json"));
     assert!(
         said.starts_with("Something is missing that no effect of the catalogue explains; the nearest is"),
         "{said}"
@@ -26,7 +20,7 @@ fn what_does_not_explain_the_data_is_in_no_model() {
     assert_eq!(model["provenance"]["trace"], "unexplained");
     assert!(model.get("effects").is_none() && model["provenance"].get("removed").is_none(), "{model}");
     // But for the verdict it is what `identify` makes of the test, as with `run`.
-    bench.done("identify examples/made-hits/said.toml -o base.json");
+    bench.done(&format!("identify {test} -o base.json"));
     let told = model["provenance"].as_object_mut().expect("a provenance");
     told.remove("trace");
     assert_eq!(model, bench.read_json("base.json"));
@@ -36,8 +30,8 @@ fn what_does_not_explain_the_data_is_in_no_model() {
 #[test]
 fn where_the_base_model_is_refused_too_no_model_is_written() {
     let bench = Bench::new();
-    made_hits(&bench, "[boundary]\nleft = \"clamped\"\nright = \"free\"\n");
-    let output = bench.run("trace examples/made-hits/said.toml -o traced.json --json");
+    let test = bench.made_hits("[boundary]\nleft = \"clamped\"\nright = \"free\"\n");
+    let output = bench.run(&format!("trace {test} -o traced.json --json"));
     let message = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(1), "{message}");
     for part in ["traced.json: no model is written", "no effect explains", "half of all lines miss the model"] {

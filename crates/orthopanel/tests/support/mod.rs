@@ -52,6 +52,14 @@ impl Bench {
         std::fs::write(self.path(name), text).expect("a file is written");
     }
 
+    /// The example's hits of a free beam under a file that says something more, and where that file is.
+    pub fn made_hits(&self, said: &str) -> &'static str {
+        let test = std::fs::read_to_string(self.path("examples/made-hits/test.toml")).expect("a test");
+        let name = "examples/made-hits/said.toml";
+        self.write(name, &changed(&test, "[[measurement]]", &format!("{said}[[measurement]]")));
+        name
+    }
+
     /// Runs `orthopanel` with the words of `line`, divided by blanks.
     pub fn run(&self, line: &str) -> Output {
         Command::new(env!("CARGO_BIN_EXE_orthopanel"))
