@@ -4,7 +4,8 @@ use orthopanel_data::DataError;
 use orthopanel_model::ModelError;
 use thiserror::Error;
 
-use self::wording::{all_times, much_noise, other_place, spaced, untaken};
+pub(crate) use self::wording::spaced;
+use self::wording::{all_times, much_noise, other_place, untaken};
 use crate::least_squares::Stuck;
 
 mod wording;

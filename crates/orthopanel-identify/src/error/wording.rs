@@ -26,7 +26,7 @@ pub(super) fn all_times(factor: Option<f64>) -> String {
 }
 
 /// A unit behind its number; pure numbers have none.
-pub(super) fn spaced(unit: &str) -> String {
+pub(crate) fn spaced(unit: &str) -> String {
     if unit == "1" { String::new() } else { format!(" {unit}") }
 }
 

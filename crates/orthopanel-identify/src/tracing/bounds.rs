@@ -5,6 +5,7 @@ use orthopanel_model::{Piece, Scale};
 use super::hypothesis::{FreeParameter, Hypothesis, Switched, ends_of_range, is_place};
 use super::outcome::Verdict;
 use super::roughness::ROUGHNESS;
+use crate::error::spaced;
 
 /// Effect and parameter on a bound, of the effects beyond the first `declared`; parameters of the names that are `untold` show in no
 /// data of this kind.
@@ -43,7 +44,7 @@ pub(super) fn notes_on_bound(hypothesis: &Hypothesis, declared: usize, verdict: 
 /// Such as `stiffness = 1.0e0 N/m`; of a number that each record has of its own, with the record's.
 fn value_text(on: &Switched, free: &FreeParameter) -> Option<String> {
     let (parameter, value) = (on.effect.parameters().get(free.parameter)?, on.values.get(free.at)?);
-    let unit = if parameter.unit == "1" { String::new() } else { format!(" {}", parameter.unit) };
+    let unit = spaced(parameter.unit);
     let record = free.record.map_or(String::new(), |record| format!(" in record {}", record + 1));
     Some(format!("{} = {value:.1e}{unit}{record}", parameter.name))
 }

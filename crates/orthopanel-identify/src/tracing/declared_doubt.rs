@@ -6,9 +6,10 @@ use super::fit::{Fit, fit};
 use super::hypothesis::Switched;
 use super::ranking::{Ranking, Search};
 use super::record_problem::State;
-use super::report::{deviations, effects_of};
+use super::report::{deviations, traced};
 use super::verdict::MET;
 use crate::IdentifyError;
+use crate::error::spaced;
 
 /// A sentence for each declared effect that lets the records be met once its numbers are free.
 ///
@@ -51,14 +52,13 @@ fn freed(search: &Search, index: usize) -> Option<State> {
 
 fn doubt(search: &Search, ranking: &Ranking, index: usize, (fit, left): (&Fit, f64)) -> Result<String, IdentifyError> {
     let std = deviations(search, ranking, fit)?;
-    let at = fit.size - fit.state.hypothesis.size();
-    let all = effects_of(&fit.state.hypothesis, std.get(at..).unwrap_or_default());
+    let all = traced(fit, &std, 0);
     let declared = &search.records.start.hypothesis.effects[index];
     let mut changed = Vec::new();
     for ((parameter, told), was) in all[index].parameters.iter().zip(declared.effect.parameters()).zip(&declared.values)
     {
         let Some(estimate) = parameter.values.first() else { continue };
-        let unit = if told.unit == "1" { String::new() } else { format!(" {}", told.unit) };
+        let unit = spaced(told.unit);
         if let Some(std) = estimate.std {
             changed.push(format!("{} = {:.4e} +- {std:.1e}{unit} in place of {was:.4e}", told.name, estimate.value));
         }

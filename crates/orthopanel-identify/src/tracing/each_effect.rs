@@ -74,8 +74,6 @@ impl Search<'_> {
         if self.meets_noise(&ranking.fits[ranking.chosen]) {
             return Ok(());
         }
-        // What a closer look costs is not taken from the pairs that come after it.
-        let before = self.records.work.load(Ordering::Relaxed);
         let mut placed = self.undeclared();
         let is_new = |effect: &dyn Effect| effect.id() == PLATE && !self.records.shows_more_than_a_beam();
         placed.retain(|effect| has_place(*effect) || is_new(*effect));
@@ -89,7 +87,6 @@ impl Search<'_> {
                 None => ranking.fits.push(fit),
             }
         }
-        self.records.work.store(before, Ordering::Relaxed);
         self.choose(ranking)
     }
 }

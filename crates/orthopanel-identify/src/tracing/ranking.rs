@@ -69,7 +69,7 @@ impl Search<'_> {
     /// What the model refuses.
     pub(super) fn together(&self, mut ranking: Ranking) -> Result<Ranking, IdentifyError> {
         self.look_closer(&mut ranking)?;
-        // A plate that is dear to find alone must not keep a gain beside it from being tried.
+        // Nothing before is taken from the pairs: a plate that is dear to find alone must not keep a gain beside it from being tried.
         self.records.work.store(0, Ordering::Relaxed);
         for size in 1..MOST_EFFECTS {
             let before = ranking.chosen;

@@ -161,7 +161,7 @@ pub(super) fn deviations(search: &Search, ranking: &Ranking, fit: &Fit) -> Resul
 }
 
 /// The effects beyond the declared ones, with the standard deviations of their parameters.
-fn traced(fit: &Fit, std: &[Option<f64>], declared: usize) -> Vec<TracedEffect> {
+pub(super) fn traced(fit: &Fit, std: &[Option<f64>], declared: usize) -> Vec<TracedEffect> {
     let at = fit.size - fit.state.hypothesis.size();
     let mut effects = effects_of(&fit.state.hypothesis, std.get(at..).unwrap_or_default());
     effects.split_off(declared.min(effects.len()))

@@ -44,17 +44,15 @@ pub(super) fn rough_search(
         return None;
     }
     for look in [Look::Usual, Look::Finer] {
-        let before = (records.start.clone(), records.rough, records.work.load(Ordering::Relaxed));
+        let (before, worked) = ((records.start.clone(), records.rough), records.work.load(Ordering::Relaxed));
         let found = looked_for(records, (piece, progress), plain, look);
         if let Some(mut ranking) = found {
             ranking.not_tested.clone_from(&plain.not_tested);
             return Some(ranking);
         }
-        let spent = records.work.load(Ordering::Relaxed) - before.2;
+        let spent = records.work.load(Ordering::Relaxed) - worked;
         // The plain search goes on as if nothing had been.
-        let work;
-        (records.start, records.rough, work) = before;
-        records.work.store(work, Ordering::Relaxed);
+        (records.start, records.rough) = before;
         records.as_hit(WIDE, None);
         if spent > MOST_WORK {
             break;

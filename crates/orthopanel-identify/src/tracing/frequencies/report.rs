@@ -42,7 +42,6 @@ pub(super) fn report(
         bic_a.total_cmp(&bic_b).then(size_a.cmp(&size_b)).then(at_a.cmp(&at_b))
     });
     let best = order.first().copied().unwrap_or(0);
-    let trust = Trust::of(problem);
     let pays = fits[0].bic() - fits[best].bic() > CLEAR && fits[best].left_out_percent() < fits[0].left_out_percent();
     let chosen = if pays { best } else { 0 };
     let rivals: Vec<usize> = order
@@ -50,6 +49,7 @@ pub(super) fn report(
         .copied()
         .filter(|&index| index != 0 && index != chosen && chosen != 0 && fits[index].bic() < fits[chosen].bic() + CLEAR)
         .collect();
+    let trust = Trust::of(problem);
     let on_bound = bounds::on_bound(&fits[chosen].hypothesis, declared, &problem.largest_piece(), &["zeta"]);
     let choice = Choice { chosen, rivals, on_bound, wants_more };
     let verdict = choice.verdict(&fits, &trust);

@@ -15,8 +15,8 @@ const FREE: f64 = 1.25e-2;
 const HELD: f64 = 2e-2;
 /// Where the noise is told, its mean square may stand above one by so many of its own standard deviations.
 const SURE: f64 = 3.0;
-/// A frequency may miss what the others foretell of it by so many times what a fit may miss: two of three frequencies fix an unknown
-/// each where the fewest are measured that an effect is tried on, and the ends of a list lean on themselves the most.
+/// A frequency may miss what the others foretell of it by so many times what a fit may miss: where the fewest are measured that an
+/// effect is tried on, every other frequency fixes an unknown, and the ends of a list lean on themselves the most.
 const FORETOLD: f64 = 5.0;
 
 /// What a test may miss.
