@@ -105,7 +105,8 @@ impl Rig {
             })
             .collect();
         let clamp = [0, 1].map(|side| median(clamps.iter().map(|clamp| clamp[side]).collect()));
-        let mut base = Base { e_x, clamp, beside: [0.0; 5], scatter: [1.0; 5] };
+        // Equal for all: how the samples scatter is what the loop finds.
+        let mut base = Base { e_x, clamp, beside: [0.0; 5], scatter: [0.01; 5] };
         let count = base_samples().count() as f64;
         let (mut sums, mut squares) = ([0.0; 5], [0.0; 5]);
         for sample in base_samples() {
