@@ -35,6 +35,9 @@ pub(super) struct Ranking {
 /// parameter has to pay of it.
 pub(super) const PAYS: f64 = 20.0;
 const SIMPLER: f64 = 10.0;
+/// What was held out is foretold beyond doubt better where its misfit, squared, falls to less than this part: then a criterion need fall,
+/// but not by [`PAYS`]. Where hits of unequal strength scatter by a cubic force, that scatter is the noise that the criterion knows.
+const FAR_BETTER: f64 = 0.25;
 /// Effects at most.
 const MOST_EFFECTS: usize = 3;
 /// Single effects from which pairs are built, and partners that are fitted to the end beside each.
@@ -140,7 +143,9 @@ impl Search<'_> {
         let price = |index: usize| ranking.price(index) + if is_too_rough[index] { CLEAR } else { 0.0 };
         let mut order: Vec<usize> = (0..ranking.fits.len())
             .filter(|&index| index != current && ranking.fits[index].given_up.is_none())
-            .filter(|&index| price(index) < price(current) || makes_smooth(index))
+            .filter(|&index| {
+                price(index) < price(current) || makes_smooth(index) || self.foretells_far_better(ranking, index)
+            })
             .collect();
         order.sort_by(|&a, &b| price(a).total_cmp(&price(b)));
         let size = |index: usize| ranking.fits[index].state.hypothesis.size();
@@ -158,6 +163,15 @@ impl Search<'_> {
             }
         }
         Ok(())
+    }
+
+    /// Whether a fit is likelier than the chosen one, if by little, and foretells what is held out as no noise would let it: see
+    /// [`FAR_BETTER`].
+    fn foretells_far_better(&self, ranking: &Ranking, index: usize) -> bool {
+        let grouping = ranking.grouping(self.records, index);
+        let missed = |index: usize| held_out(self.records, &ranking.fits[index], grouping);
+        ranking.bic(index) < ranking.bic(ranking.chosen)
+            && matches!((missed(index), missed(ranking.chosen)), (Ok(after), Ok(before)) if after < FAR_BETTER * before)
     }
 
     /// Adds one more effect to the best few hypotheses of so many.
