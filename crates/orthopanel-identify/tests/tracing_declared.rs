@@ -89,6 +89,28 @@ fn val_a_declared_number_that_is_wrong_is_doubted_with_the_right_one() {
     assert!(found.next_experiment.contains("the numbers of what is declared (gain)"), "{}", found.next_experiment);
 }
 
+/// The sensor of the hits has no mass. 5 g that the file puts there came back as -5 g of the panel, `explained`, and in its model.
+#[test]
+fn val_a_declared_mass_that_is_wrong_is_not_undone_by_the_panel() {
+    let found = made_hits("[[effect]]\nid = \"sensor-mass\"\nmass = 0.005\n").unwrap();
+    assert_eq!((found.verdict, found.effects[0].id), (Verdict::Ambiguous, "local-mass"));
+    assert_eq!(found.alternatives.first().map(String::as_str), Some("sensor-mass"));
+    let next = &found.next_experiment;
+    assert!(next.contains("weigh") && next.contains("in place of 5.0000e-3"), "{next}");
+}
+
+#[test]
+fn a_gain_is_told_to_be_what_a_wrong_mass_makes_too() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/made-hits");
+    let text = std::fs::read_to_string(folder.join("test.toml")).unwrap();
+    let heavy = text.replace("mass_per_area = 6.88", "mass_per_area = 7.5");
+    assert_ne!(heavy, text);
+    let found = trace(&ImpactTest::from_toml(&heavy, folder.join("test.toml")).unwrap()).unwrap();
+    let gain = found.effects[0].parameters[0].values[0].value;
+    assert!(found.effects[0].id == "gain" && (gain - 7.5 / 6.88).abs() < 2e-3, "{:?}", found.effects);
+    assert!(found.notes.iter().any(|note| note.contains("wrong mass")), "{:?}", found.notes);
+}
+
 /// This was told as records that show no resonance.
 #[test]
 fn an_effect_that_cannot_act_is_refused_with_what_it_needs() {

@@ -1,4 +1,4 @@
-//! Whether a declared number is wrong, where nothing that is tried beside it explains the records.
+//! Whether a declared number is wrong: a sensor's mass that the file tells too large comes back as a negative mass of the panel.
 
 use rayon::prelude::*;
 
@@ -7,27 +7,37 @@ use super::hypothesis::Switched;
 use super::ranking::{Ranking, Search};
 use super::record_problem::State;
 use super::report::{deviations, traced};
-use super::verdict::MET;
+use super::verdict::{CLEAR, MET};
 use crate::IdentifyError;
 use crate::error::spaced;
 
-/// A sentence for each declared effect that lets the records be met once its numbers are free.
+/// A declared effect with other numbers than the file's that the records ask for.
+pub(super) struct Doubt {
+    /// Its id.
+    pub id: &'static str,
+    /// The numbers that meet the records, with those of the file.
+    pub sentence: String,
+    /// Whether the chosen hypothesis is not clearly ahead of those numbers.
+    pub is_rival: bool,
+}
+
+/// Each declared effect that lets the records be met, with nothing beside it, once its numbers are free.
 ///
 /// # Errors
 /// What the model refuses of a fit that was found.
-pub(super) fn doubtful_numbers(search: &Search, ranking: &Ranking) -> Result<Vec<String>, IdentifyError> {
+pub(super) fn doubtful_numbers(search: &Search, ranking: &Ranking) -> Result<Vec<Doubt>, IdentifyError> {
     let begun: Vec<(usize, State)> =
         (0..search.declared()).filter_map(|index| Some((index, freed(search, index)?))).collect();
     let fitted = |(index, state): (usize, State)| Some((index, fit(search.records, state, 0).ok()?));
     let fits: Vec<(usize, Fit)> = begun.into_par_iter().filter_map(fitted).collect();
-    let mut sentences = Vec::new();
+    let mut doubts = Vec::new();
     for (index, fit) in fits {
         let left = search.records.misfit_over_floor(&fit)?;
         if left <= MET {
-            sentences.push(doubt(search, ranking, index, (&fit, left))?);
+            doubts.push(doubt(search, ranking, index, (&fit, left))?);
         }
     }
-    Ok(sentences)
+    Ok(doubts)
 }
 
 /// The base with all numbers of one of its effects free that a search may move; `None` where the file holds none of them.
@@ -50,7 +60,7 @@ fn freed(search: &Search, index: usize) -> Option<State> {
     Some(state)
 }
 
-fn doubt(search: &Search, ranking: &Ranking, index: usize, (fit, left): (&Fit, f64)) -> Result<String, IdentifyError> {
+fn doubt(search: &Search, ranking: &Ranking, index: usize, (fit, left): (&Fit, f64)) -> Result<Doubt, IdentifyError> {
     let std = deviations(search, ranking, fit)?;
     let all = traced(fit, &std, 0);
     let declared = &search.records.start.hypothesis.effects[index];
@@ -63,10 +73,12 @@ fn doubt(search: &Search, ranking: &Ranking, index: usize, (fit, left): (&Fit, f
             changed.push(format!("{} = {:.4e} +- {std:.1e}{unit} in place of {was:.4e}", told.name, estimate.value));
         }
     }
-    Ok(format!(
+    let sentence = format!(
         "the declared {} may have a wrong number: the records are met ({:.2} times the noise) with {}",
         declared.effect.id(),
         left.sqrt(),
         changed.join(", ")
-    ))
+    );
+    let is_rival = ranking.scale.bic(fit.cost, fit.size) < ranking.bic(ranking.chosen) + CLEAR;
+    Ok(Doubt { id: declared.effect.id(), sentence, is_rival })
 }

@@ -7,7 +7,7 @@ use orthopanel_model::{Estimate, Owner, PanelModel};
 
 use super::bare_panel::bare_panel;
 use super::bounds::notes_on_bound;
-use super::declared_doubt::doubtful_numbers;
+use super::declared_doubt::{Doubt, doubtful_numbers};
 use super::error_clusters::clustered_spread;
 use super::fit::{Fit, LAST, covariance};
 use super::held_out::held_out;
@@ -39,6 +39,9 @@ const COLOURED: f64 = 0.7;
 const TOO_ROUGH: &str =
     "what is named leaves more roughness than a test by hand has: it may not be all that is missing";
 
+const GAIN_OR_MASS: &str = "a gain of all records is also what a wrong mass makes: mass and all moduli times one number divide every accelerance by it. Weigh \
+                            the piece before the gain is put down to the measuring chain";
+
 const TOO_FEW: &str = "one hit at each of fewer than three pairs of places: nothing can be left out to judge by, and what hits scatter \
                        by is taken to be 0.1 % of the motion. Hit each place three times, or hit three places";
 
@@ -48,7 +51,13 @@ const TOO_FEW: &str = "one hit at each of fewer than three pairs of places: noth
 /// What the model refuses.
 pub(super) fn report(test: &ImpactTest, search: &Search, ranking: &Ranking) -> Result<Tracing, IdentifyError> {
     let records = search.records;
-    let (verdict, rivals) = verdict(records, ranking)?;
+    let (word, rivals) = verdict(records, ranking)?;
+    // Where nothing is missing beside what is declared, its numbers are right.
+    let doubts =
+        if ranking.chosen > 0 || word == Verdict::Unexplained { doubtful_numbers(search, ranking)? } else { vec![] };
+    let own_numbers: Vec<&Doubt> =
+        doubts.iter().filter(|doubt| doubt.is_rival && word != Verdict::Unexplained).collect();
+    let verdict = if own_numbers.is_empty() { word } else { Verdict::Ambiguous };
     let chosen = &ranking.fits[ranking.chosen];
     let grouping = ranking.grouping(records, ranking.chosen);
     let error = |fit: &Fit, grouping: Grouping| -> Result<FittedError, IdentifyError> {
@@ -73,15 +82,23 @@ pub(super) fn report(test: &ImpactTest, search: &Search, ranking: &Ranking) -> R
     let removed = take_out(traced(chosen, &std, 0), search.declared(), &mut panel);
     let independent = independent(records, [&ranking.fits[0], chosen])?;
     let mut notes = notes(search, ranking, verdict);
-    if verdict == Verdict::Unexplained {
-        notes.extend(doubtful_numbers(search, ranking)?);
-    } else if independent.after < COLOURED * independent.noise {
+    notes.extend(
+        doubts
+            .iter()
+            .filter(|doubt| doubt.is_rival || verdict == Verdict::Unexplained)
+            .map(|doubt| doubt.sentence.clone()),
+    );
+    if verdict != Verdict::Unexplained && independent.after < COLOURED * independent.noise {
         notes.push(not_white(&independent));
     }
     Ok(Tracing {
         verdict,
         effects: traced(chosen, &std, search.declared()),
-        alternatives: rivals.iter().map(|&index| name(&ranking.fits[index], search.declared())).collect(),
+        alternatives: own_numbers
+            .iter()
+            .map(|doubt| doubt.id.to_owned())
+            .chain(rivals.iter().map(|&index| name(&ranking.fits[index], search.declared())))
+            .collect(),
         error: TracedError {
             measure: MEASURE.to_owned(),
             before: error(&ranking.fits[0], grouping)?,
@@ -91,7 +108,10 @@ pub(super) fn report(test: &ImpactTest, search: &Search, ranking: &Ranking) -> R
         },
         candidates,
         not_tested: ranking.not_tested.clone(),
-        next_experiment: next_experiment(test, search, ranking, verdict, &rivals),
+        next_experiment: match own_numbers.first() {
+            Some(doubt) => check_first(doubt),
+            None => next_experiment(test, search, ranking, verdict, &rivals),
+        },
         chi_square: chosen.chi_square(records),
         panels: vec![panel],
         removed,
@@ -99,6 +119,11 @@ pub(super) fn report(test: &ImpactTest, search: &Search, ranking: &Ranking) -> R
         base_accelerances: records.curves(&ranking.fits[0])?,
         notes,
     })
+}
+
+/// Weighing what is declared costs less than any hit, and no hit parts it from an effect of the panel that undoes it.
+fn check_first(doubt: &Doubt) -> String {
+    format!("weigh or measure what the test file declares, before any further hit: {}", doubt.sentence)
 }
 
 fn not_white(independent: &IndependentLines) -> String {
@@ -127,10 +152,15 @@ fn notes(search: &Search, ranking: &Ranking, verdict: Verdict) -> Vec<String> {
         (records.are_too_few(), TOO_FEW),
         (ranking.unfinished, unfinished),
         (ranking.chosen > 0 && is_too_rough(chosen), TOO_ROUGH),
+        (has_gain(chosen, search.declared()), GAIN_OR_MASS),
     ];
     let doubts = doubts.into_iter().filter(|(is_so, _)| *is_so).map(|(_, doubt)| doubt.to_owned());
     let on_bound = notes_on_bound(&chosen.state.hypothesis, search.declared(), verdict);
     records.notes.iter().cloned().chain(rough).chain(doubts).chain(on_bound).collect()
+}
+
+fn has_gain(fit: &Fit, declared: usize) -> bool {
+    fit.state.hypothesis.effects.iter().skip(declared).any(|on| on.effect.id() == "gain")
 }
 
 /// The ids of the effects that the file does not declare.
