@@ -80,9 +80,10 @@ pub(super) fn what_to_check(test: &ImpactTest, problem: &ListProblem, fit: &List
     )
 }
 
-/// What is missing where hardly any effect could be tested, beside a base with so many numbers of effects left open.
-pub(super) fn too_few(problem: &ListProblem, for_each: usize, open: usize) -> String {
-    let unknowns = problem.constants.count() + open + 1;
+/// What is missing where effects could not be tested, the least of them of so many parameters, beside a base with so many numbers of
+/// effects left open.
+pub(super) fn too_few(problem: &ListProblem, for_each: usize, open: usize, of_effect: usize) -> String {
+    let unknowns = problem.constants.count() + open + of_effect;
     let needed = for_each * unknowns;
     let more = needed.saturating_sub(problem.count()).max(1);
     let (beside, or) = match open {

@@ -12,6 +12,7 @@ mod list_problem;
 mod parting;
 mod repeats;
 mod report;
+mod scored_starts;
 mod seen;
 mod trust;
 mod verdict;
@@ -28,6 +29,7 @@ pub(super) use declared::identify_lists;
 use list_fit::{ListFit, fit};
 use list_problem::ListProblem;
 pub(crate) use repeats::without_repeats;
+use scored_starts::scored;
 use seen::{never_shows, not_seen, only_seen};
 
 /// Names the effect that the base model lacks in the natural frequencies of a test.
@@ -63,6 +65,23 @@ pub(super) fn trace_frequencies(test: &ImpactTest, declared: &Hypothesis) -> Res
             not_tested.push(refused("each piece would have a place of its own: trace one piece in a test file"));
             continue;
         }
+        if id == PLATE && !declared.effects.is_empty() {
+            not_tested.push(refused("the effects that the test file declares act on beams"));
+            continue;
+        }
+        // More frequencies make nothing seen that no frequency shows: said first.
+        let usual = Switched::new(effect, &problem.largest_piece(), 1, |_| None, |_| false);
+        let seen = match if id == PLATE { Ok(Ok(usual)) } else { not_seen(&problem, &constants, declared, usual) } {
+            Ok(Ok(on)) => on,
+            Ok(Err(reason)) => {
+                not_tested.push(refused(reason));
+                continue;
+            }
+            Err(error) => {
+                not_tested.push(NotTested { id, reason: error.to_string() });
+                continue;
+            }
+        };
         let unknowns = problem.constants.count() + declared.size() + free_parameters(effect);
         if count < DATA_FOR_EACH * unknowns {
             let reason =
@@ -71,25 +90,9 @@ pub(super) fn trace_frequencies(test: &ImpactTest, declared: &Hypothesis) -> Res
             wants_more.push(id);
             continue;
         }
-        if id == PLATE && !declared.effects.is_empty() {
-            not_tested.push(refused("the effects that the test file declares act on beams"));
-            continue;
-        }
-        if id == PLATE {
-            match width::fit_plate(test, &problem) {
-                Ok(found) => fits.push(found),
-                Err(error) => not_tested.push(NotTested { id, reason: error.to_string() }),
-            }
-            continue;
-        }
-        let usual = Switched::new(effect, &problem.largest_piece(), 1, |_| None, |_| false);
-        let found = match not_seen(&problem, &constants, declared, usual) {
-            Ok(Ok(on)) => alone(&problem, declared, &on, &constants),
-            Ok(Err(reason)) => {
-                not_tested.push(refused(reason));
-                continue;
-            }
-            Err(error) => Err(error),
+        let found = match id {
+            PLATE => width::fit_plate(test, &problem),
+            _ => alone(&problem, declared, &seen, &constants),
         };
         match found {
             Ok(found) => fits.push(found),
@@ -142,17 +145,12 @@ fn alone(
         })
         .collect();
     let followed = |problem: &ListProblem| -> Vec<Result<ListFit, IdentifyError>> {
-        let mut scored: Vec<(f64, &Hypothesis)> = switched
-            .par_iter()
-            .map(|hypothesis| {
-                let parameters = [constants, &hypothesis.coordinates()].concat();
-                let square = problem.weighed(&parameters, hypothesis).map(|list| list.iter().map(|r| r * r).sum());
-                (square.unwrap_or(f64::INFINITY), hypothesis)
-            })
-            .collect();
-        scored.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let scored = match scored(problem, (declared, constants), &switched) {
+            Ok(scored) => scored,
+            Err(error) => return vec![Err(error.into())],
+        };
         let best = scored.into_par_iter().take(FOLLOWED);
-        best.map(|(_, hypothesis)| rested(problem, hypothesis, constants)).collect()
+        best.map(|hypothesis| rested(problem, hypothesis, constants)).collect()
     };
     let mut fitted = followed(problem);
     if problem.scatter().is_some() {

@@ -19,6 +19,9 @@ const SURE: f64 = 3.0;
 /// effect is tried on, every other frequency fixes an unknown, and the ends of a list lean on themselves the most.
 const FORETOLD: f64 = 5.0;
 
+/// and by so many times where effects stand untested that the list is too short for.
+const WITHIN_NOISE: f64 = 1.5;
+
 /// What a test may miss.
 pub(super) enum Trust {
     /// Relative standard deviation of each frequency, noise and model together.
@@ -69,6 +72,11 @@ impl Trust {
     /// Whether the others foretell each frequency: a fit with an unknown for almost every one meets all and foretells none.
     pub(super) fn is_foretold(&self, fit: &ListFit) -> bool {
         self.mean_square(&fit.left_out) <= FORETOLD.powi(2) * self.most()
+    }
+
+    /// Whether nothing of what the others foretell leaves room for one more effect.
+    pub(super) fn is_foretold_within_noise(&self, fit: &ListFit) -> bool {
+        self.mean_square(&fit.left_out) <= WITHIN_NOISE.powi(2) * self.most()
     }
 
     /// What the verdict goes by, a sentence.

@@ -25,6 +25,11 @@ impl Choice {
         fits.len() <= 2 && self.wants_more.len() >= fits.len()
     }
 
+    /// Whether effects that the lists are too short to test may stand behind what the chosen one does not foretell within the noise.
+    pub(super) fn leaves_room(&self, chosen: &ListFit, trust: &Trust) -> bool {
+        !self.wants_more.is_empty() && !trust.is_foretold_within_noise(chosen)
+    }
+
     pub(super) fn verdict(&self, fits: &[ListFit], trust: &Trust) -> Verdict {
         let chosen = &fits[self.chosen];
         if !trust.is_met(chosen) || self.on_bound.is_some() {
@@ -37,7 +42,7 @@ impl Choice {
         // What foretells nothing explains nothing, though the base foretold even less.
         if !trust.is_foretold(chosen) {
             Verdict::Unexplained
-        } else if !self.rivals.is_empty() {
+        } else if !self.rivals.is_empty() || self.leaves_room(chosen, trust) {
             Verdict::Ambiguous
         } else if chosen.percent() > LEFT * fits[0].percent() {
             Verdict::Unexplained
