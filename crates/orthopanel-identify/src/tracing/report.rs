@@ -52,12 +52,11 @@ const TOO_FEW: &str = "one hit at each of fewer than three pairs of places: noth
 pub(super) fn report(test: &ImpactTest, search: &Search, ranking: &Ranking) -> Result<Tracing, IdentifyError> {
     let records = search.records;
     let (word, rivals) = verdict(records, ranking)?;
+    let is_unexplained = word == Verdict::Unexplained;
     // Where nothing is missing beside what is declared, its numbers are right.
-    let doubts =
-        if ranking.chosen > 0 || word == Verdict::Unexplained { doubtful_numbers(search, ranking)? } else { vec![] };
-    let own_numbers: Vec<&Doubt> =
-        doubts.iter().filter(|doubt| doubt.is_rival && word != Verdict::Unexplained).collect();
-    let verdict = if own_numbers.is_empty() { word } else { Verdict::Ambiguous };
+    let mut doubts = if ranking.chosen > 0 || is_unexplained { doubtful_numbers(search, ranking)? } else { vec![] };
+    doubts.retain(|doubt| doubt.is_rival || is_unexplained);
+    let verdict = if doubts.is_empty() || is_unexplained { word } else { Verdict::Ambiguous };
     let chosen = &ranking.fits[ranking.chosen];
     let grouping = ranking.grouping(records, ranking.chosen);
     let error = |fit: &Fit, grouping: Grouping| -> Result<FittedError, IdentifyError> {
@@ -82,20 +81,16 @@ pub(super) fn report(test: &ImpactTest, search: &Search, ranking: &Ranking) -> R
     let removed = take_out(traced(chosen, &std, 0), search.declared(), &mut panel);
     let independent = independent(records, [&ranking.fits[0], chosen])?;
     let mut notes = notes(search, ranking, verdict);
-    notes.extend(
-        doubts
-            .iter()
-            .filter(|doubt| doubt.is_rival || verdict == Verdict::Unexplained)
-            .map(|doubt| doubt.sentence.clone()),
-    );
-    if verdict != Verdict::Unexplained && independent.after < COLOURED * independent.noise {
+    notes.extend(doubts.iter().map(|doubt| doubt.sentence.clone()));
+    if !is_unexplained && independent.after < COLOURED * independent.noise {
         notes.push(not_white(&independent));
     }
     Ok(Tracing {
         verdict,
         effects: traced(chosen, &std, search.declared()),
-        alternatives: own_numbers
+        alternatives: doubts
             .iter()
+            .filter(|_| !is_unexplained)
             .map(|doubt| doubt.id.to_owned())
             .chain(rivals.iter().map(|&index| name(&ranking.fits[index], search.declared())))
             .collect(),
@@ -108,9 +103,9 @@ pub(super) fn report(test: &ImpactTest, search: &Search, ranking: &Ranking) -> R
         },
         candidates,
         not_tested: ranking.not_tested.clone(),
-        next_experiment: match own_numbers.first() {
-            Some(doubt) => check_first(doubt),
-            None => next_experiment(test, search, ranking, verdict, &rivals),
+        next_experiment: match doubts.first() {
+            Some(doubt) if !is_unexplained => check_first(doubt),
+            _ => next_experiment(test, search, ranking, verdict, &rivals),
         },
         chi_square: chosen.chi_square(records),
         panels: vec![panel],

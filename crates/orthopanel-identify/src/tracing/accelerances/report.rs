@@ -18,7 +18,7 @@ use crate::tracing::report::{effects_of, take_out};
 const LEFT: f64 = 0.6;
 /// Resonances missed by more than so many of their standard deviations, rms, lack something.
 const MISSED: f64 = 3.0;
-/// Of the motion between the resonances so much may be missed \[1\] where nothing is missing: 9 % of it a real free beam's gains and
+/// Of the motion between the resonances so much may be missed \[1\] where nothing is missing, or effects explain the rest: 9 % of it a real free beam's gains and
 /// hammer offsets make, which are then named.
 const MISSED_BETWEEN: f64 = 0.3;
 
@@ -115,7 +115,7 @@ fn verdict(search: &Search, found: &Found, is_on_bound: bool) -> Verdict {
     let (base, chosen) = (&found.fits[0], &found.fits[found.chosen]);
     let count = search.problem.resonances.len().max(1) as f64;
     let meets_resonances = chosen.resonances / count <= MISSED * MISSED;
-    // However much better than the base: what misses more than any test's rig and channels leaves something unexplained.
+    // However much better than the base: a wrong length made up for by a rotary inertia meets the resonances, and misses all between them.
     if chosen.missed > MISSED_BETWEEN * MISSED_BETWEEN {
         return Verdict::Unexplained;
     }
@@ -125,10 +125,9 @@ fn verdict(search: &Search, found: &Found, is_on_bound: bool) -> Verdict {
     if !found.rivals.is_empty() {
         return Verdict::Ambiguous;
     }
-    // Neither alone: a wrong length made up for by a rotary inertia meets the resonances, and misses all between them.
+    // A wrong effect may halve what is missed of the motion, and leave the resonances where no noise puts them.
     let better = chosen.missed < LEFT * LEFT * base.missed || chosen.resonances < LEFT * LEFT * base.resonances;
-    let explained = better && meets_resonances;
-    match (explained, is_on_bound) {
+    match (better && meets_resonances, is_on_bound) {
         (true, false) => Verdict::Explained,
         (true, true) => Verdict::Ambiguous,
         (false, _) => Verdict::Unexplained,

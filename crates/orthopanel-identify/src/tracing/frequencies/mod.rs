@@ -71,7 +71,8 @@ pub(super) fn trace_frequencies(test: &ImpactTest, declared: &Hypothesis) -> Res
         }
         // More frequencies make nothing seen that no frequency shows: said first.
         let usual = Switched::new(effect, &problem.largest_piece(), 1, |_| None, |_| false);
-        let seen = match if id == PLATE { Ok(Ok(usual)) } else { not_seen(&problem, &constants, declared, usual) } {
+        let seen = if id == PLATE { Ok(Ok(usual)) } else { not_seen(&problem, &constants, declared, usual) };
+        let seen = match seen {
             Ok(Ok(on)) => on,
             Ok(Err(reason)) => {
                 not_tested.push(refused(reason));

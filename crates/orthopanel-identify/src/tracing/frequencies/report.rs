@@ -71,8 +71,8 @@ pub(super) fn report(
         Verdict::Unexplained => what_to_check(test, problem, &fits[chosen], &trust),
         _ if too_few => lacking::too_few(problem, DATA_FOR_EACH, fits[0].hypothesis.size(), 1),
         Verdict::Ambiguous if choice.rivals.is_empty() => {
-            let untested = catalogue().iter().filter(|effect| choice.wants_more.contains(&effect.id()));
-            let least = untested.map(|effect| free_parameters(*effect)).min().unwrap_or(1);
+            let dear = catalogue().iter().filter(|effect| choice.wants_more.contains(&effect.id()));
+            let least = dear.map(|effect| free_parameters(*effect)).min().unwrap_or(1);
             lacking::too_few(problem, DATA_FOR_EACH, fits[0].hypothesis.size(), least)
         }
         _ => next_experiment(problem, &fits, chosen, &choice.rivals, &order),

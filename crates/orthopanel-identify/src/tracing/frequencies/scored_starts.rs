@@ -1,14 +1,14 @@
 //! What each start of an effect leaves of lists of frequencies, once the constants have taken what they can of it.
 //!
 //! A mass shifts all frequencies down, and so does a lower modulus: with the constants held where the base left them a start at the right
-//! place stands no higher than others. A column of the constants' derivatives is projected out of each start's residuals $r$:
+//! place stands no higher than others. The constants' derivatives are projected out of each start's residuals $r$:
 //! $\lVert r - QQ^Tr\rVert^2$ with the orthonormal $Q$ of the derivatives at the base.
 
+use orthopanel_model::ModelError;
 use rayon::prelude::*;
 
 use super::list_problem::ListProblem;
 use crate::tracing::hypothesis::Hypothesis;
-use orthopanel_model::ModelError;
 
 /// Step of a constant's parameter, its logarithm, in a derivative.
 const STEP: f64 = 1e-4;
