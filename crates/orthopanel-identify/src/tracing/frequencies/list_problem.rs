@@ -60,6 +60,11 @@ impl ListProblem {
         self.lists.iter().map(|list| list.measured.len()).sum()
     }
 
+    /// Number of frequencies of the longest list.
+    pub(super) fn longest(&self) -> usize {
+        self.lists.iter().map(|list| list.measured.len()).max().unwrap_or(0)
+    }
+
     /// Parameters of the constants where nothing else is known.
     pub(super) fn usual(&self) -> Vec<f64> {
         let usual = |i: usize| USUAL.get(self.constants.free[i].constant).copied().unwrap_or(USUAL[0]);

@@ -14,6 +14,7 @@ mod repeats;
 mod report;
 mod scored_starts;
 mod seen;
+mod start_grid;
 mod trust;
 mod verdict;
 mod width;
@@ -29,8 +30,9 @@ pub(super) use declared::identify_lists;
 use list_fit::{ListFit, fit};
 use list_problem::ListProblem;
 pub(crate) use repeats::without_repeats;
-use scored_starts::scored;
+use scored_starts::left_by_each;
 use seen::{never_shows, not_seen, only_seen};
+use start_grid::StartGrid;
 
 /// Names the effect that the base model lacks in the natural frequencies of a test.
 ///
@@ -128,15 +130,9 @@ fn alone(
 ) -> Result<ListFit, IdentifyError> {
     let effect = seen.effect;
     let piece = problem.largest_piece();
-    let lists = effect
-        .parameters()
-        .iter()
-        .map(|parameter| parameter.held_at.map_or(parameter.starts(&piece), |held| vec![held]));
-    let starts = lists.fold(vec![vec![]], |starts: Vec<Vec<f64>>, list| {
-        starts.iter().flat_map(|start| list.iter().map(|&value| [&start[..], &[value]].concat())).collect()
-    });
-    let switched: Vec<Hypothesis> = starts
-        .iter()
+    let grid = StartGrid::of(effect, &piece, problem.longest());
+    let switched: Vec<Hypothesis> = grid
+        .starts()
         .map(|start| {
             let at =
                 |name: &str| effect.parameters().iter().position(|parameter| parameter.name == name).map(|i| start[i]);
@@ -146,12 +142,12 @@ fn alone(
         })
         .collect();
     let followed = |problem: &ListProblem| -> Vec<Result<ListFit, IdentifyError>> {
-        let scored = match scored(problem, (declared, constants), &switched) {
-            Ok(scored) => scored,
+        let left = match left_by_each(problem, (declared, constants), &switched) {
+            Ok(left) => left,
             Err(error) => return vec![Err(error.into())],
         };
-        let best = scored.into_par_iter().take(FOLLOWED);
-        best.map(|hypothesis| rested(problem, hypothesis, constants)).collect()
+        let best = grid.valleys(&left).into_par_iter().take(FOLLOWED);
+        best.map(|start| led(problem, &switched[start], constants)).collect()
     };
     let mut fitted = followed(problem);
     if problem.scatter().is_some() {
@@ -174,6 +170,16 @@ fn alone(
     }
     let best = best.map(|found| mirrored(problem, found, declared.effects.len()));
     best.ok_or_else(|| reason.unwrap_or_else(|| IdentifyError::Unsupported(format!("{}: no start", effect.id()))))
+}
+
+/// From a start to its minimum: first the constants, which else leap in the first step and take the effect out of its valley.
+fn led(problem: &ListProblem, start: &Hypothesis, constants: &[f64]) -> Result<ListFit, IdentifyError> {
+    let mut held = start.clone();
+    if let Some(on) = held.effects.last_mut() {
+        on.free.clear();
+    }
+    let settled = fit(problem, &held, constants)?;
+    rested(problem, start, settled.parameters.split_at(constants.len()).0)
 }
 
 fn rested(problem: &ListProblem, from: &Hypothesis, constants: &[f64]) -> Result<ListFit, IdentifyError> {

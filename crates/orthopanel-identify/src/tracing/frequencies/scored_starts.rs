@@ -14,18 +14,16 @@ use crate::tracing::hypothesis::Hypothesis;
 const STEP: f64 = 1e-4;
 /// What is left of a column of derivatives that the others already span.
 const SPANNED: f64 = 1e-6;
-/// Relative difference of what two starts leave that are one another's mirror images: one of them is followed.
-const MIRRORED: f64 = 1e-9;
 
-/// The starts by what they leave, the least first; of starts that leave the same, one.
+/// What each start leaves, infinite where the model refuses it.
 ///
 /// # Errors
 /// What the base's model refuses.
-pub(super) fn scored<'a>(
+pub(super) fn left_by_each(
     problem: &ListProblem,
     (declared, constants): (&Hypothesis, &[f64]),
-    starts: &'a [Hypothesis],
-) -> Result<Vec<&'a Hypothesis>, ModelError> {
+    starts: &[Hypothesis],
+) -> Result<Vec<f64>, ModelError> {
     let directions = directions(problem, declared, constants)?;
     let left = |hypothesis: &Hypothesis| -> f64 {
         let parameters = [constants, &hypothesis.coordinates()].concat();
@@ -34,10 +32,7 @@ pub(super) fn scored<'a>(
             dot(&residuals, &residuals)
         })
     };
-    let mut scored: Vec<(f64, &Hypothesis)> = starts.par_iter().map(|start| (left(start), start)).collect();
-    scored.sort_by(|a, b| a.0.total_cmp(&b.0));
-    scored.dedup_by(|later, kept| (later.0 - kept.0).abs() <= MIRRORED * kept.0);
-    Ok(scored.into_iter().map(|(_, start)| start).collect())
+    Ok(starts.par_iter().map(left).collect())
 }
 
 /// Orthonormal directions into which the constants move the residuals.

@@ -1,0 +1,68 @@
+//! Lists of natural frequencies of another solver (the beam of the blind benchmark, in Python): where on the panel an effect sits must not
+//! decide whether it is found.
+
+use orthopanel_data::ImpactTest;
+use orthopanel_identify::{Verdict, trace};
+
+/// Ten frequencies \[Hz\] of a panel with $E_x$ = 10.67 GPa, $k'G_{zx}$ = 530.4 MPa, each with 0.1 % of noise.
+struct Made {
+    effect: &'static str,
+    /// Its first parameter, in which 4 standard deviations are allowed.
+    value: f64,
+    x: f64,
+    frequencies: [f64; 10],
+}
+
+const MADE: [Made; 5] = [
+    Made {
+        effect: "local-mass",
+        value: 0.02,
+        x: 0.0,
+        frequencies: [312.79, 836.158, 1466.4, 2297.309, 3027.012, 3981.758, 4689.067, 5714.936, 6349.081, 7406.988],
+    },
+    Made {
+        effect: "local-mass",
+        value: 0.02,
+        x: 0.15,
+        frequencies: [318.997, 810.205, 1507.803, 2284.196, 3026.075, 3929.348, 4839.763, 5541.318, 6441.626, 7406.464],
+    },
+    Made {
+        effect: "local-mass",
+        value: 0.02,
+        x: 0.33,
+        frequencies: [313.911, 830.795, 1516.341, 2297.061, 3111.119, 3920.012, 4732.043, 5543.726, 6395.732, 7251.428],
+    },
+    Made {
+        effect: "stiffness-loss",
+        value: 0.4,
+        x: 0.0,
+        frequencies: [321.208, 824.987, 1515.492, 2244.056, 3103.784, 3871.641, 4766.974, 5563.828, 6391.944, 7248.102],
+    },
+    Made {
+        effect: "stiffness-loss",
+        value: 0.4,
+        x: 0.16,
+        frequencies: [320.047, 834.979, 1498.634, 2245.518, 3096.605, 3917.913, 4726.938, 5579.544, 6390.875, 7236.533],
+    },
+];
+
+#[test]
+fn val_an_effect_is_found_wherever_it_sits() {
+    for Made { effect, value, x, frequencies } in MADE {
+        let scatter = frequencies.map(|frequency| 1e-3 * frequency);
+        let text = format!(
+            "[piece]\nlength = 0.8\nwidth = 0.1\nthickness = 0.03\nmass_per_area = 6.88\n\
+             [[measurement]]\nkind = \"natural-frequencies\"\nvalues = {frequencies:?}\nscatter = {scatter:?}\n"
+        );
+        let found = trace(&ImpactTest::from_toml(&text, "list.toml").unwrap()).unwrap();
+        let at = format!("{effect} at {x} m");
+        assert_eq!(found.verdict, Verdict::Explained, "{at}: {:?}", found.alternatives);
+        assert_eq!(found.effects[0].id, effect, "{at}");
+        let parameters = &found.effects[0].parameters;
+        let first = parameters[0].values[0];
+        assert!((first.value - value).abs() < 4.0 * first.std.expect("a scatter"), "{at}: {first:?}");
+        // Frequencies of a free piece do not tell its sides apart.
+        let place = parameters.iter().find(|parameter| parameter.name == "x").expect("a place").values[0];
+        assert!((place.value.abs() - x).abs() < 0.01, "{at}: {place:?}");
+    }
+}
