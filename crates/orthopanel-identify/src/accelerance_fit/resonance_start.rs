@@ -23,6 +23,25 @@ pub(crate) struct ResonanceStart {
     pub usual_zeta: f64,
     /// Frequencies \[Hz\] of all resonances, whether a mode was found for them or not.
     pub poles: Vec<f64>,
+    /// The damping ratio of each of these.
+    pub pole_zetas: Vec<f64>,
+}
+
+impl ResonanceStart {
+    /// Frequency \[Hz\] and damping ratio of the resonance nearest to each of these modes \[Hz\], within `reach` of its frequency.
+    pub(crate) fn nearest_to(&self, modes: &[f64], reach: f64) -> Vec<Option<(f64, f64)>> {
+        let mut found = vec![None; modes.len()];
+        for (&pole, &zeta) in self.poles.iter().zip(&self.pole_zetas) {
+            let distance = |mode: &usize| (modes[*mode] / pole - 1.0).abs();
+            let near = (0..modes.len()).filter(|mode| distance(mode) < reach && found[*mode].is_none());
+            if let Some(mode) = near.min_by(|a, b| distance(a).total_cmp(&distance(b))) {
+                found[mode] = Some((pole, zeta));
+            }
+        }
+        let last = found.iter().rposition(Option::is_some).map_or(0, |last| last + 1);
+        found.truncate(last);
+        found
+    }
 }
 
 /// A damping ratio where no resonance tells one.
@@ -182,8 +201,9 @@ impl BeamFit<'_> {
         let poles = self.poles.iter().map(|pole| pole.frequency).collect();
         let count = modes.iter().flatten().max().map_or(0, |mode| mode + 1);
         let (modes_found, frequency_stds) = (vec![None; count], vec![None; count]);
-        let mut found =
-            ResonanceStart { constants, modes: modes_found, frequency_stds, usual_zeta: UNTOLD_ZETA, poles };
+        let pole_zetas = self.poles.iter().map(|pole| pole.zeta).collect();
+        let usual_zeta = UNTOLD_ZETA;
+        let mut found = ResonanceStart { constants, modes: modes_found, frequency_stds, usual_zeta, poles, pole_zetas };
         for (pole, mode) in self.poles.iter().zip(modes) {
             if let Some(mode) = mode.filter(|&mode| mode < count) {
                 found.modes[mode] = Some((pole.frequency, pole.zeta));

@@ -15,7 +15,7 @@ use super::widened_lines::WidenedLines;
 /// or place is known that well. What is left of such a peak must not call for an effect, nor make a parameter more certain.
 pub(super) const TRUSTED: f64 = 3e-4;
 /// Part of a resonance's frequency by which a model is wrong: a tenth of a kelvin does that to aluminium.
-const TUNED: f64 = 3e-5;
+pub(super) const TUNED: f64 = 3e-5;
 
 /// Variance that the same error of the motion leaves of each of a hypothesis' coordinates where forces go with its cube: with
 /// $k_3w^3$, a motion that is wrong by a part is a $k_3$ that is wrong by twice that. Its derivative does not show this: over many

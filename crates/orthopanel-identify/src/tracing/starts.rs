@@ -8,7 +8,7 @@ use super::fit::{polish, polished_through, promise};
 use super::hypothesis::{PLATE, Switched, has_place, is_place};
 use super::record_problem::State;
 use super::records_of_test::TestRecords;
-use super::support_starts::{SUPPORT, support_starts};
+use super::support_starts::{SUPPORT, SupportStarts, support_starts};
 use crate::IdentifyError;
 use crate::least_squares::Ending;
 
@@ -46,8 +46,12 @@ pub(super) fn scored_starts(
     let problem = records.problem(stage);
     can_differ(effect, problem.records.len())?;
     // Where no end is clamped, the grid's own starts say so.
-    let beside =
-        if effect.id() == SUPPORT { support_starts(records, base, effect, piece).unwrap_or_default() } else { vec![] };
+    let beside = if effect.id() == SUPPORT {
+        let known = SupportStarts { poles: &records.poles, held: &records.held, setup: &records.setup, piece };
+        support_starts(known, base, effect, problem.records.len()).unwrap_or_default()
+    } else {
+        vec![]
+    };
     let test = (problem.records.len(), records.band);
     // What a core stiffens and takes of energy is in the base's constants and damping already.
     let modes = if effect.id() == CORE { CoreModes::of(&problem, base) } else { None };

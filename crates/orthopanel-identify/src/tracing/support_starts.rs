@@ -1,10 +1,9 @@
 //! Where the search for yielding clamps begins: the constants of a beam fitted with ideal clamps can be far off.
 
-use orthopanel_model::{BEAM_CONSTANTS, Effect, Piece};
+use orthopanel_model::{BEAM_CONSTANTS, Effect, Piece, ReceptanceSetup};
 
 use super::hypothesis::Switched;
 use super::record_problem::State;
-use super::records_of_test::TestRecords;
 use super::stiffness_grid::StiffnessGrid;
 use crate::IdentifyError;
 use crate::accelerance_fit::pole_charge;
@@ -24,19 +23,27 @@ const REACH: f64 = 0.05;
 /// Starts that are handed on.
 const STARTS: usize = 6;
 
+/// What tells where to begin.
+pub(super) struct SupportStarts<'a> {
+    /// Resonances \[Hz\], rising.
+    pub poles: &'a [f64],
+    /// $E_x$, $G_{zx}$ where they are declared.
+    pub held: &'a [Option<f64>; 2],
+    pub setup: &'a ReceptanceSetup,
+    pub piece: &'a Piece,
+}
+
 /// `base` with springs at the clamps and constants at which the modes lie nearest to the poles, the likeliest first. With
 /// the springs counted in $EI$, all frequencies go with the root of a factor on both constants.
 ///
 /// # Errors
 /// What the model refuses, as where no end is clamped.
 pub(super) fn support_starts(
-    records: &TestRecords,
+    SupportStarts { poles, held, setup, piece }: SupportStarts,
     base: &State,
     effect: &'static dyn Effect,
-    piece: &Piece,
+    count: usize,
 ) -> Result<Vec<State>, IdentifyError> {
-    let count = records.problem(0).records.len();
-    let poles = &records.poles;
     let top = poles.last().copied().unwrap_or(0.0) * (1.0 + REACH);
     let with = |constants: [f64; 2], rotation: f64, translation: f64| {
         let bending = constants[0] * piece.width * piece.thickness.powi(3) / 12.0;
@@ -46,12 +53,12 @@ pub(super) fn support_starts(
         let constants = constants.map(f64::ln);
         State { constants, hypothesis: base.hypothesis.and(switched), ..base.clone() }
     };
-    let grid = StiffnessGrid { ratios: RATIOS, anchors: ANCHORS, poles, held: &records.held };
+    let grid = StiffnessGrid { ratios: RATIOS, anchors: ANCHORS, poles, held };
     let mut found: Vec<(f64, State)> = Vec::new();
     for (rotation, translation) in ROTATIONS.iter().flat_map(|r| TRANSLATIONS.map(|t| (*r, t))) {
         for unit in grid.units(base.constants[0].exp()) {
             let state = with(unit, rotation, translation);
-            let modes = records.setup.summed_frequencies(&unit, &state.hypothesis.states(count)?)?;
+            let modes = setup.summed_frequencies(&unit, &state.hypothesis.states(count)?)?;
             let best = grid
                 .factors(&modes)
                 .into_iter()

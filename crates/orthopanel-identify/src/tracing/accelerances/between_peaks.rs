@@ -26,6 +26,8 @@ pub(super) struct BetweenPeaks {
 /// Lines this near to a resonance, as a part of its frequency and in damping ratios, measure drift and damping: a drift of
 /// 1e-4 is half a percent of a line 2 % away.
 const APART: (f64, f64) = (0.02, 10.0);
+/// The same of a mode that no record told: where it lies the model alone says, without the effect that it may lack.
+const UNSEEN_APART: f64 = 0.05;
 /// The lowest line, in parts of the first resonance: below it sensors and amplifiers pass no constant acceleration.
 const LOWEST: f64 = 1.0 / 6.0;
 /// Frequencies in each gap.
@@ -37,12 +39,20 @@ const REACH: f64 = 1.0 / 16.0;
 const MOST: usize = 50;
 /// So many records are never still all at once.
 const ENOUGH: usize = 3;
+/// Lines with more noise than this part of their level are dropped.
+const NOISY: f64 = 0.1;
 /// Lines from whose scatter the noise is read.
 const SCATTERED: usize = 9;
 
 impl BetweenPeaks {
-    /// Reads the lines; resonances with their damping ratio.
-    pub(super) fn of(accelerances: &[Accelerance], resonances: &[Resonance], zeta: impl Fn(usize) -> f64) -> Self {
+    /// Reads the lines; resonances with their damping ratio, and natural frequencies \[Hz\] of modes that no record told, which
+    /// may be damped as much as the most damped one of the others.
+    pub(super) fn of(
+        accelerances: &[Accelerance],
+        resonances: &[Resonance],
+        zeta: impl Fn(usize) -> f64,
+        (unseen, most_damped): (&[f64], f64),
+    ) -> Self {
         let ends =
             |pick: &dyn Fn(&Accelerance) -> Option<f64>| accelerances.iter().filter_map(pick).collect::<Vec<_>>();
         let top = ends(&|record| record.frequency.last().copied()).into_iter().fold(f64::INFINITY, f64::min);
@@ -50,6 +60,7 @@ impl BetweenPeaks {
         let mut peaks: Vec<(f64, f64)> = resonances
             .iter()
             .map(|resonance| (resonance.frequency, APART.0.max(APART.1 * zeta(resonance.mode)) * resonance.frequency))
+            .chain(unseen.iter().map(|&frequency| (frequency, UNSEEN_APART.max(APART.1 * most_damped) * frequency)))
             .collect();
         peaks.sort_by(|a, b| a.0.total_cmp(&b.0));
         let mut found = Self {
@@ -62,7 +73,7 @@ impl BetweenPeaks {
         };
         let lowest = peaks.first().map_or(bottom, |(first, _)| bottom.max(LOWEST * first));
         let starts = [lowest].into_iter().chain(peaks.iter().map(|(peak, apart)| peak + apart));
-        let stops = peaks.iter().map(|(peak, apart)| peak - apart).chain([top]);
+        let stops = peaks.iter().map(|(peak, apart)| top.min(peak - apart)).chain([top]);
         for (gap, (start, stop)) in starts.zip(stops).enumerate() {
             for step in 0..if stop > start { IN_GAP } else { 0 } {
                 let centre = start + (step as f64 + 0.5) / IN_GAP as f64 * (stop - start);
@@ -70,10 +81,27 @@ impl BetweenPeaks {
                 found.add(accelerances, centre, REACH * to_peak, gap);
             }
         }
+        found.drop_noise();
         if accelerances.len() < ENOUGH {
             found.raise_valleys();
         }
         found
+    }
+
+    /// Lines that are mostly noise, as above the band of the hammer, tell nothing but are missed by all models; where all are, all stay.
+    fn drop_noise(&mut self) {
+        let records = self.noise.len().max(1) as f64;
+        let told = |at: usize| {
+            self.noise.iter().map(|noise| noise[at]).sum::<f64>() < NOISY.powi(2) * records * self.level[at]
+        };
+        let told: Vec<bool> = (0..self.level.len()).map(told).collect();
+        if told.iter().any(|told| *told) {
+            self.frequency.iter_mut().for_each(|lines| keep(lines, &told));
+            self.value.iter_mut().for_each(|lines| keep(lines, &told));
+            self.noise.iter_mut().for_each(|lines| keep(lines, &told));
+            keep(&mut self.level, &told);
+            keep(&mut self.gap, &told);
+        }
     }
 
     /// Few records are still at the same frequencies, where a single error of place weighs beyond all measure.
@@ -115,6 +143,11 @@ impl BetweenPeaks {
             self.noise.iter().flat_map(|record| record.iter().zip(&self.level).map(|(noise, level)| noise / level));
         (parts.sum::<f64>() / self.count().max(1) as f64).sqrt()
     }
+}
+
+fn keep<T>(lines: &mut Vec<T>, told: &[bool]) {
+    let mut told = told.iter();
+    lines.retain(|_| told.next().is_none_or(|told| *told));
 }
 
 /// The mean of some neighbouring lines.

@@ -11,12 +11,13 @@ mod resonances;
 mod search;
 
 use orthopanel_data::{Accelerance, Estimation, ImpactTest};
-use orthopanel_model::{BEAM_CONSTANTS, BeamConstants, ExactBeam, ReceptanceSetup, RecordSetting, effect};
+use orthopanel_model::{BEAM_CONSTANTS, BeamConstants, ExactBeam, Piece, ReceptanceSetup, RecordSetting, effect};
 
 use super::base_model::RecordsBase;
 use super::hypothesis::{Hypothesis, Switched};
 use super::outcome::{NotTested, Progress, Tracing};
 use super::record_problem::State;
+use super::support_starts::{SUPPORT, SupportStarts, support_starts};
 use crate::IdentifyError;
 use crate::accelerance_fit::{ResonanceStart, resonance_starts};
 use crate::free_constants::FreeConstants;
@@ -28,6 +29,8 @@ use search::Search;
 const SUMMED: f64 = 2.5;
 /// Modes that are looked through for these.
 const MOST_MODES: usize = 60;
+/// A resonance further than this from every mode, in parts of its frequency, belongs to none.
+const NUMBERED: f64 = 0.05;
 /// The factor on all records.
 const SCALE: &str = "gain";
 
@@ -39,9 +42,9 @@ pub(super) fn trace_accelerances(
     test: &ImpactTest,
     progress: &(dyn Fn(Progress) + Sync),
 ) -> Result<Tracing, IdentifyError> {
-    let Begun { problem, state, declared, free_scale, band, accelerances, .. } = begin(test)?;
-    let piece = test.pieces[0].piece;
-    let mut search = Search { problem, piece, declared, band, accelerances, progress };
+    let Begun { problem, state, declared, free_scale, band, accelerances, start } = begin(test)?;
+    let (piece, poles) = (test.pieces[0].piece, start.poles);
+    let mut search = Search { problem, piece, declared, band, accelerances, poles, progress };
     let mut found = search.run(state)?;
     if free_scale {
         let reason = "a file of accelerances does not tell how it was calibrated: a factor on all records is free in every \
@@ -57,7 +60,8 @@ pub(super) fn trace_accelerances(
 /// As [`super::trace`].
 pub(super) fn base_of_accelerances(test: &ImpactTest) -> Result<RecordsBase, IdentifyError> {
     let Begun { problem, state, declared, band, accelerances, start, .. } = begin(test)?;
-    let mut search = Search { problem, piece: test.pieces[0].piece, declared, band, accelerances, progress: &|_| {} };
+    let (piece, poles) = (test.pieces[0].piece, start.poles.clone());
+    let mut search = Search { problem, piece, declared, band, accelerances, poles, progress: &|_| {} };
     let base = search.base(&state)?;
     Ok(RecordsBase {
         std: report::deviations(&search, &base)?,
@@ -95,11 +99,7 @@ fn begin(test: &ImpactTest) -> Result<Begun, IdentifyError> {
     let held = [0, 1].map(|index| constants.get(index).copied().flatten());
     let starts = resonance_starts(&piece, test.boundary, held, &accelerances)?;
     let too_few = IdentifyError::TooFewResonances { found: 0, needed: 1, noise_percent: None };
-    let start = starts.into_iter().next().ok_or(too_few)?;
-    let seen = resonances::resonances(&accelerances, &start);
-    let usual_log_zeta = start.usual_zeta.ln();
-    let log_zeta = |mode: usize| start.modes.get(mode).copied().flatten().map_or(usual_log_zeta, |(_, zeta)| zeta.ln());
-    let between = BetweenPeaks::of(&accelerances, &seen, |mode| log_zeta(mode).exp());
+    let mut start = starts.into_iter().next().ok_or(too_few)?;
     let settings: Vec<RecordSetting> = accelerances
         .iter()
         .map(|record| RecordSetting {
@@ -111,8 +111,8 @@ fn begin(test: &ImpactTest) -> Result<Begun, IdentifyError> {
     let [e_x, g_zx] = start.constants;
     let beam = ExactBeam::new(&piece, test.boundary, BeamConstants { e_x, g_zx })?;
     let modes = beam.flexible_modes().take(MOST_MODES).map(|mode| mode.frequency());
-    let summed = modes.take_while(|frequency| *frequency < SUMMED * band).count();
-    let setup = ReceptanceSetup::new(&piece, test.boundary, &test.suspension, &settings, summed)?;
+    let summed: Vec<f64> = modes.take_while(|frequency| *frequency < SUMMED * band).collect();
+    let setup = ReceptanceSetup::new(&piece, test.boundary, &test.suspension, &settings, summed.len())?;
     let free_scale = declared.effects.iter().all(|on| on.effect.id() != SCALE);
     let hypothesis = if free_scale {
         declared.and(Switched::new(effect(SCALE)?, &piece, accelerances.len(), |_| None, |_| false))
@@ -120,11 +120,38 @@ fn begin(test: &ImpactTest) -> Result<Begun, IdentifyError> {
         declared
     };
     let declared = hypothesis.effects.len();
-    let state = State {
-        constants: start.constants.map(f64::ln),
-        zetas: (0..start.modes.len()).map(log_zeta).chain([usual_log_zeta]).collect(),
-        hypothesis,
-    };
+    let mut state = State { constants: start.constants.map(f64::ln), zetas: vec![start.usual_zeta.ln()], hypothesis };
+    if let Some(modes) = with_yielding_supports(&start, &state, (&held, &setup, &piece), accelerances.len()) {
+        start.modes = modes;
+    }
+    let usual_log_zeta = start.usual_zeta.ln();
+    let log_zeta = |mode: usize| start.modes.get(mode).copied().flatten().map_or(usual_log_zeta, |(_, zeta)| zeta.ln());
+    state.zetas = (0..start.modes.len()).map(log_zeta).chain([usual_log_zeta]).collect();
+    let seen = resonances::resonances(&accelerances, &start);
+    let is_seen = |mode: usize| seen.iter().any(|resonance| resonance.mode == mode);
+    let unseen: Vec<f64> =
+        summed.iter().enumerate().filter(|(mode, _)| !is_seen(*mode)).map(|(_, frequency)| *frequency).collect();
+    let damping = |mode: usize| log_zeta(mode).exp();
+    let most_damped = start.modes.iter().flatten().fold(start.usual_zeta, |most, (_, zeta)| most.max(*zeta));
+    let between = BetweenPeaks::of(&accelerances, &seen, damping, (&unseen, most_damped));
     let problem = AccelerancesProblem::new(test, setup, seen, between, (held, usual_log_zeta))?;
     Ok(Begun { accelerances, start, problem, state, declared, free_scale, band })
+}
+
+/// The resonances of each mode where clamps that yield number them, if these give a mode to more of them: with ideal clamps the lowest may
+/// be taken for none.
+fn with_yielding_supports(
+    start: &ResonanceStart,
+    base: &State,
+    (held, setup, piece): (&[Option<f64>; 2], &ReceptanceSetup, &Piece),
+    records: usize,
+) -> Option<Vec<Option<(f64, f64)>>> {
+    let known = SupportStarts { poles: &start.poles, held, setup, piece };
+    let states = support_starts(known, base, effect(SUPPORT).ok()?, records).ok()?;
+    let state = states.first()?;
+    let modes =
+        setup.summed_frequencies(&state.constants.map(f64::exp), &state.hypothesis.states(records).ok()?).ok()?;
+    let found = start.nearest_to(&modes, NUMBERED);
+    let matched = |modes: &[Option<(f64, f64)>]| modes.iter().flatten().count();
+    (matched(&found) > matched(&start.modes)).then_some(found)
 }

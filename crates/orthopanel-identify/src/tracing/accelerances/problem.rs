@@ -11,6 +11,7 @@ use super::between_peaks::BetweenPeaks;
 use super::resonances::Resonance;
 use crate::IdentifyError;
 use crate::least_squares::{Ending, Quadratic, descend};
+use crate::tracing::model_error::TUNED;
 use crate::tracing::record_problem::{DampingPrior, Grouping, RecordProblem, State, total};
 use crate::tracing::whiteness::independent_part;
 use crate::tracing::widened_lines::WidenedLines;
@@ -22,8 +23,6 @@ pub(super) struct AccelerancesProblem {
     pub resonances: Vec<Resonance>,
     /// What finds the natural frequencies with the sensor at each of its places, and the resonances that it is for.
     places: Vec<(NaturalFrequencies, Vec<usize>)>,
-    /// Derivatives of the resonances by the logarithms of the free constants, where the last weighing was.
-    by_constants: Vec<Vec<f64>>,
     pub held: [Option<f64>; 2],
     pub usual_log_zeta: f64,
     /// The lines with their variance, and how they are weighed.
@@ -60,6 +59,11 @@ pub(super) struct AccelerancesFit {
 const FIRST: Weighing = Weighing { relative: 0.1, independent: 0.1 };
 /// The least that is ever missed: models of panels are no better.
 pub(super) const LEAST: f64 = 1e-4;
+/// Part of each frequency by which the resonances are blunted on the way from a start.
+pub(super) const BLUNT: [f64; 3] = [1e-2, 1e-3, TUNED];
+/// The effect that has a mode of its own, and so many of these at most.
+const RESONATOR: &str = "resonator";
+const MOST_OWN: usize = 2;
 /// Step of the differences of natural frequencies, in logarithms or parts of a range.
 const STEP: f64 = 1e-4;
 
@@ -87,18 +91,17 @@ impl AccelerancesProblem {
                 suspension: test.suspension.clone(),
                 record: RecordSetting { number: 1, response_at: Some(place), ..RecordSetting::default() },
             };
-            let count = own.iter().map(|&index| resonances[index].mode + 1).max().unwrap_or(1);
+            let count = own.iter().map(|&index| resonances[index].mode + 1).max().unwrap_or(1) + MOST_OWN;
             Ok((NaturalFrequencies::new(&setting, count)?, own))
         });
         let places = places.collect::<Result<_, ModelError>>()?;
-        let (by_constants, lines, weighing, work) = (vec![], vec![], FIRST, AtomicU64::new(0));
-        let mut problem =
-            Self { setup, between, resonances, places, by_constants, held, usual_log_zeta, lines, weighing, work };
+        let (lines, weighing, work) = (vec![], FIRST, AtomicU64::new(0));
+        let mut problem = Self { setup, between, resonances, places, held, usual_log_zeta, lines, weighing, work };
         problem.weigh(FIRST);
         Ok(problem)
     }
 
-    /// Weighs the lines by what a fit leaves of them, and takes the derivatives by the constants from there.
+    /// Weighs the lines by what a fit leaves of them.
     ///
     /// # Errors
     /// What the model refuses.
@@ -106,8 +109,6 @@ impl AccelerancesProblem {
         let relative = fit.missed.sqrt().max(LEAST);
         let independent = independent_part(&self.residuals(&fit.state)?);
         self.weigh(Weighing { relative, independent });
-        let constants = fit.parameters.len() - fit.state.hypothesis.size();
-        self.by_constants = self.differences(&fit.parameters, &fit.state, 0..constants)?;
         Ok(())
     }
 
@@ -175,16 +176,19 @@ impl AccelerancesProblem {
         Ok((missed / whole.max(f64::MIN_POSITIVE)).sqrt())
     }
 
-    /// $f_{cal}/f_{exp} - 1$ of every resonance.
+    /// $f_{cal}/f_{exp} - 1$ of every resonance. A resonator has a mode of its own, before or behind which the panel's may be.
     pub(super) fn frequency_errors(&self, state: &State) -> Result<Vec<f64>, ModelError> {
         let states = state.hypothesis.states(self.lines.len())?;
         let constants = state.constants.map(f64::exp);
         let mut errors = vec![f64::NAN; self.resonances.len()];
+        let own_modes = state.hypothesis.effects.iter().filter(|on| on.effect.id() == RESONATOR).count().min(MOST_OWN);
         for (frequencies, own) in &self.places {
             let found = frequencies.at(&constants, &states)?;
             for &index in own {
                 let Resonance { mode, frequency, .. } = self.resonances[index];
-                errors[index] = found.get(mode).ok_or(ModelError::Eigenproblem)? / frequency - 1.0;
+                let beside = found.iter().skip(mode).take(1 + own_modes).map(|found| found / frequency - 1.0);
+                let nearest = beside.min_by(|a, b| a.abs().total_cmp(&b.abs()));
+                errors[index] = nearest.ok_or(ModelError::Eigenproblem)?;
             }
         }
         Ok(errors)
@@ -211,14 +215,10 @@ impl AccelerancesProblem {
         by.collect()
     }
 
-    /// The sum of squares of all resonances.
-    fn of_resonances(&self, parameters: &[f64], like: &State) -> Result<Quadratic, ModelError> {
+    /// The sum of squares of all resonances, each beside an error of `blunt` of its frequency.
+    fn of_resonances(&self, parameters: &[f64], like: &State, blunt: f64) -> Result<Quadratic, ModelError> {
         let constants = parameters.len() - like.hypothesis.size();
-        // Derivatives by the constants change little on the way, and steer the search only.
-        let mut by = match self.by_constants.len() == constants {
-            true => self.by_constants.clone(),
-            false => self.differences(parameters, like, 0..constants)?,
-        };
+        let mut by = self.differences(parameters, like, 0..constants)?;
         let here = self.frequency_errors(&self.problem(&self.lines).state(parameters, like))?;
         let moves: Vec<usize> = (constants..parameters.len())
             .zip(like.hypothesis.each_free())
@@ -232,17 +232,17 @@ impl AccelerancesProblem {
         }
         let mut sum = Quadratic::zero(parameters.len());
         for (row, (error, resonance)) in here.iter().zip(&self.resonances).enumerate() {
-            let derivatives: Vec<(usize, f64)> =
-                by.iter().enumerate().map(|(i, by)| (i, by[row] / resonance.std)).collect();
-            sum.add_row(error / resonance.std, &derivatives);
+            let std = resonance.std.hypot(blunt);
+            let derivatives: Vec<(usize, f64)> = by.iter().enumerate().map(|(i, by)| (i, by[row] / std)).collect();
+            sum.add_row(error / std, &derivatives);
         }
         sum.mirror();
         Ok(sum)
     }
 
     /// Resonances and lines together.
-    pub(super) fn linearise(&self, parameters: &[f64], like: &State) -> Result<Quadratic, ModelError> {
-        let resonances = self.of_resonances(parameters, like)?;
+    pub(super) fn linearise(&self, parameters: &[f64], like: &State, blunt: f64) -> Result<Quadratic, ModelError> {
+        let resonances = self.of_resonances(parameters, like, blunt)?;
         let lines = self.problem(&self.lines).linearise(parameters, like)?;
         Ok(total(&[resonances, scaled(lines, self.weighing.independent)]))
     }
@@ -253,16 +253,30 @@ impl AccelerancesProblem {
 
     /// The minimum near `state`.
     pub(super) fn fit(&self, state: &State, ending: Ending) -> Result<AccelerancesFit, IdentifyError> {
+        self.settle(self.descended(state, TUNED, ending)?)
+    }
+
+    /// The minimum to which a start leads that may be far off: resonances known to 1e-5 make a valley too narrow to follow, blunt ones do not.
+    pub(super) fn led(&self, state: &State, ending: Ending) -> Result<AccelerancesFit, IdentifyError> {
+        let mut state = state.clone();
+        for blunt in BLUNT {
+            state = self.descended(&state, blunt, ending)?;
+        }
+        self.settle(state)
+    }
+
+    fn descended(&self, state: &State, blunt: f64, ending: Ending) -> Result<State, IdentifyError> {
         let problem = self.problem(&self.lines);
         let (start, bounds) = (problem.parameters(state), problem.bounds(state));
-        let searched = descend(|p: &[f64]| self.linearise(p, state), &start, &bounds, ending);
+        let searched = descend(|p: &[f64]| self.linearise(p, state, blunt), &start, &bounds, ending);
         let (minimum, _) = searched.map_err(IdentifyError::refused)?;
-        self.settle(problem.state(&minimum.parameters, state))
+        Ok(problem.state(&minimum.parameters, state))
     }
 
     fn settle(&self, state: State) -> Result<AccelerancesFit, IdentifyError> {
         let errors = self.frequency_errors(&state)?;
-        let resonances = errors.iter().zip(&self.resonances).map(|(error, of)| (error / of.std).powi(2)).sum();
+        let resonances =
+            errors.iter().zip(&self.resonances).map(|(error, of)| (error / of.std.hypot(TUNED)).powi(2)).sum();
         let residuals = self.residuals(&state)?;
         let missed = residuals.iter().flatten().map(Complex64::norm_sqr).sum::<f64>() / self.between.count() as f64;
         let parameters = self.parameters(&state);
@@ -286,7 +300,7 @@ impl AccelerancesProblem {
             let sum = self.problem(&lines).by_group(&fit.parameters, &fit.state, Grouping::Places)?;
             sums.push(scaled(total(&sum), self.weighing.independent));
         }
-        sums.push(self.of_resonances(&fit.parameters, &fit.state)?);
+        sums.push(self.of_resonances(&fit.parameters, &fit.state, TUNED)?);
         Ok(sums)
     }
 }

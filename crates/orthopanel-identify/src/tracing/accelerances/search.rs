@@ -6,7 +6,7 @@ use orthopanel_data::Accelerance;
 use orthopanel_model::{Effect, Owner, Piece, catalogue};
 use rayon::prelude::*;
 
-use super::problem::{AccelerancesFit, AccelerancesProblem, LEAST};
+use super::problem::{AccelerancesFit, AccelerancesProblem, BLUNT, LEAST};
 use crate::IdentifyError;
 use crate::least_squares::Ending;
 use crate::tracing::fit::promise;
@@ -16,13 +16,14 @@ use crate::tracing::outcome::{NotTested, Progress};
 use crate::tracing::ranking::PAYS;
 use crate::tracing::record_problem::{State, total};
 use crate::tracing::starts::{Look, can_differ, grid};
+use crate::tracing::support_starts::{SUPPORT, SupportStarts, support_starts};
 
 /// Effects at most.
 const MOST_EFFECTS: usize = 4;
 /// A rival must stay behind by so much of the criterion to be out of the question.
 pub(super) const CLEAR: f64 = 10.0;
 /// Starts that are followed to their minimum.
-const FOLLOWED: usize = 2;
+const FOLLOWED: usize = 4;
 const FOLLOW: Ending = Ending::short(15, 0.1);
 const POLISH: Ending = Ending::short(60, 1e-3);
 /// Times that the base is weighed anew by what it misses.
@@ -44,6 +45,8 @@ pub(super) struct Search<'a> {
     pub declared: usize,
     pub band: f64,
     pub accelerances: Vec<Accelerance>,
+    /// All resonances \[Hz\], rising.
+    pub poles: Vec<f64>,
     pub progress: &'a (dyn Fn(Progress) + Sync),
 }
 
@@ -92,7 +95,27 @@ impl Search<'_> {
         if let Some(rival) = likelier.filter(|rival| self.bic(&found.fits[**rival]) < self.bic(&found.fits[chosen])) {
             found.chosen = std::mem::replace(rival, chosen);
         }
+        self.leave_out(&mut found);
         Ok(found)
+    }
+
+    /// Takes out of the chosen hypothesis what no longer pays beside what was found after it.
+    fn leave_out(&self, found: &mut Found) {
+        loop {
+            let chosen = &found.fits[found.chosen];
+            let of_chosen = self.ids(chosen).len();
+            let without = (0..of_chosen).filter(|_| of_chosen > 1).filter_map(|index| {
+                let mut state = chosen.state.clone();
+                state.hypothesis.effects.remove(self.declared + index);
+                self.problem.led(&state, POLISH).ok()
+            });
+            let Some(least) = without.min_by(|a, b| self.bic(a).total_cmp(&self.bic(b))) else { return };
+            if self.bic(&least) > self.bic(chosen) + PAYS {
+                return;
+            }
+            found.chosen = found.fits.len();
+            found.fits.push(least);
+        }
     }
 
     /// The effect that a rival has and the one that it lacks.
@@ -166,21 +189,25 @@ impl Search<'_> {
                            tested for it), or say structure = \"mindlin-plate\"";
             return Err(IdentifyError::Unsupported(message.to_owned()));
         }
-        let values = match again {
-            Some(switched) => vec![switched],
-            None => grid(effect, &self.piece, (records, self.band), Look::Usual)
-                .into_iter()
-                .map(|values| {
+        let and = |switched: Switched| State { hypothesis: root.hypothesis.and(switched), ..root.clone() };
+        let states: Vec<State> = match again {
+            Some(switched) => vec![and(switched)],
+            None => {
+                let values = grid(effect, &self.piece, (records, self.band), Look::Finer).into_iter();
+                let usual = values.map(|values| {
                     let at = |name: &str| effect.parameters().iter().position(|p| p.name == name).map(|i| values[i]);
-                    Switched::new(effect, &self.piece, records, at, |_| false)
-                })
-                .collect(),
+                    and(Switched::new(effect, &self.piece, records, at, |_| false))
+                });
+                let AccelerancesProblem { held, setup, .. } = &self.problem;
+                let known = SupportStarts { poles: &self.poles, held, setup, piece: &self.piece };
+                let beside = (effect.id() == SUPPORT).then(|| support_starts(known, root, effect, records));
+                usual.chain(beside.and_then(Result::ok).into_iter().flatten()).collect()
+            }
         };
-        let scored: Vec<Result<(f64, State), IdentifyError>> = values
+        let scored: Vec<Result<(f64, State), IdentifyError>> = states
             .into_par_iter()
-            .map(|switched| {
-                let state = State { hypothesis: root.hypothesis.and(switched), ..root.clone() };
-                let at = self.problem.linearise(&self.problem.parameters(&state), &state)?;
+            .map(|state| {
+                let at = self.problem.linearise(&self.problem.parameters(&state), &state, BLUNT[0])?;
                 Ok((promise(&at), state))
             })
             .collect();
@@ -195,7 +222,7 @@ impl Search<'_> {
         starts.sort_by(|a, b| a.0.total_cmp(&b.0));
         let mut best: Option<AccelerancesFit> = None;
         for (_, state) in starts.into_iter().take(FOLLOWED) {
-            let Ok(mut fit) = self.problem.fit(&state, FOLLOW) else { continue };
+            let Ok(mut fit) = self.problem.led(&state, FOLLOW) else { continue };
             if fit.state.hypothesis.rest_on_bounds() {
                 let Ok(rested) = self.problem.fit(&fit.state.clone(), FOLLOW) else { continue };
                 fit = rested;
@@ -242,7 +269,7 @@ impl Search<'_> {
     }
 
     /// $\kappa n\ln(R/n) + k\ln(m+\kappa n)$: the part of the criterion that the lines tell.
-    fn of_lines(&self, fit: &AccelerancesFit) -> f64 {
+    pub(super) fn of_lines(&self, fit: &AccelerancesFit) -> f64 {
         let data = self.lines() + self.problem.resonances.len() as f64;
         self.lines() * fit.missed.max(LEAST * LEAST).ln() + fit.size as f64 * data.max(1.0).ln()
     }
