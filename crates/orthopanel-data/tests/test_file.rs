@@ -43,6 +43,11 @@ fn val_the_whole_file_of_the_design_is_read() {
     let path = folder.path().join("test.toml");
     std::fs::write(&path, text).unwrap();
     let test = ImpactTest::read(&path).unwrap();
+    assert_eq!(
+        format!("{:?}", ImpactTest::read(folder.path()).unwrap()),
+        format!("{test:?}"),
+        "a folder stands for its test.toml"
+    );
     assert_eq!(test.pieces[0].piece.thickness, 0.03);
     assert_eq!(test.boundary, Boundary { left: End::Free, right: End::Clamped, ..Boundary::FREE });
     assert_eq!(test.suspension, [Place { x: -0.22, y: 0.0 }, Place { x: 0.22, y: 0.0 }]);

@@ -41,12 +41,14 @@ pub struct ImpactTest {
 }
 
 impl ImpactTest {
-    /// Reads the test file at `path`. Files that it names are looked for beside it.
+    /// Reads the test file at `path`; a folder stands for the `test.toml` in it. Files that it names are looked for beside it.
     ///
     /// # Errors
     /// [`DataError::Unreadable`] where the file cannot be read, else as [`ImpactTest::from_toml`].
     pub fn read(path: impl AsRef<Path>) -> Result<Self, DataError> {
         let path = path.as_ref();
+        let inside = path.join("test.toml");
+        let path = if path.is_dir() { &inside } else { path };
         let bytes = fs::read(path).map_err(|source| DataError::Unreadable { at: Location::whole(path), source })?;
         let text = String::from_utf8(bytes).map_err(|error| DataError::Syntax {
             at: Box::new(Location {

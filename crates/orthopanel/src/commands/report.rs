@@ -24,7 +24,7 @@ use crate::{output, report};
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
 pub struct Arguments {
-    /// Test file (test.toml)
+    /// Test file (test.toml), or the folder that holds it
     test: PathBuf,
     /// Page to write; its folder is made where it is not there
     #[arg(short, long, value_name = "X.html")]

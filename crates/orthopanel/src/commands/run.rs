@@ -40,7 +40,7 @@ use crate::{output, pictures, report, time_response};
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
 pub struct Arguments {
-    /// Test file (test.toml)
+    /// Test file (test.toml), or the folder that holds it
     test: PathBuf,
     /// Folder for the results; made where it is not there
     #[arg(short, long, value_name = "DIR")]

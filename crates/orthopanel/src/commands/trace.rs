@@ -24,7 +24,7 @@ use crate::{model_file, output};
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
 pub struct Arguments {
-    /// Test file (test.toml)
+    /// Test file (test.toml), or the folder that holds it
     test: PathBuf,
     /// Model file to write (orthopanel.model/1, JSON)
     #[arg(short, long, value_name = "MODEL.json")]

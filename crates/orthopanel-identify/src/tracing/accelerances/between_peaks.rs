@@ -181,3 +181,55 @@ fn line_noise(lines: &[Complex64]) -> f64 {
     let bends = lines.windows(3).map(|three| (three[1] - 0.5 * (three[0] + three[2])).norm_sqr());
     bends.sum::<f64>() / 1.5 / lines.len().saturating_sub(2).max(1) as f64
 }
+
+#[cfg(test)]
+mod tests {
+    use orthopanel_model::Place;
+
+    use super::*;
+
+    /// Lines of 1 Hz up to 1000 Hz, flat, with noise in turn above and below it from `noisy` on.
+    fn record(noisy: f64) -> Accelerance {
+        let frequency: Vec<f64> = (10..=1000).map(f64::from).collect();
+        let noise = |f: f64| if f < noisy { 0.0 } else { 6.0 * (f % 2.0 - 0.5) };
+        let place = Place { x: 0.0, y: 0.0 };
+        Accelerance {
+            force_at: place,
+            response_at: place,
+            value: frequency.iter().map(|&f| Complex64::new(1.0 + noise(f), 0.0)).collect(),
+            frequency,
+            variance: None,
+            coherence: None,
+            hits: 0,
+            verdicts: vec![],
+            decay_rate: 0.0,
+            decay_rate_in_doubt: 0.0,
+            force_noise: None,
+            bias: None,
+            notes: vec![],
+        }
+    }
+
+    fn between(noisy: f64, unseen: &[f64]) -> Vec<f64> {
+        let response_at = Place { x: 0.0, y: 0.0 };
+        let seen = [Resonance { mode: 0, response_at, frequency: 100.0, std: 1e-6 }];
+        let mut found = BetweenPeaks::of(&[record(noisy)], &seen, |_| 1e-3, (unseen, 0.01));
+        found.frequency.remove(0)
+    }
+
+    #[test]
+    fn no_line_is_read_near_a_mode_that_no_record_told() {
+        let (all, apart) = (between(f64::INFINITY, &[]), between(f64::INFINITY, &[440.0, 1020.0]));
+        assert!(all.iter().any(|f| (420.0..460.0).contains(f)));
+        assert!(apart.iter().all(|f| (f / 440.0 - 1.0).abs() >= 0.1 && *f < 920.0), "{apart:?}");
+        // The gap that it parts is read on both sides.
+        assert_eq!(apart.len(), all.len() + IN_GAP);
+    }
+
+    #[test]
+    fn lines_that_are_mostly_noise_are_dropped_unless_all_are() {
+        let told = between(600.0, &[]);
+        assert!(told.last().is_some_and(|last| (500.0..620.0).contains(last)), "{told:?}");
+        assert_eq!(between(0.0, &[]).len(), between(f64::INFINITY, &[]).len());
+    }
+}

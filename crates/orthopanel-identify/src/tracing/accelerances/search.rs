@@ -9,6 +9,7 @@ use rayon::prelude::*;
 use super::problem::{AccelerancesFit, AccelerancesProblem, BLUNT, LEAST};
 use crate::IdentifyError;
 use crate::least_squares::Ending;
+use crate::tracing::core_modes::CORE;
 use crate::tracing::fit::promise;
 use crate::tracing::held_out::predicted;
 use crate::tracing::hypothesis::{PLATE, Switched};
@@ -187,6 +188,10 @@ impl Search<'_> {
         if effect.id() == PLATE {
             let message = "width-coupling in files of accelerances (hammer records and lists of natural frequencies are \
                            tested for it), or say structure = \"mindlin-plate\"";
+            return Err(IdentifyError::Unsupported(message.to_owned()));
+        }
+        if effect.id() == CORE {
+            let message = "viscoelastic-core in files of accelerances (hammer records, kind = \"time-history\", are tested for it)";
             return Err(IdentifyError::Unsupported(message.to_owned()));
         }
         let and = |switched: Switched| State { hypothesis: root.hypothesis.and(switched), ..root.clone() };
