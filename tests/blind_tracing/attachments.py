@@ -3,30 +3,65 @@ r"""What is fixed to the panel at a point: its dynamic stiffness Z(s), force ove
 With attachments at points a, the panel's receptance G becomes
 
 $$ \tilde G_{rf} = G_{rf} - G_{ra} Z (I + G_{aa} Z)^{-1} G_{af} . $$
+
+`matrices` are mass, damping and stiffness over the panel's deflection at the point and, in a resonator, its own one.
 """
+
+from dataclasses import dataclass
 
 import numpy as np
 
 
-def mass(kilograms):
-    """A point mass (negative where one is missing): Z = m s^2."""
-    return lambda s: kilograms * s**2
+@dataclass(frozen=True)
+class Mass:
+    """A point mass [kg] (negative where one is missing): Z = m s^2."""
+
+    kilograms: float
+
+    def __call__(self, s):
+        return self.kilograms * s**2
+
+    def matrices(self):
+        """Of one deflection."""
+        return np.array([[[self.kilograms]], [[0.0]], [[0.0]]])
 
 
-def spring(stiffness, damping=0.0):
+@dataclass(frozen=True)
+class Spring:
     """A spring [N/m] and dashpot [N s/m] to ground: Z = k + c s."""
-    return lambda s: stiffness + damping * s
+
+    stiffness: float
+    damping: float = 0.0
+
+    def __call__(self, s):
+        return self.stiffness + self.damping * s
+
+    def matrices(self):
+        """Of one deflection."""
+        return np.array([[[0.0]], [[self.damping]], [[self.stiffness]]])
 
 
-def resonator(kilograms, frequency, zeta):
+@dataclass(frozen=True)
+class Resonator:
     """A mass on a spring and dashpot of its own, `frequency` [Hz] with the panel held still."""
-    omega = 2.0 * np.pi * frequency
 
-    def stiffness(s):
-        holder = 2.0 * zeta * omega * s + omega**2
-        return kilograms * s**2 * holder / (s**2 + holder)
+    kilograms: float
+    frequency: float
+    zeta: float
 
-    return stiffness
+    def __call__(self, s):
+        omega = 2.0 * np.pi * self.frequency
+        holder = 2.0 * self.zeta * omega * s + omega**2
+        return self.kilograms * s**2 * holder / (s**2 + holder)
+
+    def matrices(self):
+        """Of two deflections."""
+        omega = 2.0 * np.pi * self.frequency
+        own, between = np.array([[0.0, 0.0], [0.0, 1.0]]), np.array([[1.0, -1.0], [-1.0, 1.0]])
+        return self.kilograms * np.stack([own, 2.0 * self.zeta * omega * between, omega**2 * between])
+
+
+mass, spring, resonator = Mass, Spring, Resonator
 
 
 def coupled(receptance, s, rows, columns, at, stiffnesses):

@@ -16,9 +16,9 @@ def sensor_mass(bench, draw):
     return {"mass": mass}
 
 
-def suspension(bench, draw):
-    """Springs and dashpots at the suspension points."""
-    stiffness, damping = draw.rising(500.0, 2e4), draw.rising(0.5, 20.0)
+def suspension(bench, draw, most=2e4):
+    """Springs, of up to `most` N/m, and dashpots at the suspension points."""
+    stiffness, damping = draw.rising(500.0, most), draw.rising(0.5, 20.0)
     for x in bench.suspension:
         bench.attachments.append((x, attachments.spring(stiffness, damping)))
     return {"stiffness": stiffness, "damping": damping}
@@ -33,9 +33,9 @@ def local_mass(bench, draw):
     return {"mass": mass, "x": x}
 
 
-def edge_mass(bench, draw):
-    """Edge closings: the same mass at each end."""
-    mass = draw.rising(2e-3, 20e-3)
+def edge_mass(bench, draw, most=20e-3):
+    """Edge closings: the same mass, up to `most` kg, at each end."""
+    mass = draw.rising(2e-3, most)
     for x in (-bench.panel.length / 2.0, bench.panel.length / 2.0):
         bench.attachments.append((x, attachments.mass(mass)))
     return {"mass": mass}
@@ -199,6 +199,20 @@ EFFECTS = STRUCTURAL | CHANNEL
 CANTILEVER = ("support-compliance",)  # effects that want a clamped piece
 # With one record, one record's gain is the gain: there is nothing to tell apart.
 NOT_SINGLE = ("record-gain",)
+# What files of accelerances do not tell: the strength of a hit, how the file was calibrated, a window that an analyser takes
+# out or damping hides; and what is not looked for in them yet.
+NOT_ANALYSED = ("cubic-stiffness", "gain", "exponential-window", "width-coupling", "viscoelastic-core")
+# What moves natural frequencies, and not as other constants do.
+LISTED = (
+    "sensor-mass",
+    "suspension",
+    "local-mass",
+    "edge-mass",
+    "stiffness-loss",
+    "resonator",
+    "rotary-inertia",
+    "support-compliance",
+)
 # One of the structure with one of the rig or the channel.
 PAIRS = (
     ("local-mass", "sensor-mass"),

@@ -18,7 +18,7 @@ Z_TRANSLATION = 3
 def write_case(folder, bench, played):
     """The folder of one case."""
     folder.mkdir(parents=True)
-    plan = [_piece(bench)]
+    plan = [piece_text(bench)]
     for place, x in enumerate(bench.forces):
         name = f"point-{place}.uff"
         _write_records(folder / name, place, bench, played)
@@ -57,7 +57,7 @@ def read_truth(out):
     return whole
 
 
-def _piece(bench):
+def piece_text(bench):
     """Everything of test.toml but the measurements."""
     panel = bench.panel
     text = (

@@ -5,7 +5,7 @@ import time
 
 import numpy as np
 
-from . import files, records, sets
+from . import accelerances, files, lists, records, sets
 
 
 def make(out, name, count, seed, sampling=None, only=None):
@@ -22,10 +22,15 @@ def make(out, name, count, seed, sampling=None, only=None):
     started, truths = time.monotonic(), []
     for number, which in enumerate(order):
         random = np.random.default_rng([seed, key, int(which)])
-        bench, truth = sets.build(wanted[which], random, sampling)
-        played = records.play(bench, random)
         folder = f"case-{number:03d}"
-        files.write_case(out / folder, bench, played)
-        truths.append(files.truth_of(folder, wanted[which], bench, truth, played))
+        if wanted[which].places == "list":
+            truths.append(lists.make_case(out / folder, wanted[which], random))
+        else:
+            analysed = wanted[which].analysed
+            bench, truth = sets.build(wanted[which], random, sampling or (accelerances.SAMPLING if analysed else None))
+            played = records.play(bench, random)
+            write_case = accelerances.write_case if analysed else files.write_case
+            write_case(out / folder, bench, played)
+            truths.append(files.truth_of(folder, wanted[which], bench, truth, played))
         print(f"{number + 1} of {len(wanted)}, {time.monotonic() - started:.0f} s", file=sys.stderr)
     files.write_truth(out, name, seed, truths)

@@ -5,11 +5,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from . import bench as benches
-from .catalogue import CANTILEVER, EFFECTS, NOT_SINGLE, PAIRS
+from .catalogue import CANTILEVER, EFFECTS, LISTED, NOT_ANALYSED, NOT_SINGLE, PAIRS
 from .draw import Draw
 from .outside import OUTSIDE
 
-SETS = ("clean", "rough", "rough-none", "single-place", "none", "pairs", "outside")
+SETS = ("clean", "rough", "rough-none", "single-place", "none", "pairs", "outside", "lists", "accelerances")
 HIT_SPREAD = 0.7e-3  # m, of each hit about its place (rough)
 GAIN_SPREAD = 3e-3  # of each record's gain (rough)
 CORE_SPREAD = 5e-3  # rms of the core's shear stiffness along the piece (rough)
@@ -24,6 +24,7 @@ class Case:
     places: str = "roving"
     rough: bool = False
     cantilever: bool = False
+    analysed: bool = False  # only accelerances are kept of the hits
 
 
 def cases(name, count):
@@ -40,6 +41,12 @@ def cases(name, count):
         kinds = [Case(" + ".join(pair), pair) for pair in PAIRS]
     elif name == "outside":
         kinds = [Case(kind, (kind,)) for kind in OUTSIDE]
+    elif name == "lists":
+        kinds = [Case(e, (e,), "list", cantilever=e in CANTILEVER) for e in LISTED]
+        kinds += [Case("none", (), "list"), Case("none, clamped", (), "list", cantilever=True)]
+    elif name == "accelerances":
+        kinds = [Case(e, (e,), cantilever=e in CANTILEVER, analysed=True) for e in EFFECTS if e not in NOT_ANALYSED]
+        kinds += [Case("none", (), analysed=True), Case("none, clamped", (), cantilever=True, analysed=True)]
     else:
         raise ValueError(f'set "{name}": one of {", ".join(SETS)}')
     return [case for _ in range(count) for case in kinds]
