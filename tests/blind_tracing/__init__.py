@@ -3,3 +3,8 @@
 The physics is its own (finite elements, a Ritz plate, Laplace transforms) and shares nothing with the crates under
 test. README.md says what is drawn from where, and why.
 """
+
+import os
+
+# The matrices are small: threads of the linear algebra would wait for each other. Read when NumPy is first imported.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")

@@ -65,7 +65,8 @@ fn val_the_free_beam_shows_an_oblique_hit_and_hides_its_sensor() {
     println!("between the peaks, neighbours averaged: {error:?}");
     assert!(error.after.fitted < 7.0 && error.after.held_out < 7.0 && error.before.fitted > 9.0, "{error:?}");
     let band = numbers_of(&found, "between the resonances");
-    assert!(band[0] > 18.0 && band[0] < 25.0 && (band[1] - 1000.0).abs() < 5.0, "{band:?}");
+    // From 20 Hz is asked; what a high-pass or a suspension does lies below, and is read with it.
+    assert!(band[0] > 4.0 && band[0] < 20.0 && (band[1] - 1000.0).abs() < 5.0, "{band:?}");
     // 14.5 to 7 % or less is asked, without saying how lines are weighed. Each by the motion at its frequency, as above, that is met; as one
     // number for all lines it is missed by half a per cent.
     let one_number = numbers_of(&found, "as one number");

@@ -28,8 +28,10 @@ pub(super) struct BetweenPeaks {
 const APART: (f64, f64) = (0.02, 10.0);
 /// The same of a mode that no record told: where it lies the model alone says, without the effect that it may lack.
 const UNSEEN_APART: f64 = 0.05;
+/// Up to here, in parts of the first resonance, lines tell suspensions and filters more than the panel: they are a gap of their own.
+const LOW: f64 = 1.0 / 6.0;
 /// The lowest line, in parts of the first resonance: below it sensors and amplifiers pass no constant acceleration.
-const LOWEST: f64 = 1.0 / 6.0;
+const LOWEST: f64 = 1.0 / 40.0;
 /// Frequencies in each gap.
 const IN_GAP: usize = 12;
 /// A mean over neighbouring lines reaches this part of the way to the next resonance on either side: its curvature then
@@ -72,11 +74,14 @@ impl BetweenPeaks {
             gap: vec![],
         };
         let lowest = peaks.first().map_or(bottom, |(first, _)| bottom.max(LOWEST * first));
-        let starts = [lowest].into_iter().chain(peaks.iter().map(|(peak, apart)| peak + apart));
-        let stops = peaks.iter().map(|(peak, apart)| top.min(peak - apart)).chain([top]);
+        let low = peaks.first().map_or(lowest, |(first, _)| lowest.max(LOW * first));
+        let starts = [lowest, low].into_iter().chain(peaks.iter().map(|(peak, apart)| peak + apart));
+        let stops = [low].into_iter().chain(peaks.iter().map(|(peak, apart)| top.min(peak - apart))).chain([top]);
         for (gap, (start, stop)) in starts.zip(stops).enumerate() {
             for step in 0..if stop > start { IN_GAP } else { 0 } {
-                let centre = start + (step as f64 + 0.5) / IN_GAP as f64 * (stop - start);
+                let part = (step as f64 + 0.5) / IN_GAP as f64;
+                // What suspensions and filters do goes with a power of the frequency.
+                let centre = if gap == 0 { start * (stop / start).powf(part) } else { start + part * (stop - start) };
                 let to_peak = peaks.iter().map(|(peak, _)| (peak - centre).abs()).fold(centre, f64::min);
                 found.add(accelerances, centre, REACH * to_peak, gap);
             }
