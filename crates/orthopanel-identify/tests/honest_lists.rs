@@ -43,17 +43,24 @@ fn a_list_that_the_model_misses_is_not_called_complete() {
     let clamped = List { of_test: "[boundary]\nleft = \"clamped\"", ..List::default() };
     let wrong_unit = List { length: 800.0, ..List::default() };
     let held = List { of_test: "[constants]\ne_x = 1e8", ..List::default() };
-    let bracket = List { values: &LOOSE_BRACKET, ..List::default() };
     let masses = List { values: &TWO_MASSES, ..List::default() };
-    for (list, missed, largest) in
-        [(wrong_unit, 100.0, 1), (held, 88.2, 1), (clamped, 6.9, 2), (bracket, 12.5, 1), (masses, 2.5, 4)]
-    {
+    for (list, missed, largest) in [(wrong_unit, 100.0, 1), (held, 88.2, 1), (clamped, 6.9, 2), (masses, 2.5, 4)] {
         let found = list.traced();
         assert_eq!(found.verdict, Verdict::Unexplained, "{missed} %");
         assert!((found.error.before.fitted - missed).abs() < 0.1, "{:?}", found.error);
         let said = &found.next_experiment;
         assert!(said.contains(&format!("mode {largest} (")) && said.contains("numbering"), "{said}");
     }
+}
+
+/// Its own resonance stands in the list, and zeta moves none: ten frequencies for two constants, mass, frequency and place.
+#[test]
+fn a_loose_bracket_is_named_from_its_own_resonance() {
+    let found = List { values: &LOOSE_BRACKET, ..List::default() }.traced();
+    assert_eq!((found.verdict, found.effects[0].id), (Verdict::Explained, "resonator"), "{:?}", found.alternatives);
+    let tuned = found.effects[0].parameters.iter().find(|parameter| parameter.name == "frequency").unwrap().values[0];
+    assert!((tuned.value / 900.0 - 1.0).abs() < 0.01, "{tuned:?}");
+    assert!((found.error.before.fitted - 12.5).abs() < 0.1 && found.error.after.fitted < 0.1, "{:?}", found.error);
 }
 
 /// The rounding of an analyser is noise that a list tells; what models of panels miss beside it is no lack.

@@ -12,6 +12,7 @@ pub(super) const PLATE: &str = "width-coupling";
 /// Suspension springs that are not linear.
 pub(super) const CUBIC: &str = "cubic-stiffness";
 /// A window that was left on, of which the first number is its time constant.
+pub(super) const RESONATOR: &str = "resonator";
 pub(super) const WINDOW: &str = "exponential-window";
 
 /// An effect with values for all its parameters.
@@ -133,6 +134,11 @@ pub(super) struct Hypothesis {
 }
 
 impl Hypothesis {
+    /// Modes that resonators bring.
+    pub(super) fn own_modes(&self) -> usize {
+        self.effects.iter().filter(|on| on.effect.id() == RESONATOR).count()
+    }
+
     /// The ids, joined; the base's is empty.
     pub(super) fn name(&self) -> String {
         self.effects.iter().map(|switched| switched.effect.id()).collect::<Vec<_>>().join(" + ")

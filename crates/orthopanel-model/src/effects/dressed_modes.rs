@@ -122,12 +122,18 @@ impl NaturalFrequencies {
         let damping = Damping { ratios: vec![], beyond: 0.0 };
         let parts = PanelWithEffects { setting, even: beam, values, effects, damping: &damping };
         let (panel, _, found) = DressedPanel::solve(parts, count + rigid)?;
-        // Without springs and resonators rigid motions stay at zero; else a free beam's have no node and one.
+        // Without springs and resonators rigid motions stay at zero; else a free beam's have no node and one. A resonator's own mode
+        // may have no more of these: the lowest are the rigid ones.
         let stays = |element: &PointElement| matches!(element.law, ElementLaw::Mass { .. });
         let told = rigid == 0 || elements(effects, setting)?.iter().all(stays);
         let grid = if told { vec![] } else { panel.grid(count + rigid) };
-        let flexible =
-            found.iter().filter(|(omega, _, shares)| *omega > 0.0 && (told || nodes(&grid, shares) >= rigid));
+        let mut left = if told { 0 } else { rigid };
+        let mut is_flexible = |omega: f64, shares: &_| {
+            let is_rigid = left > 0 && (omega <= 0.0 || nodes(&grid, shares) < rigid);
+            left -= usize::from(is_rigid);
+            omega > 0.0 && !is_rigid
+        };
+        let flexible = found.iter().filter(|(omega, _, shares)| is_flexible(*omega, shares));
         Ok(flexible.take(*count).map(|(omega, ..)| omega / std::f64::consts::TAU).collect())
     }
 }

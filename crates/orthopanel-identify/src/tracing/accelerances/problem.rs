@@ -61,8 +61,7 @@ const FIRST: Weighing = Weighing { relative: 0.1, independent: 0.1 };
 pub(super) const LEAST: f64 = 1e-4;
 /// Part of each frequency by which the resonances are blunted on the way from a start.
 pub(super) const BLUNT: [f64; 3] = [1e-2, 1e-3, TUNED];
-/// The effect that has a mode of its own, and so many of these at most.
-const RESONATOR: &str = "resonator";
+/// Modes that resonators bring, at most.
 const MOST_OWN: usize = 2;
 /// Step of the differences of natural frequencies, in logarithms or parts of a range.
 const STEP: f64 = 1e-4;
@@ -181,7 +180,7 @@ impl AccelerancesProblem {
         let states = state.hypothesis.states(self.lines.len())?;
         let constants = state.constants.map(f64::exp);
         let mut errors = vec![f64::NAN; self.resonances.len()];
-        let own_modes = state.hypothesis.effects.iter().filter(|on| on.effect.id() == RESONATOR).count().min(MOST_OWN);
+        let own_modes = state.hypothesis.own_modes().min(MOST_OWN);
         for (frequencies, own) in &self.places {
             let found = frequencies.at(&constants, &states)?;
             for &index in own {

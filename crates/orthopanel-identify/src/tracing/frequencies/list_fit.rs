@@ -152,10 +152,20 @@ impl ListFit {
         100.0 * (self.square() / self.residuals.len().max(1) as f64).sqrt()
     }
 
-    /// Rms error \[%\] of each frequency predicted from all others.
+    /// Indices of the frequencies that the others are to foretell: all, but of as many as resonators have modes of their own those that
+    /// are missed the most, for where a resonator is tuned its own frequency alone tells.
+    pub(super) fn foretold(&self) -> Vec<usize> {
+        let mut order: Vec<usize> = (0..self.left_out.len()).collect();
+        order.sort_by(|&a, &b| self.left_out[a].abs().total_cmp(&self.left_out[b].abs()));
+        order.truncate(order.len().saturating_sub(self.hypothesis.own_modes()));
+        order
+    }
+
+    /// Rms error \[%\] of each frequency predicted from all others, as [`Self::foretold`] takes them.
     pub(super) fn left_out_percent(&self) -> f64 {
-        let square: f64 = self.left_out.iter().map(|r| r * r).sum();
-        100.0 * (square / self.left_out.len().max(1) as f64).sqrt()
+        let foretold = self.foretold();
+        let square: f64 = foretold.iter().map(|&at| self.left_out[at].powi(2)).sum();
+        100.0 * (square / foretold.len().max(1) as f64).sqrt()
     }
 
     /// Scatter of the residuals, with the free parameters counted.

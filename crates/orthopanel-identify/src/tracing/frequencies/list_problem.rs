@@ -60,6 +60,11 @@ impl ListProblem {
         self.lists.iter().map(|list| list.measured.len()).sum()
     }
 
+    /// The highest frequency \[Hz\].
+    pub(super) fn top(&self) -> f64 {
+        self.lists.iter().flat_map(|list| &list.measured).fold(0.0, |top: f64, &frequency| top.max(frequency))
+    }
+
     /// Number of frequencies of the longest list.
     pub(super) fn longest(&self) -> usize {
         self.lists.iter().map(|list| list.measured.len()).max().unwrap_or(0)

@@ -23,7 +23,7 @@ use orthopanel_data::ImpactTest;
 use orthopanel_model::{Effect, catalogue};
 use rayon::prelude::*;
 
-use super::hypothesis::{Hypothesis, PLATE, Switched, has_place, is_place};
+use super::hypothesis::{Hypothesis, PLATE, RESONATOR, Switched, has_place, is_place};
 use super::outcome::{NotTested, Tracing};
 use crate::IdentifyError;
 pub(super) use declared::identify_lists;
@@ -85,7 +85,7 @@ pub(super) fn trace_frequencies(test: &ImpactTest, declared: &Hypothesis) -> Res
                 continue;
             }
         };
-        let unknowns = problem.constants.count() + declared.size() + free_parameters(effect);
+        let unknowns = problem.constants.count() + declared.size() + if id == PLATE { 1 } else { seen.free.len() };
         if count < DATA_FOR_EACH * unknowns {
             let reason =
                 format!("{count} frequencies for {unknowns} unknowns: measure {DATA_FOR_EACH} or more for each");
@@ -98,6 +98,7 @@ pub(super) fn trace_frequencies(test: &ImpactTest, declared: &Hypothesis) -> Res
             _ => alone(&problem, declared, &seen, &constants),
         };
         match found {
+            Ok(found) if is_tuned_above(&found, problem.top()) => not_tested.push(refused(ABOVE)),
             Ok(found) => fits.push(found),
             Err(error) => not_tested.push(NotTested { id, reason: error.to_string() }),
         }
@@ -107,14 +108,32 @@ pub(super) fn trace_frequencies(test: &ImpactTest, declared: &Hypothesis) -> Res
     Ok(found)
 }
 
+const ABOVE: &str = "no resonator tuned within the listed frequencies meets them, and one tuned above these is a mass where it sits: see local-mass";
+
+/// Whether the last effect is a resonator that acts as a mass up to `top` \[Hz\].
+fn is_tuned_above(found: &ListFit, top: f64) -> bool {
+    let resonator = found.hypothesis.effects.last().filter(|on| on.effect.id() == RESONATOR);
+    resonator.is_some_and(|on| {
+        let tuned = on.effect.parameters().iter().zip(&on.values).find(|(parameter, _)| parameter.name == "frequency");
+        tuned.is_some_and(|(_, &frequency)| frequency > top)
+    })
+}
+
 /// Frequencies for each unknown: with fewer an effect with a place or two parameters fits by chance.
 const DATA_FOR_EACH: usize = 2;
+
+/// Parameters that no undamped frequency shows.
+const DAMPS: [&str; 2] = ["zeta", "damping"];
 
 fn free_parameters(effect: &dyn Effect) -> usize {
     match effect.id() {
         // The plate frees Poisson's ratio first; its other constants answer for themselves.
         PLATE => 1,
-        _ => effect.parameters().iter().filter(|parameter| parameter.held_at.is_none()).count(),
+        _ => effect
+            .parameters()
+            .iter()
+            .filter(|parameter| parameter.held_at.is_none() && !DAMPS.contains(&parameter.name))
+            .count(),
     }
 }
 

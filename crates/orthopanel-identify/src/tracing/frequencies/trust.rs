@@ -46,15 +46,15 @@ impl Trust {
 
     /// Mean square of what a fit misses, over what it may miss.
     pub(super) fn chi_square(&self, fit: &ListFit) -> f64 {
-        self.mean_square(&fit.residuals)
+        self.in_units(&fit.residuals).iter().sum::<f64>() / fit.residuals.len().max(1) as f64
     }
 
-    fn mean_square(&self, missed: &[f64]) -> f64 {
-        let sum: f64 = match self {
-            Self::Told(std) => missed.iter().zip(std).map(|(miss, std)| (miss / std).powi(2)).sum(),
-            Self::Untold(rms) => missed.iter().map(|miss| (miss / rms).powi(2)).sum(),
-        };
-        sum / missed.len().max(1) as f64
+    /// Squares of what is missed over what may be.
+    fn in_units(&self, missed: &[f64]) -> Vec<f64> {
+        match self {
+            Self::Told(std) => missed.iter().zip(std).map(|(miss, std)| (miss / std).powi(2)).collect(),
+            Self::Untold(rms) => missed.iter().map(|miss| (miss / rms).powi(2)).collect(),
+        }
     }
 
     /// Up to which [`Self::chi_square`] a fit meets the lists.
@@ -71,12 +71,17 @@ impl Trust {
 
     /// Whether the others foretell each frequency: a fit with an unknown for almost every one meets all and foretells none.
     pub(super) fn is_foretold(&self, fit: &ListFit) -> bool {
-        self.mean_square(&fit.left_out) <= FORETOLD.powi(2) * self.most()
+        self.of_foretold(fit) <= FORETOLD.powi(2) * self.most()
+    }
+
+    fn of_foretold(&self, fit: &ListFit) -> f64 {
+        let (missed, foretold) = (self.in_units(&fit.left_out), fit.foretold());
+        foretold.iter().map(|&at| missed[at]).sum::<f64>() / foretold.len().max(1) as f64
     }
 
     /// Whether nothing of what the others foretell leaves room for one more effect.
     pub(super) fn is_foretold_within_noise(&self, fit: &ListFit) -> bool {
-        self.mean_square(&fit.left_out) <= WITHIN_NOISE.powi(2) * self.most()
+        self.of_foretold(fit) <= WITHIN_NOISE.powi(2) * self.most()
     }
 
     /// What the verdict goes by, a sentence.
