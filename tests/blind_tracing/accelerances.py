@@ -8,8 +8,7 @@ from .contour import Sampling
 
 SAMPLING = Sampling(samples=131072)  # 6.4 s: what rings longer leaks, and an analyser's user takes a longer record
 BAND = (20.0, 6000.0)  # Hz: above, a hammer's pulse has little left
-RESPONSE_FUNCTION, ACCELERATION, FORCE, FREQUENCY = 4, 12, 13, 18  # codes of dataset 58
-Z_TRANSLATION = 3
+RESPONSE_FUNCTION, FREQUENCY = 4, 18  # codes of dataset 58
 
 
 def h1(played, sampling):
@@ -29,10 +28,7 @@ def write_case(folder, bench, played):
     for place, (x, accelerance) in enumerate(zip(bench.forces, accelerances, strict=True)):
         name = f"point-{place}.uff"
         _write(folder / name, (place + 1, len(bench.forces) + 1), frequency, accelerance)
-        plan.append(
-            f'[[measurement]]\nkind = "accelerance"\nfile = "{name}"\n'
-            f"force_at = [{x:.4g}, 0.0]\nresponse_at = [{bench.response:.4g}, 0.0]\n"
-        )
+        plan.append(files.measurement_text("accelerance", name, x, bench.response))
     (folder / "test.toml").write_text("\n".join(plan), encoding="utf-8")
 
 
@@ -43,15 +39,15 @@ def _write(path, nodes, frequency, accelerance):
         id1="H1",
         func_type=RESPONSE_FUNCTION,
         rsp_node=nodes[1],
-        rsp_dir=Z_TRANSLATION,
+        rsp_dir=files.Z_TRANSLATION,
         ref_node=nodes[0],
-        ref_dir=Z_TRANSLATION,
+        ref_dir=files.Z_TRANSLATION,
         abscissa_spacing=1,
         abscissa_spec_data_type=FREQUENCY,
         abscissa_axis_units_lab="Hz",
-        ordinate_spec_data_type=ACCELERATION,
+        ordinate_spec_data_type=files.ACCELERATION,
         ordinate_axis_units_lab="m/s2",
-        orddenom_spec_data_type=FORCE,
+        orddenom_spec_data_type=files.FORCE,
         orddenom_axis_units_lab="N",
         x=frequency,
         data=accelerance,

@@ -22,7 +22,7 @@ def write_case(folder, bench, played):
     for place, x in enumerate(bench.forces):
         name = f"point-{place}.uff"
         _write_records(folder / name, place, bench, played)
-        plan.append(_measurement(name, x, bench.response))
+        plan.append(measurement_text("time-history", name, x, bench.response))
     (folder / "test.toml").write_text("\n".join(plan), encoding="utf-8")
 
 
@@ -71,10 +71,10 @@ def piece_text(bench):
     return text
 
 
-def _measurement(name, force, response):
+def measurement_text(kind, name, force, response):
     """One place."""
     return (
-        f'[[measurement]]\nkind = "time-history"\nfile = "{name}"\n'
+        f'[[measurement]]\nkind = "{kind}"\nfile = "{name}"\n'
         f"force_at = [{force:.4g}, 0.0]\nresponse_at = [{response:.4g}, 0.0]\n"
     )
 

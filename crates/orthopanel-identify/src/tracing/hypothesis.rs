@@ -11,8 +11,9 @@ use crate::IdentifyError;
 pub(super) const PLATE: &str = "width-coupling";
 /// Suspension springs that are not linear.
 pub(super) const CUBIC: &str = "cubic-stiffness";
-/// A window that was left on, of which the first number is its time constant.
+/// What has a mode of its own.
 pub(super) const RESONATOR: &str = "resonator";
+/// A window that was left on, of which the first number is its time constant.
 pub(super) const WINDOW: &str = "exponential-window";
 
 /// An effect with values for all its parameters.

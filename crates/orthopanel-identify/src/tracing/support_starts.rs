@@ -19,7 +19,7 @@ const RATIOS: (f64, f64, usize) = (6.0, 60.0, 5);
 /// One of so many lowest poles is one of so many lowest modes.
 const ANCHORS: usize = 3;
 /// A pole further than this from every mode belongs to none.
-const REACH: f64 = 0.05;
+pub(super) const REACH: f64 = 0.05;
 /// Starts that are handed on.
 const STARTS: usize = 6;
 

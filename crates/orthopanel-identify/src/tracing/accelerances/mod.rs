@@ -17,7 +17,7 @@ use super::base_model::RecordsBase;
 use super::hypothesis::{Hypothesis, Switched};
 use super::outcome::{NotTested, Progress, Tracing};
 use super::record_problem::State;
-use super::support_starts::{SUPPORT, SupportStarts, support_starts};
+use super::support_starts::{REACH, SUPPORT, SupportStarts, support_starts};
 use crate::IdentifyError;
 use crate::accelerance_fit::{ResonanceStart, resonance_starts};
 use crate::free_constants::FreeConstants;
@@ -29,8 +29,6 @@ use search::Search;
 const SUMMED: f64 = 2.5;
 /// Modes that are looked through for these.
 const MOST_MODES: usize = 60;
-/// A resonance further than this from every mode, in parts of its frequency, belongs to none.
-const NUMBERED: f64 = 0.05;
 /// The factor on all records.
 const SCALE: &str = "gain";
 
@@ -151,7 +149,7 @@ fn with_yielding_supports(
     let state = states.first()?;
     let modes =
         setup.summed_frequencies(&state.constants.map(f64::exp), &state.hypothesis.states(records).ok()?).ok()?;
-    let found = start.nearest_to(&modes, NUMBERED);
+    let found = start.nearest_to(&modes, REACH);
     let matched = |modes: &[Option<(f64, f64)>]| modes.iter().flatten().count();
     (matched(&found) > matched(&start.modes)).then_some(found)
 }

@@ -193,17 +193,18 @@ impl AccelerancesProblem {
         Ok(errors)
     }
 
-    /// Derivatives of the resonances' errors by some of the parameters, a list a parameter.
-    fn differences(
-        &self,
-        parameters: &[f64],
-        like: &State,
-        of: impl Iterator<Item = usize>,
-    ) -> Result<Vec<Vec<f64>>, ModelError> {
+    /// The sum of squares of all resonances, each beside an error of `blunt` of its frequency.
+    fn of_resonances(&self, parameters: &[f64], like: &State, blunt: f64) -> Result<Quadratic, ModelError> {
         let problem = self.problem(&self.lines);
         let errors = |parameters: &[f64]| self.frequency_errors(&problem.state(parameters, like));
         let (here, bounds) = (errors(parameters)?, problem.bounds(like));
-        let by = of.map(|index| {
+        let constants = parameters.len() - like.hypothesis.size();
+        // The channel moves no resonance.
+        let owners = like.hypothesis.each_free().map(|(on, _)| on.effect.owner() != Owner::Channel);
+        let by = std::iter::repeat_n(true, constants).chain(owners).enumerate().map(|(index, moves)| {
+            if !moves {
+                return Ok(vec![0.0; here.len()]);
+            }
             let mut at = parameters.to_vec();
             let (low, high) = bounds[index];
             let step = STEP * (high - low).min(1.0);
@@ -211,24 +212,7 @@ impl AccelerancesProblem {
             let step = at[index] - parameters[index];
             Ok(errors(&at)?.iter().zip(&here).map(|(there, here)| (there - here) / step).collect())
         });
-        by.collect()
-    }
-
-    /// The sum of squares of all resonances, each beside an error of `blunt` of its frequency.
-    fn of_resonances(&self, parameters: &[f64], like: &State, blunt: f64) -> Result<Quadratic, ModelError> {
-        let constants = parameters.len() - like.hypothesis.size();
-        let mut by = self.differences(parameters, like, 0..constants)?;
-        let here = self.frequency_errors(&self.problem(&self.lines).state(parameters, like))?;
-        let moves: Vec<usize> = (constants..parameters.len())
-            .zip(like.hypothesis.each_free())
-            .filter_map(|(index, (on, _))| (on.effect.owner() != Owner::Channel).then_some(index))
-            .collect();
-        by.resize(parameters.len(), vec![0.0; here.len()]);
-        if !moves.is_empty() {
-            for (index, by_parameter) in moves.iter().zip(self.differences(parameters, like, moves.iter().copied())?) {
-                by[*index] = by_parameter;
-            }
-        }
+        let by = by.collect::<Result<Vec<Vec<f64>>, ModelError>>()?;
         let mut sum = Quadratic::zero(parameters.len());
         for (row, (error, resonance)) in here.iter().zip(&self.resonances).enumerate() {
             let std = resonance.std.hypot(blunt);

@@ -274,7 +274,7 @@ impl Search<'_> {
     }
 
     /// $\kappa n\ln(R/n) + k\ln(m+\kappa n)$: the part of the criterion that the lines tell.
-    pub(super) fn of_lines(&self, fit: &AccelerancesFit) -> f64 {
+    fn of_lines(&self, fit: &AccelerancesFit) -> f64 {
         let data = self.lines() + self.problem.resonances.len() as f64;
         self.lines() * fit.missed.max(LEAST * LEAST).ln() + fit.size as f64 * data.max(1.0).ln()
     }

@@ -20,7 +20,7 @@ mod verdict;
 mod width;
 
 use orthopanel_data::ImpactTest;
-use orthopanel_model::{Effect, catalogue};
+use orthopanel_model::catalogue;
 use rayon::prelude::*;
 
 use super::hypothesis::{Hypothesis, PLATE, RESONATOR, Switched, has_place, is_place};
@@ -85,12 +85,14 @@ pub(super) fn trace_frequencies(test: &ImpactTest, declared: &Hypothesis) -> Res
                 continue;
             }
         };
-        let unknowns = problem.constants.count() + declared.size() + if id == PLATE { 1 } else { seen.free.len() };
+        // The plate frees Poisson's ratio first; its other constants answer for themselves.
+        let free = if id == PLATE { 1 } else { seen.free.len() };
+        let unknowns = problem.constants.count() + declared.size() + free;
         if count < DATA_FOR_EACH * unknowns {
             let reason =
                 format!("{count} frequencies for {unknowns} unknowns: measure {DATA_FOR_EACH} or more for each");
             not_tested.push(NotTested { id, reason });
-            wants_more.push(id);
+            wants_more.push((id, free));
             continue;
         }
         let found = match id {
@@ -121,21 +123,6 @@ fn is_tuned_above(found: &ListFit, top: f64) -> bool {
 
 /// Frequencies for each unknown: with fewer an effect with a place or two parameters fits by chance.
 const DATA_FOR_EACH: usize = 2;
-
-/// Parameters that no undamped frequency shows.
-const DAMPS: [&str; 2] = ["zeta", "damping"];
-
-fn free_parameters(effect: &dyn Effect) -> usize {
-    match effect.id() {
-        // The plate frees Poisson's ratio first; its other constants answer for themselves.
-        PLATE => 1,
-        _ => effect
-            .parameters()
-            .iter()
-            .filter(|parameter| parameter.held_at.is_none() && !DAMPS.contains(&parameter.name))
-            .count(),
-    }
-}
 
 /// Starts that are followed to their minimum.
 const FOLLOWED: usize = 4;

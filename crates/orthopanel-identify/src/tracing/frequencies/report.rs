@@ -3,15 +3,15 @@
 use std::collections::BTreeMap;
 
 use orthopanel_data::ImpactTest;
-use orthopanel_model::{Damping, Estimate, MODEL_SCHEMA, Owner, PanelModel, Ports, StructureKind, catalogue, effect};
+use orthopanel_model::{Damping, Estimate, MODEL_SCHEMA, Owner, PanelModel, Ports, StructureKind, effect};
 
+use super::DATA_FOR_EACH;
 use super::lacking::{self, what_to_check};
 use super::list_fit::ListFit;
 use super::list_problem::ListProblem;
 use super::parting::next_experiment;
 use super::trust::Trust;
 use super::verdict::{CLEAR, Choice};
-use super::{DATA_FOR_EACH, free_parameters};
 use crate::IdentifyError;
 use crate::tracing::bounds;
 use crate::tracing::hypothesis::PLATE;
@@ -30,7 +30,7 @@ pub(super) fn report(
     test: &ImpactTest,
     problem: &ListProblem,
     fits: Vec<ListFit>,
-    (not_tested, wants_more): (Vec<NotTested>, Vec<&'static str>),
+    (not_tested, wants_more): (Vec<NotTested>, Vec<(&'static str, usize)>),
     declared: usize,
 ) -> Result<Tracing, IdentifyError> {
     let mut order: Vec<usize> = (0..fits.len()).collect();
@@ -66,13 +66,13 @@ pub(super) fn report(
     let too_few = verdict == Verdict::Ambiguous && chosen == 0;
     let untested = verdict == Verdict::Ambiguous && (too_few || choice.leaves_room(&fits[chosen], &trust));
     let rivals = choice.rivals.iter().map(|&index| name(&fits[index], false, declared));
-    let alternatives = rivals.chain(choice.wants_more.iter().filter(|_| untested).map(|id| (*id).to_owned())).collect();
+    let alternatives =
+        rivals.chain(choice.wants_more.iter().filter(|_| untested).map(|(id, _)| (*id).to_owned())).collect();
     let next_experiment = match verdict {
         Verdict::Unexplained => what_to_check(test, problem, &fits[chosen], &trust),
         _ if too_few => lacking::too_few(problem, DATA_FOR_EACH, fits[0].hypothesis.size(), 1),
         Verdict::Ambiguous if choice.rivals.is_empty() => {
-            let dear = catalogue().iter().filter(|effect| choice.wants_more.contains(&effect.id()));
-            let least = dear.map(|effect| free_parameters(*effect)).min().unwrap_or(1);
+            let least = choice.wants_more.iter().map(|(_, free)| *free).min().unwrap_or(1);
             lacking::too_few(problem, DATA_FOR_EACH, fits[0].hypothesis.size(), least)
         }
         _ => next_experiment(problem, &fits, chosen, &choice.rivals, &order),

@@ -15,8 +15,8 @@ pub(super) struct Choice {
     pub rivals: Vec<usize>,
     /// The parameter of the chosen one that lies on its bound.
     pub on_bound: Option<String>,
-    /// Effects that only more frequencies would test.
-    pub wants_more: Vec<&'static str>,
+    /// Effects that only more frequencies would test, with the unknowns that each brings.
+    pub wants_more: Vec<(&'static str, usize)>,
 }
 
 impl Choice {
