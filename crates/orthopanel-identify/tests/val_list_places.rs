@@ -66,3 +66,51 @@ fn val_an_effect_is_found_wherever_it_sits() {
         assert!((place.value.abs() - x).abs() < 0.01, "{at}: {place:?}");
     }
 }
+
+/// A panel with a resonator: truth, and ten frequencies \[Hz\] with 0.1 % of noise.
+struct Resonant {
+    piece: [f64; 4],
+    mass: f64,
+    frequency: f64,
+    x: f64,
+    frequencies: [f64; 10],
+}
+
+/// Of each, another mass at another place meets the frequencies as well; of the second, at a mass on its bound.
+const RESONANT: [Resonant; 2] = [
+    Resonant {
+        piece: [0.8, 0.2, 0.06, 6.88],
+        mass: 0.01878,
+        frequency: 740.24,
+        x: 0.223,
+        frequencies: [586.431, 748.294, 1416.19, 2364.51, 3334.65, 4306.88, 5263.49, 6211.35, 7134.91, 8036.69],
+    },
+    Resonant {
+        piece: [0.925, 0.108, 0.06, 7.123],
+        mass: 0.01546,
+        frequency: 172.854,
+        x: 0.035,
+        frequencies: [174.147, 437.154, 1072.5, 1839.97, 2644.24, 3455.45, 4262.77, 5051.01, 5841.09, 6616.64],
+    },
+];
+
+#[test]
+fn val_a_resonators_intervals_hold_every_place_that_does_as_well() {
+    for Resonant { piece: [length, width, thickness, mass_per_area], mass, frequency, x, frequencies } in RESONANT {
+        let scatter = frequencies.map(|frequency| 1e-3 * frequency);
+        let text = format!(
+            "[piece]\nlength = {length}\nwidth = {width}\nthickness = {thickness}\nmass_per_area = {mass_per_area}\n\
+             [[measurement]]\nkind = \"natural-frequencies\"\nvalues = {frequencies:?}\nscatter = {scatter:?}\n"
+        );
+        let found = trace(&ImpactTest::from_toml(&text, "list.toml").unwrap()).unwrap();
+        let at = format!("{mass} kg at {x} m");
+        assert_eq!(found.verdict, Verdict::Explained, "{at}: {:?}", found.alternatives);
+        assert_eq!(found.effects[0].id, "resonator", "{at}");
+        for (name, truth) in [("mass", mass), ("frequency", frequency), ("x", x)] {
+            let told = found.effects[0].parameters.iter().find(|parameter| parameter.name == name).unwrap().values[0];
+            let reach = 1.96 * told.std.expect("a scatter");
+            assert!((told.value - truth).abs() < reach, "{at}: {name} = {} +- {reach}, put in {truth}", told.value);
+        }
+        assert!(found.notes.iter().any(|note| note.contains("as well")), "{at}: {:?}", found.notes);
+    }
+}

@@ -28,10 +28,16 @@ pub(super) struct ListFit {
     pub plate: Option<crate::Identification>,
     /// Whether an effect's place may as well be on the other side of the middle.
     pub mirrored: bool,
+    /// Where other starts led, the least missed first.
+    pub other_minima: Vec<ListFit>,
+    /// From where to where the effect may sit, if intervals reach over other places than the one of the fit.
+    pub reaches: Option<(f64, f64)>,
 }
 
 /// Step of the differences in logarithms, or in parts of a linear parameter's range.
 const STEP: f64 = 1e-5;
+/// Half the width of an interval of 95 %, in standard deviations.
+pub(super) const INTERVAL: f64 = 1.96;
 const ENDING: Ending = Ending {
     most_iterations: 40,
     small_step: 1e-7,
@@ -93,7 +99,19 @@ pub(super) fn fit(problem: &ListProblem, from: &Hypothesis, constants_from: &[f6
     let (_, coordinates) = parameters.split_at(constants.count());
     let hypothesis = from.at(coordinates);
     let residuals = in_parts(at.residuals, scatter.as_deref());
-    Ok(ListFit { hypothesis, residuals, left_out, std, size, parameters, scatter, plate: None, mirrored: false })
+    Ok(ListFit {
+        hypothesis,
+        residuals,
+        left_out,
+        std,
+        size,
+        parameters,
+        scatter,
+        plate: None,
+        mirrored: false,
+        other_minima: vec![],
+        reaches: None,
+    })
 }
 
 /// From units of the scatter to parts of each frequency.
@@ -138,13 +156,31 @@ impl ListFit {
         Some(self.residuals.iter().zip(scatter).map(|(residual, scatter)| (residual / scatter).powi(2)).sum())
     }
 
-    /// $\sum(r_i/\sigma_i)^2 + k\ln n$ where the lists tell $\sigma$, else $n\ln(R/n) + k\ln n$.
-    pub(super) fn bic(&self) -> f64 {
+    /// $\sum(r_i/\sigma_i)^2$ where the lists tell $\sigma$, else $n\ln(R/n)$.
+    pub(super) fn missed(&self) -> f64 {
         let count = self.residuals.len().max(1) as f64;
-        if let Some(sum) = self.chi_square() {
-            return sum + self.size as f64 * count.ln();
-        }
-        count * (self.square() / count).max(f64::MIN_POSITIVE).ln() + self.size as f64 * count.ln()
+        self.chi_square().unwrap_or_else(|| count * (self.square() / count).max(f64::MIN_POSITIVE).ln())
+    }
+
+    /// [`Self::missed`] $ + k\ln n$.
+    pub(super) fn bic(&self) -> f64 {
+        self.missed() + self.size as f64 * (self.residuals.len().max(1) as f64).ln()
+    }
+
+    /// By how much a step of one deviation raises [`Self::missed`]: more than one where more is missed than the lists tell.
+    pub(super) fn excess(&self) -> f64 {
+        let beyond = self.residuals.len().saturating_sub(self.size).max(1);
+        self.chi_square().map_or(1.0, |sum| (sum / beyond as f64).max(1.0))
+    }
+
+    /// Up to where [`Self::missed`] is no worse within intervals of 95 %.
+    pub(super) fn most(&self) -> f64 {
+        self.missed() + INTERVAL * INTERVAL * self.excess()
+    }
+
+    /// The constants' parameters.
+    pub(super) fn constants(&self, problem: &ListProblem) -> &[f64] {
+        self.parameters.split_at(problem.constants.count().min(self.parameters.len())).0
     }
 
     /// Rms error \[%\].

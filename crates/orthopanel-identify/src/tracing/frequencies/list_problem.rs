@@ -1,7 +1,7 @@
 //! The lists of a test, and their relative errors at some constants and effects.
 
-use orthopanel_data::{ImpactTest, MeasurementData};
-use orthopanel_model::{BEAM_CONSTANTS, EffectSetting, ModelError, Piece, RecordSetting, natural_frequencies};
+use orthopanel_data::{ImpactTest, Measurement, MeasurementData};
+use orthopanel_model::{BEAM_CONSTANTS, EffectSetting, ModelError, NaturalFrequencies, Piece, RecordSetting};
 
 use crate::IdentifyError;
 use crate::free_constants::FreeConstants;
@@ -12,6 +12,8 @@ use crate::tracing::hypothesis::Hypothesis;
 pub(super) struct FrequencyList {
     pub piece: usize,
     pub setting: EffectSetting,
+    /// Of as many modes as were measured.
+    model: NaturalFrequencies,
     /// Flexible modes 1, 2, ... \[Hz\].
     pub measured: Vec<f64>,
     /// Relative standard deviation of each by rounding to a bin; empty where the bin is not told.
@@ -33,8 +35,8 @@ pub(super) struct ListProblem {
 impl ListProblem {
     pub(super) fn of(test: &ImpactTest) -> Result<Self, IdentifyError> {
         let constants = FreeConstants::of(test, &BEAM_CONSTANTS)?;
-        let lists = test.measurements.iter().filter_map(|measurement| {
-            let MeasurementData::NaturalFrequencies(data) = &measurement.data else { return None };
+        let list = |measurement: &Measurement| {
+            let MeasurementData::NaturalFrequencies(data) = &measurement.data else { return Ok(None) };
             let setting = EffectSetting {
                 piece: test.pieces[measurement.piece].piece,
                 boundary: test.boundary,
@@ -43,9 +45,12 @@ impl ListProblem {
             };
             let rounding = data.resolution.iter().zip(&data.values).map(|(bin, f)| bin / 12.0_f64.sqrt() / f).collect();
             let scatter = data.scatter.iter().zip(&data.values).map(|(std, f)| std / f).collect();
-            Some(FrequencyList { piece: measurement.piece, setting, measured: data.values.clone(), rounding, scatter })
-        });
-        Ok(Self { lists: lists.collect(), constants })
+            let measured = data.values.clone();
+            let model = NaturalFrequencies::new(&setting, measured.len())?;
+            Ok(Some(FrequencyList { piece: measurement.piece, setting, model, measured, rounding, scatter }))
+        };
+        let lists = test.measurements.iter().filter_map(|measurement| list(measurement).transpose());
+        Ok(Self { lists: lists.collect::<Result<_, IdentifyError>>()?, constants })
     }
 
     /// Without what the lists tell of their scatter.
@@ -60,9 +65,14 @@ impl ListProblem {
         self.lists.iter().map(|list| list.measured.len()).sum()
     }
 
+    /// Every frequency that was measured \[Hz\], list by list.
+    pub(super) fn listed(&self) -> Vec<f64> {
+        self.lists.iter().flat_map(|list| list.measured.iter().copied()).collect()
+    }
+
     /// The highest frequency \[Hz\].
     pub(super) fn top(&self) -> f64 {
-        self.lists.iter().flat_map(|list| &list.measured).fold(0.0, |top: f64, &frequency| top.max(frequency))
+        self.listed().into_iter().fold(0.0, f64::max)
     }
 
     /// Number of frequencies of the longest list.
@@ -97,7 +107,7 @@ impl ListProblem {
         let mut residuals = Vec::with_capacity(self.count());
         for list in &self.lists {
             let values = self.constants.values(constants, list.piece);
-            let found = natural_frequencies(&list.setting, &values, &states, list.measured.len())?;
+            let found = list.model.at(&values, &states)?;
             if found.len() < list.measured.len() {
                 return Err(ModelError::Eigenproblem);
             }

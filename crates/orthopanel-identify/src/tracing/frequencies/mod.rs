@@ -10,6 +10,7 @@ mod lacking;
 mod list_fit;
 mod list_problem;
 mod parting;
+mod places;
 mod repeats;
 mod report;
 mod scored_starts;
@@ -29,10 +30,12 @@ use crate::IdentifyError;
 pub(super) use declared::identify_lists;
 use list_fit::{ListFit, fit};
 use list_problem::ListProblem;
+use places::{PlaceOf, over_places};
 pub(crate) use repeats::without_repeats;
 use scored_starts::left_by_each;
 use seen::{never_shows, not_seen, only_seen};
 use start_grid::StartGrid;
+use verdict::CLEAR;
 
 /// Names the effect that the base model lacks in the natural frequencies of a test.
 ///
@@ -105,9 +108,29 @@ pub(super) fn trace_frequencies(test: &ImpactTest, declared: &Hypothesis) -> Res
             Err(error) => not_tested.push(NotTested { id, reason: error.to_string() }),
         }
     }
+    let fits = in_all_places(&problem, fits, declared.effects.len());
     let mut found = report::report(test, &problem, fits, (not_tested, wants_more), declared.effects.len())?;
     found.notes.extend(notes.iter().chain(held).cloned());
     Ok(found)
+}
+
+/// With intervals over every place where it does as well: each effect that may be named.
+fn in_all_places(problem: &ListProblem, fits: Vec<ListFit>, declared: usize) -> Vec<ListFit> {
+    let least = fits.iter().map(ListFit::bic).fold(f64::INFINITY, f64::min);
+    let piece = problem.largest_piece();
+    let widened = |found: ListFit| {
+        let place = found.hypothesis.effects.get(declared).and_then(|on| {
+            let whole = Switched::new(on.effect, &piece, 1, |_| None, |_| false);
+            whole.free.into_iter().find(|free| is_place(&on.effect.parameters()[free.parameter]))
+        });
+        match place {
+            Some(place) if found.bic() < least + CLEAR => {
+                over_places(problem, found, PlaceOf { effect: declared, place })
+            }
+            _ => found,
+        }
+    };
+    fits.into_iter().map(widened).collect()
 }
 
 const ABOVE: &str = "no resonator tuned within the listed frequencies meets them, and one tuned above these is a mass where it sits: see local-mass";
@@ -136,7 +159,7 @@ fn alone(
 ) -> Result<ListFit, IdentifyError> {
     let effect = seen.effect;
     let piece = problem.largest_piece();
-    let grid = StartGrid::of(effect, &piece, problem.longest());
+    let grid = StartGrid::of(seen, &piece, problem.longest(), &problem.listed());
     let switched: Vec<Hypothesis> = grid
         .starts()
         .map(|start| {
@@ -165,16 +188,14 @@ fn alone(
         };
         fitted.extend(found.into_par_iter().map(polished).collect::<Vec<_>>());
     }
-    let mut best: Option<ListFit> = None;
-    let mut reason = None;
-    for found in fitted {
-        match found {
-            Ok(found) if best.as_ref().is_none_or(|best| found.bic() < best.bic()) => best = Some(found),
-            Ok(_) => {}
-            Err(error) => reason = reason.or(Some(error)),
-        }
-    }
-    let best = best.map(|found| mirrored(problem, found, declared.effects.len()));
+    let (found, refused): (Vec<_>, Vec<_>) = fitted.into_iter().partition(Result::is_ok);
+    let told = |found| mirrored(problem, found, declared.effects.len());
+    let mut found: Vec<ListFit> = found.into_iter().flatten().map(told).collect();
+    // What rests on a bound counts fewer parameters, and stands no nearer for that.
+    found.sort_by(|a, b| a.missed().total_cmp(&b.missed()));
+    let mut found = found.into_iter();
+    let best = found.next().map(|best| ListFit { other_minima: found.collect(), ..best });
+    let reason = refused.into_iter().find_map(Result::err);
     best.ok_or_else(|| reason.unwrap_or_else(|| IdentifyError::Unsupported(format!("{}: no start", effect.id()))))
 }
 

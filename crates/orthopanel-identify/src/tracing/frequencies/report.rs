@@ -82,6 +82,7 @@ pub(super) fn report(
     if choice.rivals.iter().chain([&chosen]).any(|&index| fits[index].mirrored) {
         notes.push(MIRRORED.to_owned());
     }
+    notes.extend(choice.rivals.iter().chain([&chosen]).filter_map(|&index| elsewhere(&fits[index])));
     if let Some(parameter) = &choice.on_bound {
         notes.push(bounds::note(parameter));
     }
@@ -115,6 +116,16 @@ pub(super) fn report(
         base_accelerances: vec![],
         notes,
     })
+}
+
+/// Of an effect that does as well at other places.
+fn elsewhere(fit: &ListFit) -> Option<String> {
+    let ((from, to), on) = (fit.reaches?, fit.hypothesis.effects.last()?);
+    Some(format!(
+        "{} meets these frequencies as well at other places from x = {from:.2} to {to:.2} m: the intervals of all its parameters reach \
+         over these",
+        on.effect.id()
+    ))
 }
 
 pub(super) fn rms(told: &[f64]) -> f64 {

@@ -3,12 +3,14 @@
 //! How much an attachment at $x$ shifts mode $n$ goes as $\phi_n^2(x)$, which has $n$ humps along a free piece: a start half a hump away
 //! leads to another minimum.
 
-use orthopanel_model::{Effect, EffectParameter, Piece};
+use orthopanel_model::{EffectParameter, Piece};
 
-use crate::tracing::hypothesis::is_place;
+use crate::tracing::hypothesis::{Switched, is_place};
 
 /// Starts along each hump of the highest listed mode.
 const ON_A_HUMP: usize = 6;
+/// Unit of what a resonator is tuned to: one of the listed frequencies is its own mode's, no further off than the modes beside it push it.
+const TUNED_IN: &str = "Hz";
 /// Relative difference of what two starts leave that are one another's mirror images: one of them is followed.
 const MIRRORED: f64 = 1e-9;
 
@@ -18,18 +20,24 @@ pub(super) struct StartGrid {
 }
 
 impl StartGrid {
-    /// For lists of up to so many modes.
-    pub(super) fn of(effect: &dyn Effect, piece: &Piece, modes: usize) -> Self {
-        let list = |parameter: &EffectParameter| match parameter.held_at {
+    /// In lists of up to so many `modes` that hold the frequencies `listed` \[Hz\]; a parameter that is not free begins from one value.
+    pub(super) fn of(on: &Switched, piece: &Piece, modes: usize, listed: &[f64]) -> Self {
+        let list = |(index, parameter): (usize, &EffectParameter)| match parameter.held_at {
             Some(held) => vec![held],
             None if is_place(parameter) => along(parameter.range(piece), ON_A_HUMP * modes.max(1) + 1),
             None => {
                 let mut starts = parameter.starts(piece);
+                if on.free.iter().all(|free| free.parameter != index) {
+                    starts.truncate(1);
+                } else if parameter.unit == TUNED_IN {
+                    starts.extend_from_slice(listed);
+                }
                 starts.sort_by(f64::total_cmp);
+                starts.dedup();
                 starts
             }
         };
-        Self { lists: effect.parameters().iter().map(list).collect() }
+        Self { lists: on.effect.parameters().iter().enumerate().map(list).collect() }
     }
 
     fn count(&self) -> usize {
@@ -69,7 +77,7 @@ impl StartGrid {
 
 /// Places from one end to the other, so many steps; with an odd number none lies in the middle, where by symmetry no frequency tells which
 /// way to go.
-fn along((low, high): (f64, f64), steps: usize) -> Vec<f64> {
+pub(super) fn along((low, high): (f64, f64), steps: usize) -> Vec<f64> {
     (0..=steps).map(|step| low + (high - low) * step as f64 / steps as f64).collect()
 }
 
@@ -82,7 +90,8 @@ mod tests {
     #[test]
     fn valleys_of_the_grid_are_followed_once_each() {
         let piece = Piece { length: 0.8, width: 0.1, thickness: 0.03, mass_per_area: 6.88 };
-        let grid = StartGrid::of(effect("local-mass").unwrap(), &piece, 10);
+        let on = Switched::new(effect("local-mass").unwrap(), &piece, 1, |_| None, |_| false);
+        let grid = StartGrid::of(&on, &piece, 10, &[]);
         let starts: Vec<Vec<f64>> = grid.starts().collect();
         assert_eq!(starts.len(), 3 * 62);
         assert!(starts.iter().all(|start| start[1].abs() <= 0.4));

@@ -46,5 +46,7 @@ pub(super) fn fit_plate(test: &ImpactTest, problem: &ListProblem) -> Result<List
         scatter: problem.scatter(),
         plate: Some(found),
         mirrored: false,
+        other_minima: vec![],
+        reaches: None,
     })
 }
