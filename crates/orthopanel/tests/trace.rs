@@ -27,6 +27,10 @@ fn val_a_misplaced_hammer_is_named_and_its_way_found() {
     assert!(error("independent/before") < 0.2 * error("independent/noise"));
     assert!(answer["candidates"].as_array().is_some_and(|candidates| candidates.len() > 5));
     assert!(answer["next_experiment"].is_string());
+    // People read ten of them, and are told of the others.
+    let further = answer["candidates"].as_array().map_or(0, Vec::len) - 10;
+    let text = bench.done(&format!("trace {MISPLACED}"));
+    assert!(text.contains(&format!("and {further} further behind")), "{text}");
     // It belongs to the measuring chain, so the panel's model does not have it, and its constants are right again.
     let model = bench.read_json("model.json");
     assert!(model.get("effects").is_none(), "{model}");

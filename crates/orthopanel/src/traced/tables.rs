@@ -121,6 +121,10 @@ impl Traced {
         text.extend(self.left().map(|left| left + ".\n"));
         let headings = ["hypothesis", "BIC above best", "held out", "parameters"];
         text += &format!("\n{}", ending_in_words(&headings, &ranking_rows(tracing, LISTED)));
+        match tracing.candidates.len().saturating_sub(LISTED) {
+            0 => {}
+            further => text += &format!("and {further} further behind: --json and the report list them all\n"),
+        }
         for of in &tracing.not_tested {
             text += &format!("not tested: {}: {}\n", of.id, of.reason);
         }
