@@ -28,7 +28,8 @@ class Panel:
     """A piece and its constants (m, m, m, kg/m2, Pa, Pa), and where it departs from the uniform free beam.
 
     `shear_along(x)` is g(x), `steps` the places where g jumps; `rotary` is r; `tension` is N [N]; `left` is "free",
-    "clamped", or the pair (translation [N/m], rotation [N m/rad]) of the springs that hold the left end.
+    "clamped", or the pair (translation [N/m], rotation [N m/rad]) of the springs that hold the left end. `turning` are
+    pairs (x, J): a moment of inertia J [kg m2] that turns with the section at x.
     """
 
     length: float
@@ -42,6 +43,7 @@ class Panel:
     rotary: float = 1.0
     tension: float = 0.0
     left: str | tuple = "free"
+    turning: tuple = ()
 
     @property
     def bending(self):
@@ -89,7 +91,8 @@ def boundaries(panel, points, element=ELEMENT):
     if outside:
         raise ValueError(f"x = {outside[0]} m lies off the piece: |x| <= {half} m")
     inner = [x for x in panel.steps if abs(x) < half]
-    fixed = np.unique(np.round([-half, half, *points, *inner], 9))
+    turning = (x for x, _ in panel.turning)
+    fixed = np.unique(np.round([-half, half, *points, *inner, *turning], 9))
     parts = [np.linspace(a, b, int(np.ceil((b - a) / element)) + 1)[:-1] for a, b in zip(fixed[:-1], fixed[1:])]
     return np.concatenate([*parts, fixed[-1:]])
 
@@ -111,6 +114,7 @@ def rigid_shapes(panel, points, strains):
     if panel.left != "free":
         return np.zeros((0, len(points) + strains))
     inertia = panel.mass * panel.length**2 / 12.0 + panel.rotary_inertia * panel.length
+    inertia += sum(turning for _, turning in panel.turning)
     shapes = [np.full(len(points), 1.0 / np.sqrt(panel.mass)), np.asarray(points) / np.sqrt(inertia)]
     if panel.tension:
         shapes.pop()
@@ -157,6 +161,9 @@ class Mesh:
         value, mixed, slope = line_matrices(ends)
         none = np.zeros((count, count))
         self.mass = np.block([[panel.mass_per_length * value, none], [none, panel.rotary_inertia * value]])
+        for x, inertia in panel.turning:
+            at = count + int(np.argmin(np.abs(self.nodes - x)))
+            self.mass[at, at] += inertia
         self.bending = np.block([[none, none], [none, panel.bending * slope]])
         self.tension = np.block([[panel.tension * slope, none], [none, none]])
         self.shear = panel.shear * np.block([[slope, mixed.T], [mixed, value]])

@@ -16,6 +16,14 @@ def sensor_mass(bench, draw):
     return {"mass": mass}
 
 
+def turning_sensor_mass(bench, draw):
+    """An accelerometer that resists turning, too: 10 to 20 mm between its mass and the middle plane."""
+    mass, arm = draw.rising(5e-3, 20e-3), draw.rising(10e-3, 20e-3)
+    bench.attachments.append((bench.sensed(), attachments.mass(mass)))
+    bench.change_panel(turning=((bench.sensed(), mass * arm**2),))
+    return {"mass": mass, "inertia": mass * arm**2}
+
+
 def suspension(bench, draw, most=2e4):
     """Springs, of up to `most` N/m, and dashpots at the suspension points."""
     stiffness, damping = draw.rising(500.0, most), draw.rising(0.5, 20.0)
@@ -196,6 +204,8 @@ CHANNEL = {
     "position-error": position_error,
 }
 EFFECTS = STRUCTURAL | CHANNEL
+# Kinds of a set of their own, each an effect of the catalogue with what it keeps unless it pays.
+FURTHER = {"sensor-mass": turning_sensor_mass}
 CANTILEVER = ("support-compliance",)  # effects that want a clamped piece
 # With one record, one record's gain is the gain: there is nothing to tell apart.
 NOT_SINGLE = ("record-gain",)

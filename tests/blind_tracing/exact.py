@@ -1,7 +1,7 @@
 r"""The tests' authority: the Timoshenko beam by transfer matrices, exact at any complex s.
 
 The state (w, psi, M, Q) obeys a linear equation along x; between steps its propagator is a matrix exponential, at a
-point attachment or a force the shear force jumps. Q is the whole transverse force, tension included. SI units.
+point attachment or a force the shear force jumps, at a point inertia the moment. Q is the whole transverse force, tension included. SI units.
 """
 
 import numpy as np
@@ -11,7 +11,7 @@ from scipy.linalg import expm
 def receptance(panel, s, force_at, response_at, attached=(), modulus=1.0):
     """w(response_at) [m] under a unit force at `force_at`, at one complex `s` [1/s]; `attached` are pairs (x, Z(s))."""
     half = panel.length / 2.0
-    stops = sorted({-half, half, force_at, response_at, *(x for x, _ in attached), *panel.steps})
+    stops = sorted({-half, half, force_at, response_at, *(x for x, _ in [*attached, *panel.turning]), *panel.steps})
     stops = [x for x in stops if -half <= x <= half]
     # Two unknowns at the left end and the response they cause; the third column is that of the force.
     state, seen = _start(panel), None
@@ -19,6 +19,9 @@ def receptance(panel, s, force_at, response_at, attached=(), modulus=1.0):
         for place, stiffness in attached:
             if abs(place - x) < 1e-12:
                 state[3] += stiffness(s) * state[0]
+        for place, inertia in panel.turning:
+            if abs(place - x) < 1e-12:
+                state[2] += inertia * s**2 * state[1]
         if x == force_at:
             state[3, 2] -= 1.0
         if x == response_at:

@@ -36,6 +36,7 @@ ASKED = {
         INSIDE,
         FLOOR,
     ],
+    "further": [(*RIGHT, 0.98, "least"), INSIDE, FLOOR],
     "outside": [("explained by a wrong name", "explained", 0.10, "most")],
 }
 

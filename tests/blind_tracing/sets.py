@@ -5,11 +5,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from . import bench as benches
-from .catalogue import CANTILEVER, EFFECTS, LISTED, NOT_ANALYSED, NOT_SINGLE, PAIRS
+from .catalogue import CANTILEVER, EFFECTS, FURTHER, LISTED, NOT_ANALYSED, NOT_SINGLE, PAIRS
 from .draw import Draw
 from .outside import OUTSIDE
 
-SETS = ("clean", "rough", "rough-none", "single-place", "none", "pairs", "outside", "lists", "accelerances")
+SETS = ("clean", "rough", "rough-none", "single-place", "none", "pairs", "outside", "lists", "accelerances", "further")
 HIT_SPREAD = 0.7e-3  # m, of each hit about its place (rough)
 GAIN_SPREAD = 3e-3  # of each record's gain (rough)
 CORE_SPREAD = 5e-3  # rms of the core's shear stiffness along the piece (rough)
@@ -25,6 +25,7 @@ class Case:
     rough: bool = False
     cantilever: bool = False
     analysed: bool = False  # only accelerances are kept of the hits
+    further: bool = False  # with what the catalogue keeps unless it pays
 
 
 def cases(name, count):
@@ -41,6 +42,8 @@ def cases(name, count):
         kinds = [Case(" + ".join(pair), pair) for pair in PAIRS]
     elif name == "outside":
         kinds = [Case(kind, (kind,)) for kind in OUTSIDE]
+    elif name == "further":
+        kinds = [Case(kind, (kind,), further=True) for kind in FURTHER]
     elif name == "lists":
         kinds = [Case(e, (e,), "list", cantilever=e in CANTILEVER) for e in LISTED]
         kinds += [Case("none", (), "list"), Case("none, clamped", (), "list", cantilever=True)]
@@ -57,7 +60,7 @@ def build(case, random, sampling=None):
     bench = benches.draw(random, case.places, sampling, case.cantilever)
     truth = []
     for name in case.effects:
-        change = EFFECTS.get(name) or OUTSIDE[name]
+        change = FURTHER[name] if case.further else EFFECTS.get(name) or OUTSIDE[name]
         truth.append({"id": name, "parameters": change(bench, Draw(random, strong=len(case.effects) > 1))})
     if case.rough:
         roughen(bench, random)

@@ -35,6 +35,7 @@ VARIANTS = {
     "free": (PIECE, (), None),
     "sensor mass": (PIECE, ((0.3, attachments.mass(0.01)),), None),
     "missing mass": (PIECE, ((-0.111, attachments.mass(-0.02)),), None),
+    "turning sensor": (replace(PIECE, turning=((0.3, 4e-6),)), ((0.3, attachments.mass(0.01)),), None),
     "suspension": (PIECE, tuple((x, attachments.spring(5e3, 4.0)) for x in (-0.22, 0.22)), None),
     "edge mass": (PIECE, tuple((x, attachments.mass(0.01)) for x in (-0.4, 0.4)), None),
     "resonator": (PIECE, ((0.07, attachments.resonator(0.02, 900.0, 0.02)),), None),

@@ -68,6 +68,8 @@ impl FreeParameter {
     }
 }
 
+/// Down to this part of its start a parameter is looked for that is zero unless it pays.
+const BELOW_ITS_START: f64 = 1e-2;
 /// Part of a range that counts as its end.
 const MARGIN: f64 = 1e-3;
 
@@ -115,6 +117,25 @@ impl Switched {
             }
         }
         switched
+    }
+
+    /// Frees, from where they start, the parameters that the catalogue keeps at zero unless they pay; whether there are any.
+    pub(super) fn free_what_is_kept(&mut self, piece: &Piece) -> bool {
+        let before = self.free.len();
+        for (index, parameter) in self.effect.parameters().iter().enumerate() {
+            let is_free = self.free.iter().any(|free| free.parameter == index);
+            // Values stand one a parameter only where no record has its own.
+            if parameter.held_at.is_none() || is_free || self.values.len() != self.effect.parameters().len() {
+                continue;
+            }
+            let Some(&start) = parameter.starts(piece).first() else { continue };
+            // Where it does not show it goes down through the decades, and does not pay.
+            let range = (BELOW_ITS_START * start, parameter.range(piece).1);
+            self.values[index] = start;
+            self.free.push(FreeParameter { at: index, parameter: index, record: None, scale: Scale::Log, range });
+        }
+        self.free.sort_by_key(|free| free.at);
+        self.free.len() > before
     }
 
     /// How many parameters the effect has but for those that it keeps unless asked.

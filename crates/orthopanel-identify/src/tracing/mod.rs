@@ -123,10 +123,13 @@ pub fn trace_with(test: &ImpactTest, progress: &(dyn Fn(Progress) + Sync)) -> Re
     // Starts that fail are passed over: what the file declares wrongly would be said as too few resonances.
     Hypothesis::declared(test, &piece, histories.len())?.check_that_each_acts(test, &piece)?;
     let mut records = TestRecords::new(test, &histories)?;
-    let alone = Search { records: &records, piece, progress }.each_alone()?;
-    let ranking = match rough_search::rough_search(&mut records, piece, progress, &alone) {
+    let mut alone = Search { records: &records, piece, progress }.each_alone()?;
+    Search { records: &records, piece, progress }.free_what_is_kept(&mut alone)?;
+    let mut ranking = match rough_search::rough_search(&mut records, piece, progress, &alone) {
         Some(ranking) => ranking,
         None => Search { records: &records, piece, progress }.together(alone)?,
     };
-    report::report(test, &Search { records: &records, piece, progress }, &ranking)
+    let search = Search { records: &records, piece, progress };
+    search.free_what_is_kept(&mut ranking)?;
+    report::report(test, &search, &ranking)
 }

@@ -165,6 +165,38 @@ impl Search<'_> {
         Ok(())
     }
 
+    /// Where the chosen fit misses more than noise: frees what the catalogue keeps of effects unless it pays, as a sensor's moment of
+    /// inertia, which else a mass beside the sensor and the hammer's places make up for. A fit that it pays for takes the other's place.
+    ///
+    /// # Errors
+    /// What the model refuses of a fit.
+    pub(super) fn free_what_is_kept(&self, ranking: &mut Ranking) -> Result<(), IdentifyError> {
+        if self.meets_noise(&ranking.fits[ranking.chosen]) {
+            return Ok(());
+        }
+        let last = ranking.fits.len();
+        let mut is_changed = false;
+        for index in 1..last {
+            let kept = &ranking.fits[index];
+            let mut state = kept.state.clone();
+            let undeclared = state.hypothesis.effects.iter_mut().skip(self.declared());
+            let count = undeclared.filter_map(|on| on.free_what_is_kept(&self.piece).then_some(())).count();
+            if count == 0 {
+                continue;
+            }
+            let Ok(freed) = fit(self.records, state, 1) else { continue };
+            let grouping = ranking.grouping(self.records, index);
+            let foretells = held_out(self.records, &freed, grouping)? < held_out(self.records, kept, grouping)?;
+            ranking.fits.push(freed);
+            if foretells && ranking.price(last) < ranking.price(index) {
+                ranking.fits.swap(last, index);
+                is_changed = true;
+            }
+            ranking.fits.truncate(last);
+        }
+        if is_changed { self.choose(ranking) } else { Ok(()) }
+    }
+
     /// Whether a fit is likelier than the chosen one, if by little, and foretells what is held out as no noise would let it: see
     /// [`FAR_BETTER`].
     fn foretells_far_better(&self, ranking: &Ranking, index: usize) -> bool {
