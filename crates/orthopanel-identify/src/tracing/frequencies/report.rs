@@ -21,6 +21,8 @@ use crate::tracing::outcome::{
 use crate::tracing::report::{effects_of, removal};
 
 const UNTOLD: &str = "no list of frequencies tells its scatter: the criterion takes it from the residuals themselves, and a margin of 10 is clear";
+const UNMEASURED: &str =
+    "no noise is told either: the noise floor here is what the chosen fit leaves, and judges nothing";
 const MIRRORED: &str = "frequencies of a piece held alike at both ends are the same with an effect at x and at -x: places are given \
                         with x > 0, and a record of hits at one end tells the side";
 const TOLD: &str =
@@ -78,6 +80,9 @@ pub(super) fn report(
         _ => next_experiment(problem, &fits, chosen, &choice.rivals, &order),
     };
     let mut notes = vec![if told.is_some() { TOLD } else { UNTOLD }.to_owned()];
+    if floor.is_none() {
+        notes.push(UNMEASURED.to_owned());
+    }
     notes.push(trust.note());
     if choice.rivals.iter().chain([&chosen]).any(|&index| fits[index].mirrored) {
         notes.push(MIRRORED.to_owned());
