@@ -3,7 +3,8 @@
 use super::{Action, ChannelFactor, Effect, EffectParameter, EffectSetting, Owner};
 use crate::ModelError;
 
-/// A filter of first order in the response channel, as of AC coupling or a charge amplifier: $c = s/(s+\omega_c)$.
+/// A filter of first order in the response channel, as of AC coupling or a charge amplifier: $c = s/(s+\omega_c)$, with the
+/// corner $\omega_c/2\pi$ \[Hz\].
 ///
 /// Source: the RC network.
 #[derive(Debug, Clone, Copy)]

@@ -3,7 +3,8 @@
 use super::{Action, Effect, EffectParameter, EffectSetting, ElementLaw, Owner, PointElement, Reference, Seat};
 use crate::{ModelError, Place};
 
-/// A mass on a spring and a dashpot at $x$: a loose bracket, a cable.
+/// A mass $m$ \[kg\] on a spring and a dashpot at $x$ \[m\]: a loose bracket, a cable. Alone it has the frequency $\omega_0/2\pi$ \[Hz\] and
+/// the damping ratio $\zeta$ \[1\].
 /// $$Z(s) = ms^2\,\frac{\omega_0^2 + 2\zeta\omega_0s}{s^2 + 2\zeta\omega_0s + \omega_0^2}$$
 ///
 /// Source: the dynamic absorber, Den Hartog, Mechanical Vibrations (1934), chapter 3.

@@ -3,7 +3,8 @@
 use super::{Action, ChannelFactor, Effect, EffectParameter, EffectSetting, Owner};
 use crate::ModelError;
 
-/// The accelerometer's own resonance: $c = \omega_0^2/(s^2 + 2\zeta\omega_0s + \omega_0^2)$.
+/// The accelerometer's own resonance: $c = \omega_0^2/(s^2 + 2\zeta\omega_0s + \omega_0^2)$, at the frequency $\omega_0/2\pi$ \[Hz\] with the
+/// damping ratio $\zeta$ \[1\].
 ///
 /// Source: the seismic accelerometer below its resonance; ISO 5347-14.
 #[derive(Debug, Clone, Copy)]

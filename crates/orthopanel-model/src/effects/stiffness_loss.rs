@@ -3,7 +3,8 @@
 use super::{Action, Effect, EffectParameter, EffectSetting, FieldTerm, Owner, Reference};
 use crate::{ModelError, ShearLoss};
 
-/// A face come off the core: shear stiffness $k'G_{zx}A\,(1-\text{loss})$ for $|x-x_0| < \text{span}/2$.
+/// A face come off the core: shear stiffness $k'G_{zx}A\,(1-\text{loss})$ for $|x-x_0| < \text{span}/2$,
+/// the loss \[1\], span and $x_0$ \[m\].
 ///
 /// A plate loses the same part of both shear stiffnesses, across its whole width.
 ///
