@@ -21,6 +21,9 @@ impl Traced {
                 let (possible, next) = (self.alternatives(), &tracing.next_experiment);
                 format!("These data cannot tell whether something is missing; possible are {possible}. Next: {next}.")
             }
+            Verdict::Ambiguous if tracing.alternatives.is_empty() => {
+                format!("The model lacked something: {named}; no other effect fits alike, but see the notes for what leaves a doubt.")
+            }
             Verdict::Ambiguous => {
                 format!("The model lacked something: {named}, but these fit alike: {}.", self.alternatives())
             }
