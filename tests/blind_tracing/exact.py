@@ -1,7 +1,8 @@
 r"""The tests' authority: the Timoshenko beam by transfer matrices, exact at any complex s.
 
 The state (w, psi, M, Q) obeys a linear equation along x; between steps its propagator is a matrix exponential, at a
-point attachment or a force the shear force jumps, at a point inertia the moment. Q is the whole transverse force, tension included. SI units.
+point attachment or a force the shear force jumps, at a point inertia the moment. Q is the whole transverse force,
+tension included. SI units.
 """
 
 import numpy as np
