@@ -182,10 +182,7 @@ fn alone(
     if problem.scatter().is_some() {
         // Weights sharpen the valleys between minima: without them the way is found, with them the minimum.
         let found: Vec<ListFit> = followed(&problem.unweighed()).into_iter().flatten().collect();
-        let polished = |found: ListFit| {
-            let (constants, _) = found.parameters.split_at(problem.constants.count());
-            rested(problem, &found.hypothesis, constants)
-        };
+        let polished = |found: ListFit| rested(problem, &found.hypothesis, found.constants(problem));
         fitted.extend(found.into_par_iter().map(polished).collect::<Vec<_>>());
     }
     let (found, refused): (Vec<_>, Vec<_>) = fitted.into_iter().partition(Result::is_ok);
@@ -206,7 +203,7 @@ fn led(problem: &ListProblem, start: &Hypothesis, constants: &[f64]) -> Result<L
         on.free.clear();
     }
     let settled = fit(problem, &held, constants)?;
-    rested(problem, start, settled.parameters.split_at(constants.len()).0)
+    rested(problem, start, settled.constants(problem))
 }
 
 fn rested(problem: &ListProblem, from: &Hypothesis, constants: &[f64]) -> Result<ListFit, IdentifyError> {
@@ -223,8 +220,7 @@ fn mirrored(problem: &ListProblem, mut found: ListFit, from: usize) -> ListFit {
     let Some(x) = on.values.get_mut(at) else { return found };
     *x = -*x;
     let turned = *x > 0.0;
-    let (constants, _) = found.parameters.split_at(problem.constants.count());
-    let parameters = [constants, &hypothesis.coordinates()].concat();
+    let parameters = [found.constants(problem), &hypothesis.coordinates()].concat();
     let Ok(there) = problem.residuals(&parameters, &hypothesis) else { return found };
     found.mirrored = there.iter().zip(&found.residuals).all(|(a, b)| (a - b).abs() < ALIKE);
     if found.mirrored && turned {
