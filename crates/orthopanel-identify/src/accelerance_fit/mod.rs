@@ -45,7 +45,7 @@ use wide_scan::rough_starts;
 
 pub(crate) use line_noise::told_variance;
 pub(crate) use outcome::is_told;
-pub(crate) use pole_charge::{nearest_modes, pole_charge};
+pub(crate) use pole_charge::{nearest_modes, own_modes, pole_charge};
 pub(crate) use record_poles::{RecordPole, record_poles};
 pub(crate) use resonance_start::{ResonanceStart, resonance_starts};
 pub use synthesis::DampingLaw;

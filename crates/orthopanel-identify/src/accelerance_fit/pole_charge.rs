@@ -13,16 +13,30 @@ pub(crate) fn pole_charge(poles: &[f64], modes: impl IntoIterator<Item = f64>, t
     charge + UNSEEN_MODE * reach * seen.iter().filter(|seen| !**seen).count() as f64
 }
 
-/// The distance of each pole, in turn, from the nearest mode that no pole before it took, in parts of the pole's frequency; none
-/// where that is not below `reach`. And which modes were taken.
+/// The distance of each pole from its own mode, in parts of the pole's frequency; none where it has none within `reach`. And which
+/// modes were taken.
 pub(crate) fn nearest_modes(poles: &[f64], modes: &[f64], reach: f64) -> (Vec<Option<f64>>, Vec<bool>) {
     let mut taken = vec![false; modes.len()];
-    let distances = poles.iter().map(|pole| {
-        let distance = |mode: usize| (modes[mode] / pole - 1.0).abs();
-        let free = (0..modes.len()).filter(|&mode| !taken[mode] && distance(mode) < reach);
-        let nearest = free.min_by(|&a, &b| distance(a).total_cmp(&distance(b)))?;
+    let own = own_modes(poles, modes, reach);
+    own.iter().flatten().for_each(|&mode| taken[mode] = true);
+    let distances = own.iter().zip(poles).map(|(own, pole)| own.map(|mode| distance(*pole, modes[mode]))).collect();
+    (distances, taken)
+}
+
+/// The nearest mode to each pole, in turn, that no pole before it took; none where that is not below `reach`, in parts of the
+/// pole's frequency.
+pub(crate) fn own_modes(poles: &[f64], modes: &[f64], reach: f64) -> Vec<Option<usize>> {
+    let mut taken = vec![false; modes.len()];
+    let own = poles.iter().map(|&pole| {
+        let away = |mode: usize| distance(pole, modes[mode]);
+        let free = (0..modes.len()).filter(|&mode| !taken[mode] && away(mode) < reach);
+        let nearest = free.min_by(|&a, &b| away(a).total_cmp(&away(b)))?;
         taken[nearest] = true;
-        Some(distance(nearest))
+        Some(nearest)
     });
-    (distances.collect(), taken)
+    own.collect()
+}
+
+fn distance(pole: f64, mode: f64) -> f64 {
+    (mode / pole - 1.0).abs()
 }

@@ -10,10 +10,12 @@
 
 use orthopanel_model::EffectParameter;
 
-use super::fit::{Fit, fit};
+use super::fit::{Fit, PATIENCE, fit, polish};
 use super::hypothesis::{Hypothesis, is_place};
+use super::ranking::LITTLE;
 use super::record_problem::State;
 use super::records_of_test::TestRecords;
+use crate::IdentifyError;
 
 /// Widening from which the other side is followed: there the constants and the damping give way to the new place.
 const FROM: usize = 1;
@@ -26,12 +28,21 @@ pub(super) fn put_elsewhere(records: &TestRecords, fits: &mut [Fit], declared: u
         let elsewhere = mirrored(&best.state.hypothesis, position).into_iter();
         for hypothesis in elsewhere.chain(drawn_in(&best.state.hypothesis, position)) {
             let turned = State { hypothesis, ..best.state.clone() };
-            match fit(records, turned, FROM) {
-                Ok(other) if other.cost < best.cost => *best = other,
-                _ => {}
+            if let Ok(Some(other)) = fit_where_better(records, turned, best)
+                && other.cost < best.cost
+            {
+                *best = other;
             }
         }
     }
+}
+
+/// A fit from another place; none where wide lines, on which either has come down, tell already that it is no better than `best`.
+fn fit_where_better(records: &TestRecords, turned: State, best: &Fit) -> Result<Option<Fit>, IdentifyError> {
+    let problem = records.problem(FROM);
+    let here = problem.linearise(&problem.parameters(&best.state), &best.state)?.cost;
+    let (turned, there) = polish(records, &turned, FROM, PATIENCE[FROM])?;
+    if there > here + LITTLE { Ok(None) } else { fit(records, turned, FROM + 1).map(Some) }
 }
 
 /// With the place of one effect on the other side; `None` where it has none that is free.

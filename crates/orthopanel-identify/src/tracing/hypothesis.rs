@@ -298,6 +298,11 @@ impl Hypothesis {
         !has_place(effect) && self.effects.iter().any(|on| on.effect.id() == effect.id())
     }
 
+    /// Whether the effect that came last sits at a place of its own.
+    pub(super) fn ends_with_a_place(&self) -> bool {
+        self.effects.last().is_some_and(|on| has_place(on.effect))
+    }
+
     /// Whether a plate stands in place of the beam.
     pub(super) fn holds_plate(&self) -> bool {
         self.effects.iter().any(|on| on.effect.id() == PLATE)

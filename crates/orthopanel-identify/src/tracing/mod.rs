@@ -31,6 +31,7 @@ mod hypothesis;
 mod information;
 mod known_sums;
 mod line_noise;
+mod loss_starts;
 mod made_rows;
 mod model_error;
 mod next_experiment;
@@ -125,11 +126,18 @@ pub fn trace_with(test: &ImpactTest, progress: &(dyn Fn(Progress) + Sync)) -> Re
     let mut records = TestRecords::new(test, &histories)?;
     let mut alone = Search { records: &records, piece, progress }.each_alone()?;
     Search { records: &records, piece, progress }.free_what_is_kept(&mut alone)?;
+    // What parts the hits of a place is told by roughness, which a search allows for first.
+    if !records.hits_differ() {
+        Search { records: &records, piece, progress }.look_closer(&mut alone)?;
+    }
+
     let mut ranking = match rough_search::rough_search(&mut records, piece, progress, &alone) {
         Some(ranking) => ranking,
         None => Search { records: &records, piece, progress }.together(alone)?,
     };
+
     let search = Search { records: &records, piece, progress };
     search.free_what_is_kept(&mut ranking)?;
+
     report::report(test, &search, &ranking)
 }

@@ -178,7 +178,8 @@ fn alike(a: &PlateStart, b: &PlateStart) -> bool {
 
 const COORDINATES: usize = 6;
 
-struct Charge<F>(F);
+/// What a downhill simplex makes least.
+pub(super) struct Charge<F>(pub(super) F);
 
 impl<F: Fn(&[f64]) -> f64> CostFunction for Charge<F> {
     type Param = Vec<f64>;

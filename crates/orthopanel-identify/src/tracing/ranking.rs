@@ -71,7 +71,9 @@ impl Search<'_> {
     /// # Errors
     /// What the model refuses.
     pub(super) fn together(&self, mut ranking: Ranking) -> Result<Ranking, IdentifyError> {
-        self.look_closer(&mut ranking)?;
+        if self.records.hits_differ() {
+            self.look_closer(&mut ranking)?;
+        }
         // Nothing before is taken from the pairs: a plate that is dear to find alone must not keep a gain beside it from being tried.
         self.records.work.store(0, Ordering::Relaxed);
         for size in 1..MOST_EFFECTS {
@@ -108,13 +110,22 @@ impl Search<'_> {
                 behind.extend(left.into_iter().map(|(state, _)| (state, stage)));
             }
         }
-        if let Some(best) = running.iter_mut().min_by(|a, b| a.1.total_cmp(&b.1)) {
-            lead_on(self.records, best);
-        }
         let ahead = running.into_iter().map(|(state, _)| (state, None));
         let behind = behind.into_iter().map(|(state, stage)| (state, Some(stage)));
         let ends: Vec<(State, Option<usize>)> = ahead.chain(behind).collect();
         ends.into_par_iter().filter_map(|(state, given_up)| settle(self.records, state, given_up).ok()).collect()
+    }
+
+    /// Follows the best of some fits to its minimum.
+    pub(super) fn lead(&self, fits: &mut [Fit]) {
+        let to_the_end = fits.iter_mut().filter(|fit| fit.given_up.is_none());
+        if let Some(best) = to_the_end.min_by(|a, b| a.cost.total_cmp(&b.cost)) {
+            let mut led = (best.state.clone(), best.cost);
+            lead_on(self.records, &mut led);
+            if let Ok(led) = settle(self.records, led.0, None) {
+                *best = led;
+            }
+        }
     }
 
     /// Whiteness and misfit of the best fit so far make the measure for all.
@@ -281,7 +292,9 @@ impl Search<'_> {
             scored.par_iter().filter_map(|starts| followed(self.records, starts, stage)).collect();
         begun.sort_by(|a, b| a.1.total_cmp(&b.1));
         begun.truncate(PARTNERS);
-        Ok(self.finish(begun, stage))
+        let mut fits = self.finish(begun, stage);
+        self.lead(&mut fits);
+        Ok(fits)
     }
 }
 

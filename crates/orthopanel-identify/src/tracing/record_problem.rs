@@ -96,6 +96,11 @@ const MAKING: u64 = 4000;
 /// more, and how much more each line of these costs.
 const DEARER: [(&str, u64); 4] = [(CORE, 8), ("stiffness-loss", 4), (PLATE, 8), (ROUGHNESS, 4)];
 
+/// How much more a line costs with this effect than without.
+pub(super) fn dearness(id: &str) -> u64 {
+    DEARER.iter().find(|(dear, _)| *dear == id).map_or(1, |(_, factor)| *factor)
+}
+
 impl RecordProblem<'_> {
     /// Positions of the free constants.
     fn free_constants(&self) -> impl Iterator<Item = usize> + '_ {
@@ -365,8 +370,7 @@ impl RecordProblem<'_> {
     }
 
     fn count(&self, state: &State) {
-        let dearer = |id: &str| DEARER.iter().find(|(dear, _)| *dear == id).map_or(1, |(_, factor)| *factor);
-        let factor: u64 = state.hypothesis.effects.iter().map(|on| dearer(on.effect.id())).product();
+        let factor: u64 = state.hypothesis.effects.iter().map(|on| dearness(on.effect.id())).product();
         let lines = MAKING + self.records.iter().map(|record| record.s.len() as u64).sum::<u64>();
         self.work.fetch_add(lines * factor, Ordering::Relaxed);
     }

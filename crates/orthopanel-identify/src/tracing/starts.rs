@@ -6,9 +6,11 @@ use rayon::prelude::*;
 use super::core_modes::{CORE, CoreModes};
 use super::fit::{polish, polished_through, promise};
 use super::hypothesis::{PLATE, Switched, has_place, is_place};
+use super::loss_starts::{LOSS, LossStarts};
 use super::record_problem::State;
 use super::records_of_test::TestRecords;
 use super::support_starts::{SUPPORT, SupportStarts, support_starts};
+use super::verdict::MET;
 use crate::IdentifyError;
 use crate::least_squares::Ending;
 
@@ -21,6 +23,8 @@ const FEW_RECORDS: usize = 2;
 const FOLLOWED_OF_FEW: usize = 8;
 /// Starts of an effect with a place that a closer look follows.
 const FOLLOWED_FAR: usize = 30;
+/// Starts that the poles tell, each with its image on the other half, which a search follows.
+const FOLLOWED_NEAR: usize = 4;
 /// A plate's modes of two families change their order: one step foretells little. So many of the grid's starts are followed, and as
 /// many that the poles tell.
 const PLATES_FOLLOWED: usize = 4;
@@ -46,7 +50,9 @@ pub(super) fn scored_starts(
     let problem = records.problem(stage);
     can_differ(effect, problem.records.len())?;
     // Where no end is clamped, the grid's own starts say so.
-    let beside = if effect.id() == SUPPORT {
+    let beside = if look == Look::ByPoles {
+        starts_by_poles(records, base, effect, piece)?
+    } else if effect.id() == SUPPORT {
         let known = SupportStarts { poles: &records.poles, held: &records.held, setup: &records.setup, piece };
         support_starts(known, base, effect, problem.records.len()).unwrap_or_default()
     } else {
@@ -118,6 +124,19 @@ pub(super) fn can_differ(effect: &dyn Effect, records: usize) -> Result<(), Iden
     Ok(())
 }
 
+/// `base` with an effect where the poles alone tell it; none of an effect that they do not.
+fn starts_by_poles(
+    records: &TestRecords,
+    base: &State,
+    effect: &'static dyn Effect,
+    piece: &Piece,
+) -> Result<Vec<State>, IdentifyError> {
+    let (Some(setting), true) = (records.setup.setting(0), effect.id() == LOSS) else { return Ok(vec![]) };
+    let (poles, held, setup) = (&records.poles, &records.held, &records.setup);
+    let known = LossStarts { poles, held, setup, boundary: setting.boundary, piece };
+    known.found(base, effect, records.problem(0).records.len())
+}
+
 /// Promises of starts that differ by less are alike.
 const TOLD: f64 = 1.0;
 
@@ -154,9 +173,30 @@ pub(super) fn followed(records: &TestRecords, starts: &[Costed], stage: usize) -
 
 /// The best of many starts, followed from the widest lines to those of a widening: where an effect is, one step hardly foretells.
 pub(super) fn followed_far(records: &TestRecords, starts: &[Costed], to: usize) -> Option<Costed> {
-    let mut each = followed_each(records, starts, (0, FOLLOWED_FAR));
+    followed_first(records, starts, (FOLLOWED_FAR, FOLLOWED_OF_FEW), to)
+}
+
+/// The best of a few starts that are near already, in the same way.
+pub(super) fn followed_near(records: &TestRecords, starts: &[Costed], to: usize) -> Option<Costed> {
+    followed_first(records, starts, (FOLLOWED_NEAR, FOLLOWED_NEAR / 2), to)
+}
+
+/// `many` starts followed on the widest lines, and the best `few` of these on to those of a widening.
+fn followed_first(records: &TestRecords, starts: &[Costed], (many, few): (usize, usize), to: usize) -> Option<Costed> {
+    let widest = records.problem(0);
+    let enough = MET * widest.data() as f64;
+    let (many, patience) = follow(records, starts, many);
+    let mut each: Vec<Costed> = vec![];
+    for starts in starts[..many.min(starts.len())].chunks(FOLLOWED_OF_FEW) {
+        let some = starts.par_iter().filter_map(|(state, _)| polish(records, state, 0, patience).ok());
+        each.par_extend(some);
+        // The first that meets the noise is where the effect is: no other does better there.
+        if each.iter().any(|(_, cost)| *cost <= enough) {
+            break;
+        }
+    }
     each.sort_by(|a, b| a.1.total_cmp(&b.1));
-    each.truncate(FOLLOWED_OF_FEW);
+    each.truncate(few);
     least(each.into_par_iter().filter_map(|begun| polished_through(records, begun, 0..=to).ok()).collect())
 }
 
@@ -166,17 +206,22 @@ fn least(fits: Vec<Costed>) -> Option<Costed> {
 
 /// The first few starts after some steps at one widening; of an effect with a place or of clamps that yield `many`.
 fn followed_each(records: &TestRecords, starts: &[Costed], (stage, many): (usize, usize)) -> Vec<Costed> {
+    let (many, patience) = follow(records, starts, many);
+    starts.par_iter().take(many).filter_map(|(state, _)| polish(records, state, stage, patience).ok()).collect()
+}
+
+/// How many starts are followed, `many` of an effect with a place or of clamps that yield, and how far.
+fn follow(records: &TestRecords, starts: &[Costed], many: usize) -> (usize, Ending) {
     let is_plate = starts.iter().any(|(state, _)| state.hypothesis.holds_plate());
     let is_hard = is_plate && records.asked_the_poles();
     let is_wide = |effect: &'static dyn Effect| has_place(effect) || effect.id() == SUPPORT;
-    let (follow, patience) = if is_hard {
+    if is_hard {
         (2 * PLATES_FOLLOWED, PLATES_FOLLOW)
     } else if latest(starts, is_wide) {
         (many, FOLLOW)
     } else {
         (FOLLOWED, FOLLOW)
-    };
-    starts.par_iter().take(follow).filter_map(|(state, _)| polish(records, state, stage, patience).ok()).collect()
+    }
 }
 
 /// Whether the effect that these starts are about is such a one.
@@ -197,6 +242,8 @@ pub(super) enum Look {
     Finer,
     /// And at plates that the poles tell, though a beam may have modes for all of them.
     Closest,
+    /// Where the poles tell, alone.
+    ByPoles,
 }
 
 /// Values of all parameters, one list a start, in a test of so many records up to `band` \[Hz\].
@@ -206,6 +253,9 @@ pub(super) fn grid(
     (records, band): (usize, f64),
     look: Look,
 ) -> Vec<Vec<f64>> {
+    if look == Look::ByPoles {
+        return vec![];
+    }
     let lists: Vec<(Vec<f64>, bool)> = effect
         .parameters()
         .iter()
