@@ -125,7 +125,7 @@ pub fn trace_with(test: &ImpactTest, progress: &(dyn Fn(Progress) + Sync)) -> Re
     Hypothesis::declared(test, &piece, histories.len())?.check_that_each_acts(test, &piece)?;
     let mut records = TestRecords::new(test, &histories)?;
     let mut alone = Search { records: &records, piece, progress }.each_alone()?;
-    Search { records: &records, piece, progress }.free_what_is_kept(&mut alone)?;
+    Search { records: &records, piece, progress }.free_what_is_kept(&mut alone, 1)?;
     // What parts the hits of a place is told by roughness, which a search allows for first.
     if !records.hits_differ() {
         Search { records: &records, piece, progress }.look_closer(&mut alone)?;
@@ -137,7 +137,7 @@ pub fn trace_with(test: &ImpactTest, progress: &(dyn Fn(Progress) + Sync)) -> Re
     };
 
     let search = Search { records: &records, piece, progress };
-    search.free_what_is_kept(&mut ranking)?;
+    search.free_what_is_kept(&mut ranking, 2)?;
 
     report::report(test, &search, &ranking)
 }

@@ -178,10 +178,11 @@ impl Search<'_> {
 
     /// Where the chosen fit misses more than noise: frees what the catalogue keeps of effects unless it pays, as a sensor's moment of
     /// inertia, which else a mass beside the sensor and the hammer's places make up for. A fit that it pays for takes the other's place.
+    /// Of hypotheses with `least` undeclared effects or more: what was tried need not be tried again.
     ///
     /// # Errors
     /// What the model refuses of a fit.
-    pub(super) fn free_what_is_kept(&self, ranking: &mut Ranking) -> Result<(), IdentifyError> {
+    pub(super) fn free_what_is_kept(&self, ranking: &mut Ranking, least: usize) -> Result<(), IdentifyError> {
         if self.meets_noise(&ranking.fits[ranking.chosen]) {
             return Ok(());
         }
@@ -190,6 +191,9 @@ impl Search<'_> {
         for index in 1..last {
             let kept = &ranking.fits[index];
             let mut state = kept.state.clone();
+            if state.hypothesis.effects.len() < self.declared() + least {
+                continue;
+            }
             let undeclared = state.hypothesis.effects.iter_mut().skip(self.declared());
             let count = undeclared.filter_map(|on| on.free_what_is_kept(&self.piece).then_some(())).count();
             if count == 0 {

@@ -32,6 +32,7 @@ pub fn lead(found: &Identification) -> Vec<String> {
     let structure = found.structure.title();
     let modes: usize = found.pieces.iter().map(|fit| fit.modes.len()).sum();
     let data = match found.accelerances.len() {
+        0 if modes == 1 => "one natural frequency".into(),
         0 => format!("{modes} natural frequencies"),
         1 => "the records of one pair of places".into(),
         pairs => format!("the records of {pairs} pairs of places"),

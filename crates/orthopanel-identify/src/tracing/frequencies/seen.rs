@@ -22,7 +22,7 @@ pub(super) fn never_shows(effect: &dyn Effect) -> Option<&'static str> {
             "what depends on the strength of a hit shows in records of hits of several strengths (kind = \"time-history\")",
         ),
         _ if effect.owner() == Owner::Channel => {
-            Some("natural frequencies do not pass through the measuring chain's gain and phase")
+            Some("no natural frequency moves with what the measuring chain adds or with where hammer and sensor stand")
         }
         _ => None,
     }

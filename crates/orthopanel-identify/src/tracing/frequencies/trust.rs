@@ -88,8 +88,8 @@ impl Trust {
     pub(super) fn note(&self) -> String {
         match self {
             Self::Told(_) => format!(
-                "the verdict holds what is left against the noise that the test file tells: scatter, and no less than {0} %, or \
-                 rounding to the resolution beside {0} %, which a model of a panel is trusted to",
+                "the verdict holds what is left against the noise that the test file tells (scatter, or {0} % where that is less; \
+                 rounding to the resolution with {0} % added): no model of a panel is trusted to better",
                 100.0 * TRUST
             ),
             Self::Untold(rms) => format!(
