@@ -208,6 +208,10 @@ impl Shifts {
         let moved = self.logarithms(&self.values, Some(loss)).ok()?;
         let left = |&(mode, missed): &(usize, f64)| Some(missed - (moved.get(mode)? - self.even.get(mode)?));
         let left: Vec<f64> = self.told.iter().map(left).collect::<Option<_>>()?;
+        // Declared constants answer for nothing, and no columns leave nothing to solve.
+        if self.by_constants.is_empty() {
+            return Some((left.iter().map(|left| left * left).sum(), [0.0; 2]));
+        }
         let by = |row: usize, constant: usize| self.by_constants[constant].1[row];
         let by = Mat::from_fn(left.len(), self.by_constants.len(), by);
         let left = Mat::from_fn(left.len(), 1, |row, _| left[row]);
@@ -268,5 +272,22 @@ mod tests {
         assert!(found.iter().take(2).all(near), "{told:?}");
         let ends: Vec<f64> = told.iter().take(2).map(|values| values[2].signum()).collect();
         assert_eq!(ends[0], -ends[1], "the image on the other half: {told:?}");
+    }
+
+    /// With both constants declared nothing else answers for what a loss leaves: least squares without columns.
+    #[test]
+    fn declared_constants_leave_the_loss_alone() {
+        let piece = Piece { length: 0.8, width: 0.1, thickness: 0.03, mass_per_area: 6.88 };
+        let truth = ShearLoss { loss: 0.4, span: 0.1, at: 0.2 };
+        let (values, boundary) = ([1e10, 4e8], Boundary::FREE);
+        let mut shifts =
+            Shifts { piece, boundary, values, count: 10, even: vec![], told: vec![], by_constants: vec![] };
+        shifts.even = shifts.logarithms(&values, None).unwrap();
+        let lost = shifts.logarithms(&values, Some(truth)).unwrap();
+        shifts.told = (0..8).map(|mode| (mode, lost[mode] - shifts.even[mode])).collect();
+        let (left, constants) = shifts.left(truth).unwrap();
+        assert!(left < 1e-20, "{left}");
+        assert_eq!(constants, [0.0; 2]);
+        assert!(shifts.left(ShearLoss { at: 0.1, ..truth }).unwrap().0 > 1e-8);
     }
 }
