@@ -37,7 +37,8 @@ pub(super) fn put_elsewhere(records: &TestRecords, fits: &mut [Fit], declared: u
     }
 }
 
-/// A fit from another place; none where wide lines, on which either has come down, tell already that it is no better than `best`.
+/// A fit from another place; none where it has come down on wide lines and leaves more there than `best`, which need not lie at its
+/// minimum there: [`LITTLE`] is for that, and for what narrower lines may tell apart.
 fn fit_where_better(records: &TestRecords, turned: State, best: &Fit) -> Result<Option<Fit>, IdentifyError> {
     let problem = records.problem(FROM);
     let here = problem.linearise(&problem.parameters(&best.state), &best.state)?.cost;

@@ -303,6 +303,13 @@ impl Hypothesis {
         self.effects.last().is_some_and(|on| has_place(on.effect))
     }
 
+    /// Where along the piece the effect that came last sits.
+    pub(super) fn last_place(&self) -> Option<f64> {
+        let on = self.effects.last()?;
+        let place = on.effect.parameters().iter().position(is_place)?;
+        on.values.get(place).copied()
+    }
+
     /// Whether a plate stands in place of the beam.
     pub(super) fn holds_plate(&self) -> bool {
         self.effects.iter().any(|on| on.effect.id() == PLATE)

@@ -29,11 +29,13 @@ const LOSSES: [f64; 3] = [-0.2, 0.25, 0.6];
 const SPANS: [f64; 3] = [0.04, 0.1, 0.25];
 /// Places tried along the piece, which are not its middle, where one half is the other's image.
 const PLACES: usize = 24;
-/// Spans that are brought nearer, edge of the first simplex in logarithms and lengths, and its steps.
+/// Spans that are brought nearer; edge of the first simplex, in lengths for the place and in logarithms for the span and what is left
+/// of the stiffness; and its steps.
 const BROUGHT: usize = 12;
-const EDGE: f64 = 0.03;
+const PLACE_EDGE: f64 = 0.03;
+const LOGARITHM_EDGE: f64 = 0.3;
 const STEPS: u64 = 60;
-/// Spans no further apart than this part of the length, and of themselves, are one.
+/// Spans no further apart than this part of the length, in place and in span, and whose losses differ by no more than it, are one.
 const ALIKE: f64 = 0.02;
 /// Spans that are handed on, their images on the other half besides.
 const STARTS: usize = 6;
@@ -114,12 +116,12 @@ impl LossStarts<'_> {
             .flat_map(|(loss, span)| places.iter().map(move |&at| ShearLoss { loss, span, at }))
             .collect();
         let grid = tried.into_par_iter().filter_map(|loss| shifts.left(loss).map(|(left, _)| (left, loss))).collect();
-        let brought: Vec<(f64, ShearLoss)> = parted(grid, length)
+        let brought: Vec<(f64, ShearLoss)> = parted(grid, (length, is_even))
             .into_par_iter()
             .take(BROUGHT)
             .filter_map(|(_, loss)| self.brought_nearer(shifts, loss))
             .collect();
-        parted(brought, length).into_iter().map(|(_, loss)| loss).collect()
+        parted(brought, (length, is_even)).into_iter().map(|(_, loss)| loss).collect()
     }
 
     /// Moved in $\ln(1 - \text{loss})$, in the logarithm of the span and in lengths.
@@ -136,14 +138,10 @@ impl LossStarts<'_> {
         };
         let corners = (0..=3).map(|moved| {
             (1..=3)
-                .map(|i| {
-                    if i != moved {
-                        0.0
-                    } else if i == 3 {
-                        EDGE
-                    } else {
-                        10.0 * EDGE
-                    }
+                .map(|i| match (i == moved, i) {
+                    (false, _) => 0.0,
+                    (true, 3) => PLACE_EDGE,
+                    (true, _) => LOGARITHM_EDGE,
                 })
                 .collect()
         });
@@ -222,10 +220,11 @@ impl Shifts {
     }
 }
 
-/// The nearest first, without those that are like a nearer one.
-fn parted(mut found: Vec<(f64, ShearLoss)>, length: f64) -> Vec<(f64, ShearLoss)> {
+/// The nearest first, without those that are like a nearer one, or like its image where the ends are alike.
+fn parted(mut found: Vec<(f64, ShearLoss)>, (length, is_even): (f64, bool)) -> Vec<(f64, ShearLoss)> {
+    let place = |loss: &ShearLoss| if is_even { loss.at.abs() } else { loss.at };
     let alike = |a: &ShearLoss, b: &ShearLoss| {
-        (a.at - b.at).abs() < ALIKE * length
+        (place(a) - place(b)).abs() < ALIKE * length
             && (a.span - b.span).abs() < ALIKE * length
             && (a.loss - b.loss).abs() < ALIKE
     };
@@ -272,6 +271,14 @@ mod tests {
         assert!(found.iter().take(2).all(near), "{told:?}");
         let ends: Vec<f64> = told.iter().take(2).map(|values| values[2].signum()).collect();
         assert_eq!(ends[0], -ends[1], "the image on the other half: {told:?}");
+    }
+
+    #[test]
+    fn images_are_one_where_both_ends_are_alike() {
+        let right = ShearLoss { loss: 0.4, span: 0.1, at: 0.2 };
+        let both = vec![(1.0, right), (2.0, ShearLoss { at: -0.2, ..right })];
+        assert_eq!(parted(both.clone(), (0.8, true)), [(1.0, right)]);
+        assert_eq!(parted(both, (0.8, false)).len(), 2);
     }
 
     /// With both constants declared nothing else answers for what a loss leaves: least squares without columns.

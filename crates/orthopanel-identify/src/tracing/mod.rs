@@ -14,6 +14,7 @@ mod bare_panel;
 mod base_model;
 mod blow;
 mod bounds;
+mod closer_look;
 mod core_modes;
 mod curves;
 mod declared_doubt;
@@ -137,7 +138,8 @@ pub fn trace_with(test: &ImpactTest, progress: &(dyn Fn(Progress) + Sync)) -> Re
     };
 
     let search = Search { records: &records, piece, progress };
-    search.free_what_is_kept(&mut ranking, 2)?;
+    // Beside roughness each effect alone was fitted anew.
+    search.free_what_is_kept(&mut ranking, if records.rough.is_some() { 1 } else { 2 })?;
 
     report::report(test, &search, &ranking)
 }

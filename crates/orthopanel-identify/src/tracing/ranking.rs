@@ -131,8 +131,9 @@ impl Search<'_> {
     /// Whiteness and misfit of the best fit so far make the measure for all.
     pub(super) fn scale(&self, fits: &[Fit]) -> Result<LikelihoodScale, IdentifyError> {
         let problem = self.records.problem(LAST);
-        let best = fits.iter().filter(|fit| fit.given_up.is_none()).min_by(|a, b| a.cost.total_cmp(&b.cost));
-        let Some(best) = best else { return Ok(LikelihoodScale { independent: 1.0, unit: 1.0, data: problem.data() }) };
+        let Some(best) = least_cost(fits) else {
+            return Ok(LikelihoodScale { independent: 1.0, unit: 1.0, data: problem.data() });
+        };
         let independent = independent_part(&whitened(self.records, best)?);
         Ok(LikelihoodScale { independent, unit: best.chi_square(self.records).max(1.0), data: problem.data() })
     }
@@ -140,6 +141,11 @@ impl Search<'_> {
     /// Whether a fit leaves nothing to explain. What a model refuses meets nothing.
     pub(super) fn meets_noise(&self, fit: &Fit) -> bool {
         self.records.misfit_over_floor(fit).is_ok_and(|left| left <= MET)
+    }
+
+    /// Whether a fit that was brought to its end does so.
+    pub(super) fn explains(&self, fit: &Fit) -> bool {
+        fit.given_up.is_none() && self.meets_noise(fit)
     }
 
     /// Moves on to the hypothesis that pays best for its effects and their parameters, on the data and on what was held out.
@@ -178,7 +184,7 @@ impl Search<'_> {
 
     /// Where the chosen fit misses more than noise: frees what the catalogue keeps of effects unless it pays, as a sensor's moment of
     /// inertia, which else a mass beside the sensor and the hammer's places make up for. A fit that it pays for takes the other's place.
-    /// Of hypotheses with `least` undeclared effects or more: what was tried need not be tried again.
+    /// Of hypotheses with `least` undeclared effects or more, as what is smaller was tried before.
     ///
     /// # Errors
     /// What the model refuses of a fit.
@@ -236,7 +242,7 @@ impl Search<'_> {
             }
             more.extend(self.partners(&ranking.fits[root])?);
             // What meets the noise leaves nothing that another root could do better.
-            if more.iter().any(|fit| fit.given_up.is_none() && self.meets_noise(fit)) {
+            if more.iter().any(|fit| self.explains(fit)) {
                 break;
             }
         }
@@ -300,6 +306,11 @@ impl Search<'_> {
         self.lead(&mut fits);
         Ok(fits)
     }
+}
+
+/// The best of the fits that were brought to their end.
+pub(super) fn least_cost(fits: &[Fit]) -> Option<&Fit> {
+    fits.iter().filter(|fit| fit.given_up.is_none()).min_by(|a, b| a.cost.total_cmp(&b.cost))
 }
 
 /// Of fits with the same effects, reached in another order, the best.

@@ -5,6 +5,7 @@ use std::sync::atomic::Ordering;
 use orthopanel_model::{Effect, Piece};
 use rayon::prelude::*;
 
+use super::each_effect::Count;
 use super::fit::{Fit, LAST, PATIENCE, covariance, polish, polished_through, settle};
 use super::outcome::{Progress, Verdict};
 use super::ranking::{BEHIND, LITTLE, Ranking, Search};
@@ -124,7 +125,7 @@ impl<'a> Rounds<'a> {
         };
         let left = |effect: &&dyn Effect| ranking.fits.iter().filter(is_left).any(|fit| is_on(fit, *effect));
         let tried: Vec<&'static dyn Effect> = search.undeclared().into_iter().filter(left).collect();
-        let (begun, _) = search.begun_alone((&tried, Look::Usual), |starts| {
+        let (begun, _) = search.begun_alone((&tried, Look::Usual), &Count::of(tried.len()), |starts| {
             polished_through(records, followed(records, starts, 0)?, 1..=SIFTED).ok()
         });
         let anew = sifted(records, begun);

@@ -5,6 +5,7 @@ use std::sync::atomic::Ordering;
 use orthopanel_model::Piece;
 use rayon::prelude::*;
 
+use super::each_effect::Count;
 use super::fit::{LAST, PATIENCE, polish, polished_through};
 use super::hypothesis::Hypothesis;
 use super::outcome::{Progress, Verdict};
@@ -129,7 +130,9 @@ fn polished_all<'a>(records: &TestRecords, states: impl Iterator<Item = &'a Cost
 /// test drag a plain fit off. Where the plain fit is better even so, that.
 fn tolerant<'a>(search: &Search, plain: impl Iterator<Item = &'a State>, look: Look) -> Vec<Costed> {
     let records = search.records;
-    let (begun, _) = search.begun_alone((&search.undeclared(), look), |starts| match look {
+    let undeclared = search.undeclared();
+    let count = Count::of(undeclared.len());
+    let (begun, _) = search.begun_alone((&undeclared, look), &count, |starts| match look {
         Look::Usual => polished_through(records, followed(records, starts, 0)?, WIDE..=WIDE).ok(),
         _ => followed_far(records, starts, WIDE),
     });

@@ -12,7 +12,7 @@ pub(super) const CLEAR: f64 = 100.0;
 /// Misfit per datum, over that of the hits' scatter, up to which nothing need be missing.
 pub(super) const MET: f64 = 1.25;
 /// and up to which an effect may still be said to explain the data.
-const EXPLAINED: f64 = 2.0;
+pub(super) const EXPLAINED: f64 = 2.0;
 
 /// The verdict, and the positions of the hypotheses that fit about as well as the chosen one.
 ///
