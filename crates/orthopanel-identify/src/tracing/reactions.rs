@@ -3,8 +3,8 @@
 //! With the receptances $H$ of everything that is linear, forces $r_j$ at the suspension points $p_j$ make of a hit's ratio
 //! $$\frac{A}{F} = s^2\Big(H_{rf} - \sum_jH_{rp_j}\frac{R_j}{F}\Big),$$
 //! $R_j$ being the transform of $r_j$ over the same window. The ratio differs from hit to hit, as a linear suspension's does
-//! not. The panel's motion under the measured hit, and so $r_j$, is that of its bare modes in the band: masses and springs beside
-//! it are left out of $r_j$, and $r_j$ is taken to follow $k_3$ alone.
+//! not. The panel's motion under the measured hit, and so $r_j$, is that of its bare modes, those above the band giving way at once:
+//! masses and springs beside it are left out of $r_j$, and $r_j$ is taken to follow $k_3$ alone.
 
 use std::sync::Arc;
 
@@ -27,7 +27,7 @@ pub(super) struct Reactions {
     /// From every suspension point to the sensor of every record, point by point within a record.
     setup: ReceptanceSetup,
     records: Vec<Played>,
-    /// Highest mode that moves the points \[Hz\].
+    /// Highest mode that swings \[Hz\]; those above follow the forces at once.
     band: f64,
 }
 
@@ -125,9 +125,9 @@ impl Reactions {
             );
             ports.push(first..struck.len());
         }
-        let modes = self.setup.summed_modes(constants, (damping, effects), [&struck, &self.supports], self.band)?;
+        let modes = self.setup.summed_modes(constants, (damping, effects), [&struck, &self.supports], f64::INFINITY)?;
         let of_record = |&(index, lines): &(usize, &WidenedLines)| match (self.records.get(index), ports.get(index)) {
-            (Some(record), Some(ports)) => record.ratios(&modes.with_forces(ports.clone())?, k3, lines),
+            (Some(record), Some(ports)) => record.ratios(&modes.with_forces(ports.clone())?, (k3, self.band), lines),
             _ => Ok(vec![]),
         };
         lines.par_iter().map(of_record).collect()
@@ -150,14 +150,14 @@ impl Played {
     fn ratios(
         &self,
         modes: &orthopanel_model::ModalModel,
-        k3: f64,
+        (k3, band): (f64, f64),
         lines: &WidenedLines,
     ) -> Result<Ratios, ModelError> {
         let Some(sigma) = lines.s.first().map(|s| s.re) else { return Ok(vec![]) };
         let last = self.blows.iter().map(|blow| blow.peak).max().unwrap_or(0);
         let horizon = (last + (FADED / sigma * self.rate) as usize).min(self.samples);
         let forces: Vec<&[f64]> = self.blows.iter().map(|blow| &blow.force[..]).collect();
-        let played = cubic_support_forces(modes, k3, &forces, (1.0 / self.rate, horizon))?;
+        let played = cubic_support_forces(modes, k3, &forces, (1.0 / self.rate, horizon), band)?;
         let hits = played.into_iter().zip(&self.blows).zip(&lines.hits).map(|((played, blow), hit)| {
             let CubicForces { force, by_k3 } = played;
             let over = |list: Vec<f64>| -> Vec<Complex64> {
