@@ -7,6 +7,7 @@ use rayon::prelude::*;
 
 use super::declared_starts::base_fit;
 use super::elsewhere::put_elsewhere;
+use super::fit::Fit;
 use super::outcome::{NotTested, Progress};
 use super::ranking::{Ranking, Search, least_cost};
 use super::starts::{Costed, Look, followed_where_told, scored_starts};
@@ -38,11 +39,11 @@ impl Search<'_> {
             followed_where_told(self.records, starts, lacking)
         });
         let mut fits = [base].into_iter().chain(self.finish(begun, 0)).collect::<Vec<_>>();
-        let ends_with_a_place = least_cost(&fits[1..]).is_some_and(|best| best.state.hypothesis.ends_with_a_place());
         let is_open = !self.records.hits_differ() && !fits.iter().any(|fit| self.explains(fit));
         // A core's or a plate's valley is long. Beside a place that is too far off no valley leads to it: there a closer look is to
-        // come, which may find a better one.
-        if !(is_open && ends_with_a_place) {
+        // come, which may find a better one. Nor does one where swings fall out of step, before their motion is doubted.
+        let is_to_wait = |best: &Fit| is_open && best.state.hypothesis.ends_with_a_place() || self.is_undoubted(best);
+        if !least_cost(&fits[1..]).is_some_and(is_to_wait) {
             self.lead(&mut fits[1..]);
         }
         if !is_open {

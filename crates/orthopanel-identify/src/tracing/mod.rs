@@ -35,6 +35,7 @@ mod line_noise;
 mod loss_starts;
 mod made_rows;
 mod model_error;
+mod motion_doubt;
 mod next_experiment;
 mod outcome;
 mod plate_starts;
@@ -126,6 +127,7 @@ pub fn trace_with(test: &ImpactTest, progress: &(dyn Fn(Progress) + Sync)) -> Re
     Hypothesis::declared(test, &piece, histories.len())?.check_that_each_acts(test, &piece)?;
     let mut records = TestRecords::new(test, &histories)?;
     let mut alone = Search { records: &records, piece, progress }.each_alone()?;
+    motion_doubt::beside_motion_doubt(&mut records, &mut alone, (piece, progress))?;
     Search { records: &records, piece, progress }.free_what_is_kept(&mut alone, 1)?;
     // What parts the hits of a place is told by roughness, which a search allows for first.
     if !records.hits_differ() {

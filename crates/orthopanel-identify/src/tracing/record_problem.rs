@@ -12,6 +12,7 @@ use super::core_modes::CORE;
 use super::hypothesis::{CUBIC, Hypothesis, PLATE, Switched};
 use super::known_sums::KnownSums;
 use super::made_rows::Made;
+use super::motion_doubt::MotionPower;
 use super::reaction_lines::{ReactionLines, Taken};
 use super::reactions::{Reactions, cubic};
 use super::roughness::{ROUGHNESS, RoughScales, add_prior, is_roughness};
@@ -327,17 +328,19 @@ impl RecordProblem<'_> {
         Ok(found.map_or_else(Vec::new, |found| found.taken(index, lines, Grouping::Hits, columns)))
     }
 
-    /// $|2k_3\,\partial h/\partial k_3|^2$ on the lines of each hit of a record: what a motion that is wrong by a part does there through
-    /// its cube, over that part squared. The force of $\lambda$ times a motion is that of the motion itself on springs
-    /// $\lambda^2k_3$. Empty where no such force is on.
+    /// What cubic forces do on the lines of each hit of a record; empty where no such force is on.
     ///
     /// # Errors
     /// What the model refuses.
-    pub(super) fn by_motion(&self, state: &State, index: usize) -> Result<Vec<Vec<f64>>, ModelError> {
+    pub(super) fn by_motion(&self, state: &State, index: usize) -> Result<Vec<Vec<MotionPower>>, ModelError> {
         let first = state.constants.len() + state.zetas.len();
         let Some((k3, column)) = cubic(&state.hypothesis, first) else { return Ok(vec![]) };
         let taken = self.taken_from_hits(state, (index, &self.records[index]), &[(column, 2.0 * k3)])?;
-        Ok(taken.into_iter().map(|taken| taken.by.iter().map(|by| by[0].norm_sqr()).collect()).collect())
+        let power = |(value, by): (&Complex64, &Vec<Complex64>)| MotionPower {
+            whole: value.norm_sqr(),
+            by_part: by[0].norm_sqr(),
+        };
+        Ok(taken.iter().map(|taken| taken.value.iter().zip(&taken.by).map(power).collect()).collect())
     }
 
     /// What is linear, and what is not.

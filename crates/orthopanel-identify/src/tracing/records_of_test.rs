@@ -57,6 +57,8 @@ pub(super) struct TestRecords {
     pub rough: Option<RoughScales>,
     /// What is in the lines' variances beside noise, where the test is rough.
     pub rest: Option<RoughRest>,
+    /// Where cubic forces were doubted, see [`super::motion_doubt`].
+    pub doubted: Option<State>,
     /// Hits that were left out, and why.
     pub notes: Vec<String>,
 }
@@ -186,6 +188,7 @@ impl TestRecords {
             histories: vec![],
             rough: None,
             rest: None,
+            doubted: None,
             notes: vec![],
         };
         let problem = records.problem(0);
@@ -270,30 +273,14 @@ impl TestRecords {
         if let Some(reactions) = &mut self.reactions {
             reactions.put_hits(&beside);
         }
-        self.doubt_motion(state, (from, rest))?;
+        self.doubt_motion(state, (from, Some(rest)))?;
         self.rest = Some(rest);
-        self.known.forget();
         Ok(scatter)
     }
 
-    /// Adds to the variances of the hits, on all lines from this widening on, what an error of their motion does where forces go with
-    /// its cube: over the swings on such springs it decides when each comes. The motion is as uncertain as `rest` says and as gains of
-    /// records are, for no record tells which of its channels a gain belongs to.
-    fn doubt_motion(&mut self, state: &State, (from, rest): (usize, RoughRest)) -> Result<(), ModelError> {
-        let gain = self.rough.map_or(0.0, |scales| scales.gain);
-        let doubt = rest.part.powi(2) + gain.powi(2);
-        for stage in from..self.widened.len() {
-            let problem = self.problem(stage);
-            let by_motion = (0..problem.records.len()).map(|index| problem.by_motion(state, index));
-            let by_motion = by_motion.collect::<Result<Vec<_>, ModelError>>()?;
-            for (record, mut by) in self.widened[stage].iter_mut().zip(by_motion) {
-                by.iter_mut().flatten().for_each(|power| *power *= doubt);
-                if !by.is_empty() {
-                    record.widen_hits(&by);
-                }
-            }
-        }
-        Ok(())
+    /// Sums of squares are of lines that have changed since.
+    pub(super) fn forget_sums(&mut self) {
+        self.known.forget();
     }
 
     /// The hits as they fell, with `rest` in their lines' variances: undoes [`TestRecords::align_hits`].

@@ -8,6 +8,7 @@ use rayon::prelude::*;
 use super::each_effect::Count;
 use super::fit::{LAST, PATIENCE, polish, polished_through};
 use super::hypothesis::Hypothesis;
+use super::motion_doubt::WIDE;
 use super::outcome::{Progress, Verdict};
 use super::ranking::{Ranking, Search};
 use super::record_problem::State;
@@ -19,8 +20,6 @@ use super::starts::{Costed, Look, followed, followed_far};
 use super::verdict::{is_too_rough, on_bound};
 use crate::IdentifyError;
 
-/// The widest peaks but one: up to here a line's tolerance is beyond any roughness.
-const WIDE: usize = 1;
 /// Hypotheses of which one brings the hits together.
 const LEADING: usize = 3;
 /// What bringing hits to one place may leave of their scatter above noise: hits that differ by more differ by something else,
@@ -55,6 +54,9 @@ pub(super) fn rough_search(
         // The plain search goes on as if nothing had been.
         (records.start, records.rough) = before;
         records.as_hit(WIDE, None);
+        if let Some(state) = records.doubted.clone() {
+            records.doubt_motion(&state, (WIDE, None)).ok()?;
+        }
         if spent > MOST_WORK {
             break;
         }
