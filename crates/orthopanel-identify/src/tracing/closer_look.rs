@@ -12,7 +12,7 @@ use super::hypothesis::{PLATE, has_place};
 use super::ranking::{LITTLE, Ranking, Search, least_cost};
 use super::record_problem::dearness;
 use super::starts::{Costed, Look, followed_far, followed_near};
-use super::verdict::EXPLAINED;
+use super::verdict::{EXPLAINED, MET};
 use crate::IdentifyError;
 
 /// The widening up to which many starts are followed.
@@ -52,7 +52,8 @@ impl Search<'_> {
         self.choose(ranking)
     }
 
-    /// What is looked for, in this order: what costs the least first, of that the simplest.
+    /// What is looked for, in this order: what costs the least first, of that the simplest. Beside a plate what costs much is first: a core
+    /// or a face moves its modes as the plate does.
     fn looks(&self) -> Vec<Sought> {
         let placed = self.placed();
         let (dear, mut quick): (Vec<_>, Vec<_>) = placed.into_iter().partition(|effect| dearness(effect.id()) > 1);
@@ -87,7 +88,8 @@ impl Search<'_> {
         let chosen = &ranking.fits[ranking.chosen];
         let Some(at) = chosen.state.hypothesis.last_place() else { return };
         let Some(here) = self.left_at(FOLLOWED_TO, chosen) else { return };
-        let there = |effect: &&dyn Effect| dearness(effect.id()) == 1 && !chosen.state.hypothesis.holds(*effect);
+        let found = chosen.state.hypothesis.effects.last().map(|on| on.effect.id());
+        let there = |effect: &&dyn Effect| dearness(effect.id()) == 1 && Some(effect.id()) != found;
         let others: Vec<_> = self.placed().into_iter().filter(there).collect();
         let count = Count::of(others.len());
         let (begun, _) = self
@@ -123,11 +125,14 @@ impl Search<'_> {
         }
     }
 
-    /// Whether a search that came down to [`FOLLOWED_TO`] did better there than the fit of the same effects that is known.
+    /// Whether a search that came down to [`FOLLOWED_TO`] did better there than the fit of the same effects that is known, or as well
+    /// where that meets the noise: then these lines do not tell.
     fn gains_on(&self, fits: &[Fit], (state, cost): &Costed) -> bool {
         let name = state.hypothesis.name();
         let known = fits.iter().find(|fit| fit.given_up.is_none() && fit.state.hypothesis.name() == name);
-        known.and_then(|fit| self.left_at(FOLLOWED_TO, fit)).is_none_or(|known| *cost < BETTER * known)
+        let noise = MET * self.records.problem(FOLLOWED_TO).data() as f64;
+        let gains = |known: f64| *cost < BETTER * known || known <= noise && *cost <= known + LITTLE;
+        known.and_then(|fit| self.left_at(FOLLOWED_TO, fit)).is_none_or(gains)
     }
 
     /// What a fit leaves on the lines of a widening.

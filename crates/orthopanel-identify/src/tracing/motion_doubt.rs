@@ -7,18 +7,19 @@
 use orthopanel_model::{ModelError, Piece};
 use rayon::prelude::*;
 
-use super::fit::{Fit, LAST, PATIENCE, polish, settle};
+use super::fit::{Fit, LAST, PATIENCE, polish, polished_through, settle};
 use super::hypothesis::CUBIC;
 use super::model_error::TRUSTED;
 use super::outcome::Progress;
-use super::ranking::{Ranking, Search, least_cost};
+use super::ranking::{LITTLE, Ranking, Search, least_cost};
 use super::record_problem::State;
 use super::records_of_test::TestRecords;
 use super::rough_rest::RoughRest;
 use super::widened_lines::{HitLines, median};
 use crate::IdentifyError;
 
-/// The widest lines but one: on wider ones the swings are over before they are out of step.
+/// The widest lines but one: on wider ones the swings are over before they are out of step, and a line's tolerance is beyond any roughness.
+/// [`TestRecords::as_hit`] from here on takes a doubt from here on back.
 pub(super) const WIDE: usize = 1;
 /// The lowest lines of a hit, which tell the part: a blow has its impulse there, and the springs their swings.
 const LOWEST: usize = 8;
@@ -79,13 +80,13 @@ fn part_of_blow(hit: &HitLines) -> f64 {
 impl Search<'_> {
     /// Whether a fit has such forces and misses more than noise, their motion not having been doubted.
     pub(super) fn is_undoubted(&self, fit: &Fit) -> bool {
-        let is_cubic = fit.state.hypothesis.effects.iter().any(|on| on.effect.id() == CUBIC);
-        is_cubic && self.records.doubted.is_none() && !self.meets_noise(fit)
+        is_cubic(fit) && self.records.doubted.is_none() && !self.meets_noise(fit)
     }
 }
 
-/// Where the best fit has such forces and misses more than noise: every fit once more, beside what noise of the blows makes of their
-/// motion.
+/// Where the best fit has such forces and misses more than noise: the fits once more, beside what is wrong with their motion; those that
+/// were given up where they now come near. Only an answer that then meets the noise is kept: what such forces do not explain must
+/// not hide behind what is doubted of them.
 ///
 /// # Errors
 /// What the model refuses.
@@ -97,18 +98,41 @@ pub(super) fn beside_motion_doubt(
     // What swings out of step foretells no other record: such a fit is not yet the chosen one.
     let best = least_cost(&ranking.fits).filter(|best| Search { records, piece, progress }.is_undoubted(best));
     let Some(state) = best.map(|best| best.state.clone()) else { return Ok(()) };
+    let before = ranking.fits.clone();
     records.doubt_motion(&state, (WIDE, None))?;
     records.doubted = Some(state);
-    let shared = &*records;
     ranking.fits.par_iter_mut().try_for_each(|fit| {
         let state = match fit.given_up {
-            None => polish(shared, &fit.state, LAST, PATIENCE[LAST])?.0,
+            None => polish(records, &fit.state, LAST, PATIENCE[LAST])?.0,
             Some(_) => fit.state.clone(),
         };
-        *fit = settle(shared, state, fit.given_up)?;
+        *fit = settle(records, state, fit.given_up)?;
+        Ok::<_, IdentifyError>(())
+    })?;
+    let near = least_cost(&ranking.fits).map_or(0.0, |best| best.cost) + LITTLE;
+    ranking.fits.par_iter_mut().filter(|fit| fit.cost <= near).try_for_each(|fit| {
+        if let Some(from) = fit.given_up {
+            let (state, _) = polished_through(records, (fit.state.clone(), fit.cost), from..=LAST)?;
+            *fit = settle(records, state, None)?;
+        }
         Ok::<_, IdentifyError>(())
     })?;
     let search = Search { records, piece, progress };
     search.lead(&mut ranking.fits[1..]);
+    search.choose(ranking)?;
+    let chosen = &ranking.fits[ranking.chosen];
+    if is_cubic(chosen) && search.explains(chosen) {
+        return Ok(());
+    }
+    records.as_hit(WIDE, None);
+    records.doubted = None;
+    ranking.fits = before;
+    ranking.chosen = 0;
+    let search = Search { records, piece, progress };
+    search.lead(&mut ranking.fits[1..]);
     search.choose(ranking)
+}
+
+fn is_cubic(fit: &Fit) -> bool {
+    fit.state.hypothesis.effects.iter().any(|on| on.effect.id() == CUBIC)
 }

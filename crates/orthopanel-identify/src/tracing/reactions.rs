@@ -3,7 +3,7 @@
 //! With the receptances $H$ of everything that is linear, forces $r_j$ at the suspension points $p_j$ make of a hit's ratio
 //! $$\frac{A}{F} = s^2\Big(H_{rf} - \sum_jH_{rp_j}\frac{R_j}{F}\Big),$$
 //! $R_j$ being the transform of $r_j$ over the same window. The ratio differs from hit to hit, as a linear suspension's does
-//! not. The panel's motion under the measured hit, and so $r_j$, is that of its bare modes, those above the band giving way at once:
+//! not. The panel's motion under the measured hit, and so $r_j$, is that of its bare modes, those above it, up to 2.5 times the band, giving way at once:
 //! masses and springs beside it are left out of $r_j$, and $r_j$ is taken to follow $k_3$ alone.
 
 use std::sync::Arc;

@@ -191,8 +191,14 @@ pub(super) fn followed_near(records: &TestRecords, starts: &[Costed], to: usize)
 fn followed_first(records: &TestRecords, starts: &[Costed], (many, few): (usize, usize), to: usize) -> Option<Costed> {
     let widest = records.problem(0);
     let enough = MET * widest.data() as f64;
-    let without = widest.linearise(&widest.parameters(&records.start), &records.start);
-    let is_told = without.is_ok_and(|without| without.cost > STANDS_OUT * enough);
+    let mut without = starts.first()?.0.clone();
+    without.hypothesis.effects.pop();
+    // What starts stand beside, or the base, where their constants have moved with the effect.
+    let misses = |state: &State| {
+        let at = widest.linearise(&widest.parameters(state), state);
+        at.is_ok_and(|at| at.cost > STANDS_OUT * enough)
+    };
+    let is_told = misses(&without) && misses(&records.start);
     let (many, patience) = follow(records, starts, many);
     let mut each: Vec<Costed> = vec![];
     for starts in starts[..many.min(starts.len())].chunks(AT_ONCE) {

@@ -13,7 +13,7 @@ use std::f64::consts::TAU;
 /// of them. Each sample of a force acts as an impulse, between which modes up to `carried` \[Hz\] move freely and exactly. For a load
 /// whose band ends below half the rate this leaves of a mode's motion what it is at its own frequency. Impulses a step $h$ apart
 /// make of a slow force $h\cot(\omega h/2)/2\omega$ of its motion; what that leaves of $1/\omega^2$, and all of it of modes above
-/// `carried`, follows the forces at once, and softens the springs. The springs' own stiffness may not be such that it swings within a
+/// `carried`, at most half the rate, follows the forces at once, and softens the springs. The springs' own stiffness may not be such that it swings within a
 /// few samples.
 ///
 /// # Errors
@@ -25,6 +25,7 @@ pub fn cubic_support_forces(
     (step, samples): (f64, usize),
     carried: f64,
 ) -> Result<Vec<CubicForces>, ModelError> {
+    let carried = carried.min(0.5 / step);
     let found = model.force_count();
     if found != 1 && found != hits.len() {
         return Err(ModelError::PortCount { mode: 1, ports: "forces", found, expected: hits.len() });
