@@ -78,9 +78,9 @@ fn part_of_blow(hit: &HitLines) -> f64 {
 }
 
 impl Search<'_> {
-    /// Whether a fit has such forces and misses more than noise, their motion not having been doubted.
+    /// Whether a fit has such forces and misses more than noise: its motion is to be doubted.
     pub(super) fn is_undoubted(&self, fit: &Fit) -> bool {
-        is_cubic(fit) && self.records.doubted.is_none() && !self.meets_noise(fit)
+        is_cubic(fit) && !self.meets_noise(fit)
     }
 }
 
@@ -100,7 +100,6 @@ pub(super) fn beside_motion_doubt(
     let Some(state) = best.map(|best| best.state.clone()) else { return Ok(()) };
     let before = ranking.fits.clone();
     records.doubt_motion(&state, (WIDE, None))?;
-    records.doubted = Some(state);
     ranking.fits.par_iter_mut().try_for_each(|fit| {
         let state = match fit.given_up {
             None => polish(records, &fit.state, LAST, PATIENCE[LAST])?.0,
@@ -125,7 +124,6 @@ pub(super) fn beside_motion_doubt(
         return Ok(());
     }
     records.as_hit(WIDE, None);
-    records.doubted = None;
     ranking.fits = before;
     ranking.chosen = 0;
     let search = Search { records, piece, progress };

@@ -57,8 +57,6 @@ pub(super) struct TestRecords {
     pub rough: Option<RoughScales>,
     /// What is in the lines' variances beside noise, where the test is rough.
     pub rest: Option<RoughRest>,
-    /// Where cubic forces were doubted, see [`super::motion_doubt`].
-    pub doubted: Option<State>,
     /// Hits that were left out, and why.
     pub notes: Vec<String>,
 }
@@ -188,7 +186,6 @@ impl TestRecords {
             histories: vec![],
             rough: None,
             rest: None,
-            doubted: None,
             notes: vec![],
         };
         let problem = records.problem(0);

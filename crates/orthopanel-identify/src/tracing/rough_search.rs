@@ -54,9 +54,6 @@ pub(super) fn rough_search(
         // The plain search goes on as if nothing had been.
         (records.start, records.rough) = before;
         records.as_hit(WIDE, None);
-        if let Some(state) = records.doubted.clone() {
-            records.doubt_motion(&state, (WIDE, None)).ok()?;
-        }
         if spent > MOST_WORK {
             break;
         }
