@@ -4,7 +4,7 @@ use orthopanel_model::{Piece, Scale};
 
 use super::hypothesis::{FreeParameter, Hypothesis, Switched, ends_of_range, is_place};
 use super::outcome::Verdict;
-use super::roughness::ROUGHNESS;
+use super::rough::ROUGHNESS;
 use crate::error::spaced;
 
 /// Effect and parameter on a bound, of the effects beyond the first `declared`; parameters of the names that are `untold` show in no

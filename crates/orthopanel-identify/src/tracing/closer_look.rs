@@ -10,7 +10,7 @@ use super::elsewhere::put_elsewhere;
 use super::fit::Fit;
 use super::hypothesis::{PLATE, has_place};
 use super::ranking::{LITTLE, Ranking, Search, least_cost};
-use super::record_problem::dearness;
+use super::search_work::dearness;
 use super::starts::{Costed, Look, followed_far, followed_near};
 use super::verdict::{EXPLAINED, MET};
 use crate::IdentifyError;
@@ -137,7 +137,6 @@ impl Search<'_> {
 
     /// What a fit leaves on the lines of a widening.
     fn left_at(&self, stage: usize, fit: &Fit) -> Option<f64> {
-        let problem = self.records.problem(stage);
-        problem.linearise(&problem.parameters(&fit.state), &fit.state).ok().map(|at| at.cost)
+        self.records.problem(stage).at(&fit.state).ok().map(|at| at.cost)
     }
 }

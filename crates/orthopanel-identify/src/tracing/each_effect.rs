@@ -5,11 +5,11 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use orthopanel_model::{Effect, catalogue};
 use rayon::prelude::*;
 
-use super::declared_starts::base_fit;
 use super::elsewhere::put_elsewhere;
 use super::fit::Fit;
 use super::outcome::{NotTested, Progress};
 use super::ranking::{Ranking, Search, least_cost};
+use super::starts::declared::base_fit;
 use super::starts::{Costed, Look, followed_where_told, scored_starts};
 use crate::IdentifyError;
 

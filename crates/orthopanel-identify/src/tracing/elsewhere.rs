@@ -41,7 +41,7 @@ pub(super) fn put_elsewhere(records: &TestRecords, fits: &mut [Fit], declared: u
 /// minimum there: [`LITTLE`] is for that, and for what narrower lines may tell apart.
 fn fit_where_better(records: &TestRecords, turned: State, best: &Fit) -> Result<Option<Fit>, IdentifyError> {
     let problem = records.problem(FROM);
-    let here = problem.linearise(&problem.parameters(&best.state), &best.state)?.cost;
+    let here = problem.at(&best.state)?.cost;
     let (turned, there) = polish(records, &turned, FROM, PATIENCE[FROM])?;
     if there > here + LITTLE { Ok(None) } else { fit(records, turned, FROM + 1).map(Some) }
 }

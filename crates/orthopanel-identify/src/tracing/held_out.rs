@@ -7,7 +7,7 @@ use faer::{Mat, Side};
 use super::fit::{Fit, LAST, by_group};
 use super::record_problem::{Grouping, total};
 use super::records_of_test::TestRecords;
-use super::roughness::free_of;
+use super::rough::free_of;
 use crate::IdentifyError;
 use crate::least_squares::Quadratic;
 

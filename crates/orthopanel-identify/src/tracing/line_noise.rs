@@ -10,7 +10,7 @@
 use num_complex::Complex64;
 use orthopanel_model::LineBlock;
 
-use super::blow::HALF_WIDTH;
+use super::reactions::blow::HALF_WIDTH;
 
 /// Part of the noise that is the same over a stretch: the mean of $\sin(\pi fT)/(\pi fT)$ over all pairs of lines of
 /// [`STRETCH`].

@@ -4,7 +4,7 @@ use num_complex::Complex64;
 use orthopanel_model::{LineBlock, ReceptanceModel};
 
 use super::line_noise::LineNoise;
-use super::reaction_lines::{ReactionLines, Taken};
+use super::reactions::lines::{ReactionLines, Taken};
 use super::record_problem::Grouping;
 use super::widened_lines::WidenedLines;
 

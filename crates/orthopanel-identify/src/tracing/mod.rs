@@ -12,13 +12,11 @@
 mod accelerances;
 mod bare_panel;
 mod base_model;
-mod blow;
 mod bounds;
 mod closer_look;
 mod core_modes;
 mod curves;
 mod declared_doubt;
-mod declared_starts;
 mod each_effect;
 mod elsewhere;
 mod error_clusters;
@@ -32,30 +30,20 @@ mod hypothesis;
 mod information;
 mod known_sums;
 mod line_noise;
-mod loss_starts;
 mod made_rows;
 mod model_error;
-mod motion_doubt;
 mod next_experiment;
 mod outcome;
-mod plate_starts;
-mod plate_states;
-mod plates_by_poles;
 mod ranking;
-mod reaction_lines;
 mod reactions;
 mod record_problem;
 mod records_of_test;
 mod report;
-mod rough_rest;
-mod rough_rounds;
-mod rough_search;
-mod roughness;
+mod rough;
 mod row_products;
 mod rows;
+mod search_work;
 mod starts;
-mod stiffness_grid;
-mod support_starts;
 mod valley;
 mod verdict;
 mod whiteness;
@@ -127,14 +115,14 @@ pub fn trace_with(test: &ImpactTest, progress: &(dyn Fn(Progress) + Sync)) -> Re
     Hypothesis::declared(test, &piece, histories.len())?.check_that_each_acts(test, &piece)?;
     let mut records = TestRecords::new(test, &histories)?;
     let mut alone = Search { records: &records, piece, progress }.each_alone()?;
-    motion_doubt::beside_motion_doubt(&mut records, &mut alone, (piece, progress))?;
+    reactions::motion_doubt::beside_motion_doubt(&mut records, &mut alone, (piece, progress))?;
     Search { records: &records, piece, progress }.free_what_is_kept(&mut alone, 1)?;
     // What parts the hits of a place is told by roughness, which a search allows for first.
     if !records.hits_differ() {
         Search { records: &records, piece, progress }.look_closer(&mut alone)?;
     }
 
-    let mut ranking = match rough_search::rough_search(&mut records, piece, progress, &alone) {
+    let mut ranking = match rough::search::rough_search(&mut records, piece, progress, &alone) {
         Some(ranking) => ranking,
         None => Search { records: &records, piece, progress }.together(alone)?,
     };

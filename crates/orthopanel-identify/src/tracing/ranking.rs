@@ -1,7 +1,5 @@
 //! The search through the catalogue: every effect alone, then one more as long as it pays.
 
-use std::sync::atomic::Ordering;
-
 use orthopanel_model::{Piece, catalogue};
 use rayon::prelude::*;
 
@@ -13,7 +11,7 @@ use super::information::LikelihoodScale;
 use super::outcome::{NotTested, Progress};
 use super::record_problem::{Grouping, State};
 use super::records_of_test::TestRecords;
-use super::roughness::{exceeds_any_test, is_roughness};
+use super::rough::{exceeds_any_test, is_roughness};
 use super::starts::{Costed, Look, followed, scored_starts};
 use super::valley::lead_on;
 use super::verdict::{CLEAR, MET};
@@ -75,7 +73,7 @@ impl Search<'_> {
             self.look_closer(&mut ranking)?;
         }
         // Nothing before is taken from the pairs: a plate that is dear to find alone must not keep a gain beside it from being tried.
-        self.records.work.store(0, Ordering::Relaxed);
+        self.records.work.begin_anew();
         for size in 1..MOST_EFFECTS {
             let before = ranking.chosen;
             if self.meets_noise(&ranking.fits[ranking.chosen]) {
@@ -236,7 +234,7 @@ impl Search<'_> {
         roots.truncate(if ranking.chosen == 0 { ROOTS } else { paying.min(ROOTS) });
         let mut more = Vec::new();
         for root in roots {
-            if self.records.work.load(Ordering::Relaxed) > MOST_WORK {
+            if self.records.work.lines() > MOST_WORK {
                 ranking.unfinished = true;
                 break;
             }
@@ -277,7 +275,7 @@ impl Search<'_> {
     pub(super) fn first_that_lacks(&self, fit: &Fit) -> Result<usize, IdentifyError> {
         for stage in 0..LAST {
             let problem = self.records.problem(stage);
-            let at = problem.linearise(&problem.parameters(&fit.state), &fit.state)?;
+            let at = problem.at(&fit.state)?;
             if at.cost > MET * problem.data() as f64 {
                 return Ok(stage);
             }

@@ -1,22 +1,21 @@
 //! The records at one widening as a sum of squares, for any effects that are switched on.
 
 use std::sync::Arc;
-use std::sync::atomic::{AtomicU64, Ordering};
 
 use faer::Mat;
 use num_complex::Complex64;
 use orthopanel_model::{BEAM_CONSTANTS, Damping, LineBlock, ModelError, ReceptanceModel, ReceptanceSetup};
 use rayon::prelude::*;
 
-use super::core_modes::CORE;
-use super::hypothesis::{CUBIC, Hypothesis, PLATE, Switched};
+use super::hypothesis::{CUBIC, Hypothesis, Switched};
 use super::known_sums::KnownSums;
 use super::made_rows::Made;
-use super::motion_doubt::MotionPower;
-use super::reaction_lines::{ReactionLines, Taken};
+use super::reactions::lines::{ReactionLines, Taken};
+use super::reactions::motion_doubt::MotionPower;
 use super::reactions::{Reactions, cubic};
-use super::roughness::{ROUGHNESS, RoughScales, add_prior, is_roughness};
+use super::rough::{RoughScales, add_prior, is_roughness};
 use super::row_products::RowProducts;
+use super::search_work::SearchWork;
 use super::widened_lines::WidenedLines;
 use crate::least_squares::Quadratic;
 
@@ -35,8 +34,8 @@ pub(super) struct RecordProblem<'a> {
     pub prior: DampingPrior<'a>,
     /// What is known of the test's roughness beforehand, where hypotheses have any.
     pub rough: Option<RoughScales>,
-    /// Lines that were evaluated, counted as those of the plain beam.
-    pub work: &'a AtomicU64,
+    /// What the search has cost.
+    pub work: &'a SearchWork,
     /// Forces that are not linear, where the test can tell them.
     pub reactions: Option<&'a Reactions>,
     /// What was worked out before, and the number of these lines there.
@@ -89,17 +88,6 @@ pub(super) enum Grouping {
     Places,
     /// One hit of each pair of places.
     Hits,
-}
-
-/// Making a model costs as much as so many of its lines.
-const MAKING: u64 = 4000;
-/// Effects for which modes are solved at several nodes, on a basis with moving edges, of a plate, or with a dozen derivatives
-/// more, and how much more each line of these costs.
-const DEARER: [(&str, u64); 4] = [(CORE, 8), ("stiffness-loss", 4), (PLATE, 8), (ROUGHNESS, 4)];
-
-/// How much more a line costs with this effect than without.
-pub(super) fn dearness(id: &str) -> u64 {
-    DEARER.iter().find(|(dear, _)| *dear == id).map_or(1, |(_, factor)| *factor)
 }
 
 impl RecordProblem<'_> {
@@ -250,6 +238,11 @@ impl RecordProblem<'_> {
         Ok(total(&self.by_group(parameters, like, Grouping::Places)?))
     }
 
+    /// The same where a state stands.
+    pub(super) fn at(&self, state: &State) -> Result<Quadratic, ModelError> {
+        self.linearise(&self.parameters(state), state)
+    }
+
     /// The accelerance of every record at a state.
     pub(super) fn lines(&self, state: &State) -> Result<Vec<Vec<Complex64>>, ModelError> {
         let (model, reactions) = self.model(state)?;
@@ -373,9 +366,7 @@ impl RecordProblem<'_> {
     }
 
     fn count(&self, state: &State) {
-        let factor: u64 = state.hypothesis.effects.iter().map(|on| dearness(on.effect.id())).product();
-        let lines = MAKING + self.records.iter().map(|record| record.s.len() as u64).sum::<u64>();
-        self.work.fetch_add(lines * factor, Ordering::Relaxed);
+        self.work.count(&state.hypothesis, self.records.iter().map(|record| record.s.len()).sum());
     }
 
     fn prior(&self, state: &State, size: usize) -> Quadratic {

@@ -1,7 +1,5 @@
 //! The records of a test, widened, with the model that they are to meet.
 
-use std::sync::atomic::AtomicU64;
-
 use orthopanel_data::{Accelerance, Estimation, ImpactTest, TimeHistory};
 use orthopanel_model::{
     BEAM_CONSTANTS, BeamConstants, ExactBeam, ModelError, ReceptanceSetup, RecordSetting, SuspensionMotion,
@@ -10,16 +8,17 @@ use rayon::prelude::*;
 
 use super::base_model::RecordsBase;
 use super::curves::curves;
-use super::declared_starts::{base_fit, begun_where_declared};
 use super::fit::{Fit, LAST, by_group};
 use super::held_out::LEAST_PLACES;
 use super::hypothesis::Hypothesis;
 use super::known_sums::KnownSums;
-use super::plate_states::PlateEvidence;
 use super::reactions::Reactions;
 use super::record_problem::{DampingPrior, Grouping, RecordProblem, State, total};
-use super::rough_rest::RoughRest;
-use super::roughness::RoughScales;
+use super::rough::RoughScales;
+use super::rough::rest::RoughRest;
+use super::search_work::SearchWork;
+use super::starts::declared::{base_fit, begun_where_declared};
+use super::starts::plate_states::PlateEvidence;
 use super::whiteness::{independent_part, whitened};
 use super::widened_lines::{HitModel, WIDENINGS, WidenedLines, aligned_lines, widened_lines};
 use crate::accelerance_fit::{ResonanceStart, resonance_starts};
@@ -44,7 +43,7 @@ pub(super) struct TestRecords {
     /// $\ln\zeta$ of the free modes as the resonances alone tell it.
     log_zetas: Vec<f64>,
     /// See [`RecordProblem::work`].
-    pub work: AtomicU64,
+    pub work: SearchWork,
     known: KnownSums,
     /// Frequencies \[Hz\] of the resonances that the records show.
     pub poles: Vec<f64>,
@@ -177,7 +176,7 @@ impl TestRecords {
             summed,
             start,
             log_zetas,
-            work: AtomicU64::new(0),
+            work: SearchWork::default(),
             known: KnownSums::default(),
             poles,
             plates,

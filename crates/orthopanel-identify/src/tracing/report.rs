@@ -20,7 +20,7 @@ use super::outcome::{
 use super::ranking::{Ranking, Search};
 use super::record_problem::Grouping;
 use super::records_of_test::TestRecords;
-use super::roughness::ROUGHNESS;
+use super::rough::ROUGHNESS;
 use super::verdict::{is_too_rough, verdict};
 use super::whiteness::{independent_lines, whitened};
 use super::widened_lines::{WIDENINGS, WidenedLines};

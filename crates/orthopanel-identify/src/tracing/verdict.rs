@@ -4,7 +4,7 @@ use super::fit::Fit;
 use super::outcome::Verdict;
 use super::ranking::Ranking;
 use super::records_of_test::TestRecords;
-use super::roughness::exceeds_any_test;
+use super::rough::exceeds_any_test;
 use crate::IdentifyError;
 
 /// A rival must stay behind by this much of the scaled criterion to be out of the question.

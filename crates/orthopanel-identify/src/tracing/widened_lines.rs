@@ -9,10 +9,10 @@ use orthopanel_model::Place;
 use rayon::prelude::*;
 use realfft::RealFftPlanner;
 
-use super::blow::Blow;
 use super::hit_noise::HitNoise;
 use super::hit_places::align;
 use super::line_noise::LineNoise;
+use super::reactions::blow::Blow;
 
 /// How far the peaks are widened, and how far the lines stand apart.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -17,7 +17,7 @@ use super::base_model::RecordsBase;
 use super::hypothesis::{Hypothesis, Switched};
 use super::outcome::{NotTested, Progress, Tracing};
 use super::record_problem::State;
-use super::support_starts::{REACH, SUPPORT, SupportStarts, support_starts};
+use super::starts::supports::{REACH, SUPPORT, SupportStarts, support_starts};
 use crate::IdentifyError;
 use crate::accelerance_fit::{ResonanceStart, resonance_starts};
 use crate::free_constants::FreeConstants;

@@ -1,7 +1,6 @@
 //! Resonances and the lines between them as one sum of squares, each weighed by what it is good for.
 
 use std::sync::OnceLock;
-use std::sync::atomic::AtomicU64;
 
 use num_complex::Complex64;
 use orthopanel_data::ImpactTest;
@@ -13,6 +12,7 @@ use crate::IdentifyError;
 use crate::least_squares::{Ending, Quadratic, descend};
 use crate::tracing::model_error::TUNED;
 use crate::tracing::record_problem::{DampingPrior, Grouping, RecordProblem, State, total};
+use crate::tracing::search_work::SearchWork;
 use crate::tracing::whiteness::independent_part;
 use crate::tracing::widened_lines::WidenedLines;
 
@@ -28,7 +28,7 @@ pub(super) struct AccelerancesProblem {
     /// The lines with their variance, and how they are weighed.
     lines: Vec<WidenedLines>,
     pub weighing: Weighing,
-    work: AtomicU64,
+    work: SearchWork,
 }
 
 /// How the lines between the resonances count.
@@ -94,7 +94,7 @@ impl AccelerancesProblem {
             Ok((NaturalFrequencies::new(&setting, count)?, own))
         });
         let places = places.collect::<Result<_, ModelError>>()?;
-        let (lines, weighing, work) = (vec![], FIRST, AtomicU64::new(0));
+        let (lines, weighing, work) = (vec![], FIRST, SearchWork::default());
         let mut problem = Self { setup, between, resonances, places, held, usual_log_zeta, lines, weighing, work };
         problem.weigh(FIRST);
         Ok(problem)

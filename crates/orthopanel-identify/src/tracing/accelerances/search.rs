@@ -16,8 +16,8 @@ use crate::tracing::hypothesis::{PLATE, Switched};
 use crate::tracing::outcome::{NotTested, Progress};
 use crate::tracing::ranking::PAYS;
 use crate::tracing::record_problem::{State, total};
+use crate::tracing::starts::supports::{SUPPORT, SupportStarts, support_starts};
 use crate::tracing::starts::{Look, can_differ, grid};
-use crate::tracing::support_starts::{SUPPORT, SupportStarts, support_starts};
 
 /// Effects at most.
 const MOST_EFFECTS: usize = 4;

@@ -3,13 +3,13 @@
 use num_complex::Complex64;
 use orthopanel_model::{Damping, EffectState, ModelError, ReceptanceModel};
 
-use super::reactions::{Ratios, Reactions, cubic};
-use super::record_problem::{Grouping, State};
-use super::roughness::offsets;
-use super::widened_lines::WidenedLines;
+use super::{Ratios, Reactions, cubic};
+use crate::tracing::record_problem::{Grouping, State};
+use crate::tracing::rough::offsets;
+use crate::tracing::widened_lines::WidenedLines;
 
 /// The forces of a suspension at one state, in all records.
-pub(super) struct ReactionLines {
+pub(in crate::tracing) struct ReactionLines {
     /// From every suspension point to the sensor.
     reach: ReceptanceModel,
     points: usize,
@@ -20,7 +20,7 @@ pub(super) struct ReactionLines {
 
 /// To be taken off the lines of one group of data.
 #[derive(Clone)]
-pub(super) struct Taken {
+pub(in crate::tracing) struct Taken {
     /// One a line.
     pub value: Vec<Complex64>,
     /// For each line its derivatives, one for each column that was asked for.
@@ -32,7 +32,7 @@ impl ReactionLines {
     ///
     /// # Errors
     /// What the model refuses.
-    pub(super) fn of(
+    pub(in crate::tracing) fn of(
         reactions: Option<&Reactions>,
         state: &State,
         (damping, effects): (&Damping, &[EffectState]),
@@ -54,7 +54,7 @@ impl ReactionLines {
     }
 
     /// Of record `index`, for each group of its data: `columns` and factors are those of the derivatives that are asked for.
-    pub(super) fn taken(
+    pub(in crate::tracing) fn taken(
         &self,
         index: usize,
         record: &WidenedLines,

@@ -8,6 +8,10 @@
 //! To first order the least of this over $\theta$ is the misfit under the covariance $S + JPJ^T$ with
 //! $P = \text{diag}\,\sigma_j^2$ (Woodbury's identity), but no peak need be so wide that first order holds.
 
+pub(super) mod rest;
+pub(super) mod rounds;
+pub(super) mod search;
+
 use orthopanel_model::{CORE_WAVES, Piece, roughness};
 
 use super::hypothesis::{FreeParameter, Hypothesis, Switched};

@@ -3,14 +3,14 @@
 use orthopanel_model::Piece;
 use rayon::prelude::*;
 
-use super::core_modes::{CORE, CoreModes};
-use super::fit::{Fit, fit, promise, settle};
-use super::hypothesis::Switched;
-use super::record_problem::State;
-use super::records_of_test::TestRecords;
-use super::starts::{Costed, Look, followed, grid};
-use super::valley::lead_on;
+use super::{Costed, Look, followed, grid};
 use crate::IdentifyError;
+use crate::tracing::core_modes::{CORE, CoreModes};
+use crate::tracing::fit::{Fit, fit, promise, settle};
+use crate::tracing::hypothesis::Switched;
+use crate::tracing::record_problem::State;
+use crate::tracing::records_of_test::TestRecords;
+use crate::tracing::valley::lead_on;
 
 /// The base model at its minimum.
 ///
@@ -19,7 +19,7 @@ use crate::IdentifyError;
 ///
 /// # Errors
 /// What the model refuses.
-pub(super) fn base_fit(records: &TestRecords) -> Result<Fit, IdentifyError> {
+pub(in crate::tracing) fn base_fit(records: &TestRecords) -> Result<Fit, IdentifyError> {
     let base = fit(records, records.start.clone(), 0)?;
     if records.start.hypothesis.size() == 0 {
         return Ok(base);
@@ -30,7 +30,7 @@ pub(super) fn base_fit(records: &TestRecords) -> Result<Fit, IdentifyError> {
 }
 
 /// The start with each declared effect that is open at the best of its starts, one effect after the other.
-pub(super) fn begun_where_declared(records: &TestRecords, piece: &Piece) -> State {
+pub(in crate::tracing) fn begun_where_declared(records: &TestRecords, piece: &Piece) -> State {
     let mut begun = records.start.clone();
     for index in 0..begun.hypothesis.effects.len() {
         let starts = starts_of(records, &begun, index, piece);
@@ -63,7 +63,7 @@ fn starts_of(records: &TestRecords, begun: &State, index: usize, piece: &Piece) 
     };
     let tried = grid(on.effect, piece, (problem.records.len(), records.band), Look::Usual);
     let costed = |state: State| {
-        let promised = promise(&problem.linearise(&problem.parameters(&state), &state).ok()?);
+        let promised = promise(&problem.at(&state).ok()?);
         Some((state, promised))
     };
     let mut starts: Vec<Costed> =

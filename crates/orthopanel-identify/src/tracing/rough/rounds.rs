@@ -1,23 +1,21 @@
 //! Rounds of fitting hypotheses beside roughness, and of estimating how rough the test is from the best of them.
 
-use std::sync::atomic::Ordering;
-
 use orthopanel_model::{Effect, Piece};
 use rayon::prelude::*;
 
-use super::each_effect::Count;
-use super::fit::{Fit, LAST, PATIENCE, covariance, polish, polished_through, settle};
-use super::outcome::{Progress, Verdict};
-use super::ranking::{BEHIND, LITTLE, Ranking, Search};
-use super::record_problem::State;
-use super::records_of_test::TestRecords;
-use super::rough_rest::RoughRest;
-use super::roughness::RoughScales;
-use super::starts::{Costed, Look, followed};
-use super::verdict::{CLEAR, is_too_rough, verdict};
-use super::whiteness::residuals;
+use super::RoughScales;
+use super::rest::RoughRest;
 use crate::IdentifyError;
 use crate::least_squares::Ending;
+use crate::tracing::each_effect::Count;
+use crate::tracing::fit::{Fit, LAST, PATIENCE, covariance, polish, polished_through, settle};
+use crate::tracing::outcome::{Progress, Verdict};
+use crate::tracing::ranking::{BEHIND, LITTLE, Ranking, Search};
+use crate::tracing::record_problem::State;
+use crate::tracing::records_of_test::TestRecords;
+use crate::tracing::starts::{Costed, Look, followed};
+use crate::tracing::verdict::{CLEAR, is_too_rough, verdict};
+use crate::tracing::whiteness::residuals;
 
 /// The widening at which hypotheses that are behind are left: wider ones show no roughness.
 pub(super) const SIFTED: usize = 2;
@@ -25,7 +23,7 @@ pub(super) const SIFTED: usize = 2;
 const ROUNDS: usize = 3;
 const SETTLED: f64 = 1.2;
 /// Lines of the plain beam after which no further round begins, see [`super::ranking`]: some 75 s of one processor.
-pub(super) const MOST_WORK: u64 = 100_000_000;
+pub(in crate::tracing) const MOST_WORK: u64 = 100_000_000;
 /// Evaluations of a hypothesis at scales that have changed since it was fitted.
 const AGAIN: Ending = Ending::far(8, 0.2);
 
@@ -70,7 +68,7 @@ impl<'a> Rounds<'a> {
 
     /// Rounds until the scales stay and no hypothesis comes near that was behind; `None` where the base cannot be fitted.
     pub(super) fn settled(&mut self, mut states: Vec<Begun>) -> Result<Option<Ranking>, IdentifyError> {
-        let most_work = self.records.work.load(Ordering::Relaxed) + MOST_WORK;
+        let most_work = self.records.work.lines() + MOST_WORK;
         let mut ranking = None;
         for round in 1..=ROUNDS {
             if let Some((rest, scales, best)) = self.told.take() {
@@ -101,7 +99,7 @@ impl<'a> Rounds<'a> {
             states = near(&found);
             let is_new = |(fit, begun): (&Fit, &Begun)| fit.given_up.is_some() && begun.followed.is_ok();
             let is_settled = is_settled && !found.fits.iter().zip(&states).any(is_new);
-            let is_over = records.work.load(Ordering::Relaxed) > most_work;
+            let is_over = records.work.lines() > most_work;
             found.unfinished = is_over && !is_settled && round < ROUNDS;
             ranking = Some(found);
             if is_settled || is_over {

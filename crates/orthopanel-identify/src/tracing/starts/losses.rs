@@ -12,11 +12,11 @@ use orthopanel_model::{
 };
 use rayon::prelude::*;
 
-use super::hypothesis::Switched;
 use super::plates_by_poles::Charge;
-use super::record_problem::State;
 use crate::IdentifyError;
 use crate::accelerance_fit::own_modes;
+use crate::tracing::hypothesis::Switched;
+use crate::tracing::record_problem::State;
 
 /// The effect.
 pub(super) const LOSS: &str = "stiffness-loss";

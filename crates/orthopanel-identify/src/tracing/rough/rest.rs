@@ -1,13 +1,13 @@
 //! What roughness leaves that no few numbers tell: waves of the core too short to be among them, faces that are not even either.
 
-use super::model_error::slope;
-use super::widened_lines::WidenedLines;
+use crate::tracing::model_error::slope;
+use crate::tracing::widened_lines::WidenedLines;
 
 /// Standard deviations of a rough test's motion beside its model, shared by all hypotheses: a `part` of the motion $h$ itself,
 /// and that of a resonance whose frequency is off by the part `tuning`, so that a line has the variance
 /// $s^2 + (\text{part}\,|h|)^2 + (\text{tuning}\,|s\,dh/ds|)^2$.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct RoughRest {
+pub(in crate::tracing) struct RoughRest {
     pub part: f64,
     pub tuning: f64,
 }
@@ -18,14 +18,14 @@ const HALVED: i32 = 12;
 
 impl RoughRest {
     /// Where the estimate begins: wide enough that no search follows the strongest peak alone.
-    pub(super) const USUAL: Self = Self { part: 2e-3, tuning: 1e-4 };
+    pub(in crate::tracing) const USUAL: Self = Self { part: 2e-3, tuning: 1e-4 };
 
     /// What all of a test's roughness may make of a plain model's lines: some millimetres of the shortest half-waves, and a core
     /// half a per cent uneven.
     pub(super) const OF_PLAIN: Self = Self { part: 1e-2, tuning: 1e-3 };
 
     /// Adds this to the variances of a record and of its hits.
-    pub(super) fn widen(&self, record: &mut WidenedLines) {
+    pub(in crate::tracing) fn widen(&self, record: &mut WidenedLines) {
         record.widen(|record, line| {
             let [part, tuning] = powers(record, line);
             self.part.powi(2) * part + self.tuning.powi(2) * tuning

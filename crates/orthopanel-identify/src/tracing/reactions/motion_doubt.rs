@@ -7,20 +7,20 @@
 use orthopanel_model::{ModelError, Piece};
 use rayon::prelude::*;
 
-use super::fit::{Fit, LAST, PATIENCE, polish, polished_through, settle};
-use super::hypothesis::CUBIC;
-use super::model_error::TRUSTED;
-use super::outcome::Progress;
-use super::ranking::{LITTLE, Ranking, Search, least_cost};
-use super::record_problem::State;
-use super::records_of_test::TestRecords;
-use super::rough_rest::RoughRest;
-use super::widened_lines::{HitLines, median};
 use crate::IdentifyError;
+use crate::tracing::fit::{Fit, LAST, PATIENCE, polish, polished_through, settle};
+use crate::tracing::hypothesis::CUBIC;
+use crate::tracing::model_error::TRUSTED;
+use crate::tracing::outcome::Progress;
+use crate::tracing::ranking::{LITTLE, Ranking, Search, least_cost};
+use crate::tracing::record_problem::State;
+use crate::tracing::records_of_test::TestRecords;
+use crate::tracing::rough::rest::RoughRest;
+use crate::tracing::widened_lines::{HitLines, median};
 
 /// The widest lines but one: on wider ones the swings are over before they are out of step, and a line's tolerance is beyond any roughness.
 /// [`TestRecords::as_hit`] from here on takes a doubt from here on back.
-pub(super) const WIDE: usize = 1;
+pub(in crate::tracing) const WIDE: usize = 1;
 /// The lowest lines of a hit, which tell the part: a blow has its impulse there, and the springs their swings.
 const LOWEST: usize = 8;
 /// $E|h - h'|^2/|h|^2$ of swings that are altogether out of step: two springs may make of the least part a motion of its own, with a
@@ -34,7 +34,7 @@ impl TestRecords {
     ///
     /// # Errors
     /// What the model refuses.
-    pub(super) fn doubt_motion(
+    pub(in crate::tracing) fn doubt_motion(
         &mut self,
         state: &State,
         (from, rest): (usize, Option<RoughRest>),
@@ -65,7 +65,7 @@ impl TestRecords {
 /// On a line of a hit: $|h|^2$ of what such forces take off it, and $|2k_3\,\partial h/\partial k_3|^2$, which a motion that is wrong by a
 /// part changes there through its cube, over that part squared. The force of $\lambda$ times a motion is that of the motion itself on
 /// springs $\lambda^2k_3$.
-pub(super) struct MotionPower {
+pub(in crate::tracing) struct MotionPower {
     pub whole: f64,
     pub by_part: f64,
 }
@@ -79,7 +79,7 @@ fn part_of_blow(hit: &HitLines) -> f64 {
 
 impl Search<'_> {
     /// Whether a fit has such forces and misses more than noise: its motion is to be doubted.
-    pub(super) fn is_undoubted(&self, fit: &Fit) -> bool {
+    pub(in crate::tracing) fn is_undoubted(&self, fit: &Fit) -> bool {
         is_cubic(fit) && !self.meets_noise(fit)
     }
 }
@@ -90,7 +90,7 @@ impl Search<'_> {
 ///
 /// # Errors
 /// What the model refuses.
-pub(super) fn beside_motion_doubt(
+pub(in crate::tracing) fn beside_motion_doubt(
     records: &mut TestRecords,
     ranking: &mut Ranking,
     (piece, progress): (Piece, &(dyn Fn(Progress) + Sync)),

@@ -2,14 +2,14 @@
 
 use orthopanel_model::{BEAM_CONSTANTS, Effect, Piece, ReceptanceSetup};
 
-use super::hypothesis::Switched;
-use super::record_problem::State;
 use super::stiffness_grid::StiffnessGrid;
 use crate::IdentifyError;
 use crate::accelerance_fit::pole_charge;
+use crate::tracing::hypothesis::Switched;
+use crate::tracing::record_problem::State;
 
 /// The effect.
-pub(super) const SUPPORT: &str = "support-compliance";
+pub(in crate::tracing) const SUPPORT: &str = "support-compliance";
 /// Springs tried against rotation, in $EI/L$, and against translation, in $EI/L^3$: from clamps that yield visibly to such that
 /// hardly do.
 const ROTATIONS: [f64; 3] = [10.0, 50.0, 250.0];
@@ -19,12 +19,12 @@ const RATIOS: (f64, f64, usize) = (6.0, 60.0, 5);
 /// One of so many lowest poles is one of so many lowest modes.
 const ANCHORS: usize = 3;
 /// A pole further than this from every mode belongs to none.
-pub(super) const REACH: f64 = 0.05;
+pub(in crate::tracing) const REACH: f64 = 0.05;
 /// Starts that are handed on.
 const STARTS: usize = 6;
 
 /// What tells where to begin.
-pub(super) struct SupportStarts<'a> {
+pub(in crate::tracing) struct SupportStarts<'a> {
     /// Resonances \[Hz\], rising.
     pub poles: &'a [f64],
     /// $E_x$, $G_{zx}$ where they are declared.
@@ -38,7 +38,7 @@ pub(super) struct SupportStarts<'a> {
 ///
 /// # Errors
 /// What the model refuses, as where no end is clamped.
-pub(super) fn support_starts(
+pub(in crate::tracing) fn support_starts(
     SupportStarts { poles, held, setup, piece }: SupportStarts,
     base: &State,
     effect: &'static dyn Effect,

@@ -6,6 +6,10 @@
 //! not. The panel's motion under the measured hit, and so $r_j$, is that of its bare modes, those above it, up to 2.5 times the band, giving way at once:
 //! masses and springs beside it are left out of $r_j$, and $r_j$ is taken to follow $k_3$ alone.
 
+pub(super) mod blow;
+pub(super) mod lines;
+pub(super) mod motion_doubt;
+
 use std::sync::Arc;
 
 use num_complex::Complex64;
@@ -17,9 +21,9 @@ use orthopanel_model::{
 use rayon::prelude::*;
 use realfft::{RealFftPlanner, RealToComplex};
 
-use super::blow::Blow;
 use super::hypothesis::{CUBIC, Hypothesis};
 use super::widened_lines::WidenedLines;
+use blow::Blow;
 
 /// What working out the forces takes.
 pub(super) struct Reactions {

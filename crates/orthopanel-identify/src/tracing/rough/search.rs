@@ -1,24 +1,22 @@
 //! The hypotheses of a search once more, each beside the roughness that a test by hand has.
 
-use std::sync::atomic::Ordering;
-
 use orthopanel_model::Piece;
 use rayon::prelude::*;
 
-use super::each_effect::Count;
-use super::fit::{LAST, PATIENCE, polish, polished_through};
-use super::hypothesis::Hypothesis;
-use super::motion_doubt::WIDE;
-use super::outcome::{Progress, Verdict};
-use super::ranking::{Ranking, Search};
-use super::record_problem::State;
-use super::records_of_test::TestRecords;
-use super::rough_rest::RoughRest;
-use super::rough_rounds::{Begun, MOST_WORK, Rounds, SIFTED, parted, sifted};
-use super::roughness::{RoughScales, none_yet};
-use super::starts::{Costed, Look, followed, followed_far};
-use super::verdict::{is_too_rough, on_bound};
+use super::rest::RoughRest;
+use super::rounds::{Begun, MOST_WORK, Rounds, SIFTED, parted, sifted};
+use super::{RoughScales, none_yet};
 use crate::IdentifyError;
+use crate::tracing::each_effect::Count;
+use crate::tracing::fit::{LAST, PATIENCE, polish, polished_through};
+use crate::tracing::hypothesis::Hypothesis;
+use crate::tracing::outcome::{Progress, Verdict};
+use crate::tracing::ranking::{Ranking, Search};
+use crate::tracing::reactions::motion_doubt::WIDE;
+use crate::tracing::record_problem::State;
+use crate::tracing::records_of_test::TestRecords;
+use crate::tracing::starts::{Costed, Look, followed, followed_far};
+use crate::tracing::verdict::{is_too_rough, on_bound};
 
 /// Hypotheses of which one brings the hits together.
 const LEADING: usize = 3;
@@ -32,7 +30,7 @@ const LEFT: f64 = 0.3;
 /// Each begins where [`tolerant`] lines put it: roughness moves no effect far. From the usual places first, without what
 /// `tolerant` lines leave behind; where that names nothing, or nothing surely, once more from the places between and with all, which
 /// costs twice as much.
-pub(super) fn rough_search(
+pub(in crate::tracing) fn rough_search(
     records: &mut TestRecords,
     piece: Piece,
     progress: &(dyn Fn(Progress) + Sync),
@@ -44,13 +42,13 @@ pub(super) fn rough_search(
         return None;
     }
     for look in [Look::Usual, Look::Finer] {
-        let (before, worked) = ((records.start.clone(), records.rough), records.work.load(Ordering::Relaxed));
+        let (before, worked) = ((records.start.clone(), records.rough), records.work.lines());
         let found = looked_for(records, (piece, progress), plain, look);
         if let Some(mut ranking) = found {
             ranking.not_tested.clone_from(&plain.not_tested);
             return Some(ranking);
         }
-        let spent = records.work.load(Ordering::Relaxed) - worked;
+        let spent = records.work.lines() - worked;
         // The plain search goes on as if nothing had been.
         (records.start, records.rough) = before;
         records.as_hit(WIDE, None);
@@ -140,7 +138,7 @@ fn tolerant<'a>(search: &Search, plain: impl Iterator<Item = &'a State>, look: L
     fits.extend(polished_through(records, (records.start.clone(), f64::INFINITY), 0..=SIFTED));
     let problem = records.problem(SIFTED);
     for state in plain {
-        let Ok(at) = problem.linearise(&problem.parameters(state), state) else { continue };
+        let Ok(at) = problem.at(state) else { continue };
         let name = state.hypothesis.name();
         match fits.iter_mut().find(|(fit, _)| fit.hypothesis.name() == name) {
             Some(fit) if at.cost < fit.1 => *fit = (state.clone(), at.cost),

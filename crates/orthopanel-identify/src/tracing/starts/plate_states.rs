@@ -5,19 +5,19 @@ use std::sync::OnceLock;
 use orthopanel_data::{ImpactTest, TimeHistory};
 use orthopanel_model::{Boundary, ModelError, Piece};
 
-use super::hypothesis::{Hypothesis, PLATE, Switched};
-use super::plate_starts::plate_starts;
+use super::Look;
+use super::plates::plate_starts;
 use super::plates_by_poles::{PlateStart, PlatesByPoles};
-use super::record_problem::State;
-use super::records_of_test::{FREE_DAMPING, TestRecords};
-use super::starts::Look;
 use crate::accelerance_fit::ResonanceStart;
+use crate::tracing::hypothesis::{Hypothesis, PLATE, Switched};
+use crate::tracing::record_problem::State;
+use crate::tracing::records_of_test::{FREE_DAMPING, TestRecords};
 
 /// One resonance more than a beam has may be something loose; so many are a plate's.
 const STRANGE: usize = 2;
 
 /// What records show of a plate before any is fitted.
-pub(super) struct PlateEvidence {
+pub(in crate::tracing) struct PlateEvidence {
     /// How many of the poles the beam has no mode for.
     strange_poles: usize,
     /// The piece and its edges, where all places lie on a centre line that shows nothing of what is odd across.
@@ -27,7 +27,7 @@ pub(super) struct PlateEvidence {
 }
 
 impl PlateEvidence {
-    pub(super) fn of(test: &ImpactTest, histories: &[TimeHistory], start: &ResonanceStart) -> Self {
+    pub(in crate::tracing) fn of(test: &ImpactTest, histories: &[TimeHistory], start: &ResonanceStart) -> Self {
         let strange_poles = start.poles.len().saturating_sub(start.modes.iter().flatten().count());
         let mut places = histories.iter().flat_map(|history| [history.force_at, history.response_at]);
         let is_even = test.boundary.front == test.boundary.back && places.all(|place| place.y == 0.0);
@@ -38,7 +38,7 @@ impl PlateEvidence {
 
 impl TestRecords {
     /// Whether there are resonances that the beam has no modes for: then its constants are no start for a plate.
-    pub(super) fn shows_more_than_a_beam(&self) -> bool {
+    pub(in crate::tracing) fn shows_more_than_a_beam(&self) -> bool {
         self.plates.strange_poles >= STRANGE
     }
 
@@ -52,7 +52,7 @@ impl TestRecords {
     ///
     /// # Errors
     /// What the model refuses.
-    pub(super) fn with(&self, before: &State, switched: Switched) -> Result<Vec<State>, ModelError> {
+    pub(in crate::tracing) fn with(&self, before: &State, switched: Switched) -> Result<Vec<State>, ModelError> {
         let is_plate = switched.effect.id() == PLATE;
         let after = State { hypothesis: before.hypothesis.and(switched), ..before.clone() };
         if !is_plate {

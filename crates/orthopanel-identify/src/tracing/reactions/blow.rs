@@ -2,14 +2,14 @@
 
 use orthopanel_data::Hit;
 
-use super::widened_lines::median;
+use crate::tracing::widened_lines::median;
 
 /// Half the width of the window over the force \[s\]: the hammer has left the piece, its channel's noise stays out.
-pub(super) const HALF_WIDTH: f64 = 4e-3;
+pub(in crate::tracing) const HALF_WIDTH: f64 = 4e-3;
 
 /// A force without its offset, zero outside its window.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Blow {
+pub(in crate::tracing) struct Blow {
     /// \[N\], from the beginning of the record to the window's end.
     pub force: Vec<f64>,
     /// The strongest sample.
@@ -21,7 +21,7 @@ pub(super) struct Blow {
 }
 
 impl Blow {
-    pub(super) fn of(hit: &Hit, rate: f64) -> Self {
+    pub(in crate::tracing) fn of(hit: &Hit, rate: f64) -> Self {
         let offset = median(&hit.force);
         let away = |n: usize| (hit.force[n] - offset).abs();
         let peak = (0..hit.force.len()).max_by(|&a, &b| away(a).total_cmp(&away(b))).unwrap_or(0);
@@ -32,7 +32,7 @@ impl Blow {
     }
 
     /// Whether a sample lies in the window.
-    pub(super) fn holds(&self, sample: usize) -> bool {
+    pub(in crate::tracing) fn holds(&self, sample: usize) -> bool {
         sample.abs_diff(self.peak) <= self.reach
     }
 }

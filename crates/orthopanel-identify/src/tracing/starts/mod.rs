@@ -1,18 +1,26 @@
 //! Where the search for one more effect begins: a grid of starts, scored with everything else free to give way.
 
+pub(super) mod declared;
+pub(super) mod losses;
+pub(super) mod plate_states;
+pub(super) mod plates;
+pub(super) mod plates_by_poles;
+pub(super) mod stiffness_grid;
+pub(super) mod supports;
+
 use orthopanel_model::{Effect, Piece, Scale};
 use rayon::prelude::*;
 
 use super::core_modes::{CORE, CoreModes};
 use super::fit::{polish, polished_through, promise};
 use super::hypothesis::{PLATE, Switched, has_place, is_place};
-use super::loss_starts::{LOSS, LossStarts};
 use super::record_problem::State;
 use super::records_of_test::TestRecords;
-use super::support_starts::{SUPPORT, SupportStarts, support_starts};
 use super::verdict::MET;
 use crate::IdentifyError;
 use crate::least_squares::Ending;
+use losses::{LOSS, LossStarts};
+use supports::{SUPPORT, SupportStarts, support_starts};
 
 /// Starts that are followed for some steps before the best is taken.
 const FOLLOWED: usize = 3;
@@ -67,9 +75,7 @@ pub(super) fn scored_starts(
     let test = (problem.records.len(), records.band);
     // What a core stiffens and takes of energy is in the base's constants and damping already.
     let modes = if effect.id() == CORE { CoreModes::of(&problem, base) } else { None };
-    let promised = |state: &State| -> Result<f64, IdentifyError> {
-        Ok(promise(&problem.linearise(&problem.parameters(state), state)?))
-    };
+    let promised = |state: &State| -> Result<f64, IdentifyError> { Ok(promise(&problem.at(state)?)) };
     let switched = |values: &[f64]| {
         let at = |name: &str| {
             let index = effect.parameters().iter().position(|parameter| parameter.name == name);
@@ -156,14 +162,14 @@ pub(super) fn followed_where_told(records: &TestRecords, starts: &[Costed], narr
     }
     let problem = records.problem(narrow);
     let promised = |(state, _): &Costed| {
-        let promised = promise(&problem.linearise(&problem.parameters(state), state).ok()?);
+        let promised = promise(&problem.at(state).ok()?);
         Some((state.clone(), promised))
     };
     let mut again: Vec<Costed> = starts.par_iter().filter_map(promised).collect();
     again.sort_by(|a, b| a.1.total_cmp(&b.1));
     let (state, _) = followed(records, &again, narrow)?;
     let widest = records.problem(0);
-    let cost = widest.linearise(&widest.parameters(&state), &state).ok()?.cost;
+    let cost = widest.at(&state).ok()?.cost;
     Some((state, cost))
 }
 
@@ -194,10 +200,7 @@ fn followed_first(records: &TestRecords, starts: &[Costed], (many, few): (usize,
     let mut without = starts.first()?.0.clone();
     without.hypothesis.effects.pop();
     // What starts stand beside, or the base, where their constants have moved with the effect.
-    let misses = |state: &State| {
-        let at = widest.linearise(&widest.parameters(state), state);
-        at.is_ok_and(|at| at.cost > STANDS_OUT * enough)
-    };
+    let misses = |state: &State| widest.at(state).is_ok_and(|at| at.cost > STANDS_OUT * enough);
     let is_told = misses(&without) && misses(&records.start);
     let (many, patience) = follow(records, starts, many);
     let mut each: Vec<Costed> = vec![];
