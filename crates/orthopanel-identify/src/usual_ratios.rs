@@ -7,7 +7,7 @@ use crate::free_constants::{FreeConstants, Rest};
 use crate::least_squares::Quadratic;
 
 /// Poisson's ratio of aluminium faces.
-const NU: f64 = 0.3;
+pub(crate) const NU: f64 = 0.3;
 /// $G_{xy}/E_x$ of faces alike in both directions.
 pub(crate) const USUAL_SHEAR: f64 = 0.5 / (1.0 + NU);
 

@@ -39,6 +39,9 @@ fn val_an_effect_put_in_is_named_and_measured() {
         // A motion that is trusted to no more tells k3 to twice that.
         assert!(kind != "cubic-stiffness" || std > 5e-4 * value, "{kind}: {std}");
         assert!(found.error.after.held_out < 1.2 * found.error.noise_floor, "{kind}: {:?}", found.error);
+        // What depends on the strength of a hit shows in harder hits, and nothing else does.
+        let harder = "hit 2 times as hard, at the same places";
+        assert_eq!(found.next_experiment.contains(harder), kind == "cubic-stiffness", "{}", found.next_experiment);
     }
 }
 

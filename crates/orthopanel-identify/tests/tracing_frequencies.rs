@@ -62,6 +62,14 @@ fn val_wide_pieces_of_the_paper_want_a_plate() {
     assert!(found.error.after.fitted < 0.37 && found.error.after.held_out < 0.5, "{:?}", found.error);
     let bic = |id: &str| found.candidates.iter().find(|candidate| candidate.id == id).unwrap().bic;
     assert!(bic("base") - bic("width-coupling") > 20.0);
+    assert!(["edge-mass", "rotary-inertia"].iter().all(|id| bic(id) - bic("width-coupling") > 20.0));
+    // A Poisson's ratio of 0.68 is no material's: the other reading, pieces that differ, must be said with what it misses.
+    let said = found.notes.iter().find(|note| note.contains("no material's")).unwrap();
+    let number_before = |words: &str| -> f64 {
+        said.split(words).next().and_then(|before| before.split_whitespace().last()).unwrap().parse().unwrap()
+    };
+    assert!((number_before(" % above that of the others") - 5.8).abs() < 0.1, "{said}");
+    assert!((number_before(" % rms, in place of") - 0.641).abs() < 0.01, "{said}");
 }
 
 #[test]

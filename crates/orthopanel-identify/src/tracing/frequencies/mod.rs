@@ -10,6 +10,7 @@ mod lacking;
 mod list_fit;
 mod list_problem;
 mod parting;
+mod pieces_that_differ;
 mod places;
 mod repeats;
 mod report;

@@ -10,8 +10,10 @@ use super::lacking::{self, what_to_check};
 use super::list_fit::ListFit;
 use super::list_problem::ListProblem;
 use super::parting::next_experiment;
+use super::pieces_that_differ::in_place_of_the_plate;
 use super::trust::Trust;
 use super::verdict::{CLEAR, Choice};
+use super::width::as_plate;
 use crate::IdentifyError;
 use crate::tracing::bounds;
 use crate::tracing::hypothesis::PLATE;
@@ -88,6 +90,8 @@ pub(super) fn report(
         notes.push(MIRRORED.to_owned());
     }
     notes.extend(choice.rivals.iter().chain([&chosen]).filter_map(|&index| elsewhere(&fits[index])));
+    let plate = fits[chosen].plate.as_ref();
+    notes.extend(plate.and_then(|plate| in_place_of_the_plate(&as_plate(test), plate)));
     if let Some(parameter) = &choice.on_bound {
         notes.push(bounds::note(parameter));
     }

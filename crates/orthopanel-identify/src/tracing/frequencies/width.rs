@@ -8,15 +8,17 @@ use super::list_problem::ListProblem;
 use crate::tracing::hypothesis::Hypothesis;
 use crate::{IdentifyError, Settings, identify};
 
+/// The test of pieces that are plates.
+pub(super) fn as_plate(test: &ImpactTest) -> ImpactTest {
+    ImpactTest { structure: Some(StructureKind::MindlinPlate), effects: vec![], ..test.clone() }
+}
+
 /// Identifies the plate from the same lists; constants that these do not show rest at their usual values.
 ///
 /// # Errors
 /// As [`identify`].
 pub(super) fn fit_plate(test: &ImpactTest, problem: &ListProblem) -> Result<ListFit, IdentifyError> {
-    let mut as_plate = test.clone();
-    as_plate.structure = Some(StructureKind::MindlinPlate);
-    as_plate.effects.clear();
-    let found = identify(&as_plate, Settings::default())?;
+    let found = identify(&as_plate(test), Settings::default())?;
     let residuals: Vec<f64> =
         found.pieces.iter().flat_map(|piece| &piece.modes).map(|mode| mode.error_percent() / 100.0).collect();
     let size = found.constants.iter().filter(|constant| constant.std.is_some()).count();

@@ -35,16 +35,21 @@ pub(super) fn next_experiment(
         let left = ranking.fits[ranking.chosen].chi_square(search.records).sqrt();
         return to_check::to_check(test, left);
     }
-    let compared: Vec<usize> =
+    let chosen = &ranking.fits[ranking.chosen];
+    let is_cubic = |fit: &Fit| cubic(&fit.state.hypothesis, 0).is_some();
+    let mut compared: Vec<usize> =
         if rivals.is_empty() { ranking.nearest().into_iter().collect() } else { rivals.to_vec() };
+    // Springs that stiffen are surest seen at another strength, where every linear model answers as before: the base stands for these.
+    if compared.is_empty() && is_cubic(chosen) && ranking.chosen > 0 {
+        compared.push(0);
+    }
     if compared.is_empty() {
         return "none: every other effect of the catalogue that could be tried stayed far behind".to_owned();
     }
     let sureness = if rivals.is_empty() { "to be surer still: " } else { "" };
-    let chosen = &ranking.fits[ranking.chosen];
     let others: Vec<&Fit> = compared.iter().map(|&index| &ranking.fits[index]).collect();
     // What is linear answers to harder hits alike, and places part springs that are not by their linear part only.
-    let level_tells = others.iter().chain([&chosen]).any(|fit| cubic(&fit.state.hypothesis, 0).is_some());
+    let level_tells = others.iter().chain([&chosen]).any(|fit| is_cubic(fit));
     let further = if level_tells {
         harder::harder(search, chosen, &others)
     } else {
