@@ -22,9 +22,12 @@ fn cantilever(more: &str) -> Tracing {
     trace(&ImpactTest::from_toml(&text, "cantilever.toml").unwrap()).unwrap()
 }
 
+fn example(name: &str) -> String {
+    format!("{}/../../examples/{name}/test.toml", env!("CARGO_MANIFEST_DIR"))
+}
+
 fn of_example(name: &str) -> Tracing {
-    let path = format!("{}/../../examples/{name}/test.toml", env!("CARGO_MANIFEST_DIR"));
-    trace(&ImpactTest::read(path).unwrap()).unwrap()
+    trace(&ImpactTest::read(example(name)).unwrap()).unwrap()
 }
 
 /// A tip mass and a clamp that turns shift all frequencies of a cantilever alike: the table cannot tell them apart, but it
@@ -76,8 +79,7 @@ fn val_wide_pieces_of_the_paper_want_a_plate() {
 /// differ in G_zx are met better than a plate with a ratio of its own.
 #[test]
 fn val_one_line_parts_a_plate_from_pieces_that_differ() {
-    let path = format!("{}/../../examples/pieces-1-2/test.toml", env!("CARGO_MANIFEST_DIR"));
-    let beams = std::fs::read_to_string(path).unwrap();
+    let beams = std::fs::read_to_string(example("pieces-1-2")).unwrap();
     let missed = |with_mode_6: bool, differ: bool| {
         let mut text =
             format!("structure = \"mindlin-plate\"\n{}\n{beams}", if differ { "constants.nu_xy = 0.3" } else { "" });
