@@ -9,8 +9,8 @@ use orthopanel_model::StructureKind;
 use crate::error::CommandError;
 use crate::evidence::Evidence;
 use crate::record_options::IdentifyOptions;
-use crate::report;
 use crate::traced::Traced;
+use crate::{console, report};
 
 /// A test whose base model was refused, and its trace.
 pub struct Contradicted {
@@ -20,19 +20,18 @@ pub struct Contradicted {
 }
 
 impl Contradicted {
-    /// Traces the test at `path`, of which identifying was `refused`.
+    /// Traces a test, read at `path`, of which identifying was `refused`.
     ///
     /// # Errors
     /// The refusal itself where it is another than that records contradict a beam; what the trace refuses.
-    pub fn of(path: &Path, refused: CommandError) -> Result<Self, CommandError> {
+    pub fn of(test: ImpactTest, path: &Path, refused: CommandError) -> Result<Self, CommandError> {
         if !matches!(refused, CommandError::Identify { source: IdentifyError::Contradiction { .. }, .. }) {
             return Err(refused);
         }
-        let test = ImpactTest::read(path)?;
         if test.structure == Some(StructureKind::MindlinPlate) {
             return Err(refused);
         }
-        eprintln!("not identified: {refused}");
+        console::say(format_args!("not identified: {refused}"));
         let traced = Traced::from_test(&test).map_err(|source| CommandError::Identify { path: path.into(), source })?;
         Ok(Self { test, traced, refused })
     }

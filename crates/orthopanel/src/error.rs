@@ -1,6 +1,7 @@
 //! Everything that can go wrong in a command, and the exit status it leads to.
 
-use std::path::PathBuf;
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
 
 use fmi_rs::sim::SimulationError;
 use orthopanel_data::DataError;
@@ -12,15 +13,24 @@ use thiserror::Error;
 /// The data or the model says no.
 const SAYS_NO: u8 = 1;
 /// Bad usage or input.
-const BAD_INPUT: u8 = 2;
+pub const BAD_INPUT: u8 = 2;
 
 /// What the command line refuses; the messages of the layers below stand in it as they are.
 #[derive(Debug, Error)]
 pub enum CommandError {
     #[error("{}: cannot be read: {source}", .path.display())]
     Unreadable { path: PathBuf, source: std::io::Error },
-    #[error("{}: cannot be written: {reason}: name a place in a folder that exists and may be written to", .path.display())]
+    #[error("{}: cannot be written: {reason}", .path.display())]
     Unwritable { path: PathBuf, reason: String },
+    #[error("{failed}; not all is as it was: {lost}")]
+    NotPutBack { failed: Box<CommandError>, lost: String },
+    #[error(
+        "{}: not written, for it is {}: name another place for the result", .path.display(),
+        if path == input { "read by this command".into() } else { format!("{}, which this command reads", input.display()) }
+    )]
+    OutputIsInput { path: PathBuf, input: PathBuf },
+    #[error("standard output: the answer could not be written whole: {0}")]
+    Answer(std::io::Error),
     #[error(transparent)]
     Data(#[from] DataError),
     #[error("{}: {source}", .path.display())]
@@ -87,6 +97,16 @@ pub enum CommandError {
 }
 
 impl CommandError {
+    /// Of a result, with the way out where the cause tells it.
+    pub fn unwritable(path: &Path, error: &std::io::Error) -> Self {
+        let reason = match error.kind() {
+            ErrorKind::NotFound => "its folder is not there: name a place in a folder that exists".into(),
+            ErrorKind::PermissionDenied => format!("{error}: name a place that may be written to"),
+            _ => error.to_string(),
+        };
+        Self::Unwritable { path: path.into(), reason }
+    }
+
     /// 1 where the data or the model says no, 2 for bad usage or input.
     pub fn exit_code(&self) -> u8 {
         match self {
@@ -105,11 +125,11 @@ impl CommandError {
 
 /// Says which file a refusal of the model is about.
 pub trait InFile<T> {
-    fn in_file(self, path: &std::path::Path) -> Result<T, CommandError>;
+    fn in_file(self, path: &Path) -> Result<T, CommandError>;
 }
 
 impl<T> InFile<T> for Result<T, ModelError> {
-    fn in_file(self, path: &std::path::Path) -> Result<T, CommandError> {
+    fn in_file(self, path: &Path) -> Result<T, CommandError> {
         self.map_err(|source| CommandError::Model { path: path.into(), source })
     }
 }

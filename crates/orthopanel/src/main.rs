@@ -1,18 +1,22 @@
 #![doc = include_str!("../README.md")]
+#![deny(clippy::print_stdout, clippy::print_stderr)]
 
 mod arguments;
 mod commands;
+mod console;
 mod contradicted;
+mod csv_text;
 mod driving_force;
 mod error;
 mod evidence;
 mod force_file;
 mod identified;
 mod importer;
+mod json;
 mod measured_pairs;
 mod model_file;
 mod notes;
-mod output;
+mod outputs;
 mod pictures;
 mod progress;
 mod record_options;
@@ -26,14 +30,24 @@ mod whole_accelerance;
 use std::process::ExitCode;
 
 use clap::Parser;
+use error::{BAD_INPUT, CommandError};
 
 fn main() -> ExitCode {
-    // clap itself answers --help and --version, and leaves with 2 on bad usage.
-    match commands::execute(commands::Arguments::parse()) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("orthopanel: {error}");
-            ExitCode::from(error.exit_code())
+    outcome().unwrap_or_else(|error| {
+        console::say(format_args!("orthopanel: {error}"));
+        ExitCode::from(error.exit_code())
+    })
+}
+
+fn outcome() -> Result<ExitCode, CommandError> {
+    match commands::Arguments::try_parse() {
+        Ok(arguments) => commands::execute(arguments).map(|()| ExitCode::SUCCESS),
+        // Bad usage repeats the arguments: plain text, in which nothing steers the terminal.
+        Err(answer) if answer.use_stderr() => {
+            console::say_lines(&answer.render().to_string());
+            Ok(ExitCode::from(BAD_INPUT))
         }
+        // --help and --version.
+        Err(answer) => console::print_help(&answer).map(|()| ExitCode::SUCCESS),
     }
 }

@@ -11,7 +11,7 @@ use orthopanel_model::{ModalModel, PanelModel, Place};
 use serde::Serialize;
 
 use crate::whole_accelerance::modes_up_to;
-use crate::{output, tables};
+use crate::{csv_text, tables};
 
 /// Whether a file is a test file, by its name: a test is TOML, a model JSON, an FMU an archive.
 pub fn is_test_file(path: &Path) -> bool {
@@ -228,5 +228,5 @@ pub fn csv(pairs: &[ComparedPair]) -> String {
         }
     }
     let names = ["pair", "hit", "time_s", "force_n", "measured_m_s2", "calculated_m_s2"].map(String::from);
-    output::csv(&names, &columns.each_ref().map(Vec::as_slice))
+    csv_text::csv(&names, &columns.each_ref().map(Vec::as_slice))
 }

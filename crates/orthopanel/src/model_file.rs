@@ -6,7 +6,8 @@ use orthopanel_model::PanelModel;
 
 use crate::error::{CommandError, InFile as _};
 use crate::measured_pairs::is_test_file;
-use crate::{importer, output};
+use crate::outputs::{Outputs, with_suffix};
+use crate::{console, importer};
 
 pub fn read(path: &Path) -> Result<PanelModel, CommandError> {
     if importer::is_fmu(path)? {
@@ -20,14 +21,17 @@ pub fn read(path: &Path) -> Result<PanelModel, CommandError> {
     PanelModel::from_json(&text).in_file(path)
 }
 
-/// Writes one model a piece, as `output::with_suffix` names them, and says so on standard error.
-pub fn write_each<'a>(path: &Path, models: impl Iterator<Item = (String, &'a PanelModel)>) -> Result<(), CommandError> {
-    let mut files = output::Files::default();
+/// Writes one model a piece, as `with_suffix` names them, and says so on standard error.
+pub fn write_each<'a>(
+    mut outputs: Outputs,
+    path: &Path,
+    models: impl Iterator<Item = (String, &'a PanelModel)>,
+) -> Result<(), CommandError> {
     for (suffix, model) in models {
-        files.add(output::with_suffix(path, &suffix), model.to_json());
+        outputs.add(with_suffix(path, &suffix), model.to_json());
     }
-    for path in files.write()? {
-        eprintln!("wrote {}", path.display());
+    for path in outputs.write()? {
+        console::say(format_args!("wrote {}", path.display()));
     }
     Ok(())
 }

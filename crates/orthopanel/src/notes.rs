@@ -1,9 +1,11 @@
 //! What the layers below have to say about the records, for people.
 
+use crate::console;
+
 /// Prints each note once on standard error, behind `about`, with how often it was made.
 pub fn say(about: &str, notes: &[String]) {
     for note in counted(notes) {
-        eprintln!("note: {about}{note}");
+        console::say(format_args!("note: {about}{note}"));
     }
 }
 

@@ -4,7 +4,7 @@ use orthopanel_model::{ModalModel, ModalStepper, ModelError};
 
 use crate::driving_force::DrivingForce;
 use crate::force_file::ForceHistory;
-use crate::output;
+use crate::csv_text;
 
 /// How a force runs between two samples.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
@@ -110,7 +110,7 @@ pub fn csv(force: &ForceHistory, motions: &[Motion]) -> String {
             columns.push(of(motion));
         }
     }
-    output::csv(&names, &columns)
+    csv_text::csv(&names, &columns)
 }
 
 fn name(quantity: &str, unit: &str, port: usize, ports: usize) -> String {

@@ -198,7 +198,7 @@ fn run_leaves_models_fmus_response_and_pictures() {
     let answer = bench.json("run examples/pieces-3-4/test.toml -o out/deep");
     assert_eq!(answer["schema"], "orthopanel.run/1");
     let files = answer["files"].as_array().expect("a list of files");
-    assert_eq!(files.len(), 17);
+    assert_eq!(files.len(), 18);
     for file in files {
         let path = bench.path(file.as_str().expect("a path"));
         assert!(std::fs::metadata(&path).is_ok_and(|found| found.len() > 100), "{}", path.display());

@@ -7,7 +7,11 @@ mod source;
 mod syntax;
 mod wrong_type;
 
-use std::{collections::BTreeMap, fs, path::Path};
+use std::{
+    collections::BTreeMap,
+    fs,
+    path::{Path, PathBuf},
+};
 
 use orthopanel_model::{Boundary, Place, StructureKind};
 
@@ -46,9 +50,7 @@ impl ImpactTest {
     /// # Errors
     /// [`DataError::Unreadable`] where the file cannot be read, else as [`ImpactTest::from_toml`].
     pub fn read(path: impl AsRef<Path>) -> Result<Self, DataError> {
-        let path = path.as_ref();
-        let inside = path.join("test.toml");
-        let path = if path.is_dir() { &inside } else { path };
+        let path = &Self::file_at(path.as_ref());
         let bytes = fs::read(path).map_err(|source| DataError::Unreadable { at: Location::whole(path), source })?;
         let text = String::from_utf8(bytes).map_err(|error| DataError::Syntax {
             at: Box::new(Location {
@@ -58,6 +60,21 @@ impl ImpactTest {
             message: "not UTF-8 text: save the test file as UTF-8".into(),
         })?;
         Self::from_toml(&text, path)
+    }
+
+    /// The test file that `path` stands for: of a folder the `test.toml` in it.
+    pub fn file_at(path: &Path) -> PathBuf {
+        if path.is_dir() { path.join("test.toml") } else { path.into() }
+    }
+
+    /// Every file that the test names, as it is to be opened.
+    pub fn files(&self) -> impl Iterator<Item = &Path> {
+        self.measurements.iter().filter_map(|measurement| match &measurement.data {
+            MeasurementData::NaturalFrequencies(_) => None,
+            MeasurementData::TimeHistory(recorded) | MeasurementData::Accelerance(recorded) => {
+                Some(recorded.file.as_path())
+            }
+        })
     }
 
     /// Reads the text of a test file; `path` names it in messages, and files that it names are looked for beside it.

@@ -8,7 +8,8 @@ use serde::Serialize;
 
 use crate::arguments::{ModeArguments, PortArguments};
 use crate::error::{CommandError, InFile as _};
-use crate::{model_file, output};
+use crate::outputs::{Inputs, Outputs};
+use crate::{console, model_file};
 
 /// Write a model as an FMU for co-simulation and model exchange: force in; acceleration, velocity and displacement out
 ///
@@ -65,6 +66,8 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
         return Err(CommandError::FmuName { path: arguments.output.clone() });
     }
     let path = &arguments.model;
+    let inputs = arguments.libraries.iter().fold(Inputs::of(path), |inputs, (_, library)| inputs.and(library));
+    let mut outputs = Outputs::of(inputs).planned(&arguments.output)?;
     let model = model_file::read(path)?;
     let ports = arguments.ports.needed(&model, path)?;
     let (alone, left_out) = model.panel_alone().in_file(path)?;
@@ -78,7 +81,8 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
         None => frequencies.last().copied().unwrap_or(0.0),
     };
     let fmu = Fmu::of_panel(&model, arguments.modes.range(), ports.clone(), &options(arguments)?)?;
-    output::write(&arguments.output, fmu.to_bytes()?)?;
+    outputs.add(&arguments.output, fmu.to_bytes()?);
+    outputs.write()?;
     let answer = Answer {
         schema: "orthopanel.export/1",
         file: &arguments.output,
@@ -89,27 +93,27 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
         ports: &ports,
         left_out,
     };
-    eprintln!(
+    console::say(format_args!(
         "wrote {} (FMI {}, {rigid_modes} rigid and {} flexible modes up to {:.1} Hz)",
         arguments.output.display(),
         answer.fmi,
         answer.flexible_modes,
         answer.highest_hz
-    );
+    ));
     if let Some(fit) = &seen.core {
         let [from, to] = fit.band;
         let percent = 100.0 * fit.error;
-        eprintln!("viscoelastic-core: fitted within {percent:.2} % of its modulus from {from:.0} to {to:.0} Hz");
+        console::say(format_args!("viscoelastic-core: fitted within {percent:.2} % of its modulus from {from:.0} to {to:.0} Hz"));
     }
     if answer.flexible_modes == 0 {
         let does = if rigid_modes == 0 { "yields at once, without inertia" } else { "only moves as a whole" };
-        eprintln!("no flexible mode is kept: this panel {does}; ask for more by --modes or --up-to");
+        console::say(format_args!("no flexible mode is kept: this panel {does}; ask for more by --modes or --up-to"));
     }
     if !answer.left_out.is_empty() {
-        eprintln!("left out, as no part of the panel: {}", answer.left_out.join(", "));
+        console::say(format_args!("left out, as no part of the panel: {}", answer.left_out.join(", ")));
     }
     if arguments.json {
-        output::print_json(&answer);
+        console::print_json(&answer)?;
     }
     Ok(())
 }

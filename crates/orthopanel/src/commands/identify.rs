@@ -2,10 +2,13 @@
 
 use std::path::PathBuf;
 
+use orthopanel_data::ImpactTest;
+
 use crate::error::CommandError;
-use crate::identified::Identified;
+use crate::identified::{Identified, suffixes};
+use crate::outputs::{Inputs, Outputs, with_suffix};
 use crate::record_options::IdentifyOptions;
-use crate::{model_file, output};
+use crate::{console, model_file};
 
 /// Identify the elastic constants, and the damping where there are records, from a test
 ///
@@ -38,15 +41,14 @@ pub struct Arguments {
 }
 
 pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
-    let identified = Identified::from_test(&arguments.test, &arguments.options)?;
-    if let Some(path) = &arguments.output {
+    let Arguments { test: path, output, options, json } = arguments;
+    let test = ImpactTest::read(path)?;
+    let named = output.iter().flat_map(|output| suffixes(&test).map(|suffix| with_suffix(output, &suffix)));
+    let outputs = Outputs::of(Inputs::of_test(path, &test)).all_planned(named)?;
+    let identified = Identified::from_test(&test, path, options)?;
+    if let Some(output) = output {
         let models = identified.found.pieces.iter().zip(&identified.models);
-        model_file::write_each(path, models.map(|(fit, model)| (identified.suffix(fit), model)))?;
+        model_file::write_each(outputs, output, models.map(|(fit, model)| (identified.suffix(fit), model)))?;
     }
-    if arguments.json {
-        output::print_json(&identified.answer);
-    } else {
-        output::print(&identified.tables());
-    }
-    Ok(())
+    if *json { console::print_json(&identified.answer) } else { console::print(&identified.tables()) }
 }

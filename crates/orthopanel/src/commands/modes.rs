@@ -7,8 +7,9 @@ use serde::Serialize;
 
 use crate::arguments::count;
 use crate::error::{CommandError, InFile as _};
+use crate::outputs::{Inputs, Outputs};
 use crate::pictures::{self, ModeShape};
-use crate::{model_file, output, tables};
+use crate::{console, model_file, tables};
 
 /// List the natural frequencies of a model, flexible modes from 1
 ///
@@ -63,6 +64,7 @@ struct ModeEntry {
 const CORE: &str = "each mode at the storage modulus at its own frequency; zeta holds the core's loss there";
 
 pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
+    let mut outputs = Outputs::of(Inputs::of(&arguments.model)).all_planned(arguments.picture.clone())?;
     let model = model_file::read(&arguments.model)?;
     let modes = model.modes(ModeRange::Count(arguments.count)).in_file(&arguments.model)?;
     let flexible: Vec<&PanelMode> = modes.iter().filter(|mode| !mode.is_rigid()).collect();
@@ -76,7 +78,7 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
     let core = model.effects.iter().any(|effect| effect.id == "viscoelastic-core").then_some(CORE);
     let answer = Answer { schema: "orthopanel.modes/1", modes: (1..).zip(&flexible).map(entry).collect(), core };
     if let Some(path) = arguments.picture.as_ref().filter(|_| flexible.is_empty()) {
-        eprintln!("{} not written: no mode was asked for", path.display());
+        console::say(format_args!("{} not written: no mode was asked for", path.display()));
     }
     if let Some(path) = arguments.picture.as_ref().filter(|_| !flexible.is_empty()) {
         let shape = |(mode, entry)| shape(mode, entry);
@@ -84,16 +86,17 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
         let draw =
             if model.structure.has_modes_across() { pictures::plate_mode_shapes } else { pictures::beam_mode_shapes };
         let picture = draw(&model.piece, &shapes)?;
-        output::write(path, picture)?;
-        eprintln!("wrote {}", path.display());
+        outputs.add(path, picture);
+        outputs.write()?;
+        console::say(format_args!("wrote {}", path.display()));
     }
     if arguments.json {
-        output::print_json(&answer);
+        console::print_json(&answer)?;
     } else {
-        output::print(&table(&answer.modes, model.structure));
+        console::print(&table(&answer.modes, model.structure))?;
     }
     if let Some(core) = core {
-        eprintln!("viscoelastic core: {core}");
+        console::say(format_args!("viscoelastic core: {core}"));
     }
     Ok(())
 }

@@ -2,15 +2,17 @@
 
 use std::path::{Path, PathBuf};
 
+use orthopanel_data::ImpactTest;
 use serde::Serialize;
 
 use crate::contradicted::Contradicted;
 use crate::error::CommandError;
 use crate::evidence::Evidence;
 use crate::identified::Identified;
+use crate::outputs::{Inputs, Outputs};
 use crate::record_options::IdentifyOptions;
 use crate::traced::Traced;
-use crate::{output, report};
+use crate::{console, report};
 
 /// Write what a test shows onto one HTML page, which needs no network and nothing beside it
 ///
@@ -48,35 +50,48 @@ struct Answer<'a> {
 }
 
 pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
-    let Arguments { test, output, options, json } = arguments;
-    let identified = match Identified::from_test(test, options) {
-        Err(refused) => return trace_alone(arguments, Contradicted::of(test, refused)?),
+    let Arguments { test: path, output, options, json } = arguments;
+    let test = ImpactTest::read(path)?;
+    let outputs = Outputs::of(Inputs::of_test(path, &test));
+    let outputs = match output.parent().filter(|folder| !folder.as_os_str().is_empty()) {
+        Some(folder) => outputs.making(folder),
+        None => outputs,
+    };
+    let mut outputs = outputs.planned(output)?;
+    let identified = match Identified::from_test(&test, path, options) {
+        Err(refused) => return trace_alone(arguments, outputs, Contradicted::of(test, path, refused)?),
         Ok(identified) => identified,
     };
-    let traced = Traced::where_possible(&identified.test, test);
-    let evidence = Evidence::of(&identified, traced.as_ref().ok(), options.settings()?.estimation, test)?;
-    output::write_with_folder(output, report::page(test, &identified, &traced, &evidence)?)?;
-    say(output, *json, traced.as_ref().map_err(String::as_str));
-    Ok(())
+    let traced = Traced::where_possible(&test, path);
+    let evidence = Evidence::of(&identified, traced.as_ref().ok(), options.settings()?.estimation, path)?;
+    outputs.add(output, report::page(path, &identified, &traced, &evidence)?);
+    outputs.write()?;
+    say(output, *json, traced.as_ref().map_err(String::as_str))
 }
 
 /// The page of a test whose base model was refused: it shows what was measured and what the trace tells.
-fn trace_alone(arguments: &Arguments, contradicted: Contradicted) -> Result<(), CommandError> {
+fn trace_alone(
+    arguments: &Arguments,
+    mut outputs: Outputs,
+    contradicted: Contradicted,
+) -> Result<(), CommandError> {
     let Arguments { test, output, options, json } = arguments;
-    output::write_with_folder(output, contradicted.page(test, options)?)?;
-    say(output, *json, Ok(&contradicted.traced));
+    outputs.add(output, contradicted.page(test, options)?);
+    outputs.write()?;
+    say(output, *json, Ok(&contradicted.traced))?;
     contradicted.end()
 }
 
 /// Says what was written.
-fn say(page: &Path, json: bool, traced: Result<&Traced, &str>) {
-    eprintln!("wrote {}", page.display());
+fn say(page: &Path, json: bool, traced: Result<&Traced, &str>) -> Result<(), CommandError> {
+    console::say(format_args!("wrote {}", page.display()));
     if json {
-        output::print_json(&Answer {
+        console::print_json(&Answer {
             schema: "orthopanel.report/1",
             page,
             verdict: traced.ok().map(|traced| traced.tracing.verdict.name()),
             not_traced: traced.err(),
-        });
+        })?;
     }
+    Ok(())
 }

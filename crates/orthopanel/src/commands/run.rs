@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use orthopanel_data::ImpactTest;
 use orthopanel_export::{FmiVersion, Fmu, FmuOptions};
 use orthopanel_identify::Tracing;
 use orthopanel_model::{ModelError, PanelModel};
@@ -13,12 +14,13 @@ use crate::driving_force::DrivingForce;
 use crate::error::{CommandError, InFile as _};
 use crate::evidence::{Evidence, PieceEvidence};
 use crate::force_file::ForceHistory;
-use crate::identified::{Answer, Identified, suffix};
+use crate::identified::{Answer, Identified, suffixes};
 use crate::measured_pairs::{HitMisfit, misfit_table};
+use crate::outputs::{Inputs, Outputs};
 use crate::record_options::IdentifyOptions;
 use crate::time_response::Hold;
 use crate::traced::Traced;
-use crate::{output, pictures, report, time_response};
+use crate::{console, json, pictures, report, time_response};
 
 /// Do all of it: identify the panel of a test, trace what its model lacks, export its FMUs, simulate a hit, draw the result
 ///
@@ -31,6 +33,9 @@ use crate::{output, pictures, report, time_response};
 /// plate is not traced yet: model and FMUs are those of the plate identified. Records that no beam
 /// could give are traced all the same: trace.json and report.html tell what was found, and where it explains them, as by a
 /// plate, its model and FMUs are written too.
+///
+/// A manifest.json lists the results, each with its SHA-256, and what they were made from. What it lists is removed by the
+/// next run into DIR that does not write it anew, unless it was changed since; no other file is, and none that is read.
 ///
 /// Of records, each pair of places gets a picture of the accelerance, measured and calculated, and one of a hit with
 /// the accelerations measured and calculated under it; time-histories.json tells how far the model is from every hit.
@@ -51,6 +56,9 @@ pub struct Arguments {
     #[arg(long)]
     json: bool,
 }
+
+/// Lists the results in the folder, with the command, the version and the inputs they are of.
+const MANIFEST: &str = "manifest.json";
 
 #[derive(Serialize)]
 struct RunAnswer<'a> {
@@ -74,107 +82,134 @@ struct HitsAnswer<'a> {
 }
 
 pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
-    let Arguments { test, output, options, json } = arguments;
-    let identified = match Identified::from_test(test, options) {
-        Err(refused) => return trace_alone(arguments, Contradicted::of(test, refused)?),
+    let Arguments { test: path, output, options, json } = arguments;
+    let test = ImpactTest::read(path)?;
+    let mut files = Outputs::of(Inputs::of_test(path, &test)).filling(output, MANIFEST).planned_inside(names(&test))?;
+    let identified = match Identified::from_test(&test, path, options) {
+        Err(refused) => return trace_alone(arguments, files, Contradicted::of(test, path, refused)?),
         Ok(identified) => identified,
     };
-    let traced = Traced::where_possible(&identified.test, test);
+    let traced = Traced::where_possible(&test, path);
     let models =
         traced.as_ref().map_or_else(|_| identified.models.clone(), |traced| traced.applied_to(&identified.models));
-    let evidence = Evidence::of(&identified, traced.as_ref().ok(), options.settings()?.estimation, test)?;
-    let mut files = output::Files::default();
-    files.add("identified.json", output::json(&identified.answer));
-    files.add("report.html", report::page(test, &identified, &traced, &evidence)?);
+    let evidence = Evidence::of(&identified, traced.as_ref().ok(), options.settings()?.estimation, path)?;
+    files.add_inside("identified.json", json::line(&identified.answer));
+    files.add_inside("report.html", report::page(path, &identified, &traced, &evidence)?);
     for ((fit, model), shown) in identified.found.pieces.iter().zip(&models).zip(&evidence.pieces) {
         let suffix = identified.suffix(fit);
-        add_model(&mut files, test, &suffix, model)?;
+        add_model(&mut files, path, &suffix, model)?;
         add_pictures(&mut files, &suffix, shown);
     }
     if let Ok(traced) = &traced {
-        files.add("trace.json", output::json(&traced.tracing));
+        files.add_inside("trace.json", json::line(&traced.tracing));
     }
     let hits = &evidence.hits()[..];
     if !hits.is_empty() {
         let answer = HitsAnswer { schema: "orthopanel.simulated-hits/1", hits };
-        files.add("time-histories.json", output::json(&answer));
+        files.add_inside("time-histories.json", json::line(&answer));
     }
-    let files = written(files, output)?;
+    let files = written(files)?;
     if *json {
         let trace = traced.as_ref().ok().map(|traced| &traced.tracing);
         let not_traced = traced.as_ref().err().map(String::as_str);
         let identified = Some(&identified.answer);
-        output::print_json(&RunAnswer {
+        console::print_json(&RunAnswer {
             schema: "orthopanel.run/1",
             identified,
             trace,
             not_traced,
             hits,
             files: &files,
-        });
+        })?;
     } else {
         let has_effects = traced.as_ref().is_ok_and(|traced| !traced.tracing.effects.is_empty());
         if has_effects {
-            output::print("the base model, before effects\n");
+            console::print("the base model, before effects\n")?;
         }
-        output::print(&identified.tables());
+        console::print(&identified.tables())?;
         match &traced {
-            Ok(traced) => output::print(&format!("\n{}", traced.text())),
-            Err(why) => output::print(&format!("\n{why}\n")),
+            Ok(traced) => console::print(&format!("\n{}", traced.text()))?,
+            Err(why) => console::print(&format!("\n{why}\n"))?,
         }
         if !hits.is_empty() {
             let model = if has_effects { "the base model, before effects," } else { "the model" };
-            output::print(&format!("\nmeasured hits, and {model} driven by their forces\n{}", misfit_table(hits)));
+            console::print(&format!("\nmeasured hits, and {model} driven by their forces\n{}", misfit_table(hits)))?;
         }
     }
     Ok(())
 }
 
+/// Every name that a result of the test may have.
+fn names(test: &ImpactTest) -> Vec<String> {
+    let of_test = ["identified.json", "report.html", "trace.json", "time-histories.json"].map(String::from);
+    let of_piece = |suffix: String| {
+        let named = [
+            format!("model{suffix}.json"),
+            format!("panel{suffix}.fmu"),
+            format!("panel{suffix}-fmi3.fmu"),
+            format!("response{suffix}.csv"),
+            format!("response{suffix}.svg"),
+            format!("frequencies{suffix}.svg"),
+            format!("coherence{suffix}.svg"),
+        ];
+        let pairs = test.files().count().max(1);
+        let numbers = (0..pairs).map(|index| numbered(index, pairs)).chain([numbered(0, 1)]);
+        let of_pairs = ["accelerance", "time-history"];
+        let pictures: Vec<_> =
+            numbers.flat_map(|number| of_pairs.map(|name| format!("{name}{suffix}{number}.svg"))).collect();
+        named.into_iter().chain(pictures)
+    };
+    of_test.into_iter().chain(suffixes(test).flat_map(of_piece)).collect()
+}
+
 /// What there is of a test whose base model was refused.
-fn trace_alone(arguments: &Arguments, contradicted: Contradicted) -> Result<(), CommandError> {
-    let Arguments { test: path, output, options, json } = arguments;
+fn trace_alone(
+    arguments: &Arguments,
+    mut files: Outputs,
+    contradicted: Contradicted,
+) -> Result<(), CommandError> {
+    let Arguments { test: path, options, json, .. } = arguments;
     let Contradicted { test, traced, .. } = &contradicted;
-    let mut files = output::Files::default();
-    files.add("trace.json", output::json(&traced.tracing));
-    files.add("report.html", contradicted.page(path, options)?);
+    files.add_inside("trace.json", json::line(&traced.tracing));
+    files.add_inside("report.html", contradicted.page(path, options)?);
     if traced.explains() {
-        for (named, model) in test.pieces.iter().zip(&traced.applied_to(&traced.tracing.panels)) {
-            add_model(&mut files, path, &suffix(&named.name, test.pieces.len()), model)?;
+        for (suffix, model) in suffixes(test).zip(&traced.applied_to(&traced.tracing.panels)) {
+            add_model(&mut files, path, &suffix, model)?;
         }
     }
-    let files = written(files, output)?;
+    let files = written(files)?;
     if *json {
         let trace = Some(&traced.tracing);
-        output::print_json(&RunAnswer {
+        console::print_json(&RunAnswer {
             schema: "orthopanel.run/1",
             identified: None,
             trace,
             not_traced: None,
             hits: &[],
             files: &files,
-        });
+        })?;
     } else {
-        output::print(&traced.text());
+        console::print(&traced.text())?;
     }
     contradicted.end()
 }
 
-fn written(files: output::Files, folder: &Path) -> Result<Vec<PathBuf>, CommandError> {
-    let files = files.write_into(folder)?;
-    files.iter().for_each(|path| eprintln!("wrote {}", path.display()));
+fn written(files: Outputs) -> Result<Vec<PathBuf>, CommandError> {
+    let files = files.write()?;
+    files.iter().for_each(|path| console::say(format_args!("wrote {}", path.display())));
     Ok(files)
 }
 
 /// Model, FMUs and a simulated hit of one piece.
-fn add_model(files: &mut output::Files, test: &Path, suffix: &str, model: &PanelModel) -> Result<(), CommandError> {
-    files.add(format!("model{suffix}.json"), model.to_json());
+fn add_model(files: &mut Outputs, test: &Path, suffix: &str, model: &PanelModel) -> Result<(), CommandError> {
+    files.add_inside(&format!("model{suffix}.json"), model.to_json());
     let ports = &model.ports;
     let seen = match model.time_model(USUAL_MODES, &ports.forces, &ports.responses) {
         // The trace may find what has no modes; the model file holds it all the same.
         Err(ModelError::Unsupported(what)) if !model.effects.is_empty() => {
-            eprintln!(
+            console::say(format_args!(
                 "no FMU and no simulated hit: {what} is not supported by this version; model{suffix}.json holds it"
-            );
+            ));
             return Ok(());
         }
         seen => seen.in_file(test)?,
@@ -182,25 +217,25 @@ fn add_model(files: &mut output::Files, test: &Path, suffix: &str, model: &Panel
     for (version, ending) in [(FmiVersion::Fmi2, ""), (FmiVersion::Fmi3, "-fmi3")] {
         let options = FmuOptions { version, ..FmuOptions::default() };
         let fmu = Fmu::of_panel(model, USUAL_MODES, ports.clone(), &options)?;
-        files.add(format!("panel{suffix}{ending}.fmu"), fmu.to_bytes()?);
+        files.add_inside(&format!("panel{suffix}{ending}.fmu"), fmu.to_bytes()?);
     }
     let hit = DrivingForce::new(ForceHistory::half_sine(ports.forces.len()), Hold::Linear, test)?;
     let motions = time_response::simulate(&seen.modes, &seen.static_remainder, &hit).in_file(test)?;
     let hit = hit.samples;
-    files.add(format!("response{suffix}.csv"), time_response::csv(&hit, &motions));
-    files.add(format!("response{suffix}.svg"), pictures::response(&hit, &motions)?);
+    files.add_inside(&format!("response{suffix}.csv"), time_response::csv(&hit, &motions));
+    files.add_inside(&format!("response{suffix}.svg"), pictures::response(&hit, &motions)?);
     Ok(())
 }
 
-fn add_pictures(files: &mut output::Files, suffix: &str, shown: &PieceEvidence) {
+fn add_pictures(files: &mut Outputs, suffix: &str, shown: &PieceEvidence) {
     for (name, picture) in [("frequencies", &shown.frequencies), ("coherence", &shown.coherence)] {
         if let Some(picture) = picture {
-            files.add(format!("{name}{suffix}.svg"), picture.as_str());
+            files.add_inside(&format!("{name}{suffix}.svg"), picture.as_str());
         }
     }
     for (name, pictures) in [("accelerance", &shown.accelerances), ("time-history", &shown.time_histories)] {
         for (index, picture) in pictures.iter().enumerate() {
-            files.add(format!("{name}{suffix}{}.svg", numbered(index, pictures.len())), picture.as_str());
+            files.add_inside(&format!("{name}{suffix}{}.svg", numbered(index, pictures.len())), picture.as_str());
         }
     }
 }

@@ -1,13 +1,14 @@
 //! `trace`: the effect that the model lacks.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use orthopanel_data::ImpactTest;
 
 use crate::error::CommandError;
-use crate::identified::suffix;
+use crate::identified::suffixes;
+use crate::outputs::{Inputs, Outputs, with_suffix};
 use crate::traced::Traced;
-use crate::{model_file, output};
+use crate::{console, model_file};
 
 /// Name the physical effect that the model of a test lacks
 ///
@@ -35,21 +36,31 @@ pub struct Arguments {
 }
 
 pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
-    let path = &arguments.test;
+    let Arguments { test: path, output, json } = arguments;
     let test = ImpactTest::read(path)?;
+    let named = output.iter().flat_map(|output| suffixes(&test).map(|suffix| with_suffix(output, &suffix)));
+    let outputs = Outputs::of(Inputs::of_test(path, &test)).all_planned(named)?;
     let traced = Traced::from_test(&test).map_err(|source| CommandError::Identify { path: path.clone(), source })?;
+    let written = match output {
+        Some(output) => write_models(outputs, output, &test, path, &traced),
+        None => Ok(()),
+    };
     // What was found is told even where no model can be written.
-    if arguments.json {
-        output::print_json(&traced.tracing);
-    } else {
-        output::print(&traced.text());
-    }
-    let Some(output) = &arguments.output else { return Ok(()) };
-    let models = traced.models(&test).map_err(|source| CommandError::NoModel {
-        path: output.clone(),
-        test: path.clone(),
+    if *json { console::print_json(&traced.tracing)? } else { console::print(&traced.text())? }
+    written
+}
+
+fn write_models(
+    outputs: Outputs,
+    output: &Path,
+    test: &ImpactTest,
+    path: &Path,
+    traced: &Traced,
+) -> Result<(), CommandError> {
+    let models = traced.models(test).map_err(|source| CommandError::NoModel {
+        path: output.into(),
+        test: path.into(),
         source: Box::new(source),
     })?;
-    let panels = test.pieces.iter().zip(&models);
-    model_file::write_each(output, panels.map(|(named, panel)| (suffix(&named.name, test.pieces.len()), panel)))
+    model_file::write_each(outputs, output, suffixes(test).zip(&models))
 }

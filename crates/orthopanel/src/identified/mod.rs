@@ -13,7 +13,7 @@ use orthopanel_model::PanelModel;
 
 use crate::error::CommandError;
 use crate::record_options::IdentifyOptions;
-use crate::{notes, progress};
+use crate::{console, notes, progress};
 pub use answer::{Answer, called};
 pub use mode_rows::{Digits, ModeRows};
 use models::model;
@@ -30,22 +30,21 @@ pub struct Identified {
 }
 
 impl Identified {
-    /// Reads the test at `path` and identifies its panel; says on standard error what was noted and had to be assumed.
-    pub fn from_test(path: &Path, options: &IdentifyOptions) -> Result<Self, CommandError> {
+    /// Identifies the panel of a test, read at `path`; says on standard error what was noted and had to be assumed.
+    pub fn from_test(test: &ImpactTest, path: &Path, options: &IdentifyOptions) -> Result<Self, CommandError> {
         let settings = options.settings()?;
-        let test = ImpactTest::read(path)?;
-        options.say_if_idle(&test);
+        options.say_if_idle(test);
         let found = {
             let _shown = progress::spinner("reading the records and identifying");
-            identify(&test, settings).map_err(|source| CommandError::Identify { path: path.into(), source })?
+            identify(test, settings).map_err(|source| CommandError::Identify { path: path.into(), source })?
         };
         notes::say("", &found.notes);
-        let models = models_of(&test, &found, settings);
+        let models = models_of(test, &found, settings);
         if let Some(sentence) = assumed_damping(&found) {
-            eprintln!("{sentence}");
+            console::say(sentence);
         }
         let answer = Answer::of(&found);
-        Ok(Self { test, found, models, answer })
+        Ok(Self { test: test.clone(), found, models, answer })
     }
 
     /// `-NAME` where there are several pieces, safe in file names; nothing for a single one.
@@ -82,6 +81,11 @@ fn assumed_damping(found: &Identification) -> Option<String> {
              the records as a whole fit best, and beyond them zeta = {ASSUMED_DAMPING}, an assumption (damping.beyond)"
         )
     })
+}
+
+/// That of every piece of a test.
+pub fn suffixes(test: &ImpactTest) -> impl Iterator<Item = String> {
+    test.pieces.iter().map(|piece| suffix(&piece.name, test.pieces.len()))
 }
 
 /// `-NAME` of one of so many pieces, safe in file names; nothing for a single one.

@@ -13,7 +13,7 @@ use orthopanel_model::{Damping, PanelModel, Place};
 use serde_json::Value;
 
 use crate::identified::{ASSUMED_DAMPING, base_models, to_digits};
-use crate::{notes, progress};
+use crate::{console, notes, progress};
 pub use tables::{INDEPENDENT, comparison, effect_rows, ranking_rows};
 
 /// What a mode's entry in a model's provenance tells of the test alone.
@@ -47,7 +47,7 @@ impl Traced {
     /// says so, which goes to standard error too.
     pub fn where_possible(test: &ImpactTest, path: &Path) -> Result<Self, String> {
         Self::from_test(test).map_err(|error| {
-            eprintln!("not traced: {}: {error}", path.display());
+            console::say(format_args!("not traced: {}: {error}", path.display()));
             format!("Not traced: {error}.")
         })
     }

@@ -4,7 +4,7 @@
 #![allow(dead_code)]
 
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::{Command, Output, Stdio};
 
 use tempfile::TempDir;
 
@@ -60,13 +60,17 @@ impl Bench {
         name
     }
 
-    /// Runs `orthopanel` with the words of `line`, divided by blanks.
+    /// `orthopanel` with the words of `line`, divided by blanks; what it says is thrown away unless asked for.
+    pub fn command(&self, line: &str) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_orthopanel"));
+        command.args(line.split_whitespace()).current_dir(self.folder.path());
+        command.stdout(Stdio::null()).stderr(Stdio::null());
+        command
+    }
+
+    /// Runs `orthopanel` with the words of `line`.
     pub fn run(&self, line: &str) -> Output {
-        Command::new(env!("CARGO_BIN_EXE_orthopanel"))
-            .args(line.split_whitespace())
-            .current_dir(self.folder.path())
-            .output()
-            .expect("the program starts")
+        self.command(line).stdout(Stdio::piped()).stderr(Stdio::piped()).output().expect("the program starts")
     }
 
     /// Runs and wants success; gives standard output.

@@ -7,8 +7,9 @@ use serde::Serialize;
 
 use crate::arguments::{count, frequency, on_piece, place};
 use crate::error::{CommandError, InFile as _};
+use crate::outputs::{Inputs, Outputs};
 use crate::whole_accelerance::WholeAccelerance;
-use crate::{model_file, output};
+use crate::{console, csv_text, model_file};
 
 /// The pair of places and the lines of a calculated accelerance.
 #[derive(clap::Args)]
@@ -77,6 +78,7 @@ pub fn execute(path: &Path, grid: &Grid, output: Option<&Path>, json: bool) -> R
         let remedy = format!("must lie above --from {from}, or be the same for a single line");
         return Err(CommandError::Option { option: "to", value: to.to_string(), remedy });
     }
+    let mut outputs = Outputs::of(Inputs::of(path)).all_planned(output.map(Path::to_path_buf))?;
     let model = model_file::read(path)?;
     on_piece(&model, "force", &[force])?;
     on_piece(&model, "response", &[response])?;
@@ -90,15 +92,16 @@ pub fn execute(path: &Path, grid: &Grid, output: Option<&Path>, json: bool) -> R
     let (real, imag) = frequency_hz.iter().map(|&frequency| seen.at(frequency)).unzip();
     let answer = Answer { schema: "orthopanel.accelerance/1", force, response, frequency_hz, real, imag };
     let names = ["frequency_hz", "real", "imag"].map(String::from);
-    let table = || output::csv(&names, &[&answer.frequency_hz, &answer.real, &answer.imag]);
+    let table = || csv_text::csv(&names, &[&answer.frequency_hz, &answer.real, &answer.imag]);
     if let Some(path) = output {
-        output::write(path, table())?;
-        eprintln!("wrote {} ({lines} lines)", path.display());
+        outputs.add(path, table());
+        outputs.write()?;
+        console::say(format_args!("wrote {} ({lines} lines)", path.display()));
     }
     if json {
-        output::print_json(&answer);
+        console::print_json(&answer)?;
     } else if output.is_none() {
-        output::print(&table());
+        console::print(&table())?;
     }
     Ok(())
 }

@@ -8,8 +8,12 @@ use serde::Serialize;
 
 use crate::error::CommandError;
 use crate::measured_pairs::{ToldHit, place_text, told};
+use crate::outputs::{Inputs, Outputs, with_suffix};
 use crate::record_options::EstimationOptions;
-use crate::{notes, output, progress, tables};
+use crate::{console, csv_text, notes, progress, tables};
+
+/// Not that of `run`, whose results may lie in the same folder.
+const MANIFEST: &str = "accelerance-manifest.json";
 
 #[derive(Serialize)]
 struct Answer {
@@ -42,6 +46,11 @@ pub fn execute(
 ) -> Result<(), CommandError> {
     let estimation = options.estimation(Window::None)?;
     let test = ImpactTest::read(path)?;
+    let mut outputs = Outputs::of(Inputs::of_test(path, &test)).all_planned(output.iter().flat_map(|&output| {
+        // Into a folder that is not there goes nothing that is.
+        let files = if is_folder(output, true) && !output.is_dir() { 0 } else { test.files().count() };
+        (0..files).map(move |index| named(output, true, index)).chain([named(output, false, 0)])
+    }))?;
     options.say_if_idle(&test);
     let mut measured = {
         let _shown = progress::spinner("reading the records");
@@ -52,51 +61,51 @@ pub fn execute(
         return Err(CommandError::Records { path: path.into(), problem });
     }
     let several = measured.len() > 1;
-    let is_csv = |path: &Path| path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("csv"));
-    let into_folder = output.filter(|path| path.is_dir() || (several && !is_csv(path)));
-    let mut files = output::Files::default();
+    if let Some(folder) = output.filter(|path| is_folder(path, several)) {
+        outputs = outputs.filling(folder, MANIFEST);
+    }
     for (index, (entry, accelerance)) in measured.iter_mut().enumerate() {
         let Some(output) = output else { break };
-        let number = format!("-{}", index + 1);
-        let (named, seen) = match into_folder {
-            Some(folder) => {
-                let name = PathBuf::from(format!("accelerance{number}.csv"));
-                (name.clone(), folder.join(name))
-            }
-            None => {
-                let name = output::with_suffix(output, if several { &number } else { "" });
-                (name.clone(), name)
-            }
-        };
-        entry.file = Some(seen);
-        files.add(named, csv(accelerance));
+        let named = named(output, several, index);
+        entry.file = Some(named.clone());
+        outputs.add(named, csv(accelerance));
     }
-    let written = match into_folder {
-        Some(folder) => files.write_into(folder)?,
-        None => files.write()?,
-    };
+    let written = outputs.write()?;
     let accelerances: Vec<Entry> = measured.into_iter().map(|(entry, _)| entry).collect();
     for entry in &accelerances {
         let pair = format!("{} to {}", place_text(entry.force), place_text(entry.response));
         notes::say(&format!("{pair}: "), &entry.notes);
     }
-    written.iter().for_each(|path| eprintln!("wrote {}", path.display()));
+    written.iter().for_each(|path| console::say(format_args!("wrote {}", path.display())));
     if let Some(widest) = accelerances.iter().map(|entry| entry.decay_rate).max_by(f64::total_cmp)
         && widest > 0.0
         && !written.is_empty()
     {
-        eprintln!(
+        console::say(format_args!(
             "note: these lines hold the exponential window's damping, {widest:.3} 1/s: the column decay_rate_1_s carries it, and \
              identify and trace take it out; a damping ratio read off the lines by other means comes out too great by \
              {widest:.3} / omega"
-        );
+        ));
     }
     if json {
-        output::print_json(&Answer { schema: "orthopanel.accelerances/1", accelerances });
+        console::print_json(&Answer { schema: "orthopanel.accelerances/1", accelerances })
     } else {
-        output::print(&table(&accelerances));
+        console::print(&table(&accelerances))
     }
-    Ok(())
+}
+
+/// Whether `output` is the name of a folder: it is there as one, or there are several files and it is not that of a CSV.
+fn is_folder(output: &Path, several: bool) -> bool {
+    let is_csv = output.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("csv"));
+    output.is_dir() || (several && !is_csv)
+}
+
+fn named(output: &Path, several: bool, index: usize) -> PathBuf {
+    let number = format!("-{}", index + 1);
+    if is_folder(output, several) {
+        return output.join(format!("accelerance{number}.csv"));
+    }
+    with_suffix(output, if several { &number } else { "" })
 }
 
 /// Every accelerance of the test: those estimated from hits first, then those given as files.
@@ -147,7 +156,7 @@ fn csv(of: &Accelerance) -> String {
         names.push("decay_rate_1_s".into());
         columns.push(&decay_rate);
     }
-    output::csv(&names, &columns)
+    csv_text::csv(&names, &columns)
 }
 
 fn table(entries: &[Entry]) -> String {

@@ -4,14 +4,17 @@ mod on_records;
 
 use std::path::PathBuf;
 
+use orthopanel_data::ImpactTest;
 use serde::Serialize;
 
 use crate::arguments::{ModeArguments, PortArguments};
 use crate::driving_force::DrivingForce;
 use crate::error::{CommandError, InFile as _};
 use crate::force_file::ForceHistory;
+use crate::measured_pairs::is_test_file;
+use crate::outputs::{Inputs, Outputs};
 use crate::time_response::{Hold, Motion};
-use crate::{importer, model_file, output, time_response};
+use crate::{console, importer, model_file, time_response};
 
 /// Calculate the motion of a model, or of an FMU, under a force given against time
 ///
@@ -93,8 +96,15 @@ struct ResponseEntry<'a> {
 }
 
 pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
-    if on_records::is_measured(&arguments.force_file)? {
-        return on_records::execute(arguments);
+    let (inputs, force_file) = (Inputs::of(&arguments.model), &arguments.force_file);
+    let test = is_test_file(force_file).then(|| ImpactTest::read(force_file)).transpose()?;
+    let inputs = match &test {
+        Some(test) => inputs.and_all(Inputs::of_test(force_file, test)),
+        None => inputs.and(force_file),
+    };
+    let mut outputs = Outputs::of(inputs).all_planned(arguments.output.clone())?;
+    if test.is_some() || on_records::is_measured(force_file)? {
+        return on_records::execute(arguments, test.as_ref(), outputs);
     }
     if arguments.method == Method::RungeKutta || arguments.steps.is_some() {
         let option = if arguments.steps.is_some() { "steps" } else { "method" };
@@ -104,16 +114,17 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
     let (force, motions) =
         if importer::is_fmu(&arguments.model)? { run_fmu(arguments)? } else { run_model(arguments)? };
     for (port, motion) in motions.iter().enumerate() {
-        eprintln!("response {}: peak acceleration {:.4e} m/s2", port + 1, motion.peak_acceleration());
+        console::say(format_args!("response {}: peak acceleration {:.4e} m/s2", port + 1, motion.peak_acceleration()));
     }
     if let Some(path) = &arguments.output {
-        output::write(path, time_response::csv(&force, &motions))?;
-        eprintln!("wrote {} ({} samples)", path.display(), force.time.len());
+        outputs.add(path, time_response::csv(&force, &motions));
+        outputs.write()?;
+        console::say(format_args!("wrote {} ({} samples)", path.display(), force.time.len()));
     }
     if arguments.json {
-        output::print_json(&answer(&force, &motions));
+        console::print_json(&answer(&force, &motions))?;
     } else if arguments.output.is_none() {
-        output::print(&time_response::csv(&force, &motions));
+        console::print(&time_response::csv(&force, &motions))?;
     }
     Ok(())
 }

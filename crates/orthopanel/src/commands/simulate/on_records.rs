@@ -9,17 +9,15 @@ use serde::Serialize;
 
 use super::{Arguments, Method};
 use crate::error::CommandError;
-use crate::measured_pairs::{ComparedPair, HitMisfit, csv, is_test_file, misfit_table, place_text};
+use crate::measured_pairs::{ComparedPair, HitMisfit, csv, misfit_table, place_text};
+use crate::outputs::Outputs;
 use crate::section_3_5::{self, Integration};
 use crate::time_response::Hold;
-use crate::{importer, model_file, notes, output, progress};
+use crate::{console, importer, model_file, notes, progress};
 
-/// Whether the force file holds measured accelerations beside the force: a test, a UFF, or a CSV of a record's three
+/// Whether a force file that is no test holds measured accelerations beside the force: a UFF, or a CSV of a record's three
 /// columns. A CSV with more is a force with other columns, such as `simulate` itself writes.
 pub fn is_measured(path: &Path) -> Result<bool, CommandError> {
-    if is_test_file(path) {
-        return Ok(true);
-    }
     let bytes = std::fs::read(path).map_err(|source| CommandError::Unreadable { path: path.into(), source })?;
     let mut lines = bytes.split(|&byte| byte == b'\n').map(<[u8]>::trim_ascii);
     let first = lines.find(|line| !line.is_empty() && !line.starts_with(b"#")).unwrap_or_default();
@@ -38,7 +36,7 @@ struct Answer {
     hits: Vec<HitMisfit>,
 }
 
-pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
+pub fn execute(arguments: &Arguments, test: Option<&ImpactTest>, mut outputs: Outputs) -> Result<(), CommandError> {
     let path = &arguments.model;
     if importer::is_fmu(path)? {
         let problem = "measured hits are held against a model file, not an FMU: give MODEL.json, or a force file of \
@@ -68,7 +66,7 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
             "section 3.5 is of a beam without effects: leave out --method runge-kutta, the exact one takes them".into();
         return Err(CommandError::Records { path: path.clone(), problem });
     }
-    let histories = histories(arguments, &model)?;
+    let histories = histories(arguments, test, &model)?;
     let shown = progress::bar("driving the model", histories.len());
     let (mut pairs, mut hits, mut integrations) = (Vec::with_capacity(histories.len()), Vec::new(), Vec::new());
     let mut lost = Vec::new();
@@ -96,7 +94,7 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
     }
     drop(shown);
     for integration in &integrations {
-        eprintln!("{}", integration.said());
+        console::say(format_args!("{}", integration.said()));
     }
     notes::say("", &lost);
     notes::say("", &pairs.iter().filter_map(turned_round).collect::<Vec<_>>());
@@ -104,17 +102,18 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
         notes::say(&format!("{}: ", history.file.display()), &history.notes);
     }
     if let Some(path) = &arguments.output {
-        output::write(path, csv(&pairs))?;
-        eprintln!("wrote {}", path.display());
+        outputs.add(path, csv(&pairs));
+        outputs.write()?;
+        console::say(format_args!("wrote {}", path.display()));
     }
     if arguments.json {
         let method = match arguments.method {
             Method::Exact => "exact",
             Method::RungeKutta => "runge-kutta",
         };
-        output::print_json(&Answer { schema: "orthopanel.simulated-hits/1", method, integrations, hits });
+        console::print_json(&Answer { schema: "orthopanel.simulated-hits/1", method, integrations, hits })?;
     } else {
-        output::print(&misfit_table(&hits.iter().collect::<Vec<_>>()));
+        console::print(&misfit_table(&hits.iter().collect::<Vec<_>>()))?;
     }
     Ok(())
 }
@@ -163,15 +162,18 @@ fn turned_round(pair: &ComparedPair) -> Option<String> {
 }
 
 /// The hits of the force file, each pair of places by itself.
-fn histories(arguments: &Arguments, model: &PanelModel) -> Result<Vec<TimeHistory>, CommandError> {
+fn histories(
+    arguments: &Arguments,
+    test: Option<&ImpactTest>,
+    model: &PanelModel,
+) -> Result<Vec<TimeHistory>, CommandError> {
     let path = &arguments.force_file;
     let refused = |problem: String| CommandError::Records { path: path.clone(), problem };
-    if is_test_file(path) {
+    if let Some(test) = test {
         if arguments.ports.is_given() {
             return Err(refused("the places are those of the test file: leave out --force and --response".into()));
         }
-        let test = ImpactTest::read(path)?;
-        let piece = piece_of(&test, model).ok_or_else(|| {
+        let piece = piece_of(test, model).ok_or_else(|| {
             let names: Vec<_> = test.pieces.iter().map(|piece| piece.name.as_str()).collect();
             refused(format!("the model's piece is none of {}: sizes or names differ", names.join(", ")))
         })?;

@@ -1,0 +1,151 @@
+//! The list of what belongs to a run, beside its results: `orthopanel.manifest/1`.
+//!
+//! While files are replaced, it lists the earlier ones too, so that none of a run that was killed is forgotten. It holds
+//! no time: two runs of the same inputs give the same bytes.
+
+use std::io::Read as _;
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+use sha2::{Digest as _, Sha256};
+
+use super::inputs::Inputs;
+use crate::error::CommandError;
+use crate::json;
+
+const SCHEMA: &str = "orthopanel.manifest/1";
+
+/// Far more than the lists of any test take.
+const LONGEST: u64 = 1 << 26;
+
+#[derive(Serialize)]
+pub struct Manifest {
+    schema: &'static str,
+    /// The words after the program's name.
+    command: Vec<String>,
+    version: &'static str,
+    inputs: Vec<Listed>,
+    files: Vec<Listed>,
+    /// Files of earlier runs that this one is replacing.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    replacing: Vec<Listed>,
+}
+
+/// A file and what was in it.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Listed {
+    /// Of an input its path as the command reads it, of a result its name in the folder.
+    pub file: String,
+    /// Hexadecimal.
+    pub sha256: String,
+}
+
+impl Manifest {
+    /// Of the command under way.
+    ///
+    /// # Errors
+    /// [`CommandError::Unreadable`] for an input.
+    pub fn new(inputs: &Inputs, files: Vec<Listed>, replacing: Vec<Listed>) -> Result<Self, CommandError> {
+        let input = |path: &Path| {
+            let sha256 = sha256_of(path).map_err(|source| CommandError::Unreadable { path: path.into(), source })?;
+            Ok(Listed { file: path.to_string_lossy().into_owned(), sha256 })
+        };
+        Ok(Self {
+            schema: SCHEMA,
+            command: std::env::args_os().skip(1).map(|word| word.to_string_lossy().into_owned()).collect(),
+            version: env!("CARGO_PKG_VERSION"),
+            inputs: inputs.paths().map(input).collect::<Result<_, CommandError>>()?,
+            files,
+            replacing,
+        })
+    }
+
+    pub fn text(&self) -> String {
+        json::laid_out(self)
+    }
+
+    /// When all earlier files are replaced.
+    pub fn concluded(self) -> Self {
+        Self { replacing: Vec::new(), ..self }
+    }
+
+    pub fn is_concluded(&self) -> bool {
+        self.replacing.is_empty()
+    }
+}
+
+/// What an earlier manifest lists.
+#[derive(Deserialize)]
+struct Earlier {
+    schema: String,
+    files: Vec<Listed>,
+    #[serde(default)]
+    replacing: Vec<Listed>,
+}
+
+/// The results that the manifest at `path` lists, none where there is no manifest.
+///
+/// # Errors
+/// Why it is none that this version can read.
+pub fn listed(path: &Path) -> Result<Vec<Listed>, String> {
+    let text = match std::fs::File::open(path) {
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(Vec::new()),
+        opened => opened.and_then(|file| {
+            let mut text = String::new();
+            file.take(LONGEST).read_to_string(&mut text).map(|_| text)
+        }),
+    };
+    let text = text.map_err(|error| error.to_string())?;
+    let earlier: Earlier = serde_json::from_str(&text).map_err(|error| error.to_string())?;
+    if earlier.schema != SCHEMA {
+        return Err(format!("its schema is {:?}, not {SCHEMA:?}", earlier.schema));
+    }
+    Ok(earlier.files.into_iter().chain(earlier.replacing).collect())
+}
+
+impl Listed {
+    pub fn of(file: &str, content: &[u8]) -> Self {
+        Self { file: file.into(), sha256: hexadecimal(Sha256::digest(content).as_slice()) }
+    }
+
+    /// The name, where it is that of a file in the folder itself.
+    pub fn plain_name(&self) -> Option<&str> {
+        let name = Path::new(&self.file);
+        (name.file_name() == Some(name.as_os_str()) && !self.file.contains(['/', '\\', ':'])).then_some(&self.file)
+    }
+}
+
+pub fn sha256_of(path: &Path) -> std::io::Result<String> {
+    let (mut file, mut hash, mut part) = (std::fs::File::open(path)?, Sha256::new(), vec![0; 1 << 16]);
+    loop {
+        match file.read(&mut part)? {
+            0 => return Ok(hexadecimal(hash.finalize().as_slice())),
+            length => hash.update(part.get(..length).unwrap_or_default()),
+        }
+    }
+}
+
+fn hexadecimal(bytes: &[u8]) -> String {
+    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn val_the_digest_is_that_of_fips_180() {
+        // FIPS 180-4, the example "abc".
+        let digest = "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad";
+        assert_eq!(Listed::of("x", b"abc").sha256, digest);
+    }
+
+    #[test]
+    fn only_names_in_the_folder_itself_are_plain() {
+        let plain = |name: &str| Listed { file: name.into(), sha256: String::new() }.plain_name().is_some();
+        assert!(plain("model-a%2Fb.json") && plain("..csv"));
+        for name in ["", ".", "..", "../x", "a/b", "/x", "a/", "./x", "C:x", "a\\b"] {
+            assert!(!plain(name), "{name:?}");
+        }
+    }
+}

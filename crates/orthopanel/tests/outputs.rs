@@ -1,0 +1,330 @@
+//! No input and no earlier result is lost: outputs that are inputs, results that cannot be replaced, the manifest.
+
+mod support;
+
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::process::Command;
+
+use support::{Bench, MODEL, changed, refused};
+
+const PIECE: &str = "[piece]\nlength = 0.8\nwidth = 0.1\nthickness = 0.03\nmass_per_area = 6.88\n";
+
+/// An accelerance of `lines` lines from each of the files.
+fn accelerances(bench: &Bench, folder: &str, names: &[&str], lines: usize) {
+    std::fs::create_dir_all(bench.path(folder)).expect("a folder is made");
+    let mut test = PIECE.to_owned();
+    for (place, name) in names.iter().enumerate() {
+        let x = -0.3 + 0.05 * place as f64;
+        test += &format!(
+            "[[measurement]]\nkind = \"accelerance\"\nfile = \"{name}\"\nforce_at = [{x:.2}, 0.0]\nresponse_at = [0.3, 0.0]\n"
+        );
+        let line = |line: usize| format!("{line},{},{}\n", x * line as f64, folder.len() + line);
+        let text: String = (1..=lines).map(line).collect();
+        bench.write(&format!("{folder}/{name}"), &format!("frequency_hz,real,imag\n{text}"));
+    }
+    bench.write(&format!("{folder}/test.toml"), &test);
+}
+
+/// Every file below `folder` and what is in it.
+fn contents(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    let mut contents = BTreeMap::new();
+    for entry in std::fs::read_dir(folder).expect("a folder") {
+        let path = entry.expect("an entry").path();
+        if path.is_dir() {
+            contents.extend(self::contents(&path));
+        } else {
+            contents.insert(path.display().to_string(), std::fs::read(&path).expect("a file"));
+        }
+    }
+    contents
+}
+
+/// `line` names an input as its output: refused in one sentence, and every file as it was.
+fn input_refused(bench: &Bench, line: &str) {
+    let before = contents(bench.folder.path());
+    refused(bench, line, 2, &["not written", "this command", "name another place"]);
+    assert!(contents(bench.folder.path()) == before, "{line} changed a file");
+}
+
+const GRID: &str = "accelerance model.json --force 0 --response 0.1 --from 1 --to 9 --lines 3";
+const HITS: &str = "examples/made-hits/test.toml";
+const RECORD: &str = "examples/made-hits/point-0.uff";
+
+#[test]
+fn regress_an_output_that_is_an_input_is_refused() {
+    let bench = Bench::new();
+    for line in [
+        "identify test.toml -o test.toml",
+        "identify . -o test.toml",
+        "trace test.toml -o test.toml",
+        "report test.toml -o test.toml",
+        &format!("identify {HITS} -o {RECORD}"),
+        &format!("trace {HITS} -o {RECORD}"),
+        &format!("report {HITS} -o {RECORD}"),
+        &format!("accelerance {HITS} -o {RECORD}"),
+        &format!("accelerance {HITS} -o {HITS}"),
+        "modes model.json --picture model.json",
+        &format!("{GRID} -o model.json"),
+        "simulate model.json --force-file force.csv -o force.csv",
+        "simulate model.json --force-file force.csv -o model.json",
+        &format!("simulate model.json --force-file {HITS} -o {RECORD}"),
+        &format!("simulate model.json --force-file {RECORD} -o {RECORD}"),
+        // Other spellings of the path.
+        "identify test.toml -o ./examples/../test.toml",
+        &format!("accelerance {HITS} -o examples/../{RECORD}"),
+    ] {
+        input_refused(&bench, line);
+    }
+    let whole = bench.path("test.toml").display().to_string();
+    input_refused(&bench, &format!("identify test.toml -o {whole}"));
+    bench.write("model.fmu", MODEL);
+    bench.write("library.fmu", "no library, which is seen later");
+    input_refused(&bench, "export model.fmu -o model.fmu");
+    input_refused(&bench, "export model.json --library x86_64-windows=library.fmu -o library.fmu");
+}
+
+#[test]
+fn regress_results_of_several_files_are_none_of_the_inputs() {
+    let bench = Bench::new();
+    // `run` into the folder of a record that is called as one of its results.
+    accelerances(&bench, "named", &["response.csv"], 3);
+    input_refused(&bench, "run named/test.toml -o named");
+    input_refused(&bench, "run named -o named/../named");
+    // One file a pair of places.
+    accelerances(&bench, "pairs", &["h-1.csv", "h-2.csv"], 3);
+    input_refused(&bench, "accelerance pairs/test.toml -o pairs/h.csv");
+    accelerances(&bench, "folder", &["accelerance-1.csv", "b.csv"], 3);
+    input_refused(&bench, "accelerance folder/test.toml -o folder");
+    // One model a piece.
+    let text = std::fs::read_to_string(bench.path("examples/pieces-3-4/test.toml")).expect("a test");
+    bench.write("panel-4.toml", &text);
+    input_refused(&bench, "identify panel-4.toml -o panel.toml");
+    input_refused(&bench, "trace panel-4.toml -o panel.toml");
+}
+
+#[test]
+fn regress_an_input_is_known_by_its_other_names() {
+    let bench = Bench::new();
+    std::fs::hard_link(bench.path("test.toml"), bench.path("hard.json")).expect("linked");
+    std::fs::hard_link(bench.path(RECORD), bench.path("hard.csv")).expect("linked");
+    input_refused(&bench, "identify test.toml -o hard.json");
+    input_refused(&bench, &format!("accelerance {HITS} -o hard.csv"));
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::symlink;
+        symlink("test.toml", bench.path("soft.json")).expect("linked");
+        symlink(RECORD, bench.path("soft.csv")).expect("linked");
+        symlink("examples/made-hits", bench.path("elsewhere")).expect("linked");
+        input_refused(&bench, "identify test.toml -o soft.json");
+        input_refused(&bench, "identify soft.json -o test.toml");
+        input_refused(&bench, &format!("accelerance {HITS} -o soft.csv"));
+        input_refused(&bench, &format!("accelerance {HITS} -o elsewhere/point-0.uff"));
+        std::fs::create_dir(bench.path("out")).expect("a folder is made");
+        symlink(bench.path(RECORD), bench.path("out/response.csv")).expect("linked");
+        input_refused(&bench, &format!("run {HITS} -o out"));
+    }
+}
+
+#[test]
+fn an_output_beside_the_inputs_is_written() {
+    let bench = Bench::new();
+    let before = contents(bench.folder.path());
+    bench.done("identify test.toml -o model-of-test.json");
+    // The second time over the first, which is no input.
+    bench.done("identify test.toml -o model-of-test.json");
+    let mut after = contents(bench.folder.path());
+    assert!(after.remove(&bench.path("model-of-test.json").display().to_string()).is_some());
+    assert!(after == before);
+}
+
+/// Names in `folder`, hidden ones too.
+fn names(bench: &Bench, folder: &str) -> Vec<String> {
+    let entries = std::fs::read_dir(bench.path(folder)).expect("a folder");
+    let mut names: Vec<_> =
+        entries.map(|entry| entry.expect("an entry").file_name().into_string().expect("UTF-8")).collect();
+    names.sort();
+    names
+}
+
+/// SHA-256 of the first file that [`accelerances`] writes into a folder called `out`.
+const MINE_SHA256: &str = "d0a308de98c57b59e12e9565602b1459979461a88ed1cf72bcab01a9dfb7c06e";
+const MANIFEST: &str = "out/accelerance-manifest.json";
+
+#[test]
+fn a_manifest_tells_what_the_results_were_made_from() {
+    let bench = Bench::new();
+    bench.done("run test.toml -o out");
+    let first = contents(&bench.path("out"));
+    let manifest = bench.read_json("out/manifest.json");
+    assert_eq!(manifest["schema"], "orthopanel.manifest/1");
+    assert_eq!(manifest["command"], serde_json::json!(["run", "test.toml", "-o", "out"]));
+    assert_eq!(manifest["version"], env!("CARGO_PKG_VERSION"));
+    assert_eq!(manifest["inputs"][0]["file"], "test.toml");
+    // By sha256sum, of `TEST`.
+    assert_eq!(manifest["inputs"][0]["sha256"], "70b637e122f81df655e3e05c0b7477a41c8213f40d86fda4097616379199ab90");
+    let listed = manifest["files"].as_array().expect("a list");
+    let mut files: Vec<_> = listed.iter().map(|listed| listed["file"].as_str().expect("a name").to_owned()).collect();
+    assert!(listed.iter().all(|listed| listed["sha256"].as_str().is_some_and(|sha256| sha256.len() == 64)));
+    files.push("manifest.json".into());
+    files.sort();
+    assert_eq!(files, names(&bench, "out"));
+    bench.done("run test.toml -o out");
+    assert!(contents(&bench.path("out")) == first, "a second run differs from the first");
+}
+
+#[test]
+fn results_of_another_run_do_not_stay() {
+    let bench = Bench::new();
+    bench.done("run examples/pieces-3-4/test.toml -o out");
+    bench.write("out/notes.txt", "my own");
+    bench.write("out/response-3.csv", "changed by hand");
+    let said = bench.run("run test.toml -o out");
+    let message = String::from_utf8_lossy(&said.stderr);
+    assert_eq!(said.status.code(), Some(0), "{message}");
+    assert!(message.contains("response-3.csv: left by an earlier run, and kept: it was changed since"), "{message}");
+    bench.done("run test.toml -o alone");
+    let mut expected = names(&bench, "alone");
+    expected.extend(["notes.txt", "response-3.csv"].map(String::from));
+    expected.sort();
+    assert_eq!(names(&bench, "out"), expected);
+}
+
+#[test]
+fn each_command_removes_its_own_results_alone() {
+    let bench = Bench::new();
+    accelerances(&bench, "three", &["a.csv", "b.csv", "c.csv"], 3);
+    accelerances(&bench, "two", &["a.csv", "b.csv"], 3);
+    bench.done("run test.toml -o out");
+    let of_run = names(&bench, "out");
+    bench.done("accelerance three/test.toml -o out");
+    bench.done("accelerance two/test.toml -o out");
+    let own = ["accelerance-1.csv", "accelerance-2.csv", "accelerance-manifest.json"].map(String::from);
+    let mut expected: Vec<String> = of_run.into_iter().chain(own).collect();
+    expected.sort();
+    assert_eq!(names(&bench, "out"), expected);
+}
+
+#[test]
+fn a_manifest_removes_nothing_outside_its_folder_and_no_input() {
+    let bench = Bench::new();
+    accelerances(&bench, "three", &["a.csv", "b.csv", "c.csv"], 3);
+    accelerances(&bench, "out", &["mine.csv", "other.csv"], 3);
+    bench.done("accelerance three/test.toml -o out");
+    std::fs::create_dir(bench.path("out/deep")).expect("a folder is made");
+    bench.write("out/deep/file", "kept");
+    bench.write("outside", "kept");
+    let manifest = std::fs::read_to_string(bench.path(MANIFEST)).expect("a manifest");
+    // SHA-256 of "kept".
+    let sha256 = "79f076abdd19a752db7267bfff2f9022161d120dea919fdaca2ffdfc24ca8c96";
+    let mine = bench.path("out/mine.csv");
+    let whole = bench.path("outside").display().to_string();
+    let listed: String = ["../outside", &whole, "deep/file", "deep", ".", "..", "", "mine.csv"]
+        .map(|file| format!("{{\"file\": {file:?}, \"sha256\": \"{}\"}},", if file == "mine.csv" { MINE_SHA256 } else { sha256 }))
+        .concat();
+    bench.write(MANIFEST, &changed(&manifest, "\"files\": [", &format!("\"files\": [{listed}")));
+    let before = std::fs::read(&mine).expect("a record");
+    bench.done("accelerance out/test.toml -o out");
+    assert_eq!(std::fs::read(&mine).expect("a record"), before);
+    for kept in ["outside", "out/deep/file"] {
+        assert_eq!(std::fs::read_to_string(bench.path(kept)).expect("a file"), "kept");
+    }
+    let expected = ["accelerance-1.csv", "accelerance-2.csv", "accelerance-manifest.json", "deep"];
+    assert_eq!(names(&bench, "out"), [&expected[..], &["mine.csv", "other.csv", "test.toml"]].concat());
+}
+
+#[test]
+fn a_broken_manifest_is_said_and_kept() {
+    let bench = Bench::new();
+    accelerances(&bench, "two", &["a.csv", "b.csv"], 3);
+    for (count, broken) in ["{\"files\": 3}", "", "{\"name\": \"of another program\"}"].into_iter().enumerate() {
+        std::fs::create_dir_all(bench.path("out")).expect("a folder is made");
+        bench.write(MANIFEST, broken);
+        let output = bench.run("accelerance two/test.toml -o out");
+        let message = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(0), "{message}");
+        assert!(message.contains("accelerance-manifest.json: no manifest of orthopanel"), "{message}");
+        assert_eq!(bench.read_json(MANIFEST)["schema"], "orthopanel.manifest/1");
+        let kept = format!("out/accelerance-manifest-{}.json", count + 1);
+        assert_eq!(std::fs::read_to_string(bench.path(&kept)).expect("a file"), broken);
+    }
+}
+
+/// A file that cannot be replaced, as root or another: where the file system knows immutable files and this process may make
+/// them.
+#[test]
+fn regress_one_result_that_cannot_be_replaced_leaves_all_as_they_were() {
+    let bench = Bench::new();
+    accelerances(&bench, "before", &["a.csv", "b.csv", "c.csv"], 3);
+    accelerances(&bench, "then", &["a.csv", "b.csv", "c.csv"], 3);
+    bench.done("accelerance before/test.toml -o out");
+    let earlier = contents(&bench.path("out"));
+    let immutable = |flag: &str| {
+        let file = bench.path("out/accelerance-2.csv");
+        Command::new("chattr").arg(flag).arg(file).output().is_ok_and(|output| output.status.success())
+    };
+    if !immutable("+i") {
+        println!("skipped: no file can be made immutable here");
+        return;
+    }
+    let output = bench.run("accelerance then/test.toml -o out");
+    assert!(immutable("-i"));
+    let message = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{message}");
+    assert!(message.contains("accelerance-2.csv: cannot be written"), "{message}");
+    assert!(contents(&bench.path("out")) == earlier);
+    bench.done("accelerance then/test.toml -o out");
+    assert!(contents(&bench.path("out")) != earlier);
+}
+
+/// SIGKILL at 200 moments spread over the command: every result is the earlier or the new one, whole.
+#[cfg(unix)]
+#[test]
+fn killed_at_any_moment_every_result_is_whole() {
+    use std::os::unix::process::ExitStatusExt as _;
+    use std::time::{Duration, Instant};
+
+    const RUNS: u64 = 200;
+    let bench = Bench::new();
+    let names = ["a.csv", "b.csv", "c.csv", "d.csv", "e.csv", "f.csv"];
+    accelerances(&bench, "one", &names, 50);
+    accelerances(&bench, "other", &names[..5], 50);
+    let lines = ["accelerance one/test.toml -o out", "accelerance other/test.toml -o out"];
+    let whole = lines.map(|line| {
+        bench.done(line);
+        contents(&bench.path("out"))
+    });
+    let begun = Instant::now();
+    bench.done(lines[0]);
+    let longest = begun.elapsed().min(Duration::from_millis(100));
+    let manifest = bench.path(MANIFEST).display().to_string();
+    let mut killed = 0;
+    for run in 0..RUNS {
+        // Moments in a scattered order, the same each time.
+        let moment = longest * u32::try_from(run * 61 % RUNS).expect("small") / u32::try_from(RUNS).expect("small");
+        let mut command = bench.command(lines[usize::from(run % 2 == 0)]);
+        let mut process = command.spawn().expect("the program starts");
+        std::thread::sleep(moment);
+        process.kill().expect("killed, or ended before");
+        killed += usize::from(process.wait().expect("ended").signal() == Some(9));
+        for (path, content) in contents(&bench.path("out")) {
+            if path == manifest {
+                // While files are replaced it lists both runs.
+                let manifest: serde_json::Value = serde_json::from_slice(&content).expect("a whole manifest");
+                assert_eq!(manifest["schema"], "orthopanel.manifest/1");
+            } else if !path.contains("/.orthopanel-") {
+                assert!(whole.iter().any(|whole| whole.get(&path) == Some(&content)), "run {run}: {path} is not whole");
+            }
+        }
+        for always in &names[..5] {
+            let number = names.iter().position(|name| name == always).expect("listed") + 1;
+            assert!(bench.path(&format!("out/accelerance-{number}.csv")).exists(), "run {run} lost file {number}");
+        }
+    }
+    assert!(killed > 0, "no process was killed before its end");
+    // Nothing is left behind of those that were.
+    for (line, whole) in lines.iter().zip(&whole) {
+        bench.done(line);
+        assert!(contents(&bench.path("out")) == *whole);
+    }
+}

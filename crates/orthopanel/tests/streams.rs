@@ -1,0 +1,108 @@
+//! Standard output and standard error that are closed, full or read by nobody; and what may not reach a terminal.
+
+mod support;
+
+use support::{Bench, changed};
+
+/// Lines that print each kind of answer: tables, JSON, CSV, and what clap says.
+#[cfg(unix)]
+const ANSWERS: [&str; 7] = [
+    "identify test.toml",
+    "identify test.toml --json",
+    "modes model.json",
+    "accelerance model.json --force 0 --response 0.1 --from 1 --to 9 --lines 3",
+    "simulate model.json --force-file force.csv",
+    "--version",
+    "run --help",
+];
+
+#[cfg(target_os = "linux")]
+#[test]
+fn regress_a_full_standard_output_is_no_success() {
+    use std::process::Stdio;
+
+    let bench = Bench::new();
+    let full = || Stdio::from(std::fs::File::options().write(true).open("/dev/full").expect("a full device"));
+    for line in ANSWERS {
+        let output = bench.command(line).stdout(full()).stderr(Stdio::piped()).output().expect("the program starts");
+        let message = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{line}: {message}");
+        assert!(message.contains("standard output: the answer could not be written whole"), "{line}: {message}");
+        // Where nothing can be said either, the exit status still tells.
+        let ended = bench.command(line).stdout(full()).stderr(full()).status().expect("the program starts");
+        assert_eq!(ended.code(), Some(2), "{line}");
+        let ended = bench.command(line).stderr(full()).status().expect("the program starts");
+        assert_eq!(ended.code(), Some(0), "{line}");
+    }
+    // Bad usage and bad input, with nobody to tell.
+    for line in ["", "modes", "modes nowhere.json"] {
+        assert_eq!(bench.command(line).stderr(full()).status().expect("the program starts").code(), Some(2), "{line}");
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn regress_a_closed_stream_is_no_error() {
+    let bench = Bench::new();
+    for line in ANSWERS {
+        for closed in [">&-", "2>&-", ">&- 2>&-"] {
+            let status = shell(&bench, &format!("\"$0\" {line} {closed}"));
+            assert_eq!(status, Some(0), "{line} {closed}");
+        }
+    }
+    assert_eq!(shell(&bench, "\"$0\" modes nowhere.json 2>&-"), Some(2));
+}
+
+#[cfg(unix)]
+#[test]
+fn regress_a_reader_that_goes_away_is_no_error() {
+    let bench = Bench::new();
+    // Far more than a pipe holds.
+    let long = "accelerance model.json --force 0 --response 0.1 --from 1 --to 4000 --lines 40000";
+    for line in [long, &format!("{long} --json"), "run --help", "--version"] {
+        for pipe in ["\"$0\" LINE; echo $? >&3", "\"$0\" LINE 2>&1 >/dev/null; echo $? >&3"] {
+            let script = format!("{{ {}; }} 3>status | true", pipe.replace("LINE", line));
+            assert_eq!(shell(&bench, &script), Some(0));
+            assert_eq!(std::fs::read_to_string(bench.path("status")).expect("a status"), "0\n", "{line}");
+        }
+    }
+    let script = "{ \"$0\" modes nowhere.json 2>&1 >/dev/null; echo $? >&3; } 3>status | true";
+    assert_eq!(shell(&bench, script), Some(0));
+    assert_eq!(std::fs::read_to_string(bench.path("status")).expect("a status"), "2\n");
+}
+
+/// Runs a script of the shell, in which `$0` is the program.
+#[cfg(unix)]
+fn shell(bench: &Bench, script: &str) -> Option<i32> {
+    let mut shell = std::process::Command::new("sh");
+    let shell = shell.args(["-c", script, env!("CARGO_BIN_EXE_orthopanel")]).current_dir(bench.folder.path());
+    shell.stdout(std::process::Stdio::null()).stderr(std::process::Stdio::null()).status().expect("a shell").code()
+}
+
+#[test]
+fn regress_names_do_not_steer_the_terminal() {
+    let bench = Bench::new();
+    let test = std::fs::read_to_string(bench.path("examples/pieces-3-4/test.toml")).expect("a test");
+    // Escape, a C1 control, a new line, and writing turned round.
+    let name = r#""3\u001b[2J\u009b1m\u202e\nx""#;
+    let named = changed(&test, "name = \"3\"", &format!("name = {name}"));
+    bench.write("named.toml", &named.replace("piece = \"3\"", &format!("piece = {name}")));
+    let harmful = |text: &str| text.chars().any(|c| (c.is_control() && c != '\n') || ('\u{202a}'..='\u{202e}').contains(&c));
+    for line in ["identify named.toml", "trace named.toml", "identify named.toml --json", "run named.toml -o out"] {
+        let output = bench.run(line);
+        assert_eq!(output.status.code(), Some(0), "{line}: {}", String::from_utf8_lossy(&output.stderr));
+        for stream in [output.stdout, output.stderr] {
+            let text = String::from_utf8(stream).expect("UTF-8");
+            assert!(!harmful(&text), "{line}: {text:?}");
+        }
+    }
+    let answer = bench.json("identify named.toml");
+    assert!(answer.to_string().contains("3\\u001b[2J\u{9b}1m\u{202e}\\nx"), "{answer}");
+    // Of files and arguments, too.
+    for line in ["modes \u{1b}[2J\u{9b}.json", "modes model.json --\u{1b}[31m", "\u{1b}]0;title\u{7}"] {
+        let output = bench.run(line);
+        let text = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{line:?}: {text:?}");
+        assert!(!harmful(&text) && text.contains("\\u{1b}"), "{line:?}: {text:?}");
+    }
+}
