@@ -10,6 +10,11 @@ use crate::{ExportError, FmiVersion};
 /// The library, built with this crate.
 pub(crate) const EMBEDDED: &[u8] = include_bytes!(env!("ORTHOPANEL_FMU_LIBRARY"));
 
+/// Whether `content` is, byte for byte, the library that this version puts into FMUs of this platform: no stranger's code.
+pub fn is_carried_library(content: &[u8]) -> bool {
+    content == EMBEDDED
+}
+
 /// Operating system and processor that a library is for; as text FMI 3.0's `x86_64-linux`, or FMI 2.0's `linux64`,
 /// `win64` and `darwin64`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

@@ -3,12 +3,13 @@
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-use fmi_rs::sim::SimulationError;
 use orthopanel_data::DataError;
 use orthopanel_export::ExportError;
 use orthopanel_identify::IdentifyError;
 use orthopanel_model::{ModelError, Place};
 use thiserror::Error;
+
+use crate::fmu_refusal::FmuRefusal;
 
 /// The data or the model says no.
 const SAYS_NO: u8 = 1;
@@ -67,8 +68,8 @@ pub enum CommandError {
     Option { option: &'static str, value: String, remedy: String },
     #[error("{}{}: {problem}", .path.display(), line.map_or(String::new(), |line| format!(":{line}")))]
     ForceFile { path: PathBuf, line: Option<u64>, problem: String },
-    #[error("{}: not an FMU that orthopanel wrote: {problem}", .path.display())]
-    ForeignFmu { path: PathBuf, problem: String },
+    #[error("{}: {source}", .path.display())]
+    Fmu { path: PathBuf, source: FmuRefusal },
     #[error(
         "{}: importers refuse an FMU whose name does not end in .fmu: let it end so, in upper or lower case",
         .path.display()
@@ -86,10 +87,6 @@ pub enum CommandError {
          to `orthopanel export`", .path.display()
     )]
     FixedInFmu { path: PathBuf },
-    #[error("{}: the FMU fails at {call}", .path.display())]
-    FmuCall { path: PathBuf, call: String },
-    #[error("{}: {source}", .path.display())]
-    Import { path: PathBuf, source: SimulationError },
     #[error(transparent)]
     Export(#[from] ExportError),
     #[error("the picture {name} cannot be drawn: {problem}")]
@@ -113,7 +110,7 @@ impl CommandError {
             Self::Model { source: ModelError::Unsupported(_) | ModelError::Eigenproblem, .. }
             | Self::Data(DataError::NoUsableHit { .. })
             | Self::Identify { source: IdentifyError::Data(DataError::NoUsableHit { .. }), .. }
-            | Self::FmuCall { .. }
+            | Self::Fmu { source: FmuRefusal::Call { .. }, .. }
             | Self::NoModel { .. }
             | Self::Picture { .. }
             | Self::Export(ExportError::Assemble(_)) => SAYS_NO,

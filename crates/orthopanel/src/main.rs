@@ -9,6 +9,7 @@ mod csv_text;
 mod driving_force;
 mod error;
 mod evidence;
+mod fmu_refusal;
 mod force_file;
 mod identified;
 mod importer;

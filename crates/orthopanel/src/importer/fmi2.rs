@@ -1,20 +1,44 @@
 //! FMI 2.0.
 
+use std::collections::HashMap;
+use std::path::Path;
 use std::sync::Arc;
 
 use fmi_rs::fmi2::types::{fmi2False, fmi2Status, fmi2True};
 use fmi_rs::fmi2::{CS, FMU2};
 use fmi_rs::model_description::fmi2::ModelDescription;
+use fmi_rs::sim::SimulationError;
 
-use super::{Instance, References};
+use super::instance::{Instance, References};
+use super::log::Log;
 
-pub(super) fn references(description: &ModelDescription) -> Result<References, String> {
-    References::find(|name| description.variable_by_name(name).ok().map(|variable| (variable.valueReference, 1)))
+/// Value reference of each variable by its name; each is one number.
+pub(super) fn variables(description: &ModelDescription) -> HashMap<&str, (u32, usize)> {
+    let variables = description.modelVariables.iter();
+    variables.map(|variable| (variable.name.as_str(), (variable.valueReference, 1))).collect()
 }
 
 pub(super) struct Fmi2<'a> {
-    pub(super) instance: Arc<FMU2<CS>>,
-    pub(super) references: &'a References,
+    instance: Arc<FMU2<CS>>,
+    references: &'a References,
+}
+
+impl<'a> Fmi2<'a> {
+    /// Loads the FMU that is unpacked in `folder`.
+    pub(super) fn new(
+        folder: &Path,
+        description: &ModelDescription,
+        references: &'a References,
+        log: Arc<Log>,
+    ) -> Result<Self, SimulationError> {
+        let kind = description.coSimulation.as_ref().ok_or(SimulationError::InterfaceType)?;
+        let (identifier, own_memory) = (&kind.modelIdentifier, kind.canNotUseMemoryManagementFunctions);
+        let (visible, logging, log_calls) = (false, false, false);
+        let guid = &description.guid;
+        let instance =
+            FMU2::<CS>::new(folder, identifier, "panel", guid, visible, logging, log_calls, log, !own_memory)?;
+        Ok(Self { instance, references })
+    }
 }
 
 impl Instance for Fmi2<'_> {

@@ -1,24 +1,70 @@
 //! FMI 3.0.
 
+use std::collections::HashMap;
+use std::path::Path;
 use std::sync::Arc;
 
 use fmi_rs::fmi3::FMU3;
+use fmi_rs::fmi3::native::NativeLibrary;
 use fmi_rs::fmi3::types::fmi3Status;
-use fmi_rs::model_description::fmi3::ModelDescription;
+use fmi_rs::model_description::fmi3::{Dimension, ModelDescription, VariableType};
+use fmi_rs::sim::SimulationError;
 
-use super::{Instance, References};
+use super::instance::{Instance, References};
+use super::log::Log;
 
-pub(super) fn references(description: &ModelDescription) -> Result<References, String> {
-    References::find(|name| {
-        let variable = description.variable_by_name(name).ok()?;
-        let sizes = description.initial_size(variable).ok()?;
-        Some((variable.valueReference, sizes.iter().product()))
-    })
+/// Value reference of each variable by its name, and how many numbers it holds at the start: the most there can be where a
+/// size is not told.
+pub(super) fn variables(description: &ModelDescription) -> HashMap<&str, (u32, usize)> {
+    let told = description.modelVariables.iter().filter_map(|variable| match &variable.variableType {
+        VariableType::UInt64 { start: Some(start), .. } => Some((variable.valueReference, start.parse().ok()?)),
+        _ => None,
+    });
+    let told: HashMap<u32, usize> = told.collect();
+    let size = |dimension: &Dimension| match dimension {
+        Dimension::Fixed { start } => *start,
+        Dimension::Variable { valueReference } => told.get(valueReference).copied().unwrap_or(usize::MAX),
+    };
+    let variables = description.modelVariables.iter().map(|variable| {
+        let numbers = variable.dimensions.iter().map(size).fold(1, usize::saturating_mul);
+        (variable.name.as_str(), (variable.valueReference, numbers))
+    });
+    variables.collect()
 }
 
 pub(super) struct Fmi3<'a> {
-    pub(super) instance: Arc<FMU3>,
-    pub(super) references: &'a References,
+    instance: Arc<FMU3>,
+    references: &'a References,
+}
+
+impl<'a> Fmi3<'a> {
+    /// Loads the library at `path` of the FMU that is unpacked in `folder`.
+    pub(super) fn new(
+        folder: &Path,
+        path: &str,
+        description: &ModelDescription,
+        references: &'a References,
+        log: Arc<Log>,
+    ) -> Result<Self, SimulationError> {
+        let library = Box::new(NativeLibrary::load(folder.join(path))?);
+        let resources = Some(folder.join("resources")).filter(|resources| resources.is_dir());
+        let (visible, logging, log_calls) = (false, false, false);
+        let (event_mode, early_return) = (false, false);
+        let instance = FMU3::instantiateCoSimulation(
+            library,
+            resources.as_deref(),
+            "panel",
+            &description.instantiationToken,
+            visible,
+            logging,
+            event_mode,
+            early_return,
+            log,
+            log_calls,
+            None,
+        )?;
+        Ok(Self { instance, references })
+    }
 }
 
 impl Instance for Fmi3<'_> {

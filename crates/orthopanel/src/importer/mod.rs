@@ -1,61 +1,31 @@
-//! Running an FMU through the crate `fmi-rs`: the FMU is unpacked, loaded and stepped as any simulator would do it.
+//! Running an FMU through the crate `fmi-rs`: the FMU is judged, unpacked once, loaded and stepped as any simulator would do it.
+//!
+//! An FMU is a stranger's file: [`archive`] and [`description`] hold it against limits before anything is believed, and [`library`]
+//! says whose code is run.
 
+mod archive;
+mod description;
 mod fmi2;
 mod fmi3;
+mod instance;
+mod library;
+mod log;
 
+use std::fs::File;
 use std::path::Path;
+use std::sync::Arc;
 
-use fmi_rs::model_description::{FMIMajorVersion, peek_fmi_major_version};
+use fmi_rs::sim::SimulationError;
 
+use self::archive::Archive;
+use self::description::Description;
+use self::instance::{Instance, References};
+use self::log::Log;
 use crate::driving_force::DrivingForce;
 use crate::error::CommandError;
+use crate::fmu_refusal::{FmuRefusal, shown};
+use crate::notes;
 use crate::time_response::{Motion, steps};
-
-/// One FMU instance, whatever its version. `Err` carries the name of the call that failed.
-trait Instance {
-    /// Sets whether forces run linearly over a step; before [`Instance::initialise`].
-    fn set_force_linear(&self, linear: bool) -> Result<(), &'static str>;
-    fn set_forces(&self, forces: &[f64]) -> Result<(), &'static str>;
-    /// Starts the clock at `start` \[s\] with these forces \[N\], from which a linear force runs on.
-    fn initialise(&self, start: f64, forces: &[f64]) -> Result<(), &'static str>;
-    fn step(&self, from: f64, step: f64) -> Result<(), &'static str>;
-    /// Accelerations of all responses, then velocities, then displacements.
-    fn outputs(&self) -> Result<Vec<f64>, &'static str>;
-    fn terminate(&self) -> Result<(), &'static str>;
-}
-
-/// Value references of the variables that orthopanel's FMUs have.
-struct References {
-    force_linear: u32,
-    forces: Vec<u32>,
-    force_count: usize,
-    outputs: Vec<u32>,
-    /// Numbers in all outputs together.
-    output_count: usize,
-}
-
-impl References {
-    /// Finds the variables by name, each with how many numbers it holds: one a port, or one array for all ports of a kind. `Err`
-    /// tells which is missing.
-    fn find(variable: impl Fn(&str) -> Option<(u32, usize)>) -> Result<Self, String> {
-        let needed = |kind: &str| -> Result<(Vec<u32>, usize), String> {
-            let numbered: Vec<_> = (1..).map_while(|port| variable(&format!("{kind}_{port}"))).collect();
-            let array = || variable(kind).map(|whole| vec![whole]);
-            let found = if numbered.is_empty() { array() } else { Some(numbered) };
-            let found = found.ok_or_else(|| format!("it has neither a variable {kind}_1 nor an array {kind}"))?;
-            Ok((found.iter().map(|(reference, _)| *reference).collect(), found.iter().map(|(_, size)| size).sum()))
-        };
-        let (mut outputs, mut output_count) = (Vec::new(), 0);
-        for kind in ["acceleration", "velocity", "displacement"] {
-            let (mut references, count) = needed(kind)?;
-            outputs.append(&mut references);
-            output_count += count;
-        }
-        let (force_linear, _) = variable("force_linear").ok_or("it has no variable force_linear")?;
-        let (forces, force_count) = needed("force")?;
-        Ok(Self { force_linear, forces, force_count, outputs, output_count })
-    }
-}
 
 /// Whether the file is an FMU: by its content a zip archive, as every FMU is.
 ///
@@ -64,62 +34,63 @@ pub fn is_fmu(path: &Path) -> Result<bool, CommandError> {
     use std::io::Read as _;
     let unreadable = |source| CommandError::Unreadable { path: path.into(), source };
     let mut start = Vec::new();
-    std::fs::File::open(path).map_err(unreadable)?.take(4).read_to_end(&mut start).map_err(unreadable)?;
+    File::open(path).map_err(unreadable)?.take(4).read_to_end(&mut start).map_err(unreadable)?;
     let archive = start == b"PK\x03\x04";
     if !archive && path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("fmu")) {
-        return Err(foreign(path, "it is no zip archive".into()));
+        return Err(CommandError::Fmu { path: path.into(), source: FmuRefusal::NoArchive });
     }
     Ok(archive)
 }
 
-/// Runs the FMU at `path`; `force` is read once the FMU has told how many force places it has.
+/// Runs the FMU at `path`; `force` is read once the FMU has told how many force places it has. A library that this program does
+/// not carry is loaded only where the user says `trust`.
 pub fn simulate(
     path: &Path,
+    trust: bool,
     force: impl FnOnce(usize) -> Result<DrivingForce, CommandError>,
 ) -> Result<(DrivingForce, Vec<Motion>), CommandError> {
-    let import = |source| CommandError::Import { path: path.into(), source };
-    match version(path)? {
-        FMIMajorVersion::V2 => {
-            let fmu = fmi_rs::fmi2::builder::FMU2Builder::new(&path).map_err(import)?;
-            let references = fmi2::references(&fmu.model_description);
-            let references = references.map_err(|problem| foreign(path, problem))?;
-            let force = force(references.force_count)?;
-            let instance =
-                fmi2::Fmi2 { instance: fmu.instantiate_cs("panel").map_err(import)?, references: &references };
-            let motions = run(&instance, &references, &force).map_err(|call| failed(path, call))?;
-            Ok((force, motions))
-        }
-        FMIMajorVersion::V3 => {
-            let mut fmu = fmi_rs::fmi3::builder::FMU3Builder::new(&path).map_err(import)?;
-            (fmu.eventModeUsed, fmu.earlyReturnAllowed) = (false, false);
-            let references = fmi3::references(&fmu.model_description);
-            let references = references.map_err(|problem| foreign(path, problem))?;
-            let force = force(references.force_count)?;
-            let instance =
-                fmi3::Fmi3 { instance: fmu.instantiate_cs("panel").map_err(import)?, references: &references };
-            let motions = run(&instance, &references, &force).map_err(|call| failed(path, call))?;
-            Ok((force, motions))
-        }
-    }
+    let refused = |source| CommandError::Fmu { path: path.into(), source };
+    let file = File::open(path).map_err(|source| CommandError::Unreadable { path: path.into(), source })?;
+    let mut archive = Archive::new(file).map_err(refused)?;
+    let description = archive.take("modelDescription.xml", description::MOST_BYTES).map_err(refused)?;
+    let description = description.ok_or(FmuRefusal::NoDescription).and_then(|content| Description::parse(&content));
+    let description = description.map_err(refused)?;
+    let library = description.library().map_err(refused)?;
+    let references = description.references().map_err(refused)?;
+    // Dropped after the instance: Windows keeps a library's file while it is loaded.
+    let folder = library::unpack(&mut archive, &library, trust).map_err(refused)?;
+    let force = force(references.force_count)?;
+    let log = Log::new();
+    let loaded = instance(folder.path(), &library, &description, &references, &log);
+    let instance = loaded.map_err(|error| refused(not_loaded(error, &library, &log)))?;
+    let motions = run(&*instance, &references, &force);
+    let motions = motions.map_err(|call| refused(FmuRefusal::Call { call, messages: log.taken() }))?;
+    notes::say(&format!("{}: ", path.display()), &log.taken());
+    Ok((force, motions))
 }
 
-fn version(path: &Path) -> Result<FMIMajorVersion, CommandError> {
-    let folder = tempfile::tempdir().map_err(|source| CommandError::Unreadable { path: path.into(), source })?;
-    fmi_rs::zip::extract_zip_archive(path, &folder)
-        .map_err(|error| foreign(path, format!("its zip archive cannot be unpacked ({error})")))?;
-    let description = folder.path().join("modelDescription.xml");
-    if !description.is_file() {
-        return Err(foreign(path, "its zip archive has no modelDescription.xml".into()));
-    }
-    peek_fmi_major_version(&description).map_err(|error| foreign(path, format!("its modelDescription.xml: {error}")))
+fn instance<'a>(
+    folder: &Path,
+    library: &str,
+    description: &Description,
+    references: &'a References,
+    log: &Arc<Log>,
+) -> Result<Box<dyn Instance + 'a>, SimulationError> {
+    let log = Arc::clone(log);
+    Ok(match description {
+        Description::Fmi2(description) => Box::new(fmi2::Fmi2::new(folder, description, references, log)?),
+        Description::Fmi3(description) => Box::new(fmi3::Fmi3::new(folder, library, description, references, log)?),
+    })
 }
 
-fn foreign(path: &Path, problem: String) -> CommandError {
-    CommandError::ForeignFmu { path: path.into(), problem }
-}
-
-fn failed(path: &Path, call: &str) -> CommandError {
-    CommandError::FmuCall { path: path.into(), call: call.into() }
+/// What `fmi-rs` says where an FMU is not there to be run: its library, or the FMU itself.
+fn not_loaded(error: SimulationError, library: &str, log: &Log) -> FmuRefusal {
+    let reason = match &error {
+        SimulationError::FMICall => return FmuRefusal::NoInstance(log.taken()),
+        SimulationError::Library { source, .. } => source.to_string(),
+        _ => error.to_string(),
+    };
+    FmuRefusal::Load { path: library.into(), reason: shown(&reason) }
 }
 
 /// The co-simulation itself, at the samples of the force.

@@ -21,7 +21,8 @@ use crate::{console, importer, model_file, time_response};
 /// A made-up force is CSV with the columns time_s,force_n (several force places: time_s,force_1_n,force_2_n,...).
 /// The panel is at rest before the first sample. Between samples the force runs linearly, unless --hold says
 /// otherwise; each mode is then stepped exactly, so the samples may be as far apart as the force allows. An FMU is
-/// unpacked and run as a simulator would run it. Without -o the CSV (time_s,force_n,acceleration_m_s2,velocity_m_s,
+/// unpacked and run as a simulator would run it, where its library is byte for byte the one that this orthopanel carries;
+/// any other is run by --trust alone, since a library is code that may do all that you may. Without -o the CSV (time_s,force_n,acceleration_m_s2,velocity_m_s,
 /// displacement_m) goes to standard output.
 ///
 /// Measured hits drive a model too, and then its acceleration is held against the measured one: a test file (.toml)
@@ -50,6 +51,9 @@ pub struct Arguments {
     /// Force against time (CSV), or measured hits (test.toml, UFF, CSV)
     #[arg(long, value_name = "X.csv|X.uff|TEST.toml")]
     force_file: PathBuf,
+    /// Run the library of an FMU that this orthopanel does not carry: a stranger's code, which may do all that you may
+    #[arg(long)]
+    trust: bool,
     /// How the force runs between samples [default: linear; of measured hits band-limited]
     #[arg(long, value_enum)]
     hold: Option<Hold>,
@@ -143,7 +147,8 @@ fn run_fmu(arguments: &Arguments) -> Result<(ForceHistory, Vec<Motion>), Command
     if arguments.ports.is_given() || arguments.modes.is_given() {
         return Err(CommandError::FixedInFmu { path: arguments.model.clone() });
     }
-    let (force, motions) = importer::simulate(&arguments.model, |places| driving_force(arguments, places))?;
+    let (force, motions) =
+        importer::simulate(&arguments.model, arguments.trust, |places| driving_force(arguments, places))?;
     Ok((force.samples, motions))
 }
 
