@@ -107,7 +107,7 @@ pub enum DataError {
         range: String,
     },
     /// A name that is not in the list it must come from.
-    #[error("{at} = {name:?}: {remedy}")]
+    #[error("{at} = {:?}: {remedy}", short(.name))]
     UnknownName {
         /// The key.
         at: Box<Location>,
@@ -117,7 +117,7 @@ pub enum DataError {
         remedy: String,
     },
     /// A name given twice.
-    #[error("{at} = {name:?}: the name stands before, give each its own")]
+    #[error("{at} = {:?}: the name stands before, give each its own", short(.name))]
     Duplicate {
         /// The second place of the name.
         at: Box<Location>,
@@ -150,6 +150,35 @@ pub enum DataError {
         found: usize,
         /// What would be right.
         remedy: String,
+    },
+    /// A list with more entries than are taken.
+    #[error("{at}: {found} {what}, and at most {most} are taken: {remedy}")]
+    TooMany {
+        /// The key.
+        at: Box<Location>,
+        /// Entries found.
+        found: usize,
+        /// What they are.
+        what: &'static str,
+        /// The limit.
+        most: usize,
+        /// The way out.
+        remedy: &'static str,
+    },
+    /// Files of records that are too large together.
+    #[error(
+        "{at}: the {files} files of records have {found} bytes together, and at most {most} are taken: put some of the places \
+         into a test of their own"
+    )]
+    TooLarge {
+        /// The test file.
+        at: Box<Location>,
+        /// Files, each as often as it is named.
+        files: usize,
+        /// Their bytes.
+        found: u64,
+        /// The limit.
+        most: u64,
     },
     /// A size or place that the model refuses.
     #[error("{at}: {source}")]
@@ -240,3 +269,26 @@ pub enum DataError {
         reasons: String,
     },
 }
+
+/// Enough of a text to know it by: what stands in a file may be a megabyte long.
+pub(crate) fn short(text: &str) -> String {
+    match text.char_indices().nth(SHOWN) {
+        Some((end, _)) => format!("{}...", &text[..end]),
+        None => text.to_owned(),
+    }
+}
+
+/// Characters of a text that are shown.
+const SHOWN: usize = 80;
+
+/// So many texts that a person reads them, and how many more there are.
+pub(crate) fn some_of(texts: &[String], between: &str) -> String {
+    let told = texts.get(..LISTED.min(texts.len())).unwrap_or_default().join(between);
+    match texts.len().saturating_sub(LISTED) {
+        0 => told,
+        more => format!("{told}{between}and {more} more"),
+    }
+}
+
+/// Texts of a list that are told.
+const LISTED: usize = 20;

@@ -2,11 +2,14 @@
 #![deny(clippy::print_stdout, clippy::print_stderr)]
 
 mod error;
+mod input;
+pub mod limits;
 mod records;
 mod spectra;
 mod test_file;
 
 pub use error::{DataError, Location, Position};
+pub use input::{InputKind, regular_file};
 pub use records::{Axis, Port, Record, RecordFile, RecordKind, Samples};
 pub use spectra::{
     Accelerance, Channel, ChannelNoise, Estimation, Estimator, ForceNoise, Hit, HitFault, HitVerdict, TimeHistory,

@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 
 use orthopanel_fmu::{GENERATOR, Resource, Variable};
+use orthopanel_model::printable;
 
 use crate::acceleration_band::Band;
 use crate::origin::Origin;
@@ -153,5 +154,5 @@ const LEFT_OUT_TABLE: &str =
     "</p>\n<table>\n<tr><th>static part of the modes left out</th><th>acceleration within 1 %</th></tr>\n";
 
 pub(crate) fn escaped(text: &str) -> String {
-    quick_xml::escape::escape(text).into_owned()
+    quick_xml::escape::escape(printable(text)).into_owned()
 }

@@ -8,6 +8,7 @@ use std::io;
 use orthopanel_fmu::{
     Dependency, Factor, GENERATOR, LOG_CATEGORIES, MODEL_IDENTIFIER, Resource, UNITS, Variable, VariableTable,
 };
+use orthopanel_model::printable;
 use quick_xml::Writer;
 use quick_xml::events::{BytesDecl, Event};
 
@@ -63,11 +64,12 @@ fn root(xml: &mut Xml, description: &Description) -> io::Result<()> {
         FmiVersion::Fmi2 => ("2.0", "guid", fmi2::INTERFACES, Some(("numberOfEventIndicators", "0"))),
         FmiVersion::Fmi3 => ("3.0", "instantiationToken", fmi3::INTERFACES, None),
     };
+    let (name, told) = (printable(&description.options.name), printable(&description.options.description));
     let attributes = [
         ("fmiVersion", version),
-        ("modelName", &description.options.name),
+        ("modelName", &*name),
         (token, description.token),
-        ("description", &description.options.description),
+        ("description", &*told),
         ("generationTool", GENERATOR),
         ("variableNamingConvention", "flat"),
     ];

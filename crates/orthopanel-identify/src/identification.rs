@@ -198,7 +198,23 @@ impl Identification {
             let &IdentifiedConstant { name, unit, value, .. } = constant;
             Some(IdentifyError::NotDetermined { name, value, std, unit })
         });
-        open.map_or(Ok(self), Err)
+        open.map_or(Ok(self), Err)?.finite()
+    }
+
+    /// Refuses an identification of which a number is not finite.
+    fn finite(self) -> Result<Self, IdentifyError> {
+        let told = |what: &str, value: Option<f64>| value.map(|value| (what.to_owned(), value));
+        let errors = [
+            told("error of the frequencies", Some(self.frequency_rms_percent)),
+            told("error of each frequency predicted from the others", self.left_one_out_percent),
+            told("error of the accelerances", self.accelerance_rms_percent),
+            told("misfit per datum", self.chi_square),
+        ];
+        let constants = self.constants.iter().map(|constant| (format!("value of {}", constant.name), constant.value));
+        let modes = self.pieces.iter().flat_map(|piece| &piece.modes);
+        let modes = modes.map(|mode| (format!("frequency of mode {}", mode.mode), mode.model));
+        let lost = errors.into_iter().flatten().chain(constants).chain(modes).find(|(_, value)| !value.is_finite());
+        lost.map_or(Ok(self), |(what, _)| Err(IdentifyError::NotFinite { what }))
     }
 
     /// The model of one piece with the identified constants, ready for a model file.

@@ -52,6 +52,11 @@ impl Quadratic {
         }
     }
 
+    fn is_finite(&self) -> bool {
+        let curvature = (0..self.gradient.len()).map(|index| self.normal[(index, index)]);
+        self.cost.is_finite() && self.gradient.iter().copied().chain(curvature).all(f64::is_finite)
+    }
+
     /// $(J^TJ)^{-1}$: the covariance of the parameters for residuals of variance one; `None` where it is singular.
     pub fn covariance(&self) -> Option<Mat<f64>> {
         Some(self.normal.llt(Side::Lower).ok()?.inverse())
@@ -86,6 +91,8 @@ pub(crate) struct Minimum {
 pub(crate) enum Stuck<E> {
     /// The model refused the start.
     Refused(E),
+    /// Residuals or their derivatives at the start are no finite numbers.
+    NotFinite,
     /// Too many iterations; the last cost.
     Iterations { count: usize, cost: f64 },
 }
@@ -198,7 +205,7 @@ pub(crate) fn levenberg_marquardt_until<E>(
 /// Goes down $\sum r_i^2$ as far as the ending lets it, and says whether it came to a minimum.
 ///
 /// # Errors
-/// [`Stuck::Refused`] where the start is refused.
+/// [`Stuck::Refused`] where the start is refused, [`Stuck::NotFinite`] where nothing finite is known there.
 pub(crate) fn descend<E>(
     linearise: impl Fn(&[f64]) -> Result<Quadratic, E>,
     start: &[f64],
@@ -221,6 +228,10 @@ pub(crate) fn descend_along<E>(
 ) -> Result<(Minimum, bool), Stuck<E>> {
     let mut parameters = start.to_vec();
     let mut at = linearise(&parameters).map_err(Stuck::Refused)?;
+    // No step leads away from there, and none leads there: a trial that is not finite goes down nowhere.
+    if !at.is_finite() {
+        return Err(Stuck::NotFinite);
+    }
     let (mut damping, mut growth) = (ending.first_damping, 2.0);
     for _ in 0..ending.most_iterations {
         let Some(trial) = damped_step(&at, &parameters, bounds, (damping, ending.longest_step)) else {
@@ -240,7 +251,7 @@ pub(crate) fn descend_along<E>(
         if let Ok(next) = linearise(&trial) {
             let (before, after) = (at.cost, next.cost);
             // At the bottom both are equal but for rounding, and either is the minimum.
-            if after <= before {
+            if after <= before && next.is_finite() {
                 let settled = moved < ending.small_step || ending.is_little(promised, before);
                 (parameters, at) = (trial, next);
                 (damping, growth) = (damping * ending.easing, 2.0);
@@ -308,6 +319,16 @@ mod tests {
         let open = [(-10.0, 10.0); 2];
         let Ok(minimum) = levenberg_marquardt(rosenbrock, &[-1.2, 1.0], &open) else { panic!("no minimum") };
         assert!(minimum.parameters.iter().all(|p| (p - 1.0).abs() < 1e-8), "{:?}", minimum.parameters);
+    }
+
+    #[test]
+    fn a_start_without_finite_residuals_is_refused() {
+        for lost in [f64::NAN, f64::INFINITY, 1e200] {
+            let nowhere = |_: &[f64]| -> Result<Quadratic, ()> {
+                Ok(Linearised { residuals: vec![lost], jacobian: Mat::from_fn(1, 1, |_, _| 1.0) }.quadratic())
+            };
+            assert!(matches!(levenberg_marquardt(nowhere, &[0.0], &[(-1.0, 1.0)]), Err(Stuck::NotFinite)), "{lost}");
+        }
     }
 
     #[test]

@@ -18,6 +18,34 @@ pub enum ModelError {
         /// Its unit.
         unit: &'static str,
     },
+    /// A size that no piece has.
+    #[error(
+        "{name} = {value:e} {unit}: must lie between {low:e} and {high:e} {unit}; sizes are in metres, mass_per_area in kg/m2"
+    )]
+    SizeRange {
+        /// Name of the size.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+        /// Its unit.
+        unit: &'static str,
+        /// Least value allowed.
+        low: f64,
+        /// Greatest value allowed.
+        high: f64,
+    },
+    /// More of something than a model may hold.
+    #[error("{found} {what}, and a model may have {most} at most: {remedy}")]
+    TooMany {
+        /// Number found.
+        found: usize,
+        /// What there are too many of, by its key.
+        what: &'static str,
+        /// The limit.
+        most: usize,
+        /// The way out.
+        remedy: &'static str,
+    },
     /// A thickness and a mass per area that no solid has together.
     #[error(
         "a thickness of {} m and {} kg/m2 make {} kg/m3, and solids have {lightest} to \
@@ -344,13 +372,22 @@ fn to_thousandths(value: f64) -> f64 {
     if (1e-3..1e9).contains(&value) { (1e3 * value).round() / 1e3 } else { value }
 }
 
-/// A number for people: in exponent form where it is huge or tiny.
+/// A number for people: in exponent form where it is huge or tiny. With a number of digits behind the point (`{:.2}`) in that form
+/// only where it is huge, for what is tiny is zero to so many digits.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Readable(pub f64);
 
 impl std::fmt::Display for Readable {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let size = self.0.abs();
+        if let Some(digits) = f.precision() {
+            return match (size < 1e9 || !size.is_finite(), f.sign_plus()) {
+                (true, true) => write!(f, "{:+.digits$}", self.0),
+                (true, false) => write!(f, "{:.digits$}", self.0),
+                (false, true) => write!(f, "{:+.2e}", self.0),
+                (false, false) => write!(f, "{:.2e}", self.0),
+            };
+        }
         let plain = size == 0.0 || !size.is_finite() || (1e-6..1e9).contains(&size);
         if plain { write!(f, "{}", self.0) } else { write!(f, "{:e}", self.0) }
     }
@@ -365,4 +402,17 @@ fn spaced(unit: &str) -> String {
 fn short(bound: &f64) -> String {
     let rounded = format!("{bound:.3e}");
     rounded.parse::<f64>().map_or(rounded, |value| format!("{value:e}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_number_for_people_is_long() {
+        let said = [1e300, -6.8e9, 1e-300, 12.345, 1e8].map(|value| format!("{:.1} {0}", Readable(value)));
+        let plain = ["1.00e300 1e300", "-6.80e9 -6.8e9", "0.0 1e-300", "12.3 12.345", "100000000.0 100000000"];
+        assert_eq!(said, plain);
+        assert_eq!([0.5, 5e20].map(|value| format!("{:+.2}", Readable(value))), ["+0.50", "+5.00e20"]);
+    }
 }

@@ -10,7 +10,7 @@ use serde::{
 use crate::{Estimate, MODEL_SCHEMA, ModelError, PanelModel};
 
 impl PanelModel {
-    /// Reads a model file's text.
+    /// Reads a model file's text, with or without a byte order mark.
     ///
     /// # Errors
     /// [`ModelError::ModelText`] where the text is not such a file (with line, key and what is wanted),
@@ -21,6 +21,7 @@ impl PanelModel {
         struct SchemaOnly {
             schema: Option<String>,
         }
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         // The schema is judged first: a file of another schema has other keys, and naming those would mislead.
         match read::<SchemaOnly>(text)?.schema {
             None => return Err(ModelError::MissingSchema { expected: MODEL_SCHEMA }),

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use crate::limits;
 use crate::{BEAM_CONSTANTS, Boundary, Constant, EffectState, ModelError, Owner, PLATE_CONSTANTS, Piece, Place};
 
 /// The schema that this version reads and writes.
@@ -169,11 +170,27 @@ impl PanelModel {
     /// checked by the structure they belong to.
     ///
     /// # Errors
-    /// The first of [`ModelError::Size`], [`ModelError::Density`], [`ModelError::Damping`], [`ModelError::UnknownConstant`],
+    /// The first of [`ModelError::Size`], [`ModelError::SizeRange`], [`ModelError::Density`], [`ModelError::Damping`],
+    /// [`ModelError::TooMany`], [`ModelError::UnknownConstant`],
     /// [`ModelError::OffPiece`] that holds.
     pub fn check(&self) -> Result<(), ModelError> {
         self.piece.checked()?.solid()?;
         self.damping.check()?;
+        for (found, what, most, remedy) in [
+            (
+                self.damping.ratios.len(),
+                "damping.ratios",
+                limits::DAMPING_RATIOS,
+                "leave out the last, and give damping.beyond",
+            ),
+            (self.ports.forces.len(), "ports.forces", limits::PORTS, "leave out those that nothing is joined to"),
+            (self.ports.responses.len(), "ports.responses", limits::PORTS, "leave out those that nobody reads"),
+            (self.effects.len(), "effects", limits::EFFECTS, "leave out those that count least"),
+        ] {
+            if found > most {
+                return Err(ModelError::TooMany { found, what, most, remedy });
+            }
+        }
         let known = self.structure.constants();
         if let Some(name) = self.constants.keys().find(|name| known.iter().all(|constant| constant.name != **name)) {
             let known = known.iter().map(|constant| constant.name).collect::<Vec<_>>().join(", ");

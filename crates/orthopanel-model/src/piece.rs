@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::ModelError;
+use crate::{ModelError, limits};
 
 /// A rectangular test piece: length $a$ along x, width $b$ along y, thickness $t$, mass per area $\rho t$.
 ///
@@ -62,23 +62,45 @@ impl Piece {
         }
     }
 
-    /// Checks that every size is finite and greater than zero.
+    /// Checks that every size is finite, greater than zero and one that a piece may have ([`limits`]).
     ///
     /// # Errors
-    /// [`ModelError::Size`] names the first size that is not.
+    /// [`ModelError::Size`] and [`ModelError::SizeRange`] name the first size that is not.
     pub fn checked(self) -> Result<Self, ModelError> {
         let sizes = [
-            ("length", self.length, "m"),
-            ("width", self.width, "m"),
-            ("thickness", self.thickness, "m"),
-            ("mass_per_area", self.mass_per_area, "kg/m2"),
+            ("length", self.length, "m", limits::SIZE),
+            ("width", self.width, "m", limits::SIZE),
+            ("thickness", self.thickness, "m", limits::SIZE),
+            ("mass_per_area", self.mass_per_area, "kg/m2", limits::MASS_PER_AREA),
         ];
-        for (name, value, unit) in sizes {
+        for (name, value, unit, [low, high]) in sizes {
             if !(value.is_finite() && value > 0.0) {
                 return Err(ModelError::Size { name, value, unit });
             }
+            if !(low..=high).contains(&value) {
+                return Err(ModelError::SizeRange { name, value, unit, low, high });
+            }
         }
         Ok(self)
+    }
+
+    /// Between which frequencies \[Hz\] a flexible mode with at most so many nodal lines along x and along y lies, whatever the
+    /// moduli within [`limits::MODULUS`] and however the edges are held.
+    ///
+    /// At least a tenth of that of a cantilever as long as the longer side, $\frac{3.516}{2\pi}\frac t{a^2}\sqrt{E/12\rho}$, of the
+    /// softest: a tenth, for masses that a mode carries. At most that of a thin plate of the stiffest,
+    /// $\frac{\pi}{2}\left(\frac{(n_x+2)^2}{a^2}+\frac{(n_y+2)^2}{b^2}\right)\sqrt{\frac{Et^2}{12\rho(1-\nu^2)}}$ with $\nu = 0.95$: two
+    /// half-waves more than nodes, for edges that are clamped; shear and rotary inertia lower every mode.
+    pub fn possible_frequencies(&self, nodes: [u32; 2]) -> (f64, f64) {
+        const NU: f64 = 0.95;
+        let [softest, stiffest] = limits::MODULUS;
+        // sqrt(D / rho t) but for Poisson's ratio [m2/s].
+        let bending = |modulus: f64| self.thickness * (modulus * self.thickness / (12.0 * self.mass_per_area)).sqrt();
+        let waves = |nodes: u32, size: f64| ((f64::from(nodes) + 2.0) / size).powi(2);
+        let both = waves(nodes[0], self.length) + waves(nodes[1], self.width);
+        let least = 0.1 * 3.516 / std::f64::consts::TAU * bending(softest) / self.length.max(self.width).powi(2);
+        let most = std::f64::consts::FRAC_PI_2 * both * bending(stiffest) / (1.0 - NU * NU).sqrt();
+        (least, most)
     }
 
     /// Checks that `place` lies on the piece, its edges included.

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use clap::Args;
+use orthopanel_model::limits;
 use orthopanel_model::{ModeRange, PanelModel, Place, Ports};
 
 use crate::error::CommandError;
@@ -62,6 +63,11 @@ impl PortArguments {
         for (places, kind, key) in [(&ports.forces, "force", "forces"), (&ports.responses, "response", "responses")] {
             if places.is_empty() {
                 return Err(CommandError::NoPort { path: path.into(), kind, key });
+            }
+            if places.len() > limits::PORTS {
+                let (value, most) = (format!("given {} times", places.len()), limits::PORTS);
+                let remedy = format!("a model may have {most} places of each kind at most");
+                return Err(CommandError::Option { option: kind, value, remedy });
             }
             on_piece(model, kind, places)?;
         }

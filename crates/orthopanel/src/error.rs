@@ -21,8 +21,8 @@ pub const BAD_INPUT: u8 = 2;
 pub enum CommandError {
     #[error("{}: cannot be read: {source}", .path.display())]
     Unreadable { path: PathBuf, source: std::io::Error },
-    #[error("{}: cannot be written: {reason}", .path.display())]
-    Unwritable { path: PathBuf, reason: String },
+    #[error("{}: cannot be written: {reason}: {}", .path.display(), way_out(*.kind))]
+    Unwritable { path: PathBuf, reason: String, kind: ErrorKind },
     #[error("{failed}; not all is as it was: {lost}")]
     NotPutBack { failed: Box<CommandError>, lost: String },
     #[error(
@@ -93,15 +93,24 @@ pub enum CommandError {
     Picture { name: &'static str, problem: String },
 }
 
+/// What to do about a file that cannot be written.
+fn way_out(kind: ErrorKind) -> &'static str {
+    match kind {
+        ErrorKind::NotFound | ErrorKind::NotADirectory => "name a place in a folder that exists",
+        ErrorKind::PermissionDenied => "name a place that you may write to",
+        ErrorKind::ReadOnlyFilesystem => "name a place on a disk that may be written to",
+        ErrorKind::StorageFull | ErrorKind::QuotaExceeded => "make room, or name a place on another disk",
+        ErrorKind::IsADirectory => "name a file in it",
+        ErrorKind::InvalidFilename => "give a shorter name, without characters that the system forbids",
+        _ => "name another place",
+    }
+}
+
 impl CommandError {
-    /// Of a result, with the way out where the cause tells it.
+    /// A file that the system does not let be written; its words name a temporary file, and its kind of error none.
     pub fn unwritable(path: &Path, error: &std::io::Error) -> Self {
-        let reason = match error.kind() {
-            ErrorKind::NotFound => "its folder is not there: name a place in a folder that exists".into(),
-            ErrorKind::PermissionDenied => format!("{error}: name a place that may be written to"),
-            _ => error.to_string(),
-        };
-        Self::Unwritable { path: path.into(), reason }
+        let kind = error.kind();
+        Self::Unwritable { path: path.into(), reason: kind.to_string(), kind }
     }
 
     /// 1 where the data or the model says no, 2 for bad usage or input.

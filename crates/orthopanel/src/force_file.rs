@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use orthopanel_data::limits;
+
 use crate::error::CommandError;
 
 /// Forces against time, as read: at least two samples, time rising, every number finite.
@@ -34,15 +36,14 @@ impl ForceHistory {
 
     /// Reads the columns for `places` force places; other columns are left alone.
     pub fn read(path: &Path, places: usize) -> Result<Self, CommandError> {
-        let text =
-            std::fs::read_to_string(path).map_err(|source| CommandError::Unreadable { path: path.into(), source })?;
+        let text = limits::FORCE_FILE.read_text(path);
+        let text = text.map_err(|source| CommandError::Unreadable { path: path.into(), source })?;
         Self::from_csv(&text, path, places)
     }
 
     fn from_csv(text: &str, path: &Path, places: usize) -> Result<Self, CommandError> {
         let fault = |line: Option<u64>, problem: String| CommandError::ForceFile { path: path.into(), line, problem };
         let broken = |error: csv::Error| fault(error.position().map(csv::Position::line), error.to_string());
-        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let mut reader =
             csv::ReaderBuilder::new().comment(Some(b'#')).trim(csv::Trim::All).from_reader(text.as_bytes());
         let names = reader.headers().map_err(broken)?.clone();
@@ -65,7 +66,10 @@ impl ForceHistory {
                 let text = row.get(position).unwrap_or("");
                 let value = text.parse().ok().filter(|value: &f64| value.is_finite());
                 let name = names.get(position).unwrap_or("");
-                let value = value.ok_or_else(|| fault(line, format!("{name} = {text:?}: must be a finite number")))?;
+                let value = value.ok_or_else(|| {
+                    let found: String = text.chars().take(40).collect();
+                    fault(line, format!("{name} = {found:?}: must be a finite number"))
+                })?;
                 match column.checked_sub(1) {
                     Some(port) => history.forces[port].push(value),
                     None => history.push_time(value).map_err(|problem| fault(line, problem))?,

@@ -7,7 +7,7 @@ use orthopanel_data::{Hit, HitVerdict, TimeHistory};
 use orthopanel_identify::{
     ForceBetweenSamples, HistorySettings, HitComparison, IdentifyError, Misfit, compare_time_history,
 };
-use orthopanel_model::{ModalModel, PanelModel, Place};
+use orthopanel_model::{ModalModel, PanelModel, Place, Readable};
 use serde::Serialize;
 
 use crate::whole_accelerance::modes_up_to;
@@ -174,17 +174,22 @@ pub fn misfit_table(misfits: &[&HitMisfit]) -> String {
             place_text(misfit.response),
             misfit.verdict.hit.to_string(),
             format!("{:.1}", misfit.whole.peak_m_s2),
-            format!("{:.2}", misfit.whole.rms_percent_of_peak),
-            format!("{:.2}", misfit.whole.greatest_percent_of_peak),
-            format!("{:.5}", misfit.whole.variance_explained),
+            format!("{:.2}", Readable(misfit.whole.rms_percent_of_peak)),
+            format!("{:.2}", Readable(misfit.whole.greatest_percent_of_peak)),
+            format!("{:.5}", Readable(misfit.whole.variance_explained)),
         ];
         if let Some(BesideExact { misfit: exact, apart_percent_of_peak }) = &misfit.exact {
-            row.push(format!("{:.2}", exact.rms_percent_of_peak));
-            row.push(format!("{:.5}", exact.variance_explained));
-            row.push(format!("{apart_percent_of_peak:.4}"));
+            row.push(format!("{:.2}", Readable(exact.rms_percent_of_peak)));
+            row.push(format!("{:.5}", Readable(exact.variance_explained)));
+            row.push(format!("{:.4}", Readable(*apart_percent_of_peak)));
         }
         if with_band {
-            row.push(misfit.in_band.as_ref().map_or(String::new(), |band| format!("{:.5}", band.variance_explained)));
+            row.push(
+                misfit
+                    .in_band
+                    .as_ref()
+                    .map_or(String::new(), |band| format!("{:.5}", Readable(band.variance_explained))),
+            );
         }
         row
     };

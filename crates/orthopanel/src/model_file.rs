@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use orthopanel_data::limits;
 use orthopanel_model::PanelModel;
 
 use crate::error::{CommandError, InFile as _};
@@ -16,8 +17,8 @@ pub fn read(path: &Path) -> Result<PanelModel, CommandError> {
     if is_test_file(path) {
         return Err(CommandError::TestForModel { path: path.into() });
     }
-    let text =
-        std::fs::read_to_string(path).map_err(|source| CommandError::Unreadable { path: path.into(), source })?;
+    let text = limits::MODEL_FILE.read_text(path);
+    let text = text.map_err(|source| CommandError::Unreadable { path: path.into(), source })?;
     PanelModel::from_json(&text).in_file(path)
 }
 

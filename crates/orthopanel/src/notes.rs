@@ -1,5 +1,7 @@
 //! What the layers below have to say about the records, for people.
 
+use std::collections::HashMap;
+
 use crate::console;
 
 /// Prints each note once on standard error, behind `about`, with how often it was made.
@@ -21,13 +23,15 @@ pub fn counted(notes: &[String]) -> impl Iterator<Item = String> {
 /// records.
 fn folded(notes: &[String]) -> Vec<(&str, usize)> {
     let mut folded: Vec<(&str, usize)> = Vec::new();
+    let mut places: HashMap<&str, usize> = HashMap::new();
     for note in notes {
         let numbered = note.split_once("record ").and_then(|(_, rest)| rest.split_once(": "));
         let text = match numbered {
             Some((number, text)) if number.bytes().all(|byte| byte.is_ascii_digit()) => text,
             _ => note,
         };
-        match folded.iter_mut().find(|(known, _)| *known == text) {
+        let place = *places.entry(text).or_insert(folded.len());
+        match folded.get_mut(place) {
             Some((_, times)) => *times += 1,
             None => folded.push((text, 1)),
         }

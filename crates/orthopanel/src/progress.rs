@@ -7,20 +7,24 @@ use indicatif::{ProgressBar, ProgressStyle};
 /// A spinner that turns until it is dropped; in pipes and log files nothing is drawn.
 pub fn spinner(message: &'static str) -> Shown {
     let bar = ProgressBar::new_spinner().with_message(message);
-    bar.enable_steady_tick(Duration::from_millis(100));
-    Shown(bar)
+    shown(bar)
 }
 
 /// A bar over `steps` steps of work.
 pub fn bar(message: &'static str, steps: usize) -> Shown {
     let style = ProgressStyle::with_template("{msg} [{bar:30}] {pos}/{len}").unwrap_or(ProgressStyle::default_bar());
-    Shown(ProgressBar::new(steps as u64).with_message(message).with_style(style))
+    shown(ProgressBar::new(steps as u64).with_message(message).with_style(style))
 }
 
 /// A bar over work whose steps are counted elsewhere, and named.
 pub fn counted(message: &'static str) -> Shown {
     let style = ProgressStyle::with_template("{prefix} [{bar:30}] {pos}/{len} {msg}");
-    let bar = ProgressBar::new(1).with_prefix(message).with_style(style.unwrap_or(ProgressStyle::default_bar()));
+    shown(ProgressBar::new(1).with_prefix(message).with_style(style.unwrap_or(ProgressStyle::default_bar())))
+}
+
+/// Drawn at once and ever again: a first step may take minutes.
+fn shown(bar: ProgressBar) -> Shown {
+    bar.enable_steady_tick(Duration::from_millis(100));
     Shown(bar)
 }
 

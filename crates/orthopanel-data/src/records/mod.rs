@@ -6,9 +6,9 @@ mod csv_time_history;
 mod record;
 mod uff;
 
-use std::{fs, path::Path};
+use std::path::Path;
 
-use crate::{DataError, Location};
+use crate::{DataError, Location, limits};
 pub(crate) use record::{ACCELERATION, FORCE};
 pub use record::{Axis, Port, Record, RecordFile, RecordKind, Samples};
 
@@ -34,10 +34,11 @@ impl RecordFile {
     /// Reads a file of records; its content tells the format.
     ///
     /// # Errors
-    /// [`DataError::Unreadable`] where the file cannot be read, else as [`RecordFile::from_bytes`].
+    /// [`DataError::Unreadable`] where the file cannot be read, or is too large, else as [`RecordFile::from_bytes`].
     pub fn read(path: impl AsRef<Path>) -> Result<Self, DataError> {
         let path = path.as_ref();
-        let bytes = fs::read(path).map_err(|source| DataError::Unreadable { at: Location::whole(path), source })?;
+        let read = limits::RECORD_FILE.read(path);
+        let bytes = read.map_err(|source| DataError::Unreadable { at: Location::whole(path), source })?;
         Self::from_bytes(&bytes, path)
     }
 

@@ -8,6 +8,7 @@ use super::force_noise::ForceNoise;
 use super::hit_verdict::HitVerdict;
 use crate::{
     DataError, Location, RecordedResponse,
+    error::some_of,
     records::{Record, RecordFile, RecordKind, Samples},
 };
 
@@ -95,7 +96,7 @@ impl Accelerance {
             Some(number) => responses.iter().find(|(of, _)| *of == number),
             None => responses.first(),
         };
-        let numbers = || responses.iter().map(|(number, _)| number.to_string()).collect::<Vec<_>>().join(", ");
+        let numbers = || some_of(&responses.iter().map(|(number, _)| number.to_string()).collect::<Vec<_>>(), ", ");
         let refused = |record: &Record, problem: String| Err(DataError::Channels { at: record.at.clone(), problem });
         if let (None, Some(number), Some((_, first))) = (chosen, measurement.record, responses.first()) {
             let problem = format!("record = {number} is no frequency response: those of the file are {}", numbers());

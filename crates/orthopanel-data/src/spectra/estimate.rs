@@ -12,7 +12,7 @@ use super::{
     time_history::{Hit, TimeHistory},
     window::{Window, milliseconds},
 };
-use crate::{DataError, Location, Position};
+use crate::{DataError, Location, Position, error::some_of};
 
 /// How spectra are averaged into an accelerance. With $S_{ff} = \overline{|F|^2}$, $S_{aa} = \overline{|A|^2}$ and
 /// $S_{fa} = \overline{\bar F A}$ over the hits:
@@ -78,7 +78,7 @@ impl TimeHistory {
             verdicts.iter().enumerate().flat_map(|(index, verdict)| verdict.notes(&self.hit_name(index))).collect();
         let mut kept = self.kept(&verdicts);
         if kept.is_empty() {
-            return Err(DataError::NoUsableHit { file: self.file.clone(), reasons: reasons.join("; ") });
+            return Err(DataError::NoUsableHit { file: self.file.clone(), reasons: some_of(&reasons, "; ") });
         }
         let ringing = kept.iter().flat_map(|(index, _)| &verdicts[*index].faults).filter_map(|fault| match fault {
             HitFault::NotDecayed { ratio } => Some(*ratio),

@@ -1,12 +1,17 @@
 //! All accelerances of a test, hits of the same places put together.
 
-use std::path::PathBuf;
+use std::{
+    collections::HashMap,
+    hash::{DefaultHasher, Hash as _, Hasher as _},
+    path::PathBuf,
+};
 
 use orthopanel_model::Place;
 use rayon::prelude::*;
 
 use super::node_numbers::{self, NumberedPlace};
-use super::{Accelerance, Estimation, TimeHistory};
+use super::time_history::check_hits;
+use super::{Accelerance, Estimation, Hit, TimeHistory};
 use crate::{DataError, ImpactTest, Location, Measurement, MeasurementData, RecordFile};
 
 impl TimeHistory {
@@ -32,6 +37,7 @@ impl TimeHistory {
             )
         } else {
             let joined = self.hits.len();
+            check_hits(joined + other.hits.len(), || Location::whole(&other.file))?;
             self.further_files.push((joined, other.file));
             self.further_files.extend(other.further_files.into_iter().map(|(from, file)| (joined + from, file)));
             self.hits.extend(other.hits);
@@ -83,7 +89,27 @@ impl GatheredFile {
     }
 }
 
+/// A number that tells hits or lines apart, but for rare chances.
+type Fingerprint = u64;
+
+fn fingerprint(values: impl Iterator<Item = f64>) -> Fingerprint {
+    let mut hasher = DefaultHasher::new();
+    values.for_each(|value| value.to_bits().hash(&mut hasher));
+    hasher.finish()
+}
+
 impl Gathered {
+    /// Of each hit, or of all lines.
+    fn fingerprints(&self) -> Vec<Fingerprint> {
+        match self {
+            Self::Hits(history) => {
+                let of_hit = |hit: &Hit| fingerprint(hit.force.iter().chain(&hit.acceleration).copied());
+                history.hits.iter().map(of_hit).collect()
+            }
+            Self::Line(line) => vec![fingerprint(line.value.iter().flat_map(|value| [value.re, value.im]))],
+        }
+    }
+
     /// Whether any hit or all lines of both are the same to the last digit, as in no two noisy measurements.
     fn repeats(&self, other: &Self) -> bool {
         match (self, other) {
@@ -111,10 +137,20 @@ impl Gathered {
 
 /// Refuses a file that the test lists twice for the same places, for it would count twice, and tells files that hold the same record.
 fn tell_repetitions(files: &mut [GatheredFile]) -> Result<(), DataError> {
-    for index in 1..files.len() {
+    // The first file that holds each; all pairs of files would be too many.
+    let mut holders: HashMap<Fingerprint, usize> = HashMap::new();
+    for index in 0..files.len() {
         let (before, rest) = files.split_at_mut(index);
         let Some(file) = rest.first_mut() else { continue };
-        let Some(earlier) = before.iter().find(|earlier| file.content.repeats(&earlier.content)) else { continue };
+        let prints = file.content.fingerprints();
+        let holder = prints.iter().filter_map(|print| holders.get(print)).min().copied();
+        for print in prints {
+            holders.entry(print).or_insert(index);
+        }
+        let Some(earlier) = holder.and_then(|holder| before.get(holder)) else { continue };
+        if !file.content.repeats(&earlier.content) {
+            continue;
+        }
         let places = file.content.places() == earlier.content.places();
         if places && earlier.path == file.path && earlier.record == file.record {
             let problem = "the test lists this record twice: it would count twice; list it once".into();

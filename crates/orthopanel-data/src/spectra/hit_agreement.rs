@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use num_complex::Complex64;
+use orthopanel_model::Readable;
 
 use super::{
     extremes::median, hit_faults::HitFault, hit_verdict::HitVerdict, spectrum::Sums, time_history::TimeHistory,
@@ -75,12 +76,12 @@ impl TimeHistory {
                          and agree with one another within {:.0} %: they belong to another place; correct force_at or \
                          response_at",
                         names.join(", "),
-                        100.0 * apart,
+                        Readable(100.0 * apart),
                         self.force_at.x,
                         self.force_at.y,
                         self.response_at.x,
                         self.response_at.y,
-                        (100.0 * within).ceil()
+                        Readable((100.0 * within).ceil())
                     ),
                 })
             }
@@ -88,7 +89,7 @@ impl TimeHistory {
                 notes.push(format!(
                     "the hits differ by {:.0} % in the median line, as the noise of their channels before the blow explains: \
                      much noise; hit harder, or average more hits",
-                    100.0 * by
+                    Readable(100.0 * by)
                 ));
                 Ok(false)
             }
@@ -100,7 +101,7 @@ impl TimeHistory {
                 } else {
                     "in the median line: much noise, or hits at several places"
                 };
-                notes.push(format!("{} differ by {:.1} % {how}", names.join(", "), 100.0 * by));
+                notes.push(format!("{} differ by {:.1} % {how}", names.join(", "), Readable(100.0 * by)));
                 Ok(false)
             }
         }

@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use orthopanel_model::Readable;
+
 use super::{
     blow::force_fault,
     extremes::Levels,
@@ -131,12 +133,19 @@ impl fmt::Display for HitFault {
                 let (name, unit) = name(channel);
                 write!(
                     f,
-                    "sample {sample} of the {name} was lost: {value:.4} {unit} stands where {expected:.4} would fit"
+                    "sample {sample} of the {name} was lost: {:.4} {unit} stands where {:.4} would fit",
+                    Readable(value),
+                    Readable(expected)
                 )
             }
             Self::DoubleHit { after, ratio } => {
                 let when = if after < 0.0 { "touched before, by" } else { "again after" };
-                write!(f, "double hit: {:.1} % of the force {when} {:.1} ms", 100.0 * ratio, 1e3 * after.abs())
+                write!(
+                    f,
+                    "double hit: {:.1} % of the force {when} {:.1} ms",
+                    Readable(100.0 * ratio),
+                    Readable(1e3 * after.abs())
+                )
             }
             Self::RateTooLow { samples, rate } => write!(
                 f,
@@ -144,31 +153,31 @@ impl fmt::Display for HitFault {
                  blow, or the record was decimated: record faster, or hit with a softer tip"
             ),
             Self::WeakForce { signal_to_noise } => {
-                write!(f, "force only {signal_to_noise:.1} times its noise, {LEAST_SIGNAL_TO_NOISE} needed")
+                write!(f, "force only {:.1} times its noise, {LEAST_SIGNAL_TO_NOISE} needed", Readable(signal_to_noise))
             }
             Self::Copy { of } => write!(f, "sample by sample hit {of} again: a copy, which would count twice"),
             Self::Astray { gain } => write!(
                 f,
                 "its accelerance is {:.1} % {} that of the other hits over the whole band, which agree: a sample cut off at \
                  the crest, or another gain",
-                100.0 * (gain - 1.0).abs(),
+                Readable(100.0 * (gain - 1.0).abs()),
                 if gain > 1.0 { "above" } else { "below" }
             ),
             Self::Elsewhere { apart, within } if apart > TURNED_ROUND => write!(
                 f,
                 "its accelerance is that of the other hits with the other sign, which agree within {:.0} %: sensor or hammer \
                  turned round",
-                (100.0 * within).ceil()
+                Readable((100.0 * within).ceil())
             ),
             Self::Elsewhere { apart, within } => write!(
                 f,
                 "its accelerance differs by {:.0} % in the median line from that of the other hits, which agree within \
                  {:.0} %: another place, or a spoilt record",
-                100.0 * apart,
-                (100.0 * within).ceil()
+                Readable(100.0 * apart),
+                Readable((100.0 * within).ceil())
             ),
             Self::NotDecayed { ratio } => {
-                write!(f, "response not decayed, {:.2} % left at the end", 100.0 * ratio)
+                write!(f, "response not decayed, {:.2} % left at the end", Readable(100.0 * ratio))
             }
         }
     }

@@ -1,5 +1,7 @@
 //! A channel that is missing or stands twice.
 
+use orthopanel_model::Readable;
+
 use super::time_history::Hit;
 use crate::{DataError, Location};
 
@@ -55,7 +57,8 @@ pub(super) fn check_apart(hit: &Hit, at: Box<Location>) -> Result<(), DataError>
         return Ok(());
     }
     let problem = format!(
-        "the acceleration is the force times {factor:.6}, sample for sample: one channel stands twice, and the other is missing"
+        "the acceleration is the force times {:.6}, sample for sample: one channel stands twice, and the other is missing",
+        Readable(factor)
     );
     Err(DataError::Channels { at, problem })
 }

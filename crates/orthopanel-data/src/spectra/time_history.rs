@@ -12,7 +12,7 @@ use super::{
     window::milliseconds,
 };
 use crate::{
-    DataError, Location, RecordedResponse,
+    DataError, Location, RecordedResponse, limits,
     records::{Record, RecordFile, RecordKind, Samples},
 };
 
@@ -157,6 +157,7 @@ impl TimeHistory {
             return Err(misplaced_channel::alone(&order, problem, first));
         }
         misplaced_channel::check_order(&order)?;
+        check_hits(forces.len(), || first)?;
         let mut hits = Vec::with_capacity(forces.len());
         let mut grid: Option<(usize, f64)> = None;
         let mut times: Option<(Arc<[f64]>, f64)> = None;
@@ -189,6 +190,12 @@ impl TimeHistory {
         let file = measurement.file.clone();
         Ok(Self { notes, ..Self::new(file, [force_at, response_at], rate, hits) })
     }
+}
+
+/// Refuses more hits of one pair of places than are taken.
+pub(super) fn check_hits(found: usize, at: impl FnOnce() -> Box<Location>) -> Result<(), DataError> {
+    let (what, most, remedy) = ("hits of one pair of places", limits::HITS, "leave some out: their mean needs no more");
+    if found <= most { Ok(()) } else { Err(DataError::TooMany { at: at(), found, what, most, remedy }) }
 }
 
 /// The two channels of a hit at a sampling rate \[Hz\].

@@ -6,7 +6,7 @@ use orthopanel_model::{Place, StructureKind, effect};
 use toml::Spanned;
 
 use super::{pieces::NamedPiece, source::Source, syntax};
-use crate::DataError;
+use crate::{DataError, limits};
 
 /// Names of the elastic constants; `nu_xy` is a Poisson's ratio, the others are moduli \[Pa\].
 const CONSTANTS: [&str; 6] = ["e_x", "e_y", "nu_xy", "g_xy", "g_yz", "g_zx"];
@@ -43,8 +43,11 @@ pub(super) fn suspension(
     suspension: Option<syntax::Suspension>,
     pieces: &[NamedPiece],
 ) -> Result<Vec<Place>, DataError> {
+    let given = suspension.map_or(Vec::new(), |suspension| suspension.at);
+    let at = || source.at(given.first().map_or(0..0, Spanned::span), "suspension.at");
+    source.at_most((given.len(), "points"), limits::SUSPENSION_POINTS, at, "name those that carry the piece")?;
     let mut places = Vec::new();
-    for (index, x) in suspension.into_iter().flat_map(|suspension| suspension.at).enumerate() {
+    for (index, x) in given.into_iter().enumerate() {
         let key = format!("suspension.at[{}]", index + 1);
         let place = Place { x: source.finite(&x, &key)?, y: 0.0 };
         for NamedPiece { piece, .. } in pieces {
@@ -92,6 +95,8 @@ pub(super) fn effects(
     source: &Source,
     given: Vec<Spanned<BTreeMap<String, Spanned<toml::Value>>>>,
 ) -> Result<Vec<DeclaredEffect>, DataError> {
+    let at = || source.at(given.first().map_or(0..0, Spanned::span), "effect");
+    source.at_most((given.len(), "effects"), limits::EFFECTS, at, "declare those that are known and count")?;
     let mut effects = Vec::with_capacity(given.len());
     for (index, entry) in given.into_iter().enumerate() {
         let key = format!("effect[{}]", index + 1);

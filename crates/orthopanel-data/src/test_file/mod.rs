@@ -9,13 +9,12 @@ mod wrong_type;
 
 use std::{
     collections::BTreeMap,
-    fs,
     path::{Path, PathBuf},
 };
 
 use orthopanel_model::{Boundary, Place, StructureKind};
 
-use crate::{DataError, Location, Position};
+use crate::{DataError, Location, Position, limits};
 pub use declared::DeclaredEffect;
 pub use measurements::{
     AccelerationUnit, Direction, Measurement, MeasurementData, NaturalFrequencies, RecordedResponse,
@@ -51,7 +50,8 @@ impl ImpactTest {
     /// [`DataError::Unreadable`] where the file cannot be read, else as [`ImpactTest::from_toml`].
     pub fn read(path: impl AsRef<Path>) -> Result<Self, DataError> {
         let path = &Self::file_at(path.as_ref());
-        let bytes = fs::read(path).map_err(|source| DataError::Unreadable { at: Location::whole(path), source })?;
+        let read = limits::TEST_FILE.read(path);
+        let bytes = read.map_err(|source| DataError::Unreadable { at: Location::whole(path), source })?;
         let text = String::from_utf8(bytes).map_err(|error| DataError::Syntax {
             at: Box::new(Location {
                 position: Position::Byte(error.utf8_error().valid_up_to()),

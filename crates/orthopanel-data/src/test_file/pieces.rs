@@ -1,10 +1,12 @@
 //! `[piece]` or `[[piece]]`: sizes and mass of the test pieces.
 
-use orthopanel_model::Piece;
+use std::ops::Range;
+
+use orthopanel_model::{ModelError, Piece};
 use toml::Spanned;
 
 use super::{source::Source, syntax};
-use crate::DataError;
+use crate::{DataError, limits};
 
 /// A test piece and the name that measurements call it by.
 #[derive(Debug, Clone, PartialEq)]
@@ -27,6 +29,8 @@ pub(super) fn pieces(source: &Source, pieces: Option<syntax::Pieces>) -> Result<
         syntax::Pieces::Several(several) if several.is_empty() => return Err(missing()),
         syntax::Pieces::Several(several) => several,
     };
+    let at = || source.at(several.first().map_or(0..0, Spanned::span), "piece");
+    source.at_most((several.len(), "pieces"), limits::PIECES, at, "give the others a test file of their own")?;
     let single_name = (several.len() == 1).then_some("1");
     let mut read: Vec<NamedPiece> = Vec::with_capacity(several.len());
     for (index, piece) in several.into_iter().enumerate() {
@@ -51,6 +55,9 @@ fn one(source: &Source, piece: syntax::Piece, key: &str, default_name: Option<&s
     let thickness = size(&piece.thickness, "thickness")?;
     let mass_per_area = mass_per_area(source, &piece, key)?;
     let sizes = Piece { length, width, thickness, mass_per_area };
+    if let Err(error) = sizes.checked() {
+        return Err(DataError::Model { at: source.at(of_size(&piece, &error), key), source: error });
+    }
     if let Err(error) = sizes.solid() {
         let spans = [&piece.thickness, &piece.length].into_iter().flatten().next();
         let at = spans.map_or_else(|| source.whole(key), |number| source.at(number.span(), format!("{key}.thickness")));
@@ -64,12 +71,33 @@ fn one(source: &Source, piece: syntax::Piece, key: &str, default_name: Option<&s
             remedy: "with several pieces each needs a name, which measurements then give as piece = \"...\"",
         })?,
     };
+    let characters = name.chars().count();
+    if characters > limits::NAME {
+        let span = piece.name.as_ref().map_or(0..0, Spanned::span);
+        let at = || source.at(span, format!("{key}.name"));
+        source.at_most((characters, "characters"), limits::NAME, at, "give a shorter name")?;
+    }
     let own_constants = own_constants(source, piece.own_constants, key)?;
     Ok(NamedPiece { name, piece: sizes, own_constants })
 }
 
+/// Where the size stands that is refused.
+fn of_size(piece: &syntax::Piece, error: &ModelError) -> Range<usize> {
+    let (ModelError::Size { name, .. } | ModelError::SizeRange { name, .. }) = error else { return 0..0 };
+    let number = match *name {
+        "length" => &piece.length,
+        "width" => &piece.width,
+        "thickness" => &piece.thickness,
+        _ => &piece.mass_per_area,
+    };
+    let weighed = || piece.weighings.as_ref().map(Spanned::span);
+    number.as_ref().map(Spanned::span).or_else(weighed).unwrap_or(0..0)
+}
+
 /// Which names a structure has is judged where the structure is known.
 fn own_constants(source: &Source, given: Vec<Spanned<String>>, key: &str) -> Result<Vec<String>, DataError> {
+    let at = || source.at(given.first().map_or(0..0, Spanned::span), format!("{key}.own_constants"));
+    source.at_most((given.len(), "names"), limits::OWN_CONSTANTS, at, "a structure has no more constants")?;
     let mut names: Vec<String> = Vec::with_capacity(given.len());
     for (index, name) in given.into_iter().enumerate() {
         let at = source.at(name.span(), format!("{key}.own_constants[{}]", index + 1));
@@ -109,6 +137,8 @@ fn mass_per_area(source: &Source, piece: &syntax::Piece, key: &str) -> Result<f6
         let remedy = "give at least one [length, width, mass] in m, m, kg".into();
         return Err(DataError::Count { at: source.at(weighings.span(), key), found: 0, remedy });
     }
+    let at = || source.at(weighings.span(), key.as_str());
+    source.at_most((coupons.len(), "coupons"), limits::WEIGHINGS, at, "weigh fewer: their mean counts")?;
     let mut sum = 0.0;
     for (index, [length, width, mass]) in coupons.iter().enumerate() {
         let entry = |position: usize| format!("{key}[{}][{position}]", index + 1);

@@ -14,17 +14,19 @@ use crate::{DataError, Location, Position};
 pub(super) struct Source<'a> {
     path: &'a Path,
     text: &'a str,
+    /// Byte of each line's end.
+    line_ends: Vec<usize>,
 }
 
 impl<'a> Source<'a> {
     pub(super) fn new(path: &'a Path, text: &'a str) -> Self {
-        Self { path, text }
+        let ends = text.bytes().enumerate().filter(|(_, byte)| *byte == b'\n');
+        Self { path, text, line_ends: ends.map(|(at, _)| at).collect() }
     }
 
     /// `key`, at the line where `span` begins.
     pub(super) fn at(&self, span: Range<usize>, key: impl Into<String>) -> Box<Location> {
-        let before = self.text.as_bytes().iter().take(span.start);
-        let line = 1 + before.filter(|&&byte| byte == b'\n').count();
+        let line = 1 + self.line_ends.partition_point(|&end| end < span.start);
         Box::new(Location { file: self.path.to_path_buf(), position: Position::Line(line), key: key.into() })
     }
 
@@ -43,6 +45,17 @@ impl<'a> Source<'a> {
         };
         let at = span.map_or_else(|| self.whole(key.as_str()), |span| self.at(span, key.as_str()));
         DataError::Syntax { at, message }
+    }
+
+    /// Refuses a list that is too long.
+    pub(super) fn at_most(
+        &self,
+        (found, what): (usize, &'static str),
+        most: usize,
+        at: impl FnOnce() -> Box<Location>,
+        remedy: &'static str,
+    ) -> Result<(), DataError> {
+        if found <= most { Ok(()) } else { Err(DataError::TooMany { at: at(), found, what, most, remedy }) }
     }
 
     /// A number that must be finite and greater than zero.

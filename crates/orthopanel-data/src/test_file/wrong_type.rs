@@ -1,5 +1,7 @@
 //! A value of the wrong type: which key it is, and what is wanted there, instead of the TOML reader's own words.
 
+use std::collections::BTreeMap;
+
 /// What each key wants.
 const WANTED: [(&str, &str); 28] = [
     ("length", "a number in m"),
@@ -60,14 +62,15 @@ pub(super) fn in_plain_words(text: &str, start: usize, message: &str) -> Option<
 /// Path of the key whose value holds byte `start`; entries of `[[...]]` are counted from 1.
 fn key_at(text: &str, start: usize) -> String {
     let line_end = text.get(start..).and_then(|rest| rest.find('\n')).map_or(text.len(), |length| start + length);
-    let (mut table, mut key, mut lists) = (String::new(), "", Vec::new());
+    let (mut table, mut key, mut counts) = (String::new(), "", BTreeMap::new());
     for line in text.get(..line_end).unwrap_or_default().lines() {
         let header = line.split('#').next().unwrap_or_default().trim();
         let list = header.strip_prefix("[[").and_then(|name| name.strip_suffix("]]")).map(str::trim);
         let single = header.strip_prefix('[').and_then(|name| name.strip_suffix(']')).map(str::trim);
         if let Some(name) = list.filter(|name| is_bare(name)) {
-            lists.push(name);
-            (table, key) = (format!("{name}[{}]", lists.iter().filter(|list| **list == name).count()), "");
+            let count: &mut usize = counts.entry(name).or_default();
+            *count += 1;
+            (table, key) = (format!("{name}[{count}]"), "");
         } else if let Some(name) = single.filter(|name| is_bare(name)) {
             (table, key) = (name.to_owned(), "");
         } else if let Some((name, _)) = line.split_once('=').filter(|(name, _)| is_bare(name.trim())) {

@@ -33,6 +33,7 @@ mod whole_covariance;
 mod wide_scan;
 
 use orthopanel_data::ImpactTest;
+use orthopanel_model::Readable;
 
 use crate::least_squares::Minimum;
 use crate::structures::Shown;
@@ -175,9 +176,10 @@ fn by_papers_error(
     let mut found = outcome::outcome_of_papers_error(test, start, &mut problem, minimum, covariance)?;
     if let Some(left) = found.chi_square.filter(|left| *left > PAPERS_MISFIT) {
         found.notes.push(format!(
-            "the minimum of eq. 23 leaves {left:.1} times the noise: it takes one frequency and one magnitude of each resonance, and \
+            "the minimum of eq. 23 leaves {:.1} times the noise: it takes one frequency and one magnitude of each resonance, and \
              magnitudes, which it weighs most, tell little of the constants; leave out --search simplex, or give \
-             --magnitude-weight 0"
+             --magnitude-weight 0",
+            Readable(left)
         ));
     }
     Ok(found)

@@ -1,5 +1,7 @@
 //! The other law of damping beside the one asked for: where it meets the records clearly better, that is said.
 
+use orthopanel_model::Readable;
+
 use super::start::{Recorded, usual_log_zeta};
 use crate::{DampingLaw, Identification, IdentifyError};
 
@@ -31,9 +33,11 @@ pub(super) fn beside_other_law(
             let beside = own.and_then(|own| Some((own, under(other).ok()?.chi_square?)));
             if let Some((own, chi_square)) = beside.filter(|&(own, other)| is_clearly_less(other, own)) {
                 found.notes.push(format!(
-                    "{} damping meets the records better: chi-square per datum {chi_square:.2}, {own:.2} with {} damping: \
+                    "{} damping meets the records better: chi-square per datum {:.2}, {:.2} with {} damping: \
                      give --damping {}",
                     other.name(),
+                    Readable(chi_square),
+                    Readable(own),
                     law.name(),
                     other.name()
                 ));

@@ -1,7 +1,7 @@
 //! One record that stands far from the fit of the others, and the place at which it would not.
 
 use num_complex::Complex64;
-use orthopanel_model::{ModelError, Place};
+use orthopanel_model::{ModelError, Place, Readable};
 
 use super::misfit::{median, record_misfit_percent, scaled_misfit_percent};
 use super::problem::{AcceleranceProblem, PieceProblem, model_lines};
@@ -63,8 +63,10 @@ impl Apart {
         let Self { percent, others, .. } = self;
         let place = self.fits_at().map_or(String::new(), |(key, x)| format!(" (it fits with {key} x = {x:.3} m)"));
         format!(
-            "{record}: half of its lines miss the model by more than {percent:.0} %, those of the other records by no more \
-             than {others:.1} %: check its places{place}, the sensor's direction, unit and gain; orthopanel trace parts them"
+            "{record}: half of its lines miss the model by more than {:.0} %, those of the other records by no more \
+             than {:.1} %: check its places{place}, the sensor's direction, unit and gain; orthopanel trace parts them",
+            Readable(*percent),
+            Readable(*others)
         )
     }
 }

@@ -1,11 +1,11 @@
 //! What the identification refuses, with the numbers in it and the way out.
 
 use orthopanel_data::DataError;
-use orthopanel_model::ModelError;
+use orthopanel_model::{ModelError, Readable};
 use thiserror::Error;
 
 pub(crate) use self::wording::spaced;
-use self::wording::{all_times, much_noise, other_place, untaken};
+use self::wording::{all_times, known, much_noise, other_place, untaken};
 use crate::least_squares::Stuck;
 
 mod wording;
@@ -94,13 +94,23 @@ pub enum IdentifyError {
     },
     /// The search came to no end.
     #[error(
-        "no minimum after {iterations} iterations; the last error was {error_percent:.3} % rms: check the order of the frequencies and the sizes of the piece"
+        "no minimum after {iterations} iterations; the last error was {:.3} % rms: check the order of the frequencies and the sizes of the piece",
+        Readable(*.error_percent)
     )]
     NotConverged {
         /// Iterations done.
         iterations: usize,
         /// Error of the last one \[% rms\].
         error_percent: f64,
+    },
+    /// A number that is none: the data and the model are too far apart to be compared.
+    #[error(
+        "the {what} is no finite number: the data are of another piece, or in another unit, by many orders of magnitude; check the \
+         sizes of the piece, the frequencies and the units of the records"
+    )]
+    NotFinite {
+        /// Which number.
+        what: String,
     },
     /// A mode that lies far above its line on every panel.
     #[error(
@@ -131,7 +141,7 @@ pub enum IdentifyError {
         most: [usize; 2],
     },
     /// The search came to no end, and would under other names of the modes.
-    #[error("no minimum after {iterations} iterations; the last error was {error_percent:.3} % rms: {names}")]
+    #[error("no minimum after {iterations} iterations; the last error was {:.3} % rms: {names}", Readable(*.error_percent))]
     DoubtfulNames {
         /// Iterations done.
         iterations: usize,
@@ -142,7 +152,8 @@ pub enum IdentifyError {
     },
     /// A plate that misses its list by so much that its constants are none.
     #[error(
-        "no plate meets these frequencies under these names, the nearest misses them by {error_percent:.1} % rms: {names}"
+        "no plate meets these frequencies under these names, the nearest misses them by {:.1} % rms: {names}",
+        Readable(*.error_percent)
     )]
     FarFromList {
         /// Error of the nearest \[% rms\].
@@ -204,8 +215,9 @@ pub enum IdentifyError {
     },
     /// A constant that the data leave open.
     #[error(
-        "{name} = {value:.3e}{} is known no better than to +- {std:.1e}: these data do not determine it; hold it under \
-         [constants], measure more modes, or check that no mode is missing from the list", spaced(.unit)
+        "{name} = {value:.3e}{} is known {}: these data do not determine it; hold it under \
+         [constants], measure more modes, or check that no mode is missing from the list",
+        spaced(.unit), known(*.std)
     )]
     NotDetermined {
         /// The constant.
@@ -219,11 +231,11 @@ pub enum IdentifyError {
     },
     /// Records that no panel of these sizes could give.
     #[error(
-        "half of all lines miss the model by more than {percent:.0} %, whatever the constants, most of all in {record}: {}either the test file says \
+        "half of all lines miss the model by more than {:.0} %, whatever the constants, most of all in {record}: {}either the test file says \
          other things than the records (force_at and response_at, the sensor's direction, units and gain, sizes and mass of \
          the piece, the window, the sampling rate), or they show too little: measure more places, or from below the first \
          resonance on; or the beam lacks something large: `orthopanel trace TEST.toml` looks for it, the plate of a wide panel among others",
-        all_times(*.factor)
+        Readable(*.percent), all_times(*.factor)
     )]
     Contradiction {
         /// Files and places of the record that misses it most.
@@ -235,11 +247,11 @@ pub enum IdentifyError {
     },
     /// Records that miss the plate that was found.
     #[error(
-        "half of all lines miss the plate found by more than {percent:.0} %, most of all in {record}{}: {}either the test file \
+        "half of all lines miss the plate found by more than {:.0} %, most of all in {record}{}: {}either the test file \
          says other things than the records (force_at and response_at, the sensor's direction, units and gain, sizes and \
          mass of the piece, boundary, the window), or the search ended at other constants than the panel's: hold what is \
-         known of them under [constants], and measure more places off the centre lines", untaken(.resonances),
-        all_times(*.factor)
+         known of them under [constants], and measure more places off the centre lines",
+        Readable(*.percent), untaken(.resonances), all_times(*.factor)
     )]
     PlateContradiction {
         /// Files and places of the record that misses it most.
@@ -253,9 +265,10 @@ pub enum IdentifyError {
     },
     /// Resonances that the plate found does not have, in records that it misses by far more than their noise.
     #[error(
-        "the plate found misses the records by far more than their noise, chi-square per datum {chi_square:.0} (1: all that is \
+        "the plate found misses the records by far more than their noise, chi-square per datum {:.0} (1: all that is \
          left is noise){}: its constants are not the panel's; hold what is known of them under [constants], look whether \
-         boundary, sizes and places are those of the test, and measure more places off the centre lines", untaken(.resonances)
+         boundary, sizes and places are those of the test, and measure more places off the centre lines",
+        Readable(*.chi_square), untaken(.resonances)
     )]
     UntakenResonances {
         /// Misfit per datum.
@@ -265,8 +278,8 @@ pub enum IdentifyError {
     },
     /// A piece so large that no material would put its modes where the records are.
     #[error(
-        "a piece {length} m long and {thickness} m thick with {mass_per_area} kg/m2 begins at {first:.2} Hz or lower, even with \
-         E = 1e12 Pa, and these records go to {to:.0} Hz: sizes are in metres"
+        "a piece {length} m long and {thickness} m thick with {mass_per_area} kg/m2 begins at {:.2} Hz or lower, even with \
+         E = 1e12 Pa, and these records go to {:.0} Hz: sizes are in metres", Readable(*.first), Readable(*.to)
     )]
     PieceTooLarge {
         /// \[m\].
@@ -283,7 +296,7 @@ pub enum IdentifyError {
     /// Records that contradict the test file under the law of damping asked for, and meet it under the other.
     #[error(
         "with {asked} damping no panel meets the records; with {other} damping one does, chi-square per datum \
-         {chi_square:.2} (1: all that is left is noise): give --damping {other}"
+         {:.2} (1: all that is left is noise): give --damping {other}", Readable(*.chi_square)
     )]
     OtherDamping {
         /// The law asked for.
@@ -295,9 +308,9 @@ pub enum IdentifyError {
     },
     /// One record that contradicts the others.
     #[error(
-        "{record}: half of its lines miss the model of all records by more than {percent:.0} %: it contradicts the \
+        "{record}: half of its lines miss the model of all records by more than {:.0} %: it contradicts the \
          others{}; check its file, force_at and response_at, the sensor's direction, unit and gain",
-        other_place(.fits_at)
+        Readable(*.percent), other_place(.fits_at)
     )]
     RecordContradiction {
         /// Its files, piece and places.
@@ -340,6 +353,7 @@ impl IdentifyError {
     pub(crate) fn refused<E: Into<Self>>(stuck: Stuck<E>) -> Self {
         match stuck {
             Stuck::Refused(error) => error.into(),
+            Stuck::NotFinite => Self::NotFinite { what: "misfit where the search begins".into() },
             Stuck::Iterations { count, cost } => {
                 Self::NotConverged { iterations: count, error_percent: 100.0 * cost.sqrt() }
             }
@@ -383,6 +397,7 @@ impl IdentifyError {
         !matches!(
             self,
             Self::NotConverged { .. }
+                | Self::NotFinite { .. }
                 | Self::TooFewResonances { .. }
                 | Self::DoubtfulNames { .. }
                 | Self::FarFromList { .. }

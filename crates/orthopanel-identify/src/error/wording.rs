@@ -1,13 +1,15 @@
 //! Parts of the sentences of errors that depend on their numbers.
 
+use orthopanel_model::Readable;
+
 /// Noise of the median line \[%\] beside which few resonances are no wonder.
 const MUCH_NOISE: f64 = 30.0;
 
 pub(super) fn much_noise(percent: Option<f64>) -> String {
     percent.filter(|&percent| percent > MUCH_NOISE).map_or(String::new(), |percent| {
         format!(
-            "too much noise, {percent:.0} % of the line in the median line (hit harder, average more hits, mend cable and range); \
-             or "
+            "too much noise, {:.0} % of the line in the median line (hit harder, average more hits, mend cable and range); or ",
+            Readable(percent)
         )
     })
 }
@@ -21,8 +23,13 @@ pub(super) fn all_times(factor: Option<f64>) -> String {
         } else {
             "a gain, a unit, or the mass of the piece"
         };
-        format!("times {factor:.3} all of them fit ({cause}); ")
+        format!("times {:.3} all of them fit ({cause}); ", Readable(factor))
     })
+}
+
+/// How well a constant is known by its standard deviation.
+pub(super) fn known(std: f64) -> String {
+    if std.is_finite() { format!("no better than to +- {std:.1e}") } else { "not at all".to_owned() }
 }
 
 /// A unit behind its number; pure numbers have none.

@@ -168,6 +168,9 @@ fn least_squares(
     let linearise = |parameters: &[f64]| problem.linearise(parameters).map(|at| at.quadratic());
     let minimum = levenberg_marquardt_until(linearise, &parameters, &bounds, ending).map_err(|stuck| match stuck {
         Stuck::Refused(error) => error,
+        Stuck::NotFinite => {
+            IdentifyError::NotFinite { what: "error of the frequencies where the search begins".into() }
+        }
         Stuck::Iterations { count, cost } => IdentifyError::NotConverged {
             iterations: count,
             error_percent: 100.0 * (cost / problem.count() as f64).sqrt(),

@@ -82,6 +82,10 @@ pub fn trace(test: &ImpactTest) -> Result<Tracing, IdentifyError> {
 /// # Errors
 /// As [`trace`].
 pub fn trace_with(test: &ImpactTest, progress: &(dyn Fn(Progress) + Sync)) -> Result<Tracing, IdentifyError> {
+    traced(test, progress)?.finite()
+}
+
+fn traced(test: &ImpactTest, progress: &(dyn Fn(Progress) + Sync)) -> Result<Tracing, IdentifyError> {
     // The base of every trace is a beam: of a plate it would judge another model than the one that the file declares.
     if test.structure == Some(StructureKind::MindlinPlate) {
         return Err(IdentifyError::PlateNotTraced);
@@ -92,7 +96,7 @@ pub fn trace_with(test: &ImpactTest, progress: &(dyn Fn(Progress) + Sync)) -> Re
         let Some(piece) = piece else {
             return Err(IdentifyError::Unsupported("a test without a piece".to_owned()));
         };
-        return frequencies::trace_frequencies(test, &Hypothesis::declared(test, &piece, 1)?);
+        return frequencies::trace_frequencies(test, &Hypothesis::declared(test, &piece, 1)?, progress);
     }
     let [named] = &test.pieces[..] else {
         let message =

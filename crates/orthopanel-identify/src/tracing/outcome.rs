@@ -2,7 +2,7 @@
 
 use orthopanel_model::{EffectEntry, Estimate, Owner, PanelModel};
 
-use crate::AcceleranceFit;
+use crate::{AcceleranceFit, IdentifyError};
 
 /// What can be said of the physics that the base model lacks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -58,6 +58,35 @@ pub struct Tracing {
     pub base_accelerances: Vec<AcceleranceFit>,
     /// What was assumed or left out, a sentence each.
     pub notes: Vec<String>,
+}
+
+impl Tracing {
+    /// Refuses a trace whose errors are no finite numbers, and leaves candidates without a finite criterion out of the ranking.
+    ///
+    /// # Errors
+    /// [`IdentifyError::NotFinite`].
+    pub(super) fn finite(mut self) -> Result<Self, IdentifyError> {
+        let TracedError { before, after, noise_floor, .. } = &self.error;
+        for (what, value) in [
+            ("error of the base model", before.fitted),
+            ("error of the base model on what was held out", before.held_out),
+            ("error of the model with the effects", after.fitted),
+            ("error of the model with the effects on what was held out", after.held_out),
+            ("noise floor", *noise_floor),
+            ("misfit per datum", self.chi_square),
+        ] {
+            if !value.is_finite() {
+                return Err(IdentifyError::NotFinite { what: what.into() });
+            }
+        }
+        let is_finite = |of: &Candidate| of.bic.is_finite() && of.held_out.is_finite();
+        let (ranked, lost): (Vec<_>, Vec<_>) = std::mem::take(&mut self.candidates).into_iter().partition(is_finite);
+        self.candidates = ranked;
+        let left_out =
+            |of: Candidate| format!("{} is left out of the ranking: its criterion is no finite number", of.id);
+        self.notes.extend(lost.into_iter().map(left_out));
+        Ok(self)
+    }
 }
 
 /// An effect with what was found of it.

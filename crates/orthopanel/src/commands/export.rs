@@ -2,14 +2,14 @@
 
 use std::path::PathBuf;
 
+use orthopanel_data::limits;
 use orthopanel_export::{FmiVersion, Fmu, FmuOptions, Library, Platform};
 use orthopanel_model::Ports;
 use serde::Serialize;
 
 use crate::arguments::{ModeArguments, PortArguments};
 use crate::error::{CommandError, InFile as _};
-use crate::outputs::{Inputs, Outputs};
-use crate::{console, model_file};
+use crate::{console, model_file, progress};
 
 /// Write a model as an FMU for co-simulation and model exchange: force in; acceleration, velocity and displacement out
 ///
@@ -70,6 +70,7 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
     let mut outputs = Outputs::of(inputs).planned(&arguments.output)?;
     let model = model_file::read(path)?;
     let ports = arguments.ports.needed(&model, path)?;
+    let shown = progress::spinner("finding modes and making the FMU");
     let (alone, left_out) = model.panel_alone().in_file(path)?;
     let seen = alone.time_model(arguments.modes.range(), &ports.forces, &ports.responses).in_file(path)?;
     let frequencies: Vec<f64> =
@@ -81,7 +82,9 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
         None => frequencies.last().copied().unwrap_or(0.0),
     };
     let fmu = Fmu::of_panel(&model, arguments.modes.range(), ports.clone(), &options(arguments)?)?;
-    outputs.add(&arguments.output, fmu.to_bytes()?);
+    let bytes = fmu.to_bytes()?;
+    drop(shown);
+    outputs.add(&arguments.output, bytes);
     outputs.write()?;
     let answer = Answer {
         schema: "orthopanel.export/1",
@@ -120,7 +123,8 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
 
 fn options(arguments: &Arguments) -> Result<FmuOptions, CommandError> {
     let library = |(platform, path): &(Platform, PathBuf)| {
-        let content = std::fs::read(path).map_err(|source| CommandError::Unreadable { path: path.into(), source })?;
+        let content =
+            limits::LIBRARY_FILE.read(path).map_err(|source| CommandError::Unreadable { path: path.into(), source })?;
         Ok(Library::new(*platform, content)?)
     };
     let libraries = arguments.libraries.iter().map(library).collect::<Result<_, CommandError>>()?;

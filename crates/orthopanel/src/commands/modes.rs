@@ -2,14 +2,14 @@
 
 use std::path::PathBuf;
 
-use orthopanel_model::{ModeKind, ModeRange, PanelMode, StructureKind};
+use orthopanel_model::{ModeKind, ModeRange, PanelMode, Readable, StructureKind};
 use serde::Serialize;
 
 use crate::arguments::count;
 use crate::error::{CommandError, InFile as _};
 use crate::outputs::{Inputs, Outputs};
 use crate::pictures::{self, ModeShape};
-use crate::{console, model_file, tables};
+use crate::{console, model_file, progress, tables};
 
 /// List the natural frequencies of a model, flexible modes from 1
 ///
@@ -66,7 +66,10 @@ const CORE: &str = "each mode at the storage modulus at its own frequency; zeta 
 pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
     let mut outputs = Outputs::of(Inputs::of(&arguments.model)).all_planned(arguments.picture.clone())?;
     let model = model_file::read(&arguments.model)?;
-    let modes = model.modes(ModeRange::Count(arguments.count)).in_file(&arguments.model)?;
+    let modes = {
+        let _shown = progress::spinner("finding the modes");
+        model.modes(ModeRange::Count(arguments.count)).in_file(&arguments.model)?
+    };
     let flexible: Vec<&PanelMode> = modes.iter().filter(|mode| !mode.is_rigid()).collect();
     let entry = |(mode, of): (usize, &&PanelMode)| ModeEntry {
         mode,
@@ -103,7 +106,8 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
 
 fn table(modes: &[ModeEntry], structure: StructureKind) -> String {
     let row = |entry: &ModeEntry| {
-        let mut row = vec![entry.mode.to_string(), format!("{:.2}", entry.frequency_hz), entry.nodes[0].to_string()];
+        let mut row =
+            vec![entry.mode.to_string(), format!("{:.2}", Readable(entry.frequency_hz)), entry.nodes[0].to_string()];
         if structure.has_modes_across() {
             row.push(entry.nodes[1].to_string());
             row.push(entry.kind.map_or("", kind_text).into());

@@ -20,7 +20,7 @@ use crate::outputs::{Inputs, Outputs};
 use crate::record_options::IdentifyOptions;
 use crate::time_response::Hold;
 use crate::traced::Traced;
-use crate::{console, json, pictures, report, time_response};
+use crate::{console, json, pictures, progress, report, time_response};
 
 /// Do all of it: identify the panel of a test, trace what its model lacks, export its FMUs, simulate a hit, draw the result
 ///
@@ -214,6 +214,7 @@ fn add_model(files: &mut Outputs, test: &Path, suffix: &str, model: &PanelModel)
         }
         seen => seen.in_file(test)?,
     };
+    let _shown = progress::spinner("making the FMUs");
     for (version, ending) in [(FmiVersion::Fmi2, ""), (FmiVersion::Fmi3, "-fmi3")] {
         let options = FmuOptions { version, ..FmuOptions::default() };
         let fmu = Fmu::of_panel(model, USUAL_MODES, ports.clone(), &options)?;

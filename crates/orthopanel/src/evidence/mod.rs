@@ -7,7 +7,7 @@ mod residual;
 
 use std::path::Path;
 
-use orthopanel_data::{Accelerance, Estimation, HitVerdict, ImpactTest, MeasurementData};
+use orthopanel_data::{Accelerance, Estimation, HitVerdict, ImpactTest, MeasurementData, TimeHistory};
 use orthopanel_identify::{AcceleranceFit, ForceBetweenSamples, PieceFit};
 use orthopanel_model::{PanelModel, Place};
 
@@ -68,7 +68,7 @@ impl Evidence {
             pieces.push(PieceEvidence::of_fit((fit, model), &own, with_effects(index), path)?);
         }
         let mut accelerances: Vec<(usize, Accelerance)> = Vec::new();
-        let histories = test.time_histories()?;
+        let histories = read(test)?;
         let shown = progress::bar("driving the model", histories.len());
         for (piece, history) in histories {
             let (Some(fit), Some(model), Some(evidence)) =
@@ -109,7 +109,10 @@ impl Evidence {
             pieces.push(evidence);
         }
         let mut accelerances: Vec<(usize, Accelerance)> = Vec::new();
-        for (piece, history) in test.time_histories()? {
+        let histories = read(test)?;
+        let shown = progress::bar("comparing the hits", histories.len());
+        for (piece, history) in histories {
+            shown.step();
             let Some(evidence) = pieces.get_mut(piece) else { continue };
             let accelerance = history.accelerance(estimation)?;
             evidence.records.push(RecordRow::of_hits(&history, &accelerance));
@@ -156,6 +159,11 @@ impl Evidence {
     pub fn hits(&self) -> Vec<&HitMisfit> {
         self.pieces.iter().flat_map(|piece| &piece.hits).collect()
     }
+}
+
+fn read(test: &ImpactTest) -> Result<Vec<(usize, TimeHistory)>, CommandError> {
+    let _shown = progress::spinner("reading the records");
+    Ok(test.time_histories()?)
 }
 
 impl PieceEvidence {

@@ -1,7 +1,7 @@
 //! Measured against model, mode by mode: the cells of a row, for terminal and report alike.
 
 use orthopanel_identify::{HiddenMode, ModeFit, PieceFit};
-use orthopanel_model::Estimate;
+use orthopanel_model::{Estimate, Readable};
 
 /// Digits behind the point.
 pub struct Digits {
@@ -52,10 +52,10 @@ fn seen(mode: &ModeFit, digits: &Digits) -> Vec<String> {
     vec![
         mode.mode.to_string(),
         nodes(mode.nodes),
-        format!("{:.*}", digits.frequency, mode.measured),
+        format!("{:.*}", digits.frequency, Readable(mode.measured)),
         mode.measured_std.map_or("unknown".into(), |std| format!("{std:.1e}")),
-        format!("{:.*}", digits.frequency, mode.model),
-        format!("{:+.*}", digits.error, mode.error_percent()),
+        format!("{:.*}", digits.frequency, Readable(mode.model)),
+        format!("{:+.*}", digits.error, Readable(mode.error_percent())),
         zeta,
         std,
     ]
@@ -64,7 +64,7 @@ fn seen(mode: &ModeFit, digits: &Digits) -> Vec<String> {
 fn hidden(mode: &HiddenMode, digits: &Digits) -> Vec<String> {
     let [zeta, std] = damping(mode.damping, "not told");
     let none = || NO_RESONANCE.to_owned();
-    let model = format!("{:.*}", digits.frequency, mode.model);
+    let model = format!("{:.*}", digits.frequency, Readable(mode.model));
     vec![mode.mode.to_string(), nodes(mode.nodes), none(), none(), model, none(), zeta, std]
 }
 

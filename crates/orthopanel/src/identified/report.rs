@@ -1,7 +1,7 @@
 //! What an identification found, as tables for people.
 
 use orthopanel_identify::{IdentifiedConstant, NotIdentified, PieceFit};
-use orthopanel_model::Piece;
+use orthopanel_model::{Piece, Readable};
 
 use super::answer::called;
 use super::{Digits, Identified, ModeRows};
@@ -48,15 +48,15 @@ impl Identified {
                 .map(|(name, piece)| called(&self.found, name, piece));
             text += &format!("correlation of {first} and {second}: {:+.3}\n", pair.value);
         }
-        text += &format!("error of the frequencies: {:.3} % rms", self.found.frequency_rms_percent);
+        text += &format!("error of the frequencies: {:.3} % rms", Readable(self.found.frequency_rms_percent));
         if let Some(error) = self.found.left_one_out_percent {
-            text += &format!("; of each predicted from the others: {error:.3} % rms");
+            text += &format!("; of each predicted from the others: {:.3} % rms", Readable(error));
         }
         text += "\n";
         if let Some(error) = self.found.accelerance_rms_percent {
-            text += &format!("error of the accelerances: {error:.2} % rms");
+            text += &format!("error of the accelerances: {:.2} % rms", Readable(error));
             if let Some(chi_square) = self.found.chi_square {
-                text += &format!("; chi-square per datum {chi_square:.2} (1: all that is left is noise)");
+                text += &format!("; chi-square per datum {:.2} (1: all that is left is noise)", Readable(chi_square));
             }
             text += "\n";
         }

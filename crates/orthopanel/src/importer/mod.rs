@@ -34,6 +34,7 @@ pub fn is_fmu(path: &Path) -> Result<bool, CommandError> {
     use std::io::Read as _;
     let unreadable = |source| CommandError::Unreadable { path: path.into(), source };
     let mut start = Vec::new();
+    orthopanel_data::regular_file(path).map_err(unreadable)?;
     File::open(path).map_err(unreadable)?.take(4).read_to_end(&mut start).map_err(unreadable)?;
     let archive = start == b"PK\x03\x04";
     if !archive && path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("fmu")) {

@@ -10,6 +10,7 @@ mod manifest;
 mod replacement;
 
 use std::collections::BTreeSet;
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use crate::console;
@@ -55,7 +56,8 @@ impl Outputs {
         match &self.folder {
             Some(own) if !own.exists() => {}
             Some(own) if !own.is_dir() => {
-                return Err(CommandError::Unwritable { path: own.clone(), reason: "it is there and is no folder".into() });
+                let (path, reason) = (own.clone(), "it is there and is no folder".into());
+                return Err(CommandError::Unwritable { path, reason, kind: ErrorKind::NotADirectory });
             }
             _ => drop(std::fs::metadata(folder).map_err(|error| CommandError::unwritable(path, &error))?),
         }
@@ -107,7 +109,7 @@ impl Outputs {
             let destination = self.destination(path)?;
             if destinations.contains(&destination) {
                 let reason = "another result of this command goes to the same file".into();
-                return Err(CommandError::Unwritable { path: path.clone(), reason });
+                return Err(CommandError::Unwritable { path: path.clone(), reason, kind: ErrorKind::Other });
             }
             destinations.push(destination);
         }
@@ -196,9 +198,12 @@ impl Outputs {
     fn destination(&self, path: &Path) -> Result<PathBuf, CommandError> {
         match std::fs::metadata(path) {
             Ok(there) if there.is_file() => {}
-            Ok(_) => {
-                let reason = "it is there and is no regular file".into();
-                return Err(CommandError::Unwritable { path: path.into(), reason });
+            Ok(there) => {
+                let (kind, what) = match there.is_dir() {
+                    true => (ErrorKind::IsADirectory, "a folder"),
+                    false => (ErrorKind::Other, "no regular file"),
+                };
+                return Err(CommandError::Unwritable { path: path.into(), reason: format!("it is {what}"), kind });
             }
             Err(_) => return Ok(path.into()),
         }

@@ -23,6 +23,7 @@ pub use residual::{residual_by_frequency, residual_by_level, residual_by_place};
 pub use response::response;
 pub use time_history::time_history;
 
+use orthopanel_model::printable;
 use plotters::coord::Shift;
 use plotters::prelude::*;
 
@@ -83,7 +84,7 @@ fn titled(
         Ok(())
     })();
     let failed = |error: Box<dyn std::error::Error>| CommandError::Picture { name, problem: error.to_string() };
-    drawn.map_err(failed).map(|()| curve::in_pixels(&text))
+    drawn.map_err(failed).map(|()| printable(&curve::in_pixels(&text)).into_owned())
 }
 
 /// A range with a twentieth of its width to spare at both ends, never empty.

@@ -1,6 +1,7 @@
 //! The constants with their intervals, and how well the model meets the test.
 
 use orthopanel_identify::{Identification, IdentifiedConstant};
+use orthopanel_model::Readable;
 
 use super::table::Table;
 use crate::identified::called;
@@ -24,7 +25,7 @@ pub fn interval(value: f64, std: f64) -> String {
 
 /// Percent to three digits behind the point, or two significant ones below a hundredth.
 fn percent(value: f64) -> String {
-    if value == 0.0 || value >= 0.01 { format!("{value:.3} %") } else { format!("{value:.1e} %") }
+    if value == 0.0 || value >= 0.01 { format!("{:.3} %", Readable(value)) } else { format!("{value:.1e} %") }
 }
 
 /// What was identified, and the error that is left, a sentence each.
@@ -44,9 +45,10 @@ pub fn lead(found: &Identification) -> Vec<String> {
     }
     sentences.push(frequencies + ".");
     if let Some(error) = found.accelerance_rms_percent {
-        let mut accelerances = format!("The accelerances are met to {error:.2} % rms");
+        let mut accelerances = format!("The accelerances are met to {:.2} % rms", Readable(error));
         if let Some(chi_square) = found.chi_square {
-            accelerances += &format!("; chi-square per datum is {chi_square:.2}, and 1 where only noise is left");
+            accelerances +=
+                &format!("; chi-square per datum is {:.2}, and 1 where only noise is left", Readable(chi_square));
         }
         sentences.push(accelerances + ".");
     }

@@ -9,6 +9,7 @@ use std::path::Path;
 
 use askama::Template;
 use orthopanel_data::ImpactTest;
+use orthopanel_model::printable;
 
 use crate::error::CommandError;
 use crate::evidence::{Evidence, HitsWithEffects};
@@ -117,6 +118,7 @@ fn title(path: &Path) -> String {
 
 impl Page {
     fn rendered(&self) -> Result<String, CommandError> {
-        self.render().map_err(|error| CommandError::Picture { name: "report", problem: error.to_string() })
+        let page = self.render().map(|page| printable(&page).into_owned());
+        page.map_err(|error| CommandError::Picture { name: "report", problem: error.to_string() })
     }
 }

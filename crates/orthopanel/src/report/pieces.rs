@@ -2,7 +2,7 @@
 
 use orthopanel_data::NamedPiece;
 use orthopanel_identify::PieceFit;
-use orthopanel_model::Piece;
+use orthopanel_model::{Piece, Readable};
 
 use super::Figure;
 use super::table::Table;
@@ -135,7 +135,7 @@ fn modes(fit: &PieceFit, with_effects: Option<&[f64]>) -> Table {
         found.sort_by_key(|(mode, _)| mode.mode);
         for (row, (mode, model)) in rows.iter_mut().zip(found) {
             row.push(format!("{model:.2}"));
-            row.push(format!("{:+.4}", 100.0 * (model / mode.measured - 1.0)));
+            row.push(format!("{:+.4}", Readable(100.0 * (model / mode.measured - 1.0))));
         }
     }
     Table::new(&headings, rows)

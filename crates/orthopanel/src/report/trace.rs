@@ -1,7 +1,7 @@
 //! What the model lacks: the verdict, the errors before and after, and the ranking.
 
 use orthopanel_identify::{AcceleranceFit, FittedError, TracedEffect, Tracing};
-use orthopanel_model::Estimate;
+use orthopanel_model::{Estimate, Readable};
 
 use super::Figure;
 use super::constants::interval;
@@ -119,8 +119,8 @@ fn hits(compared: &[&HitsWithEffects]) -> Option<Table> {
         vec![
             format!("{} to {}", place_text(pair.force), place_text(pair.response)),
             format!("{low:.1} to {high:.1} Hz"),
-            format!("{:.3}", pair.before),
-            format!("{:.3}", pair.after),
+            format!("{:.3}", Readable(pair.before)),
+            format!("{:.3}", Readable(pair.after)),
         ]
     };
     let headings = ["force to response [m]", "band", "before [% of peak]", "with the effects [% of peak]"];

@@ -1,6 +1,7 @@
 //! Where the residual of records that no effect explains stands out: in frequency, by place, from hit to hit.
 
 use orthopanel_identify::Verdict;
+use orthopanel_model::Readable;
 
 use super::Traced;
 use crate::evidence::{PairResidual, ResidualUnit, banded};
@@ -25,8 +26,9 @@ impl Traced {
         let floor = tracing.error.noise_floor;
         let by_level = (floor > SCATTERED).then(|| {
             format!(
-                "The hits of a place scatter by {floor:.1} times their noise: what is missing changes from hit to hit, as with their \
-                 level or place"
+                "The hits of a place scatter by {:.1} times their noise: what is missing changes from hit to hit, as with their level or \
+                 place",
+                Readable(floor)
             )
         });
         let sentences: Vec<String> = standing_out(&pairs).into_iter().chain(by_level).collect();
@@ -50,12 +52,17 @@ fn standing_out(pairs: &[PairResidual]) -> Option<String> {
     }
     let (low, high) = ((middle - half).max(lowest), middle + half);
     let mut told = format!(
-        "What is left is {over_all:.1} times the noise of the mean of the hits over all lines: most from {low:.0} to {high:.0} Hz, {most:.1}"
+        "What is left is {:.1} times the noise of the mean of the hits over all lines: most from {low:.0} to {high:.0} Hz, {:.1}",
+        Readable(over_all),
+        Readable(most)
     );
     if pairs.len() > 1 {
         let worst = pairs.iter().max_by(|a, b| a.rms().total_cmp(&b.rms()))?;
         let [force, response] = [worst.force, worst.response].map(place_text);
-        told += &format!(", and with the force at {force} m and the response at {response} m, {:.1}", worst.rms());
+        told += &format!(
+            ", and with the force at {force} m and the response at {response} m, {:.1}",
+            Readable(worst.rms())
+        );
     }
     Some(told)
 }

@@ -109,6 +109,7 @@ impl Traced {
     pub fn models(&self, test: &ImpactTest) -> Result<Vec<PanelModel>, IdentifyError> {
         // The panels of the trace hold constants beside effects that explain nothing.
         if self.tracing.verdict == Verdict::Unexplained {
+            let _shown = progress::spinner("identifying the base model");
             return Ok(self.applied_to(&base_models(test, Settings::default())?));
         }
         Ok(self.applied_to(&self.tracing.panels))

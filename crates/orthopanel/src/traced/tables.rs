@@ -1,7 +1,7 @@
 //! What a trace found, as tables: the effects, the errors, the ranking.
 
 use orthopanel_identify::{Candidate, FittedError, TracedEffect, TracedParameter, Tracing};
-use orthopanel_model::Estimate;
+use orthopanel_model::{Estimate, Readable};
 
 use super::Traced;
 use crate::tables::{aligned, ending_in_words, shown_unit, with_unit};
@@ -49,7 +49,7 @@ pub fn ranking_rows(tracing: &Tracing, most: usize) -> Vec<Vec<String>> {
             Some(rate) => format!("left behind at peaks widened by {rate:.0} /s; {parameters}"),
             None => parameters,
         };
-        vec![candidate.id.clone(), format!("{margin:.1}"), number(candidate.held_out), told]
+        vec![candidate.id.clone(), format!("{:.1}", Readable(margin)), number(candidate.held_out), told]
     };
     tracing.candidates.iter().take(most).map(row).collect()
 }

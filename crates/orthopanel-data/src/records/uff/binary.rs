@@ -1,7 +1,7 @@
 //! Dataset 58b: numbers as IEEE 754 bytes, with a byte count that is often wrong.
 
 use super::{
-    cursor::{Cursor, is_mark},
+    cursor::{Cursor, begins_with_mark},
     header::{Encoding, Header},
 };
 use crate::DataError;
@@ -118,7 +118,7 @@ fn candidates(header: &Header) -> Vec<Widths> {
 fn ends_dataset(bytes: &[u8]) -> bool {
     let bytes = bytes.strip_prefix(b"\r").unwrap_or(bytes);
     let bytes = bytes.strip_prefix(b"\n").unwrap_or(bytes);
-    bytes.is_empty() || bytes.split(|&byte| byte == b'\n').next().is_some_and(|line| is_mark(line) && line.len() >= 6)
+    bytes.is_empty() || begins_with_mark(bytes)
 }
 
 /// Where the data end, by the first closing mark that the end of the file or another mark follows.

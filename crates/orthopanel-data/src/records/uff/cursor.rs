@@ -66,6 +66,17 @@ pub(super) fn is_mark(line: &[u8]) -> bool {
     line.len() <= 6 && line.trim_ascii_start() == b"-1"
 }
 
+/// True where the first line of `bytes` is a mark of six columns or more; nothing is read beyond the first byte that no mark has,
+/// for binary data may go on for megabytes without a line's end.
+pub(super) fn begins_with_mark(bytes: &[u8]) -> bool {
+    let blanks = |bytes: &[u8]| bytes.iter().take_while(|byte| byte.is_ascii_whitespace() && **byte != b'\n').count();
+    let before = blanks(bytes.get(..MARK.len()).unwrap_or(bytes));
+    let Some(after) = bytes.get(before..).and_then(|rest| rest.strip_prefix(b"-1")) else { return false };
+    let fill = blanks(after);
+    let columns = before + b"-1".len();
+    columns <= MARK.len() && columns + fill >= MARK.len() && after.get(fill).is_none_or(|&byte| byte == b'\n')
+}
+
 impl<'a> Cursor<'a> {
     pub(super) fn new(bytes: &'a [u8], path: &'a Path) -> Self {
         Self { bytes, path, position: 0 }

@@ -9,12 +9,12 @@ mod cursor;
 mod header;
 mod step;
 
-use std::{path::Path, sync::Arc};
+use std::{collections::BTreeMap, path::Path, sync::Arc};
 
 use num_complex::Complex64;
 
 use super::{Format, Record, RecordFile, RecordKind, Samples, may_be_read};
-use crate::{DataError, Location};
+use crate::{DataError, Location, limits};
 use cursor::Cursor;
 use header::{Encoding, Header};
 
@@ -30,6 +30,8 @@ pub(super) const FORMAT: Format = Format {
 fn read(bytes: &[u8], path: &Path) -> Result<RecordFile, DataError> {
     let mut cursor = Cursor::new(bytes, path);
     let (mut records, mut notes) = (Vec::new(), Vec::new());
+    // Number of those of a kind, and the byte of the first.
+    let mut skipped: BTreeMap<u32, (usize, usize)> = BTreeMap::new();
     // Between datasets any number of marks may stand: one closes, one opens, and some writers write both twice or
     // leave one out. So a mark carries no state here; the first line that is neither mark nor blank is a dataset.
     while let Some(line) = cursor.line() {
@@ -45,13 +47,23 @@ fn read(bytes: &[u8], path: &Path) -> Result<RecordFile, DataError> {
         match text.trim_start().get(..digits).and_then(|number| number.parse::<u32>().ok()) {
             Some(58) => {
                 let number = records.len() + 1;
+                if number > limits::RECORDS {
+                    let (at, most) = (cursor.at(line.start, ""), limits::RECORDS);
+                    return Err(DataError::TooMany {
+                        at,
+                        found: number,
+                        what: "records",
+                        most,
+                        remedy: "split the file",
+                    });
+                }
                 let before = records.last().map(|record: &Record| &record.abscissa);
                 let read = record(&mut cursor, &text, line.start, number, before, &mut notes)?;
                 records.push(read);
             }
             Some(other) => {
                 cursor.skip_dataset();
-                notes.push(format!("dataset {other} at byte {} skipped: only 58 and 58b hold records", line.start));
+                skipped.entry(other).or_insert((0, line.start)).0 += 1;
             }
             None => {
                 let problem = format!("a dataset number expected after the mark -1, found {:?}", shortened(&text));
@@ -59,6 +71,10 @@ fn read(bytes: &[u8], path: &Path) -> Result<RecordFile, DataError> {
             }
         }
     }
+    notes.extend(skipped.into_iter().map(|(number, (count, first))| {
+        let times = if count == 1 { String::new() } else { format!(" and {} more", count - 1) };
+        format!("dataset {number} at byte {first}{times} skipped: only 58 and 58b hold records")
+    }));
     if let Some(byte) = cursor::opens_at_end(bytes) {
         notes.push(format!("the mark at byte {byte} opens a dataset, and the file ends: it may be cut off"));
     }

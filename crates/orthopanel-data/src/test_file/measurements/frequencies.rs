@@ -7,7 +7,7 @@ use super::{
     super::{pieces::NamedPiece, syntax},
     Entry,
 };
-use crate::DataError;
+use crate::{DataError, limits};
 
 /// Natural frequencies of the flexible modes.
 #[derive(Debug, Clone, PartialEq)]
@@ -42,6 +42,11 @@ impl NaturalFrequencies {
     }
 }
 
+/// Nodes that a beam's mode has at most, by its index from 0: one more than its number, where both ends are free.
+fn most_nodes(index: usize) -> u32 {
+    u32::try_from(index + 2).unwrap_or(u32::MAX)
+}
+
 impl Entry<'_> {
     pub(super) fn natural_frequencies(
         &self,
@@ -53,11 +58,24 @@ impl Entry<'_> {
         if list.get_ref().is_empty() {
             return Err(DataError::Count { at: self.at(list.span(), "values"), found: 0, remedy: remedy.into() });
         }
-        let shape = self.shape(entry, list.get_ref().len())?;
+        let (count, most) = (list.get_ref().len(), limits::FREQUENCIES);
+        let at = || self.at(list.span(), "values");
+        self.source.at_most((count, "natural frequencies"), most, at, "list the lowest, which tell the constants")?;
+        let shape = self.shape(entry, count)?;
         let mut values: Vec<f64> = Vec::with_capacity(list.get_ref().len());
         for (index, number) in list.get_ref().iter().enumerate() {
             let key = format!("values[{}]", index + 1);
             let value = self.source.positive(number, &self.name(&key), "Hz")?;
+            let nodes = shape.get(index).copied().unwrap_or([most_nodes(index), 0]);
+            let (least, most) = named.piece.possible_frequencies(nodes);
+            if !(least..=most).contains(&value) {
+                let [softest, stiffest] = limits::MODULUS;
+                let range = format!(
+                    "no mode of a piece of these sizes and mass lies there: between E = {softest:e} Pa, softer than any foam, and \
+                     {stiffest:e} Pa, stiffer than diamond, it has {least:.1e} to {most:.1e} Hz; frequencies are in Hz, sizes in m"
+                );
+                return Err(DataError::OutOfRange { at: self.at(number.span(), &key), value, range });
+            }
             if let Some(&previous) = values.last() {
                 // Names by shape make order needless; without them the order is the name.
                 if value <= previous && shape.is_empty() {

@@ -9,7 +9,7 @@ use orthopanel_model::{Piece, Place};
 use toml::Spanned;
 
 use super::{pieces::NamedPiece, source::Source, syntax};
-use crate::{DataError, Location};
+use crate::{DataError, Location, limits};
 pub use frequencies::NaturalFrequencies;
 pub use recorded::{AccelerationUnit, Direction, RecordedResponse};
 
@@ -44,14 +44,39 @@ pub(super) fn measurements(
         let remedy = "write at least one [[measurement]] with kind, and values or file";
         return Err(DataError::Missing { at: source.whole("measurement"), remedy });
     }
-    given
-        .into_iter()
-        .enumerate()
-        .map(|(index, entry)| {
-            Entry { source, key: format!("measurement[{}]", index + 1), span: entry.span() }
-                .read(entry.into_inner(), pieces)
-        })
-        .collect()
+    let at = || source.at(given.first().map_or(0..0, Spanned::span), "measurement");
+    source.at_most((given.len(), "measurements"), limits::MEASUREMENTS, at, "put some into a test of their own")?;
+    let read = |(index, entry): (usize, Spanned<syntax::Measurement>)| {
+        Entry { source, key: format!("measurement[{}]", index + 1), span: entry.span() }
+            .read(entry.into_inner(), pieces)
+    };
+    let read: Vec<Measurement> = given.into_iter().enumerate().map(read).collect::<Result<_, _>>()?;
+    let listed = |of: &Measurement| match &of.data {
+        MeasurementData::NaturalFrequencies(list) => list.values.len(),
+        _ => 0,
+    };
+    let (count, most) = (read.iter().map(listed).sum(), limits::FREQUENCIES_OF_TEST);
+    let at = || source.whole("measurement");
+    source.at_most((count, "natural frequencies in all"), most, at, "put some pieces into a test of their own")?;
+    files_at_most(source, &read)?;
+    Ok(read)
+}
+
+/// Refuses files of records that are too large together.
+fn files_at_most(source: &Source, measurements: &[Measurement]) -> Result<(), DataError> {
+    let bytes = |of: &Measurement| match &of.data {
+        MeasurementData::TimeHistory(recorded) | MeasurementData::Accelerance(recorded) => {
+            // A file that has gone since is missed where it is read.
+            Some(std::fs::metadata(&recorded.file).map_or(0, |file| file.len()))
+        }
+        MeasurementData::NaturalFrequencies(_) => None,
+    };
+    let sizes: Vec<u64> = measurements.iter().filter_map(bytes).collect();
+    let (found, most) = (sizes.iter().fold(0, |sum: u64, size| sum.saturating_add(*size)), limits::RECORD_FILES);
+    if found <= most {
+        return Ok(());
+    }
+    Err(DataError::TooLarge { at: source.whole("measurement"), files: sizes.len(), found, most })
 }
 
 /// One `[[measurement]]` being read.

@@ -5,7 +5,7 @@ use std::{fmt, io, path::PathBuf};
 use orthopanel_model::{Piece, Place};
 
 use super::{super::syntax, Entry};
-use crate::DataError;
+use crate::{DataError, limits, regular_file};
 
 /// A file of records and where they were taken.
 #[derive(Debug, Clone, PartialEq)]
@@ -97,15 +97,12 @@ impl Entry<'_> {
             }
         };
         let file = self.source.beside(name.get_ref());
-        // `metadata` tells a missing file from one that may not be read, and a folder is no file of records.
-        let missing = match std::fs::metadata(&file) {
-            Ok(found) if found.is_file() => None,
-            Ok(_) => Some(io::Error::other(format!("{} is not a file", file.display()))),
-            Err(error) => Some(io::Error::new(error.kind(), format!("{}: {error}", file.display()))),
-        };
-        if let Some(source) = missing {
-            return Err(DataError::Unreadable { at: self.at(name.span(), "file"), source });
-        }
+        // Asked now, so that the line is known which names a file that is not there, or is none.
+        let found = regular_file(&file).and_then(|found| limits::RECORD_FILE.check(&found));
+        found.map_err(|error| DataError::Unreadable {
+            at: self.at(name.span(), "file"),
+            source: io::Error::new(error.kind(), format!("{}: {error}", file.display())),
+        })?;
         Ok(RecordedResponse { file, force_at, response_at, unit, direction, record })
     }
 }

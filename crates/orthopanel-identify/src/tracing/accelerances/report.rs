@@ -1,7 +1,7 @@
 //! What the fits of accelerances mean.
 
 use orthopanel_data::ImpactTest;
-use orthopanel_model::PanelModel;
+use orthopanel_model::{PanelModel, Readable};
 
 use super::parting::next_experiment;
 use super::problem::AccelerancesFit;
@@ -61,8 +61,8 @@ pub(super) fn report(
     notes.push(format!(
         "as one number for all these lines and places together, where the loudest weigh most, {:.1} % of the motion is missed \
          without effects and {:.1} % with them",
-        100.0 * without,
-        100.0 * with
+        Readable(100.0 * without),
+        Readable(100.0 * with)
     ));
     let scale = effects.get(search.declared.saturating_sub(1)).filter(|_| free_scale);
     if let Some(scale) = scale {

@@ -26,7 +26,7 @@ use orthopanel_model::catalogue;
 use rayon::prelude::*;
 
 use super::hypothesis::{Hypothesis, PLATE, RESONATOR, Switched, has_place, is_place};
-use super::outcome::{NotTested, Tracing};
+use super::outcome::{NotTested, Progress, Tracing};
 use crate::IdentifyError;
 pub(super) use declared::identify_lists;
 use list_fit::{ListFit, fit};
@@ -42,7 +42,11 @@ use verdict::CLEAR;
 ///
 /// # Errors
 /// As [`super::trace`].
-pub(super) fn trace_frequencies(test: &ImpactTest, declared: &Hypothesis) -> Result<Tracing, IdentifyError> {
+pub(super) fn trace_frequencies(
+    test: &ImpactTest,
+    declared: &Hypothesis,
+    progress: &(dyn Fn(Progress) + Sync),
+) -> Result<Tracing, IdentifyError> {
     let (test, notes) = &without_repeats(test);
     let problem = ListProblem::of(test)?;
     let (declared, held) = &only_seen(&problem, &problem.usual(), declared.clone())?;
@@ -57,8 +61,9 @@ pub(super) fn trace_frequencies(test: &ImpactTest, declared: &Hypothesis) -> Res
     let mut fits = vec![base];
     let mut not_tested = Vec::new();
     let mut wants_more = Vec::new();
-    for &effect in catalogue() {
+    for (done, &effect) in catalogue().iter().enumerate() {
         let id = effect.id();
+        progress(Progress { effect: id, done, of: catalogue().len() });
         if declared.holds(effect) {
             continue;
         }
@@ -105,6 +110,9 @@ pub(super) fn trace_frequencies(test: &ImpactTest, declared: &Hypothesis) -> Res
         };
         match found {
             Ok(found) if is_tuned_above(&found, problem.top()) => not_tested.push(refused(ABOVE)),
+            Ok(found) if !found.bic().is_finite() || !found.left_out_percent().is_finite() => {
+                not_tested.push(refused("its criterion is no finite number"));
+            }
             Ok(found) => fits.push(found),
             Err(error) => not_tested.push(NotTested { id, reason: error.to_string() }),
         }

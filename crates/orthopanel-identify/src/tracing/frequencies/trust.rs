@@ -1,6 +1,6 @@
 //! How far a fit may miss a list, and whether it does by more.
 
-use orthopanel_model::End;
+use orthopanel_model::{End, Readable};
 
 use super::list_fit::ListFit;
 use super::list_problem::ListProblem;
@@ -102,11 +102,11 @@ impl Trust {
 
     /// The error of a fit beside what it may be, in words.
     pub(super) fn said(&self, fit: &ListFit) -> String {
-        let percent = fit.percent();
+        let percent = Readable(fit.percent());
         match self {
             Self::Told(_) => format!(
                 "{percent:.2} % rms; mean square {:.1} times that of the noise told and the {} % that a model of a panel is trusted to",
-                self.chi_square(fit),
+                Readable(self.chi_square(fit)),
                 100.0 * TRUST
             ),
             Self::Untold(rms) => format!("{percent:.2} % rms, where up to {:.2} % is usual", 100.0 * rms),

@@ -1,6 +1,7 @@
 //! What to look at where nothing of the catalogue explains the records: another measurement would not part what does not fit.
 
 use orthopanel_data::ImpactTest;
+use orthopanel_model::Readable;
 
 /// What may be wrong in the test file, the declared effects among it, and what is left over the noise.
 pub(super) fn to_check(test: &ImpactTest, left: f64) -> String {
@@ -16,8 +17,9 @@ pub(super) fn to_check(test: &ImpactTest, left: f64) -> String {
     }
     let last = told.pop().unwrap_or_default();
     format!(
-        "before you measure again, check {} and {last}: {left:.1} times the noise is left. If all that is right, the cause is not in the \
+        "before you measure again, check {} and {last}: {:.1} times the noise is left. If all that is right, the cause is not in the \
          catalogue: hit further places, for how what is left goes with the place shows where it sits",
+        Readable(left),
         told.join(", ")
     )
 }

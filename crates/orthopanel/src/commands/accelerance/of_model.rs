@@ -9,7 +9,7 @@ use crate::arguments::{count, frequency, on_piece, place};
 use crate::error::{CommandError, InFile as _};
 use crate::outputs::{Inputs, Outputs};
 use crate::whole_accelerance::WholeAccelerance;
-use crate::{console, csv_text, model_file};
+use crate::{console, csv_text, model_file, progress};
 
 /// The pair of places and the lines of a calculated accelerance.
 #[derive(clap::Args)]
@@ -82,6 +82,7 @@ pub fn execute(path: &Path, grid: &Grid, output: Option<&Path>, json: bool) -> R
     let model = model_file::read(path)?;
     on_piece(&model, "force", &[force])?;
     on_piece(&model, "response", &[response])?;
+    let shown = progress::spinner("calculating the accelerance");
     let seen = match modes {
         Some(count) => WholeAccelerance::of(&model, ModeRange::Count(count), force, response),
         None => WholeAccelerance::up_to(&model, to, force, response),
@@ -90,6 +91,7 @@ pub fn execute(path: &Path, grid: &Grid, output: Option<&Path>, json: bool) -> R
     let step = if lines > 1 { (to - from) / f64::from(lines - 1) } else { 0.0 };
     let frequency_hz: Vec<f64> = (0..lines).map(|line| from + f64::from(line) * step).collect();
     let (real, imag) = frequency_hz.iter().map(|&frequency| seen.at(frequency)).unzip();
+    drop(shown);
     let answer = Answer { schema: "orthopanel.accelerance/1", force, response, frequency_hz, real, imag };
     let names = ["frequency_hz", "real", "imag"].map(String::from);
     let table = || csv_text::csv(&names, &[&answer.frequency_hz, &answer.real, &answer.imag]);

@@ -14,7 +14,7 @@ use crate::force_file::ForceHistory;
 use crate::measured_pairs::is_test_file;
 use crate::outputs::{Inputs, Outputs};
 use crate::time_response::{Hold, Motion};
-use crate::{console, importer, model_file, time_response};
+use crate::{console, importer, model_file, progress, time_response};
 
 /// Calculate the motion of a model, or of an FMU, under a force given against time
 ///
@@ -61,7 +61,7 @@ pub struct Arguments {
     #[arg(long, value_enum, default_value_t = Method::Exact)]
     method: Method,
     /// Steps of Runge-Kutta from one sample to the next [default: what the highest mode needs, 0.2 of its angle a step]
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = steps)]
     steps: Option<usize>,
     /// CSV file to write
     #[arg(short, long, value_name = "Y.csv")]
@@ -82,6 +82,17 @@ enum Method {
     Exact,
     /// Finite elements with modal damping, integrated by Runge-Kutta as in the paper's section 3.5, beside the exact one
     RungeKutta,
+}
+
+/// Steps of Runge-Kutta between two samples at most; the exact method takes one.
+const MOST_STEPS: usize = 100_000;
+
+/// Reads a number of steps.
+fn steps(text: &str) -> Result<usize, String> {
+    match text.trim().parse() {
+        Ok(steps) if steps <= MOST_STEPS => Ok(steps),
+        _ => Err(format!("steps from one sample to the next must be a whole number, {MOST_STEPS} at most")),
+    }
 }
 
 #[derive(Serialize)]
@@ -138,6 +149,7 @@ fn run_model(arguments: &Arguments) -> Result<(ForceHistory, Vec<Motion>), Comma
     let model = model_file::read(path)?;
     let ports = arguments.ports.needed(&model, path)?;
     let force = driving_force(arguments, ports.forces.len())?;
+    let _shown = progress::spinner("driving the model");
     let seen = model.time_model(arguments.modes.range(), &ports.forces, &ports.responses).in_file(path)?;
     let motions = time_response::simulate(&seen.modes, &seen.static_remainder, &force).in_file(path)?;
     Ok((force.samples, motions))

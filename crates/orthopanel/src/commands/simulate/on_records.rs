@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use orthopanel_data::{ImpactTest, RecordedResponse, TimeHistory};
+use orthopanel_data::{ImpactTest, RecordedResponse, TimeHistory, limits};
 use orthopanel_identify::{ForceBetweenSamples, IdentifyError};
 use orthopanel_model::PanelModel;
 use serde::Serialize;
@@ -18,7 +18,9 @@ use crate::{console, importer, model_file, notes, progress};
 /// Whether a force file that is no test holds measured accelerations beside the force: a UFF, or a CSV of a record's three
 /// columns. A CSV with more is a force with other columns, such as `simulate` itself writes.
 pub fn is_measured(path: &Path) -> Result<bool, CommandError> {
-    let bytes = std::fs::read(path).map_err(|source| CommandError::Unreadable { path: path.into(), source })?;
+    let bytes = limits::RECORD_FILE.read(path);
+    let bytes = bytes.map_err(|source| CommandError::Unreadable { path: path.into(), source })?;
+    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&bytes);
     let mut lines = bytes.split(|&byte| byte == b'\n').map(<[u8]>::trim_ascii);
     let first = lines.find(|line| !line.is_empty() && !line.starts_with(b"#")).unwrap_or_default();
     let mut columns: Vec<&[u8]> = first.split(|&byte| byte == b',').map(<[u8]>::trim_ascii).collect();

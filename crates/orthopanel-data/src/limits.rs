@@ -1,0 +1,52 @@
+//! What files may hold at most: bounds of time and memory, each far beyond what tests of panels need.
+//!
+//! Each refusal tells the limit and the number found.
+
+pub use orthopanel_model::limits::*;
+
+use crate::InputKind;
+
+/// A test file: ten thousand measurements take 3 MB.
+pub const TEST_FILE: InputKind = InputKind { name: "a test file", most_bytes: 1 << 24 };
+
+/// A file of records (UFF or CSV): ten minutes of four channels at 51.2 kHz take 1 GB.
+pub const RECORD_FILE: InputKind = InputKind { name: "a file of records", most_bytes: 1 << 31 };
+
+/// All files of records of one test together, for they are evaluated together.
+pub const RECORD_FILES: u64 = 1 << 32;
+
+/// A model file: one with as many modes, places and effects as it may hold takes less than 1 MB.
+pub const MODEL_FILE: InputKind = InputKind { name: "a model file", most_bytes: 1 << 24 };
+
+/// A force file: an hour at 10 kHz takes 1 GB.
+pub const FORCE_FILE: InputKind = InputKind { name: "a force file", most_bytes: 1 << 30 };
+
+/// A library of an FMU for another platform.
+pub const LIBRARY_FILE: InputKind = InputKind { name: "a library", most_bytes: 1 << 28 };
+
+/// Pieces of a test.
+pub const PIECES: usize = 200;
+
+/// Measurements of a test: twenty hits in files of their own at five hundred places.
+pub const MEASUREMENTS: usize = 10_000;
+
+/// Natural frequencies of one list. Few analysts read more than 30; beyond 100 modes stand so close that no list names them.
+pub const FREQUENCIES: usize = 200;
+
+/// Natural frequencies of all lists of a test: forty of each of fifty pieces.
+pub const FREQUENCIES_OF_TEST: usize = 2000;
+
+/// Records of one file: all frequency responses of a roving test at a few thousand places.
+pub const RECORDS: usize = 100_000;
+
+/// Hits of one pair of places. Three to twenty are usual.
+pub const HITS: usize = 2000;
+
+/// Suspension points.
+pub const SUSPENSION_POINTS: usize = 100;
+
+/// Coupons weighed of one piece.
+pub const WEIGHINGS: usize = 10_000;
+
+/// Names in a piece's `own_constants`: as many as a plate has constants.
+pub const OWN_CONSTANTS: usize = 6;
