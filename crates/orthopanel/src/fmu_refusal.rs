@@ -15,9 +15,7 @@ pub enum FmuRefusal {
     TwoEntries,
     #[error("not an FMU: its zip archive has no modelDescription.xml")]
     NoDescription,
-    #[error(
-        "it has {what} of more than {most} {unit}, which no FMU of orthopanel comes near: export it anew from its model"
-    )]
+    #[error("it has {what} of more than {most} {unit}: export it anew, with fewer places, or with --arrays for FMI 3")]
     TooMuch { what: String, most: u64, unit: &'static str },
     #[error(
         "its modelDescription.xml has a document type declaration (<!DOCTYPE ...>), which no FMU needs: leave it out"

@@ -2,7 +2,7 @@
 //! comes out of one is counted, whatever its header claims.
 
 use std::fs::File;
-use std::io::{Cursor, Read as _};
+use std::io::{Cursor, Read};
 use std::path::Path;
 
 use zip::read::ZipFileEntry;
@@ -33,7 +33,7 @@ pub(super) struct Archive {
 }
 
 impl Archive {
-    pub(super) fn new(file: File) -> Result<Self, FmuRefusal> {
+    pub(super) fn new(file: impl Read) -> Result<Self, FmuRefusal> {
         let mut bytes = Vec::new();
         file.take(MOST_BYTES + 1).read_to_end(&mut bytes).map_err(broken)?;
         if bytes.len() as u64 > MOST_BYTES {

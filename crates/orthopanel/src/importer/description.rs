@@ -13,13 +13,14 @@ use super::{fmi2, fmi3};
 use crate::fmu_refusal::{FmuRefusal, limited, shown};
 
 /// Bytes of the file.
-pub(super) const MOST_BYTES: u64 = 16 << 20;
+pub(super) const MOST_BYTES: u64 = 64 << 20;
 /// Bytes of one tag, text or comment.
 const LONGEST_PIECE: usize = 1 << 20;
-const MOST_ELEMENTS: usize = 500_000;
+/// Elements and attributes together.
+const MOST_PARTS: usize = 1_000_000;
 const MOST_ATTRIBUTES: usize = 64;
 const DEEPEST: usize = 32;
-const MOST_VARIABLES: usize = 100_000;
+const MOST_VARIABLES: usize = 50_000;
 /// Characters of a library's name.
 const LONGEST_IDENTIFIER: usize = 128;
 
@@ -34,7 +35,8 @@ impl Description {
         let text = str::from_utf8(content).map_err(|error| FmuRefusal::Description(format!("no UTF-8: {error}")))?;
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         within_limits(text)?;
-        let nodes_limit = 4 * MOST_ELEMENTS as u32;
+        // Beside each element there may be a text.
+        let nodes_limit = 4 * MOST_PARTS as u32;
         let options = ParsingOptions { allow_dtd: false, nodes_limit, ..ParsingOptions::default() };
         let document = Document::parse_with_options(text, options).map_err(broken)?;
         let root = document.root_element();
@@ -93,7 +95,7 @@ fn is_c_identifier(text: &str) -> bool {
 /// Whether a parser that keeps the whole tree, and compares the attributes of an element with each other, may read the text.
 fn within_limits(text: &str) -> Result<(), FmuRefusal> {
     let mut reader = Reader::from_str(text);
-    let (mut elements, mut depth) = (0, 0_usize);
+    let (mut parts, mut depth) = (0, 0_usize);
     let attributes = |element: &BytesStart| element.attributes().with_checks(false).take(MOST_ATTRIBUTES + 1).count();
     loop {
         let event = reader.read_event().map_err(broken)?;
@@ -103,9 +105,10 @@ fn within_limits(text: &str) -> Result<(), FmuRefusal> {
         limited("a piece of modelDescription.xml", event.len(), LONGEST_PIECE, "bytes")?;
         match &event {
             Event::Start(element) | Event::Empty(element) => {
-                elements += 1;
-                limited("a modelDescription.xml", elements, MOST_ELEMENTS, "elements")?;
-                limited("an element of modelDescription.xml", attributes(element), MOST_ATTRIBUTES, "attributes")?;
+                let attributes = attributes(element);
+                limited("an element of modelDescription.xml", attributes, MOST_ATTRIBUTES, "attributes")?;
+                parts += 1 + attributes;
+                limited("a modelDescription.xml", parts, MOST_PARTS, "elements and attributes")?;
                 depth += usize::from(matches!(event, Event::Start(_)));
                 limited("a modelDescription.xml", depth, DEEPEST, "levels")?;
             }

@@ -54,7 +54,7 @@ fn whole(content: &[u8]) -> Result<(), String> {
 #[cfg(test)]
 mod tests {
     use std::fs::File;
-    use std::io::Write as _;
+    use std::io::{Cursor, Write as _};
 
     use orthopanel_export::{Fmu, FmuOptions};
     use orthopanel_model::{ModalModel, Mode, Place, Ports};
@@ -70,9 +70,8 @@ mod tests {
         let model = ModalModel::new(1, 1, vec![mode]).expect("a model");
         let places = vec![Place { x: 0.0, y: 0.0 }];
         let fmu = Fmu::new(model, Ports { forces: places.clone(), responses: places }, &FmuOptions::default());
-        let mut file = tempfile::tempfile().expect("a file");
-        file.write_all(&fmu.and_then(|fmu| fmu.to_bytes()).expect("an FMU")).expect("written");
-        let mut archive = Archive::new(file).expect("an archive");
+        let packed = fmu.and_then(|fmu| fmu.to_bytes()).expect("an FMU");
+        let mut archive = Archive::new(&packed[..]).expect("an archive");
         let path = archive.names().find(|name| is_library(name)).expect("a library").to_owned();
         archive.take(&path, u64::MAX).expect("unpacked").expect("there")
     }
@@ -80,14 +79,13 @@ mod tests {
     /// Which of its files an archive with this library at `binaries/here/x.so` unpacks.
     fn unpacked(library: &[u8], trust: bool) -> Result<Vec<&'static str>, FmuRefusal> {
         let files = ["binaries/here/x.so", "binaries/here/libc.so.6", "binaries/there/x.so", "resources/a/b", "other"];
-        let file = tempfile::tempfile().expect("a file");
-        let mut writer = ZipWriter::new(file.try_clone().expect("the same file"));
+        let mut writer = ZipWriter::new(Cursor::new(Vec::new()));
         for name in files {
             writer.start_file(name, SimpleFileOptions::default()).expect("an entry");
             writer.write_all(if name == files[0] { library } else { b"x" }).expect("written");
         }
-        writer.finish().expect("written");
-        let folder = unpack(&mut Archive::new(file)?, files[0], trust)?;
+        let packed = writer.finish().expect("written").into_inner();
+        let folder = unpack(&mut Archive::new(&packed[..])?, files[0], trust)?;
         Ok(files.into_iter().filter(|name| File::open(folder.path().join(name)).is_ok()).collect())
     }
 
