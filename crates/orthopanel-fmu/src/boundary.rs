@@ -11,10 +11,13 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
 
 use crate::component::{Component, Interface};
+use crate::floating_point::StandardEnvironment;
 use crate::logging::{Category, Logger, Sink};
 use crate::{FmuError, Resource};
 
-pub(crate) use entries::{absent_types, entries, fmu_state_entries, model_exchange_entries, not_offered, transitions};
+pub(crate) use entries::{
+    absent_types, caller, entries, fmu_state_entries, model_exchange_entries, not_offered, transitions,
+};
 
 /// FMI status; OK and Error have the same numbers in both versions.
 pub(crate) type Status = c_int;
@@ -47,6 +50,7 @@ pub(crate) unsafe fn instantiate(
     sink: Sink,
     check: impl FnOnce() -> Result<(), FmuError>,
 ) -> *mut c_void {
+    let _environment = StandardEnvironment::enter();
     let logger = Logger::new(sink, given.logging_on);
     let made = catch_unwind(AssertUnwindSafe(|| {
         check()?;
@@ -81,11 +85,39 @@ pub(crate) unsafe fn free(instance: *mut c_void) {
     }
 }
 
-/// Runs one call on an instance: errors and panics are logged and become [`ERROR`].
+/// Runs one call on an instance in the standard floating-point environment: errors and panics are logged and become [`ERROR`].
 ///
 /// # Safety
 /// `instance` is null or a live instance that no other call is using.
 pub(crate) unsafe fn call(
+    instance: *mut c_void,
+    name: &str,
+    body: impl FnOnce(&mut Instance) -> Result<(), FmuError>,
+) -> Status {
+    let mut body = Some(body);
+    let mut once = |instance: &mut Instance| body.take().map_or(Ok(()), |body| body(instance));
+    // SAFETY: as here.
+    unsafe { in_standard_environment(instance, name, &mut once) }
+}
+
+/// One for all of these calls, since each of its own would make the library larger.
+#[inline(never)]
+unsafe fn in_standard_environment(
+    instance: *mut c_void,
+    name: &str,
+    body: &mut dyn FnMut(&mut Instance) -> Result<(), FmuError>,
+) -> Status {
+    let _environment = StandardEnvironment::enter();
+    // SAFETY: as in `call`.
+    unsafe { frequent_call(instance, name, body) }
+}
+
+/// The same in the importer's environment, for what is called at every step: two looks at it would make a step a fifth longer. A body
+/// has nothing in it that could raise an exception, or enters the standard one for it.
+///
+/// # Safety
+/// `instance` is null or a live instance that no other call is using.
+pub(crate) unsafe fn frequent_call(
     instance: *mut c_void,
     name: &str,
     body: impl FnOnce(&mut Instance) -> Result<(), FmuError>,

@@ -5,6 +5,7 @@ mod boundary;
 mod capabilities;
 mod component;
 mod error;
+mod floating_point;
 mod fmi2;
 mod fmi3;
 mod logging;

@@ -26,12 +26,13 @@ pub(crate) fn sorted<T>(items: Vec<T>, key: impl FnMut(&T) -> f64) -> Vec<T> {
 pub(crate) fn sorted_modes<T>(modes: Vec<T>, frequency: impl FnMut(&T) -> f64) -> Vec<T> {
     let frequencies: Vec<f64> = modes.iter().map(frequency).collect();
     let mut ranks = vec![0.0; frequencies.len()];
-    let (mut rank, mut last) = (0.0, f64::NEG_INFINITY);
+    let (mut rank, mut last) = (0.0, None);
     for place in rising(&frequencies) {
-        if frequencies[place] > last + COINCIDENT * last.abs() {
+        // No infinite frequency to begin from: infinity less infinity kills a host that traps what is no number.
+        if last.is_some_and(|last: f64| frequencies[place] > last + COINCIDENT * last.abs()) {
             rank += 1.0;
         }
-        (ranks[place], last) = (rank, frequencies[place]);
+        (ranks[place], last) = (rank, Some(frequencies[place]));
     }
     let mut ranks = ranks.into_iter();
     sorted(modes, |_| ranks.next().unwrap_or(rank))

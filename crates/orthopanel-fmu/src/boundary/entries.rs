@@ -1,20 +1,32 @@
 //! Macros that define entry points, and those that differ between the versions of the standard by name alone.
 
-/// Defines entry points: each runs its body on the instance that the first argument points to.
+/// Defines entry points: each runs its body on the instance that the first argument points to. Those that are called at every step
+/// are marked `#[frequent]`.
 ///
 /// The one `unsafe` block serves every body; what a body relies on is the FMI contract alone: arrays and places for
 /// answers are null, which the bodies refuse, or as long as the call says, and no other call uses the instance.
 macro_rules! entries {
-    ($($name:ident($($argument:ident: $kind:ty),*) |$instance:ident| $body:expr;)*) => {$(
+    ($($(#[$how:ident])? $name:ident($($argument:ident: $kind:ty),*) |$instance:ident| $body:expr;)*) => {$(
         #[unsafe(no_mangle)]
         unsafe extern "C" fn $name(instance: *mut std::ffi::c_void, $($argument: $kind),*) -> $crate::boundary::Status {
             // SAFETY: under the FMI contract the instance is null or alive and this call's alone, and so is every
             // array and place for an answer that the body turns into a slice or reference.
-            unsafe { $crate::boundary::call(instance, stringify!($name), |$instance| $body) }
+            unsafe { $crate::boundary::caller!($($how)?)(instance, stringify!($name), |$instance| $body) }
         }
     )*};
 }
 pub(crate) use entries;
+
+/// What runs the body of an entry point.
+macro_rules! caller {
+    () => {
+        $crate::boundary::call
+    };
+    (frequent) => {
+        $crate::boundary::frequent_call
+    };
+}
+pub(crate) use caller;
 
 /// Defines calls that take the instance alone and are told to the log.
 macro_rules! transitions {

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use orthopanel_model::ModalModel;
 
 use super::{Component, Phase, Probe, finite, values};
+use crate::floating_point::StandardEnvironment;
 use crate::panel::{Panel, Solution};
 use crate::wide_stepper::WideStepper;
 use crate::{FmuError, Resource, Variable, nominals};
@@ -73,6 +74,7 @@ impl Component {
         if self.in_use.values == values {
             return Ok(());
         }
+        let _environment = StandardEnvironment::enter();
         let seen = self.seen_with(values)?;
         let mut stepper = WideStepper::new(&seen.modes);
         stepper.set_state(&self.stepper.state())?;

@@ -6,9 +6,11 @@ use super::{Boolean, Reference, Text};
 use crate::boundary::{absent_types, array, array_mut, entries};
 
 entries! {
+    #[frequent]
     fmi2GetReal(references: *const Reference, count: usize, values: *mut f64) |instance| {
         instance.component.get_reals(array(references, count, "vr")?, array_mut(values, count, "value")?)
     };
+    #[frequent]
     fmi2SetReal(references: *const Reference, count: usize, values: *const f64) |instance| {
         instance.component.set_reals(array(references, count, "vr")?, array(values, count, "value")?)
     };

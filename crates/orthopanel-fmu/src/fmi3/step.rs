@@ -4,6 +4,7 @@ use super::Boolean;
 use crate::boundary::{entries, place};
 
 entries! {
+    #[frequent]
     fmi3DoStep(
         start: f64, step: f64, _no_state_before: Boolean, event_handling_needed: *mut Boolean,
         terminate_simulation: *mut Boolean, early_return: *mut Boolean, last_successful_time: *mut f64

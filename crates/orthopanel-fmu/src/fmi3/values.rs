@@ -4,10 +4,12 @@ use super::{Boolean, Reference, Text};
 use crate::boundary::{absent_types, array, array_mut, entries};
 
 entries! {
+    #[frequent]
     fmi3GetFloat64(references: *const Reference, count: usize, values: *mut f64, value_count: usize) |instance| {
         let references = instance.component.elements(array(references, count, "valueReferences")?)?;
         instance.component.get_reals(&references, array_mut(values, value_count, "values")?)
     };
+    #[frequent]
     fmi3SetFloat64(references: *const Reference, count: usize, values: *const f64, value_count: usize) |instance| {
         let references = instance.component.elements(array(references, count, "valueReferences")?)?;
         instance.component.set_reals(&references, array(values, value_count, "values")?)

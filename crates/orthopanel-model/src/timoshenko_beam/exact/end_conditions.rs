@@ -52,6 +52,12 @@ fn stiffness(pair: &[Field; 2], force: usize, held: usize, coordinate: usize) ->
     minor(pair, force, held) / minor(pair, coordinate, held)
 }
 
+/// Whether that stiffness is negative: by the signs, since at a frequency of the end that the coordinate holds the denominator is zero.
+fn yields(pair: &[Field; 2], force: usize, held: usize, coordinate: usize) -> bool {
+    let (numerator, denominator) = (minor(pair, force, held), minor(pair, coordinate, held));
+    numerator != 0.0 && numerator.is_sign_negative() != denominator.is_sign_negative()
+}
+
 /// Looks at a family at $\mu$.
 pub(super) fn probe(ratios: Ratios, boundary: Boundary, family: Family, mu: f64) -> Probe {
     let waves = Waves::at(ratios, mu);
@@ -73,9 +79,9 @@ fn probe_parity(pair: &[Field; 2], end: End, pinned: usize) -> Probe {
     let below = match end {
         End::Pinned => pinned,
         // Deflection set free, moment zero: one more where the force resists with a negative stiffness.
-        End::Free => pinned + usize::from(stiffness(pair, SHEAR, MOMENT, DEFLECTION) < 0.0),
+        End::Free => pinned + usize::from(yields(pair, SHEAR, MOMENT, DEFLECTION)),
         // Rotation clamped, deflection zero: the reverse step.
-        End::Clamped => pinned - usize::from(stiffness(pair, MOMENT, DEFLECTION, ROTATION) < 0.0).min(pinned),
+        End::Clamped => pinned - usize::from(yields(pair, MOMENT, DEFLECTION, ROTATION)).min(pinned),
     };
     Probe { below, residual: minor(pair, i, j) }
 }
@@ -85,7 +91,8 @@ fn probe_parity(pair: &[Field; 2], end: End, pinned: usize) -> Probe {
 fn mixed_count(ratios: Ratios, ends: &Fields, boundary: Boundary, pinned: usize) -> usize {
     let pairs = [&ends.even, &ends.odd];
     let clamped = |pair| stiffness(pair, MOMENT, DEFLECTION, ROTATION);
-    let clamped_count = || pinned - pairs.iter().filter(|pair| clamped(pair) < 0.0).count().min(pinned);
+    let yielding = || pairs.iter().filter(|pair| yields(pair, MOMENT, DEFLECTION, ROTATION)).count();
+    let clamped_count = || pinned - yielding().min(pinned);
     match (boundary.left, boundary.right) {
         (End::Free, End::Pinned) | (End::Pinned, End::Free) => {
             let sum: f64 = pairs.iter().map(|pair| stiffness(pair, SHEAR, MOMENT, DEFLECTION)).sum();
