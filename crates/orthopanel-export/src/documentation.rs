@@ -51,7 +51,7 @@ pub(crate) fn write(resource: &Resource, from: Option<&Origin<'_>>, options: &Fm
         page += &left_out(resource, from);
         page += &from.section();
     }
-    let _ = write!(page, "<p>Written by {GENERATOR}.</p>\n</body>\n</html>\n");
+    let _ = write!(page, "<p>Written by {GENERATOR}. {LICENSES}</p>\n</body>\n</html>\n");
     page
 }
 
@@ -88,6 +88,7 @@ th, td { padding: 0.1em 0.3em }
 td:first-child { overflow-wrap: anywhere; min-width: 7em } }
 </style>\n";
 
+const LICENSES: &str = "Licences of the libraries in it: <a href=\"licenses/license.txt\">licenses/license.txt</a>.";
 const PARAMETERS: &str = "All parameters may be set before or in initialization mode. The tunable ones, which are the damping \
      ratios and the places of forces and responses, may also be set while the simulation runs: in co-simulation between two steps, \
      in model exchange in event mode. The modes are those of the undamped panel, which neither damping nor a port changes, so their \

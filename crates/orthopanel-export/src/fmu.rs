@@ -52,6 +52,12 @@ impl Default for FmuOptions {
 const ICON_PNG: &[u8] = include_bytes!("../icons/panel.png");
 const ICON_SVG: &[u8] = include_bytes!("../icons/panel.svg");
 
+/// Licences of all that is linked into the libraries (`.ci/licenses.py`); both versions of the standard want them here.
+const LICENSES: [(&str, &str); 2] = [
+    ("documentation/licenses/license.txt", include_str!("../licenses/license.txt")),
+    ("documentation/licenses/rust-standard-library.html", include_str!("../licenses/rust-standard-library.html")),
+];
+
 /// An FMU of a modal model, for co-simulation and model exchange.
 ///
 /// The same model, ports and options give the same bytes, token included.
@@ -139,6 +145,7 @@ impl Fmu {
             text(&format!("resources/{RESOURCE_FILE}"), self.resource.as_bytes()),
             text("documentation/index.html", self.documentation.as_bytes()),
         ];
+        entries.extend(LICENSES.iter().map(|(path, content)| text(path, content.as_bytes())));
         entries.extend(match self.version {
             FmiVersion::Fmi2 => vec![text("model.png", ICON_PNG)],
             FmiVersion::Fmi3 => {

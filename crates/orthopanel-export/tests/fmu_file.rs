@@ -37,6 +37,12 @@ fn the_archive_holds_each_part_where_the_standard_wants_it() {
         assert_eq!(text, fmu.model_description());
         archive.by_name("resources/panel.json").expect("resource");
         archive.by_name("documentation/index.html").expect("documentation");
+        for (name, said) in [("license.txt", "faer 0."), ("rust-standard-library.html", "The Rust Standard Library")] {
+            let mut text = String::new();
+            let path = format!("documentation/licenses/{name}");
+            archive.by_name(&path).expect("licences").read_to_string(&mut text).expect("text");
+            assert!(text.contains(said), "{name}");
+        }
         let icon = if version == FmiVersion::Fmi2 { "model.png" } else { "terminalsAndIcons/icon.png" };
         let mut start = [0; 8];
         archive.by_name(icon).expect("icon").read_exact(&mut start).expect("bytes");
@@ -158,6 +164,27 @@ fn the_runtime_is_below_its_limit() {
     archive.by_name("binaries/linux64/orthopanel.so").expect("library").read_to_end(&mut content).expect("bytes");
     assert!(content.len() < 1_500_000, "{} bytes", content.len());
     Library::new(platform("linux64"), content).expect("what is embedded may be given too");
+}
+
+/// The embedded runtime tells nobody where it was built, and so may be the same bytes wherever that is.
+#[test]
+fn the_runtime_holds_no_path_of_the_builder() {
+    if !cfg!(all(target_os = "linux", target_arch = "x86_64")) {
+        return;
+    }
+    let bytes = Fmu::new(model(1, 1), ports(1, 1), &FmuOptions::default()).and_then(|fmu| fmu.to_bytes());
+    let mut archive = zip::ZipArchive::new(std::io::Cursor::new(bytes.expect("an archive"))).expect("a zip");
+    let mut content = Vec::new();
+    archive.by_name("binaries/linux64/orthopanel.so").expect("library").read_to_end(&mut content).expect("bytes");
+    let holds = |text: &str| content.windows(text.len()).any(|window| window == text.as_bytes());
+    // Such as panics name: else nothing is searched.
+    assert!(holds(".rs"), "no file of source is named at all");
+    let workspace = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().nth(2).expect("a workspace");
+    let homes = ["HOME", "USERPROFILE", "CARGO_HOME", "RUSTUP_HOME"].map(|name| std::env::var(name).ok());
+    let folders = homes.into_iter().flatten().chain([workspace.display().to_string()]);
+    for folder in folders.filter(|folder| folder.len() > 1).chain(["/.cargo/".into(), "registry/src/".into()]) {
+        assert!(!holds(&folder), "{folder}");
+    }
 }
 
 #[test]
