@@ -50,6 +50,33 @@ fn existing(ready: &Path) -> Result<PathBuf, Box<dyn Error>> {
     Ok(whole)
 }
 
+/// Flags that put names in place of this machine's folders: every FMU carries the library to strangers, and one version of it is
+/// the same bytes wherever it is built. The later of two that fit a path counts.
+fn without_paths(manifest: &Path, target_folder: &Path) -> Result<Vec<String>, Box<dyn Error>> {
+    let rustc = env::var_os("RUSTC").ok_or("cargo names no compiler in RUSTC")?;
+    let told = |arguments: &[&str]| -> Result<String, Box<dyn Error>> {
+        Ok(String::from_utf8(Command::new(&rustc).args(arguments).output()?.stdout)?)
+    };
+    let version = told(&["--version", "--verbose"])?;
+    let commit = version.lines().find_map(|line| line.strip_prefix("commit-hash: ")).unwrap_or("unknown");
+    let sysroot = PathBuf::from(told(&["--print", "sysroot"])?.trim_end());
+    let workspace = manifest.canonicalize()?.ancestors().nth(3).map(Path::to_path_buf).unwrap_or_default();
+    let mut folders = vec![
+        (workspace, "orthopanel".into()),
+        (target_folder.to_path_buf(), "target".into()),
+        (sysroot.join("lib/rustlib/src/rust"), format!("/rustc/{commit}")),
+    ];
+    let home = env::var_os("CARGO_HOME").map(PathBuf::from).or_else(|| Some(env::home_dir()?.join(".cargo")));
+    if let Some(home) = home {
+        folders.push((home.clone(), "cargo".into()));
+        // Below it is a folder for each registry or mirror of one.
+        let sources = home.join("registry/src");
+        let registries = std::fs::read_dir(sources).into_iter().flatten().flatten();
+        folders.extend(registries.map(|registry| (registry.path(), "crates".into())));
+    }
+    Ok(folders.iter().map(|(from, to)| format!("--remap-path-prefix={}={to}", from.display())).collect())
+}
+
 /// Builds the library in the profile `fmu`; returns where it lies.
 fn build(manifest: &Path) -> Result<PathBuf, Box<dyn Error>> {
     let target_folder = PathBuf::from(env::var("OUT_DIR")?).join("fmu");
@@ -64,6 +91,7 @@ fn build(manifest: &Path) -> Result<PathBuf, Box<dyn Error>> {
     }
     cargo.args(["build", "--quiet", "--lib", "--profile", "fmu", "--features", "compact"]);
     cargo.arg("--manifest-path").arg(manifest).arg("--target-dir").arg(&target_folder);
+    cargo.env("CARGO_ENCODED_RUSTFLAGS", without_paths(manifest, &target_folder)?.join("\u{1f}"));
     let mut folder = target_folder;
     if target != host {
         cargo.args(["--target", &target]);
