@@ -1,12 +1,12 @@
 r"""The Timoshenko beam of the test cases, by finite elements: what a sandwich beam is where it is not uniform or free.
 
-$$ (E I \psi')' - k' G A\, g(x) (w' + \psi) = r \rho I \ddot\psi, \qquad
-   (k' G A\, g(x) (w' + \psi) + N w')' + f = \rho A \ddot w $$
+$$ (E I\, e(x) \psi')' - k' G A\, g(x) (w' + \psi) = r \rho I\, m(x) \ddot\psi, \qquad
+   (k' G A\, g(x) (w' + \psi) + N w')' + f = \rho A\, m(x) \ddot w $$
 
-with g(x) the shear stiffness along the beam over its nominal one, r a factor on the rotary inertia, N a tension, and a
-left end that is free, clamped, or held by springs. I = b t^3/12, A = b t, k' = 2/3, x from the centre of the piece.
+with e(x), g(x), m(x) the bending stiffness, shear stiffness and mass along the beam over their nominal ones, r a factor on the rotary
+inertia, N a tension, and a left end that is free, clamped, or held by springs. I = b t^3/12, A = b t, k' = 2/3, x from the centre of the piece.
 Elements are Lagrange polynomials of order 8 on Gauss-Lobatto nodes; an element boundary stands at every point and at
-every step of g. Source of the equations: Saito, Parbery, Okuno, Kawano, J. Sound Vib. 208(2), 1997. SI units.
+every step of e, g and m. Source of the equations: Saito, Parbery, Okuno, Kawano, J. Sound Vib. 208(2), 1997. SI units.
 """
 
 from collections.abc import Callable
@@ -27,9 +27,10 @@ ELEMENT = 0.04  # m, the longest element: seven nodes in the shortest wave at mo
 class Panel:
     """A piece and its constants (m, m, m, kg/m2, Pa, Pa), and where it departs from the uniform free beam.
 
-    `shear_along(x)` is g(x), `steps` the places where g jumps; `rotary` is r; `tension` is N [N]; `left` is "free",
-    "clamped", or the pair (translation [N/m], rotation [N m/rad]) of the springs that hold the left end. `turning` are
-    pairs (x, J): a moment of inertia J [kg m2] that turns with the section at x.
+    `bending_along(x)`, `shear_along(x)`, `mass_along(x)` are e, g and m, `steps` the places where one jumps; `rotary` is r; `tension`
+    is N [N]; `left` is "free", "clamped", or the pair (translation [N/m], rotation [N m/rad]) of the springs that hold the left end.
+    `turning` are pairs (x, J): a moment of inertia J [kg m2] that turns with the section at x. `cords` are pairs (x, k): a
+    spring k [N/m] to ground, part of the panel's own modes.
     """
 
     length: float
@@ -39,11 +40,14 @@ class Panel:
     e_x: float
     g_zx: float
     shear_along: Callable | None = None
+    bending_along: Callable | None = None
+    mass_along: Callable | None = None
     steps: tuple = ()
     rotary: float = 1.0
     tension: float = 0.0
     left: str | tuple = "free"
     turning: tuple = ()
+    cords: tuple = ()
 
     @property
     def bending(self):
@@ -76,12 +80,12 @@ def solve(panel, points, zeta, spans=()):
     ends = boundaries(panel, points)
     mesh = Mesh(panel, ends)
     stiffness = mesh.bending + mesh.shear + mesh.tension
-    held = _hold(panel, stiffness, len(mesh.nodes))
+    held = _hold(panel, stiffness, mesh.nodes)
     free = np.setdiff1d(np.arange(len(stiffness)), held)
     square, vectors = eigh(stiffness[np.ix_(free, free)], mesh.mass[np.ix_(free, free)])
     seen = np.vstack([*(mesh.deflection(x) for x in points), *(mesh.mean_strain(*span) for span in spans)])
-    rigid = rigid_shapes(panel, points, len(spans))
-    return reduced(square, vectors, seen[:, free], rigid, zeta)
+    loose = 0 if panel.left != "free" or panel.cords else 1 if panel.tension else 2  # a tension turns the panel back
+    return reduced(square, vectors, seen[:, free], (seen @ mesh.rigid()[:, :loose]).T, zeta)
 
 
 def boundaries(panel, points, element=ELEMENT):
@@ -91,14 +95,17 @@ def boundaries(panel, points, element=ELEMENT):
     if outside:
         raise ValueError(f"x = {outside[0]} m lies off the piece: |x| <= {half} m")
     inner = [x for x in panel.steps if abs(x) < half]
-    turning = (x for x, _ in panel.turning)
-    fixed = np.unique(np.round([-half, half, *points, *inner, *turning], 9))
+    fixed = np.unique(np.round([-half, half, *points, *inner, *(x for x, _ in [*panel.turning, *panel.cords])], 9))
     parts = [np.linspace(a, b, int(np.ceil((b - a) / element)) + 1)[:-1] for a, b in zip(fixed[:-1], fixed[1:])]
     return np.concatenate([*parts, fixed[-1:]])
 
 
-def _hold(panel, stiffness, count):
-    """Put the left end's springs into `stiffness`; the unknowns that a clamp takes away."""
+def _hold(panel, stiffness, nodes):
+    """Put the cords and the left end's springs into `stiffness`; the unknowns that a clamp takes away."""
+    for x, spring in panel.cords:
+        at = int(np.argmin(np.abs(nodes - x)))
+        stiffness[at, at] += spring
+    count = len(nodes)
     if panel.left == "free":
         return []
     if panel.left == "clamped":
@@ -107,18 +114,6 @@ def _hold(panel, stiffness, count):
     stiffness[0, 0] += translation
     stiffness[count, count] += rotation
     return []
-
-
-def rigid_shapes(panel, points, strains):
-    """Translation, and rotation (w = x, psi = -1) unless a tension turns it back, seen from the points."""
-    if panel.left != "free":
-        return np.zeros((0, len(points) + strains))
-    inertia = panel.mass * panel.length**2 / 12.0 + panel.rotary_inertia * panel.length
-    inertia += sum(turning for _, turning in panel.turning)
-    shapes = [np.full(len(points), 1.0 / np.sqrt(panel.mass)), np.asarray(points) / np.sqrt(inertia)]
-    if panel.tension:
-        shapes.pop()
-    return np.hstack([np.stack(shapes), np.zeros((len(shapes), strains))])
 
 
 # The interior Gauss-Lobatto nodes are the roots of the Legendre polynomial's slope.
@@ -161,34 +156,43 @@ class Mesh:
         value, mixed, slope = line_matrices(ends)
         none = np.zeros((count, count))
         self.mass = np.block([[panel.mass_per_length * value, none], [none, panel.rotary_inertia * value]])
+        if panel.mass_along is not None:
+            self.mass = self._uneven(panel.mass_along, w=(panel.mass_per_length**0.5, 0.0))
+            self.mass += self._uneven(panel.mass_along, psi=(panel.rotary_inertia**0.5, 0.0))
         for x, inertia in panel.turning:
             at = count + int(np.argmin(np.abs(self.nodes - x)))
             self.mass[at, at] += inertia
         self.bending = np.block([[none, none], [none, panel.bending * slope]])
+        if panel.bending_along is not None:
+            self.bending = self._uneven(panel.bending_along, psi=(0.0, panel.bending**0.5))
         self.tension = np.block([[panel.tension * slope, none], [none, none]])
         self.shear = panel.shear * np.block([[slope, mixed.T], [mixed, value]])
         if panel.shear_along is not None:
-            self.shear = self._uneven_shear(panel)
+            root = panel.shear**0.5
+            self.shear = self._uneven(panel.shear_along, w=(0.0, root), psi=(root, 0.0))
 
-    def _uneven_shear(self, panel):
-        """The shear part where the stiffness varies along x; more points, as its factor is no polynomial."""
+    def _uneven(self, along, w=(0.0, 0.0), psi=(0.0, 0.0)):
+        """The integral of along(x) times a square: of the sum of w, w', psi and psi', each times its factor. More points, as along(x)
+        is no polynomial."""
         point, weight = legendre.leggauss(ORDER + 5)
         value, slope = _shape_functions(point)
-        shear, count = np.zeros_like(self.mass), len(self.nodes)
+        whole, count = np.zeros((2 * len(self.nodes),) * 2), len(self.nodes)
         for element, (left, right) in enumerate(zip(self.ends[:-1], self.ends[1:])):
             half = (right - left) / 2.0
-            w = np.arange(ORDER * element, ORDER * (element + 1) + 1)
-            at = np.concatenate([w, w + count])
-            factor = weight * panel.shear_along(left + half * (point + 1.0))
-            strain = np.hstack([slope / half, value])
-            shear[np.ix_(at, at)] += panel.shear * half * strain.T @ (factor[:, None] * strain)
-        return shear
+            nodes = np.arange(ORDER * element, ORDER * (element + 1) + 1)
+            at = np.concatenate([nodes, nodes + count])
+            factor = half * weight * along(left + half * (point + 1.0))
+            row = np.hstack([one * value + other * slope / half for one, other in (w, psi)])
+            whole[np.ix_(at, at)] += row.T @ (factor[:, None] * row)
+        return whole
 
     def rigid(self):
-        """Translation and rotation (unknowns, 2), mass-normalised."""
+        """Translation, and rotation (w = x, psi = -1) about the centre of mass (unknowns, 2), mass-normalised."""
         count = len(self.nodes)
         shapes = np.zeros((2 * count, 2))
         shapes[:count, 0], shapes[:count, 1], shapes[count:, 1] = 1.0, self.nodes, -1.0
+        carried = self.mass @ shapes[:, 0]
+        shapes[:, 1] -= shapes[:, 0] * (carried @ shapes[:, 1]) / (carried @ shapes[:, 0])
         return shapes / np.sqrt(np.sum(shapes * (self.mass @ shapes), axis=0))
 
     def mean_strain(self, left, right):

@@ -24,6 +24,9 @@ class Bench:
     static value as a function of s, `restoring` a law f(y, dy/dt) at the points `restoring_at`, or on the
     mean shear strain of the `restoring_spans`. `chain` are factors on the acceleration, `record_gain` (places) and
     `gain` multiply it.
+    `hanging` are the damping ratios of the panel's two motions on its cords, `declared` the ids of effects that the test file tells
+    without their numbers. `own` is by how much each mode is off: its frequency's share (modes), and factors on its residues (modes, places).
+    `unit` is that of the accelerations in files.
     `drift` (places, hits) is a factor on all stiffness. `window` [s] is the decay of an exponential window on both
     channels; `saturation` is the amplifier's limit over the test's median peak; `hum` is 50 Hz over the rms.
     """
@@ -48,6 +51,10 @@ class Bench:
     window: float | None = None
     saturation: float | None = None
     hum: float = 0.0
+    hanging: tuple = ()
+    declared: tuple = ()
+    own: tuple | None = None
+    unit: str = "m/s2"
 
     def __post_init__(self):
         self.record_gain = np.ones(len(self.forces))
@@ -74,10 +81,22 @@ class Bench:
             return core.solve(self.panel, points, self.zeta, self.core, self.sampling)
         if self.across is not None:
             return plate.solve(self.panel, self.across, points, self.zeta)
-        modes = beam.solve(self.panel, points, self.zeta, self.restoring_spans)
+        modes = beam.solve(self.panel, points, [*self.hanging, *self.zeta], self.restoring_spans)
         # A span softens in the motion that the records show; a force on strains above it would need far finer steps.
         modes.shape[modes.omega > 2.0 * np.pi * SPANS_UP_TO, len(points) :] = 0.0
         return modes
+
+
+    def off_by_itself(self, modes, places):
+        """The modes as `own` has them, seen from points of which the first are struck in these `places`."""
+        if self.own is None:
+            return modes
+        loose, (shares, factors) = 2 if self.panel.left == "free" else 0, self.own
+        count = min(len(modes) - loose, len(shares))
+        share, factor = np.zeros(len(modes)), np.ones((len(modes), modes.points))
+        share[loose : loose + count] = shares[:count]
+        factor[loose : loose + count, : len(places)] = factors[:count, places]
+        return modes.of_its_own(share, factor)
 
 
 # Length, width, thickness [m], E_x and G_zx [Pa]: pieces 1 to 4 of the seed's tables 3 and 9.

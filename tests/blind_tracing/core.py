@@ -11,6 +11,8 @@ $$ G_{ij}(s) = \sum_k \frac{\phi_k(i)\phi_k(j)}{s^2 + 2\zeta_k\omega_k s + \omeg
 all of phi, omega, R at g(s); R are the moments of the modes above CUT. zeta_k is what the panel has beside its core.
 """
 
+from copy import copy
+
 import numpy as np
 from scipy.linalg import eig, eigh
 from scipy.optimize import linear_sum_assignment
@@ -96,6 +98,18 @@ class CoreModes:
         upper, far = seen[self.count :], square[self.count :, None]
         moments = [upper.T @ (upper / far**power) for power in range(1, MOMENTS + 1)]
         return np.concatenate([square[: self.count], seen[: self.count].ravel(), *(m.ravel() for m in moments)])
+
+    def __len__(self):
+        return self.rigid + self.count
+
+    def of_its_own(self, shares, factors):
+        """As `Modes.of_its_own`; the modes above CUT count by their moments and stay as they are."""
+        flexible = slice(self.rigid, self.rigid + self.count)
+        other, end = copy(self), self.count * (1 + self.points)
+        other.table = self.table.copy()
+        other.table[:, : self.count] *= (1.0 + shares[flexible]) ** 2
+        other.table[:, self.count : end] *= factors[flexible].ravel()
+        return other
 
     def _between(self, modulus):
         """The table's row at each `modulus`, by the barycentric formula."""

@@ -5,16 +5,30 @@ point attachment or a force the shear force jumps, at a point inertia the moment
 tension included. SI units.
 """
 
+from dataclasses import replace
+
 import numpy as np
 from scipy.linalg import expm
 
 
 def receptance(panel, s, force_at, response_at, attached=(), modulus=1.0):
     """w(response_at) [m] under a unit force at `force_at`, at one complex `s` [1/s]; `attached` are pairs (x, Z(s))."""
+    state, seen = _carried(panel, s, force_at, response_at, attached, modulus)
+    unknown = np.linalg.solve(state[2:, :2], -state[2:, 2])
+    return seen[2] + seen[:2] @ unknown
+
+
+def determinant(panel, s):
+    """Zero where `s` is a pole of the panel."""
+    state, _ = _carried(panel, s, 0.0, 0.0, (), 1.0)
+    return np.linalg.det(state[2:, :2])
+
+
+def _carried(panel, s, force_at, response_at, attached, modulus):
+    """The state at the right end and the deflection at the response, for two unknowns at the left end and the force."""
     half = panel.length / 2.0
     stops = sorted({-half, half, force_at, response_at, *(x for x, _ in [*attached, *panel.turning]), *panel.steps})
     stops = [x for x in stops if -half <= x <= half]
-    # Two unknowns at the left end and the response they cause; the third column is that of the force.
     state, seen = _start(panel), None
     for i, x in enumerate(stops):
         for place, stiffness in attached:
@@ -29,10 +43,14 @@ def receptance(panel, s, force_at, response_at, attached=(), modulus=1.0):
             seen = state[0].copy()
         if i + 1 < len(stops):
             middle = (x + stops[i + 1]) / 2.0
-            along = panel.shear_along(np.array([middle]))[0] if panel.shear_along else 1.0
-            state = expm(_along(panel, s, along * modulus) * (stops[i + 1] - x)) @ state
-    unknown = np.linalg.solve(state[2:, :2], -state[2:, 2])
-    return seen[2] + seen[:2] @ unknown
+            state = expm(_along(_piece(panel, middle), s, modulus) * (stops[i + 1] - x)) @ state
+    return state, seen
+
+
+def _piece(panel, x):
+    """The even panel that `panel` is around x; what varies is constant between `steps`."""
+    e, g, m = (along(np.array([x]))[0] if along else 1.0 for along in (panel.bending_along, panel.shear_along, panel.mass_along))
+    return replace(panel, e_x=panel.e_x * e, g_zx=panel.g_zx * g, mass_per_area=panel.mass_per_area * m)
 
 
 def _start(panel):

@@ -13,16 +13,19 @@ TRUTH = "truth.json"
 SCHEMA = "orthopanel.blind-truth/1"
 TIME_RESPONSE, ACCELERATION, FORCE, TIME = 1, 12, 13, 17  # codes of dataset 58
 Z_TRANSLATION = 3
+SI = "m/s2"
+UNITS = {SI: 1.0, "g": 9.80665}  # of an acceleration, m/s2
 
 
 def write_case(folder, bench, played):
     """The folder of one case."""
     folder.mkdir(parents=True)
     plan = [piece_text(bench)]
+    unit = f'response_unit = "{bench.unit}"\n' if bench.unit != SI else ""
     for place, x in enumerate(bench.forces):
         name = f"point-{place}.uff"
         _write_records(folder / name, place, bench, played)
-        plan.append(measurement_text("time-history", name, x, bench.response))
+        plan.append(measurement_text("time-history", name, x, bench.response) + unit)
     (folder / "test.toml").write_text("\n".join(plan), encoding="utf-8")
 
 
@@ -68,7 +71,7 @@ def piece_text(bench):
         text += '\n[boundary]\nleft = "clamped"\nright = "free"\n'
     if bench.suspension:
         text += f"\n[suspension]\nat = [{', '.join(f'{x:.4g}' for x in bench.suspension)}]\n"
-    return text
+    return text + "".join(f'\n[[effect]]\nid = "{name}"\n' for name in bench.declared)
 
 
 def measurement_text(kind, name, force, response):
@@ -85,7 +88,7 @@ def _write_records(path, place, bench, played):
     for hit in range(bench.hits):
         channels = (
             ("Force", played.force, place + 1, FORCE, "N"),
-            ("Acceleration", played.acceleration, len(bench.forces) + 1, ACCELERATION, "m/s2"),
+            ("Acceleration", played.acceleration / UNITS[bench.unit], len(bench.forces) + 1, ACCELERATION, bench.unit),
         )
         for name, data, node, code, unit in channels:
             sets.append(

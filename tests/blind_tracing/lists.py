@@ -9,7 +9,7 @@ from dataclasses import replace
 from functools import partial
 
 import numpy as np
-from scipy.linalg import eigvals
+from scipy.linalg import eig
 from scipy.optimize import least_squares
 
 from . import bench as benches
@@ -78,14 +78,14 @@ def _measurement(bench, read):
     )
 
 
-def poles(bench):
-    """All poles [1/s] of the panel with what is fixed to it, by size."""
-    points = np.unique(np.round([bench.sensed(), *(x for x, _ in bench.attachments)], 9))
+def coupled(bench, places=()):
+    """Mass, damping and stiffness of the panel's modes with what is fixed to it, and the row of each place and of the sensor."""
+    points = np.unique(np.round([bench.sensed(), *places, *(x for x, _ in bench.attachments)], 9))
     at = {x: i for i, x in enumerate(points)}
     modes = bench.modes(points)
     fixed = [(modes.shape[:, at[np.round(x, 9)]], what.matrices()) for x, what in bench.attachments]
     count, size = len(modes.omega), len(modes.omega) + sum(len(parts[0]) - 1 for _, parts in fixed)
-    whole = np.zeros((3, size, size))  # mass, damping, stiffness
+    whole = np.zeros((3, size, size))
     for part, diagonal in zip(whole, (np.ones(count), 2.0 * modes.zeta * modes.omega, modes.omega**2)):
         part[:count, :count] = np.diag(diagonal)
     last = count
@@ -96,18 +96,26 @@ def poles(bench):
         seen[1:, last : last + own] = np.eye(own)
         whole += seen.T @ parts @ seen
         last += own
-    mass, damping, stiffness = whole
+    rows = np.zeros((1 + len(places), size))
+    rows[:, :count] = modes.shape[:, [at[x] for x in np.round([*places, bench.sensed()], 9)]].T
+    return whole, rows
+
+
+def poles(matrices):
+    """All poles [1/s] of mass, damping and stiffness, by size, and the vector of each."""
+    mass, damping, stiffness = matrices
     solved = np.linalg.solve(mass, np.hstack([stiffness / UNIT**2, damping / UNIT]))
-    top = np.hstack([np.zeros((size, size)), np.eye(size)])
-    found = UNIT * eigvals(np.vstack([top, -solved]))
-    return found[np.argsort(np.abs(found))]
+    top = np.hstack([np.zeros_like(mass), np.eye(len(mass))])
+    found, vectors = eig(np.vstack([top, -solved]))
+    order = np.argsort(np.abs(found))
+    return UNIT * found[order], vectors[: len(mass), order]
 
 
 def natural_frequencies(bench, count=COUNT):
     """The first `count` [Hz] above the motions of the panel as a whole, to which a suspension gives frequencies of their own."""
     rigid = 2 if bench.panel.left == "free" else 0
     # A pole and its conjugate, or two real ones, are one motion.
-    return np.abs(poles(bench)[::2][rigid : rigid + count]) / (2.0 * np.pi)
+    return np.abs(poles(coupled(bench)[0])[0][::2][rigid : rigid + count]) / (2.0 * np.pi)
 
 
 def left_over(bench, bare, enough=0.0):

@@ -12,9 +12,9 @@ def make(out, name, count, seed, sampling=None, only=None):
     """Write `count` cases of each kind of set `name` into the new folder `out`; `only` names the kinds wanted."""
     if out.exists() and any(out.iterdir()):
         raise ValueError(f"{out} is not empty: name a new folder")
-    wanted = [case for case in sets.cases(name, count) if not only or case.kind in only]
+    wanted = [case for case in sets.cases(name, count, seed) if not only or case.kind in only]
     if not wanted:
-        kinds = sorted({case.kind for case in sets.cases(name, 1)})
+        kinds = sorted({case.kind for case in sets.cases(name, count, seed)})
         raise ValueError(f'no kind is called "{only[0]}" in the set {name}: {", ".join(kinds)}')
     key = sets.SETS.index(name)
     # The folder's number must not give the kind away.
@@ -27,10 +27,10 @@ def make(out, name, count, seed, sampling=None, only=None):
             truths.append(lists.make_case(out / folder, wanted[which], random))
         else:
             analysed = wanted[which].analysed
-            bench, truth = sets.build(wanted[which], random, sampling or (accelerances.SAMPLING if analysed else None))
+            bench, truth, further = sets.build(wanted[which], random, sampling or (accelerances.SAMPLING if analysed else None))
             played = records.play(bench, random)
             write_case = accelerances.write_case if analysed else files.write_case
             write_case(out / folder, bench, played)
-            truths.append(files.truth_of(folder, wanted[which], bench, truth, played))
+            truths.append(files.truth_of(folder, wanted[which], bench, truth, played) | further)
         print(f"{number + 1} of {len(wanted)}, {time.monotonic() - started:.0f} s", file=sys.stderr)
     files.write_truth(out, name, seed, truths)

@@ -29,6 +29,14 @@ class Modes:
     shape: np.ndarray
     rigid: int
 
+    def __len__(self):
+        return len(self.omega)
+
+    @property
+    def points(self):
+        """How many points the modes are seen from."""
+        return self.shape.shape[1]
+
     def receptance(self, s, rows, columns):
         """G [m/N] (lines, rows, columns) at complex `s` [1/s] between points given by their index."""
         weight = 1.0 / (s[:, None] ** 2 + 2.0 * (self.zeta * self.omega) * s[:, None] + self.omega**2)
@@ -39,6 +47,10 @@ class Modes:
     def stiffer(self, factor):
         """All stiffness times `factor`: frequencies by its root, shapes as they are."""
         return Modes(self.omega * np.sqrt(factor), self.zeta, self.shape, self.rigid)
+
+    def of_its_own(self, shares, factors):
+        """Each mode's frequency off by its share (modes) of itself, its value at each point times a factor (modes, points)."""
+        return Modes(self.omega * (1.0 + shares), self.zeta, self.shape * factors, self.rigid)
 
 
 def reduced(square, vectors, seen, rigid_shape, zeta):

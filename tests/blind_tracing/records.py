@@ -64,12 +64,15 @@ def _pulses(bench, random):
 
 def _motion(bench, s, blows, pulse):
     """The acceleration's transform (hits, lines) where the sensor sits."""
-    struck = bench.struck().ravel()
+    # A place that is struck in two records is two points: residues are a record's own.
+    hits = np.column_stack([np.repeat(np.arange(len(bench.forces)), bench.hits), np.round(bench.struck().ravel(), 9)])
+    spots, struck = np.unique(hits, axis=0, return_inverse=True)
+    struck = struck.ravel()
     fixed = [x for x, _ in bench.attachments]
-    points = np.unique(np.round([*struck, bench.sensed(), *fixed, *bench.restoring_at], 9))
-    at = {x: i for i, x in enumerate(points)}
+    others = np.unique(np.round([bench.sensed(), *fixed, *bench.restoring_at], 9))
+    at = {x: len(spots) + i for i, x in enumerate(others)}
     index = lambda places: [at[x] for x in np.round(places, 9)]  # noqa: E731
-    modes = bench.modes(points)
+    modes = bench.off_by_itself(bench.modes([*spots[:, 1], *others]), spots[:, 0].astype(int))
 
     def coupled(modes, columns):
         bare = lambda r, c: modes.receptance(s, r, c)  # noqa: E731
@@ -81,10 +84,10 @@ def _motion(bench, s, blows, pulse):
         hits = np.flatnonzero(bench.drift.ravel() == factor)
         places, of = np.unique(struck[hits], return_inverse=True)
         warmed = modes if factor == 1.0 else modes.stiffer(factor)
-        answer[hits] = coupled(warmed, index(places))[of] * blows[hits] * s**2
+        answer[hits] = coupled(warmed, places)[of] * blows[hits] * s**2
     if bench.restoring is not None:
-        held = [*index(bench.restoring_at), *range(len(points), modes.shape.shape[1])]
-        back = _restoring(bench, modes, index(struck), held, pulse, len(s))
+        held = [*index(bench.restoring_at), *range(len(spots) + len(others), modes.points)]
+        back = _restoring(bench, modes, list(struck), held, pulse, len(s))
         reach = modes.receptance(s, index([bench.sensed()]), held)[:, 0].T
         answer -= np.einsum("pl,phl->hl", reach, back) * s**2
     return answer

@@ -137,5 +137,5 @@ def test_the_older_sets_keep_their_seeds():
     """A set's place in the list is in its seed: new sets stand at the end. A mass as it was drawn before lists were."""
     older = ("clean", "rough", "rough-none", "single-place", "none", "pairs", "outside")
     assert sets.SETS[: len(older)] == older
-    _, truth = sets.build(sets.cases("clean", 1)[0], np.random.default_rng([1000, 0, 0]))
+    _, truth, _ = sets.build(sets.cases("clean", 1)[0], np.random.default_rng([1000, 0, 0]))
     assert truth == [{"id": "sensor-mass", "parameters": {"mass": pytest.approx(0.01683754949376963, rel=1e-12)}}]

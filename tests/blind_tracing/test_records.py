@@ -92,7 +92,7 @@ def test_a_finer_grid_leaves_the_cubic_record_as_it_is(monkeypatch):
     for finer in (records.FINER, 2 * records.FINER):
         monkeypatch.setattr(records, "FINER", finer)
         random = np.random.default_rng(5)
-        bench, _ = sets.build(sets.Case("cubic", ("cubic-stiffness",)), random, SAMPLING)
+        bench, _, _ = sets.build(sets.Case("cubic", ("cubic-stiffness",)), random, SAMPLING)
         bench.noise = 0.0
         played.append(records.play(bench, random).acceleration)
     change = np.sqrt(np.mean((played[1] - played[0]) ** 2)) / np.sqrt(np.mean(played[0] ** 2))
@@ -115,7 +115,7 @@ def test_every_kind_can_be_played(name):
     small = Sampling(samples=4096)
     for number, case in enumerate(sets.cases(name, 1)):
         random = np.random.default_rng([2, number])
-        bench, truth = sets.build(case, random, small)
+        bench, truth, _ = sets.build(case, random, small)
         bench.noise = 0.0
         with_it = records.play(bench, np.random.default_rng(1))
         assert np.all(np.isfinite(with_it.acceleration)), case.kind
