@@ -42,13 +42,15 @@ def _at_best_constants(moved, slopes, weight):
 
 
 def _difference(one, other):
-    """Relative: of frequencies by themselves, of residues and the motion as a whole by their rms over the records."""
-    size = [np.sqrt(np.mean(np.abs(part) ** 2, axis=0)) for part in other]
-    return np.concatenate([((a - b) / over).ravel() for a, b, over in zip(one, other, [other[0], *size[1:]])])
+    """Relative: frequencies by themselves, residues by their rms over modes and records, which grows with frequency."""
+    frequency, residue, _ = other
+    size = frequency * np.sqrt(np.mean(np.abs(residue / frequency) ** 2))
+    return np.concatenate([((a - b) / over).ravel() for a, b, over in zip(one, other, (frequency, size, 1.0))])
 
 
 def _seen(bench):
-    """Frequencies (modes), residues of the accelerance (records, modes) and the panel's motion as a whole (records, 1)."""
+    """Frequencies (modes), residues of the accelerance (records, modes) and the panel's motion as a whole
+    (records) over that of a point mass."""
     matrices, rows = coupled(bench, bench.struck().mean(axis=1))
     mass, damping, stiffness = matrices
     found, vectors = poles(matrices)
@@ -59,4 +61,4 @@ def _seen(bench):
     whole = SLOW**2 * rows[:-1] @ np.linalg.solve(mass * SLOW**2 + damping * SLOW + stiffness, rows[-1])
     gain = bench.gain * bench.record_gain[:, None]
     chain = np.prod([factor(found) for factor in bench.chain], axis=0) * gain
-    return np.abs(found), chain * shape[:-1] * shape[-1] / size * found**2, whole[:, None] * gain
+    return np.abs(found), chain * shape[:-1] * shape[-1] / size * found**2, whole * gain[:, 0] * bench.panel.mass
