@@ -7,6 +7,7 @@ import numpy as np
 
 from . import beam, core, plate
 from .contour import Sampling
+from .modes import Modes
 
 GRID = 1e-3  # m: places are measured to a millimetre
 # Hits lie this far apart or on the same spot [m]: an element boundary stands at each, and a shorter element spoils
@@ -25,7 +26,7 @@ class Bench:
     mean shear strain of the `restoring_spans`. `chain` are factors on the acceleration, `record_gain` (places) and
     `gain` multiply it.
     `hanging` are the damping ratios of the panel's two motions on its cords, `declared` the ids of effects that the test file tells
-    without their numbers. `own` is by how much each mode is off: its frequency's share (modes), and factors on its residues (modes, places).
+    without their numbers. `own` is by how much each mode is off: its frequency's share (modes), and complex factors on its residues (modes, places).
     `unit` is that of the accelerations in files.
     `drift` (places, hits) is a factor on all stiffness. `window` [s] is the decay of an exponential window on both
     channels; `saturation` is the amplifier's limit over the test's median peak; `hum` is 50 Hz over the rms.
@@ -87,15 +88,21 @@ class Bench:
         return modes
 
 
-    def off_by_itself(self, modes, places):
-        """The modes as `own` has them, seen from points of which the first are struck in these `places`."""
+    def off_by_itself(self, modes, places, sensor):
+        """The modes as `own` has them, seen from points of which the first are struck in these `places`, one is the sensor's."""
         if self.own is None:
             return modes
         loose, (shares, factors) = 2 if self.panel.left == "free" else 0, self.own
         count = min(len(modes) - loose, len(shares))
-        share, factor = np.zeros(len(modes)), np.ones((len(modes), modes.points))
-        share[loose : loose + count] = shares[:count]
-        factor[loose : loose + count, : len(places)] = factors[:count, places]
+        share, factor = np.zeros(len(modes)), np.ones((len(modes), modes.points), dtype=complex)
+        flexible = slice(loose, loose + count)
+        share[flexible] = shares[:count]
+        factor[flexible, : len(places)] = factors[:count, places]
+        if isinstance(modes, Modes):
+            # What is in quadrature begins with a jump of the place; together the modes have none where the sensor is.
+            jump = (modes.shape[:, [sensor]] * modes.shape / np.maximum(modes.omega, 1.0)[:, None])[flexible]
+            whole = np.sum(factor[flexible].imag * jump, axis=0) / np.sum(np.abs(jump), axis=0)
+            factor[flexible, : len(places)] -= 1.0j * (np.sign(jump) * whole)[:, : len(places)]
         return modes.of_its_own(share, factor)
 
 

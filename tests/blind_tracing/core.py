@@ -103,12 +103,12 @@ class CoreModes:
         return self.rigid + self.count
 
     def of_its_own(self, shares, factors):
-        """As `Modes.of_its_own`; the modes above CUT count by their moments and stay as they are."""
+        """As `Modes.of_its_own`, but nothing in quadrature; the modes above CUT count by their moments and stay as they are."""
         flexible = slice(self.rigid, self.rigid + self.count)
         other, end = copy(self), self.count * (1 + self.points)
         other.table = self.table.copy()
         other.table[:, : self.count] *= (1.0 + shares[flexible]) ** 2
-        other.table[:, self.count : end] *= factors[flexible].ravel()
+        other.table[:, self.count : end] *= factors[flexible].real.ravel()
         return other
 
     def _between(self, modulus):

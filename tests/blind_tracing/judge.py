@@ -9,6 +9,9 @@ from collections import Counter
 
 import numpy as np
 
+from . import calibration
+from .catalogue import EFFECTS
+
 SMALL_GAIN = 0.03
 SMALL_OFFSET = 3e-3  # m
 INTERVAL = 1.96  # standard deviations: 95 %
@@ -38,6 +41,17 @@ ASKED = {
     ],
     "further": [(*RIGHT, 0.98, "least"), INSIDE, FLOOR],
     "outside": [("explained by a wrong name", "explained", 0.10, "most")],
+    "real": [
+        ("right effect named first", "right", 0.92, "least"),
+        ("the same, or among the alternatives", "found", None, "least"),
+        ("right effect first, where it barely shows", "right_hard", None, "least"),
+        ("explained, where the right one is first", "sure", 0.75, "least"),
+        ("a false effect explained", "false", 0.02, "most"),
+        ("an effect named where nothing is missing", "raised", 0.05, "most"),
+        ("both effects of two named", "both_named", 0.80, "least"),
+        ("explained what the catalogue lacks", "wrongly", 0.10, "most"),
+        INSIDE,
+    ],
 }
 
 
@@ -77,7 +91,27 @@ def case(truth, answer):
     if ratio is not None:
         judged["at_floor"] = ratio <= 1.2
     judged["faults"] = faults
-    return judged
+    judged["seconds"] = answer.get("seconds")
+    outside = not set(wanted) <= set(EFFECTS)
+    judged["stated"] = None if outside else calibration.stated(answer, wanted)
+    return judged | _of_group(truth, judged, wanted, outside)
+
+
+def _of_group(truth, judged, wanted, outside):
+    """What the set `real` counts, each None where it says nothing of this case."""
+    ids, sure = judged["ids"], judged["verdict"] == "explained"
+    right = judged["verdict"] in ("explained", "ambiguous") and ids[:1] != [] and ids[0] in wanted
+    missing, hard = bool(wanted) and not outside, truth.get("hard", False)
+    return {
+        "right": right if missing and not hard else None,
+        "right_hard": right if missing and hard else None,
+        "found": right or judged["named"] if missing and not hard else None,
+        "sure": sure if missing and right else None,
+        "false": sure and not set(ids) <= (set() if outside else set(wanted)),
+        "raised": bool(ids) and judged["verdict"] in ("explained", "ambiguous") if not wanted else None,
+        "both_named": judged["both"] if missing and len(wanted) > 1 else None,
+        "wrongly": sure if outside else None,
+    }
 
 
 def summary(name, judged):
@@ -86,15 +120,17 @@ def summary(name, judged):
     for label, key, asked, at in [*ASKED[name], ANSWERED]:
         values = [one for case in judged for one in _listed(case[key])]
         reached = float(np.mean(values)) if values else None
-        met = reached is not None and (reached >= asked if at == "least" else reached <= asked)
-        rates.append({"name": label, "asked": asked, "at": at, "reached": reached, "of": len(values), "met": met})
-        if key not in ("inside", "at_floor", "answered"):
+        met = asked is None or reached is not None and (reached >= asked if at == "least" else reached <= asked)
+        sure = calibration.wilson(values)
+        rates.append({"name": label, "asked": asked, "at": at, "reached": reached, "interval": sure, "of": len(values), "met": met})
+        if key not in ("inside", "at_floor", "answered") and asked is not None:
             for case in judged:
                 if case[key] is not None and case[key] != (at == "least"):
                     case["faults"].insert(0, f"{case['verdict']}: {_called(case)}")
     confusion = {}
     for case in judged:
         confusion.setdefault(case["kind"], Counter())[_called(case)] += 1
+    seconds = [case["seconds"] for case in judged if case["seconds"] is not None]
     ratios = [case["held_out_over_floor"] for case in judged if case["held_out_over_floor"] is not None]
     return {
         "cases": len(judged),
@@ -105,6 +141,8 @@ def summary(name, judged):
             "worst": float(np.max(ratios)) if ratios else None,
             "of": len(ratios),
         },
+        "seconds": {"median": float(np.median(seconds)), "most": max(seconds)} if seconds else None,
+        "calibration": calibration.table([case["stated"] for case in judged if case["stated"]]),
         "confusion": {kind: dict(count) for kind, count in sorted(confusion.items())},
         "judged": judged,
     }

@@ -10,7 +10,7 @@ $$ G_{ij}(s) = \sum_k \frac{\phi_k(i)\,\phi_k(j)}{s^2 + 2\zeta_k\omega_k s + \om
 with s = sigma + j omega anywhere right of the poles. SI units, shapes mass-normalised (kg^-1/2).
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.linalg import eigh
@@ -22,12 +22,13 @@ BEYOND = 0.005  # damping ratio of modes that no test case names
 @dataclass(frozen=True)
 class Modes:
     """`omega` [rad/s] (n), `zeta` (n), `shape` (n, points); `rigid` counts the modes that start the
-    list at zero."""
+    list at zero. `turn` (n, points) is what a force at a point does in quadrature: it meets the mode as shape + s turn."""
 
     omega: np.ndarray
     zeta: np.ndarray
     shape: np.ndarray
     rigid: int
+    turn: np.ndarray | None = None
 
     def __len__(self):
         return len(self.omega)
@@ -42,15 +43,21 @@ class Modes:
         weight = 1.0 / (s[:, None] ** 2 + 2.0 * (self.zeta * self.omega) * s[:, None] + self.omega**2)
         pairs = self.shape[:, rows][:, :, None] * self.shape[:, columns][:, None, :]
         flat = pairs.reshape(len(self.omega), -1)
-        return (weight @ flat).reshape(len(s), len(rows), len(columns))
+        whole = weight @ flat
+        if self.turn is not None:
+            turned = self.shape[:, rows][:, :, None] * self.turn[:, columns][:, None, :]
+            whole += s[:, None] * (weight @ turned.reshape(len(self.omega), -1))
+        return whole.reshape(len(s), len(rows), len(columns))
 
     def stiffer(self, factor):
         """All stiffness times `factor`: frequencies by its root, shapes as they are."""
-        return Modes(self.omega * np.sqrt(factor), self.zeta, self.shape, self.rigid)
+        return replace(self, omega=self.omega * np.sqrt(factor))
 
     def of_its_own(self, shares, factors):
-        """Each mode's frequency off by its share (modes) of itself, its value at each point times a factor (modes, points)."""
-        return Modes(self.omega * (1.0 + shares), self.zeta, self.shape * factors, self.rigid)
+        """Each mode's frequency off by its share (modes) of itself, what a force at each point does to it by a complex factor
+        (modes, points)."""
+        turn = self.shape * factors.imag / np.maximum(self.omega, np.finfo(float).tiny)[:, None]
+        return replace(self, omega=self.omega * (1.0 + shares), shape=self.shape * factors.real, turn=turn)
 
 
 def reduced(square, vectors, seen, rigid_shape, zeta):

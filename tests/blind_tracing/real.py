@@ -7,7 +7,7 @@ import numpy as np
 
 from . import bench as benches
 from . import visible
-from .attachments import mass, spring
+from .attachments import mass
 from .beam import Panel
 from .catalogue import CANTILEVER, EFFECTS, PAIRS
 from .draw import Draw
@@ -29,11 +29,10 @@ SHEAR = (1e-2, 4e-2)  # rms along the panel; that of bending stiffness and mass 
 BENDING, MASS = (0.2, 0.5), (0.1, 0.3)
 ALIKE_OVER = (0.04, 0.3)  # m: what lies nearer is alike
 SHARE = (1e-4, 3e-3)  # of a frequency, standard deviation over a test's modes
-RESIDUE = 3e-3  # standard deviation of each residue, of itself
+RESIDUE, QUADRATURE = 3e-3, 1e-3  # standard deviations of each residue, of itself
 MARK, HIT = 0.8e-3, 0.6e-3  # m: a record's place beside its mark, each hit beside that: together 1 mm
 SENSOR = 0.3e-3  # m
 GAIN = 3e-3
-CABLE = (0.02, 0.3)  # N s/m at the sensor: makes residues complex by some 1e-3
 CORDS = (200.0, 5000.0)  # N/m each: motions on them of 3 to 25 Hz
 HANGING = (0.02, 0.08)  # damping ratios of these
 OWN = 40  # modes that are off
@@ -92,13 +91,15 @@ def build(case, random, sampling=None):
             break
     else:
         raise ValueError(f"{case.kind}: none of {TRIES} draws shows as it should")
-    return _finish(case, uneven, seeds, hard, random, told | {"hard": hard, "amplitudes": amplitudes})
+    return _finish(case, uneven, seeds, hard, random, told | {"group": case.group, "hard": hard, "amplitudes": amplitudes})
 
 
 def _draw(case, random, sampling):
     """A piece and its places, with nothing in it: one to nine places, and a sensor towards one end."""
     bench = benches.draw(random, "single", sampling, case.clamped)
     length, count = bench.panel.length, int(random.integers(1, PLACES + 1))
+    if "record-gain" in case.effects:
+        count = max(count, 2)  # with one record, one record's gain is the gain
     first, last = (-0.38, 0.48) if case.clamped else (-0.48, 0.48)
     apart = (last - first) / count
     forces = first + apart * (np.arange(count) + random.uniform(0.1, 0.9, count))
@@ -147,9 +148,6 @@ def _finish(case, bench, seeds, hard, random, told):
         bench.change_panel(**dict.fromkeys(FIELDS))  # the plate is even
         told["wander"] = None
     _off_by_themselves(bench, told, random)
-    if bench.restoring is None and bench.across is None:
-        told["cable"] = float(np.exp(random.uniform(*np.log(CABLE))))
-        bench.attachments.append((bench.sensed(), spring(0.0, told["cable"])))
     return bench, effects, told
 
 
@@ -185,10 +183,11 @@ def _beside(bench, random):
 
 
 def _off_by_themselves(bench, told, random):
-    """Each mode's frequency by a share of its own, each residue of each record by RESIDUE."""
+    """Each mode's frequency by a share of its own, each residue of each record by RESIDUE and QUADRATURE."""
     shares = told["share"] * random.standard_normal(OWN)
     residues = RESIDUE * random.standard_normal((OWN, len(bench.forces)))
-    bench.own = shares, 1.0 + residues
+    turned = QUADRATURE * random.standard_normal(residues.shape)
+    bench.own = shares, 1.0 + residues + 1.0j * turned
     told["shares"], told["residues"] = shares.tolist(), residues.tolist()
 
 
@@ -204,4 +203,4 @@ def _hung_strip(case, random, sampling):
     known = {"sensor-mass": {"mass": 4e-3}, "suspension": {"stiffness": 150.0}}
     if "suspension" not in case.effects:
         bench.declared = ("suspension",)
-    return bench, [{"id": name, "parameters": known[name]} for name in case.effects], {"hard": False, "amplitudes": [], "cords": 150.0}
+    return bench, [{"id": name, "parameters": known[name]} for name in case.effects], {"group": "hung", "hard": False, "amplitudes": [], "cords": 150.0}

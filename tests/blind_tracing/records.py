@@ -72,7 +72,7 @@ def _motion(bench, s, blows, pulse):
     others = np.unique(np.round([bench.sensed(), *fixed, *bench.restoring_at], 9))
     at = {x: len(spots) + i for i, x in enumerate(others)}
     index = lambda places: [at[x] for x in np.round(places, 9)]  # noqa: E731
-    modes = bench.off_by_itself(bench.modes([*spots[:, 1], *others]), spots[:, 0].astype(int))
+    modes = bench.off_by_itself(bench.modes([*spots[:, 1], *others]), spots[:, 0].astype(int), at[np.round(bench.sensed(), 9)])
 
     def coupled(modes, columns):
         bare = lambda r, c: modes.receptance(s, r, c)  # noqa: E731
