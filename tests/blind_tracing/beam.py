@@ -4,7 +4,8 @@ $$ (E I\, e(x) \psi')' - k' G A\, g(x) (w' + \psi) = r \rho I\, m(x) \ddot\psi, 
    (k' G A\, g(x) (w' + \psi) + N w')' + f = \rho A\, m(x) \ddot w $$
 
 with e(x), g(x), m(x) the bending stiffness, shear stiffness and mass along the beam over their nominal ones, r a factor on the rotary
-inertia, N a tension, and a left end that is free, clamped, or held by springs. I = b t^3/12, A = b t, k' = 2/3, x from the centre of the piece.
+inertia, N a tension, and a left end that is free, clamped, or held by springs. I = b t^3/12, A = b t, k' = 2/3, x from the centre
+of the piece.
 Elements are Lagrange polynomials of order 8 on Gauss-Lobatto nodes; an element boundary stands at every point and at
 every step of e, g and m. Source of the equations: Saito, Parbery, Okuno, Kawano, J. Sound Vib. 208(2), 1997. SI units.
 """

@@ -26,8 +26,8 @@ class Bench:
     mean shear strain of the `restoring_spans`. `chain` are factors on the acceleration, `record_gain` (places) and
     `gain` multiply it.
     `hanging` are the damping ratios of the panel's two motions on its cords, `declared` the ids of effects that the test file tells
-    without their numbers. `own` is by how much each mode is off: its frequency's share (modes), and complex factors on its residues (modes, places).
-    `unit` is that of the accelerations in files.
+    without their numbers. `own` is by how much each mode is off: its frequency's share (modes), and complex factors on its residues
+    (modes, places). `unit` is that of the accelerations in files.
     `drift` (places, hits) is a factor on all stiffness. `window` [s] is the decay of an exponential window on both
     channels; `saturation` is the amplifier's limit over the test's median peak; `hum` is 50 Hz over the rms.
     """
@@ -86,7 +86,6 @@ class Bench:
         # A span softens in the motion that the records show; a force on strains above it would need far finer steps.
         modes.shape[modes.omega > 2.0 * np.pi * SPANS_UP_TO, len(points) :] = 0.0
         return modes
-
 
     def off_by_itself(self, modes, places, sensor):
         """The modes as `own` has them, seen from points of which the first are struck in these `places`, one is the sensor's."""

@@ -1,7 +1,7 @@
 """Panels as real ones are: uneven, hung on cords, each mode a little off, each hit beside its mark."""
 
 from copy import deepcopy
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -201,6 +201,7 @@ def _hung_strip(case, random, sampling):
     bench.hanging, bench.unit = (0.05, 0.05), "g"
     bench.attachments.append((0.27, mass(4e-3)))
     known = {"sensor-mass": {"mass": 4e-3}, "suspension": {"stiffness": 150.0}}
+    effects = [{"id": name, "parameters": known[name]} for name in case.effects]
     if "suspension" not in case.effects:
         bench.declared = ("suspension",)
-    return bench, [{"id": name, "parameters": known[name]} for name in case.effects], {"group": "hung", "hard": False, "amplitudes": [], "cords": 150.0}
+    return bench, effects, {"group": "hung", "hard": False, "amplitudes": [], "cords": 150.0}

@@ -40,7 +40,7 @@ def test_val_poles_are_the_exact_ones(name, monkeypatch):
     from the one found."""
     monkeypatch.setattr("blind_tracing.modes.BEYOND", 0.0)
     panel, attached = TABLE[name]
-    found = lists.poles(a_bench(panel, attached))[::2]
+    found = lists.poles(lists.coupled(a_bench(panel, attached))[0])[0][::2]
     rigid = 2 if panel.left == "free" else 0
     assert len(found) >= rigid + lists.COUNT
     for pole in found[rigid : rigid + lists.COUNT]:

@@ -5,7 +5,7 @@ import sys
 
 import pytest
 
-from . import cli, files, judge, score
+from . import calibration, cli, files, judge, score
 
 TRUTH = {
     "case": "case-000",
@@ -164,3 +164,58 @@ def test_no_answer_is_not_a_cautious_one():
     result = judge.summary("outside", [judge.case(TRUTH, score.NO_ANSWER | {"reason": "exit 2"})])
     assert not result["reached"]
     assert result["rates"][0]["met"]
+
+
+REAL = TRUTH | {"hard": False}
+RIGHT = {"right": True, "found": True, "false": False}
+BOTH = REAL | {"effects": [*TRUTH["effects"], {"id": "suspension", "parameters": {"stiffness": 150.0}}]}
+NONE, OUTSIDE = REAL | {"effects": []}, REAL | {"effects": [{"id": "tension", "parameters": {}}]}
+
+
+@pytest.mark.parametrize(
+    "truth, given, counts",
+    [
+        (REAL, answer("explained", ("sensor-mass", mass(0.01, 0.001))), RIGHT | {"sure": 1, "inside": 1}),
+        (REAL, answer("ambiguous", ("sensor-mass", {})), RIGHT | {"sure": 0}),
+        (REAL, answer("ambiguous", ("gain", {}), alternatives=["sensor-mass"]), {"right": 0, "found": 1, "false": 0}),
+        (REAL, answer("explained", ("sensor-mass", {}), ("gain", {})), RIGHT | {"sure": 1, "false": 1}),
+        (REAL, answer("unexplained", ("sensor-mass", {})), {"right": 0, "found": 0, "false": 0}),
+        (REAL | {"hard": True}, answer("nothing-missing"), {"right_hard": 0, "false": 0}),
+        (BOTH, answer("explained", ("suspension", {})), RIGHT | {"sure": 1, "both_named": 0}),
+        (BOTH, answer("explained", ("suspension", {}), ("sensor-mass", {})), RIGHT | {"sure": 1, "both_named": 1}),
+        (NONE, answer("nothing-missing"), {"raised": 0, "false": 0}),
+        (NONE, answer("ambiguous", ("gain", {})), {"raised": 1, "false": 0}),
+        (NONE, answer("unexplained", ("gain", {})), {"raised": 0, "false": 0}),
+        (OUTSIDE, answer("explained", ("gain", {})), {"wrongly": 1, "false": 1}),
+        (OUTSIDE, answer("ambiguous", ("gain", {})), {"wrongly": 0, "false": 0}),
+    ],
+)
+def test_what_the_real_set_counts(truth, given, counts):
+    """Each rate that says something of the case, and no other."""
+    judged = judge.case(truth, given)
+    keys = [key for _, key, *_ in judge.ASKED["real"]]
+    assert {key: judged[key] for key in keys if judged[key] not in (None, [])} == {
+        key: [True] if key == "inside" else bool(value) for key, value in counts.items()
+    }
+
+
+def test_val_a_rate_has_wilsons_interval():
+    """8 of 10, 0 of 20: published values (Brown, Cai and DasGupta 2001, and by hand)."""
+    assert calibration.wilson([True] * 8 + [False] * 2) == pytest.approx([0.4902, 0.9433], abs=1e-4)
+    assert calibration.wilson([False] * 20) == pytest.approx([0.0, 0.1611], abs=1e-4)
+    assert calibration.wilson([]) is None
+
+
+def test_what_is_stated_is_held_against_what_was_right():
+    """A lead of 3 nats is 95.3 %; by bic half of that; a pair is right in either order; what was left behind has no evidence."""
+    candidates = [{"id": "gain", "log_evidence": 7.0}, {"id": "sensor-mass", "log_evidence": 10.0}, {"id": "base", "log_evidence": -80.0}]
+    assert calibration.stated({"candidates": candidates}, ["sensor-mass"]) == pytest.approx((0.9526, True), abs=1e-4)
+    assert calibration.stated({"candidates": candidates}, [])[1] is False
+    old = [{"id": "base", "bic": 10.0}, {"id": "gain", "bic": 16.0}, {"id": "high-pass", "bic": 1.0, "left_behind": 9.0}]
+    assert calibration.stated({"candidates": old}, []) == pytest.approx((0.9526, True), abs=1e-4)
+    pair = [{"id": "suspension + record-gain#2", "log_evidence": 1.0}, {"id": "none", "log_evidence": 0.0}]
+    assert calibration.stated({"candidates": pair}, ["record-gain", "suspension"])[1] is True
+    assert calibration.stated({"candidates": pair[:1]}, []) is None
+    rows = calibration.table([(0.6, True), (0.7, False), (0.9526, True), (1.0, True)])
+    assert [(row["right"], row["of"]) for row in rows] == [(1, 2), (0, 0), (1, 1), (0, 0), (1, 1)]
+    assert rows[0]["stated"] == pytest.approx(0.65) and rows[1]["stated"] is None
