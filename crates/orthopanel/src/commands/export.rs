@@ -9,6 +9,7 @@ use serde::Serialize;
 
 use crate::arguments::{ModeArguments, PortArguments};
 use crate::error::{CommandError, InFile as _};
+use crate::outputs::{Inputs, Outputs};
 use crate::{console, model_file, progress};
 
 /// Write a model as an FMU for co-simulation and model exchange: force in; acceleration, velocity and displacement out
