@@ -2,7 +2,7 @@
 
 use std::{fmt, io, path::PathBuf};
 
-use orthopanel_model::ModelError;
+use orthopanel_model::{ModelError, Readable};
 use thiserror::Error;
 
 /// Where in a file something is wrong.
@@ -97,7 +97,7 @@ pub enum DataError {
         problem: String,
     },
     /// A number outside its range.
-    #[error("{at} = {value}: {range}")]
+    #[error("{at} = {}: {range}", Readable(*.value))]
     OutOfRange {
         /// The key.
         at: Box<Location>,
@@ -126,8 +126,8 @@ pub enum DataError {
     },
     /// Natural frequencies that do not rise.
     #[error(
-        "{at}: {piece}: mode {mode} ({value} Hz) {relation} mode {before} ({previous} Hz): list natural frequencies in \
-         rising order", relation = if value < previous { "lies below" } else { "repeats" }, before = mode - 1
+        "{at}: {piece}: mode {mode} ({} Hz) {relation} mode {before} ({} Hz): list natural frequencies in \
+         rising order", Readable(*.value), Readable(*.previous), relation = if value < previous { "lies below" } else { "repeats" }, before = mode - 1
     )]
     Order {
         /// The key.

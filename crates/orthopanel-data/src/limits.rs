@@ -33,6 +33,10 @@ pub const MEASUREMENTS: usize = 10_000;
 /// Natural frequencies of one list. Few analysts read more than 30; beyond 100 modes stand so close that no list names them.
 pub const FREQUENCIES: usize = 200;
 
+/// Natural frequencies of one list that is traced: each effect is fitted to them, in time that grows with the cube of their number
+/// and more, a minute for twelve and an hour for so many.
+pub const FREQUENCIES_TRACED: usize = 40;
+
 /// Natural frequencies of all lists of a test: forty of each of fifty pieces.
 pub const FREQUENCIES_OF_TEST: usize = 2000;
 

@@ -181,7 +181,7 @@ pub enum ModelError {
         angular_frequency: f64,
     },
     /// A number that is not finite where one is needed.
-    #[error("{what} = {value}: must be a finite number")]
+    #[error("{what} = {}: must be a finite number", Readable(*.value))]
     NotFinite {
         /// What it is.
         what: &'static str,
@@ -282,8 +282,8 @@ pub enum ModelError {
     },
     /// Modes up to a frequency that the largest basis, or the most modes of a beam, do not reach.
     #[error(
-        "modes up to {frequency} Hz asked, but the model resolves {available} modes at most, up to {} Hz: ask for that \
-         frequency or less", .reached.floor()
+        "modes up to {} Hz asked, but the model resolves {available} modes at most, up to {} Hz: ask for that \
+         frequency or less", Readable(*.frequency), Readable(.reached.floor())
     )]
     BeyondBasis {
         /// Frequency asked for \[Hz\].

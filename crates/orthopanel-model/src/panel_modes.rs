@@ -107,7 +107,7 @@ impl PanelModel {
             ModeRange::UpTo(frequency) => {
                 let limit = frequency * std::f64::consts::TAU;
                 // As many as the bare panel has there, and what resonators and masses may bring down.
-                let mut count = self.bare_count(&values, frequency)? + effects.len() + 4;
+                let mut count = self.bare_count(&values, frequency)?.saturating_add(effects.len() + 4);
                 loop {
                     let (exhausted, modes) = match first(count.min(ModeRange::MOST)) {
                         Err(ModelError::BasisTooSmall { available, .. }) if available > 0 => (true, first(available)?),
@@ -198,7 +198,7 @@ impl PanelModel {
         };
         let limit = frequency * std::f64::consts::TAU;
         let estimate = MindlinPlate::estimated_count(&self.piece, self.boundary, &values, frequency)?;
-        let mut count = estimate + estimate / 4 + 4;
+        let mut count = estimate.saturating_add(estimate / 4).saturating_add(4);
         loop {
             let (exhausted, (plate, mut modes)) = match first(count) {
                 Err(ModelError::BasisTooSmall { available, .. }) if available > 0 => (true, first(available)?),

@@ -94,7 +94,7 @@ impl PanelModel {
         if self.structure == StructureKind::TimoshenkoBeam {
             return Ok(estimate.saturating_sub(self.boundary.rigid_modes()));
         }
-        let (plate, values) = match self.structure_for(estimate + estimate / 4 + 4) {
+        let (plate, values) = match self.structure_for(estimate.saturating_add(estimate / 4).saturating_add(4)) {
             Err(ModelError::BasisTooSmall { available, .. }) => self.structure_for(available)?,
             found => found?,
         };

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use orthopanel_identify::ForceBetweenSamples;
+use orthopanel_model::Readable;
 
 use crate::error::CommandError;
 use crate::force_file::ForceHistory;
@@ -43,7 +44,9 @@ impl DrivingForce {
             notes::say(
                 "",
                 &[format!(
-                    "{name}: the force begins at {first} N and ends at {last} N: band-limited, it rings at both ends; add silence"
+                    "{name}: the force begins at {} N and ends at {} N: band-limited, it rings at both ends; add silence",
+                    Readable(first),
+                    Readable(last)
                 )],
             );
         }

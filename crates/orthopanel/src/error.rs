@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use orthopanel_data::DataError;
 use orthopanel_export::ExportError;
 use orthopanel_identify::IdentifyError;
-use orthopanel_model::{ModelError, Place};
+use orthopanel_model::{ModelError, Place, Readable};
 use thiserror::Error;
 
 use crate::fmu_refusal::FmuRefusal;
@@ -45,7 +45,7 @@ pub enum CommandError {
     Model { path: PathBuf, source: ModelError },
     #[error("{}: no {kind} place: give --{kind} X[,Y], or write ports.{key} into the model file", .path.display())]
     NoPort { path: PathBuf, kind: &'static str, key: &'static str },
-    #[error("--{option} {},{}: {source}", .place.x, .place.y)]
+    #[error("--{option} {},{}: {source}", Readable(.place.x), Readable(.place.y))]
     Place { option: &'static str, place: Place, source: ModelError },
     #[error(
         "{}: the accelerance of a model needs --force, --response, --from, --to and --lines; a test file (.toml) gives \

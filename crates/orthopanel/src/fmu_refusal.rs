@@ -39,10 +39,7 @@ pub enum FmuRefusal {
     Untrusted { path: String, size: usize },
     #[error("its library {path} is cut short or damaged: {reason}: export it anew, or have it sent again")]
     DamagedLibrary { path: String, reason: String },
-    #[error(
-        "its library {path} cannot be loaded: {reason} (it is unpacked where temporary files lie: TMPDIR can name another \
-         folder)"
-    )]
+    #[error("its library {path} cannot be loaded: {reason}")]
     Load { path: String, reason: String },
     #[error("it cannot be unpacked: {0}: temporary files need room, TMPDIR can name another folder")]
     Unpack(std::io::Error),
@@ -70,7 +67,7 @@ pub fn limited(what: &str, count: usize, most: usize, unit: &'static str) -> Res
 }
 
 /// The most characters that are shown of a text from inside an FMU.
-const SHOWN: usize = 300;
+const SHOWN: usize = 600;
 
 /// A stranger's text on one line, shortened, without control characters.
 pub fn shown(text: &str) -> String {

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use orthopanel_data::limits;
+use orthopanel_model::Readable;
 
 use crate::error::CommandError;
 
@@ -84,7 +85,9 @@ impl ForceHistory {
 
     fn push_time(&mut self, time: f64) -> Result<(), String> {
         match self.time.last() {
-            Some(&before) if time <= before => Err(format!("time_s = {time} after {before}: time must rise")),
+            Some(&before) if time <= before => {
+                Err(format!("time_s = {} after {}: time must rise", Readable(time), Readable(before)))
+            }
             _ => {
                 self.time.push(time);
                 Ok(())

@@ -20,7 +20,8 @@ pub fn is_test_file(path: &Path) -> bool {
 
 /// A place for people: `-0.3`, or `-0.3,0.02` off the centre line.
 pub fn place_text(place: Place) -> String {
-    if place.y == 0.0 { place.x.to_string() } else { format!("{},{}", place.x, place.y) }
+    let [x, y] = [place.x, place.y].map(Readable);
+    if place.y == 0.0 { x.to_string() } else { format!("{x},{y}") }
 }
 
 /// What became of one hit.

@@ -4,6 +4,8 @@ use clap::{Args, ValueEnum};
 use orthopanel_data::{Estimation, Estimator, ImpactTest, Measurement, MeasurementData, Window};
 use orthopanel_identify::{DampingLaw, PaperWeights, Search, Settings};
 
+use orthopanel_model::Readable;
+
 use crate::error::CommandError;
 use crate::notes;
 
@@ -71,7 +73,7 @@ impl EstimationOptions {
                 for (option, value, needed) in needs {
                     if let Some(value) = value {
                         let remedy = format!("it has no effect without {needed}: give both or neither");
-                        return Err(CommandError::Option { option, value: value.to_string(), remedy });
+                        return Err(CommandError::Option { option, value: Readable(value).to_string(), remedy });
                     }
                 }
                 match window {
@@ -155,7 +157,7 @@ impl IdentifyOptions {
             (self.search, weights.into_iter().find_map(|(option, value)| Some((option, value?))))
         {
             let remedy = "eq. 23 is what --search simplex brings down on records: give both or neither".into();
-            return Err(CommandError::Option { option, value: value.to_string(), remedy });
+            return Err(CommandError::Option { option, value: Readable(value).to_string(), remedy });
         }
         let usual = PaperWeights::default();
         Ok(Settings {

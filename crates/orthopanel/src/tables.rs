@@ -14,7 +14,8 @@ pub fn ending_in_words(heading: &[&str], rows: &[Vec<String>]) -> String {
 
 fn set(heading: &[&str], rows: &[Vec<String>], is_left: impl Fn(usize) -> bool) -> String {
     // A name of the user's may hold anything; a row stays one line.
-    let rows: Vec<Vec<String>> = rows.iter().map(|row| row.iter().map(|cell| harmless_line(cell).into_owned()).collect()).collect();
+    let rows: Vec<Vec<String>> =
+        rows.iter().map(|row| row.iter().map(|cell| harmless_line(cell).into_owned()).collect()).collect();
     let width = |column: usize| {
         let cells = rows.iter().filter_map(|row| row.get(column).map(|cell| cell.chars().count()));
         cells.chain(heading.get(column).map(|cell| cell.chars().count())).max().unwrap_or(0)

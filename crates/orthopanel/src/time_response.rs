@@ -2,9 +2,9 @@
 
 use orthopanel_model::{ModalModel, ModalStepper, ModelError};
 
+use crate::csv_text;
 use crate::driving_force::DrivingForce;
 use crate::force_file::ForceHistory;
-use crate::csv_text;
 
 /// How a force runs between two samples.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]

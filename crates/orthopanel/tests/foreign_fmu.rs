@@ -96,7 +96,7 @@ fn refused(bench: &Bench, archive: &[u8], option: &str, said: &[&str]) {
     let message = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(2), "{said:?}: {message}");
     assert_eq!(message.lines().count(), 1, "{message}");
-    assert!(message.starts_with("orthopanel: foreign.fmu: ") && message.len() < 1000, "{message}");
+    assert!(message.starts_with("orthopanel: foreign.fmu: ") && message.len() < 1500, "{message}");
     for part in said {
         assert!(message.contains(part), "{message:?} does not say {part:?}");
     }
@@ -169,6 +169,9 @@ fn regress_a_library_that_is_cut_short_is_not_loaded() {
     let mut text = files.clone();
     text.library().1 = b"#!/bin/sh\nexit 0\n".to_vec();
     refused(&bench, &text.deflated(), "--trust", &["cut short or damaged"]);
+    // Whole, and no FMU's.
+    text.library().1 = std::fs::read(env!("CARGO_BIN_EXE_orthopanel")).expect("a program");
+    refused(&bench, &text.deflated(), "--trust", &["cannot be loaded"]);
 }
 
 #[test]
@@ -207,7 +210,12 @@ fn what_is_not_there_is_named() {
     refused(&bench, &without("resources/").deflated(), "", &["refuses to start: ", "resource"]);
     let mut changed = files.clone();
     changed.content("resources/panel.json").push(b' ');
-    refused(&bench, &changed.deflated(), "", &["refuses to start: ", "panel.json"]);
+    refused(&bench, &changed.deflated(), "", &["refuses to start: ", "panel.json", "export the FMU again"]);
+    let unknown = files.described("valueReference=\"3\"", "valueReference=\"9999\"").deflated();
+    let output = simulated(&bench, &unknown, "");
+    let message = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.code() == Some(1) && message.contains("fails at fmi2GetReal: "), "{message}");
+    assert!(message.contains("9999"), "{message}");
     let archive = files.deflated();
     for keep in [4, 100, archive.len() / 2, archive.len() - 1] {
         refused(&bench, &archive[..keep], "", &["zip archive is broken"]);

@@ -67,6 +67,13 @@ fn counts_beyond_all_sense_are_refused() {
     ] {
         assert_eq!(bench.run(&line).status.code(), Some(2), "{line}");
     }
+    for model in ["model.json", "plate.json"] {
+        for (line, said) in
+            [("-o x.fmu --up-to 1e300", "1e300 Hz"), ("-o x.fmu --force 1e-300 --up-to 1e18", "1e18 Hz")]
+        {
+            refused(&bench, &format!("export {model} {line}"), 2, &[said, "modes at most"]);
+        }
+    }
     let forces = " --force 0.1".repeat(501);
     refused(&bench, &format!("export model.json -o x.fmu{forces}"), 2, &["--force", "501 times", "500"]);
     let ports = format!("[{}]", vec!["[0.1, 0]"; 501].join(", "));
@@ -189,9 +196,11 @@ fn what_keeps_a_file_from_being_written_is_said_and_what_to_do() {
         ("model.json/out.json", "name a place in a folder that exists"),
         (&*format!("{}.json", "a".repeat(300)), "give a shorter name"),
     ] {
-        refused(&bench, &format!("identify test.toml -o {target}"), 2, &[]);
-        let message = bench.run(&format!("identify test.toml -o {target}")).stderr;
-        let message = String::from_utf8_lossy(&message).into_owned();
+        let before = bench.listing();
+        let output = bench.run(&format!("identify test.toml -o {target}"));
+        let message = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(2), "{message}");
+        assert_eq!(bench.listing(), before, "{message}");
         assert!(message.contains("cannot be written") && message.contains(said), "{message}");
     }
 }

@@ -2,6 +2,8 @@
 
 use std::{path::Path, sync::Arc};
 
+use orthopanel_model::Readable;
+
 use super::may_be_read;
 use crate::{DataError, Location, Position};
 
@@ -84,7 +86,8 @@ pub(super) fn read(bytes: &[u8], path: &Path, needed: &[&str], optional: &[&str]
             let Some(column) = columns.get_mut(place) else { continue };
             let column = column.get_or_insert_with(Vec::new);
             if place == 0 && column.last().is_some_and(|&before| before >= value) {
-                let problem = format!("{value} does not rise above the row before: sort the rows, once each");
+                let problem =
+                    format!("{} does not rise above the row before: sort the rows, once each", Readable(value));
                 return Err(DataError::Header { at: at(line, name), problem });
             }
             column.push(value);

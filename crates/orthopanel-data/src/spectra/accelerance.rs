@@ -1,7 +1,7 @@
 //! The result of this crate: an accelerance with its variance.
 
 use num_complex::Complex64;
-use orthopanel_model::Place;
+use orthopanel_model::{Place, Readable};
 
 use super::channels::{self, Quantity};
 use super::force_noise::ForceNoise;
@@ -189,8 +189,9 @@ impl Accelerance {
             return Err(DataError::Channels { at: record.at.clone(), problem });
         }
         self.notes.push(format!(
-            "{}: {zeros} of {all} lines are exactly zero, the first at {first} Hz, as no measurement is: left out",
-            record.at.key
+            "{}: {zeros} of {all} lines are exactly zero, the first at {} Hz, as no measurement is: left out",
+            record.at.key,
+            Readable(first)
         ));
         let kept = |values: &[f64]| told.iter().map(|&line| values[line]).collect::<Vec<f64>>();
         self.value = told.iter().map(|&line| self.value[line]).collect();
@@ -214,8 +215,11 @@ fn one_decay_rate(of: &Record) -> Result<f64, DataError> {
         None => Ok(first),
         Some(line) => {
             let value = values[line];
-            let problem =
-                format!("decay rate {value} at point {}: must be zero or more, the same in every row", line + 1);
+            let problem = format!(
+                "decay rate {} at point {}: must be zero or more, the same in every row",
+                Readable(value),
+                line + 1
+            );
             Err(DataError::Channels { at: of.at_point(line), problem })
         }
     }
@@ -231,7 +235,7 @@ fn matching_variance(response: &Record, variance: &Record) -> Result<Vec<f64>, D
     match values.iter().enumerate().find(|(_, value)| **value < 0.0) {
         None => Ok(values.clone()),
         Some((line, value)) => {
-            let problem = format!("variance {value} at point {}: must be zero or more", line + 1);
+            let problem = format!("variance {} at point {}: must be zero or more", Readable(*value), line + 1);
             Err(DataError::Channels { at: variance.at_point(line), problem })
         }
     }
@@ -247,7 +251,7 @@ fn matching_coherence(response: &Record, coherence: &Record) -> Result<Vec<f64>,
     match values.iter().enumerate().find(|(_, value)| !(-1e-6..=1.0 + 1e-6).contains(*value)) {
         None => Ok(values.iter().map(|value| value.clamp(0.0, 1.0)).collect()),
         Some((line, value)) => {
-            let problem = format!("coherence {value} at point {}: must lie between 0 and 1", line + 1);
+            let problem = format!("coherence {} at point {}: must lie between 0 and 1", Readable(*value), line + 1);
             Err(DataError::Channels { at: coherence.at_point(line), problem })
         }
     }

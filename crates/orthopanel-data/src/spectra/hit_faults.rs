@@ -120,14 +120,17 @@ impl fmt::Display for HitFault {
                 let many = if samples == 1 { "" } else { "s" };
                 write!(
                     f,
-                    "{name} cut off from sample {first} on: {samples} sample{many} at exactly {value:.4} {unit} (overload): \
-                     {GREATER_RANGE}"
+                    "{name} cut off from sample {first} on: {samples} sample{many} at exactly {:.4} {unit} (overload): \
+                     {GREATER_RANGE}",
+                    Readable(value)
                 )
             }
             Self::CutCrest { sample, value, expected } => write!(
                 f,
-                "acceleration cut off at sample {sample}: its greatest is {value:.4} m/s2 where {expected:.4} would fit \
-                 (overload): {GREATER_RANGE}"
+                "acceleration cut off at sample {sample}: its greatest is {:.4} m/s2 where {:.4} would fit \
+                 (overload): {GREATER_RANGE}",
+                Readable(value),
+                Readable(expected)
             ),
             Self::DroppedSample { channel, sample, value, expected } => {
                 let (name, unit) = name(channel);

@@ -2,7 +2,7 @@
 
 use std::{path::PathBuf, sync::Arc};
 
-use orthopanel_model::Place;
+use orthopanel_model::{Place, Readable};
 
 use super::{
     accelerance::Accelerance,
@@ -302,7 +302,7 @@ fn common_grid(force: &Record, acceleration: &Record) -> Result<(usize, f64), Da
                         "{ratio:.3} times the usual step after the one before: samples are missing or stand twice;"
                     ),
                 ),
-                None => (off, format!("t = {time} s, {due} s expected:")),
+                None => (off, format!("t = {} s, {} s expected:", Readable(*time), Readable(due))),
             };
             let problem =
                 format!("{name}, sample {}: {found} force and acceleration need the same even times", index + 1);
@@ -335,6 +335,6 @@ fn mean_step(record: &Record) -> Result<f64, DataError> {
     }
     Err(DataError::Channels {
         at: record.at.clone(),
-        problem: format!("a time step of {step} s makes no sampling rate"),
+        problem: format!("a time step of {} s makes no sampling rate", Readable(step)),
     })
 }

@@ -30,6 +30,17 @@ pub enum IdentifyError {
         /// Their names.
         names: String,
     },
+    /// A list that is too long to be traced.
+    #[error(
+        "a list of {found} natural frequencies: a trace takes {most} at most, for it fits every effect to them, in time that grows \
+         with the cube of their number; list the lowest, or ask `orthopanel identify` for the constants alone"
+    )]
+    TooManyFrequencies {
+        /// Frequencies of the longest list.
+        found: usize,
+        /// The limit.
+        most: usize,
+    },
     /// Records in which too few resonances stand out.
     #[error(
         "{found} resonances stand out from the records, for {needed} constants: {}look at the accelerance; a \
@@ -174,7 +185,10 @@ pub enum IdentifyError {
         unit: &'static str,
     },
     /// A band that a record cannot show.
-    #[error("band from {from} to {to} Hz: give 0 <= from < to <= {half_rate:.3} Hz, half the sampling rate")]
+    #[error(
+        "band from {} to {} Hz: give 0 <= from < to <= {:.3} Hz, half the sampling rate",
+        Readable(*.from), Readable(*.to), Readable(*.half_rate)
+    )]
     HistoryBand {
         /// Lower end \[Hz\].
         from: f64,

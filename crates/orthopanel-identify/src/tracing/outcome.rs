@@ -199,7 +199,7 @@ pub struct Removed {
 /// How far a trace is: one effect of the catalogue after the other.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Progress {
-    /// The effect that was fitted last.
+    /// The effect that was fitted last, or what is done now.
     pub effect: &'static str,
     /// How many are done.
     pub done: usize,

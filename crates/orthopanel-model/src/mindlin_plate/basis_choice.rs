@@ -206,7 +206,7 @@ impl Reach {
     /// Terms along x and y for `count` modes.
     fn terms(mut self, count: usize) -> Result<[usize; 2], ModelError> {
         // The order of the estimates is rough, so look a little further.
-        let margin = |count: usize| count + count / 10 + 1;
+        let margin = |count: usize| count.saturating_add(count / 10).saturating_add(1);
         // Few are wanted of two thousand and more: these alone are put in order.
         let mut lowest = std::mem::take(&mut self.modes);
         if margin(count) < lowest.len() {
@@ -225,7 +225,8 @@ impl Reach {
             most_nodes = [most_nodes[0].max(nodes[0]), most_nodes[1].max(nodes[1])];
             let wider = [0, 1].map(|direction| terms_for(half_waves(most_nodes[direction], self.ends[direction])));
             if !self.fits(wider) || most_nodes.contains(&MOST_NODES) {
-                let available = (0..count).rev().find(|&fewer| margin(fewer) <= index).unwrap_or(0);
+                // No more than estimates are there: a count may be as large as numbers go.
+                let available = (0..count.min(index + 1)).rev().find(|&fewer| margin(fewer) <= index).unwrap_or(0);
                 return Err(ModelError::BasisTooSmall { asked: count, available });
             }
             terms = wider;

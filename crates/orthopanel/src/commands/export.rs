@@ -107,7 +107,9 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
     if let Some(fit) = &seen.core {
         let [from, to] = fit.band;
         let percent = 100.0 * fit.error;
-        console::say(format_args!("viscoelastic-core: fitted within {percent:.2} % of its modulus from {from:.0} to {to:.0} Hz"));
+        console::say(format_args!(
+            "viscoelastic-core: fitted within {percent:.2} % of its modulus from {from:.0} to {to:.0} Hz"
+        ));
     }
     if answer.flexible_modes == 0 {
         let does = if rigid_modes == 0 { "yields at once, without inertia" } else { "only moves as a whole" };

@@ -70,11 +70,7 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
 }
 
 /// The page of a test whose base model was refused: it shows what was measured and what the trace tells.
-fn trace_alone(
-    arguments: &Arguments,
-    mut outputs: Outputs,
-    contradicted: Contradicted,
-) -> Result<(), CommandError> {
+fn trace_alone(arguments: &Arguments, mut outputs: Outputs, contradicted: Contradicted) -> Result<(), CommandError> {
     let Arguments { test, output, options, json } = arguments;
     outputs.add(output, contradicted.page(test, options)?);
     outputs.write()?;

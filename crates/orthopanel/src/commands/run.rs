@@ -163,11 +163,7 @@ fn names(test: &ImpactTest) -> Vec<String> {
 }
 
 /// What there is of a test whose base model was refused.
-fn trace_alone(
-    arguments: &Arguments,
-    mut files: Outputs,
-    contradicted: Contradicted,
-) -> Result<(), CommandError> {
+fn trace_alone(arguments: &Arguments, mut files: Outputs, contradicted: Contradicted) -> Result<(), CommandError> {
     let Arguments { test: path, options, json, .. } = arguments;
     let Contradicted { test, traced, .. } = &contradicted;
     files.add_inside("trace.json", json::line(&traced.tracing));

@@ -46,7 +46,11 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
         None => Ok(()),
     };
     // What was found is told even where no model can be written.
-    if *json { console::print_json(&traced.tracing)? } else { console::print(&traced.text())? }
+    if *json {
+        console::print_json(&traced.tracing)?
+    } else {
+        console::print(&traced.text())?
+    }
     written
 }
 

@@ -88,7 +88,10 @@ fn instance<'a>(
 fn not_loaded(error: SimulationError, library: &str, log: &Log) -> FmuRefusal {
     let reason = match &error {
         SimulationError::FMICall => return FmuRefusal::NoInstance(log.taken()),
-        SimulationError::Library { source, .. } => source.to_string(),
+        SimulationError::Symbol { name, .. } => format!("it has no function {name}"),
+        SimulationError::Library { source, .. } => {
+            format!("{source} (it is unpacked where temporary files lie: TMPDIR can name another folder)")
+        }
         _ => error.to_string(),
     };
     FmuRefusal::Load { path: library.into(), reason: shown(&reason) }

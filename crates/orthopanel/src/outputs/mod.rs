@@ -151,8 +151,7 @@ impl Outputs {
             }
         };
         let name = |path: &Path| path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        let files: Vec<Listed> =
-            self.files.iter().map(|(path, content)| Listed::of(&name(path), content)).collect();
+        let files: Vec<Listed> = self.files.iter().map(|(path, content)| Listed::of(&name(path), content)).collect();
         let stale = self.stale(&earlier, &files, destinations);
         let mut replacing = earlier;
         replacing.retain(|listed| !files.contains(listed));
@@ -174,7 +173,8 @@ impl Outputs {
                 continue;
             }
             let sha256 = manifest::sha256_of(&path).ok();
-            let is_as_left = earlier.iter().any(|listed| listed.file == name && Some(&listed.sha256) == sha256.as_ref());
+            let is_as_left =
+                earlier.iter().any(|listed| listed.file == name && Some(&listed.sha256) == sha256.as_ref());
             if is_as_left && self.inputs.at(&path).is_none() {
                 stale.push(path);
             } else {
@@ -205,7 +205,13 @@ impl Outputs {
                 };
                 return Err(CommandError::Unwritable { path: path.into(), reason: format!("it is {what}"), kind });
             }
-            Err(_) => return Ok(path.into()),
+            Err(_) => {
+                // One spelling of the folder, by which it is locked.
+                let folder = std::fs::canonicalize(folder::of(path)).ok();
+                return Ok(folder
+                    .zip(path.file_name())
+                    .map_or_else(|| path.into(), |(folder, name)| folder.join(name)));
+            }
         }
         if let Some(input) = self.inputs.at(path) {
             return Err(CommandError::OutputIsInput { path: path.into(), input: input.into() });
@@ -284,6 +290,20 @@ mod tests {
         assert_eq!(std::fs::read_to_string(&real).expect("read"), "new");
     }
 
+    /// A folder that is locked twice is waited for.
+    #[test]
+    fn regress_a_folder_has_one_spelling_whether_its_files_are_there_or_not() {
+        let home = tempfile::tempdir().expect("a temporary folder");
+        std::fs::create_dir(home.path().join("out")).expect("made");
+        std::fs::write(home.path().join("out/old"), "").expect("written");
+        let outputs = Outputs::of(Inputs::default());
+        let folder = |name: &str| {
+            let destination = outputs.destination(&home.path().join("out/../out").join(name)).expect("writable");
+            folder::of(&destination).to_path_buf()
+        };
+        assert_eq!(folder("old"), folder("new"));
+    }
+
     #[test]
     fn files_are_written_all_or_none() {
         let home = tempfile::tempdir().expect("a temporary folder");
@@ -293,5 +313,72 @@ mod tests {
         outputs.add_inside("no-such-folder/second", "2");
         assert!(matches!(outputs.write(), Err(CommandError::Unwritable { .. })));
         assert!(!home.path().join("deep").exists());
+    }
+
+    /// Names where the process lives that replaces files until it is killed.
+    #[cfg(unix)]
+    const KILLED_IN: &str = "ORTHOPANEL_KILLED_IN";
+    #[cfg(unix)]
+    const RESULTS: usize = 8;
+
+    /// Results full of one letter; `a` has one more than `b`.
+    #[cfg(unix)]
+    fn replace_by(letter: char, folder: &Path) -> Result<Vec<PathBuf>, CommandError> {
+        let mut outputs = Outputs::of(Inputs::default()).filling(folder, "manifest.json");
+        for number in 0..RESULTS + usize::from(letter == 'a') {
+            outputs.add_inside(&format!("result-{number}"), letter.to_string().repeat(5000 + number));
+        }
+        outputs.write()
+    }
+
+    /// SIGKILL at 200 moments while results are replaced: each is the earlier or the new one, whole.
+    #[cfg(unix)]
+    #[test]
+    fn killed_while_files_are_replaced_each_is_whole() {
+        use std::time::Duration;
+
+        // In memory where there is such a folder: what a kill leaves there is the same, and flushing takes no time.
+        let home = tempfile::tempdir_in("/dev/shm").or_else(|_| tempfile::tempdir()).expect("a temporary folder");
+        replace_by('a', home.path()).expect("written");
+        let mut halfway = 0;
+        for run in 0..200_u64 {
+            let mut process = std::process::Command::new(std::env::current_exe().expect("this program"));
+            process.args(["--exact", "outputs::tests::replaces_until_killed", "--ignored"]).env(KILLED_IN, home.path());
+            process.stdout(std::process::Stdio::null()).stderr(std::process::Stdio::null());
+            let mut process = process.spawn().expect("it starts");
+            std::thread::sleep(Duration::from_micros(10_000 + 61 * run));
+            process.kill().expect("killed");
+            process.wait().expect("ended");
+            let mut letters = BTreeSet::new();
+            for number in 0..=RESULTS {
+                let path = home.path().join(format!("result-{number}"));
+                let Ok(text) = std::fs::read_to_string(&path) else {
+                    assert_eq!(number, RESULTS, "run {run} lost {}", path.display());
+                    continue;
+                };
+                letters.extend(text.chars());
+                let is_whole = ["a", "b"].iter().any(|letter| text == letter.repeat(5000 + number));
+                assert!(is_whole, "run {run}: {} is not whole", path.display());
+            }
+            halfway += usize::from(letters.len() == 2);
+            let listed = manifest::listed(&home.path().join("manifest.json")).expect("a whole manifest");
+            assert!(listed.len() >= RESULTS, "run {run}: {listed:?}");
+        }
+        assert!(halfway > 0, "no process was killed between two files");
+        replace_by('b', home.path()).expect("written");
+        let left = std::fs::read_dir(home.path()).expect("a folder").count();
+        assert_eq!(left, RESULTS + 1, "something of the killed is left behind");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    #[ignore = "the process that `killed_while_files_are_replaced_each_is_whole` kills"]
+    fn replaces_until_killed() {
+        let Some(folder) = std::env::var_os(KILLED_IN).map(PathBuf::from) else { return };
+        loop {
+            for letter in ['b', 'a'] {
+                replace_by(letter, &folder).expect("written");
+            }
+        }
     }
 }

@@ -97,7 +97,11 @@ impl Replacement {
     fn undone(self, failed: CommandError) -> CommandError {
         let lost: Vec<String> = self.changes.into_iter().rev().filter_map(Change::undo).collect();
         self.folders.iter().for_each(|folder| drop(folder.flush()));
-        if lost.is_empty() { failed } else { CommandError::NotPutBack { failed: Box::new(failed), lost: lost.join("; ") } }
+        if lost.is_empty() {
+            failed
+        } else {
+            CommandError::NotPutBack { failed: Box::new(failed), lost: lost.join("; ") }
+        }
     }
 }
 

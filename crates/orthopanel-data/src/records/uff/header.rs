@@ -1,5 +1,7 @@
 //! The eleven lines before the data, and the fields of a 58b's first line.
 
+use orthopanel_model::Readable;
+
 use super::{cursor::Cursor, shortened};
 use crate::{
     DataError,
@@ -99,7 +101,7 @@ impl Header {
         let points = usize::try_from(form.points).ok().filter(|&points| points > 0);
         let points = points.ok_or_else(|| malformed(format!("{} points: must be greater than zero", form.points)))?;
         if layout.even && !(form.step.is_finite() && form.step > 0.0 && form.start.is_finite()) {
-            let found = format!("start {} and step {}", form.start, form.step);
+            let found = format!("start {} and step {}", Readable(form.start), Readable(form.step));
             return Err(malformed(format!("{found}: must be finite, the step greater than zero")));
         }
         Ok(Self {

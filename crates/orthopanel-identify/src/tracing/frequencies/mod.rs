@@ -21,7 +21,7 @@ mod trust;
 mod verdict;
 mod width;
 
-use orthopanel_data::ImpactTest;
+use orthopanel_data::{ImpactTest, MeasurementData, limits};
 use orthopanel_model::catalogue;
 use rayon::prelude::*;
 
@@ -48,6 +48,14 @@ pub(super) fn trace_frequencies(
     progress: &(dyn Fn(Progress) + Sync),
 ) -> Result<Tracing, IdentifyError> {
     let (test, notes) = &without_repeats(test);
+    let listed = |data: &MeasurementData| match data {
+        MeasurementData::NaturalFrequencies(list) => list.values.len(),
+        _ => 0,
+    };
+    let longest = test.measurements.iter().map(|of| listed(&of.data)).max().unwrap_or(0);
+    if longest > limits::FREQUENCIES_TRACED {
+        return Err(IdentifyError::TooManyFrequencies { found: longest, most: limits::FREQUENCIES_TRACED });
+    }
     let problem = ListProblem::of(test)?;
     let (declared, held) = &only_seen(&problem, &problem.usual(), declared.clone())?;
     let base = fit(&problem, declared, &problem.usual())?;
@@ -117,6 +125,7 @@ pub(super) fn trace_frequencies(
             Err(error) => not_tested.push(NotTested { id, reason: error.to_string() }),
         }
     }
+    progress(Progress { effect: "places of what was found", done: catalogue().len(), of: catalogue().len() });
     let fits = in_all_places(&problem, fits, declared.effects.len());
     let mut found = report::report(test, &problem, fits, (not_tested, wants_more), declared.effects.len())?;
     found.notes.extend(notes.iter().chain(held).cloned());

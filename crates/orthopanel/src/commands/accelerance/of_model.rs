@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use orthopanel_model::{ModeRange, Place};
+use orthopanel_model::{ModeRange, Place, Readable};
 use serde::Serialize;
 
 use crate::arguments::{count, frequency, on_piece, place};
@@ -75,8 +75,8 @@ pub fn execute(path: &Path, grid: &Grid, output: Option<&Path>, json: bool) -> R
         return Err(CommandError::NoGrid { path: path.into() });
     };
     if to < from || (to == from) != (lines == 1) {
-        let remedy = format!("must lie above --from {from}, or be the same for a single line");
-        return Err(CommandError::Option { option: "to", value: to.to_string(), remedy });
+        let remedy = format!("must lie above --from {}, or be the same for a single line", Readable(from));
+        return Err(CommandError::Option { option: "to", value: Readable(to).to_string(), remedy });
     }
     let mut outputs = Outputs::of(Inputs::of(path)).all_planned(output.map(Path::to_path_buf))?;
     let model = model_file::read(path)?;

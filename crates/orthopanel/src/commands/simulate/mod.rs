@@ -20,10 +20,11 @@ use crate::{console, importer, model_file, progress, time_response};
 ///
 /// A made-up force is CSV with the columns time_s,force_n (several force places: time_s,force_1_n,force_2_n,...).
 /// The panel is at rest before the first sample. Between samples the force runs linearly, unless --hold says
-/// otherwise; each mode is then stepped exactly, so the samples may be as far apart as the force allows. An FMU is
-/// unpacked and run as a simulator would run it, where its library is byte for byte the one that this orthopanel carries;
-/// any other is run by --trust alone, since a library is code that may do all that you may. Without -o the CSV (time_s,force_n,acceleration_m_s2,velocity_m_s,
-/// displacement_m) goes to standard output.
+/// otherwise; each mode is then stepped exactly, so the samples may be as far apart as the force allows. Without -o the CSV
+/// (time_s,force_n,acceleration_m_s2,velocity_m_s,displacement_m) goes to standard output.
+///
+/// An FMU is unpacked and run as a simulator would run it, where its library is byte for byte the one that this orthopanel
+/// carries. Any other is run by --trust alone: a library is code, which may do all that you may.
 ///
 /// Measured hits drive a model too, and then its acceleration is held against the measured one: a test file (.toml)
 /// with its records, a UFF file, or a CSV of time_s,force_n,acceleration_m_s2. The table gives the error of each hit in
