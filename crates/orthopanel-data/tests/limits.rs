@@ -72,9 +72,9 @@ fn every_list_of_a_test_file_has_an_end() {
     let piece = |number: usize| format!("[[piece]]\nname = \"{number}\"\n{PIECE}");
     let pieces: String = (0..=limits::PIECES).map(piece).collect();
     let many = |head: &str, entry: &str, count: usize| format!("[piece]\n{PIECE}{head}{}", entry.repeat(count));
-    let names = vec!["\"g_zx\""; limits::OWN_CONSTANTS + 1].join(", ");
-    let points = vec!["0.1"; limits::SUSPENSION_POINTS + 1].join(", ");
-    let coupons = vec!["[0.1, 0.1, 0.0686]"; limits::WEIGHINGS + 1].join(", ");
+    let names = ["\"g_zx\""; limits::OWN_CONSTANTS + 1].join(", ");
+    let points = ["0.1"; limits::SUSPENSION_POINTS + 1].join(", ");
+    let coupons = ["[0.1, 0.1, 0.0686]"; limits::WEIGHINGS + 1].join(", ");
     let full = format!(
         "[[measurement]]\nkind = \"natural-frequencies\"\nvalues = [{}]\n",
         (0..limits::FREQUENCIES).map(|mode| format!("{}", 300 + mode)).collect::<Vec<_>>().join(", ")

@@ -8,7 +8,7 @@ use super::uncertainty::leverage;
 use crate::least_squares::Linearised;
 use crate::structures::Shown;
 
-/// A line that the others would put so much elsewhere [1] is checked by none of them.
+/// A line that the others would put so much elsewhere \[1\] is checked by none of them.
 const FAR_ELSEWHERE: f64 = 0.05;
 
 /// A sentence for each line of a plate's list that the others say nothing about, with the constant that it alone tells.

@@ -41,7 +41,7 @@ pub(super) fn of_amplitude(records: &TestRecords, hypothesis: &Hypothesis) -> Ve
 /// The lines of a record fall into as many stretches as there are modes in the band. Over each, the accelerance $h$ of each
 /// record may be wrong by the part [`TRUSTED`] in size and in phase, and that of all records together by a shift of frequency,
 /// $s\,dh/ds$ times [`TUNED`]. In a rough test both are what its roughness leaves, where that is more: see
-/// [`super::rough_rest`].
+/// `rough::rest`.
 ///
 /// # Errors
 /// What the model refuses.

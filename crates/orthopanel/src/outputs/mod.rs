@@ -59,7 +59,9 @@ impl Outputs {
                 let (path, reason) = (own.clone(), "it is there and is no folder".into());
                 return Err(CommandError::Unwritable { path, reason, kind: ErrorKind::NotADirectory });
             }
-            _ => drop(std::fs::metadata(folder).map_err(|error| CommandError::unwritable(path, &error))?),
+            _ => {
+                std::fs::metadata(folder).map_err(|error| CommandError::unwritable(path, &error))?;
+            }
         }
         Ok(self)
     }

@@ -22,7 +22,7 @@ pub(super) const SIFTED: usize = 2;
 /// Rounds of estimating the scales, and the change of one that is worth another round.
 const ROUNDS: usize = 3;
 const SETTLED: f64 = 1.2;
-/// Lines of the plain beam after which no further round begins, see [`super::ranking`]: some 75 s of one processor.
+/// Lines of the plain beam after which no further round begins, see `tracing::ranking`: some 75 s of one processor.
 pub(in crate::tracing) const MOST_WORK: u64 = 100_000_000;
 /// Evaluations of a hypothesis at scales that have changed since it was fitted.
 const AGAIN: Ending = Ending::far(8, 0.2);

@@ -190,7 +190,7 @@ impl<F: Fn(&[f64]) -> f64> CostFunction for Charge<F> {
     }
 }
 
-/// In the order of [`PLATE_CONSTANTS`].
+/// In the order of [`orthopanel_model::PLATE_CONSTANTS`].
 fn plate_values(([e_x, g_zx], [e_y, nu_xy, g_xy, g_yz]): &PlateStart) -> [f64; 6] {
     [*e_x, e_y * e_x, *nu_xy, g_xy * e_x, g_yz * g_zx, *g_zx]
 }
