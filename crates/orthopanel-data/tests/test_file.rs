@@ -260,7 +260,7 @@ fn val_a_recorded_response_needs_file_places_and_known_units() {
     let faults = [
         ("file = \"hits.uff\"\n", "", "measurement[1].file is missing"),
         ("hits.uff", "hit.uff", "test.toml:8: measurement[1].file: cannot be read: "),
-        ("hits.uff", ".", "is not a file"),
+        ("hits.uff", ".", "it is a folder, not a file"),
         ("force_at = [0.4, 0]\n", "", "measurement[1].force_at is missing"),
         ("[0.4, 0]", "[0.41, 0]", "measurement[1].force_at: place (0.41, 0) m lies off the piece"),
         (
