@@ -9,6 +9,7 @@ mod free_constants;
 mod frequency_fit;
 mod identification;
 mod least_squares;
+mod measured;
 mod settings;
 mod starting_constants;
 mod structures;

@@ -3,6 +3,17 @@
 //! Every kind of data becomes [`MeasuredModes`]: poles common to the records, the residues of every record, what modes
 //! below and above the band leave of it, and the covariance that the noise of the data gives all of these together.
 
+mod accelerances;
+mod frequencies;
+mod hits;
+mod line_groups;
+mod lines;
+mod modal_fit;
+mod pole_search;
+mod records;
+#[cfg(test)]
+mod tests;
+
 use faer::Mat;
 use num_complex::Complex64;
 use orthopanel_model::Place;

@@ -1,0 +1,31 @@
+//! A list of natural frequencies as measured modes: poles without damping and without records.
+
+use std::f64::consts::TAU;
+
+use faer::Mat;
+use orthopanel_data::NaturalFrequencies;
+
+use super::{MeasuredModes, Pole};
+
+impl MeasuredModes {
+    /// Each frequency with the variance that its bin and its scatter give, $d^2/12 + s^2$, zero where the list states neither: what the model
+    /// misses is then its own error, which no list tells apart from noise.
+    pub(crate) fn of_frequencies(list: &NaturalFrequencies) -> Self {
+        let of = |values: &[f64], mode: usize| values.get(mode).copied().unwrap_or(0.0);
+        let variance = |mode: usize| {
+            let square = of(&list.resolution, mode).powi(2) / 12.0 + of(&list.scatter, mode).powi(2);
+            square / list.values[mode].powi(2)
+        };
+        let modes = list.values.len();
+        let pole = |frequency: &f64| Pole { angular_frequency: TAU * frequency, damping_ratio: None };
+        let ends = [list.values.first(), list.values.last()].map(|end| end.copied().unwrap_or(0.0));
+        Self {
+            poles: list.values.iter().map(pole).collect(),
+            records: vec![],
+            remainder_frequencies: vec![],
+            band: ends,
+            covariance: Mat::from_fn(modes, modes, |i, j| if i == j { variance(i) } else { 0.0 }),
+            chi_square: None,
+        }
+    }
+}

@@ -1,0 +1,136 @@
+//! Hits of one pair of places as lines: H1 over the hits, with what each record's end cuts off.
+
+use std::f64::consts::{LN_2, TAU};
+
+use num_complex::Complex64;
+use orthopanel_data::{Hit, TimeHistory};
+use realfft::RealFftPlanner;
+
+use super::lines::{RecordLines, TruncatedHit, Truncations};
+
+/// Half the width of the window over the force \[s\], and of its edges: the hammer has left the panel, the noise of its channel stays out.
+const FORCE_WINDOW: f64 = 10e-3;
+const WINDOW_EDGE: f64 = 2e-3;
+
+/// One hit's transforms on the lines of the band, times the sampling step.
+struct HitSpectra {
+    force: Vec<Complex64>,
+    motion: Vec<Complex64>,
+    /// Noise of either channel on a line, $E|N|^2$.
+    force_noise: f64,
+    motion_noise: f64,
+    truncated: TruncatedHit,
+}
+
+impl RecordLines {
+    /// From hits, on the lines of their transform between two frequencies \[Hz\].
+    ///
+    /// With the transforms $F_h$, $A_h$ of the hits, their noise $N_F$, $N_A$ and $v_h = N_A + |H|^2N_F$ the mean is
+    /// $$\hat H = \frac1G\sum_h\frac{\bar F_hA_h}{v_h},\qquad G = \sum_h\frac{|F_h|^2}{v_h},\qquad E|\hat H-H|^2 = 1/G.$$
+    /// The response is not windowed: what the record's end cuts off stands in [`RecordLines::pole`].
+    pub(super) fn of_hits(history: &TimeHistory, band: [f64; 2]) -> Self {
+        let samples = history.hits.first().map_or(0, |hit| hit.force.len());
+        let resolution = history.rate / samples.max(1) as f64;
+        let line_at = |frequency: f64| (frequency / resolution).ceil().max(1.0) as usize;
+        let lines = line_at(band[0])..line_at(band[1]).min(samples / 2);
+        let mut hits: Vec<HitSpectra> =
+            history.hits.iter().map(|hit| HitSpectra::of(hit, history.rate, lines.clone())).collect();
+        let count = lines.len();
+        let s: Vec<Complex64> = lines.map(|line| Complex64::new(0.0, TAU * resolution * line as f64)).collect();
+        let step = history.rate.recip();
+        // $e^{sT} = 1$ on the transform's own lines.
+        let back = s.iter().map(|s| (-s * step).exp()).collect();
+        let (mut value, mut weight, mut force_noise) =
+            (Vec::with_capacity(count), Vec::with_capacity(count), Vec::with_capacity(count));
+        for k in 0..count {
+            // The accelerance in the variance of a line is a first one, without the noise of the force.
+            let first = mean(&hits, k, |hit| hit.motion_noise).0;
+            let variance = |hit: &HitSpectra| hit.motion_noise + first.norm_sqr() * hit.force_noise;
+            let (mean, power) = mean(&hits, k, variance);
+            value.push(mean);
+            weight.push((2.0 * power).sqrt());
+            let told: f64 = hits.iter().map(|hit| hit.force[k].norm_sqr() / hit.force_noise).sum();
+            force_noise.push(told.recip());
+            let shares: Vec<Complex64> =
+                hits.iter().map(|hit| hit.force[k].conj() / (variance(hit) * power)).collect();
+            hits.iter_mut().zip(shares).for_each(|(hit, share)| hit.truncated.share.push(share));
+        }
+        Self {
+            force_at: history.force_at,
+            response_at: history.response_at,
+            s,
+            value,
+            weight,
+            truncations: Some(Truncations {
+                step,
+                back,
+                hits: hits.into_iter().map(|hit| hit.truncated).collect(),
+            }),
+            force_noise,
+        }
+    }
+}
+
+/// $\hat H$ and $G$ of a line with these variances of the motion.
+fn mean(hits: &[HitSpectra], line: usize, variance: impl Fn(&HitSpectra) -> f64) -> (Complex64, f64) {
+    let (mut cross, mut power) = (Complex64::ZERO, f64::MIN_POSITIVE);
+    for hit in hits {
+        let weight = variance(hit).recip();
+        cross += hit.force[line].conj() * hit.motion[line] * weight;
+        power += hit.force[line].norm_sqr() * weight;
+    }
+    (cross / power, power)
+}
+
+impl HitSpectra {
+    fn of(hit: &Hit, rate: f64, lines: std::ops::Range<usize>) -> Self {
+        let (samples, step) = (hit.force.len(), rate.recip());
+        let offset = median(hit.force.iter().copied());
+        let away = |n: &usize| (hit.force[*n] - offset).abs();
+        let peak = (0..samples).max_by(|a, b| away(a).total_cmp(&away(b))).unwrap_or(0);
+        let window = |n: usize| {
+            let inside = (FORCE_WINDOW - n.abs_diff(peak) as f64 * step) / WINDOW_EDGE;
+            0.5 - 0.5 * (std::f64::consts::PI * inside.clamp(0.0, 1.0)).cos()
+        };
+        let windows: Vec<f64> = (0..samples).map(window).collect();
+        let force: Vec<f64> = hit.force.iter().zip(&windows).map(|(f, w)| (f - offset) * w).collect();
+        let blow = || (0..samples).filter(|&n| windows[n] > 0.0);
+        let beside = (0..samples).filter(|&n| windows[n] == 0.0).map(|n| hit.force[n] - offset);
+        let motion = transform(hit.acceleration.clone(), lines.clone(), step);
+        // Second differences of a smooth spectrum are noise: 1 + 4 + 1 times its variance, exponentially distributed.
+        let bends = motion.windows(3).map(|w| (w[2] - 2.0 * w[1] + w[0]).norm_sqr());
+        let motion_noise = (median(bends) / (6.0 * LN_2)).max(f64::MIN_POSITIVE);
+        // The median of |noise| is 0.6745 standard deviations.
+        let deviation = median(beside.map(f64::abs)) / 0.674_49;
+        let windowed: f64 = windows.iter().map(|w| w * w).sum();
+        let truncated = TruncatedHit {
+            impulse: blow().map(|n| force[n] * step).collect(),
+            left: blow().last().map_or(0.0, |last| (samples - last) as f64 * step),
+            share: Vec::with_capacity(lines.len()),
+        };
+        let force_noise = (deviation * step).powi(2) * windowed;
+        Self {
+            force: transform(force, lines, step),
+            motion,
+            force_noise: force_noise.max(f64::MIN_POSITIVE),
+            motion_noise,
+            truncated,
+        }
+    }
+}
+
+/// Some lines of a transform times the sampling step.
+fn transform(mut samples: Vec<f64>, lines: std::ops::Range<usize>, step: f64) -> Vec<Complex64> {
+    let plan = RealFftPlanner::<f64>::new().plan_fft_forward(samples.len());
+    let mut spectrum = plan.make_output_vec();
+    // The lengths are the plan's own: it has nothing to refuse.
+    let done = plan.process(&mut samples, &mut spectrum);
+    debug_assert!(done.is_ok());
+    spectrum.get(lines).map_or_else(Vec::new, |lines| lines.iter().map(|line| line * step).collect())
+}
+
+fn median(values: impl Iterator<Item = f64>) -> f64 {
+    let mut values: Vec<f64> = values.collect();
+    let middle = values.len() / 2;
+    if values.is_empty() { 0.0 } else { *values.select_nth_unstable_by(middle, f64::total_cmp).1 }
+}

@@ -1,0 +1,125 @@
+//! One record as weighted spectral lines, and how a pole shows in them.
+
+use faer::MatMut;
+use num_complex::Complex64;
+use orthopanel_model::Place;
+
+use super::line_groups::LineGroups;
+
+/// The accelerance of one pair of places on the lines of a transform.
+///
+/// Each line's real and imaginary part have the standard deviation $1/g_k$, and noise is independent from line to line.
+#[derive(Debug, Clone)]
+pub(super) struct RecordLines {
+    pub force_at: Place,
+    pub response_at: Place,
+    /// $s_k$ of each line \[1/s\].
+    pub s: Vec<Complex64>,
+    /// Accelerance \[(m/s²)/N\].
+    pub value: Vec<Complex64>,
+    /// $g_k$ \[N/(m/s²)\].
+    pub weight: Vec<f64>,
+    /// What the end of each hit's record cuts off; none where the accelerance is whole.
+    pub truncations: Option<Truncations>,
+    /// Relative variance of $H$ by the noise of the force, which moves all of a mode alike: see [`super::MeasuredModes`].
+    pub force_noise: Vec<f64>,
+}
+
+/// Hits whose responses ring on when their records end.
+#[derive(Debug, Clone)]
+pub(super) struct Truncations {
+    /// Sampling step $\Delta t$ \[s\].
+    pub step: f64,
+    /// $e^{-s_k\Delta t}$ of each line.
+    pub back: Vec<Complex64>,
+    pub hits: Vec<TruncatedHit>,
+}
+
+/// A hit whose response rings on when its record ends.
+#[derive(Debug, Clone)]
+pub(super) struct TruncatedHit {
+    /// Force times the sampling step \[N s\], sample by sample over the blow.
+    pub impulse: Vec<f64>,
+    /// From the last of these samples to the record's end \[s\].
+    pub left: f64,
+    /// Share of the hit in each line's mean, $\bar F_k/(v_kG_k)$ of its force's transform, see [`super::hits`], times $e^{-s_kT}$ with the record's
+    /// length $T$.
+    pub share: Vec<Complex64>,
+}
+
+/// How a pole and its conjugate show on every line.
+pub(super) struct PoleColumns {
+    /// By the real part of the residue, and by its imaginary part.
+    pub by_residue: [Vec<Complex64>; 2],
+    /// Derivatives of these by $\lambda$, where $\bar\lambda$ moves along.
+    pub by_pole: [Vec<Complex64>; 2],
+}
+
+/// Free vibrations below this part of what they were at the blow change no line.
+const DECAYED: f64 = 1e-10;
+
+impl TruncatedHit {
+    /// $F(\lambda)e^{\lambda T}$ and its derivative by $\lambda$: the free vibration at the record's end. `None` where nothing is left of it.
+    fn at_end(&self, lambda: Complex64, step: f64) -> Option<[Complex64; 2]> {
+        if (lambda.re * self.left).exp() < DECAYED {
+            return None;
+        }
+        // Horner's scheme from the first sample: $\sum_nf_ne^{\lambda(N-n)\Delta t}$, and the same times $(N-n)\Delta t$.
+        let ratio = (lambda * step).exp();
+        let (mut sum, mut moment) = (Complex64::ZERO, Complex64::ZERO);
+        for impulse in &self.impulse {
+            moment = (moment + sum * step) * ratio;
+            sum = sum * ratio + impulse;
+        }
+        let rest = (lambda * self.left).exp();
+        Some([sum * rest, (moment + sum * self.left) * rest])
+    }
+}
+
+impl RecordLines {
+    /// How a pole shows on every line.
+    ///
+    /// With the record's end at $T$ a hit shows of $1/(s-\lambda)$ no more than
+    /// $$\frac{1}{s-\lambda} - \frac{F(\lambda)e^{(\lambda-s)T}}{F(s)}\,\frac{\Delta t}{1-e^{(\lambda-s)\Delta t}},$$
+    /// the transform of samples up to there: the free vibration after $T$ is a geometric series. Several hits show it in the mean that
+    /// their accelerances have.
+    pub(super) fn pole(&self, lambda: Complex64) -> PoleColumns {
+        let count = self.s.len();
+        let columns = || [Vec::with_capacity(count), Vec::with_capacity(count)];
+        let mut pole = PoleColumns { by_residue: columns(), by_pole: columns() };
+        let ends: Vec<(&TruncatedHit, [Complex64; 2])> = self
+            .truncations
+            .iter()
+            .flat_map(|all| all.hits.iter().filter_map(|hit| Some((hit, hit.at_end(lambda, all.step)?))))
+            .collect();
+        let ratio = self.truncations.as_ref().map_or(Complex64::ZERO, |all| (lambda * all.step).exp());
+        for (k, s) in self.s.iter().enumerate() {
+            let [one, other] = [(s - lambda).inv(), (s - lambda.conj()).inv()];
+            let (mut values, mut derivatives) = ([one, other], [one * one, other * other]);
+            if let (Some(all), false) = (&self.truncations, ends.is_empty()) {
+                let mut cut = [[Complex64::ZERO; 2]; 2];
+                for (hit, [end, by_lambda]) in &ends {
+                    let share = hit.share[k];
+                    cut[0] = [cut[0][0] + share * end, cut[0][1] + share * by_lambda];
+                    cut[1] = [cut[1][0] + share * end.conj(), cut[1][1] + share * by_lambda.conj()];
+                }
+                for (of, ratio) in [ratio * all.back[k], ratio.conj() * all.back[k]].into_iter().enumerate() {
+                    let tail = all.step * (1.0 - ratio).inv();
+                    let [end, by_lambda] = cut[of];
+                    values[of] -= end * tail;
+                    derivatives[of] -= tail * (by_lambda + end * tail * ratio);
+                }
+            }
+            for (columns, [one, other]) in [(&mut pole.by_residue, values), (&mut pole.by_pole, derivatives)] {
+                columns[0].push(one + other);
+                columns[1].push(Complex64::I * (one - other));
+            }
+        }
+        pole
+    }
+
+    /// Writes the weighted real and imaginary parts of a complex function of the lines into a column, group by group.
+    pub(super) fn fill(&self, groups: &LineGroups, column: MatMut<'_, f64>, of_line: impl Fn(usize) -> Complex64) {
+        groups.project(&self.weight, column, of_line);
+    }
+}

@@ -1,0 +1,178 @@
+//! From the modal fit of records to [`MeasuredModes`]: modes inside the band, remainders, and the covariance of all.
+
+use std::f64::consts::TAU;
+
+use faer::Mat;
+use nalgebra::DMatrix;
+use num_complex::Complex64;
+use orthopanel_data::{Accelerance, TimeHistory};
+use rayon::prelude::*;
+
+use super::lines::RecordLines;
+use super::modal_fit::{ModalFit, lambda};
+use super::pole_search::{Found, poles};
+use super::{MeasuredModes, MeasuredRecord, Pole};
+
+/// Lowest frequency of the band \[Hz\]: below the hanging modes of a panel on cords, which are poles like others.
+const LOWEST: f64 = 5.0;
+/// and never less than so many periods in a record.
+const LEAST_PERIODS: f64 = 6.0;
+/// Highest frequency of the band, over the sampling rate: analysers' filters are flat up to there.
+const FLAT: f64 = 1.0 / 2.56;
+/// Half-widths of a resonance that have to lie inside the band.
+const SKIRT: f64 = 4.0;
+/// Most that the logarithm of a frequency may be unsure by for its mode to stand by itself.
+const MOST_UNSURE: f64 = 5e-3;
+/// Damping ratio from which a pole is no mode but a slope.
+const MOST_ZETA: f64 = 0.25;
+/// Values of the remainder that are told, and the highest of their frequencies \[Hz\].
+const REMAINDER_VALUES: usize = 8;
+const HIGHEST_REMAINDER: f64 = 400.0;
+
+impl MeasuredModes {
+    /// From the hits of all pairs of places of one piece, up to a frequency \[Hz\]; `None` where they show no resonance.
+    pub(crate) fn of_hits(histories: &[TimeHistory], highest: f64) -> Option<Self> {
+        let rate = histories.iter().map(|history| history.rate).fold(f64::INFINITY, f64::min);
+        let duration = |history: &TimeHistory| history.hits.first().map_or(0.0, |hit| hit.force.len() as f64) / history.rate;
+        let shortest = histories.iter().map(duration).fold(f64::INFINITY, f64::min);
+        let band = [LOWEST.max(LEAST_PERIODS / shortest), highest.min(FLAT * rate)];
+        let records: Vec<RecordLines> =
+            histories.par_iter().map(|history| RecordLines::of_hits(history, band)).collect();
+        Self::of_lines(&records, band)
+    }
+
+    /// From accelerances of all pairs of places of one piece; `None` where they show no resonance.
+    pub(crate) fn of_accelerances(accelerances: &[Accelerance], highest: f64) -> Option<Self> {
+        let ends = |of: &Accelerance| of.frequency.first().copied().zip(of.frequency.last().copied());
+        let told = || accelerances.iter().filter_map(ends);
+        let band = [
+            told().map(|(first, _)| first).fold(LOWEST, f64::max),
+            told().map(|(_, last)| last).fold(highest, f64::min),
+        ];
+        let records: Vec<RecordLines> =
+            accelerances.iter().map(|accelerance| RecordLines::of_accelerance(accelerance, band)).collect();
+        Self::of_lines(&records, band)
+    }
+
+    fn of_lines(records: &[RecordLines], band: [f64; 2]) -> Option<Self> {
+        let found = poles(records)?;
+        Some(told(records, &found, band))
+    }
+}
+
+/// Which poles stand by themselves.
+fn inside(found: &Found, scale: f64, band: [f64; 2]) -> (Vec<usize>, DMatrix<f64>) {
+    let size = 2 * found.poles.len();
+    let diagonal = DMatrix::from_diagonal(&found.fitted.curvature.diagonal());
+    let regular = &found.fitted.curvature + diagonal * 1e-12;
+    let covariance = regular.try_inverse().unwrap_or_else(|| DMatrix::identity(size, size) * f64::MAX.sqrt()) * scale;
+    let stands = |&pole: &usize| {
+        let [frequency, zeta] = [found.poles[pole][0].exp() / TAU, found.poles[pole][1].exp()];
+        let skirt = SKIRT * zeta * frequency;
+        let sure = covariance[(2 * pole, 2 * pole)].sqrt() < MOST_UNSURE;
+        frequency - skirt > band[0] && frequency + skirt < band[1] && zeta < MOST_ZETA && sure
+    };
+    ((0..found.poles.len()).filter(stands).collect(), covariance)
+}
+
+/// The fit in the terms of [`MeasuredModes`]; the poles that do not stand by themselves go to the remainders.
+fn told(records: &[RecordLines], found: &Found, band: [f64; 2]) -> MeasuredModes {
+    let fit = ModalFit::new(records, &found.poles);
+    let chi_square = found.fitted.misfit / found.freedom;
+    let scale = chi_square.max(f64::MIN_POSITIVE);
+    let (kept, pole_covariance) = inside(found, scale, band);
+    let remainder_frequencies = remainder_frequencies(band);
+    let [modes, all] = [kept.len(), found.poles.len()];
+    let block = 2 * (modes + remainder_frequencies.len());
+    let size = 2 * modes + records.len() * block;
+    // Values as linear functions of the poles' parameters, and of each record's coefficients.
+    let mut by_poles = Mat::<f64>::zeros(size, 2 * all);
+    for (row, pole) in kept.iter().enumerate() {
+        by_poles[(row, 2 * pole)] = 1.0;
+        by_poles[(modes + row, 2 * pole + 1)] = 1.0;
+    }
+    let mut covariance = Mat::<f64>::zeros(size, size);
+    let mut measured = Vec::with_capacity(records.len());
+    for (index, (record, fitted)) in records.iter().zip(&found.fitted.records).enumerate() {
+        let from = 2 * modes + index * block;
+        let linear = fitted.coefficients.len();
+        let mut rows = Mat::<f64>::zeros(block, linear);
+        for (row, pole) in kept.iter().enumerate() {
+            rows[(2 * row, 2 * pole)] = 1.0;
+            rows[(2 * row + 1, 2 * pole + 1)] = 1.0;
+        }
+        let mut remainder = Vec::with_capacity(remainder_frequencies.len());
+        for (place, frequency) in remainder_frequencies.iter().enumerate() {
+            let s = Complex64::new(0.0, TAU * frequency);
+            let row = 2 * (modes + place);
+            let mut value = Complex64::ZERO;
+            let mut add = |column: usize, of: Complex64| {
+                rows[(row, column)] += of.re;
+                rows[(row + 1, column)] += of.im;
+                value += of * fitted.coefficients[column];
+            };
+            for pole in (0..all).filter(|pole| !kept.contains(pole)) {
+                let [lambda, by_frequency, by_damping] = lambda(found.poles[pole]);
+                let [one, other] = [(s - lambda).inv(), (s - lambda.conj()).inv()];
+                add(2 * pole, one + other);
+                add(2 * pole + 1, Complex64::I * (one - other));
+                // What is known of its pole no better comes in by its residue's terms.
+                let residue = fitted.residue(pole);
+                for (parameter, by) in [by_frequency, by_damping].into_iter().enumerate() {
+                    let moved = residue * by * one * one + (residue * by).conj() * other * other;
+                    by_poles[(from + row, 2 * pole + parameter)] += moved.re;
+                    by_poles[(from + row + 1, 2 * pole + parameter)] += moved.im;
+                }
+            }
+            for term in 0..linear - 2 * all {
+                add(2 * all + term, fit.remainder_term(term, s));
+            }
+            remainder.push(value);
+        }
+        let followed = &rows * &fitted.by_poles;
+        let own = &rows * &fitted.covariance * rows.transpose();
+        for i in 0..block {
+            (0..2 * all).for_each(|j| by_poles[(from + i, j)] += followed[(i, j)]);
+            (0..block).for_each(|j| covariance[(from + i, from + j)] = scale * own[(i, j)]);
+        }
+        let residues: Vec<Complex64> = kept.iter().map(|pole| fitted.residue(*pole)).collect();
+        let values: Vec<Complex64> = residues.iter().chain(&remainder).copied().collect();
+        let frequencies = kept.iter().map(|pole| found.poles[*pole][0].exp() / TAU).chain(remainder_frequencies.iter().copied());
+        // The noise of a windowed force runs smoothly over a resonance: it moves a whole residue.
+        for (place, (frequency, value)) in frequencies.zip(values).enumerate() {
+            let variance = 0.5 * record.force_noise_at(frequency) * value.norm_sqr();
+            (0..2).for_each(|part| covariance[(from + 2 * place + part, from + 2 * place + part)] += variance);
+        }
+        let (force_at, response_at) = (record.force_at, record.response_at);
+        measured.push(MeasuredRecord { force_at, response_at, residues, remainder });
+    }
+    let poles_known = Mat::from_fn(2 * all, 2 * all, |i, j| pole_covariance[(i, j)]);
+    covariance += &by_poles * poles_known * by_poles.transpose();
+    let pole = |&pole: &usize| Pole {
+        angular_frequency: found.poles[pole][0].exp(),
+        damping_ratio: Some(found.poles[pole][1].exp()),
+    };
+    MeasuredModes {
+        poles: kept.iter().map(pole).collect(),
+        records: measured,
+        remainder_frequencies,
+        band,
+        covariance,
+        chi_square: Some(chi_square),
+    }
+}
+
+/// Evenly in the logarithm, from the band's end to where modes alone carry the accelerance.
+fn remainder_frequencies([lowest, highest]: [f64; 2]) -> Vec<f64> {
+    let to = HIGHEST_REMAINDER.min(0.5 * highest).max(1.5 * lowest);
+    let step = (to / lowest).ln() / (REMAINDER_VALUES - 1) as f64;
+    (0..REMAINDER_VALUES).map(|k| lowest * (step * k as f64).exp()).collect()
+}
+
+impl RecordLines {
+    /// Relative variance of the accelerance at a frequency \[Hz\] by the noise of the force.
+    fn force_noise_at(&self, frequency: f64) -> f64 {
+        let line = self.s.partition_point(|s| s.im < TAU * frequency).min(self.s.len().saturating_sub(1));
+        self.force_noise.get(line).copied().unwrap_or(0.0)
+    }
+}

@@ -1,0 +1,174 @@
+//! Hits made from poles and residues, in time, and what is measured of them.
+
+use std::f64::consts::TAU;
+
+use num_complex::Complex64;
+use orthopanel_data::{Hit, TimeHistory};
+use orthopanel_model::Place;
+
+use super::MeasuredModes;
+
+/// A system by its poles and residues, and its accelerance at infinite frequency.
+struct Made {
+    poles: Vec<Complex64>,
+    /// One list a record.
+    residues: Vec<Vec<Complex64>>,
+    direct: f64,
+}
+
+const RATE: f64 = 16384.0;
+const SAMPLES: usize = 16384;
+/// Gauss-Legendre points and weights on 0 to 1.
+const GAUSS: [(f64, f64); 5] = [
+    (0.046_910_077_030_668, 0.118_463_442_528_094_5),
+    (0.230_765_344_947_158_5, 0.239_314_335_249_683_2),
+    (0.5, 0.284_444_444_444_444_4),
+    (0.769_234_655_052_841_5, 0.239_314_335_249_683_2),
+    (0.953_089_922_969_332, 0.118_463_442_528_094_5),
+];
+
+/// Normal deviates by a linear congruential generator (Knuth's MMIX) and Box-Muller.
+struct Noise(u64);
+
+impl Noise {
+    fn uniform(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        ((self.0 >> 11) as f64 + 0.5) / (1u64 << 53) as f64
+    }
+
+    fn normal(&mut self) -> f64 {
+        (-2.0 * self.uniform().ln()).sqrt() * (TAU * self.uniform()).cos()
+    }
+}
+
+fn pole(frequency: f64, zeta: f64) -> Complex64 {
+    TAU * frequency * Complex64::new(-zeta, (1.0 - zeta * zeta).sqrt())
+}
+
+/// Residue of a mode with these shape values, for acceleration over force: $W_fW_r\lambda^2/(2j\omega_d)$.
+fn residue(lambda: Complex64, shapes: f64) -> Complex64 {
+    shapes * lambda * lambda / (2.0 * Complex64::I * lambda.im)
+}
+
+impl Made {
+    /// Modes at these frequencies \[Hz\] with these ratios, whose shape products are a row a record.
+    fn new(modes: &[(f64, f64)], shapes: &[&[f64]]) -> Self {
+        let poles: Vec<Complex64> = modes.iter().map(|(frequency, zeta)| pole(*frequency, *zeta)).collect();
+        let of_record = |row: &&[f64]| poles.iter().zip(*row).map(|(lambda, w)| residue(*lambda, *w)).collect();
+        Self { residues: shapes.iter().map(of_record).collect(), poles, direct: 0.2 }
+    }
+
+    /// A blow of Gaussian shape, whose spectrum is nothing at half the rate, and the acceleration under it, integrated pole by pole
+    /// between samples by Gauss's rule.
+    fn hit(&self, record: usize, peak: f64, at: f64) -> Hit {
+        let width = 1.5e-4;
+        let force = |t: f64| peak * (-0.5 * ((t - at) / width).powi(2)).exp();
+        let step = RATE.recip();
+        let mut state = vec![Complex64::ZERO; self.poles.len()];
+        let mut hit = Hit { force: vec![], acceleration: vec![] };
+        for n in 0..SAMPLES {
+            let t = n as f64 * step;
+            hit.force.push(force(t));
+            let modal: f64 = state.iter().zip(&self.residues[record]).map(|(y, q)| 2.0 * (q * y).re).sum();
+            hit.acceleration.push(modal + self.direct * force(t));
+            for (lambda, y) in self.poles.iter().zip(&mut state) {
+                let driven = |(u, weight): &(f64, f64)| {
+                    weight * step * force(t + u * step) * (lambda * (1.0 - u) * step).exp()
+                };
+                *y = *y * (lambda * step).exp() + GAUSS.iter().map(driven).sum::<Complex64>();
+            }
+        }
+        hit
+    }
+
+    /// Records of some hits each with white noise of this part of the motion's rms, and a tenth of it of the force's: the force's noise
+    /// moves whole residues, so that no misfit shows it.
+    fn histories(&self, hits: usize, noise: f64, seed: u64) -> Vec<TimeHistory> {
+        let mut deviates = Noise(seed);
+        (0..self.residues.len())
+            .map(|record| {
+                let hits = (0..hits)
+                    .map(|index| {
+                        let mut hit = self.hit(record, 60.0 + 20.0 * index as f64, 0.02 + 1e-3 * index as f64);
+                        for (channel, noise) in [(&mut hit.force, 0.1 * noise), (&mut hit.acceleration, noise)] {
+                            let rms = (channel.iter().map(|v| v * v).sum::<f64>() / channel.len() as f64).sqrt();
+                            channel.iter_mut().for_each(|v| *v += noise * rms * deviates.normal());
+                        }
+                        hit
+                    })
+                    .collect();
+                let place = |x: f64| Place { x, y: 0.0 };
+                let places = [place(-0.3 + 0.1 * record as f64), place(0.3)];
+                TimeHistory::new(format!("made-{record}"), places, RATE, hits)
+            })
+            .collect()
+    }
+}
+
+/// Three modes of which the first rings on when the record ends, seen in two records.
+fn ringing() -> Made {
+    Made::new(
+        &[(180.0, 4e-4), (430.0, 2e-3), (1210.0, 5e-3)],
+        &[&[0.8, -0.5, 0.3], &[-0.4, 0.7, 0.6]],
+    )
+}
+
+/// Without noise the poles and residues come back to many digits although the records are cut off while the first mode
+/// rings at 64 % of its amplitude.
+#[test]
+fn val_records_that_ring_on_at_their_end_give_their_poles_and_residues() {
+    let made = ringing();
+    let measured = MeasuredModes::of_hits(&made.histories(2, 1e-7, 1), 4000.0).expect("resonances");
+    assert_eq!(measured.poles.len(), 3, "{:?}", measured.poles);
+    for (m, (found, expected)) in measured.poles.iter().zip(&made.poles).enumerate() {
+        let apart = (found.lambda() - expected).norm() / expected.norm();
+        assert!(apart < 1e-7, "pole {m}: {} instead of {expected}, {apart:e}", found.lambda());
+        for (record, residues) in measured.records.iter().zip(&made.residues) {
+            let apart = (record.residues[m] - residues[m]).norm() / residues[m].norm();
+            assert!(apart < 1e-4, "residue {m}: {} instead of {}", record.residues[m], residues[m]);
+        }
+    }
+}
+
+/// Two modes 0.6 half-widths apart are told apart by two places.
+#[test]
+fn val_two_close_modes_are_told_apart_by_the_places() {
+    let made = Made::new(&[(500.0, 4e-3), (501.2, 4e-3), (900.0, 3e-3)], &[&[0.8, 0.5, 0.4], &[0.7, -0.6, 0.5]]);
+    let measured = MeasuredModes::of_hits(&made.histories(3, 1e-3, 5), 3000.0).expect("resonances");
+    assert_eq!(measured.poles.len(), 3, "{:?}", measured.poles);
+    for (found, expected) in measured.poles.iter().zip(&made.poles) {
+        assert!((found.angular_frequency / expected.norm() - 1.0).abs() < 1e-4, "{found:?} {expected}");
+    }
+}
+
+/// Over many draws of the noise every measured value errs by what its covariance says, and the misfit is that of noise alone.
+#[test]
+fn val_errors_are_those_that_the_covariance_states() {
+    let made = ringing();
+    let draws = 8;
+    let (mut squares, mut count, mut misfits) = (0.0, 0, 0.0);
+    for seed in 0..draws {
+        let measured = MeasuredModes::of_hits(&made.histories(3, 3e-3, 100 + seed), 4000.0).expect("resonances");
+        assert_eq!(measured.poles.len(), 3);
+        misfits += measured.chi_square.expect("a fit") / draws as f64;
+        let values = measured.values();
+        let expected: Vec<f64> = made.poles.iter().map(|pole| pole.norm().ln()).collect();
+        let damping = made.poles.iter().map(|pole| (-pole.re / pole.norm()).ln());
+        let residues = |record: usize| made.residues[record].iter().flat_map(|q| [q.re, q.im]);
+        let expected: Vec<f64> = expected.into_iter().chain(damping).collect();
+        let mut add = |place: usize, expected: f64| {
+            let variance = measured.covariance[(place, place)];
+            squares += (values[place] - expected).powi(2) / variance;
+            count += 1;
+        };
+        expected.iter().enumerate().for_each(|(place, value)| add(place, *value));
+        let block = 2 * (3 + measured.remainder_frequencies.len());
+        for record in 0..2 {
+            residues(record).enumerate().for_each(|(place, value)| add(6 + record * block + place, value));
+        }
+    }
+    let rms = (squares / f64::from(count)).sqrt();
+    // 144 errors, of which each mode's are dependent: the standard deviation of their rms is about 0.08.
+    assert!((0.76..1.24).contains(&rms), "errors {rms} times what is stated");
+    assert!((0.9..1.1).contains(&misfits), "misfit per datum {misfits}");
+}
