@@ -1,5 +1,5 @@
-//! The paper's second problem on hammer records of five places: files to accelerances, and the fit of six modes, with
-//! pyuff, pyFRF and sdypy-EMA beside them in the same run.
+//! The paper's second problem on hammer records of five places: files to accelerances, the fit of six modes, and the modal fit that
+//! asks no physics, with pyuff, pyFRF and sdypy-EMA beside them in the same run.
 //!
 //! `cargo bench -p orthopanel-identify --bench records` prints criterion's figures, then one line a task with both
 //! times and their ratio. `tests/record_generator` makes the records, and `benches/pyfrf_peer` runs the peers, in the
@@ -14,7 +14,7 @@ use std::time::{Duration, Instant};
 use criterion::{Criterion, SamplingMode};
 use num_complex::Complex64;
 use orthopanel_data::{Accelerance, Estimation, ImpactTest};
-use orthopanel_identify::{Identification, Settings, identify};
+use orthopanel_identify::{Identification, MeasuredModes, Settings, identify, measured_modes};
 
 /// What was asked of reading and transforming: times faster than pyuff and pyFRF.
 const RATIO_ASKED: f64 = 5.0;
@@ -42,6 +42,10 @@ fn main() -> Result<(), String> {
         let test = ImpactTest::read(black_box(&folder.join("test.toml"))).expect("the generator's test file is valid");
         identify(&test, Settings::default()).expect("the generator's records hold six modes")
     };
+    let modes_from = |folder: &Path| -> MeasuredModes {
+        let test = ImpactTest::read(black_box(&folder.join("test.toml"))).expect("the generator's test file is valid");
+        measured_modes(&test).expect("the generator's records hold six modes").remove(0)
+    };
     let (read, all) = (|| read_from(&folder), || all_from(&folder));
 
     let mut criterion = Criterion::default().configure_from_args();
@@ -57,6 +61,9 @@ fn main() -> Result<(), String> {
     println!("\n{:<34}{:>12}{:>14}{:>10}", "task", "ours", "peer", "ratio");
     beside_reader(&folder, reading, &read());
     beside_fit(&folder, whole.saturating_sub(reading), &all());
+    let modes = || modes_from(&folder);
+    let (reading, whole) = medians(read, modes);
+    beside_modes(&folder, whole.saturating_sub(reading), &modes());
     let (read, all) = (|| read_from(&softer), || all_from(&softer));
     let (reading, whole) = medians(read, all);
     beside_fit(&softer, whole.saturating_sub(reading), &all());
@@ -108,6 +115,21 @@ fn beside_fit(folder: &Path, ours: Duration, found: &Identification) {
     }
     let places = found.accelerances.len();
     println!("    asked: {FIT_ASKED:?} at most; took part: {modes} modes, {places} places, {lines} lines in all");
+}
+
+/// The peer's poles are those of accelerances, ours of the hits themselves, each with its standard deviation.
+fn beside_modes(folder: &Path, ours: Duration, found: &MeasuredModes) {
+    let label = "measured modes (sdypy-EMA: LSCF)";
+    let frequency = |omega: f64| omega / std::f64::consts::TAU;
+    let near: Vec<String> =
+        found.poles.iter().map(|pole| format!("{:.1}", frequency(pole.angular_frequency))).collect();
+    let mut arguments = vec!["poles", "--repeat", "5", "--near"];
+    arguments.extend(near.iter().map(String::as_str));
+    match peer(folder, &arguments) {
+        Ok(answer) => show(label, ours, &answer),
+        Err(reason) => println!("{label:<34}{:>9.2} ms   peer not run: {reason}", milliseconds(ours)),
+    }
+    println!("    took part: {} modes, {} places", found.poles.len(), found.records.len());
 }
 
 fn show(label: &str, ours: Duration, answer: &serde_json::Value) {

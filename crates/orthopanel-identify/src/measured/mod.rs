@@ -16,9 +16,22 @@ mod tests;
 
 use faer::Mat;
 use num_complex::Complex64;
+use orthopanel_data::{Accelerance, Estimation, ImpactTest, MeasurementData, TimeHistory};
 use orthopanel_model::Place;
 
+use crate::IdentifyError;
+
 /// Poles, residues and remainders of a set of records of one piece, with their covariance.
+///
+/// The poles are those of a joint fit: $\omega_m$ and $\zeta_m$ in common, everything linear projected out record by record (variable projection:
+/// Golub and Pereyra, SIAM J. Numer. Anal. 10, 1973; Kaufman, BIT 15, 1975). Hits are not windowed: what the end of a record cuts off a
+/// vibration that rings on is part of the fit. A pole is kept where it lowers the misfit by more than the logarithm of the number of data
+/// for each of its parameters (Schwarz, Ann. Stat. 6, 1978).
+///
+/// # Limits
+/// Modes much closer than their half-width are told apart by several places alone. A panel whose frequencies change from hit to hit, or whose force is not
+/// linear, shows a `chi_square` far above one, and its poles are no modes. The covariance holds the noise of the data, not what hits fall beside their
+/// marks or records differ in gain.
 ///
 /// With $R$ records and $M$ modes the accelerance of record $r$ is
 /// $$H_r(s) = \sum_{m=1}^{M}\left(\frac{q_{rm}}{s-\lambda_m} + \frac{\bar q_{rm}}{s-\bar\lambda_m}\right) + B_r(s),\qquad
@@ -27,15 +40,16 @@ use orthopanel_model::Place;
 /// the band. It is known as values at [`MeasuredModes::remainder_frequencies`], $s = 2\pi jf$, never as coefficients:
 /// these are strongly correlated, the values are not.
 #[derive(Debug, Clone)]
-pub(crate) struct MeasuredModes {
+pub struct MeasuredModes {
+    /// Index of the piece in the test, from 0.
+    pub piece: usize,
     /// The poles, rising in frequency.
     pub poles: Vec<Pole>,
     /// One entry a record; empty where only frequencies were measured.
     pub records: Vec<MeasuredRecord>,
     /// Where the remainders are given \[Hz\], rising.
     pub remainder_frequencies: Vec<f64>,
-    /// Lowest and highest frequency of the records \[Hz\]: no mode between them that the places can show is missing from `poles` by
-    /// being outside.
+    /// Lowest and highest frequency that was fitted \[Hz\].
     pub band: [f64; 2],
     /// Covariance of [`MeasuredModes::values`]: symmetric, in the same order.
     pub covariance: Mat<f64>,
@@ -45,7 +59,7 @@ pub(crate) struct MeasuredModes {
 
 /// A pole common to all records.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Pole {
+pub struct Pole {
     /// Undamped natural angular frequency $\omega_m$ \[rad/s\].
     pub angular_frequency: f64,
     /// Damping ratio $\zeta_m$; `None` where only frequencies were measured.
@@ -54,7 +68,7 @@ pub(crate) struct Pole {
 
 /// What one record, a pair of places, shows of the modes.
 #[derive(Debug, Clone)]
-pub(crate) struct MeasuredRecord {
+pub struct MeasuredRecord {
     /// Where the force acts.
     pub force_at: Place,
     /// Where the acceleration is measured.
@@ -65,9 +79,69 @@ pub(crate) struct MeasuredRecord {
     pub remainder: Vec<Complex64>,
 }
 
+/// Measures the modes of every piece of a test: one entry for all hits of a piece, one for all its accelerances, and one a list of
+/// frequencies.
+///
+/// ```
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/made-hits");
+/// let test = orthopanel_data::ImpactTest::read(folder)?;
+/// let measured = &orthopanel_identify::measured_modes(&test)?[0];
+/// let first = measured.poles[0].angular_frequency / std::f64::consts::TAU;
+/// // What the records were made with.
+/// assert!((first - 320.8776).abs() < 0.01, "{first} Hz");
+/// # Ok(())
+/// # }
+/// ```
+///
+/// # Errors
+/// [`IdentifyError::Data`] where records cannot be read or no hit is usable, [`IdentifyError::TooFewResonances`] where they show none.
+pub fn measured_modes(test: &ImpactTest) -> Result<Vec<MeasuredModes>, IdentifyError> {
+    let histories = test.time_histories()?;
+    let mut measured = Vec::new();
+    for piece in 0..test.pieces.len() {
+        let of_piece: Vec<TimeHistory> =
+            histories.iter().filter(|(of, _)| *of == piece).map(|(_, history)| history.clone()).collect();
+        if !of_piece.is_empty() {
+            measured.push(of_hits(piece, &of_piece)?);
+        }
+        let files = test.measurements.iter().filter(|measurement| measurement.piece == piece);
+        let mut accelerances = Vec::new();
+        for measurement in files {
+            match &measurement.data {
+                MeasurementData::Accelerance(recorded) => accelerances.push(Accelerance::read(recorded)?),
+                MeasurementData::NaturalFrequencies(list) => measured.push(MeasuredModes::of_frequencies(piece, list)),
+                MeasurementData::TimeHistory(_) => {}
+            }
+        }
+        if !accelerances.is_empty() {
+            measured.push(MeasuredModes::of_accelerances(piece, &accelerances).ok_or_else(no_resonance)?);
+        }
+    }
+    Ok(measured)
+}
+
+/// Of the hits that are sound, up to where the force has fallen too far.
+fn of_hits(piece: usize, histories: &[TimeHistory]) -> Result<MeasuredModes, IdentifyError> {
+    let estimation = Estimation { force_drop: FORCE_DROP, ..Estimation::default() };
+    let judged = histories.iter().map(|history| Ok((history, history.accelerance(estimation)?)));
+    let judged = judged.collect::<Result<Vec<_>, IdentifyError>>()?;
+    let ends = judged.iter().filter_map(|(_, accelerance)| accelerance.frequency.last().copied());
+    let highest = ends.fold(f64::INFINITY, f64::min);
+    let sound: Vec<TimeHistory> = judged.iter().map(|(history, accelerance)| history.kept_in(accelerance)).collect();
+    MeasuredModes::of_hits(piece, &sound, highest).ok_or_else(no_resonance)
+}
+
+/// The band ends where the force has fallen by this much \[dB\].
+const FORCE_DROP: f64 = 20.0;
+
+fn no_resonance() -> IdentifyError {
+    IdentifyError::TooFewResonances { found: 0, needed: 1, noise_percent: None }
+}
+
 impl Pole {
     /// $\lambda = \omega(-\zeta + j\sqrt{1-\zeta^2})$ \[rad/s\]; undamped where the damping is not known.
-    pub(crate) fn lambda(&self) -> Complex64 {
+    pub fn lambda(&self) -> Complex64 {
         let zeta = self.damping_ratio.unwrap_or(0.0);
         self.angular_frequency * Complex64::new(-zeta, (1.0 - zeta * zeta).sqrt())
     }
@@ -76,7 +150,7 @@ impl Pole {
 impl MeasuredModes {
     /// All measured values in the order of the covariance: $\ln\omega_m$ of every pole; $\ln\zeta_m$ of every pole that tells it; then
     /// record by record the real and the imaginary part of each residue in turn, and of each value of the remainder.
-    pub(crate) fn values(&self) -> Vec<f64> {
+    pub fn values(&self) -> Vec<f64> {
         let frequencies = self.poles.iter().map(|pole| pole.angular_frequency.ln());
         let damping = self.poles.iter().filter_map(|pole| pole.damping_ratio.map(f64::ln));
         let parts = |value: &Complex64| [value.re, value.im];

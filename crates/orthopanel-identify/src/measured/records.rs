@@ -31,32 +31,32 @@ const HIGHEST_REMAINDER: f64 = 400.0;
 
 impl MeasuredModes {
     /// From the hits of all pairs of places of one piece, up to a frequency \[Hz\]; `None` where they show no resonance.
-    pub(crate) fn of_hits(histories: &[TimeHistory], highest: f64) -> Option<Self> {
+    pub(super) fn of_hits(piece: usize, histories: &[TimeHistory], highest: f64) -> Option<Self> {
         let rate = histories.iter().map(|history| history.rate).fold(f64::INFINITY, f64::min);
         let duration = |history: &TimeHistory| history.hits.first().map_or(0.0, |hit| hit.force.len() as f64) / history.rate;
         let shortest = histories.iter().map(duration).fold(f64::INFINITY, f64::min);
         let band = [LOWEST.max(LEAST_PERIODS / shortest), highest.min(FLAT * rate)];
         let records: Vec<RecordLines> =
             histories.par_iter().map(|history| RecordLines::of_hits(history, band)).collect();
-        Self::of_lines(&records, band)
+        Self::of_lines(piece, &records, band)
     }
 
-    /// From accelerances of all pairs of places of one piece; `None` where they show no resonance.
-    pub(crate) fn of_accelerances(accelerances: &[Accelerance], highest: f64) -> Option<Self> {
+    /// From accelerances of all pairs of places of one piece on the lines that all have; `None` where they show no resonance.
+    pub(super) fn of_accelerances(piece: usize, accelerances: &[Accelerance]) -> Option<Self> {
         let ends = |of: &Accelerance| of.frequency.first().copied().zip(of.frequency.last().copied());
         let told = || accelerances.iter().filter_map(ends);
         let band = [
             told().map(|(first, _)| first).fold(LOWEST, f64::max),
-            told().map(|(_, last)| last).fold(highest, f64::min),
+            told().map(|(_, last)| last).fold(f64::INFINITY, f64::min),
         ];
         let records: Vec<RecordLines> =
             accelerances.iter().map(|accelerance| RecordLines::of_accelerance(accelerance, band)).collect();
-        Self::of_lines(&records, band)
+        Self::of_lines(piece, &records, band)
     }
 
-    fn of_lines(records: &[RecordLines], band: [f64; 2]) -> Option<Self> {
+    fn of_lines(piece: usize, records: &[RecordLines], band: [f64; 2]) -> Option<Self> {
         let found = poles(records)?;
-        Some(told(records, &found, band))
+        Some(told(piece, records, &found, band))
     }
 }
 
@@ -76,7 +76,7 @@ fn inside(found: &Found, scale: f64, band: [f64; 2]) -> (Vec<usize>, DMatrix<f64
 }
 
 /// The fit in the terms of [`MeasuredModes`]; the poles that do not stand by themselves go to the remainders.
-fn told(records: &[RecordLines], found: &Found, band: [f64; 2]) -> MeasuredModes {
+fn told(piece: usize, records: &[RecordLines], found: &Found, band: [f64; 2]) -> MeasuredModes {
     let fit = ModalFit::new(records, &found.poles);
     let chi_square = found.fitted.misfit / found.freedom;
     let scale = chi_square.max(f64::MIN_POSITIVE);
@@ -153,6 +153,7 @@ fn told(records: &[RecordLines], found: &Found, band: [f64; 2]) -> MeasuredModes
         damping_ratio: Some(found.poles[pole][1].exp()),
     };
     MeasuredModes {
+        piece,
         poles: kept.iter().map(pole).collect(),
         records: measured,
         remainder_frequencies,

@@ -118,7 +118,7 @@ fn ringing() -> Made {
 #[test]
 fn val_records_that_ring_on_at_their_end_give_their_poles_and_residues() {
     let made = ringing();
-    let measured = MeasuredModes::of_hits(&made.histories(2, 1e-7, 1), 4000.0).expect("resonances");
+    let measured = MeasuredModes::of_hits(0, &made.histories(2, 1e-7, 1), 4000.0).expect("resonances");
     assert_eq!(measured.poles.len(), 3, "{:?}", measured.poles);
     for (m, (found, expected)) in measured.poles.iter().zip(&made.poles).enumerate() {
         let apart = (found.lambda() - expected).norm() / expected.norm();
@@ -134,7 +134,7 @@ fn val_records_that_ring_on_at_their_end_give_their_poles_and_residues() {
 #[test]
 fn val_two_close_modes_are_told_apart_by_the_places() {
     let made = Made::new(&[(500.0, 4e-3), (501.2, 4e-3), (900.0, 3e-3)], &[&[0.8, 0.5, 0.4], &[0.7, -0.6, 0.5]]);
-    let measured = MeasuredModes::of_hits(&made.histories(3, 1e-3, 5), 3000.0).expect("resonances");
+    let measured = MeasuredModes::of_hits(0, &made.histories(3, 1e-3, 5), 3000.0).expect("resonances");
     assert_eq!(measured.poles.len(), 3, "{:?}", measured.poles);
     for (found, expected) in measured.poles.iter().zip(&made.poles) {
         assert!((found.angular_frequency / expected.norm() - 1.0).abs() < 1e-4, "{found:?} {expected}");
@@ -148,7 +148,7 @@ fn val_errors_are_those_that_the_covariance_states() {
     let draws = 8;
     let (mut squares, mut count, mut misfits) = (0.0, 0, 0.0);
     for seed in 0..draws {
-        let measured = MeasuredModes::of_hits(&made.histories(3, 3e-3, 100 + seed), 4000.0).expect("resonances");
+        let measured = MeasuredModes::of_hits(0, &made.histories(3, 3e-3, 100 + seed), 4000.0).expect("resonances");
         assert_eq!(measured.poles.len(), 3);
         misfits += measured.chi_square.expect("a fit") / draws as f64;
         let values = measured.values();
