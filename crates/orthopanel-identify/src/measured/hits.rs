@@ -51,8 +51,7 @@ impl RecordLines {
             weight.push((2.0 * power).sqrt());
             let told: f64 = hits.iter().map(|hit| hit.force[k].norm_sqr() / hit.force_noise).sum();
             force_noise.push(told.recip());
-            let shares: Vec<Complex64> =
-                hits.iter().map(|hit| hit.force[k].conj() / (variance(hit) * power)).collect();
+            let shares: Vec<Complex64> = hits.iter().map(|hit| hit.force[k].conj() / (variance(hit) * power)).collect();
             hits.iter_mut().zip(shares).for_each(|(hit, share)| hit.truncated.share.push(share));
         }
         Self {
@@ -61,11 +60,7 @@ impl RecordLines {
             s,
             value,
             weight,
-            truncations: Some(Truncations {
-                step,
-                back,
-                hits: hits.into_iter().map(|hit| hit.truncated).collect(),
-            }),
+            truncations: Some(Truncations { step, back, hits: hits.into_iter().map(|hit| hit.truncated).collect() }),
             force_noise,
         }
     }
@@ -97,9 +92,12 @@ impl HitSpectra {
         let blow = || (0..samples).filter(|&n| windows[n] > 0.0);
         let beside = (0..samples).filter(|&n| windows[n] == 0.0).map(|n| hit.force[n] - offset);
         let motion = transform(hit.acceleration.clone(), lines.clone(), step);
-        // Second differences of a smooth spectrum are noise: 1 + 4 + 1 times its variance, exponentially distributed.
-        let bends = motion.windows(3).map(|w| (w[2] - 2.0 * w[1] + w[0]).norm_sqr());
-        let motion_noise = (median(bends) / (6.0 * LN_2)).max(f64::MIN_POSITIVE);
+        // Counted from the blow the spectrum is smooth beside its peaks, and fourth differences of it are noise: 1 + 16 + 36 + 16 + 1 times its
+        // variance, exponentially distributed.
+        let turn = |line: usize| Complex64::from_polar(1.0, TAU * ((line * peak) % samples) as f64 / samples as f64);
+        let turned: Vec<Complex64> = motion.iter().zip(lines.clone()).map(|(a, line)| a * turn(line)).collect();
+        let bends = turned.windows(5).map(|w| (w[0] + w[4] - 4.0 * (w[1] + w[3]) + 6.0 * w[2]).norm_sqr());
+        let motion_noise = (median(bends) / (70.0 * LN_2)).max(f64::MIN_POSITIVE);
         // The median of |noise| is 0.6745 standard deviations.
         let deviation = median(beside.map(f64::abs)) / 0.674_49;
         let windowed: f64 = windows.iter().map(|w| w * w).sum();

@@ -51,12 +51,7 @@ impl LineGroups {
     }
 
     /// Writes what is kept of a complex function of the lines, real parts first.
-    pub(super) fn project(
-        &self,
-        weight: &[f64],
-        mut column: MatMut<'_, f64>,
-        of_line: impl Fn(usize) -> Complex64,
-    ) {
+    pub(super) fn project(&self, weight: &[f64], mut column: MatMut<'_, f64>, of_line: impl Fn(usize) -> Complex64) {
         let (mut row, half) = (0, self.rows / 2);
         let mut write = |value: Complex64| {
             column[(row, 0)] = value.re;

@@ -116,8 +116,13 @@ impl<'a> ModalFit<'a> {
     /// Solves for everything linear at these poles; `None` where the columns depend on each other.
     pub(super) fn at(&self, poles: &[[f64; 2]]) -> Option<Fitted> {
         let lambdas: Vec<[Complex64; 3]> = poles.iter().map(|pole| lambda(*pole)).collect();
-        let solved: Vec<(f64, FittedRecord)> =
-            self.records.par_iter().zip(&self.groups).zip(&self.known).map(|of| self.record(of, &lambdas)).collect::<Option<_>>()?;
+        let solved: Vec<(f64, FittedRecord)> = self
+            .records
+            .par_iter()
+            .zip(&self.groups)
+            .zip(&self.known)
+            .map(|of| self.record(of, &lambdas))
+            .collect::<Option<_>>()?;
         let size = 2 * poles.len();
         let mut fitted = Fitted {
             misfit: 0.0,
@@ -178,8 +183,8 @@ impl<'a> ModalFit<'a> {
         let against = Mat::from_fn(linear, derivatives + 1, |i, j| product(i, linear + j) / scale[i]);
         let solved = factor.solve(&against);
         let scaled = solved.col(derivatives);
-        let misfit = product(width - 1, width - 1)
-            - (0..linear).map(|i| against[(i, derivatives)] * scaled[i]).sum::<f64>();
+        let misfit =
+            product(width - 1, width - 1) - (0..linear).map(|i| against[(i, derivatives)] * scaled[i]).sum::<f64>();
         let coefficients: Vec<f64> = (0..linear).map(|i| scaled[i] / scale[i]).collect();
         // $D^TD$ and $D^Tx$ across $A$.
         let across = |i: usize, j: usize| {
@@ -227,7 +232,8 @@ impl<'a> ModalFit<'a> {
         }
         let problem = Projected { fit: self, poles: start, fitted: Some(fitted) };
         let patience = (evaluations / (size + 1)).max(1);
-        let solver = LevenbergMarquardt::new().with_patience(patience).with_ftol(1e-10).with_xtol(1e-10).with_stepbound(0.1);
+        let solver =
+            LevenbergMarquardt::new().with_patience(patience).with_ftol(1e-10).with_xtol(1e-10).with_stepbound(0.1);
         let (Projected { poles, fitted, .. }, _) = solver.minimize(problem);
         Some((poles, fitted?))
     }

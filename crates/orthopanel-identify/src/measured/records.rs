@@ -33,7 +33,8 @@ impl MeasuredModes {
     /// From the hits of all pairs of places of one piece, up to a frequency \[Hz\]; `None` where they show no resonance.
     pub(super) fn of_hits(piece: usize, histories: &[TimeHistory], highest: f64) -> Option<Self> {
         let rate = histories.iter().map(|history| history.rate).fold(f64::INFINITY, f64::min);
-        let duration = |history: &TimeHistory| history.hits.first().map_or(0.0, |hit| hit.force.len() as f64) / history.rate;
+        let duration =
+            |history: &TimeHistory| history.hits.first().map_or(0.0, |hit| hit.force.len() as f64) / history.rate;
         let shortest = histories.iter().map(duration).fold(f64::INFINITY, f64::min);
         let band = [LOWEST.max(LEAST_PERIODS / shortest), highest.min(FLAT * rate)];
         let records: Vec<RecordLines> =
@@ -137,7 +138,8 @@ fn told(piece: usize, records: &[RecordLines], found: &Found, band: [f64; 2]) ->
         }
         let residues: Vec<Complex64> = kept.iter().map(|pole| fitted.residue(*pole)).collect();
         let values: Vec<Complex64> = residues.iter().chain(&remainder).copied().collect();
-        let frequencies = kept.iter().map(|pole| found.poles[*pole][0].exp() / TAU).chain(remainder_frequencies.iter().copied());
+        let frequencies =
+            kept.iter().map(|pole| found.poles[*pole][0].exp() / TAU).chain(remainder_frequencies.iter().copied());
         // The noise of a windowed force runs smoothly over a resonance: it moves a whole residue.
         for (place, (frequency, value)) in frequencies.zip(values).enumerate() {
             let variance = 0.5 * record.force_noise_at(frequency) * value.norm_sqr();

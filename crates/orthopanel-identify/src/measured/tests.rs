@@ -72,9 +72,8 @@ impl Made {
             let modal: f64 = state.iter().zip(&self.residues[record]).map(|(y, q)| 2.0 * (q * y).re).sum();
             hit.acceleration.push(modal + self.direct * force(t));
             for (lambda, y) in self.poles.iter().zip(&mut state) {
-                let driven = |(u, weight): &(f64, f64)| {
-                    weight * step * force(t + u * step) * (lambda * (1.0 - u) * step).exp()
-                };
+                let driven =
+                    |(u, weight): &(f64, f64)| weight * step * force(t + u * step) * (lambda * (1.0 - u) * step).exp();
                 *y = *y * (lambda * step).exp() + GAUSS.iter().map(driven).sum::<Complex64>();
             }
         }
@@ -107,10 +106,7 @@ impl Made {
 
 /// Three modes of which the first rings on when the record ends, seen in two records.
 fn ringing() -> Made {
-    Made::new(
-        &[(180.0, 4e-4), (430.0, 2e-3), (1210.0, 5e-3)],
-        &[&[0.8, -0.5, 0.3], &[-0.4, 0.7, 0.6]],
-    )
+    Made::new(&[(180.0, 4e-4), (430.0, 2e-3), (1210.0, 5e-3)], &[&[0.8, -0.5, 0.3], &[-0.4, 0.7, 0.6]])
 }
 
 /// Without noise the poles and residues come back to many digits although the records are cut off while the first mode
