@@ -156,7 +156,7 @@ pub(crate) unsafe fn array<'a, T>(pointer: *const T, count: usize, what: &'stati
 /// An array that the importer wants filled.
 ///
 /// # Safety
-/// As [`array`], and nothing else refers to the entries.
+/// As [`array()`], and nothing else refers to the entries.
 pub(crate) unsafe fn array_mut<'a, T>(
     pointer: *mut T,
     count: usize,

@@ -34,7 +34,7 @@ pub fn print(text: &str) -> Result<(), CommandError> {
 /// Prints one JSON object on standard output.
 ///
 /// # Errors
-/// As [`print`].
+/// As [`print()`].
 pub fn print_json(value: &impl Serialize) -> Result<(), CommandError> {
     print(&json::line(value))
 }
@@ -42,7 +42,7 @@ pub fn print_json(value: &impl Serialize) -> Result<(), CommandError> {
 /// Prints what clap answers to `--help` and `--version`, in its colours.
 ///
 /// # Errors
-/// As [`print`].
+/// As [`print()`].
 pub fn print_help(answer: &clap::Error) -> Result<(), CommandError> {
     whole(answer.print())
 }

@@ -34,7 +34,7 @@ impl RecordLines {
         };
         for (line, (&frequency, &value)) in accelerance.frequency.iter().zip(&accelerance.value).enumerate() {
             let weight = (2.0 / variance(line, value.norm_sqr())).sqrt();
-            if !(band[0]..=band[1]).contains(&frequency) || !(weight.is_finite() && weight > 0.0) {
+            if !((band[0]..=band[1]).contains(&frequency) && weight.is_finite() && weight > 0.0) {
                 continue;
             }
             lines.s.push(Complex64::new(accelerance.decay_rate, std::f64::consts::TAU * frequency));

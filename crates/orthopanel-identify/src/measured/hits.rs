@@ -103,7 +103,7 @@ impl HitSpectra {
         let windowed: f64 = windows.iter().map(|w| w * w).sum();
         let truncated = TruncatedHit {
             impulse: blow().map(|n| force[n] * step).collect(),
-            left: blow().last().map_or(0.0, |last| (samples - last) as f64 * step),
+            left: blow().next_back().map_or(0.0, |last| (samples - last) as f64 * step),
             share: Vec::with_capacity(lines.len()),
         };
         let force_noise = (deviation * step).powi(2) * windowed;

@@ -99,9 +99,9 @@ fn taken_up(records: &[RecordLines], left: &[Vec<Complex64>], pole: [f64; 2]) ->
         let [from, to] = [lines(lambda.im - near), lines(lambda.im + near)];
         // Of $\mathrm{Re}$ and $\mathrm{Im}$ of the residue together: a complex least squares with the pole alone.
         let (mut cross, mut square) = (Complex64::ZERO, f64::MIN_POSITIVE);
-        for k in from..to {
-            let column = record.weight[k] * (record.s[k] - lambda).inv();
-            cross += column.conj() * left[k];
+        for ((s, weight), left) in record.s.iter().zip(&record.weight).zip(left).take(to).skip(from) {
+            let column = *weight * (s - lambda).inv();
+            cross += column.conj() * left;
             square += column.norm_sqr();
         }
         cross.norm_sqr() / square
