@@ -1,14 +1,12 @@
 //! Channels: paired, put right by declared unit and direction, or refused.
 
-mod support;
-
-use orthopanel_data::{
-    Accelerance, AccelerationUnit, Direction, Estimation, Hit, RecordFile, RecordedResponse, TimeHistory,
-};
-use support::{
+use crate::support::{
     Dataset,
     hammer::{Noise, RATE},
     recorded::{DAMPED, good, history, measurement, pair},
+};
+use orthopanel_data::{
+    Accelerance, AccelerationUnit, Direction, Estimation, Hit, RecordFile, RecordedResponse, TimeHistory,
 };
 
 #[test]

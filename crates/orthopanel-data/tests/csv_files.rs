@@ -1,10 +1,8 @@
 //! CSV of time histories and accelerances.
 
-mod support;
-
+use crate::support::recorded::measurement;
 use num_complex::Complex64;
 use orthopanel_data::{RecordFile, RecordKind, Samples, TimeHistory};
-use support::recorded::measurement;
 
 fn read(text: &str) -> Result<RecordFile, String> {
     RecordFile::from_bytes(text.as_bytes(), "a.csv").map_err(|error| error.to_string())

@@ -1,10 +1,8 @@
 //! Noise of the force's channel: a window over the blow, what the noise makes too low, and how it ties lines together.
 
-mod support;
-
+use crate::support::hammer::{Noise, Resonator, history};
 use num_complex::Complex64;
 use orthopanel_data::{Accelerance, DataError, Estimation, Hit, Window};
-use support::hammer::{Noise, Resonator, history};
 
 const DAMPED: Resonator = Resonator { radius: 0.9, angle: 0.5 };
 const AS_NEEDED: Estimation =

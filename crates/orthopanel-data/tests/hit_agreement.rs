@@ -1,9 +1,7 @@
 //! Hits of one place that do not agree: one alone is left out, two groups are refused, two hits are told.
 
-mod support;
-
+use crate::support::hammer::{Noise, Resonator, history};
 use orthopanel_data::{Estimation, Hit, HitVerdict, TimeHistory};
-use support::hammer::{Noise, Resonator, history};
 
 const PIECE: Resonator = Resonator { radius: 0.97, angle: 0.5 };
 const ELSEWHERE: Resonator = Resonator { radius: 0.97, angle: 2.2 };

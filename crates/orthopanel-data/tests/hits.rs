@@ -1,12 +1,10 @@
 //! Faults of hits, each found.
 
-mod support;
-
-use orthopanel_data::{Channel, Hit, HitFault, RecordFile, TimeHistory};
-use support::{
+use crate::support::{
     hammer::{Noise, RATE, Resonator},
     recorded::{DAMPED, good, measurement},
 };
+use orthopanel_data::{Channel, Hit, HitFault, RecordFile, TimeHistory};
 
 #[test]
 fn val_a_good_hit_has_no_fault() {
@@ -146,7 +144,7 @@ fn val_a_hit_just_above_its_noise_is_weighed_not_left_out() {
         Noise(seed).over(&hit, 0.002, 0.01)
     };
     let hits = vec![part(1.0, 1), part(0.001, 2), part(1.0, 3)];
-    let found = support::hammer::history(hits).accelerance(orthopanel_data::Estimation::default()).unwrap();
+    let found = crate::support::hammer::history(hits).accelerance(orthopanel_data::Estimation::default()).unwrap();
     assert_eq!((found.hits, found.notes.len()), (3, 0), "{:?}", found.notes);
 }
 

@@ -1,11 +1,9 @@
 //! What files may hold at most, and that reading them takes no longer than their length.
 
-mod support;
-
 use std::time::{Duration, Instant};
 
+use crate::support::Dataset;
 use orthopanel_data::{DataError, ImpactTest, RecordFile, limits};
-use support::Dataset;
 
 const PIECE: &str = "length = 0.8\nwidth = 0.1\nthickness = 0.03\nmass_per_area = 6.88\n";
 

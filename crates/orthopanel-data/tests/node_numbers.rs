@@ -1,11 +1,9 @@
 //! Node numbers of universal files against the places of the test file.
 
-mod support;
-
 use std::{fs, path::Path};
 
+use crate::support::Dataset;
 use orthopanel_data::{DataError, Estimation, ImpactTest};
-use support::Dataset;
 
 /// One file: hammer's and sensor's node, and the places that the test file gives.
 type Numbered = ([i64; 2], [f64; 2]);

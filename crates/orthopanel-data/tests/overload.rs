@@ -1,9 +1,7 @@
 //! A channel cut off at the end of its range, told from crests that are flat or meet by chance.
 
-mod support;
-
+use crate::support::hammer::{Noise, RATE, Resonator, history};
 use orthopanel_data::{Channel, Estimation, Hit, HitFault};
-use support::hammer::{Noise, RATE, Resonator, history};
 
 const DAMPED: Resonator = Resonator { radius: 0.9, angle: 0.5 };
 

@@ -1,12 +1,10 @@
 //! Accelerances that a file holds already: their unit, coherence and variance.
 
-mod support;
-
-use orthopanel_data::{Accelerance, RecordFile, RecordedResponse};
-use support::{
+use crate::support::{
     Dataset,
     recorded::{measurement, pair, records},
 };
+use orthopanel_data::{Accelerance, RecordFile, RecordedResponse};
 
 fn response(points: usize) -> Dataset {
     Dataset {
@@ -80,7 +78,7 @@ fn val_what_is_no_single_accelerance_is_refused() {
 
 #[test]
 fn val_the_measured_beam_is_read() {
-    let Some(path) = support::measured("free_beam/test.toml") else { return };
+    let Some(path) = crate::support::measured("free_beam/test.toml") else { return };
     let test = orthopanel_data::ImpactTest::read(path).unwrap();
     for measurement in &test.measurements {
         let orthopanel_data::MeasurementData::Accelerance(recorded) = &measurement.data else { panic!("another kind") };

@@ -1,10 +1,8 @@
 //! Hits to accelerance: against a closed form, against pyFRF, and its variance against repetition.
 
-mod support;
-
+use crate::support::hammer::{Noise, Resonator, deviation, history};
 use num_complex::Complex64;
 use orthopanel_data::{Estimation, Estimator, Hit, ImpactTest, MeasurementData, TimeHistory, Window};
-use support::hammer::{Noise, Resonator, deviation, history};
 
 const DAMPED: Resonator = Resonator { radius: 0.9, angle: 0.5 };
 const ALL_LINES: Estimation = Estimation { window: Window::None, estimator: Estimator::H1, force_drop: f64::INFINITY };
@@ -169,7 +167,7 @@ fn val_settings_without_sense_are_refused() {
 /// The measured hits, and pyFRF run on them: same H1, same coherence.
 #[test]
 fn val_measured_hits_agree_with_pyfrf() {
-    let Some(path) = support::measured("hammer_hits/hits.uff") else { return };
+    let Some(path) = crate::support::measured("hammer_hits/hits.uff") else { return };
     let folder = tempfile::tempdir().unwrap();
     let test = folder.path().join("test.toml");
     std::fs::write(&test, format!(
@@ -183,7 +181,7 @@ fn val_measured_hits_agree_with_pyfrf() {
     assert_eq!(found.hits, 5, "{:?}", found.notes);
     assert!(found.notes.iter().any(|note| note.contains("not decayed")), "{:?}", found.notes);
 
-    let Some(lines) = support::python("h1_with_pyfrf.py", "pyFRF", &[&path]) else { return };
+    let Some(lines) = crate::support::python("h1_with_pyfrf.py", "pyFRF", &[&path]) else { return };
     let lines: Vec<Vec<f64>> =
         lines.lines().map(|line| line.split(' ').map(|text| text.parse().unwrap()).collect()).collect();
     assert_eq!(lines.len(), found.value.len());

@@ -1,7 +1,5 @@
 //! The test file: what it means, and one clear message for each way to get it wrong.
 
-mod support;
-
 use orthopanel_data::{AccelerationUnit, DataError, Direction, ImpactTest, MeasurementData, Position};
 use orthopanel_model::{Boundary, End, Place, StructureKind};
 use proptest::prelude::*;
@@ -297,7 +295,7 @@ fn val_files_that_cannot_be_read_are_named() {
 
 #[test]
 fn val_real_test_files_are_read() {
-    let Some(path) = support::measured("free_beam/test.toml") else { return };
+    let Some(path) = crate::support::measured("free_beam/test.toml") else { return };
     assert_eq!(ImpactTest::read(path).unwrap().measurements.len(), 9);
 }
 

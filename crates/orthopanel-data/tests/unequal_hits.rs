@@ -1,9 +1,7 @@
 //! Hits of unequal strength, the hard ones noisier or not: the variance that they state against the error they make.
 
-mod support;
-
+use crate::support::hammer::{Noise, Resonator, history};
 use orthopanel_data::{Estimation, Estimator, Hit, Window};
-use support::hammer::{Noise, Resonator, history};
 
 const DAMPED: Resonator = Resonator { radius: 0.9, angle: 0.5 };
 const ALL_LINES: Estimation = Estimation { window: Window::None, estimator: Estimator::H1, force_drop: f64::INFINITY };

@@ -1,10 +1,8 @@
 //! Universal files as they are met in the wild: every layout, and every known way to write one wrong.
 
-mod support;
-
+use crate::support::Dataset;
 use num_complex::Complex64;
 use orthopanel_data::{DataError, Record, RecordFile, RecordKind, Samples};
-use support::Dataset;
 
 const VALUES: [f64; 5] = [1.5, -0.25, 3.0e-7, -1.0, 123456.0];
 
@@ -300,7 +298,7 @@ fn replace(bytes: &[u8], from: &[u8], to: &[u8]) -> Vec<u8> {
 #[test]
 fn val_pyuff_files_are_read() {
     let folder = tempfile::tempdir().unwrap();
-    let Some(listing) = support::python("write_with_pyuff.py", "pyuff", &[folder.path()]) else { return };
+    let Some(listing) = crate::support::python("write_with_pyuff.py", "pyuff", &[folder.path()]) else { return };
     let mut files = 0;
     for line in listing.lines() {
         let record =
@@ -329,13 +327,13 @@ fn val_pyuff_files_are_read() {
 
 #[test]
 fn val_measured_files_are_read() {
-    if let Some(path) = support::measured("free_beam/point-0.uff") {
+    if let Some(path) = crate::support::measured("free_beam/point-0.uff") {
         let file = RecordFile::read(path).unwrap();
         let record = &file.records[0];
         assert_eq!((record.ordinate.len(), record.kind), (50945, RecordKind::FrequencyResponse));
         assert_eq!(record.abscissa[50944], 1000.0);
     }
-    if let Some(path) = support::measured("hammer_hits/hits.uff") {
+    if let Some(path) = crate::support::measured("hammer_hits/hits.uff") {
         let file = RecordFile::read(path).unwrap();
         assert_eq!((file.records.len(), file.records[9].ordinate.len()), (10, 25600));
         assert!(file.notes.is_empty(), "{:?}", file.notes);

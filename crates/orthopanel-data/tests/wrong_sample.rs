@@ -1,9 +1,7 @@
 //! A single wrong sample, lost or cut off, found by what it leaves at half the rate; and hits without such a fault.
 
-mod support;
-
+use crate::support::hammer::{Noise, RATE, Resonator};
 use orthopanel_data::{Channel, Hit, HitFault};
-use support::hammer::{Noise, RATE, Resonator};
 
 /// Two slow resonances: what an anti-alias filter would let pass.
 fn hit(seed: u64) -> Hit {

@@ -9,9 +9,7 @@ use std::sync::Barrier;
 use orthopanel_fmu::{RESOURCE_FILE, Resource, content_token};
 use orthopanel_model::{ModeRange, PanelModel, Place, Ports};
 
-mod c_functions;
-
-use c_functions::*;
+use crate::c_functions::*;
 
 /// The panel on disk, and the references that the test needs.
 struct Fmu {

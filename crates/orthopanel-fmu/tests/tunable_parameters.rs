@@ -8,9 +8,7 @@ use std::ptr::null_mut;
 use orthopanel_fmu::{Quantity, RESOURCE_FILE, Resource, content_token};
 use orthopanel_model::{ModeRange, PanelModel, Place, Ports};
 
-mod c_functions;
-
-use c_functions::*;
+use crate::c_functions::*;
 
 const ERROR: c_int = 3;
 

@@ -9,9 +9,7 @@ use std::sync::Mutex;
 use orthopanel_fmu::{RESOURCE_FILE, Resource, content_token};
 use orthopanel_model::{ModalModel, Mode, Place, Ports};
 
-mod c_functions;
-
-use c_functions::*;
+use crate::c_functions::*;
 
 const DISCARD: c_int = 2;
 const ERROR: c_int = 3;

@@ -2,11 +2,9 @@
 //!
 //! These need Python with numpy, scipy and pyuff, named by `ORTHOPANEL_PYTHON`; without it they say so and pass.
 
-mod support;
-
+use crate::support::hammer_test;
 use orthopanel_data::{Estimation, ImpactTest, Window};
 use orthopanel_identify::{Identification, IdentifyError, Settings, identify};
-use support::hammer_test;
 
 /// One place at 0.3 % noise, with something in the test file written otherwise.
 fn one_place_with(written: &str, instead: &str) -> Option<Result<Identification, IdentifyError>> {

@@ -4,15 +4,13 @@
 //! The clean accelerance comes from `tests/record_generator`, whose physics is its own; the noise is added here. Needs
 //! Python with numpy and scipy, named by `ORTHOPANEL_PYTHON`; without it the test says so and passes.
 
-mod support;
-
 use std::fmt::Write;
 use std::path::Path;
 use std::process::Command;
 
+use crate::support::Normal;
 use orthopanel_data::ImpactTest;
 use orthopanel_identify::{Settings, identify};
-use support::Normal;
 
 const E_X: f64 = 1.067e10;
 const G_ZX: f64 = 5.304e8;

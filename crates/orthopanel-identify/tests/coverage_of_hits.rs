@@ -3,13 +3,11 @@
 //! The clean hits come from `tests/record_generator`, whose physics is its own; white noise is added here to both channels
 //! of each hit. Needs Python with numpy and scipy, named by `ORTHOPANEL_PYTHON`; without it the tests say so and pass.
 
-mod support;
-
 use std::fmt::Write;
 
+use crate::support::{Normal, hammer_test};
 use orthopanel_data::{Estimation, Hit, ImpactTest, Window};
 use orthopanel_identify::{Settings, identify};
-use support::{Normal, hammer_test};
 
 const E_X: f64 = 1.067e10;
 const G_ZX: f64 = 5.304e8;

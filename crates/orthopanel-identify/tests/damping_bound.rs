@@ -3,13 +3,11 @@
 //! Records and bound come from `tests/record_generator`, which shares no code with the crates. Needs Python with numpy and
 //! scipy, named by `ORTHOPANEL_PYTHON`; without it the test says so and passes.
 
-mod support;
-
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use crate::support::hammer_test;
 use orthopanel_identify::{Settings, identify};
-use support::hammer_test;
 
 const ZETAS: [f64; 6] = [2.364e-3, 1.306e-3, 1.108e-3, 2.251e-3, 5.485e-3, 4.488e-3];
 /// Five hits of two seconds, up to beyond mode 6, where no mode has a node.

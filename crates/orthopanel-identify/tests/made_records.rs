@@ -2,11 +2,9 @@
 //!
 //! These need Python with numpy and scipy, named by `ORTHOPANEL_PYTHON`; without it they say so and pass.
 
-mod support;
-
+use crate::support::hammer_test;
 use orthopanel_data::{Estimation, Window};
 use orthopanel_identify::{Identification, PaperWeights, Search, Settings, identify};
-use support::hammer_test;
 
 /// Table 9's constants and damping, which the generator puts in unless told otherwise.
 const E_X: f64 = 1.067e10;

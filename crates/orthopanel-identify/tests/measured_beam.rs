@@ -3,14 +3,12 @@
 //! The folder is not part of the repository: named by `ORTHOPANEL_DATA`, or `../shared/data` beside the root; without
 //! it the test says so and passes.
 
-mod support;
-
 use orthopanel_data::ImpactTest;
 use orthopanel_identify::{Settings, identify};
 
 #[test]
 fn val_free_beam_modes_and_damping() {
-    let Some(path) = support::shared_data("free_beam/test.toml") else { return };
+    let Some(path) = crate::support::shared_data("free_beam/test.toml") else { return };
     let found = identify(&ImpactTest::read(path).unwrap(), Settings::default()).unwrap();
     let modes = &found.pieces[0].modes;
     let published = [111.994, 306.854, 596.367, 974.14];

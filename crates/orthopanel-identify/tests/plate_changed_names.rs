@@ -1,12 +1,10 @@
 //! Lists of a plate's modes in which two lines next to each other have changed their names. `fmpy-checks/test_plate_names.py` changes
 //! every two of a list.
 
-mod support;
-
+use crate::support::plate::{FREE, listed};
 use orthopanel_data::ImpactTest;
 use orthopanel_identify::{Search, identify};
 use orthopanel_model::{Boundary, MindlinPlate, Piece, ritz_modes};
-use support::plate::{FREE, listed};
 
 /// What is said of the list with two names changed: the notes, or the error where no search ends.
 fn told(one: usize, other: usize) -> String {

@@ -1,11 +1,9 @@
 //! Plates with their edges free, pinned and clamped: the modes that a list is held against are those of the plate.
 
-mod support;
-
+use crate::support::plate::TRUTH;
 use orthopanel_data::ImpactTest;
 use orthopanel_identify::{Search, identify};
 use orthopanel_model::{Boundary, End, MindlinPlate, Piece, ritz_modes};
-use support::plate::TRUTH;
 
 const ENDS: [(End, &str); 3] = [(End::Free, "free"), (End::Pinned, "pinned"), (End::Clamped, "clamped")];
 

@@ -1,9 +1,7 @@
 //! Short lists of a plate's frequencies: what they do not show is held and said, never printed as a result.
 
-mod support;
-
+use crate::support::plate::{FREE, TRUTH, listed};
 use orthopanel_identify::{Identification, Search, identify};
-use support::plate::{FREE, TRUTH, listed};
 
 /// The plate of [`FREE`] with all edges pinned, by Navier's series, and clamped, by scikit-fem: modes without nodes along y come first.
 const PINNED: [(f64, [usize; 2]); 5] =

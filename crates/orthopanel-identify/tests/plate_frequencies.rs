@@ -1,10 +1,8 @@
 //! The plate on the paper's own frequencies, and constants that pieces share or have of their own.
 
-mod support;
-
+use crate::support::plate::{FREE, listed};
 use orthopanel_data::ImpactTest;
 use orthopanel_identify::{Identification, IdentifyError, Search, identify};
-use support::plate::{FREE, listed};
 
 /// Measured columns of tables 5 to 8.
 const MEASURED: [&str; 4] = [

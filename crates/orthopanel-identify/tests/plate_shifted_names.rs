@@ -1,12 +1,10 @@
 //! Lists of a plate's modes whose names are shifted by one from a line on, lists with one line that is no mode of the others' plate, and
 //! pieces that differ in a constant: what is said of them.
 
-mod support;
-
+use crate::support::plate::{FREE, TRUTH, listed};
 use orthopanel_data::ImpactTest;
 use orthopanel_identify::{Search, identify};
 use orthopanel_model::{Boundary, MindlinPlate, Piece, ritz_modes};
-use support::plate::{FREE, TRUTH, listed};
 
 /// What is said of a list: the notes, or the refusal.
 fn told(test: &ImpactTest) -> String {

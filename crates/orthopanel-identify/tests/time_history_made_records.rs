@@ -1,7 +1,5 @@
 //! Section 3.5's comparison on hammer records whose truth is known, made by tests/record_generator.
 
-mod support;
-
 use std::path::Path;
 
 use orthopanel_data::{ImpactTest, MeasurementData, TimeHistory};
@@ -10,7 +8,7 @@ use orthopanel_model::{Boundary, ModalModel, ModeRange, PanelModel, StaticFlexib
 
 /// A folder of made records and its truth; prints why and returns `None` where there is no Python for it.
 fn made_records(folder: &Path, arguments: &[&str]) -> Option<serde_json::Value> {
-    support::hammer_test(folder, arguments)?;
+    crate::support::hammer_test(folder, arguments)?;
     Some(serde_json::from_str(&std::fs::read_to_string(folder.join("truth.json")).unwrap()).unwrap())
 }
 

@@ -1,14 +1,12 @@
 //! Tracing in files of accelerances, which hold no hits.
 
-mod support;
-
 use std::fmt::Write as _;
 use std::path::Path;
 
+use crate::support::{made, shared_data};
 use orthopanel_data::{Estimation, ImpactTest, MeasurementData, RecordedResponse};
 use orthopanel_identify::{Settings, TracedEffect, Tracing, Verdict, identify, trace};
 use orthopanel_model::Place;
-use support::{made, shared_data};
 
 fn parameter(effect: &TracedEffect, name: &str) -> Vec<(f64, f64)> {
     let found = effect.parameters.iter().find(|parameter| parameter.name == name).unwrap();

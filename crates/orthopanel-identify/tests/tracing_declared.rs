@@ -3,14 +3,12 @@
 //!
 //! The records come from `tests/blind_tracing`, which shares no code with the crates.
 
-mod support;
-
 use std::path::Path;
 
+use crate::support::made;
 use orthopanel_data::ImpactTest;
 use orthopanel_identify::{Tracing, Verdict, trace};
 use serde_json::Value;
-use support::made;
 
 /// The made test of a set and kind with its effect `id` declared as it was put in, and the truth.
 fn declared(folder: &Path, (set, kind): (&str, &str), id: &str) -> Option<(Tracing, Value)> {

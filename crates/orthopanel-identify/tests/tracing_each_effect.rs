@@ -4,11 +4,9 @@
 //! width-coupling. The records are made by `tests/blind_tracing`, which shares no code with the crates; they need Python with
 //! numpy, scipy and pyuff, named by `ORTHOPANEL_PYTHON`. Without it these tests say so and pass.
 
-mod support;
-
+use crate::support::made_with;
 use orthopanel_identify::{TracedParameter, Verdict, trace};
 use serde_json::Value;
-use support::made_with;
 
 /// Standard deviations within which every parameter lies: one in 370 would lie outside by chance.
 const WITHIN: f64 = 3.0;

@@ -3,15 +3,13 @@
 //! Real: Sousa and Machado, Data in Brief 2024, 110043, by github BalakumaranM/Transformer-based-Structural-Health-
 //! Monitoring-using-Frequency-Response-Function-FRF, commit 3ad1fac0 (MIT). The masses sit at other places in each sample.
 
-mod support;
-
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
+use crate::support::shared_data;
 use orthopanel_data::{Estimation, ImpactTest};
 use orthopanel_identify::{Identification, Settings, Tracing, Verdict, identify, trace};
 use rayon::prelude::*;
-use support::shared_data;
 
 const LENGTH: f64 = 0.38;
 /// Aluminium, since neither material nor width is stated: frequencies tell ratios only.

@@ -64,7 +64,7 @@ impl ModalModel {
     /// A structure does not know its edges: check places with [`Piece::contains`](crate::Piece::contains) first.
     ///
     /// # Errors
-    /// As [`ritz_modes`] and [`ModalModel::new`].
+    /// As [`ritz_modes()`] and [`ModalModel::new`].
     pub fn of_structure(
         structure: &dyn Structure,
         values: &[f64],

@@ -5,9 +5,7 @@ use std::f64::consts::TAU;
 use num_complex::Complex64;
 use orthopanel_model::{CoreModulus, ModalStepper, ModeRange, PanelModel};
 
-mod dressed_beam;
-
-use dressed_beam::{DRESSED, SAME, at, line, lines, text};
+use crate::dressed_beam::{DRESSED, SAME, at, line, lines, text};
 
 fn core(strength: f64, tau: f64, alpha: f64) -> String {
     format!(r#"{{"id":"viscoelastic-core","owner":"panel","strength":{strength},"tau":{tau},"alpha":{alpha}}}"#)

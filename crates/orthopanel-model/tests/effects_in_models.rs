@@ -5,9 +5,7 @@ use std::f64::consts::TAU;
 use num_complex::Complex64;
 use orthopanel_model::{Mode, ModeRange, ModelError, PanelMode, PanelModel};
 
-mod dressed_beam;
-
-use dressed_beam::{DRESSED, SAME, at, line, text};
+use crate::dressed_beam::{DRESSED, SAME, at, line, text};
 
 /// Every natural frequency is a pole of the undamped receptance.
 #[test]

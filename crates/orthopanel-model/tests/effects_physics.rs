@@ -1,10 +1,8 @@
 //! Each effect against an authority: closed forms, transcendental equations, the exact beam, a dense complex solution.
 
-mod effects_bench;
-
 use std::f64::consts::TAU;
 
-use effects_bench::{Bench, CONSTANTS, PIECE, SLENDER, SLENDER_CONSTANTS, SLENDER_TOLERANCE, at};
+use crate::effects_bench::{Bench, CONSTANTS, PIECE, SLENDER, SLENDER_CONSTANTS, SLENDER_TOLERANCE, at};
 use num_complex::Complex64;
 use orthopanel_model::{
     BeamConstants, BeamTerms, Boundary, End, ExactBeam, Piece, ShearLoss, Structure, Support, TimoshenkoBeam,

@@ -1,10 +1,8 @@
 //! What the parameters of a test's roughness mean: no effect of the catalogue, but beside any of them.
 
-mod effects_bench;
-
 use std::f64::consts::{PI, TAU};
 
-use effects_bench::{Bench, CONSTANTS, PIECE};
+use crate::effects_bench::{Bench, CONSTANTS, PIECE};
 use num_complex::Complex64;
 use orthopanel_model::{
     BeamTerms, Boundary, CORE_WAVES, EffectState, ModelError, ShearLoss, TimoshenkoBeam, catalogue, ritz_modes,

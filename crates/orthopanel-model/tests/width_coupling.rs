@@ -1,10 +1,8 @@
 //! The plate in place of the beam under the receptance: against its modes, its own converged sum and the beam.
 
-mod effects_bench;
-
 use std::f64::consts::TAU;
 
-use effects_bench::{Bench, CONSTANTS, PIECE, at};
+use crate::effects_bench::{Bench, CONSTANTS, PIECE, at};
 use num_complex::Complex64;
 use orthopanel_model::{
     Boundary, Damping, EffectState, MindlinPlate, Piece, ReceptanceSetup, RecordSetting, Structure, effect, ritz_modes,

@@ -1,8 +1,6 @@
 //! Bad input: one message that names file, key and what would be right; exit status 2; nothing left behind.
 
-mod support;
-
-use support::{Bench, FORCE, MODEL, PLATE, TEST, changed, refused};
+use crate::support::{Bench, FORCE, MODEL, PLATE, TEST, changed, refused};
 
 /// Every command that reads a test refuses this one.
 fn test_refused(from: &str, to: &str, said: &[&str]) {

@@ -1,8 +1,6 @@
 //! Bad records: one message that names file and line or byte, exit status 2, nothing left behind.
 
-mod support;
-
-use support::{Bench, ROOT, changed, refused};
+use crate::support::{Bench, ROOT, changed, refused};
 
 const PIECE: &str = "[piece]\nlength = 0.8\nwidth = 0.1\nthickness = 0.03\nmass_per_area = 6.88\n";
 

@@ -1,8 +1,6 @@
 //! The commands on good input: numbers, JSON and files.
 
-mod support;
-
-use support::{Bench, number, refused};
+use crate::support::{Bench, number, refused};
 
 /// The paper's table 5, "Calculation".
 const TABLE_5: [f64; 6] = [321.4, 837.6, 1522.5, 2306.1, 3141.7, 4000.4];

@@ -1,8 +1,6 @@
 //! `[[effect]]` in a test file: part of the base model of `identify`, `trace` and `run`.
 
-mod support;
-
-use support::{Bench, number, refused};
+use crate::support::{Bench, number, refused};
 
 /// Natural frequencies of a free beam 1.2 x 0.05 x 0.01 m, 27 kg/m2, E 70 GPa, k'G 26 GPa x 2/3, with 20 g at x = 0.5 m:
 /// by finite elements in Python (200 Timoshenko elements), apart from this program.

@@ -1,11 +1,9 @@
 //! An `.fmu` is a stranger's file: whatever it holds, it is run or refused, within bounds and without running anybody's code unasked.
 
-mod support;
-
 use std::io::{Cursor, Read as _, Write as _};
 use std::process::{Command, Output};
 
-use support::{Bench, changed};
+use crate::support::{Bench, changed};
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipArchive, ZipWriter};
 

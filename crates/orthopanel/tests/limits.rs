@@ -1,8 +1,6 @@
 //! Inputs without end, numbers beyond all sense and names with control characters: refused or harmless, and said.
 
-mod support;
-
-use support::{Bench, FORCE, MODEL, TEST, changed, refused};
+use crate::support::{Bench, FORCE, MODEL, TEST, changed, refused};
 
 #[cfg(unix)]
 #[test]

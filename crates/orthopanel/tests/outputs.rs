@@ -1,12 +1,10 @@
 //! No input and no earlier result is lost: outputs that are inputs, results that cannot be replaced, the manifest.
 
-mod support;
-
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::Command;
 
-use support::{Bench, MODEL, changed, refused};
+use crate::support::{Bench, MODEL, changed, refused};
 
 const PIECE: &str = "[piece]\nlength = 0.8\nwidth = 0.1\nthickness = 0.03\nmass_per_area = 6.88\n";
 

@@ -1,8 +1,6 @@
 //! The commands on a plate model.
 
-mod support;
-
-use support::{Bench, PLATE, number};
+use crate::support::{Bench, PLATE, number};
 
 /// Mass, and moments of inertia about the axes across and along, of [`PLATE`]'s piece (rotary inertia is in the law).
 fn inertia() -> (f64, f64, f64) {

@@ -1,9 +1,7 @@
 //! The README tells the truth: each of its commands runs, in its order, and one number of each is held against another
 //! source; what it shows as printed is printed; its picture is the program's.
 
-mod support;
-
-use support::{Bench, ROOT, number};
+use crate::support::{Bench, ROOT, number};
 
 const COMMAND: &str = "    cargo run --release -- ";
 

@@ -3,10 +3,8 @@
 //! Bounds are those of the project's goal: E_x within 0.1 %, G_zx within 0.3 %, damping within 3 % from one place and
 //! 1 % from five.
 
-mod support;
-
+use crate::support::{Bench, made_records, number, refused};
 use serde_json::Value;
-use support::{Bench, made_records, number, refused};
 
 /// Constants within 0.1 and 0.3 %, damping of the modes shown within `zeta_percent` of the truth.
 fn assert_truth(answer: &Value, truth: &Value, least_modes: usize, zeta_percent: f64) {

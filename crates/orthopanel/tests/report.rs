@@ -1,8 +1,6 @@
 //! The HTML page: whole, by itself, and safe against what a test file says.
 
-mod support;
-
-use support::{Bench, TEST, changed, refused};
+use crate::support::{Bench, TEST, changed, refused};
 
 fn page(bench: &Bench, line: &str) -> String {
     bench.done(&format!("{line} -o page.html"));
@@ -43,7 +41,7 @@ fn a_page_of_records_holds_all_of_it_and_needs_nothing_else() {
     // Its numbers are those of `identify`, to the digits shown.
     let answer = bench.json("identify examples/made-hits/test.toml");
     for name in ["e_x", "g_zx"] {
-        let value = support::number(&answer, &format!("/constants/{name}/value"));
+        let value = crate::support::number(&answer, &format!("/constants/{name}/value"));
         assert!(text.contains(&format!("<td>{name}</td><td>{value:.4e}</td>")), "{name} = {value}");
     }
 }

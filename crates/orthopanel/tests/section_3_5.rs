@@ -1,9 +1,7 @@
 //! The paper's section 3.5 by the command, on records whose truth is known.
 
-mod support;
-
+use crate::support::{Bench, changed, made_records, number, refused};
 use serde_json::Value;
-use support::{Bench, changed, made_records, number, refused};
 
 fn hits(answer: &Value) -> &Vec<Value> {
     answer["hits"].as_array().expect("hits")

@@ -1,8 +1,6 @@
 //! Standard output and standard error that are closed, full or read by nobody; and what may not reach a terminal.
 
-mod support;
-
-use support::{Bench, changed};
+use crate::support::{Bench, changed};
 
 /// Lines that print each kind of answer: tables, JSON, CSV, and what clap says.
 #[cfg(unix)]

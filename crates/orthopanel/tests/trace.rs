@@ -1,8 +1,6 @@
 //! `trace`, and tracing inside `run` and `report`.
 
-mod support;
-
-use support::{Bench, number, refused};
+use crate::support::{Bench, number, refused};
 
 /// The hammer hit 10 mm beside the place that the test file gives.
 const MISPLACED: &str = "examples/misplaced-hit/test.toml";

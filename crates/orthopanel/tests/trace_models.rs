@@ -1,8 +1,6 @@
 //! What `trace -o` writes where no effect explains the data.
 
-mod support;
-
-use support::{Bench, changed};
+use crate::support::{Bench, changed};
 
 /// Constants held beside the truth: the nearest effects do not explain what is missed, and are not in the file.
 #[test]
@@ -48,7 +46,7 @@ fn where_the_base_model_is_refused_too_no_model_is_written() {
 fn every_candidate_has_an_error_held_out() {
     let bench = Bench::new();
     let held = "[constants]\ne_x = 1.07e10\ng_zx = 5.363e8\n[[measurement]]";
-    bench.write("held.toml", &changed(support::TEST, "[[measurement]]", held));
+    bench.write("held.toml", &changed(crate::support::TEST, "[[measurement]]", held));
     let answer = bench.json("trace held.toml");
     let candidates = answer["candidates"].as_array().expect("candidates");
     assert!(candidates.iter().any(|of| of["id"] == "width-coupling"), "{answer}");

@@ -1,5 +1,4 @@
 //! Hits on a system whose transfer function is known in closed form.
-#![allow(dead_code)] // Each test binary uses a part.
 
 use num_complex::Complex64;
 use orthopanel_data::{Accelerance, Hit, TimeHistory};

@@ -1,5 +1,4 @@
 //! Universal files made by hand, and the places of things that may be absent.
-#![allow(dead_code)] // Each test binary uses a part.
 
 pub mod hammer;
 pub mod recorded;

@@ -1,5 +1,4 @@
 //! Records of one good hit, and what they become.
-#![allow(dead_code)] // Each test binary uses a part.
 
 use orthopanel_data::{Hit, RecordFile, RecordedResponse, TimeHistory};
 use orthopanel_model::Place;

@@ -1,4 +1,5 @@
 //! The C functions that more than one test or example calls, as an importer in Rust declares them.
+#![allow(unsafe_code, reason = "an importer in Rust calls C functions")]
 #![allow(dead_code, reason = "no test calls all")]
 
 use std::ffi::{c_char, c_int, c_void};

@@ -1,5 +1,4 @@
 //! What tests share.
-#![allow(dead_code, reason = "each test file takes what it needs")]
 
 pub mod plate;
 

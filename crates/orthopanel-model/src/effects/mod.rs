@@ -1,7 +1,7 @@
 //! Effects: pieces of physics that the base model may lack, one file each, and the receptances of a piece with them.
 //!
 //! An effect is a name, an owner and a few parameters; [`Effect::act`] says what they do to a test. What carries it out
-//! is [`ReceptanceModel`], line by line of a spectrum. [`catalogue`] lists all.
+//! is [`ReceptanceModel`], line by line of a spectrum. [`catalogue()`] lists all.
 
 mod action;
 mod catalogue;

@@ -10,7 +10,7 @@ pub(super) struct Group {
     /// $\omega^2$ and $2\zeta\omega$.
     pub stiffness: Lane,
     pub damping: Lane,
-    /// [`Coefficients`] of the last step size.
+    /// [`Coefficients`](super::propagator::Coefficients) of the last step size.
     pub impulse: Lane,
     pub held: Lane,
     /// $\omega^2$ times that.

@@ -1,5 +1,4 @@
 //! A beam with elements on it, as a model file and as line-by-line receptances, which know no modal coordinates.
-#![allow(dead_code, reason = "no test uses all")]
 
 use num_complex::Complex64;
 use orthopanel_model::{Boundary, Damping, EffectState, Piece, Place, ReceptanceSetup, RecordSetting, effect};

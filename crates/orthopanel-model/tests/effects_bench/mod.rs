@@ -1,5 +1,4 @@
 //! A beam with effects, hit and listened to at one place each: what the tests of the effects' physics stand on.
-#![allow(dead_code, reason = "each of the tests that share this bench uses a part of it")]
 
 use std::f64::consts::TAU;
 

@@ -1,8 +1,5 @@
 //! Runs the program in a folder of its own, with the examples beside it.
 
-// Each test file uses its own part of this.
-#![allow(dead_code)]
-
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 

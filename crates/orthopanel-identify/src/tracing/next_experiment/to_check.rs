@@ -19,7 +19,7 @@ pub(super) fn to_check(test: &ImpactTest, left: f64) -> String {
     format!(
         "before you measure again, check {} and {last}: {:.1} times the noise is left. If all that is right, the cause is not in the \
          catalogue: hit further places, for how what is left goes with the place shows where it sits",
-        Readable(left),
-        told.join(", ")
+        told.join(", "),
+        Readable(left)
     )
 }
