@@ -15,7 +15,7 @@ use orthopanel_identify::{Settings, identify};
 const E_X: f64 = 1.067e10;
 const G_ZX: f64 = 5.304e8;
 const ZETAS: [f64; 6] = [2.364e-3, 1.306e-3, 1.108e-3, 2.251e-3, 5.485e-3, 4.488e-3];
-const TESTS: usize = 400;
+const TESTS: usize = 150;
 
 /// Prints frequency, real and imaginary part of the accelerance from -0.3 to 0.3 m, 10 to 4400 Hz.
 const CLEAN: &str = "
@@ -78,8 +78,9 @@ fn val_intervals_hold_the_truth_as_often_as_they_say() {
     }
     let share = |count: usize, of: usize| count as f64 / of as f64;
     println!("E_x {} G_zx {} zeta {}", constants_held[0], constants_held[1], damping_held);
+    // Three binomial deviations.
     for held in constants_held {
-        assert!((0.93..=0.97).contains(&share(held, TESTS)), "{constants_held:?} of {TESTS}");
+        assert!((0.90..=1.0).contains(&share(held, TESTS)), "{constants_held:?} of {TESTS}");
     }
-    assert!((0.93..=0.97).contains(&share(damping_held, 6 * TESTS)), "{damping_held} of {}", 6 * TESTS);
+    assert!((0.925..=0.975).contains(&share(damping_held, 6 * TESTS)), "{damping_held} of {}", 6 * TESTS);
 }

@@ -2,6 +2,7 @@
 //!
 //! The clean hits come from `tests/record_generator`, whose physics is its own; white noise is added here to both channels
 //! of each hit. Needs Python with numpy and scipy, named by `ORTHOPANEL_PYTHON`; without it the tests say so and pass.
+//! The shares that `docs/decisions/identification-by-records.md` quotes are of three times as many tests.
 
 use std::fmt::Write;
 
@@ -36,7 +37,21 @@ const BEYOND: f64 = 4e-3;
 
 /// Parts of the intervals that held the truth: of E_x, of G_zx, of the first six damping ratios, of those beyond.
 #[derive(Debug)]
-struct Held([f64; 4]);
+struct Held {
+    shares: [f64; 4],
+    /// Of how many intervals each share is.
+    of: [usize; 4],
+}
+
+impl Held {
+    /// Each of the first `kinds` shares within three binomial deviations of 95 %, and two in a hundred: likelihoods are no exact coverage.
+    fn assert_as_stated(&self, kinds: usize) {
+        for (share, of) in self.shares.iter().zip(self.of).take(kinds) {
+            let apart = 3.0 * (0.95 * 0.05 / of as f64).sqrt() + 0.02;
+            assert!((share - 0.95).abs() < apart, "{self:?}, {apart:.3} allowed");
+        }
+    }
+}
 
 /// Noise as a part of what of each channel.
 #[derive(Debug, Clone, Copy)]
@@ -86,7 +101,7 @@ fn held(
     }
     let share = |count: usize, of: usize| count as f64 / of as f64;
     let of = [tests, tests, 6 * tests, beyond.max(1)];
-    let held = Held(std::array::from_fn(|index| share(counts[index], of[index])));
+    let held = Held { shares: std::array::from_fn(|index| share(counts[index], of[index])), of };
     println!("{options:?}, {noise:?}: {held:?}");
     Some(held)
 }
@@ -109,20 +124,14 @@ fn noisy(hit: &Hit, rate: f64, noise: Noise, normal: &mut Normal) -> String {
 }
 
 /// One hit has no scatter. At 10.24 kHz no line stands above the band to read noise from; at 20.48 kHz the hammer's second
-/// lobe and further modes stand there, which is no noise. Of sixty tests one deviation is 2.8 % for a constant; bounds stand
-/// three off. With another seed E_x and G_zx were held in 88 and 85 % at 20.48 kHz, so of 120 in 92 %.
+/// lobe and further modes stand there, which is no noise. Of 120 tests at 20.48 kHz E_x and G_zx were held in 92 %.
 #[test]
 fn val_intervals_from_one_hit_hold_the_truth() {
     for (rate, samples, noise) in [("10240", "16384", 0.002), ("20480", "32768", 0.003)] {
         let options = ["--hits", "1", "--pulse", "half-sine", "--pulse-duration", "2.5e-4"];
         let options = [&options[..], &["--sampling-rate", rate, "--samples", samples]].concat();
-        let Some(Held([e_x, g_zx, zeta, _])) =
-            held(&options, &MUCH, Noise::OfRms(noise), (60, 77), Settings::default())
-        else {
-            return;
-        };
-        assert!([e_x, g_zx].iter().all(|share| (0.86..=1.0).contains(share)), "{rate} Hz: {e_x} {g_zx}");
-        assert!((0.92..=0.98).contains(&zeta), "{rate} Hz: {zeta}");
+        let Some(held) = held(&options, &MUCH, Noise::OfRms(noise), (30, 77), Settings::default()) else { return };
+        held.assert_as_stated(3);
     }
 }
 
@@ -130,14 +139,8 @@ fn val_intervals_from_one_hit_hold_the_truth() {
 /// held in 82, G_zx in 74 and damping in 83 % of 100 tests.
 #[test]
 fn val_intervals_from_three_hits_of_a_piece_that_rings_on_hold_the_truth() {
-    let Some(Held([e_x, g_zx, zeta, _])) =
-        held(&THREE_HITS, &TABLE_9, Noise::OfRms(0.005), (400, 7), Settings::default())
-    else {
-        return;
-    };
-    // One deviation is 1.1 % for a constant, of so many tests, and half of that for six damping ratios.
-    assert!([e_x, g_zx].iter().all(|share| (0.92..=0.985).contains(share)), "{e_x} {g_zx}");
-    assert!((0.93..=0.97).contains(&zeta), "{zeta}");
+    let Some(held) = held(&THREE_HITS, &TABLE_9, Noise::OfRms(0.005), (100, 7), Settings::default()) else { return };
+    held.assert_as_stated(3);
 }
 
 /// The noise of the force counts: over the whole record it would make as much of S_ff as the blow. A window over the blow leaves
@@ -146,12 +149,8 @@ fn val_intervals_from_three_hits_of_a_piece_that_rings_on_hold_the_truth() {
 fn val_intervals_under_much_noise_of_the_force_hold_the_truth() {
     for (zetas, part) in [(&MUCH, 0.01), (&TABLE_9, 0.003)] {
         let noise = Noise::OfPeak(part);
-        let Some(Held([e_x, g_zx, zeta, _])) = held(&THREE_HITS, zetas, noise, (120, 11), Settings::default()) else {
-            return;
-        };
-        // One deviation is 2 % for a constant, of so many tests, and a third of that for six damping ratios.
-        assert!([e_x, g_zx].iter().all(|share| (0.89..=1.0).contains(share)), "{part}: {e_x} {g_zx}");
-        assert!((0.92..=0.98).contains(&zeta), "{part}: {zeta}");
+        let Some(held) = held(&THREE_HITS, zetas, noise, (40, 11), Settings::default()) else { return };
+        held.assert_as_stated(3);
     }
 }
 
@@ -161,24 +160,16 @@ fn val_intervals_under_much_noise_of_the_force_hold_the_truth() {
 fn val_intervals_under_a_force_window_asked_for_hold_the_truth() {
     let window = Window::ForceExponential { half_width: Window::USUAL_HALF_WIDTH, tau: 0.2 };
     let settings = Settings { estimation: Estimation { window, ..Estimation::default() }, ..Settings::default() };
-    let Some(Held([e_x, g_zx, zeta, _])) = held(&THREE_HITS, &TABLE_9, Noise::OfRms(0.005), (120, 7), settings) else {
-        return;
-    };
-    assert!([e_x, g_zx].iter().all(|share| (0.89..=1.0).contains(share)), "{e_x} {g_zx}");
-    assert!((0.92..=0.98).contains(&zeta), "{zeta}");
+    let Some(held) = held(&THREE_HITS, &TABLE_9, Noise::OfRms(0.005), (40, 7), settings) else { return };
+    held.assert_as_stated(3);
 }
 
 /// Up to beyond 7 kHz the force falls a thousandfold in power, and its noise in the whole record, which counts for nothing where the
 /// force is strong, is a few per cent of S_ff there. Without that taken out of H1 the highest ratio of five places was held in 33 % of
-/// tests. Of sixty tests one deviation is 1.4 % for the four ratios beyond the sixth; 91 % were held, the tenth lies at the band's end.
+/// tests. Of sixty tests 91 % held the four ratios beyond the sixth; the tenth lies at the band's end.
 #[test]
 fn val_intervals_of_the_highest_modes_hold_the_truth() {
     let options = ["--hits", "5", "--sampling-rate", "16384", "--samples", "16384"];
-    let Some(Held([e_x, g_zx, zeta, beyond])) = held(&options, &MUCH, Noise::OfRms(0.01), (60, 3), Settings::default())
-    else {
-        return;
-    };
-    assert!([e_x, g_zx].iter().all(|share| (0.86..=1.0).contains(share)), "{e_x} {g_zx}");
-    assert!((0.92..=0.98).contains(&zeta), "{zeta}");
-    assert!((0.89..=0.99).contains(&beyond), "{beyond}");
+    let Some(held) = held(&options, &MUCH, Noise::OfRms(0.01), (30, 3), Settings::default()) else { return };
+    held.assert_as_stated(4);
 }

@@ -20,6 +20,7 @@ fn are_told(found: &Tracing, case: &serde_json::Value, parameters: &[&str]) {
 }
 
 #[test]
+#[ignore = "minutes: `tests/blind_tracing/test_trace.py` traces a case of each kind; `cargo test --release -- --ignored` runs these too"]
 fn val_an_effect_put_in_is_named_and_measured() {
     for (kind, parameter) in
         [("sensor-mass", "mass"), ("record-gain", "gain"), ("channel-delay", "delay"), ("cubic-stiffness", "k3")]
@@ -62,6 +63,7 @@ fn val_clamps_that_yield_are_found_from_one_pair_of_places() {
 /// One step ranks starts badly where an effect lies between two usual places: seed 1101 was `unexplained` before the search looked closer.
 /// In 1102 the span is short and at the panel's end: that was found once short spans were among the starts.
 #[test]
+#[ignore = "minutes: `tests/blind_tracing/test_trace.py` traces a case of each kind; `cargo test --release -- --ignored` runs these too"]
 fn val_losses_of_stiffness_between_usual_places_are_found() {
     for seed in [1101, 1102] {
         let folder = tempfile::tempdir().unwrap();
@@ -127,6 +129,7 @@ fn val_what_no_effect_makes_stays_unexplained() {
 
 /// The search for a plate spent what its partners may cost, creeping along a floor that only the gain lowers: this was `unexplained`.
 #[test]
+#[ignore = "minutes: `tests/blind_tracing/test_trace.py` traces a case of each kind; `cargo test --release -- --ignored` runs these too"]
 fn val_a_gain_beside_a_plate_is_found() {
     let folder = tempfile::tempdir().unwrap();
     let kind = "width-coupling + gain";
@@ -141,6 +144,7 @@ fn val_a_gain_beside_a_plate_is_found() {
 
 /// Starts of a core whose stiffening and loss were in the base already promised nothing: this was `unexplained` before they gave it back.
 #[test]
+#[ignore = "minutes: `tests/blind_tracing/test_trace.py` traces a case of each kind; `cargo test --release -- --ignored` runs these too"]
 fn val_a_core_beside_a_delay_is_found() {
     let folder = tempfile::tempdir().unwrap();
     let kind = "viscoelastic-core + channel-delay";
