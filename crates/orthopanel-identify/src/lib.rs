@@ -9,6 +9,7 @@ mod free_constants;
 mod frequency_fit;
 mod identification;
 mod least_squares;
+mod matching;
 mod measured;
 mod settings;
 mod starting_constants;
@@ -23,6 +24,7 @@ pub use error::IdentifyError;
 pub use identification::{
     AcceleranceFit, Correlation, HiddenMode, Identification, IdentifiedConstant, ModeFit, NotIdentified, PieceFit,
 };
+pub use matching::ModeMatch;
 pub use measured::{MeasuredModes, MeasuredRecord, Pole, measured_modes};
 pub use settings::{PaperWeights, Search, Settings};
 pub use time_history::{

@@ -58,6 +58,16 @@ fn val_run_five_places_from_uff() {
     let Some(truth) = made_records(&bench, "five", options) else { return };
     let answer = bench.json("run five/test.toml -o out");
     assert_truth(&answer["identified"], &truth, 6, 1.0);
+    // The same modes by a joint fit, before any model.
+    let measured = answer["identified"]["measured_modes"][0]["modes"].as_array().expect("measured modes");
+    assert!(measured.len() >= 6, "{measured:?}");
+    for mode in measured {
+        let index = number(mode, "/mode") as usize - 1;
+        let [frequency, zeta] = ["frequency_hz", "zeta"].map(|name| number(&truth, &format!("/modes/{index}/{name}")));
+        assert!((number(mode, "/frequency_hz") / frequency - 1.0).abs() < 2e-4, "{mode}, {frequency} Hz");
+        assert!((number(mode, "/zeta") / zeta - 1.0).abs() < 0.02, "{mode}, {zeta}");
+        assert!(number(mode, "/mac") > 0.999, "{mode}");
+    }
 
     let hits = answer["hits"].as_array().expect("hits");
     assert_eq!(hits.len(), 5 * 3);

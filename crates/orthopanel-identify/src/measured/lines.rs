@@ -1,10 +1,7 @@
 //! One record as weighted spectral lines, and how a pole shows in them.
 
-use faer::MatMut;
 use num_complex::Complex64;
 use orthopanel_model::Place;
-
-use super::line_groups::LineGroups;
 
 /// The accelerance of one pair of places on the lines of a transform.
 ///
@@ -47,7 +44,7 @@ pub(super) struct TruncatedHit {
     pub share: Vec<Complex64>,
 }
 
-/// How a pole and its conjugate show on every line.
+/// How a pole and its conjugate show on some lines.
 pub(super) struct PoleColumns {
     /// By the real part of the residue, and by its imaginary part.
     pub by_residue: [Vec<Complex64>; 2],
@@ -77,14 +74,14 @@ impl TruncatedHit {
 }
 
 impl RecordLines {
-    /// How a pole shows on every line.
+    /// How a pole shows on these lines.
     ///
     /// With the record's end at $T$ a hit shows of $1/(s-\lambda)$ no more than
     /// $$\frac{1}{s-\lambda} - \frac{F(\lambda)e^{(\lambda-s)T}}{F(s)}\,\frac{\Delta t}{1-e^{(\lambda-s)\Delta t}},$$
     /// the transform of samples up to there: the free vibration after $T$ is a geometric series. Several hits show it in the mean that
     /// their accelerances have.
-    pub(super) fn pole(&self, lambda: Complex64) -> PoleColumns {
-        let count = self.s.len();
+    pub(super) fn pole(&self, lambda: Complex64, lines: &[usize]) -> PoleColumns {
+        let count = lines.len();
         let columns = || [Vec::with_capacity(count), Vec::with_capacity(count)];
         let mut pole = PoleColumns { by_residue: columns(), by_pole: columns() };
         let ends: Vec<(&TruncatedHit, [Complex64; 2])> = self
@@ -93,7 +90,8 @@ impl RecordLines {
             .flat_map(|all| all.hits.iter().filter_map(|hit| Some((hit, hit.at_end(lambda, all.step)?))))
             .collect();
         let ratio = self.truncations.as_ref().map_or(Complex64::ZERO, |all| (lambda * all.step).exp());
-        for (k, s) in self.s.iter().enumerate() {
+        for &k in lines {
+            let s = self.s[k];
             let [one, other] = [(s - lambda).inv(), (s - lambda.conj()).inv()];
             let (mut values, mut derivatives) = ([one, other], [one * one, other * other]);
             if let (Some(all), false) = (&self.truncations, ends.is_empty()) {
@@ -116,10 +114,5 @@ impl RecordLines {
             }
         }
         pole
-    }
-
-    /// Writes the weighted real and imaginary parts of a complex function of the lines into a column, group by group.
-    pub(super) fn fill(&self, groups: &LineGroups, column: MatMut<'_, f64>, of_line: impl Fn(usize) -> Complex64) {
-        groups.project(&self.weight, column, of_line);
     }
 }

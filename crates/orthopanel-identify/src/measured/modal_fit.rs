@@ -86,9 +86,12 @@ impl<'a> ModalFit<'a> {
         let known = records.par_iter().zip(&fit.groups).map(|(record, groups)| {
             let mut columns = Mat::zeros(groups.rows(), REMAINDER_TERMS + 1);
             for term in 0..REMAINDER_TERMS {
-                record.fill(groups, columns.col_mut(term).as_mat_mut(), |k| fit.remainder_term(term, record.s[k]));
+                let values: Vec<Complex64> =
+                    groups.nodes().iter().map(|line| fit.remainder_term(term, record.s[*line])).collect();
+                groups.project_smooth(&record.weight, columns.col_mut(term).as_mat_mut(), &values);
             }
-            record.fill(groups, columns.col_mut(REMAINDER_TERMS).as_mat_mut(), |k| record.value[k]);
+            let data = columns.col_mut(REMAINDER_TERMS).as_mat_mut();
+            groups.project(&record.weight, data, |line| record.value[line]);
             columns
         });
         fit.known = known.collect();
@@ -151,10 +154,13 @@ impl<'a> ModalFit<'a> {
         let width = linear + 2 * modes + 1;
         let mut columns = Mat::zeros(groups.rows(), width);
         for (m, [lambda, ..]) in lambdas.iter().enumerate() {
-            let PoleColumns { by_residue, by_pole } = record.pole(*lambda);
+            let PoleColumns { by_residue, by_pole } = record.pole(*lambda, groups.nodes());
             for part in 0..2 {
-                record.fill(groups, columns.col_mut(2 * m + part).as_mat_mut(), |k| by_residue[part][k]);
-                record.fill(groups, columns.col_mut(linear + 2 * m + part).as_mat_mut(), |k| by_pole[part][k]);
+                let mut put = |column: usize, values: &[Complex64]| {
+                    groups.project_smooth(&record.weight, columns.col_mut(column).as_mat_mut(), values);
+                };
+                put(2 * m + part, &by_residue[part]);
+                put(linear + 2 * m + part, &by_pole[part]);
             }
         }
         columns.subcols_mut(2 * modes, REMAINDER_TERMS).copy_from(known.subcols(0, REMAINDER_TERMS));
@@ -242,8 +248,9 @@ impl<'a> ModalFit<'a> {
     pub(super) fn residuals(&self, poles: &[[f64; 2]], fitted: &Fitted) -> Vec<Vec<Complex64>> {
         let of_record = |(record, found): (&RecordLines, &FittedRecord)| {
             let mut left = record.value.clone();
+            let lines: Vec<usize> = (0..left.len()).collect();
             for (m, pole) in poles.iter().enumerate() {
-                let PoleColumns { by_residue: [real, imaginary], .. } = record.pole(lambda(*pole)[0]);
+                let PoleColumns { by_residue: [real, imaginary], .. } = record.pole(lambda(*pole)[0], &lines);
                 let residue = found.residue(m);
                 for (k, left) in left.iter_mut().enumerate() {
                     *left -= residue.re * real[k] + residue.im * imaginary[k];

@@ -32,13 +32,18 @@ const PATIENCE: usize = 2;
 /// A pole closer than this to one that was tried is the same.
 const SAME: f64 = 5e-3;
 
-/// The poles of all records in common.
+/// Poles at the peaks of the records, to begin with.
+pub(super) fn peaks(records: &[RecordLines]) -> Option<PoleParameters> {
+    Some(Spectrum::of(records)?.peaks())
+}
+
+/// The poles of all records in common, from a start.
 ///
 /// A pole stays where it lowers the misfit by more than the logarithm of the number of data for each of its parameters, in
 /// units of the misfit per datum that is left (Schwarz, Ann. Stat. 6, 1978).
-pub(super) fn poles(records: &[RecordLines]) -> Option<Found> {
+pub(super) fn poles(records: &[RecordLines], start: PoleParameters) -> Option<Found> {
     let spectrum = Spectrum::of(records)?;
-    let mut found = fit(records, spectrum.peaks(), ON_THE_WAY)?;
+    let mut found = fit(records, start, ON_THE_WAY)?;
     let mut tried: Vec<f64> = vec![];
     let mut failed = 0;
     while failed < PATIENCE {
@@ -127,7 +132,7 @@ fn price(records: &[RecordLines], data: f64, left: &Found) -> f64 {
 /// which many poles would mimic.
 const SYSTEMATIC: f64 = 2.0;
 /// Then a pole has to take up this part of the misfit.
-const LEAST_PART: f64 = 0.03;
+const LEAST_PART: f64 = 0.1;
 
 fn is_worth(records: &[RecordLines], without: &Found, with: &Found) -> bool {
     // Both on the same lines, those of the one with more poles.
@@ -178,7 +183,14 @@ impl Spectrum {
         let on_grid = |s: &Complex64| frequency.partition_point(|f| *f < s.im / TAU).min(frequency.len() - 1);
         let places = records.iter().map(|record| record.s.iter().map(on_grid).collect()).collect();
         let mut spectrum = Self { frequency, power: vec![], places };
-        let weighted = |record: &RecordLines| record.value.iter().zip(&record.weight).map(|(v, g)| v * g).collect();
+        // A resonance that wanders has more noise than its skirts: weighed line by line it would be no peak.
+        let weighted = |record: &RecordLines| {
+            let mut weights = record.weight.clone();
+            let middle = weights.len() / 2;
+            let usual =
+                if weights.is_empty() { 0.0 } else { *weights.select_nth_unstable_by(middle, f64::total_cmp).1 };
+            record.value.iter().map(|value| value * usual).collect()
+        };
         spectrum.power = smooth(&spectrum.sum(&records.iter().map(weighted).collect::<Vec<_>>()), 3);
         Some(spectrum)
     }

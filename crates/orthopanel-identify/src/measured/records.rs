@@ -10,7 +10,8 @@ use rayon::prelude::*;
 
 use super::lines::RecordLines;
 use super::modal_fit::{ModalFit, lambda};
-use super::pole_search::{Found, poles};
+use super::pole_search::{Found, peaks, poles};
+use super::scatter::Scatter;
 use super::{MeasuredModes, MeasuredRecord, Pole};
 
 /// Lowest frequency of the band \[Hz\]: below the hanging modes of a panel on cords, which are poles like others.
@@ -28,6 +29,8 @@ const MOST_ZETA: f64 = 0.25;
 /// Values of the remainder that are told, and the highest of their frequencies \[Hz\].
 const REMAINDER_VALUES: usize = 8;
 const HIGHEST_REMAINDER: f64 = 400.0;
+/// Times that the scatter beyond noise is found anew.
+const SCATTERS: usize = 4;
 
 impl MeasuredModes {
     /// From the hits of all pairs of places of one piece, up to a frequency \[Hz\]; `None` where they show no resonance.
@@ -39,7 +42,7 @@ impl MeasuredModes {
         let band = [LOWEST.max(LEAST_PERIODS / shortest), highest.min(FLAT * rate)];
         let records: Vec<RecordLines> =
             histories.par_iter().map(|history| RecordLines::of_hits(history, band)).collect();
-        Self::of_lines(piece, &records, band)
+        Self::of_lines(piece, records, band)
     }
 
     /// From accelerances of all pairs of places of one piece on the lines that all have; `None` where they show no resonance.
@@ -52,12 +55,19 @@ impl MeasuredModes {
         ];
         let records: Vec<RecordLines> =
             accelerances.iter().map(|accelerance| RecordLines::of_accelerance(accelerance, band)).collect();
-        Self::of_lines(piece, &records, band)
+        Self::of_lines(piece, records, band)
     }
 
-    fn of_lines(piece: usize, records: &[RecordLines], band: [f64; 2]) -> Option<Self> {
-        let found = poles(records)?;
-        Some(told(piece, records, &found, band))
+    fn of_lines(piece: usize, mut records: Vec<RecordLines>, band: [f64; 2]) -> Option<Self> {
+        let mut found = poles(&records, peaks(&records)?)?;
+        let mut scatter = Scatter::none(&records);
+        for _ in 0..SCATTERS {
+            if !scatter.follows(&mut records, &found) {
+                break;
+            }
+            found = poles(&records, found.poles)?;
+        }
+        Some(told(piece, &records, &found, band))
     }
 }
 

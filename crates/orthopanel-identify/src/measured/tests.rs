@@ -168,3 +168,27 @@ fn val_errors_are_those_that_the_covariance_states() {
     assert!((0.76..1.24).contains(&rms), "errors {rms} times what is stated");
     assert!((0.9..1.1).contains(&misfits), "misfit per datum {misfits}");
 }
+
+/// A panel whose modes shift from hit to hit: 0.3 % of a half-width of 0.2 % is far more than the noise, and no further pole is made of it.
+#[test]
+fn val_modes_that_wander_from_hit_to_hit_stay_as_many() {
+    let modes = |part: f64| [(180.0 * part, 2e-3), (430.0 * part, 2e-3), (1210.0 * part, 5e-3)];
+    let shapes: [&[f64]; 2] = [&[0.8, -0.5, 0.3], &[-0.4, 0.7, 0.6]];
+    let one = Made::new(&modes(1.0), &shapes).histories(2, 1e-4, 3);
+    let other = Made::new(&modes(1.003), &shapes).histories(2, 1e-4, 4);
+    let mixed: Vec<TimeHistory> = one
+        .into_iter()
+        .zip(other)
+        .map(|(mut one, other)| {
+            one.hits.extend(other.hits);
+            one
+        })
+        .collect();
+    let measured = MeasuredModes::of_hits(0, &mixed, 4000.0).expect("resonances");
+    assert_eq!(measured.poles.len(), 3, "{:?}", measured.poles);
+    assert!(measured.chi_square.is_some_and(|misfit| misfit > 10.0), "{:?}", measured.chi_square);
+    for (found, [low, high]) in measured.poles.iter().zip([[180.0, 180.6], [430.0, 431.4], [1210.0, 1213.7]]) {
+        let frequency = found.angular_frequency / TAU;
+        assert!((low..high).contains(&frequency), "{frequency}");
+    }
+}

@@ -8,6 +8,8 @@ use orthopanel_identify::{
 use orthopanel_model::StructureKind;
 use serde::Serialize;
 
+use super::measured::MeasuredTable;
+
 /// `identify --json`.
 #[derive(Serialize)]
 pub struct Answer {
@@ -27,6 +29,9 @@ pub struct Answer {
     /// Modes in the band of the records of which no resonance stands out.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     modes_without_resonance: Vec<HiddenEntry>,
+    /// Modes of a joint fit of a piece's records, before any model.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(super) measured_modes: Vec<MeasuredTable>,
     error: ErrorEntry,
     /// What was left out, cut or found wanting.
     notes: Vec<String>,
@@ -137,7 +142,7 @@ pub fn called(found: &Identification, name: &str, piece: Option<usize>) -> Strin
 }
 
 impl Answer {
-    pub(super) fn of(found: &Identification) -> Self {
+    pub(super) fn of(found: &Identification, measured_modes: Vec<MeasuredTable>) -> Self {
         let constant = |constant: &IdentifiedConstant| {
             let &IdentifiedConstant { name, unit, value, std, held, .. } = constant;
             (name, ConstantEntry { value, std, unit, held })
@@ -197,6 +202,7 @@ impl Answer {
                 .iter()
                 .flat_map(|fit| fit.hidden.iter().map(move |of| hidden(fit, of)))
                 .collect(),
+            measured_modes,
             error: ErrorEntry {
                 frequency_rms_percent: found.frequency_rms_percent,
                 left_one_out_percent: found.left_one_out_percent,

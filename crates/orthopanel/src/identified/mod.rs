@@ -1,6 +1,7 @@
 //! What an identification found, as JSON (`orthopanel.identified/1`), as tables, and as one model a piece.
 
 mod answer;
+mod measured;
 mod mode_rows;
 mod models;
 mod report;
@@ -15,6 +16,7 @@ use crate::error::CommandError;
 use crate::record_options::IdentifyOptions;
 use crate::{console, notes, progress};
 pub use answer::{Answer, called};
+use measured::MeasuredTable;
 pub use mode_rows::{Digits, ModeRows};
 use models::model;
 pub use models::{ASSUMED_DAMPING, to_digits};
@@ -25,7 +27,7 @@ pub struct Identified {
     pub found: Identification,
     /// In the order of `found.pieces`.
     pub models: Vec<PanelModel>,
-    /// The JSON object.
+    /// The JSON object, with the modes that the records show by themselves.
     pub answer: Answer,
 }
 
@@ -43,7 +45,11 @@ impl Identified {
         if let Some(sentence) = assumed_damping(&found) {
             console::say(sentence);
         }
-        let answer = Answer::of(&found);
+        let measured = {
+            let _shown = progress::spinner("measuring the modes of all records together");
+            MeasuredTable::all(test, &found, &models)
+        };
+        let answer = Answer::of(&found, measured);
         Ok(Self { test: test.clone(), found, models, answer })
     }
 

@@ -60,6 +60,9 @@ impl Identified {
             }
             text += "\n";
         }
+        for table in &self.answer.measured_modes {
+            text += &format!("\n{}", table.text());
+        }
         text
     }
 }

@@ -1,0 +1,147 @@
+//! Which predicted mode is which measured one: by frequency and by shape.
+
+use std::f64::consts::TAU;
+
+use num_complex::Complex64;
+use orthopanel_model::{ModalModel, ModeRange, ModelError, PanelModel, Place};
+use pathfinding::matrix::Matrix;
+use pathfinding::prelude::kuhn_munkres_min;
+
+use crate::measured::MeasuredModes;
+
+/// A predicted mode that a measured pole is matched with.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ModeMatch {
+    /// Number of the flexible mode, from 1.
+    pub mode: usize,
+    /// Its undamped natural frequency \[Hz\].
+    pub frequency: f64,
+    /// Modal assurance criterion between residues and predicted shape over the records, 0 to 1; `None` of fewer than two records.
+    pub assurance: Option<f64>,
+}
+
+/// Deviation of the logarithm of a frequency between partners: a model that is not yet identified misses by a few per cent.
+const APART: f64 = 0.06;
+/// Worth of a shape: one that is another mode's costs as much as two deviations of frequency.
+const SHAPE: f64 = 4.0;
+/// No partner costs so much: seven deviations.
+const ALONE: f64 = 50.0;
+/// The assignment works in whole numbers.
+const UNIT: f64 = 1e4;
+
+impl MeasuredModes {
+    /// Of each pole the flexible mode of a model that it is, if any.
+    ///
+    /// The pairs are those of least total cost (Kuhn and Munkres) with
+    /// $$\left(\frac{\ln(\omega_m/\omega_n)}{0.06}\right)^2 + 4\,(1-\mathrm{MAC}_{mn}),\qquad
+    /// \mathrm{MAC}_{mn} = \frac{\left|\sum_rq_{rm}\,W_{rn}\right|^2}{\sum_r|q_{rm}|^2\,\sum_rW_{rn}^2},$$
+    /// where $W_{rn}$ is the product of mode $n$'s deflections at the two places of record $r$ (Allemang and Brown, Proc. IMAC 1, 1982).
+    /// A pole further than $\sqrt{50}$ deviations from every mode stays alone.
+    ///
+    /// # Errors
+    /// [`ModelError`] of a model whose modes cannot be had up to the end of the measured band.
+    pub fn matched_with(&self, model: &PanelModel) -> Result<Vec<Option<ModeMatch>>, ModelError> {
+        let to = self.poles.last().map_or(self.band[1], |pole| pole.angular_frequency / TAU);
+        let (forces, responses): (Vec<Place>, Vec<Place>) =
+            self.records.iter().map(|record| (record.force_at, record.response_at)).unzip();
+        let modes = model.modal_model(ModeRange::UpTo(ABOVE * to), &forces, &responses)?;
+        Ok(self.matched(&modes))
+    }
+
+    /// `modes` has the force and the response of record $r$ as its ports number $r$.
+    fn matched(&self, modes: &ModalModel) -> Vec<Option<ModeMatch>> {
+        let candidate = |(index, mode): (usize, &orthopanel_model::Mode)| {
+            let shape = mode.at_forces.iter().zip(&mode.at_responses).map(|(force, response)| force * response);
+            (index + 1, mode.angular_frequency, shape.collect::<Vec<f64>>())
+        };
+        let candidates: Vec<(usize, f64, Vec<f64>)> = modes.flexible().enumerate().map(candidate).collect();
+        let pairs = |pole: usize| {
+            let of = move |(_, omega, shape): &(usize, f64, Vec<f64>)| {
+                let assurance = self.assurance(pole, shape);
+                let apart = (self.poles[pole].angular_frequency / omega).ln() / APART;
+                (apart * apart + SHAPE * (1.0 - assurance.unwrap_or(1.0)), assurance)
+            };
+            candidates.iter().map(of).collect::<Vec<_>>()
+        };
+        let pairs: Vec<Vec<(f64, Option<f64>)>> = (0..self.poles.len()).map(pairs).collect();
+        if pairs.is_empty() {
+            return vec![];
+        }
+        // One column more a pole, in which it stays alone.
+        let cost = |(pole, column): (usize, usize)| {
+            let cost = pairs[pole].get(column).map_or(ALONE, |(cost, _)| cost.min(ALONE));
+            (UNIT * cost).round() as i64
+        };
+        let (_, columns) = kuhn_munkres_min(&Matrix::from_fn(pairs.len(), candidates.len() + pairs.len(), cost));
+        let partner = |(pole, column): (usize, usize)| {
+            let (mode, omega, _) = candidates.get(column)?;
+            let (cost, assurance) = pairs[pole][column];
+            (cost < ALONE).then_some(ModeMatch { mode: *mode, frequency: omega / TAU, assurance })
+        };
+        columns.into_iter().enumerate().map(partner).collect()
+    }
+
+    fn assurance(&self, pole: usize, shape: &[f64]) -> Option<f64> {
+        if self.records.len() < 2 {
+            return None;
+        }
+        let (mut dot, mut left, mut right) = (Complex64::ZERO, 0.0, 0.0);
+        for (record, product) in self.records.iter().zip(shape) {
+            let residue = record.residues[pole];
+            dot += residue * product;
+            left += residue.norm_sqr();
+            right += product * product;
+        }
+        Some(if left * right > 0.0 { dot.norm_sqr() / (left * right) } else { 0.0 })
+    }
+}
+
+/// Up to so many times the highest pole modes of the model are looked at.
+const ABOVE: f64 = 1.5;
+
+#[cfg(test)]
+mod tests {
+    use faer::Mat;
+
+    use super::*;
+    use crate::measured::{MeasuredRecord, Pole};
+
+    /// Two modes whose order is not that of the model's: shapes decide.
+    #[test]
+    fn val_shapes_part_modes_that_changed_places() {
+        let mode = |frequency: f64, at_forces: [f64; 3]| orthopanel_model::Mode {
+            angular_frequency: TAU * frequency,
+            damping_ratio: 0.0,
+            at_forces: at_forces.to_vec(),
+            at_responses: vec![1.0; 3],
+        };
+        let shapes = [[0.5, -0.4, 0.6], [0.3, 0.7, 0.1]];
+        let modes =
+            vec![mode(0.0, [1.0; 3]), mode(500.0, shapes[0]), mode(505.0, shapes[1]), mode(900.0, [0.2, 0.1, -0.5])];
+        let modes = ModalModel::new(3, 3, modes).expect("a model");
+        let place = Place { x: 0.0, y: 0.0 };
+        let record = |r: usize| MeasuredRecord {
+            force_at: place,
+            response_at: place,
+            residues: vec![Complex64::I * shapes[1][r], Complex64::I * shapes[0][r], Complex64::I * 0.1],
+            remainder: vec![],
+        };
+        let pole = |frequency: f64| Pole { angular_frequency: TAU * frequency, damping_ratio: None };
+        let measured = MeasuredModes {
+            piece: 0,
+            poles: vec![pole(501.0), pole(504.0), pole(5000.0)],
+            records: (0..3).map(record).collect(),
+            remainder_frequencies: vec![],
+            band: [5.0, 6000.0],
+            covariance: Mat::zeros(0, 0),
+            chi_square: None,
+        };
+        let matched = measured.matched(&modes);
+        let numbers: Vec<Option<usize>> = matched.iter().map(|found| found.map(|found| found.mode)).collect();
+        assert_eq!(numbers, [Some(2), Some(1), None]);
+        assert!(
+            matched.iter().flatten().all(|found| (found.assurance.unwrap_or(0.0) - 1.0).abs() < 1e-12),
+            "{matched:?}"
+        );
+    }
+}

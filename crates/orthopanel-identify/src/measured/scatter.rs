@@ -1,0 +1,98 @@
+//! By how much lines differ from anything that poles make of them, beyond the noise that their record shows.
+//!
+//! A panel that warms up, a force that is not linear, a sensor that slips: what a line misses by then grows with its size. Its variance
+//! is taken as
+//! $$\sigma_k^2 + \kappa^2|H_k|^2,$$
+//! with one $\kappa$ a test, which is zero where noise explains what the strongest resonances leave.
+
+use std::f64::consts::LN_2;
+
+use num_complex::Complex64;
+
+use super::lines::RecordLines;
+use super::modal_fit::ModalFit;
+use super::pole_search::Found;
+
+/// What a line misses, in units of its noise, and its size in the same units; both squared.
+struct Line {
+    missed: f64,
+    size: f64,
+}
+
+/// Misfit per datum up to which noise is said to explain it.
+const BY_NOISE: f64 = 2.0;
+
+/// The weights of all records by their noise alone, and the scatter beyond it.
+pub(super) struct Scatter {
+    noise: Vec<Vec<f64>>,
+    kappa2: f64,
+}
+
+impl Scatter {
+    pub(super) fn none(records: &[RecordLines]) -> Self {
+        Self { noise: records.iter().map(|record| record.weight.clone()).collect(), kappa2: 0.0 }
+    }
+
+    /// Whether what a fit leaves wants another scatter, with which the records are weighed from then on.
+    pub(super) fn follows(&mut self, records: &mut [RecordLines], found: &Found) -> bool {
+        let fit = ModalFit::new(records, &found.poles);
+        let left = fit.residuals(&found.poles, &found.fitted);
+        let kappa2 = scatter(&strongest(records, &self.noise, &left));
+        let changes = kappa2.max(self.kappa2) > SETTLED * kappa2.min(self.kappa2);
+        self.kappa2 = kappa2;
+        for (record, noise) in records.iter_mut().zip(&self.noise) {
+            for ((weight, noise), value) in record.weight.iter_mut().zip(noise).zip(&record.value) {
+                *weight = noise / (1.0 + kappa2 * size(*value, *noise)).sqrt();
+            }
+        }
+        changes
+    }
+}
+
+/// What resonances of real panels leave: where more is left, poles are missing or the panel is not linear, which [`MeasuredModes::chi_square`]
+/// says.
+const MOST: f64 = 0.03;
+/// A variance that changes by less is settled.
+const SETTLED: f64 = 1.2;
+
+/// $|H|^2/\sigma^2$, where $g$ is the reciprocal deviation of either part.
+fn size(value: Complex64, weight: f64) -> f64 {
+    0.5 * (weight * value).norm_sqr()
+}
+
+/// The half of all lines that stand out of the noise most, with residuals in units of the noise alone.
+fn strongest(records: &[RecordLines], noise: &[Vec<f64>], left: &[Vec<Complex64>]) -> Vec<Line> {
+    let of_record = |((record, noise), left): ((&RecordLines, &Vec<f64>), &Vec<Complex64>)| {
+        let line = |k: usize| Line {
+            missed: 0.5 * (left[k] * (noise[k] / record.weight[k])).norm_sqr(),
+            size: size(record.value[k], noise[k]),
+        };
+        (0..noise.len()).map(line).collect::<Vec<_>>()
+    };
+    let mut lines: Vec<Line> = records.iter().zip(noise).zip(left).flat_map(of_record).collect();
+    let middle = lines.len() / 2;
+    if lines.len() > 1 {
+        lines.select_nth_unstable_by(middle, |a, b| b.size.total_cmp(&a.size));
+        lines.truncate(middle);
+    }
+    lines
+}
+
+/// $\kappa^2$ at which the median line misses by as much as it should; modes that are not found yet, a few lines each, do not raise it.
+fn scatter(lines: &[Line]) -> f64 {
+    // Squares of a complex Gaussian of mean one have the median $\ln 2$.
+    let median = |kappa2: f64| {
+        let mut squares: Vec<f64> = lines.iter().map(|line| line.missed / (1.0 + kappa2 * line.size)).collect();
+        let middle = squares.len() / 2;
+        if squares.is_empty() { 0.0 } else { *squares.select_nth_unstable_by(middle, f64::total_cmp).1 / LN_2 }
+    };
+    if median(0.0) < BY_NOISE {
+        return 0.0;
+    }
+    let [mut low, mut high] = [1e-12, MOST * MOST];
+    for _ in 0..40 {
+        let middle = (low * high).sqrt();
+        *if median(middle) > 1.0 { &mut low } else { &mut high } = middle;
+    }
+    high
+}
