@@ -3,6 +3,15 @@
 //!
 //! The coverage-guided targets beside this file and the sampling mutator of `.ci/run` share it.
 
+#[allow(dead_code, reason = "the command's own file")]
+#[path = "../../crates/orthopanel/src/fmu_refusal.rs"]
+pub mod fmu_refusal;
+mod fmus;
+#[allow(dead_code, reason = "the command's own file")]
+#[path = "../../crates/orthopanel/src/force_file.rs"]
+mod force_file;
+
+pub use fmus::{fmu_archive, fmu_description};
 use orthopanel_data::{Accelerance, Estimation, ImpactTest, RecordFile, RecordedResponse, TimeHistory, Window};
 use orthopanel_model::{PanelModel, Place};
 
@@ -38,4 +47,10 @@ pub fn model_json(bytes: &[u8]) -> bool {
     let Ok(model) = PanelModel::from_json(text) else { return false };
     assert_eq!(PanelModel::from_json(&model.to_json()), Ok(model));
     true
+}
+
+/// The force file of `simulate`, for one place and for two.
+pub fn force_csv(bytes: &[u8]) -> bool {
+    let Ok(text) = str::from_utf8(bytes) else { return false };
+    (1..=2).any(|places| force_file::ForceHistory::from_csv(text, places).is_ok())
 }

@@ -21,6 +21,7 @@ use std::{
 
 use mutation::Random;
 use peak_alloc::PeakAlloc;
+use readers::fmu_refusal;
 use seeds::Reader;
 
 #[global_allocator]

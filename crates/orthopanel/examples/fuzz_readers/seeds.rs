@@ -1,6 +1,14 @@
 //! The readers, and good files of each that together reach all of it; mutation does the rest.
 
-use std::{fs, path::Path};
+use std::{
+    fs,
+    io::{Cursor, Write as _},
+    path::Path,
+};
+
+use orthopanel_export::{FmiVersion, Fmu, FmuOptions};
+use orthopanel_model::{ModalModel, Mode, Place, Ports};
+use zip::{CompressionMethod, ZipWriter, write::SimpleFileOptions};
 
 use crate::readers;
 
@@ -38,6 +46,16 @@ pub fn readers() -> Vec<Reader> {
             files: [vec![EVERY_KEY.into()], examples("toml")].concat(),
         },
         Reader { name: "model_json", feed: readers::model_json, files: examples("json") },
+        Reader {
+            name: "force_csv",
+            feed: readers::force_csv,
+            files: vec![
+                rows("time_s,force_n\n", |n| format!("{n}e-5,{}.25\n", n % 7)),
+                rows("# two places\ntime_s, note, force_2_n, force_1_n\n", |n| format!("{n}, a, 0, {n}\n")),
+            ],
+        },
+        Reader { name: "fmu_archive", feed: readers::fmu_archive, files: vec![archive()] },
+        Reader { name: "fmu_description", feed: readers::fmu_description, files: descriptions() },
     ]
 }
 
@@ -166,4 +184,29 @@ fn dataset(order: u8, [complex, double, even]: [bool; 3], axes: [(i64, &str); 2]
         }
     };
     [first.as_bytes(), header.as_bytes(), &data, b"\n    -1\n"].concat()
+}
+
+/// An archive with a file stored and one compressed.
+fn archive() -> Vec<u8> {
+    let mut writer = ZipWriter::new(Cursor::new(Vec::new()));
+    for (name, method) in [("a", CompressionMethod::Stored), ("resources/b", CompressionMethod::Deflated)] {
+        let options = SimpleFileOptions::default().compression_method(method);
+        writer.start_file(name, options).expect("an entry");
+        writer.write_all(&[b'x'; 100]).expect("its content");
+    }
+    writer.finish().expect("an archive").into_inner()
+}
+
+/// Descriptions of one FMU in FMI 2.0, in FMI 3.0, and there with arrays.
+fn descriptions() -> Vec<Vec<u8>> {
+    let mode = Mode { angular_frequency: 2000.0, damping_ratio: 0.01, at_forces: vec![1.3], at_responses: vec![-0.9] };
+    let model = ModalModel::new(1, 1, vec![mode]).expect("a model");
+    let places = vec![Place { x: 0.0, y: 0.0 }];
+    let ports = Ports { forces: places.clone(), responses: places };
+    let description = |(version, arrays)| {
+        let options = FmuOptions { version, arrays, ..FmuOptions::default() };
+        let fmu = Fmu::new(model.clone(), ports.clone(), &options).expect("an FMU");
+        fmu.model_description().as_bytes().to_vec()
+    };
+    [(FmiVersion::Fmi2, false), (FmiVersion::Fmi3, false), (FmiVersion::Fmi3, true)].map(description).to_vec()
 }
