@@ -1,7 +1,7 @@
 //! Mutates good files and feeds each to its reader: none may panic, hang or take much memory, whatever the bytes.
 //!
 //! `cargo run -p orthopanel --example fuzz_readers -- [SECONDS] [SEED]`; 10 s and seed 1 unless said.
-//! Without `--release` overflow checks are on; `.ci/run` trades them for many more rounds in its minute.
+//! Without `--release` overflow checks are on; `.ci/run` trades them for many more rounds in its half minute.
 //! A fault prints the bytes with reader, seed and round, so that the run repeats it and a test can be made of them.
 //! `-- write FOLDER` writes the good files, for the coverage-guided targets in `fuzz/`, which go deeper.
 
@@ -27,10 +27,16 @@ use seeds::Reader;
 #[global_allocator]
 static MEMORY: PeakAlloc = PeakAlloc;
 
-/// Most bytes that a file of a few kilobytes may take at a time.
+/// Most bytes that a file may take at a time.
 const MOST_MEMORY: usize = 256 << 20;
-/// Longest time a file of a few kilobytes may take: a hundred times what the slowest takes, for machines are busy.
+/// Longest time that a file may take: a hundred times what the slowest takes, for machines are busy.
 const LONGEST: Duration = Duration::from_secs(20);
+/// One file in so many is made long.
+const LONG_ONES: usize = 256;
+/// Bytes of a long file.
+const LONG: usize = 1 << 20;
+/// Bytes of a file that are shown where it is a finding; the seed makes it anew.
+const SHOWN: usize = 1 << 16;
 
 /// One file that is being read, for the watch.
 struct Round {
@@ -41,7 +47,8 @@ struct Round {
 
 impl Round {
     fn report(&self, fault: &str) {
-        eprintln!("{fault} in {}; the bytes:\n{}", self.name, self.bytes.escape_ascii());
+        let shown = &self.bytes[..self.bytes.len().min(SHOWN)];
+        eprintln!("{fault} in {}; of its {} bytes:\n{}", self.name, self.bytes.len(), shown.escape_ascii());
     }
 }
 
@@ -83,24 +90,34 @@ fn fuzz(readers: &[Reader], duration: Duration, seed: u64) -> ExitCode {
     });
     let mut random = Random::new(seed);
     let end = Instant::now() + duration;
-    let mut rounds = 0u64;
+    let (mut rounds, mut accepted) = (0u64, 0u64);
+    let (mut longest, mut most) = (Duration::ZERO, 0);
     while Instant::now() < end {
         let Reader { name, feed, files } = &readers[random.below(readers.len())];
         let mut bytes = files[random.below(files.len())].clone();
+        if random.below(LONG_ONES) == 0 {
+            random.lengthen(&mut bytes, LONG);
+        }
         random.mutate(&mut bytes);
         let round =
             |bytes| Round { begun: Instant::now(), name: format!("{name}, round {rounds} of seed {seed}"), bytes };
         *ROUND.lock().expect("no reader holds it") = Some(round(bytes.clone()));
         MEMORY.reset_peak_usage();
+        let begun = Instant::now();
         let read = catch_unwind(AssertUnwindSafe(|| feed(&bytes)));
-        let peak = MEMORY.peak_usage();
-        if read.is_err() || peak > MOST_MEMORY {
-            round(bytes).report(&if read.is_err() { "panic".into() } else { format!("{peak} bytes of memory") });
+        (longest, most) = (longest.max(begun.elapsed()), most.max(MEMORY.peak_usage()));
+        accepted += u64::from(matches!(read, Ok(true)));
+        if read.is_err() || most > MOST_MEMORY {
+            round(bytes).report(&if read.is_err() { "panic".into() } else { format!("{most} bytes of memory") });
             return ExitCode::FAILURE;
         }
         rounds += 1;
     }
-    println!("{rounds} files read or refused: no panic, none beyond {LONGEST:?} or {MOST_MEMORY} bytes of memory");
+    println!(
+        "{rounds} inputs, {accepted} of them accepted: 0 findings (no panic, the longest {:.2} s, the most memory {} MiB)",
+        longest.as_secs_f64(),
+        most >> 20
+    );
     ExitCode::SUCCESS
 }
 

@@ -43,6 +43,23 @@ impl Random {
         usize::try_from(self.0 % limit.max(1) as u64).unwrap_or(0)
     }
 
+    /// Repeats some of the bytes where they stand until there are `size`: time or memory that grows faster than the file shows only
+    /// in long ones.
+    pub fn lengthen(&mut self, bytes: &mut Vec<u8>, size: usize) {
+        let line_start = |at: usize| bytes[..at].iter().rposition(|&byte| byte == b'\n').map_or(0, |end| end + 1);
+        let (from, length) = (self.below(bytes.len()), 1 + self.below(200));
+        let (mut from, mut end) = (from, (from + length).min(bytes.len()));
+        // Whole lines stay rows and tables.
+        if self.below(2) == 0 && line_start(end) > line_start(from) {
+            (from, end) = (line_start(from), line_start(end));
+        }
+        let piece = bytes[from..end].to_vec();
+        if !piece.is_empty() {
+            let times = size.saturating_sub(bytes.len()) / piece.len();
+            bytes.splice(from..from, piece.repeat(times));
+        }
+    }
+
     pub fn mutate(&mut self, bytes: &mut Vec<u8>) {
         for _ in 0..=self.below(4) {
             let (at, length) = (self.below(bytes.len()), self.below(12));

@@ -6,8 +6,6 @@ use std::{
     path::Path,
 };
 
-use orthopanel_export::{FmiVersion, Fmu, FmuOptions};
-use orthopanel_model::{ModalModel, Mode, Place, Ports};
 use zip::{CompressionMethod, ZipWriter, write::SimpleFileOptions};
 
 use crate::readers;
@@ -38,14 +36,16 @@ pub fn readers() -> Vec<Reader> {
             files: vec![
                 rows("time_s,force_n,acceleration_m_s2\n", |n| format!("{n},{},{n}e-3\n", n % 7)),
                 rows("frequency_hz,real,imag,coherence\n", |n| format!("{n},1.5,-{n},0.9\n")),
+                rows("frequency_hz,real,imag,variance,decay_rate_1_s\n", |n| format!("{n},1.5,-{n},0.01,2\n")),
+                blow(),
             ],
         },
         Reader {
             name: "test_toml",
             feed: readers::test_toml,
-            files: [vec![EVERY_KEY.into()], examples("toml")].concat(),
+            files: [vec![EVERY_KEY.into()], files("examples", "toml")].concat(),
         },
-        Reader { name: "model_json", feed: readers::model_json, files: examples("json") },
+        Reader { name: "model_json", feed: readers::model_json, files: files("examples", "json") },
         Reader {
             name: "force_csv",
             feed: readers::force_csv,
@@ -55,7 +55,7 @@ pub fn readers() -> Vec<Reader> {
             ],
         },
         Reader { name: "fmu_archive", feed: readers::fmu_archive, files: vec![archive()] },
-        Reader { name: "fmu_description", feed: readers::fmu_description, files: descriptions() },
+        Reader { name: "fmu_description", feed: readers::fmu_description, files: files("modelDescription", "xml") },
     ]
 }
 
@@ -102,17 +102,33 @@ unit = "g"
 direction = -1
 "#;
 
-/// The examples of an ending that are no larger than a mutation can go over: tests, models.
-fn examples(ending: &str) -> Vec<Vec<u8>> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples");
-    let entries = |folder: &Path| fs::read_dir(folder).expect("examples").map(|entry| entry.expect("an entry").path());
+/// What is no good file for the reader of its ending.
+const OTHERS: [&str; 2] = ["truth.json", "terminalsAndIcons.xml"];
+
+/// The files of an ending in a folder of the repository and in the folders there; none is larger than a mutation can go over.
+fn files(folder: &str, ending: &str) -> Vec<Vec<u8>> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").join(folder);
+    let entries = |folder: &Path| fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("an entry").path());
     let (folders, files): (Vec<_>, Vec<_>) = entries(&folder).partition(|path| path.is_dir());
     let inner = folders.iter().flat_map(|folder| entries(folder));
     let mut paths: Vec<_> = files.iter().cloned().chain(inner).collect();
     // One order on every machine, or a seed would not repeat a run.
     paths.sort();
     let named = paths.iter().filter(|path| path.extension().is_some_and(|found| found == ending));
-    named.filter(|path| !path.ends_with("truth.json")).map(|path| fs::read(path).expect("an example")).collect()
+    let good = named.filter(|path| !OTHERS.iter().any(|other| path.ends_with(other)));
+    good.map(|path| fs::read(path).expect("a file")).collect()
+}
+
+/// CSV of a blow that is kept, with a little noise.
+fn blow() -> Vec<u8> {
+    let row = |n: u32| {
+        let after = f64::from(n) - 100.0;
+        let push = if (0.0..8.0).contains(&after) { (after * std::f64::consts::PI / 8.0).sin() } else { 0.0 };
+        let ringing = if after < 0.0 { 0.0 } else { 0.97f64.powf(after) * after.sin() };
+        let noise = f64::from(n * n);
+        format!("{n}e-4,{:.6},{:.6}\n", push + 1e-4 * noise.sin(), ringing + 1e-4 * noise.cos())
+    };
+    ("time_s,force_n,acceleration_m_s2\n".to_owned() + &(0..512).map(row).collect::<String>()).into_bytes()
 }
 
 /// Datasets 58 and 58b in both byte orders and all eight layouts: a force with its acceleration, or an accelerance.
@@ -195,18 +211,4 @@ fn archive() -> Vec<u8> {
         writer.write_all(&[b'x'; 100]).expect("its content");
     }
     writer.finish().expect("an archive").into_inner()
-}
-
-/// Descriptions of one FMU in FMI 2.0, in FMI 3.0, and there with arrays.
-fn descriptions() -> Vec<Vec<u8>> {
-    let mode = Mode { angular_frequency: 2000.0, damping_ratio: 0.01, at_forces: vec![1.3], at_responses: vec![-0.9] };
-    let model = ModalModel::new(1, 1, vec![mode]).expect("a model");
-    let places = vec![Place { x: 0.0, y: 0.0 }];
-    let ports = Ports { forces: places.clone(), responses: places };
-    let description = |(version, arrays)| {
-        let options = FmuOptions { version, arrays, ..FmuOptions::default() };
-        let fmu = Fmu::new(model.clone(), ports.clone(), &options).expect("an FMU");
-        fmu.model_description().as_bytes().to_vec()
-    };
-    [(FmiVersion::Fmi2, false), (FmiVersion::Fmi3, false), (FmiVersion::Fmi3, true)].map(description).to_vec()
 }
