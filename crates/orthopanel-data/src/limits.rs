@@ -6,8 +6,8 @@ pub use orthopanel_model::limits::*;
 
 use crate::InputKind;
 
-/// A test file: ten thousand measurements take 3 MB.
-pub const TEST_FILE: InputKind = InputKind { name: "a test file", most_bytes: 1 << 24 };
+/// A test file: ten thousand measurements take 3 MB. Reading TOML may take a hundred times its size in memory.
+pub const TEST_FILE: InputKind = InputKind { name: "a test file", most_bytes: 1 << 22 };
 
 /// A file of records (UFF or CSV): ten minutes of four channels at 51.2 kHz take 1 GB.
 pub const RECORD_FILE: InputKind = InputKind { name: "a file of records", most_bytes: 1 << 31 };

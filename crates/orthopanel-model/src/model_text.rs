@@ -199,4 +199,13 @@ mod tests {
         let model = PanelModel::from_json(MODEL).expect("a model");
         assert_eq!(PanelModel::from_json(&model.to_json()), Ok(model));
     }
+
+    #[test]
+    fn numbers_are_read_to_their_last_place() {
+        // A quick conversion misses each of these by one unit of it.
+        for length in [51.24817837550540, 93.31137037688033, 36.57399484275344, 52.31400820410624, 97.45365320034685] {
+            let model = PanelModel::from_json(&MODEL.replacen("0.8", &length.to_string(), 1)).expect("a model");
+            assert_eq!(model.piece.length, length);
+        }
+    }
 }

@@ -1,11 +1,6 @@
 //! The force file of `simulate`: `time_s,force_n`, or `time_s,force_1_n,force_2_n,...` for several force places.
 
-use std::path::Path;
-
-use orthopanel_data::limits;
 use orthopanel_model::Readable;
-
-use crate::error::CommandError;
 
 /// Forces against time, as read: at least two samples, time rising, every number finite.
 pub struct ForceHistory {
@@ -13,6 +8,12 @@ pub struct ForceHistory {
     pub time: Vec<f64>,
     /// Force \[N\], one column a force place.
     pub forces: Vec<Vec<f64>>,
+}
+
+/// What is wrong with a force file, and in which line.
+pub struct Fault {
+    pub line: Option<u64>,
+    pub problem: String,
 }
 
 impl ForceHistory {
@@ -36,14 +37,8 @@ impl ForceHistory {
     }
 
     /// Reads the columns for `places` force places; other columns are left alone.
-    pub fn read(path: &Path, places: usize) -> Result<Self, CommandError> {
-        let text = limits::FORCE_FILE.read_text(path);
-        let text = text.map_err(|source| CommandError::Unreadable { path: path.into(), source })?;
-        Self::from_csv(&text, path, places)
-    }
-
-    fn from_csv(text: &str, path: &Path, places: usize) -> Result<Self, CommandError> {
-        let fault = |line: Option<u64>, problem: String| CommandError::ForceFile { path: path.into(), line, problem };
+    pub fn from_csv(text: &str, places: usize) -> Result<Self, Fault> {
+        let fault = |line: Option<u64>, problem: String| Fault { line, problem };
         let broken = |error: csv::Error| fault(error.position().map(csv::Position::line), error.to_string());
         let mut reader =
             csv::ReaderBuilder::new().comment(Some(b'#')).trim(csv::Trim::All).from_reader(text.as_bytes());
@@ -111,7 +106,10 @@ mod tests {
     use super::*;
 
     fn read(text: &str, places: usize) -> Result<ForceHistory, String> {
-        ForceHistory::from_csv(text, Path::new("f.csv"), places).map_err(|error| error.to_string())
+        ForceHistory::from_csv(text, places).map_err(|fault| match fault.line {
+            Some(line) => format!("{line}: {}", fault.problem),
+            None => fault.problem,
+        })
     }
 
     #[test]
@@ -122,11 +120,11 @@ mod tests {
     }
 
     #[test]
-    fn faults_name_file_line_and_remedy() {
+    fn faults_name_line_and_remedy() {
         let fault = |text, places| read(text, places).err().expect("a fault");
-        assert_eq!(fault("time_s\n0\n1\n", 1), "f.csv:1: column force_n is missing: the columns are time_s,force_n");
-        assert_eq!(fault("time_s,force_n\n0,1\n0,1\n", 1), "f.csv:3: time_s = 0 after 0: time must rise");
-        assert_eq!(fault("time_s,force_n\n0,1\n1,nan\n", 1), "f.csv:3: force_n = \"nan\": must be a finite number");
-        assert_eq!(fault("time_s,force_n\n0,1\n", 1), "f.csv: 1 samples: give at least two");
+        assert_eq!(fault("time_s\n0\n1\n", 1), "1: column force_n is missing: the columns are time_s,force_n");
+        assert_eq!(fault("time_s,force_n\n0,1\n0,1\n", 1), "3: time_s = 0 after 0: time must rise");
+        assert_eq!(fault("time_s,force_n\n0,1\n1,nan\n", 1), "3: force_n = \"nan\": must be a finite number");
+        assert_eq!(fault("time_s,force_n\n0,1\n", 1), "1 samples: give at least two");
     }
 }

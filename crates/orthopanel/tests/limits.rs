@@ -42,7 +42,7 @@ fn a_file_too_large_is_refused_with_both_sizes() {
     sparse.set_len(20 << 20).expect("sized");
     refused(&bench, "modes large.json", 2, &["large.json", "20971520 bytes", "a model file may have 16777216"]);
     std::fs::rename(bench.path("large.json"), bench.path("large.toml")).expect("renamed");
-    refused(&bench, "identify large.toml", 2, &["large.toml", "20971520 bytes", "a test file may have 16777216"]);
+    refused(&bench, "identify large.toml", 2, &["large.toml", "20971520 bytes", "a test file may have 4194304"]);
 }
 
 #[test]

@@ -4,13 +4,13 @@ mod on_records;
 
 use std::path::PathBuf;
 
-use orthopanel_data::ImpactTest;
+use orthopanel_data::{ImpactTest, limits};
 use serde::Serialize;
 
 use crate::arguments::{ModeArguments, PortArguments};
 use crate::driving_force::DrivingForce;
 use crate::error::{CommandError, InFile as _};
-use crate::force_file::ForceHistory;
+use crate::force_file::{Fault, ForceHistory};
 use crate::measured_pairs::is_test_file;
 use crate::outputs::{Inputs, Outputs};
 use crate::time_response::{Hold, Motion};
@@ -167,7 +167,12 @@ fn run_fmu(arguments: &Arguments) -> Result<(ForceHistory, Vec<Motion>), Command
 
 fn driving_force(arguments: &Arguments, places: usize) -> Result<DrivingForce, CommandError> {
     let path = &arguments.force_file;
-    DrivingForce::new(ForceHistory::read(path, places)?, arguments.hold.unwrap_or(Hold::Linear), path)
+    let text = limits::FORCE_FILE.read_text(path);
+    let text = text.map_err(|source| CommandError::Unreadable { path: path.into(), source })?;
+    let force = ForceHistory::from_csv(&text, places);
+    let force =
+        force.map_err(|Fault { line, problem }| CommandError::ForceFile { path: path.into(), line, problem })?;
+    DrivingForce::new(force, arguments.hold.unwrap_or(Hold::Linear), path)
 }
 
 fn answer<'a>(force: &'a ForceHistory, motions: &'a [Motion]) -> Answer<'a> {
