@@ -203,7 +203,13 @@ mod tests {
     #[test]
     fn numbers_are_read_to_their_last_place() {
         // A quick conversion misses each of these by one unit of it.
-        for length in [51.24817837550540, 93.31137037688033, 36.57399484275344, 52.31400820410624, 97.45365320034685] {
+        for length in [
+            51.248_178_375_505_4,
+            93.311_370_376_880_33,
+            36.573_994_842_753_44,
+            52.314_008_204_106_24,
+            97.453_653_200_346_85,
+        ] {
             let model = PanelModel::from_json(&MODEL.replacen("0.8", &length.to_string(), 1)).expect("a model");
             assert_eq!(model.piece.length, length);
         }

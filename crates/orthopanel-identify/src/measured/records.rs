@@ -58,7 +58,8 @@ impl MeasuredModes {
         Self::of_lines(piece, records, band)
     }
 
-    fn of_lines(piece: usize, mut records: Vec<RecordLines>, band: [f64; 2]) -> Option<Self> {
+    /// From lines, in a band \[Hz\].
+    pub(super) fn of_lines(piece: usize, mut records: Vec<RecordLines>, band: [f64; 2]) -> Option<Self> {
         let mut found = poles(&records, peaks(&records)?)?;
         let mut scatter = Scatter::none(&records);
         for _ in 0..SCATTERS {

@@ -21,6 +21,9 @@ use crate::{console, model_file};
 /// Modes beyond the band get the median of the measured ratios. Where a response still rings at the record's end, both
 /// channels get an exponential window, whose damping is known and taken out.
 ///
+/// Below stand the modes that the records show by themselves, by a joint fit of all of them before any model, each beside the
+/// mode of the model that it is, with the modal assurance criterion of the two over the records.
+///
 /// With several pieces in the test, -o writes one model a piece: MODEL-NAME.json.
 ///
 /// Examples: orthopanel identify examples/piece-1/test.toml -o model.json
