@@ -83,7 +83,7 @@ pub fn is_harmful(character: char) -> bool {
 }
 
 fn is_harmful_in_line(character: char) -> bool {
-    character.is_control() || matches!(character, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
+    character.is_control() || matches!(orthopanel_model::printable(character.encode_utf8(&mut [0; 4])), Cow::Owned(_))
 }
 
 fn for_people(character: char) -> String {

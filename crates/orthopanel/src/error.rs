@@ -96,7 +96,8 @@ pub enum CommandError {
 /// What to do about a file that cannot be written.
 fn way_out(kind: ErrorKind) -> &'static str {
     match kind {
-        ErrorKind::NotFound | ErrorKind::NotADirectory => "name a place in a folder that exists",
+        ErrorKind::NotFound => "name a place in a folder that exists",
+        ErrorKind::NotADirectory => "name a folder, or a place that does not lie below a file",
         ErrorKind::PermissionDenied => "name a place that you may write to",
         ErrorKind::ReadOnlyFilesystem => "name a place on a disk that may be written to",
         ErrorKind::StorageFull | ErrorKind::QuotaExceeded => "make room, or name a place on another disk",

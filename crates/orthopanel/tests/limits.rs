@@ -191,7 +191,7 @@ fn what_keeps_a_file_from_being_written_is_said_and_what_to_do() {
     for (target, said) in [
         ("nowhere/out.json", "name a place in a folder that exists"),
         ("folder", "it is a folder: name a file in it"),
-        ("model.json/out.json", "name a place in a folder that exists"),
+        ("model.json/out.json", "a place that does not lie below a file"),
         (&*format!("{}.json", "a".repeat(300)), "give a shorter name"),
     ] {
         let before = bench.listing();

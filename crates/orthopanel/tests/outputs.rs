@@ -181,6 +181,7 @@ fn results_of_another_run_do_not_stay() {
     let message = String::from_utf8_lossy(&said.stderr);
     assert_eq!(said.status.code(), Some(0), "{message}");
     assert!(message.contains("response-3.csv: left by an earlier run, and kept: it was changed since"), "{message}");
+    assert!(message.contains("removed ") && message.contains("response-4.csv, left by an earlier run"), "{message}");
     bench.done("run test.toml -o alone");
     let mut expected = names(&bench, "alone");
     expected.extend(["notes.txt", "response-3.csv"].map(String::from));

@@ -9,6 +9,7 @@ use super::hit_verdict::HitVerdict;
 use crate::{
     DataError, Location, RecordedResponse,
     error::some_of,
+    limits,
     records::{Record, RecordFile, RecordKind, Samples},
 };
 
@@ -147,6 +148,12 @@ impl Accelerance {
         result.frequency = record.abscissa.iter().skip(positive).copied().collect();
         if result.frequency.is_empty() {
             return refused(record, "no line above 0 Hz".into());
+        }
+        let [least, most] = limits::HERTZ;
+        if let Some(line) = result.frequency.last().filter(|line| !(least..=most).contains(*line)) {
+            let problem =
+                format!("the last line is at {} Hz: frequencies are in Hz, {least} to {most:e}", Readable(*line));
+            return refused(record, problem);
         }
         result.value = values.iter().skip(positive).map(|value| value * factor).collect();
         if let Some(coherence) = coherence {

@@ -170,6 +170,14 @@ impl TimeHistory {
                 Some((known, rate)) => (known.len(), *rate),
                 None => common_grid(&force, &acceleration)?,
             };
+            let [least, most] = limits::HERTZ;
+            if !(least..=most).contains(&rate) {
+                let problem = format!(
+                    "sampled at {:.3} Hz: hammer tests are sampled at {least} to {most:e} Hz; times are in s",
+                    Readable(rate)
+                );
+                return Err(DataError::Channels { at: force.at, problem });
+            }
             times = Some((Arc::clone(&force.abscissa), rate));
             match grid {
                 Some((first_length, first_rate))

@@ -94,7 +94,8 @@ impl<'a> WidePiece<'a> {
         let mut limit = self.band;
         loop {
             let modes = self.structure.modes_below(values, limit, &[])?;
-            if modes.len() >= wanted || limit > 1e9 {
+            // Records of a few lines are narrower than the width, and have no band that could be doubled.
+            if modes.len() >= wanted || !(limit > 0.0 && limit < 1e9) {
                 break;
             }
             limit *= 2.0;

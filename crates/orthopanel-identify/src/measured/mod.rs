@@ -124,17 +124,13 @@ pub fn measured_modes(test: &ImpactTest) -> Result<Vec<MeasuredModes>, IdentifyE
 
 /// Of the hits that are sound, up to where the force has fallen too far.
 fn of_hits(piece: usize, histories: &[TimeHistory]) -> Result<MeasuredModes, IdentifyError> {
-    let estimation = Estimation { force_drop: FORCE_DROP, ..Estimation::default() };
-    let judged = histories.iter().map(|history| Ok((history, history.accelerance(estimation)?)));
+    let judged = histories.iter().map(|history| Ok((history, history.accelerance(Estimation::default())?)));
     let judged = judged.collect::<Result<Vec<_>, IdentifyError>>()?;
     let ends = judged.iter().filter_map(|(_, accelerance)| accelerance.frequency.last().copied());
     let highest = ends.fold(f64::INFINITY, f64::min);
     let sound: Vec<TimeHistory> = judged.iter().map(|(history, accelerance)| history.kept_in(accelerance)).collect();
     MeasuredModes::of_hits(piece, &sound, highest).ok_or_else(no_resonance)
 }
-
-/// The band ends where the force has fallen by this much \[dB\].
-const FORCE_DROP: f64 = 20.0;
 
 fn no_resonance() -> IdentifyError {
     IdentifyError::TooFewResonances { found: 0, needed: 1, noise_percent: None }

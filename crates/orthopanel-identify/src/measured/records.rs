@@ -24,6 +24,8 @@ const FLAT: f64 = 1.0 / 2.56;
 const SKIRT: f64 = 4.0;
 /// Most that the logarithm of a frequency may be unsure by for its mode to stand by itself.
 const MOST_UNSURE: f64 = 5e-3;
+/// The same of the logarithm of its damping: beyond, noise could have made it of nothing.
+const MOST_UNSURE_DAMPING: f64 = 0.5;
 /// Damping ratio from which a pole is no mode but a slope.
 const MOST_ZETA: f64 = 0.25;
 /// Values of the remainder that are told, and the highest of their frequencies \[Hz\].
@@ -81,7 +83,8 @@ fn inside(found: &Found, scale: f64, band: [f64; 2]) -> (Vec<usize>, DMatrix<f64
     let stands = |&pole: &usize| {
         let [frequency, zeta] = [found.poles[pole][0].exp() / TAU, found.poles[pole][1].exp()];
         let skirt = SKIRT * zeta * frequency;
-        let sure = covariance[(2 * pole, 2 * pole)].sqrt() < MOST_UNSURE;
+        let is_sure = |parameter: usize, most: f64| covariance[(parameter, parameter)].sqrt() < most;
+        let sure = is_sure(2 * pole, MOST_UNSURE) && is_sure(2 * pole + 1, MOST_UNSURE_DAMPING);
         frequency - skirt > band[0] && frequency + skirt < band[1] && zeta < MOST_ZETA && sure
     };
     ((0..found.poles.len()).filter(stands).collect(), covariance)

@@ -49,7 +49,7 @@ impl Scatter {
     }
 }
 
-/// What resonances of real panels leave: where more is left, poles are missing or the panel is not linear, which [`MeasuredModes::chi_square`]
+/// What resonances of real panels leave: where more is left, poles are missing or the panel is not linear, which [`MeasuredModes::chi_square`](super::MeasuredModes::chi_square)
 /// says.
 const MOST: f64 = 0.03;
 /// A variance that changes by less is settled.

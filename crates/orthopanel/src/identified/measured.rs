@@ -78,27 +78,40 @@ impl MeasuredTable {
     pub(super) fn text(&self) -> String {
         let or_dash = |value: Option<String>| value.unwrap_or_else(|| "-".into());
         let row = |mode: &MeasuredMode| {
+            let digits = digits_of(mode.std_hz);
             vec![
-                format!("{:.2}", Readable(mode.frequency_hz)),
+                format!("{:.digits$}", Readable(mode.frequency_hz)),
                 format!("{:.1e}", mode.std_hz),
                 or_dash(mode.zeta.map(|zeta| format!("{zeta:.3e}"))),
                 or_dash(mode.zeta_std.map(|std| format!("{std:.1e}"))),
                 or_dash(mode.mode.map(|mode| mode.to_string())),
-                or_dash(mode.model_hz.map(|model| format!("{:.2}", Readable(model)))),
-                or_dash(mode.error_percent.map(|error| format!("{:+.3}", Readable(error)))),
+                or_dash(mode.model_hz.map(|model| format!("{:.digits$}", Readable(model)))),
+                or_dash(mode.error_percent.map(|error| format!("{:+.4}", Readable(error)))),
                 or_dash(mode.mac.map(|mac| format!("{mac:.4}"))),
             ]
         };
         let rows: Vec<_> = self.modes.iter().map(row).collect();
         let headings =
-            ["measured [Hz]", "std [Hz]", "zeta", "std of zeta", "mode of the model", "model [Hz]", "error [%]", "MAC"];
+            ["measured [Hz]", "std [Hz]", "zeta", "std of zeta", "model mode", "model [Hz]", "error [%]", "MAC"];
         let misfit = self.chi_square.map_or(String::new(), |chi_square| {
-            format!(", chi-square per datum {:.2} (1: noise alone is left)", Readable(chi_square))
+            format!("; chi-square per datum {:.2} (1: all that is left is noise)", Readable(chi_square))
         });
-        format!(
-            "piece {}: modes of a joint fit of all records, before any model{misfit}\n{}",
+        let mut text = format!(
+            "piece {}: experimental modal analysis of all records together, without a model{misfit}\n{}",
             self.piece,
             tables::aligned(&headings, &rows)
-        )
+        );
+        if self.modes.iter().any(|mode| mode.mac.is_some()) {
+            text += "MAC: modal assurance criterion between the residues and the model's mode shape at the measured places\n";
+        }
+        if self.modes.iter().any(|mode| mode.mode.is_none()) {
+            text += "a mode without a partner is none of the free panel's: the suspension's, or what the model lacks\n";
+        }
+        text
     }
+}
+
+/// Digits behind the point with which a number shows its deviation, no fewer than two.
+fn digits_of(std: f64) -> usize {
+    if std > 0.0 { (-std.log10()).ceil().clamp(2.0, 6.0) as usize } else { 2 }
 }

@@ -125,11 +125,17 @@ impl Outputs {
         for (path, (_, content)) in destinations.iter().zip(&self.files) {
             replacement.put(path, content)?;
         }
+        let mut removed = Vec::new();
         if let (Some(path), Some(Concluded { stale, manifest })) = (&manifest, concluded) {
             stale.iter().try_for_each(|path| replacement.remove(path))?;
             replacement.put_again(path, manifest.text().as_bytes())?;
+            removed = stale;
         }
-        replacement.commit()
+        replacement.commit()?;
+        for path in removed {
+            console::say(format_args!("removed {}, left by an earlier run", path.display()));
+        }
+        Ok(())
     }
 
     /// Prepares the manifest as the first change; gives what is left to do when the files are in place.
@@ -199,6 +205,11 @@ impl Outputs {
     /// device or a pipe would take its place, and none that the command reads.
     fn destination(&self, path: &Path) -> Result<PathBuf, CommandError> {
         match std::fs::metadata(path) {
+            // Renaming would take the place of a file that its owner protects.
+            Ok(there) if there.is_file() && there.permissions().readonly() && self.inputs.at(path).is_none() => {
+                let reason = "it is read-only".into();
+                return Err(CommandError::Unwritable { path: path.into(), reason, kind: ErrorKind::PermissionDenied });
+            }
             Ok(there) if there.is_file() => {}
             Ok(there) => {
                 let (kind, what) = match there.is_dir() {
@@ -290,6 +301,19 @@ mod tests {
         outputs.add(&real, "two");
         assert!(matches!(outputs.write(), Err(CommandError::Unwritable { .. })));
         assert_eq!(std::fs::read_to_string(&real).expect("read"), "new");
+    }
+
+    #[test]
+    fn a_file_that_its_owner_protects_is_kept() {
+        let home = tempfile::tempdir().expect("a temporary folder");
+        let path = home.path().join("model.json");
+        std::fs::write(&path, "old").expect("written");
+        let mut permissions = std::fs::metadata(&path).expect("there").permissions();
+        permissions.set_readonly(true);
+        std::fs::set_permissions(&path, permissions).expect("protected");
+        let refused = write(&path, "new").expect_err("refused");
+        assert!(refused.to_string().contains("it is read-only"), "{refused}");
+        assert_eq!(std::fs::read_to_string(&path).expect("read"), "old");
     }
 
     /// A folder that is locked twice is waited for.

@@ -151,9 +151,14 @@ fn staged(path: &Path, content: &[u8]) -> io::Result<TempPath> {
         use std::os::unix::fs::PermissionsExt as _;
         builder.permissions(std::fs::Permissions::from_mode(0o666));
     }
+    let earlier = std::fs::metadata(path).ok().map(|there| there.permissions());
     // The kind alone, since the error of a temporary file names it, and nobody knows that name.
     let mut file = builder.tempfile_in(of(path)).map_err(|error| io::Error::from(error.kind()))?;
     file.write_all(content).map_err(|error| io::Error::from(error.kind()))?;
+    if let Some(permissions) = earlier {
+        // Who could read the earlier result can read the new one, and nobody else.
+        file.as_file().set_permissions(permissions)?;
+    }
     file.as_file().sync_all()?;
     Ok(file.into_temp_path())
 }
