@@ -43,9 +43,9 @@ pub const FREQUENCIES_OF_TEST: usize = 2000;
 /// Records of one file: all frequency responses of a roving test at a few thousand places.
 pub const RECORDS: usize = 100_000;
 
-/// Sampling rates and frequencies of lines \[Hz\]: from swings of a minute to a thousand times what a hammer excites. Others are a unit's
+/// Sampling rates and frequencies of lines \[Hz\]: from swings of days to a thousand times what a hammer excites. Others are a unit's
 /// mistake, and nothing that is computed from them makes sense.
-pub const HERTZ: [f64; 2] = [1e-2, 1e8];
+pub const HERTZ: [f64; 2] = [1e-6, 1e8];
 
 /// Hits of one pair of places. Three to twenty are usual.
 pub const HITS: usize = 2000;
