@@ -2,10 +2,11 @@
 
 use std::path::Path;
 
-use orthopanel_data::limits;
+use orthopanel_data::{ImpactTest, limits};
 use orthopanel_model::PanelModel;
 
 use crate::error::{CommandError, InFile as _};
+use crate::identified::suffixes;
 use crate::measured_pairs::is_test_file;
 use crate::outputs::{Outputs, with_suffix};
 use crate::{console, importer};
@@ -20,6 +21,13 @@ pub fn read(path: &Path) -> Result<PanelModel, CommandError> {
     let text = limits::MODEL_FILE.read_text(path);
     let text = text.map_err(|source| CommandError::Unreadable { path: path.into(), source })?;
     PanelModel::from_json(&text).in_file(path)
+}
+
+/// Plans one model a piece of the test, as [`write_each`] names them.
+pub fn planned_each(outputs: Outputs, path: Option<&Path>, test: &ImpactTest) -> Result<Outputs, CommandError> {
+    let Some(path) = path else { return Ok(outputs) };
+    let named = suffixes(test).map(|suffix| with_suffix(path, &suffix));
+    outputs.all_planned(named)?.beside(path, test.pieces.len() > 1)
 }
 
 /// Writes one model a piece, as `with_suffix` names them, and says so on standard error.

@@ -35,7 +35,8 @@ use crate::{console, json, pictures, progress, report, time_response};
 /// plate, its model and FMUs are written too.
 ///
 /// A manifest.json lists the results, each with its SHA-256, and what they were made from. What it lists is removed by the
-/// next run into DIR that does not write it anew, unless it was changed since; no other file is, and none that is read.
+/// next run into DIR that does not write it anew, unless it was changed since; no other file is, and none that is read. Where
+/// a run replaces a file that was changed since, or that no run wrote, it keeps that as NAME.edited.
 ///
 /// Of records, each pair of places gets a picture of the accelerance, measured and calculated, and one of a hit with
 /// the accelerations measured and calculated under it; time-histories.json tells how far the model is from every hit.
