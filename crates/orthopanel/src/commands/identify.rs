@@ -2,13 +2,11 @@
 
 use std::path::PathBuf;
 
-use orthopanel_data::ImpactTest;
-
 use crate::error::CommandError;
 use crate::identified::Identified;
 use crate::outputs::{Inputs, Outputs};
 use crate::record_options::IdentifyOptions;
-use crate::{console, model_file};
+use crate::{console, given_file, model_file};
 
 /// Identify the elastic constants, and the damping where there are records, from a test
 ///
@@ -46,7 +44,7 @@ pub struct Arguments {
 
 pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
     let Arguments { test: path, output, options, json } = arguments;
-    let test = ImpactTest::read(path)?;
+    let test = given_file::read_test(path)?;
     let outputs = model_file::planned_each(Outputs::of(Inputs::of_test(path, &test)), output.as_deref(), &test)?;
     let identified = Identified::from_test(&test, path, options)?;
     if let Some(output) = output {

@@ -20,7 +20,7 @@ use crate::outputs::{Inputs, Outputs};
 use crate::record_options::IdentifyOptions;
 use crate::time_response::Hold;
 use crate::traced::Traced;
-use crate::{console, json, pictures, progress, report, time_response};
+use crate::{console, given_file, json, pictures, progress, report, time_response};
 
 /// Do all of it: identify the panel of a test, trace what its model lacks, export its FMUs, simulate a hit, draw the result
 ///
@@ -84,7 +84,7 @@ struct HitsAnswer<'a> {
 
 pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
     let Arguments { test: path, output, options, json } = arguments;
-    let test = ImpactTest::read(path)?;
+    let test = given_file::read_test(path)?;
     let mut files = Outputs::of(Inputs::of_test(path, &test)).filling(output, MANIFEST).planned_inside(names(&test))?;
     let identified = match Identified::from_test(&test, path, options) {
         Err(refused) => return trace_alone(arguments, files, Contradicted::of(test, path, refused)?),

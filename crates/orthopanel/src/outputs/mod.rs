@@ -68,16 +68,17 @@ impl Outputs {
     /// # Errors
     /// [`CommandError::OutputIsInput`], and [`CommandError::Unwritable`] where no file can be put there.
     pub fn planned(self, path: &Path) -> Result<Self, CommandError> {
-        let destination = self.destination(path)?;
         match &self.folder {
             Some(own) if !own.exists() => makeable(own)?,
             Some(own) if !own.is_dir() => {
                 let (path, reason) = (own.clone(), "it is there and is no folder".into());
                 return Err(CommandError::Unwritable { path, reason, kind: ErrorKind::NotADirectory });
             }
-            _ => {
-                std::fs::metadata(folder::of(&destination)).map_err(|error| CommandError::unwritable(path, &error))?;
-            }
+            _ => {}
+        }
+        let destination = self.destination(path)?;
+        if self.folder.as_ref().is_none_or(|own| own.exists()) {
+            std::fs::metadata(folder::of(&destination)).map_err(|error| CommandError::unwritable(path, &error))?;
         }
         Ok(self)
     }

@@ -10,7 +10,7 @@ use crate::error::CommandError;
 use crate::measured_pairs::{ToldHit, place_text, told};
 use crate::outputs::{Inputs, Outputs, with_suffix};
 use crate::record_options::EstimationOptions;
-use crate::{console, csv_text, notes, progress, tables};
+use crate::{console, csv_text, given_file, notes, progress, tables};
 
 /// Not that of `run`, whose results may lie in the same folder.
 const MANIFEST: &str = "accelerance-manifest.json";
@@ -45,7 +45,7 @@ pub fn execute(
     json: bool,
 ) -> Result<(), CommandError> {
     let estimation = options.estimation(Window::None)?;
-    let test = ImpactTest::read(path)?;
+    let test = given_file::read_test(path)?;
     let mut outputs = Outputs::of(Inputs::of_test(path, &test)).all_planned(output.iter().flat_map(|&output| {
         // Into a folder that is not there goes nothing that is.
         let files = if is_folder(output, true) && !output.is_dir() { 0 } else { test.files().count() };
