@@ -65,8 +65,16 @@ impl Even {
 #[derive(Debug)]
 pub(crate) struct EvenBeam {
     beam: Arc<TimoshenkoBeam>,
-    /// By constants and number, the last used first.
-    known: Mutex<Vec<(Vec<f64>, usize, Arc<LowModes>)>>,
+    /// The last used first.
+    known: Mutex<Vec<KnownModes>>,
+}
+
+/// The first `count` modes at these values of the constants.
+#[derive(Debug)]
+struct KnownModes {
+    values: Vec<f64>,
+    count: usize,
+    modes: Arc<LowModes>,
 }
 
 impl EvenBeam {
@@ -75,17 +83,18 @@ impl EvenBeam {
 
     fn low_modes(&self, values: &[f64], count: usize) -> Result<Arc<LowModes>, ModelError> {
         let known = || self.known.lock().unwrap_or_else(PoisonError::into_inner);
-        {
-            let mut known = known();
-            if let Some(place) = known.iter().position(|(of, number, _)| of == values && *number == count) {
-                known[..=place].rotate_right(1);
-                return Ok(Arc::clone(&known[0].2));
-            }
+        let is_it = |known: &KnownModes| known.values == values && known.count == count;
+        let mut kept = known();
+        if let Some(place) = kept.iter().position(is_it) {
+            kept[..=place].rotate_right(1);
+            return Ok(Arc::clone(&kept[0].modes));
         }
+        // Others need not wait.
+        drop(kept);
         let found = Arc::new(LowModes::new(self.beam.as_ref(), values, count)?);
-        let mut known = known();
-        known.truncate(Self::KEPT - 1);
-        known.insert(0, (values.to_vec(), count, Arc::clone(&found)));
+        let mut kept = known();
+        kept.truncate(Self::KEPT - 1);
+        kept.insert(0, KnownModes { values: values.to_vec(), count, modes: Arc::clone(&found) });
         Ok(found)
     }
 }

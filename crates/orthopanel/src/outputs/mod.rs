@@ -271,7 +271,7 @@ mod tests {
             std::thread::sleep(Duration::from_micros(10_000 + 61 * run));
             process.kill().expect("killed");
             process.wait().expect("ended");
-            let mut letters = BTreeSet::new();
+            let mut letters = std::collections::BTreeSet::new();
             for number in 0..=RESULTS {
                 let path = home.path().join(format!("result-{number}"));
                 let Ok(text) = std::fs::read_to_string(&path) else {
