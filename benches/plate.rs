@@ -5,6 +5,7 @@
 //! cold (basis, matrices and modes). Then it runs
 //! `fmpy-checks/plate_by_scikit_fem.py` on the same plates, in the Python named by `ORTHOPANEL_PYTHON` (default:
 //! `.venv/bin/python`, else `python3`), and prints both times and their ratio; its mesh is the coarsest that holds 1e-4.
+#![allow(clippy::print_stdout)]
 
 use std::hint::black_box;
 use std::path::{Path, PathBuf};

@@ -5,6 +5,7 @@
 //! times and their ratio. `tests/record_generator` makes the records, and `benches/pyfrf_peer` runs the peers, in the
 //! Python named by `ORTHOPANEL_PYTHON` (default: `.venv/bin/python`, else `python3`). Without numpy and scipy there are
 //! no records to measure on; without a peer its ratio is left out, and the run says so.
+#![allow(clippy::print_stdout)]
 
 use std::hint::black_box;
 use std::path::{Path, PathBuf};

@@ -4,6 +4,7 @@
 //! `cargo bench -p orthopanel-identify` prints criterion's figures, then one line a task with both times and their
 //! ratio. The port runs in the Python named by `ORTHOPANEL_PYTHON` (default: `.venv/bin/python`, else `python3`),
 //! which needs scipy; without it the ratios are left out, and the run says so.
+#![allow(clippy::print_stdout)]
 
 use std::hint::black_box;
 use std::path::{Path, PathBuf};

@@ -4,6 +4,7 @@
 //! `cargo bench -p orthopanel-identify --bench tracing` prints criterion's figures, then the time of each whole trace
 //! beside the one asked. `tests/blind_tracing` makes the tests, in the Python named by `ORTHOPANEL_PYTHON` (default:
 //! `.venv/bin/python`, else `python3`); without numpy and scipy only lines and effects are measured.
+#![allow(clippy::print_stdout)]
 
 use std::hint::black_box;
 use std::path::{Path, PathBuf};

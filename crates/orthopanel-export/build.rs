@@ -3,6 +3,7 @@
 //! A cdylib that is a plain dependency ends in `target/PROFILE/deps` and is lost by `cargo install`. So the library
 //! is built here, in its own profile and target folder, and `src/library.rs` embeds its bytes. A release has it built before, for
 //! older systems than the builder's own (`crates/orthopanel-fmu/build-linux`), and names it in [`READY`].
+#![allow(clippy::print_stdout)]
 
 use std::env;
 use std::error::Error;
@@ -17,8 +18,12 @@ const LEAKING: [&str; 6] =
 const KEPT: [&str; 6] =
     ["CARGO_HOME", "CARGO_NET_", "CARGO_HTTP_", "CARGO_REGISTR", "CARGO_SOURCE_", "CARGO_MAKEFLAGS"];
 
-/// Environment variable with the path of a library that is embedded in place of one built here.
+/// Environment variable with the path of a library that is embedded in place of one built here; of one called [`NONE`] an empty one
+/// is, for lints and documentation, which run nothing.
 const READY: &str = "ORTHOPANEL_FMU_READY";
+
+/// Named, so that a path that is mistyped stays an error.
+const NONE: &str = "no-library";
 
 fn main() -> Result<(), Box<dyn Error>> {
     println!("cargo:rerun-if-env-changed={READY}");
@@ -34,6 +39,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
 
     let library = match env::var_os(READY) {
+        Some(ready) if Path::new(&ready).file_name().is_some_and(|name| name == NONE) => {
+            let empty = PathBuf::from(env::var("OUT_DIR")?).join(NONE);
+            std::fs::write(&empty, "")?;
+            empty
+        }
         Some(ready) => existing(Path::new(&ready))?,
         None => build(&runtime.join("Cargo.toml"))?,
     };

@@ -34,7 +34,7 @@ pub const MEASUREMENTS: usize = 10_000;
 pub const FREQUENCIES: usize = 200;
 
 /// Natural frequencies of one list that is traced: each effect is fitted to them, in time that grows with the cube of their number
-/// and more, a minute for twelve and an hour for so many.
+/// and more: on one core a quarter of a minute for twelve, and minutes for so many.
 pub const FREQUENCIES_TRACED: usize = 40;
 
 /// Natural frequencies of all lists of a test: forty of each of fifty pieces.

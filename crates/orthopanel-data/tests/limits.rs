@@ -1,5 +1,6 @@
 //! What files may hold at most, and that reading them takes no longer than their length.
 
+use std::path::Path;
 use std::time::{Duration, Instant};
 
 use crate::support::Dataset;
@@ -105,6 +106,88 @@ fn every_list_of_a_test_file_has_an_end() {
     ] {
         let said = said(&text);
         assert!(said.contains(what) && said.contains(&format!("at most {most} ")), "{what}: {said}");
+    }
+}
+
+#[test]
+fn a_file_has_no_more_records_than_the_limit() {
+    // Without the blanks that fill up lines: a hundred thousand of them are 40 MB.
+    let set = String::from_utf8(Dataset::time(&[1.0], (13, "N")).text()).expect("text");
+    let set: String = set.lines().map(|line| format!("{}\n", line.trim_end())).collect();
+    let read = |count: usize| RecordFile::from_bytes(set.repeat(count).as_bytes(), "many.uff");
+    assert_eq!(read(limits::RECORDS).expect("as many as may be").records.len(), limits::RECORDS);
+    let said = read(limits::RECORDS + 1).expect_err("one too many").to_string();
+    for part in ["many.uff", "100001 records", "at most 100000", "split the file"] {
+        assert!(said.contains(part), "{said:?} does not say {part:?}");
+    }
+}
+
+/// A test of so many files `0.uff`, `1.uff`, ... in a folder, all of one pair of places.
+fn hits_of(folder: &Path, files: usize) -> Result<ImpactTest, DataError> {
+    let entry = |index| {
+        format!(
+            "[[measurement]]\nkind = \"time-history\"\nfile = \"{index}.uff\"\nforce_at = [-0.3, 0]\nresponse_at = [0.3, 0]\n"
+        )
+    };
+    let entries: String = (0..files).map(entry).collect();
+    ImpactTest::from_toml(&format!("[piece]\n{PIECE}{entries}"), folder.join("test.toml"))
+}
+
+#[test]
+fn a_pair_of_places_has_no_more_hits_than_the_limit() {
+    let hits = |count: usize, size: f64| {
+        let pulse = Dataset::time(&std::array::from_fn::<_, 16, _>(|n| if n == 1 { size } else { 0.0 }), (13, "N"));
+        let motion = Dataset::time(&std::array::from_fn::<_, 16, _>(|n| size * n as f64), (12, "m/s^2"));
+        [pulse.text(), motion.text()].concat().repeat(count)
+    };
+    let most = limits::HITS;
+    // In one file, and in several that are hits of one pair together.
+    for (files, is_refused) in [
+        (vec![hits(most, 1.0)], false),
+        (vec![hits(most + 1, 1.0)], true),
+        (vec![hits(most / 2, 1.0), hits(most / 2, 2.0)], false),
+        (vec![hits(most / 2, 1.0), hits(most / 2 + 1, 2.0)], true),
+    ] {
+        let home = tempfile::tempdir().expect("a folder");
+        for (index, bytes) in files.iter().enumerate() {
+            std::fs::write(home.path().join(format!("{index}.uff")), bytes).expect("written");
+        }
+        let test = hits_of(home.path(), files.len()).expect("a test");
+        let found = test.time_histories().map(|found| found[0].1.hits.len());
+        match found {
+            Ok(found) => assert!(!is_refused && found == most, "{found}"),
+            Err(refused) => {
+                let said = refused.to_string();
+                assert!(is_refused, "{said}");
+                for part in [".uff", "2001 hits of one pair of places", "at most 2000", "leave some out"] {
+                    assert!(said.contains(part), "{said:?} does not say {part:?}");
+                }
+            }
+        }
+    }
+}
+
+/// Holes, which take no room on the disk.
+#[cfg(unix)]
+#[test]
+fn files_of_records_have_no_more_bytes_together_than_the_limit() {
+    let home = tempfile::tempdir().expect("a folder");
+    let sized = |sizes: &[u64]| {
+        for (index, size) in sizes.iter().enumerate() {
+            let file = std::fs::File::create(home.path().join(format!("{index}.uff"))).expect("made");
+            file.set_len(*size).expect("sized");
+        }
+        hits_of(home.path(), sizes.len()).map(drop).map_err(|refused| refused.to_string())
+    };
+    let half = limits::RECORD_FILES / 2;
+    sized(&[half, half]).expect("as many as may be");
+    let said = sized(&[half, half, 1]).expect_err("one byte too many");
+    for part in ["3 files", "4294967297 bytes", "4294967296"] {
+        assert!(said.contains(part), "{said:?} does not say {part:?}");
+    }
+    let said = sized(&[half + 1]).expect_err("one file too large");
+    for part in ["0.uff", "2147483649 bytes", "a file of records may have 2147483648"] {
+        assert!(said.contains(part), "{said:?} does not say {part:?}");
     }
 }
 

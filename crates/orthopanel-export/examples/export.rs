@@ -1,5 +1,6 @@
 //! From a model file to an FMU through the library: `export MODEL -o X.fmu [--fmi 2|3] [--modes N]
 //! [--force X[,Y]].. [--response X[,Y]]..`, the same words as the command `orthopanel`.
+#![allow(clippy::print_stderr)]
 
 use std::error::Error;
 use std::path::Path;

@@ -1,5 +1,4 @@
 #![doc = include_str!("../README.md")]
-#![deny(clippy::print_stdout, clippy::print_stderr)]
 
 mod acceleration_band;
 mod archive;

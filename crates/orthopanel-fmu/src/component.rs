@@ -93,7 +93,8 @@ impl Component {
                 return Err(FmuError::Tolerance { value });
             }
         }
-        finite("start time", start)?;
+        timely("start time", start)?;
+        // A stop time is held against others alone: importers give any for one that never comes.
         if let Some(stop) = stop {
             finite("stop time", stop)?;
             if stop < start {
@@ -162,6 +163,16 @@ impl Component {
 
 fn finite(what: &str, value: f64) -> Result<(), FmuError> {
     if value.is_finite() { Ok(()) } else { Err(FmuError::NotFinite { what: what.into(), value }) }
+}
+
+/// Steps and times \[s\] end below, at a million million times the age of the universe: what a motion grows to in longer ones passes
+/// the range of numbers, which traps in hosts that want it so.
+const TOO_LONG: f64 = 1e30;
+
+#[cold]
+fn timely(what: &'static str, value: f64) -> Result<(), FmuError> {
+    finite(what, value)?;
+    if value.abs() < TOO_LONG { Ok(()) } else { Err(FmuError::TooLong { what, value, limit: TOO_LONG }) }
 }
 
 /// Largest force, force rate, state and seed that may be set, as a number: what a panel answers to it is a number, too.

@@ -89,6 +89,16 @@ pub enum FmuError {
         /// Largest size allowed.
         largest: f64,
     },
+    /// A step or time beyond all that is simulated.
+    #[error("{what} = {value:e} s: steps and times must stay below {limit:e} s")]
+    TooLong {
+        /// What it is.
+        what: &'static str,
+        /// Its value.
+        value: f64,
+        /// Where such values begin.
+        limit: f64,
+    },
     /// A relative tolerance below zero.
     #[error("tolerance = {value}: a relative tolerance is zero or more; or say that none is defined")]
     Tolerance {

@@ -19,6 +19,10 @@ pub const RESOURCE_SCHEMA: &str = "orthopanel.fmu/4";
 /// Program and version, as FMUs name the tool that made them.
 pub const GENERATOR: &str = concat!("orthopanel ", env!("CARGO_PKG_VERSION"));
 
+/// Modes of a resource at most, internal variables of a core counted: a panel has a thousand and a few ([`ModeRange::MOST`]). Whoever
+/// writes a file may claim any number, and each takes memory and a part of every step.
+const MOST_MODES: usize = 10_000;
+
 /// What an FMU holds: the modes, and the places of its ports.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -40,7 +44,7 @@ impl Resource {
     /// Joins modes with the places of their ports. Nothing of the panel can be set, and no static part is added.
     ///
     /// # Errors
-    /// [`FmuError::ResourceText`] where the numbers of places and ports differ.
+    /// [`FmuError::ResourceText`] where the numbers of places and ports differ, and for more than 10,000 modes.
     pub fn new(model: ModalModel, ports: Ports) -> Result<Self, FmuError> {
         let static_remainder = vec![vec![0.0; ports.forces.len()]; ports.responses.len()];
         let (schema, generator) = (RESOURCE_SCHEMA.into(), GENERATOR.into());
@@ -128,6 +132,11 @@ impl Resource {
     fn checked(self) -> Result<Self, FmuError> {
         if self.schema != RESOURCE_SCHEMA {
             let message = format!("schema = {:?}: this library reads {RESOURCE_SCHEMA:?}", self.schema);
+            return Err(FmuError::ResourceText(message));
+        }
+        let modes = self.model.modes().len();
+        if modes > MOST_MODES {
+            let message = format!("{modes} modes: a panel has {MOST_MODES} at most");
             return Err(FmuError::ResourceText(message));
         }
         let model = self.model.checked()?;

@@ -47,3 +47,22 @@ fn regress_a_panel_that_does_not_fit_its_modes_is_refused() {
         assert!(refused.contains(said), "{to}: {refused}");
     }
 }
+
+#[test]
+fn a_panel_has_no_more_than_ten_thousand_modes() {
+    let mode = "{\"angular_frequency\":1e5,\"damping_ratio\":0.0,\"at_forces\":[0.0],\"at_responses\":[0.0,0.0]},";
+    let text = resource();
+    let with = |more: usize| {
+        let (before, panel) = text.split_once("\"panel\":").expect("a panel");
+        assert!(panel.ends_with(",\"arrays\":false}\n"), "{panel}");
+        let first = format!("\"modes\":[{}", mode.repeat(more));
+        let bare = before.replacen("\"modes\":[", &first, 1) + "\"panel\":null,\"arrays\":false}\n";
+        let folder = tempfile::tempdir().expect("a folder");
+        std::fs::write(folder.path().join(RESOURCE_FILE), &bare).expect("written");
+        Resource::read(folder.path(), &content_token(bare.as_bytes())).map_err(|error| error.to_string())
+    };
+    // Beside seven of the beam's own.
+    assert_eq!(with(9993).expect("as many as may be").model().modes().len(), 10_000);
+    let refused = with(9994).expect_err("one too many");
+    assert!(refused.contains("10001 modes: a panel has 10000 at most"), "{refused}");
+}

@@ -1,6 +1,7 @@
 //! The measured modes of a test, as a table: `cargo run --release -p orthopanel-identify --example measured_modes TEST`.
 //!
 //! Before any physics is asked: poles common to all records, each with its standard deviation by the noise of the data.
+#![allow(clippy::print_stdout)]
 
 use std::f64::consts::TAU;
 

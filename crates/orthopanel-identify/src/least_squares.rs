@@ -52,7 +52,7 @@ impl Quadratic {
         }
     }
 
-    fn is_finite(&self) -> bool {
+    pub fn is_finite(&self) -> bool {
         let curvature = (0..self.gradient.len()).map(|index| self.normal[(index, index)]);
         self.cost.is_finite() && self.gradient.iter().copied().chain(curvature).all(f64::is_finite)
     }

@@ -2,6 +2,7 @@
 //!
 //! One program for all of a crate's tests: each of its own would be linked apart, for minutes. One file alone:
 //! `cargo test --release -p orthopanel-identify --test all FILE::`.
+#![allow(clippy::print_stdout)]
 
 mod contradictions;
 mod coverage;

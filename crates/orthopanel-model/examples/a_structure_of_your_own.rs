@@ -2,6 +2,7 @@
 //!
 //! It is all that a structure has to say; modes, accelerance, time response and the FMU then come from the layers below.
 //! Run it: `cargo run --example a_structure_of_your_own`.
+#![allow(clippy::print_stdout)]
 
 use std::f64::consts::{PI, TAU};
 

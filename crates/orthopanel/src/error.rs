@@ -75,13 +75,8 @@ pub enum CommandError {
         .path.display()
     )]
     FmuName { path: PathBuf },
-    #[error("{}: an FMU, where a model file (JSON) is wanted: name the one that the FMU was made from", .path.display())]
-    FmuForModel { path: PathBuf },
-    #[error(
-        "{}: a test file, where a model file (JSON) is wanted: `orthopanel identify {} -o model.json` makes one of it",
-        .path.display(), .path.display()
-    )]
-    TestForModel { path: PathBuf },
+    #[error("{}: {given}, where {wanted} is wanted: {taken}", .path.display())]
+    OtherKind { path: PathBuf, given: &'static str, wanted: &'static str, taken: String },
     #[error(
         "{}: modes and places are fixed inside an FMU: leave out --modes, --up-to, --force and --response, or give them \
          to `orthopanel export`", .path.display()

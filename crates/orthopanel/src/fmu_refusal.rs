@@ -1,5 +1,7 @@
 //! Why an FMU is not run.
 
+use std::path::PathBuf;
+
 use thiserror::Error;
 
 /// What is wrong with an FMU, or what it said itself. Texts from inside it are shortened and free of control characters.
@@ -41,8 +43,13 @@ pub enum FmuRefusal {
     DamagedLibrary { path: String, reason: String },
     #[error("its library {path} cannot be loaded: {reason}")]
     Load { path: String, reason: String },
-    #[error("it cannot be unpacked: {0}: temporary files need room, TMPDIR can name another folder")]
-    Unpack(std::io::Error),
+    #[error("it cannot be read: {0}")]
+    Read(std::io::Error),
+    #[error(
+        "it cannot be unpacked: {} cannot be {what}: {source}: temporary files need room, TMPDIR can name another folder",
+        .path.display()
+    )]
+    Unpack { what: &'static str, path: PathBuf, source: std::io::Error },
     #[error("it refuses to start{}", said(.0))]
     NoInstance(Vec<String>),
     #[error("the FMU fails at {call}{}", said(.messages))]

@@ -1,5 +1,4 @@
 #![doc = include_str!("../README.md")]
-#![deny(clippy::print_stdout, clippy::print_stderr)]
 
 mod arguments;
 mod commands;
@@ -11,6 +10,7 @@ mod error;
 mod evidence;
 mod fmu_refusal;
 mod force_file;
+mod given_file;
 mod identified;
 mod importer;
 mod json;

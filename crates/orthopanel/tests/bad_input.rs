@@ -296,3 +296,46 @@ fn bad_usage_leaves_with_two() {
     }
     assert!(!bench.path("x.fmu").exists());
 }
+
+#[test]
+fn a_file_of_another_kind_is_called_by_its_name() {
+    let bench = Bench::new();
+    bench.done("run test.toml -o out");
+    bench.write("test.json", crate::support::TEST);
+    let records = "examples/made-hits/point-0.uff";
+    let model = &["a model file, where a test file (TOML) is wanted", "`orthopanel modes`"][..];
+    for line in ["identify model.json", "trace model.json", "report model.json -o x.html", "run model.json -o x"] {
+        refused(&bench, line, 2, model);
+    }
+    bench.write("model.toml", crate::support::MODEL);
+    refused(&bench, "accelerance model.toml", 2, model);
+    refused(&bench, "simulate model.json --force-file model.toml", 2, model);
+    for (line, said) in [
+        (
+            "modes out/identified.json",
+            &["`orthopanel identify --json` answers", "a model file (JSON)", "-o model.json"][..],
+        ),
+        (
+            "export out/trace.json -o x.fmu",
+            &["`orthopanel trace --json` answers", "a model file (JSON)", "-o model.json"],
+        ),
+        ("modes out/manifest.json", &["the list of a run's results, where a model file (JSON) is wanted"]),
+        (
+            "simulate model.json --force-file model.json",
+            &["a model file, where a force file (CSV)", "`orthopanel modes`"],
+        ),
+        ("simulate out/panel.fmu --force-file plate.json", &["a model file, where a force file (CSV)"]),
+        ("simulate model.json --force-file out/panel.fmu", &["an FMU, where a force file (CSV)", "simulate X.fmu"]),
+        ("simulate model.json --force-file test.json", &["a test file, where a force file", "`orthopanel identify`"]),
+        ("simulate force.csv --force-file force.csv", &["a force file, where a model file", "--force-file"]),
+        ("modes test.json", &["a test file, where a model file", "`orthopanel identify`"]),
+        ("modes test.toml", &["a test file, where a model file", "`orthopanel identify test.toml -o model.json`"]),
+        ("modes out/panel.fmu", &["an FMU, where a model file", "that the FMU was made from"]),
+        (&format!("identify {records}"), &["a file of records, where a test file", "[[measurement]]"]),
+        (&format!("modes {records}"), &["a file of records, where a model file", "[[measurement]]"]),
+        ("identify out/panel.fmu", &["an FMU, where a test file", "`orthopanel simulate X.fmu"]),
+        ("identify out/response.csv", &["a file of records, where a test file"]),
+    ] {
+        refused(&bench, line, 2, said);
+    }
+}

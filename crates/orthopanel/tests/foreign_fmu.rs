@@ -334,6 +334,60 @@ fn entries_that_no_fmu_may_have() {
     }
 }
 
+#[test]
+fn what_keeps_an_fmu_from_being_unpacked_or_loaded_is_named() {
+    let bench = Bench::new();
+    let mut files = Files::exported(&bench, "");
+    let refused = |script: &str, said: &[&str]| {
+        let line = format!("{script} exec \"$0\" simulate panel.fmu --force-file force.csv --trust");
+        let mut shell = Command::new("sh");
+        let output =
+            shell.args(["-c", &line, env!("CARGO_BIN_EXE_orthopanel")]).current_dir(bench.folder.path()).output();
+        let output = output.expect("a shell");
+        let message = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{script}: {message}");
+        for part in said {
+            assert!(message.contains(part), "{script}: {message:?} does not say {part:?}");
+        }
+    };
+    refused("TMPDIR=nowhere", &["panel.fmu: it cannot be unpacked: nowhere", "No such file", "TMPDIR can name"]);
+    refused("TMPDIR=force.csv", &["it cannot be unpacked: force.csv", "Not a directory"]);
+    // As on a full disk, but that one is not made here: no file may be longer than 10 kB.
+    let limited = "trap '' XFSZ; ulimit -f 20;";
+    refused(limited, &["binaries/", "cannot be written: File too large"]);
+    files.library().1 = std::fs::read(env!("CARGO_BIN_EXE_orthopanel")).expect("a program");
+    std::fs::write(bench.path("panel.fmu"), files.deflated()).expect("written");
+    refused("", &["panel.fmu: its library binaries/", "cannot be loaded: ", "cannot dynamically load"]);
+}
+
+/// One folder is made where temporary files lie, by whoever unpacks, and it is removed.
+#[cfg(target_os = "linux")]
+#[test]
+fn an_archive_is_unpacked_once() {
+    use rustix::fs::inotify;
+
+    let bench = Bench::new();
+    for options in ["--fmi 2", "--fmi 3"] {
+        let files = Files::exported(&bench, options);
+        let folder = bench.path("watched");
+        std::fs::create_dir_all(&folder).expect("a folder");
+        let watch = inotify::init(inotify::CreateFlags::NONBLOCK).expect("inotify");
+        let events = inotify::WatchFlags::CREATE | inotify::WatchFlags::MOVED_TO;
+        inotify::add_watch(&watch, &folder, events).expect("watched");
+        std::fs::write(bench.path("foreign.fmu"), files.deflated()).expect("written");
+        let mut command = bench.command("simulate foreign.fmu --force-file force.csv");
+        assert!(command.env("TMPDIR", &folder).status().expect("the program starts").success());
+        let mut buffer = [std::mem::MaybeUninit::uninit(); 4096];
+        let mut reader = inotify::Reader::new(&watch, &mut buffer);
+        let mut made = Vec::new();
+        while let Ok(event) = reader.next() {
+            made.push(event.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default());
+        }
+        assert!(matches!(&made[..], [only] if only.starts_with("orthopanel-")), "{options}: {made:?}");
+        assert_eq!(std::fs::read_dir(&folder).expect("a folder").count(), 0);
+    }
+}
+
 /// A sample of damaged archives: none may end the program otherwise than by its own exit status.
 #[test]
 fn damaged_archives_are_run_or_refused() {

@@ -83,6 +83,27 @@ fn counts_beyond_all_sense_are_refused() {
 }
 
 #[test]
+fn a_list_that_would_be_traced_for_an_hour_is_refused_and_its_way_out_is_one() {
+    let bench = Bench::new();
+    let most = orthopanel_data::limits::FREQUENCIES_TRACED;
+    let listed = |count: usize| {
+        let answer = bench.json(&format!("modes model.json --count {count}"));
+        let modes = answer["modes"].as_array().expect("modes");
+        let values: Vec<String> =
+            modes.iter().map(|mode| format!("{:.2}", crate::support::number(mode, "/frequency_hz"))).collect();
+        bench.write("test.toml", &changed(TEST, "321.3, 837.5, 1520.0, 2312.5, 3150.0, 3987.5", &values.join(", ")));
+    };
+    listed(most + 1);
+    let said =
+        [&*format!("a list of {} natural frequencies", most + 1), &format!("takes {most} at most"), "list the lowest"];
+    refused(&bench, "trace test.toml", 2, &said);
+    // `run` does all but that.
+    bench.done("identify test.toml");
+    bench.done("run test.toml -o out");
+    assert!(!bench.path("out/trace.json").exists());
+}
+
+#[test]
 fn nesting_has_an_end() {
     let bench = Bench::new();
     let deep = format!("{}1{}", "[".repeat(200_000), "]".repeat(200_000));
@@ -175,7 +196,7 @@ fn long_names_and_names_alike_have_files_of_their_own() {
         bench.done("identify test.toml -o out.json");
         let models = bench.listing().into_iter().filter_map(|path| {
             let name = path.file_name()?.to_str()?.to_lowercase();
-            name.starts_with("out-").then_some((name, path))
+            (name.starts_with("out-") && name != "out-manifest.json").then_some((name, path))
         });
         let models: Vec<_> = models.collect();
         assert_eq!(models.len(), 2, "{models:?}");

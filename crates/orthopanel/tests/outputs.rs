@@ -136,6 +136,63 @@ fn an_output_beside_the_inputs_is_written() {
     assert!(after == before);
 }
 
+#[test]
+fn regress_an_output_that_cannot_be_is_refused_before_anything_is_computed() {
+    let bench = Bench::new();
+    let begun = std::time::Instant::now();
+    // Reading and tracing these would take seconds, and say things.
+    for target in ["new/..", "new/../out", "new/deep/../..", "model.json/out", "model.json/.."] {
+        refused(&bench, &format!("run {HITS} -o {target}"), 2, &["cannot be written", "name a"]);
+    }
+    for line in ["identify", "trace", "accelerance", "report"].map(|command| format!("{command} {HITS}")) {
+        for target in ["new/../out.csv", "new/..", "model.json/out.csv"] {
+            refused(&bench, &format!("{line} -o {target}"), 2, &["cannot be written", "name a"]);
+        }
+    }
+    assert!(begun.elapsed().as_secs() < 20, "{:?}", begun.elapsed());
+}
+
+#[cfg(unix)]
+#[test]
+fn a_link_to_a_file_that_is_not_there_is_written_through() {
+    use std::os::unix::fs::symlink;
+
+    let bench = Bench::new();
+    std::fs::create_dir(bench.path("elsewhere")).expect("a folder is made");
+    std::fs::create_dir(bench.path("links")).expect("a folder is made");
+    symlink("../elsewhere/file", bench.path("links/near")).expect("linked");
+    symlink("links/near", bench.path("far")).expect("linked");
+    for line in [
+        "identify test.toml -o far",
+        "trace test.toml -o far",
+        "report test.toml -o far",
+        "modes model.json --picture far",
+        &format!("{GRID} -o far"),
+        &format!("accelerance {HITS} -o far"),
+        "simulate model.json --force-file force.csv -o far",
+    ] {
+        bench.done(line);
+        assert!(bench.path("far").is_symlink() && bench.path("links/near").is_symlink(), "{line}");
+        std::fs::remove_file(bench.path("elsewhere/file")).expect(line);
+    }
+    std::fs::create_dir(bench.path("out")).expect("a folder is made");
+    symlink("../elsewhere/model", bench.path("out/model.json")).expect("linked");
+    bench.done("run test.toml -o out");
+    assert!(bench.path("out/model.json").is_symlink() && bench.path("elsewhere/model").exists());
+    // Into a folder that is not there, and round in a circle.
+    symlink("nowhere/file", bench.path("broken.fmu")).expect("linked");
+    symlink("circle.fmu", bench.path("circle.fmu")).expect("linked");
+    symlink("nowhere", bench.path("folder")).expect("linked");
+    refused(
+        &bench,
+        "export model.json -o broken.fmu",
+        2,
+        &["broken.fmu: cannot be written", "in a folder that exists"],
+    );
+    refused(&bench, "export model.json -o circle.fmu", 2, &["circle.fmu: cannot be written"]);
+    refused(&bench, "run test.toml -o folder", 2, &["folder: cannot be written", "leads nowhere"]);
+}
+
 /// Names in `folder`, hidden ones too.
 fn names(bench: &Bench, folder: &str) -> Vec<String> {
     let entries = std::fs::read_dir(bench.path(folder)).expect("a folder");
@@ -202,6 +259,84 @@ fn each_command_removes_its_own_results_alone() {
     let mut expected: Vec<String> = of_run.into_iter().chain(own).collect();
     expected.sort();
     assert_eq!(names(&bench, "out"), expected);
+}
+
+/// Results that share a stem, those of one command in `csv`, those of another in `json`.
+#[test]
+fn results_beside_each_other_have_a_manifest() {
+    let bench = Bench::new();
+    accelerances(&bench, "three", &["a.csv", "b.csv", "c.csv"], 3);
+    accelerances(&bench, "two", &["a.csv", "b.csv"], 3);
+    accelerances(&bench, "one", &["a.csv"], 3);
+    std::fs::create_dir(bench.path("out")).expect("a folder is made");
+    bench.write("out/h-4.csv", "of somebody else");
+    let mut expected = vec!["h-4.csv"];
+    let mut done = |line: &str, gone: &[&'static str], come: &[&'static str]| {
+        bench.done(line);
+        expected.retain(|name| !gone.contains(name));
+        expected.extend(come);
+        expected.sort_unstable();
+        assert_eq!(names(&bench, "out"), expected, "{line}");
+    };
+    let three = ["h-1.csv", "h-2.csv", "h-3.csv"];
+    done("accelerance three/test.toml -o out/h.csv", &[], &[&three[..], &["h-manifest.json"]].concat());
+    let manifest = bench.read_json("out/h-manifest.json");
+    assert_eq!(manifest["schema"], "orthopanel.manifest/1");
+    assert_eq!(manifest["command"][0], "accelerance");
+    assert_eq!(manifest["inputs"].as_array().expect("a list").len(), 4);
+    assert_eq!(manifest["inputs"][1]["sha256"].as_str().map(str::len), Some(64));
+    assert_eq!(manifest["files"][2]["file"], "h-3.csv");
+    let (pieces, models) = ("examples/pieces-3-4/test.toml", ["h-3.json", "h-4.json"]);
+    done(&format!("identify {pieces} -o out/h.json"), &[], &models);
+    done("accelerance two/test.toml -o out/h.csv", &["h-3.csv"], &[]);
+    // A single result takes the place of several.
+    done("accelerance one/test.toml -o out/h.csv", &["h-1.csv", "h-2.csv"], &["h.csv"]);
+    done(&format!("trace {pieces} -o out/h.json"), &[], &[]);
+    done("identify test.toml -o out/h.json", &models, &["h.json"]);
+    // Where none was ever several, there is nothing to list.
+    done("identify test.toml -o out/single.json", &[], &["single.json"]);
+    bench.write("out/x-manifest.json", "{\"name\": \"of another program\"}");
+    done("identify test.toml -o out/x.json", &[], &["x-manifest.json", "x.json"]);
+    // The manifest is an output like others.
+    bench.write("pairs-manifest.json", "");
+    std::fs::rename(bench.path("two/a.csv"), bench.path("two/h-manifest.json")).expect("renamed");
+    let test = std::fs::read_to_string(bench.path("two/test.toml")).expect("a test");
+    bench.write("two/test.toml", &changed(&test, "\"a.csv\"", "\"h-manifest.json\""));
+    input_refused(&bench, "accelerance two/test.toml -o two/h.csv");
+}
+
+#[test]
+fn a_result_that_was_edited_is_kept_beside_the_new_one() {
+    let bench = Bench::new();
+    bench.write("mine.toml", &changed(crate::support::TEST, "837.5", "837.6"));
+    std::fs::create_dir(bench.path("out")).expect("a folder is made");
+    bench.write("out/report.html", "my own");
+    let said = |line: &str| {
+        let output = bench.run(line);
+        assert_eq!(output.status.code(), Some(0), "{line}: {output:?}");
+        String::from_utf8(output.stderr).expect("UTF-8").lines().filter(|line| line.contains("kept")).count()
+    };
+    let read = |name: &str| std::fs::read_to_string(bench.path(name)).expect("a file");
+    assert_eq!(said("run test.toml -o out"), 1);
+    assert_eq!(read("out/report.html.edited"), "my own");
+    let model = read("out/model.json");
+    for (count, edited) in [("", "edited"), ("-2", "edited again")] {
+        bench.write("out/model.json", edited);
+        assert_eq!(said("run test.toml -o out"), 1);
+        assert_eq!(read(&format!("out/model.json.edited{count}")), edited);
+        assert_eq!(read("out/model.json"), model);
+    }
+    // What nobody changed is replaced without a word.
+    let before = names(&bench, "out");
+    assert_eq!(said("run mine.toml -o out"), 0);
+    assert_eq!(names(&bench, "out"), before);
+    assert_ne!(read("out/model.json"), model);
+    // Of results beside each other too.
+    let pieces = "examples/pieces-3-4/test.toml";
+    bench.done(&format!("identify {pieces} -o m.json"));
+    bench.write("m-4.json", "edited");
+    assert_eq!(said(&format!("identify {pieces} -o m.json")), 1);
+    assert_eq!(read("m-4.json.edited"), "edited");
 }
 
 #[test]

@@ -77,6 +77,54 @@ fn shell(bench: &Bench, script: &str) -> Option<i32> {
     shell.stdout(std::process::Stdio::null()).stderr(std::process::Stdio::null()).status().expect("a shell").code()
 }
 
+/// Searches of seconds, in lists and in records.
+#[cfg(unix)]
+const SEARCHES: [&str; 2] = ["trace examples/pieces-1-2/test.toml", "trace examples/made-hits/test.toml"];
+
+/// What a command writes to standard error where that is a terminal, each piece with the time it came.
+#[cfg(unix)]
+fn on_terminal(bench: &Bench, line: &str) -> Vec<(std::time::Instant, String)> {
+    use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
+    use std::io::Read as _;
+
+    let terminal = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY).expect("a terminal");
+    grantpt(&terminal).and_then(|()| unlockpt(&terminal)).expect("its other end");
+    let name = ptsname(&terminal, Vec::new()).expect("a name").into_string().expect("UTF-8");
+    let end = std::fs::File::options().read(true).write(true).open(name).expect("opened");
+    let mut process = bench.command(line).env("TERM", "xterm").stderr(end).spawn().expect("the program starts");
+    let (mut terminal, mut part, mut shown) = (std::fs::File::from(terminal), [0; 4096], Vec::new());
+    // Ends with an error when the program has closed its end.
+    while let Ok(length @ 1..) = terminal.read(&mut part) {
+        shown.push((std::time::Instant::now(), String::from_utf8_lossy(&part[..length]).into_owned()));
+    }
+    assert_eq!(process.wait().expect("ended").code(), Some(0), "{line}");
+    shown
+}
+
+#[cfg(unix)]
+#[test]
+fn a_long_search_shows_what_it_does_on_a_terminal_and_nowhere_else() {
+    use std::time::{Duration, Instant};
+
+    let bench = Bench::new();
+    for line in SEARCHES {
+        let begun = Instant::now();
+        let shown = on_terminal(&bench, line);
+        // From the first moments on, and never silent for long.
+        let times: Vec<Instant> = std::iter::once(begun).chain(shown.iter().map(|(at, _)| *at)).collect();
+        let silent = times.windows(2).map(|pair| pair[1] - pair[0]).max().unwrap_or_default();
+        assert!(silent < Duration::from_secs(2), "{line}: {silent:?} without a sign of life");
+        let text: String = shown.into_iter().map(|(_, text)| text).collect();
+        assert!(text.contains("tracing what the model lacks ["), "{line}: {text:?}");
+        let steps = ["local-mass", "stiffness-loss", "rotary-inertia"].into_iter().filter(|step| text.contains(step));
+        assert!(steps.count() > 0, "{line} names no step: {text:?}");
+        let piped = bench.command(line).stderr(std::process::Stdio::piped()).output().expect("the program starts");
+        let said = String::from_utf8(piped.stderr).expect("UTF-8");
+        assert!(!said.contains("tracing what") && !said.contains('\u{1b}') && !said.contains('\r'), "{line}: {said:?}");
+        assert!(said.lines().all(|line| line.starts_with("note: ")), "{line}: {said:?}");
+    }
+}
+
 #[test]
 fn regress_names_do_not_steer_the_terminal() {
     let bench = Bench::new();

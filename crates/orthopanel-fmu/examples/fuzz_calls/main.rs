@@ -4,6 +4,7 @@
 //! a call that is refused must leave all that an FMU state holds and all values as they were, and tell the logger why. No
 //! call may touch another instance. On a failure the seed of the sequence is printed, and `fuzz_calls 0 SEED` runs that
 //! sequence alone. With `FUZZ_TELL` set each seed is printed before it runs, to find a call that does not return.
+#![allow(clippy::print_stdout, clippy::print_stderr)]
 #![expect(unsafe_code, reason = "an importer in Rust calls C functions")]
 
 use std::ffi::{CStr, c_char, c_int};

@@ -5,7 +5,7 @@
 //! States stand mode after mode: $a_1, \dot a_1, a_2, \dot a_2, \dots$; there are no event indicators.
 
 use super::phase::Phases;
-use super::{Component, Interface, Phase, finite, fits, fitting};
+use super::{Component, Interface, Phase, fits, fitting, timely};
 use crate::FmuError;
 
 impl Component {
@@ -30,7 +30,7 @@ impl Component {
     /// Sets the time \[s\] at which derivatives and outputs are asked for.
     pub(crate) fn set_time(&mut self, time: f64) -> Result<(), FmuError> {
         self.require_model_exchange(Phase::MODEL_EXCHANGE)?;
-        finite("time", time)?;
+        timely("time", time)?;
         self.now.time = time;
         Ok(())
     }

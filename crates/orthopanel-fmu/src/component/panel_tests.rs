@@ -69,7 +69,7 @@ fn regress_a_step_too_long_is_told_with_its_size() {
     let mut component = instance(BEAM, Interface::CoSimulation);
     component.enter_initialization().and_then(|()| component.exit_initialization()).expect("initialized");
     let refused = component.do_step(0.0, 1e300).expect_err("too long").to_string();
-    assert!(refused.starts_with("step = 1e300 s: too long"), "{refused}");
+    assert_eq!(refused, "step = 1e300 s: steps and times must stay below 1e30 s");
     assert_eq!(component.time(), 0.0);
 }
 

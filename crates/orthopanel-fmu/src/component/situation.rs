@@ -3,7 +3,7 @@
 use orthopanel_model::ModalStepper;
 use serde::{Deserialize, Serialize};
 
-use super::{Component, Interface, Phase};
+use super::{Component, Interface, Phase, timely};
 use crate::FmuError;
 
 /// What an instance holds beside the motion of its modes.
@@ -75,6 +75,7 @@ impl Situation {
         if numbers.into_iter().any(|number| !number.is_finite()) {
             return Err(FmuError::State("it holds a number that is not finite"));
         }
+        timely("time of the FMU state", self.time)?;
         Ok(())
     }
 }
@@ -82,7 +83,7 @@ impl Situation {
 /// An FMU state: where an instance stands, with the motion of its modes.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Snapshot {
-    situation: Situation,
+    pub(super) situation: Situation,
     /// Modal coordinate and its rate of each mode.
     motion: Vec<[f64; 2]>,
 }

@@ -1,6 +1,6 @@
 //! The communication step.
 
-use super::{Component, Phase};
+use super::{Component, Phase, TOO_LONG, timely};
 use crate::FmuError;
 
 /// Share of a step by which the importer's time may differ from ours: importers add up their steps with rounding.
@@ -8,6 +8,12 @@ const TIME_SLACK: f64 = 1e-3;
 
 /// The same as a share of the time itself, for long runs of tiny steps.
 const TIME_ROUNDING: f64 = 1e-12;
+
+/// By how much a step of this size from here may miss where the instance stands.
+#[inline(always)]
+fn slack(start: f64, step: f64) -> f64 {
+    TIME_SLACK * step + TIME_ROUNDING * start.abs()
+}
 
 impl Component {
     /// Advances from `start` by `step` \[s\].
@@ -18,12 +24,15 @@ impl Component {
     #[inline(always)]
     pub(crate) fn do_step(&mut self, start: f64, step: f64) -> Result<(), FmuError> {
         self.require(Phase::STEP)?;
+        // Each comparison fails for what is not a number; what is too large is no part of a sum.
+        if !(step > 0.0 && step < TOO_LONG && start.abs() < TOO_LONG) {
+            return Err(self.refused_step(start, step));
+        }
         let end = start + step;
-        let slack = TIME_SLACK * step + TIME_ROUNDING * start.abs();
-        // Each comparison fails for what is not a number; a finite end has a finite start and step.
-        let sound = step > 0.0 && (start - self.now.time).abs() <= slack && end.is_finite();
+        let slack = slack(start, step);
+        let sound = (start - self.now.time).abs() <= slack && end < TOO_LONG;
         if !sound || self.now.stop_time.is_some_and(|stop| end > stop + slack) {
-            return Err(self.refused_step(start, step, slack));
+            return Err(self.refused_step(start, step));
         }
         if self.now.force_linear {
             self.step_between_values(step)?;
@@ -51,20 +60,23 @@ impl Component {
 
     /// Why a step is refused.
     #[cold]
-    fn refused_step(&self, start: f64, step: f64, slack: f64) -> FmuError {
-        if !start.is_finite() {
-            return FmuError::NotFinite { what: "communication point".into(), value: start };
+    fn refused_step(&self, start: f64, step: f64) -> FmuError {
+        if let Err(refused) = timely("communication point", start) {
+            return refused;
         }
         if !(step.is_finite() && step > 0.0) {
             return orthopanel_model::ModelError::Size { name: "step", value: step, unit: "s" }.into();
         }
-        if (start - self.now.time).abs() > slack {
+        if let Err(refused) = timely("step", step) {
+            return refused;
+        }
+        if (start - self.now.time).abs() > slack(start, step) {
             return FmuError::CommunicationPoint { given: start, time: self.now.time };
         }
         let end = start + step;
-        match self.now.stop_time.filter(|_| end.is_finite()) {
-            Some(stop) => FmuError::PastStop { end, stop },
-            None => FmuError::NotFinite { what: "end of the step".into(), value: end },
+        match (timely("end of the step", end), self.now.stop_time) {
+            (Ok(()), Some(stop)) => FmuError::PastStop { end, stop },
+            (late, _) => late.err().unwrap_or(FmuError::NotFinite { what: "end of the step".into(), value: end }),
         }
     }
 

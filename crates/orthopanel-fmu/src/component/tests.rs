@@ -219,6 +219,38 @@ fn regress_a_motion_too_large_to_read_is_not_stepped_into() {
     }
 }
 
+#[test]
+fn regress_steps_and_times_of_no_simulation_are_refused() {
+    let mut component = initialized(false);
+    component.set_reals(&[FORCE], &[2.0]).expect("a force");
+    let before = component.snapshot();
+    for (start, step, said) in [
+        (0.0, 1e80, "step = 1e80 s: steps and times must stay below 1e30 s"),
+        (0.0, 1e30, "step = 1e30 s"),
+        (0.0, 1.7e308, "step = 1.7e308 s"),
+        (1e308, 1e308, "communication point = 1e308 s"),
+        (-1e30, 1.0, "communication point = -1e30 s"),
+        (f64::NEG_INFINITY, 1.0, "communication point = -inf"),
+    ] {
+        let refused = component.do_step(start, step).expect_err("too long").to_string();
+        assert!(refused.starts_with(said), "{refused}");
+        assert_eq!(component.snapshot(), before);
+    }
+    component.do_step(0.0, 9e29).expect("a long step");
+    let refused = component.do_step(9e29, 9e29).expect_err("too late").to_string();
+    assert!(refused.starts_with("end of the step = 1.8e30 s"), "{refused}");
+    let mut late = component.snapshot();
+    late.situation.time = 1e30;
+    assert!(matches!(component.restore(&late), Err(FmuError::TooLong { .. })));
+
+    let mut component = Component::new(&resource(), Interface::ModelExchange, "");
+    assert!(matches!(component.set_experiment(None, 1e30, None), Err(FmuError::TooLong { .. })));
+    component.set_experiment(None, 0.0, Some(f64::MAX)).expect("a stop that never comes");
+    component.enter_initialization().and_then(|()| component.exit_initialization()).expect("initialized");
+    assert!(matches!(component.set_time(1e30), Err(FmuError::TooLong { .. })));
+    component.set_time(9e29).expect("a late time");
+}
+
 /// A damaged panel, whose shapes are numbers but what is seen through them is none.
 #[test]
 fn regress_results_that_are_no_number_are_refused() {

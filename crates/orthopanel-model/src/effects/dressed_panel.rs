@@ -1,6 +1,6 @@
 //! A panel with effects, and the coordinates in which its modes are found.
 
-use std::sync::{Arc, OnceLock};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use super::dressed_system::{FoundMode, System};
 use super::dressing::Dressing;
@@ -46,7 +46,7 @@ pub(super) struct Residual {
 #[derive(Debug, Clone)]
 pub(crate) enum Even {
     /// A beam on a basis for the modes asked for.
-    Beam(Arc<TimoshenkoBeam>),
+    Beam(Arc<EvenBeam>),
     /// A plate, whose basis follows from its constants.
     Plate,
 }
@@ -56,7 +56,46 @@ impl Even {
     pub(crate) fn beam(setting: &EffectSetting, count: usize) -> Result<Self, ModelError> {
         let terms = BeamTerms::default();
         let order = basis_terms(count + SPARE_MODES);
-        Ok(Self::Beam(Arc::new(TimoshenkoBeam::with_terms(&setting.piece, setting.boundary, order, terms)?)))
+        let beam = Arc::new(TimoshenkoBeam::with_terms(&setting.piece, setting.boundary, order, terms)?);
+        Ok(Self::Beam(Arc::new(EvenBeam { beam, known: Mutex::default() })))
+    }
+}
+
+/// A beam with the modes that were last found of it: a search moves what is on a beam more often than its constants.
+#[derive(Debug)]
+pub(crate) struct EvenBeam {
+    beam: Arc<TimoshenkoBeam>,
+    /// The last used first.
+    known: Mutex<Vec<KnownModes>>,
+}
+
+/// The first `count` modes at these values of the constants.
+#[derive(Debug)]
+struct KnownModes {
+    values: Vec<f64>,
+    count: usize,
+    modes: Arc<LowModes>,
+}
+
+impl EvenBeam {
+    /// So many are kept: each of some threads goes back and forth between a few.
+    const KEPT: usize = 64;
+
+    fn low_modes(&self, values: &[f64], count: usize) -> Result<Arc<LowModes>, ModelError> {
+        let known = || self.known.lock().unwrap_or_else(PoisonError::into_inner);
+        let is_it = |known: &KnownModes| known.values == values && known.count == count;
+        let mut kept = known();
+        if let Some(place) = kept.iter().position(is_it) {
+            kept[..=place].rotate_right(1);
+            return Ok(Arc::clone(&kept[0].modes));
+        }
+        // Others need not wait.
+        drop(kept);
+        let found = Arc::new(LowModes::new(self.beam.as_ref(), values, count)?);
+        let mut kept = known();
+        kept.truncate(Self::KEPT - 1);
+        kept.insert(0, KnownModes { values: values.to_vec(), count, modes: Arc::clone(&found) });
+        Ok(found)
     }
 }
 
@@ -84,7 +123,7 @@ pub(super) struct Dressed {
     is_even: bool,
     piece: Piece,
     values: Vec<f64>,
-    pub(super) low: LowModes,
+    pub(super) low: Arc<LowModes>,
     pub(super) elements: Vec<PointElement>,
     pub(super) core: Option<CoreModulus>,
 }
@@ -114,7 +153,7 @@ impl Dressed {
         let mut elements = elements(effects, setting)?;
         let mut is_even = dressing.terms.is_none();
         let (structure, plate): (SharedStructure, _) = match (even, dressing.terms) {
-            (Even::Beam(even), None) => (Arc::<TimoshenkoBeam>::clone(even), None),
+            (Even::Beam(even), None) => (Arc::<TimoshenkoBeam>::clone(&even.beam), None),
             (Even::Beam(_), Some(terms)) => {
                 let order = basis_terms(summed);
                 (Arc::new(TimoshenkoBeam::with_terms(&piece, boundary, order, terms)?), None)
@@ -128,7 +167,10 @@ impl Dressed {
                 (Arc::<MindlinPlate>::clone(&plate), Some(plate))
             }
         };
-        let low = LowModes::new(structure.as_ref(), values, summed)?;
+        let low = match even {
+            Even::Beam(even) if is_even => even.low_modes(values, summed)?,
+            _ => Arc::new(LowModes::new(structure.as_ref(), values, summed)?),
+        };
         let core = dressing.core.map(|(core, _)| core);
         Ok(Self { structure, plate, is_even, piece, values: values.to_vec(), low, elements, core })
     }

@@ -10,7 +10,7 @@ use crate::structure::{Block, Structure};
 use crate::{ModelError, RitzMode};
 
 /// The lowest modes of a structure at some values of its constants: rigid ones first, then rising.
-#[derive(Clone)]
+#[derive(Debug, Clone)]
 pub(super) struct LowModes {
     /// Block, coordinates and $\omega^2$ of each.
     pub modes: Vec<(usize, Vec<f64>, f64)>,

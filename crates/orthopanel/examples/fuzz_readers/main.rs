@@ -4,6 +4,7 @@
 //! Without `--release` overflow checks are on; `.ci/run` trades them for many more rounds in its half minute.
 //! A fault prints the bytes with reader, seed and round, so that the run repeats it and a test can be made of them.
 //! `-- write FOLDER` writes the good files, for the coverage-guided targets in `fuzz/`, which go deeper.
+#![allow(clippy::print_stdout, clippy::print_stderr)]
 
 mod mutation;
 #[path = "../../../../fuzz/src/lib.rs"]

@@ -2,13 +2,11 @@
 
 use std::path::PathBuf;
 
-use orthopanel_data::ImpactTest;
-
 use crate::error::CommandError;
-use crate::identified::{Identified, suffixes};
-use crate::outputs::{Inputs, Outputs, with_suffix};
+use crate::identified::Identified;
+use crate::outputs::{Inputs, Outputs};
 use crate::record_options::IdentifyOptions;
-use crate::{console, model_file};
+use crate::{console, given_file, model_file};
 
 /// Identify the elastic constants, and the damping where there are records, from a test
 ///
@@ -24,7 +22,8 @@ use crate::{console, model_file};
 /// Below stand the modes that the records show by themselves, by a joint fit of all of them before any model, each beside the
 /// mode of the model that it is, with the modal assurance criterion of the two over the records.
 ///
-/// With several pieces in the test, -o writes one model a piece: MODEL-NAME.json.
+/// With several pieces in the test, -o writes one model a piece, MODEL-NAME.json, and MODEL-manifest.json, which lists them: a
+/// model that it lists is removed by the next run that does not write it anew, unless it was changed since.
 ///
 /// Examples: orthopanel identify examples/piece-1/test.toml -o model.json
 ///           orthopanel identify examples/made-hits/test.toml -o model.json
@@ -45,9 +44,8 @@ pub struct Arguments {
 
 pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
     let Arguments { test: path, output, options, json } = arguments;
-    let test = ImpactTest::read(path)?;
-    let named = output.iter().flat_map(|output| suffixes(&test).map(|suffix| with_suffix(output, &suffix)));
-    let outputs = Outputs::of(Inputs::of_test(path, &test)).all_planned(named)?;
+    let test = given_file::read_test(path)?;
+    let outputs = model_file::planned_each(Outputs::of(Inputs::of_test(path, &test)), output.as_deref(), &test)?;
     let identified = Identified::from_test(&test, path, options)?;
     if let Some(output) = output {
         let models = identified.found.pieces.iter().zip(&identified.models);

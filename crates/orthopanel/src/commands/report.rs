@@ -2,7 +2,6 @@
 
 use std::path::{Path, PathBuf};
 
-use orthopanel_data::ImpactTest;
 use serde::Serialize;
 
 use crate::contradicted::Contradicted;
@@ -12,7 +11,7 @@ use crate::identified::Identified;
 use crate::outputs::{Inputs, Outputs};
 use crate::record_options::IdentifyOptions;
 use crate::traced::Traced;
-use crate::{console, report};
+use crate::{console, given_file, report};
 
 /// Write what a test shows onto one HTML page, which needs no network and nothing beside it
 ///
@@ -51,7 +50,7 @@ struct Answer<'a> {
 
 pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
     let Arguments { test: path, output, options, json } = arguments;
-    let test = ImpactTest::read(path)?;
+    let test = given_file::read_test(path)?;
     let outputs = Outputs::of(Inputs::of_test(path, &test));
     let outputs = match output.parent().filter(|folder| !folder.as_os_str().is_empty()) {
         Some(folder) => outputs.making(folder),

@@ -20,7 +20,7 @@ use crate::outputs::{Inputs, Outputs};
 use crate::record_options::IdentifyOptions;
 use crate::time_response::Hold;
 use crate::traced::Traced;
-use crate::{console, json, pictures, progress, report, time_response};
+use crate::{console, given_file, json, pictures, progress, report, time_response};
 
 /// Do all of it: identify the panel of a test, trace what its model lacks, export its FMUs, simulate a hit, draw the result
 ///
@@ -35,7 +35,8 @@ use crate::{console, json, pictures, progress, report, time_response};
 /// plate, its model and FMUs are written too.
 ///
 /// A manifest.json lists the results, each with its SHA-256, and what they were made from. What it lists is removed by the
-/// next run into DIR that does not write it anew, unless it was changed since; no other file is, and none that is read.
+/// next run into DIR that does not write it anew, unless it was changed since; no other file is, and none that is read. Where
+/// a run replaces a file that was changed since, or that no run wrote, it keeps that as NAME.edited.
 ///
 /// Of records, each pair of places gets a picture of the accelerance, measured and calculated, and one of a hit with
 /// the accelerations measured and calculated under it; time-histories.json tells how far the model is from every hit.
@@ -83,7 +84,7 @@ struct HitsAnswer<'a> {
 
 pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
     let Arguments { test: path, output, options, json } = arguments;
-    let test = ImpactTest::read(path)?;
+    let test = given_file::read_test(path)?;
     let mut files = Outputs::of(Inputs::of_test(path, &test)).filling(output, MANIFEST).planned_inside(names(&test))?;
     let identified = match Identified::from_test(&test, path, options) {
         Err(refused) => return trace_alone(arguments, files, Contradicted::of(test, path, refused)?),

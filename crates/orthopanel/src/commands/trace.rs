@@ -6,9 +6,9 @@ use orthopanel_data::ImpactTest;
 
 use crate::error::CommandError;
 use crate::identified::suffixes;
-use crate::outputs::{Inputs, Outputs, with_suffix};
+use crate::outputs::{Inputs, Outputs};
 use crate::traced::Traced;
-use crate::{console, model_file};
+use crate::{console, given_file, model_file};
 
 /// Name the physical effect that the model of a test lacks
 ///
@@ -19,7 +19,8 @@ use crate::{console, model_file};
 ///
 /// -o writes the panel's model: effects of the panel stay in it, those of the rig and of the measuring chain are taken out.
 /// Where the verdict is unexplained, it is the base model; where no base model meets the data either, none is written.
-/// With several pieces in the test there is one model a piece: MODEL-NAME.json.
+/// With several pieces in the test there is one model a piece, MODEL-NAME.json, and MODEL-manifest.json lists them (see
+/// `orthopanel identify --help`).
 ///
 /// Example: orthopanel trace examples/misplaced-hit/test.toml -o traced.json
 #[derive(clap::Args)]
@@ -37,9 +38,8 @@ pub struct Arguments {
 
 pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
     let Arguments { test: path, output, json } = arguments;
-    let test = ImpactTest::read(path)?;
-    let named = output.iter().flat_map(|output| suffixes(&test).map(|suffix| with_suffix(output, &suffix)));
-    let outputs = Outputs::of(Inputs::of_test(path, &test)).all_planned(named)?;
+    let test = given_file::read_test(path)?;
+    let outputs = model_file::planned_each(Outputs::of(Inputs::of_test(path, &test)), output.as_deref(), &test)?;
     let traced = Traced::from_test(&test).map_err(|source| CommandError::Identify { path: path.clone(), source })?;
     let written = match output {
         Some(output) => write_models(outputs, output, &test, path, &traced),

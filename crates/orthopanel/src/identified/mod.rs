@@ -96,15 +96,16 @@ pub fn suffixes(test: &ImpactTest) -> impl Iterator<Item = String> {
 
 /// `-NAME` of one of several pieces, safe in file names; nothing for a single one.
 ///
-/// A long name is cut. One that was cut, and one that differs from another piece's by capitals alone, which are the same to some
-/// systems, ends in its checksum.
+/// A long name is cut. One that was cut, one that differs from another piece's by capitals alone, which are the same to some
+/// systems, and one that would be the manifest's, ends in its checksum.
 pub fn suffix(name: &str, pieces: &[NamedPiece]) -> String {
     if pieces.len() <= 1 {
         return String::new();
     }
     let part = file_name_part(name);
     let is_alike = |other: &&NamedPiece| file_name_part(&other.name).eq_ignore_ascii_case(&part);
-    if part.len() <= LONGEST_PART && pieces.iter().filter(is_alike).count() <= 1 {
+    let is_manifest = part.eq_ignore_ascii_case("manifest");
+    if part.len() <= LONGEST_PART && !is_manifest && pieces.iter().filter(is_alike).count() <= 1 {
         return format!("-{part}");
     }
     let cut = part.get(..LONGEST_PART).unwrap_or(&part);
@@ -151,6 +152,7 @@ mod tests {
         };
         assert_eq!(suffix("a", &pieces(&["a"])), "");
         assert_eq!(suffix("a", &pieces(&["a", "b"])), "-a");
+        assert_ne!(suffix("manifest", &pieces(&["a", "manifest"])), "-manifest");
         let alike = pieces(&["Piece", "piece"]);
         let [first, second] = ["Piece", "piece"].map(|name| suffix(name, &alike).to_lowercase());
         assert_ne!(first, second);

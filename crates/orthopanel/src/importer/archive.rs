@@ -35,7 +35,7 @@ pub(super) struct Archive {
 impl Archive {
     pub(super) fn new(file: impl Read) -> Result<Self, FmuRefusal> {
         let mut bytes = Vec::new();
-        file.take(MOST_BYTES + 1).read_to_end(&mut bytes).map_err(broken)?;
+        file.take(MOST_BYTES + 1).read_to_end(&mut bytes).map_err(FmuRefusal::Read)?;
         if bytes.len() as u64 > MOST_BYTES {
             return Err(too_many_bytes("a zip archive", MOST_BYTES));
         }
@@ -101,7 +101,7 @@ pub(super) fn place(folder: &Path, name: &str, content: &[u8]) -> Result<(), Fmu
         std::fs::create_dir_all(path.parent().unwrap_or(folder))?;
         File::create_new(&path)?.write_all(content)
     };
-    write().map_err(FmuRefusal::Unpack)
+    write().map_err(|source| FmuRefusal::Unpack { what: "written", path: path.clone(), source })
 }
 
 /// What a name does that could lead out of a folder, here or on another system.

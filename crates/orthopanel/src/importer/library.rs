@@ -27,7 +27,9 @@ pub(super) fn unpack(archive: &mut Archive, path: &str, trust: bool) -> Result<T
         }
         whole(&content).map_err(|reason| FmuRefusal::DamagedLibrary { path: path.into(), reason })?;
     }
-    let folder = tempfile::Builder::new().prefix("orthopanel-").tempdir().map_err(FmuRefusal::Unpack)?;
+    let home = std::env::temp_dir();
+    let folder = tempfile::Builder::new().prefix("orthopanel-").tempdir_in(&home);
+    let folder = folder.map_err(|source| FmuRefusal::Unpack { what: "written into", path: home, source })?;
     place(folder.path(), path, &content)?;
     let beside = Path::new(path).parent().filter(|_| !carried);
     archive.unpack(folder.path(), |name| {

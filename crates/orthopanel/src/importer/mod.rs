@@ -11,6 +11,7 @@ mod instance;
 mod library;
 mod log;
 
+use std::error::Error as _;
 use std::fs::File;
 use std::path::Path;
 use std::sync::Arc;
@@ -90,7 +91,9 @@ fn not_loaded(error: SimulationError, library: &str, log: &Log) -> FmuRefusal {
         SimulationError::FMICall => return FmuRefusal::NoInstance(log.taken()),
         SimulationError::Symbol { name, .. } => format!("it has no function {name}"),
         SimulationError::Library { source, .. } => {
-            format!("{source} (it is unpacked where temporary files lie: TMPDIR can name another folder)")
+            // Its own words are that loading failed; the system's, behind them, say which file and why.
+            let cause = source.source().map_or_else(|| source.to_string(), ToString::to_string);
+            format!("{cause} (it is unpacked where temporary files lie: TMPDIR can name another folder)")
         }
         _ => error.to_string(),
     };

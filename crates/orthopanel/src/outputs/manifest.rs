@@ -18,7 +18,7 @@ const SCHEMA: &str = "orthopanel.manifest/1";
 /// Far more than the lists of any test take.
 const LONGEST: u64 = 1 << 26;
 
-#[derive(Serialize)]
+#[derive(Clone, Serialize)]
 pub struct Manifest {
     schema: &'static str,
     /// The words after the program's name.
@@ -65,8 +65,8 @@ impl Manifest {
     }
 
     /// When all earlier files are replaced.
-    pub fn concluded(self) -> Self {
-        Self { replacing: Vec::new(), ..self }
+    pub fn concluded(&self) -> Self {
+        Self { replacing: Vec::new(), ..self.clone() }
     }
 
     pub fn is_concluded(&self) -> bool {

@@ -1,23 +1,26 @@
 //! Files that a command writes: never over a file that it reads, and all of them or none.
 //!
 //! A command names its inputs and the outputs that it may write before it computes anything, then adds what it found and
-//! writes all at once. Where results fill a folder of their own, a manifest beside them lists what belongs to the run; what
-//! an earlier one lists and the new run does not write is removed, unless somebody changed it since.
+//! writes all at once. Where results are several, in a folder of their own or beside each other, a manifest with them lists what
+//! belongs to the run; what an earlier one lists and the new run does not write is removed, unless somebody changed it since, and
+//! of a result that somebody changed and the new run replaces a copy is kept.
 
+mod destination;
 mod folder;
 mod inputs;
+mod listing;
 mod manifest;
 mod replacement;
 
-use std::collections::BTreeSet;
+use std::ffi::OsString;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use crate::console;
 use crate::error::CommandError;
+use destination::{made, makeable, unmade};
 pub use inputs::Inputs;
-use inputs::is_same;
-use manifest::{Listed, Manifest};
+use listing::Listing;
 use replacement::Replacement;
 
 /// The outputs of one command.
@@ -25,15 +28,16 @@ pub struct Outputs {
     inputs: Inputs,
     /// Made where it is not there.
     folder: Option<PathBuf>,
-    /// Its name in the folder.
-    manifest: Option<&'static str>,
+    manifest: Option<PathBuf>,
+    /// Extension of the results, where the manifest may list those of another one too, which another command wrote.
+    extension: Option<OsString>,
     files: Vec<(PathBuf, Vec<u8>)>,
 }
 
 impl Outputs {
     /// Of a command that reads `inputs`.
     pub fn of(inputs: Inputs) -> Self {
-        Self { inputs, folder: None, manifest: None, files: Vec::new() }
+        Self { inputs, folder: None, manifest: None, extension: None, files: Vec::new() }
     }
 
     /// `folder` is to be made where it is not there.
@@ -43,7 +47,20 @@ impl Outputs {
 
     /// The results fill `folder`, made where it is not there, and a manifest of that name lists them.
     pub fn filling(self, folder: &Path, manifest: &'static str) -> Self {
-        Self { folder: Some(folder.into()), manifest: Some(manifest), ..self }
+        Self { folder: Some(folder.into()), manifest: Some(folder.join(manifest)), ..self }
+    }
+
+    /// The results are called as `output`, with a suffix each where they are `several`; then `STEM-manifest.json` lists them, and
+    /// where it lists some of an earlier run.
+    ///
+    /// # Errors
+    /// As [`Outputs::planned`], of the manifest.
+    pub fn beside(self, output: &Path, several: bool) -> Result<Self, CommandError> {
+        let manifest = with_suffix(output, "-manifest").with_extension("json");
+        let is_used = several || manifest::listed(&manifest).is_ok_and(|listed| !listed.is_empty());
+        let extension = Some(output.extension().unwrap_or_default().into());
+        let manifest = is_used.then_some(manifest);
+        Self { manifest: manifest.clone(), extension, ..self }.all_planned(manifest)
     }
 
     /// Names an output that may be written later.
@@ -51,17 +68,17 @@ impl Outputs {
     /// # Errors
     /// [`CommandError::OutputIsInput`], and [`CommandError::Unwritable`] where no file can be put there.
     pub fn planned(self, path: &Path) -> Result<Self, CommandError> {
-        self.destination(path)?;
-        let folder = folder::of(path);
         match &self.folder {
-            Some(own) if !own.exists() => {}
+            Some(own) if !own.exists() => makeable(own)?,
             Some(own) if !own.is_dir() => {
                 let (path, reason) = (own.clone(), "it is there and is no folder".into());
                 return Err(CommandError::Unwritable { path, reason, kind: ErrorKind::NotADirectory });
             }
-            _ => {
-                std::fs::metadata(folder).map_err(|error| CommandError::unwritable(path, &error))?;
-            }
+            _ => {}
+        }
+        let destination = self.destination(path)?;
+        if self.folder.as_ref().is_none_or(|own| own.exists()) {
+            std::fs::metadata(folder::of(&destination)).map_err(|error| CommandError::unwritable(path, &error))?;
         }
         Ok(self)
     }
@@ -73,8 +90,7 @@ impl Outputs {
 
     /// As [`Outputs::planned`], of names in the folder of the results.
     pub fn planned_inside(self, names: impl IntoIterator<Item = String>) -> Result<Self, CommandError> {
-        let manifest = self.manifest.map(String::from);
-        let paths: Vec<_> = names.into_iter().chain(manifest).map(|name| self.inside(&name)).collect();
+        let paths: Vec<_> = names.into_iter().map(|name| self.inside(&name)).chain(self.manifest.clone()).collect();
         self.all_planned(paths)
     }
 
@@ -101,13 +117,12 @@ impl Outputs {
             // What is in the new folder lies on disk; that its name does is best effort.
             let _ = folder::flush(parent);
         }
-        let manifest = self.manifest_path();
-        Ok(self.files.into_iter().map(|(path, _)| path).chain(manifest).collect())
+        Ok(self.files.into_iter().map(|(path, _)| path).chain(self.manifest).collect())
     }
 
     fn replaced(&self) -> Result<(), CommandError> {
-        let mut destinations = Vec::with_capacity(self.files.len());
-        for (path, _) in &self.files {
+        let mut destinations = Vec::with_capacity(self.files.len() + 1);
+        for path in self.files.iter().map(|(path, _)| path).chain(&self.manifest) {
             let destination = self.destination(path)?;
             if destinations.contains(&destination) {
                 let reason = "another result of this command goes to the same file".into();
@@ -115,152 +130,33 @@ impl Outputs {
             }
             destinations.push(destination);
         }
-        let manifest = self.manifest_path().map(|path| self.destination(&path)).transpose()?;
-        let folders = destinations.iter().chain(&manifest).map(|path| folder::of(path).into()).collect();
-        let mut replacement = Replacement::in_folders(folders);
-        let concluded = match &manifest {
-            Some(path) => self.prepare_manifest(path, &destinations, &mut replacement)?,
-            None => None,
+        let mut replacement =
+            Replacement::in_folders(destinations.iter().map(|path| folder::of(path).into()).collect());
+        let listing = match (&self.manifest, destinations.split_last()) {
+            (Some(manifest), Some((path, files))) => {
+                Some((path, self.prepare_manifest(manifest, path, files, &mut replacement)?))
+            }
+            _ => None,
         };
         for (path, (_, content)) in destinations.iter().zip(&self.files) {
             replacement.put(path, content)?;
         }
-        let mut removed = Vec::new();
-        if let (Some(path), Some(Concluded { stale, manifest })) = (&manifest, concluded) {
+        if let Some((path, Listing { manifest, stale, .. })) = &listing
+            && !manifest.is_concluded()
+        {
             stale.iter().try_for_each(|path| replacement.remove(path))?;
-            replacement.put_again(path, manifest.text().as_bytes())?;
-            removed = stale;
+            replacement.put_again(path, manifest.concluded().text().as_bytes())?;
         }
         replacement.commit()?;
-        for path in removed {
-            console::say(format_args!("removed {}, left by an earlier run", path.display()));
+        for note in listing.into_iter().flat_map(|(_, listing)| listing.notes) {
+            console::say(note);
         }
         Ok(())
-    }
-
-    /// Prepares the manifest as the first change; gives what is left to do when the files are in place.
-    fn prepare_manifest(
-        &self,
-        path: &Path,
-        destinations: &[PathBuf],
-        replacement: &mut Replacement,
-    ) -> Result<Option<Concluded>, CommandError> {
-        let earlier = match manifest::listed(path) {
-            Ok(listed) => listed,
-            Err(problem) => {
-                let kept = free_name(path);
-                console::say(format_args!(
-                    "note: {}: no manifest of orthopanel, kept as {}; what earlier runs left is not removed: {problem}",
-                    path.display(),
-                    kept.display()
-                ));
-                replacement.copy(path, &kept)?;
-                Vec::new()
-            }
-        };
-        let name = |path: &Path| path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        let files: Vec<Listed> = self.files.iter().map(|(path, content)| Listed::of(&name(path), content)).collect();
-        let stale = self.stale(&earlier, &files, destinations);
-        let mut replacing = earlier;
-        replacing.retain(|listed| !files.contains(listed));
-        let manifest = Manifest::new(&self.inputs, files, replacing)?;
-        replacement.put(path, manifest.text().as_bytes())?;
-        Ok((!manifest.is_concluded()).then(|| Concluded { stale, manifest: manifest.concluded() }))
-    }
-
-    /// The files of earlier runs that this one does not write and that are as they were left.
-    fn stale(&self, earlier: &[Listed], files: &[Listed], destinations: &[PathBuf]) -> Vec<PathBuf> {
-        let Some(folder) = &self.folder else { return Vec::new() };
-        let is_written = |name: &str| files.iter().any(|file| file.file == name);
-        let names: BTreeSet<&str> = earlier.iter().filter_map(Listed::plain_name).collect();
-        let mut stale = Vec::new();
-        for name in names.into_iter().filter(|name| !is_written(name)) {
-            let path = folder.join(name);
-            let is_file = std::fs::symlink_metadata(&path).is_ok_and(|found| found.is_file());
-            if !is_file || destinations.iter().any(|destination| is_same(destination, &path)) {
-                continue;
-            }
-            let sha256 = manifest::sha256_of(&path).ok();
-            let is_as_left =
-                earlier.iter().any(|listed| listed.file == name && Some(&listed.sha256) == sha256.as_ref());
-            if is_as_left && self.inputs.at(&path).is_none() {
-                stale.push(path);
-            } else {
-                let why = if is_as_left { "this command reads it" } else { "it was changed since" };
-                console::say(format_args!("note: {}: left by an earlier run, and kept: {why}", path.display()));
-            }
-        }
-        stale
     }
 
     fn inside(&self, name: &str) -> PathBuf {
         self.folder.as_ref().map_or(name.into(), |folder| folder.join(name))
     }
-
-    fn manifest_path(&self) -> Option<PathBuf> {
-        self.manifest.map(|name| self.inside(name))
-    }
-
-    /// Where a file really goes: behind a link, the file it points to. What is there must be a file, since renaming onto a
-    /// device or a pipe would take its place, and none that the command reads.
-    fn destination(&self, path: &Path) -> Result<PathBuf, CommandError> {
-        match std::fs::metadata(path) {
-            // Renaming would take the place of a file that its owner protects.
-            Ok(there) if there.is_file() && there.permissions().readonly() && self.inputs.at(path).is_none() => {
-                let reason = "it is read-only".into();
-                return Err(CommandError::Unwritable { path: path.into(), reason, kind: ErrorKind::PermissionDenied });
-            }
-            Ok(there) if there.is_file() => {}
-            Ok(there) => {
-                let (kind, what) = match there.is_dir() {
-                    true => (ErrorKind::IsADirectory, "a folder"),
-                    false => (ErrorKind::Other, "no regular file"),
-                };
-                return Err(CommandError::Unwritable { path: path.into(), reason: format!("it is {what}"), kind });
-            }
-            Err(_) => {
-                // One spelling of the folder, by which it is locked.
-                let folder = std::fs::canonicalize(folder::of(path)).ok();
-                return Ok(folder
-                    .zip(path.file_name())
-                    .map_or_else(|| path.into(), |(folder, name)| folder.join(name)));
-            }
-        }
-        if let Some(input) = self.inputs.at(path) {
-            return Err(CommandError::OutputIsInput { path: path.into(), input: input.into() });
-        }
-        std::fs::canonicalize(path).map_err(|error| CommandError::unwritable(path, &error))
-    }
-}
-
-/// What follows when the files of a run are in place.
-struct Concluded {
-    stale: Vec<PathBuf>,
-    manifest: Manifest,
-}
-
-/// Makes a folder and those it lies in; gives those that were not there, innermost first.
-fn made(folder: &Path) -> Result<Vec<PathBuf>, CommandError> {
-    let missing = folder.ancestors().take_while(|folder| !folder.as_os_str().is_empty() && !folder.exists());
-    let missing: Vec<_> = missing.map(Path::to_path_buf).collect();
-    match std::fs::create_dir_all(folder) {
-        Ok(()) => Ok(missing),
-        Err(error) => {
-            unmade(&missing);
-            Err(CommandError::unwritable(folder, &error))
-        }
-    }
-}
-
-fn unmade(folders: &[PathBuf]) {
-    // Best effort: a folder that another program filled meanwhile stays.
-    folders.iter().for_each(|folder| drop(std::fs::remove_dir(folder)));
-}
-
-/// A name beside `path` that no file has: `manifest-1.json`, ...
-fn free_name(path: &Path) -> PathBuf {
-    let names = (1..u64::MAX).map(|number| with_suffix(path, &format!("-{number}")));
-    names.into_iter().find(|name| std::fs::symlink_metadata(name).is_err()).unwrap_or_default()
 }
 
 /// `folder/stem.extension` as `folder/stem{suffix}.extension`.
@@ -375,7 +271,7 @@ mod tests {
             std::thread::sleep(Duration::from_micros(10_000 + 61 * run));
             process.kill().expect("killed");
             process.wait().expect("ended");
-            let mut letters = BTreeSet::new();
+            let mut letters = std::collections::BTreeSet::new();
             for number in 0..=RESULTS {
                 let path = home.path().join(format!("result-{number}"));
                 let Ok(text) = std::fs::read_to_string(&path) else {

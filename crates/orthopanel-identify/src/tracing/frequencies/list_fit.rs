@@ -1,10 +1,12 @@
 //! One hypothesis fitted to the lists.
 
+use std::cell::RefCell;
+
 use faer::Mat;
 
 use super::list_problem::ListProblem;
 use crate::IdentifyError;
-use crate::least_squares::{Ending, Linearised, descend};
+use crate::least_squares::{Ending, Linearised, Quadratic, descend};
 use crate::tracing::hypothesis::Hypothesis;
 use orthopanel_model::ModelError;
 
@@ -64,21 +66,11 @@ pub(super) fn fit(problem: &ListProblem, from: &Hypothesis, constants_from: &[f6
     }
     let start: Vec<f64> = constants_from.iter().copied().chain(from.coordinates()).collect();
     let bounds: Vec<(f64, f64)> = constants.bounds().into_iter().chain(from.bounds()).collect();
-    let linearise = |parameters: &[f64]| linearise(problem, parameters, from, &bounds);
-    // What moves nothing here must not stop the rest.
-    let definite = |p: &[f64]| {
-        let mut quadratic = linearise(p)?.quadratic();
-        for index in 0..start.len() {
-            if quadratic.normal[(index, index)] == 0.0 {
-                quadratic.normal[(index, index)] = 1.0;
-            }
-        }
-        Ok::<_, ModelError>(quadratic)
-    };
-    let searched = descend(definite, &start, &bounds, ENDING);
+    let descent = Descent { problem, like: from, bounds: &bounds, lowest: RefCell::new(None) };
+    let searched = descend(|parameters| descent.quadratic(parameters), &start, &bounds, ENDING);
     let (minimum, _) = searched.map_err(IdentifyError::refused)?;
     let parameters = minimum.parameters;
-    let at = linearise(&parameters)?;
+    let at = descent.at(&parameters)?;
     let size = parameters.len();
     let scatter = problem.scatter();
     let left = at.residuals.iter().map(|r| r * r).sum::<f64>() / problem.count().saturating_sub(size).max(1) as f64;
@@ -122,27 +114,61 @@ fn in_parts(residuals: Vec<f64>, scatter: Option<&[f64]>) -> Vec<f64> {
     }
 }
 
-fn linearise(
-    problem: &ListProblem,
-    parameters: &[f64],
-    like: &Hypothesis,
-    bounds: &[(f64, f64)],
-) -> Result<Linearised, ModelError> {
-    let residuals = problem.weighed(parameters, like)?;
-    let mut jacobian = Mat::zeros(residuals.len(), parameters.len());
-    for (column, &(low, high)) in bounds.iter().enumerate() {
-        let step = STEP * (high - low).min(1.0);
-        let moved = |by: f64| {
-            let mut at = parameters.to_vec();
-            at[column] = (at[column] + by).clamp(low, high);
-            (problem.weighed(&at, like), at[column])
-        };
-        let ((above, right), (below, left)) = (moved(step), moved(-step));
-        for (row, (above, below)) in above?.iter().zip(&below?).enumerate() {
-            jacobian[(row, column)] = (above - below) / (right - left);
+/// One search, which does without derivatives that nobody asks for: each is two models of all frequencies.
+struct Descent<'a> {
+    problem: &'a ListProblem,
+    like: &'a Hypothesis,
+    bounds: &'a [(f64, f64)],
+    /// The lowest that was found so far, and where.
+    lowest: RefCell<Option<(Vec<f64>, f64, Linearised)>>,
+}
+
+impl Descent<'_> {
+    fn quadratic(&self, parameters: &[f64]) -> Result<Quadratic, ModelError> {
+        let residuals = self.problem.weighed(parameters, self.like)?;
+        let cost: f64 = residuals.iter().map(|r| r * r).sum();
+        if self.lowest.borrow().as_ref().is_some_and(|(_, lowest, _)| cost > *lowest) {
+            // A step that went up is taken back whatever its derivatives.
+            return Ok(Quadratic { cost, ..Quadratic::zero(parameters.len()) });
+        }
+        let at = self.linearise(parameters, residuals)?;
+        let mut quadratic = at.quadratic();
+        // What moves nothing here must not stop the rest.
+        for index in 0..parameters.len() {
+            if quadratic.normal[(index, index)] == 0.0 {
+                quadratic.normal[(index, index)] = 1.0;
+            }
+        }
+        if quadratic.is_finite() {
+            *self.lowest.borrow_mut() = Some((parameters.to_vec(), cost, at));
+        }
+        Ok(quadratic)
+    }
+
+    /// Where the search ended.
+    fn at(self, parameters: &[f64]) -> Result<Linearised, ModelError> {
+        match self.lowest.take() {
+            Some((lowest, _, at)) if lowest == parameters => Ok(at),
+            _ => self.linearise(parameters, self.problem.weighed(parameters, self.like)?),
         }
     }
-    Ok(Linearised { residuals, jacobian })
+
+    fn linearise(&self, parameters: &[f64], residuals: Vec<f64>) -> Result<Linearised, ModelError> {
+        let mut jacobian = Mat::zeros(residuals.len(), parameters.len());
+        for (column, &(low, high)) in self.bounds.iter().enumerate() {
+            let step = STEP * (high - low).min(1.0);
+            let moved = |by: f64| {
+                let mut at = parameters.to_vec();
+                at[column] = (at[column] + by).clamp(low, high);
+                (self.problem.weighed(&at, self.like), at[column])
+            };
+            let ((above, right), (below, left)) = (moved(step), moved(-step));
+            for (row, (above, below)) in above?.iter().zip(&below?).enumerate() {
+                jacobian[(row, column)] = (above - below) / (right - left);
+            }
+        }
+        Ok(Linearised { residuals, jacobian })
+    }
 }
 
 impl ListFit {

@@ -148,7 +148,7 @@ fn in_all_places(problem: &ListProblem, fits: Vec<ListFit>, declared: usize) -> 
             _ => found,
         }
     };
-    fits.into_iter().map(widened).collect()
+    fits.into_par_iter().map(widened).collect()
 }
 
 const ABOVE: &str = "no resonator tuned within the listed frequencies meets them, and one tuned above these is a mass where it sits: see local-mass";

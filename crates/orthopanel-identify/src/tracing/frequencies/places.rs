@@ -90,10 +90,9 @@ impl PlaceOf {
         let places = along((low, high), ON_A_HUMP * problem.longest().max(1) + 1).into_iter().filter(elsewhere);
         let (mut left, right): (Vec<f64>, Vec<f64>) = places.partition(|&x| x < here);
         left.reverse();
-        let mut fits = Vec::new();
-        for outward in [left, right] {
-            let mut from = from.clone();
-            for x in outward {
+        let outward = |places: Vec<f64>| {
+            let (mut from, mut fits) = (from.clone(), Vec::new());
+            for x in places {
                 let mut hypothesis = from.hypothesis.clone();
                 let on = &mut hypothesis.effects[self.effect];
                 on.free.retain(|free| free.at != self.place.at);
@@ -103,7 +102,10 @@ impl PlaceOf {
                     fits.push(found);
                 }
             }
-        }
+            fits
+        };
+        let (mut fits, right) = rayon::join(|| outward(left), || outward(right));
+        fits.extend(right);
         fits
     }
 

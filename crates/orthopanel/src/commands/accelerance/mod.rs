@@ -19,7 +19,9 @@ use crate::record_options::EstimationOptions;
 ///
 /// Of a test (a file that ends in .toml): one CSV a pair of places, with the coherence and the variance of each line
 /// where the hits tell them. With several pairs -o X.csv writes X-1.csv, X-2.csv, ... in the order of the table; -o of
-/// any other name is a folder for accelerance-1.csv, accelerance-2.csv, ... The table says which hits were kept and which left out, and why.
+/// any other name is a folder for accelerance-1.csv, accelerance-2.csv, ... X-manifest.json, in the folder accelerance-manifest.json, lists them: a file that it
+/// lists is removed by the next run that does not write it anew, unless it was changed since.
+/// The table says which hits were kept and which left out, and why.
 ///
 /// Examples: orthopanel accelerance out/model.json --force -0.3 --response 0.3 --from 0 --to 4500 --lines 1801 -o h.csv
 ///           orthopanel accelerance examples/made-hits/test.toml -o measured.csv

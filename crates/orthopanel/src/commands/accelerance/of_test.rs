@@ -10,7 +10,7 @@ use crate::error::CommandError;
 use crate::measured_pairs::{ToldHit, place_text, told};
 use crate::outputs::{Inputs, Outputs, with_suffix};
 use crate::record_options::EstimationOptions;
-use crate::{console, csv_text, notes, progress, tables};
+use crate::{console, csv_text, given_file, notes, progress, tables};
 
 /// Not that of `run`, whose results may lie in the same folder.
 const MANIFEST: &str = "accelerance-manifest.json";
@@ -45,12 +45,15 @@ pub fn execute(
     json: bool,
 ) -> Result<(), CommandError> {
     let estimation = options.estimation(Window::None)?;
-    let test = ImpactTest::read(path)?;
+    let test = given_file::read_test(path)?;
     let mut outputs = Outputs::of(Inputs::of_test(path, &test)).all_planned(output.iter().flat_map(|&output| {
         // Into a folder that is not there goes nothing that is.
         let files = if is_folder(output, true) && !output.is_dir() { 0 } else { test.files().count() };
         (0..files).map(move |index| named(output, true, index)).chain([named(output, false, 0)])
     }))?;
+    if let Some(output) = output.filter(|path| !is_folder(path, true)) {
+        outputs = outputs.beside(output, test.files().count() > 1)?;
+    }
     options.say_if_idle(&test);
     let mut measured = {
         let _shown = progress::spinner("reading the records");
@@ -61,9 +64,11 @@ pub fn execute(
         return Err(CommandError::Records { path: path.into(), problem });
     }
     let several = measured.len() > 1;
-    if let Some(folder) = output.filter(|path| is_folder(path, several)) {
-        outputs = outputs.filling(folder, MANIFEST);
-    }
+    outputs = match output {
+        Some(folder) if is_folder(folder, several) => outputs.filling(folder, MANIFEST),
+        Some(output) => outputs.beside(output, several)?,
+        None => outputs,
+    };
     for (index, (entry, accelerance)) in measured.iter_mut().enumerate() {
         let Some(output) = output else { break };
         let named = named(output, several, index);

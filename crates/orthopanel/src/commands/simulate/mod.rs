@@ -4,13 +4,14 @@ mod on_records;
 
 use std::path::PathBuf;
 
-use orthopanel_data::{ImpactTest, limits};
+use orthopanel_data::limits;
 use serde::Serialize;
 
 use crate::arguments::{ModeArguments, PortArguments};
 use crate::driving_force::DrivingForce;
 use crate::error::{CommandError, InFile as _};
 use crate::force_file::{Fault, ForceHistory};
+use crate::given_file::{self, Wanted};
 use crate::measured_pairs::is_test_file;
 use crate::outputs::{Inputs, Outputs};
 use crate::time_response::{Hold, Motion};
@@ -113,7 +114,7 @@ struct ResponseEntry<'a> {
 
 pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
     let (inputs, force_file) = (Inputs::of(&arguments.model), &arguments.force_file);
-    let test = is_test_file(force_file).then(|| ImpactTest::read(force_file)).transpose()?;
+    let test = is_test_file(force_file).then(|| given_file::read_test(force_file)).transpose()?;
     let inputs = match &test {
         Some(test) => inputs.and_all(Inputs::of_test(force_file, test)),
         None => inputs.and(force_file),
@@ -168,10 +169,13 @@ fn run_fmu(arguments: &Arguments) -> Result<(ForceHistory, Vec<Motion>), Command
 fn driving_force(arguments: &Arguments, places: usize) -> Result<DrivingForce, CommandError> {
     let path = &arguments.force_file;
     let text = limits::FORCE_FILE.read_text(path);
-    let text = text.map_err(|source| CommandError::Unreadable { path: path.into(), source })?;
+    let text = text.map_err(|source| {
+        given_file::or_kind_of(path, Wanted::Force, CommandError::Unreadable { path: path.into(), source })
+    })?;
     let force = ForceHistory::from_csv(&text, places);
-    let force =
-        force.map_err(|Fault { line, problem }| CommandError::ForceFile { path: path.into(), line, problem })?;
+    let force = force.map_err(|Fault { line, problem }| {
+        given_file::or_kind_of(path, Wanted::Force, CommandError::ForceFile { path: path.into(), line, problem })
+    })?;
     DrivingForce::new(force, arguments.hold.unwrap_or(Hold::Linear), path)
 }
 
