@@ -37,6 +37,12 @@ pub const FREQUENCIES: usize = 200;
 /// and more: on one core a quarter of a minute for twelve, and minutes for so many.
 pub const FREQUENCIES_TRACED: usize = 40;
 
+/// Natural frequencies of all lists of one piece that is traced: twenty lists of six take two minutes.
+pub const FREQUENCIES_TRACED_OF_PIECE: usize = 120;
+
+/// Samples of a force that is band-limited between them, over all places: each takes the memory of a hundred numbers.
+pub const BAND_LIMITED_SAMPLES: usize = 2_000_000;
+
 /// Natural frequencies of all lists of a test: forty of each of fifty pieces.
 pub const FREQUENCIES_OF_TEST: usize = 2000;
 

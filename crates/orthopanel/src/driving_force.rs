@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use orthopanel_data::limits;
 use orthopanel_identify::ForceBetweenSamples;
 use orthopanel_model::Readable;
 
@@ -31,6 +32,17 @@ impl DrivingForce {
         let held = hold == Hold::Held;
         if hold != Hold::BandLimited {
             return Ok(Self { samples, finer: None, steps: 1, held });
+        }
+        let (found, most) = (samples.time.len() * samples.forces.len(), limits::BAND_LIMITED_SAMPLES);
+        if found > most {
+            return Err(CommandError::ForceFile {
+                path: path.into(),
+                line: None,
+                problem: format!(
+                    "{found} samples: --hold band-limited keeps many finer ones for each in memory and takes {most} at most; linear does not, or \
+                     cut the force into pieces"
+                ),
+            });
         }
         let interval = even_interval(&samples.time).map_err(|line| CommandError::ForceFile {
             path: path.into(),
@@ -107,6 +119,16 @@ mod tests {
     fn times_off_the_grid_are_found() {
         assert_eq!(even_interval(&[1.0, 1.5, 2.0]), Ok(0.5));
         assert_eq!(even_interval(&[0.0, 0.5, 0.9, 1.5]), Err(3));
+    }
+
+    #[test]
+    fn regress_a_force_that_would_fill_the_memory_is_refused() {
+        let count = limits::BAND_LIMITED_SAMPLES + 1;
+        let samples =
+            ForceHistory { time: (0..count).map(|i| i as f64 * 1e-4).collect(), forces: vec![vec![0.0; count]] };
+        let refused = DrivingForce::new(samples, Hold::BandLimited, Path::new("force.csv")).err().expect("refused");
+        let said = refused.to_string();
+        assert!(said.contains("2000001 samples") && said.contains("linear does not"), "{said}");
     }
 
     #[test]

@@ -103,6 +103,18 @@ fn a_list_that_would_be_traced_for_an_hour_is_refused_and_its_way_out_is_one() {
     assert!(!bench.path("out/trace.json").exists());
 }
 
+/// Twenty lists of six took two minutes, and 333 had not ended after eight.
+#[test]
+fn regress_many_lists_of_one_piece_are_refused_together() {
+    let bench = Bench::new();
+    let list = "\n[[measurement]]\nkind = \"natural-frequencies\"\nvalues = [";
+    let lists: String =
+        (0..21).map(|i| format!("{list}{}, 837.5, 1520.0, 2312.5, 3150.0, 3987.5]\n", 321 + i)).collect();
+    bench.write("test.toml", &format!("{TEST}{lists}"));
+    refused(&bench, "trace test.toml", 2, &["132 natural frequencies", "takes 120 of one piece", "mean of repeats"]);
+    bench.done("identify test.toml");
+}
+
 #[test]
 fn nesting_has_an_end() {
     let bench = Bench::new();

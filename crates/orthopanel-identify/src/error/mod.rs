@@ -41,6 +41,19 @@ pub enum IdentifyError {
         /// The limit.
         most: usize,
     },
+    /// Lists of one piece that are too long together to be traced.
+    #[error(
+        "{found} natural frequencies in the lists of {piece}: a trace takes {most} of one piece at most, for it fits every effect to all of \
+         them; list the mean of repeats, with their scatter, or ask `orthopanel identify` for the constants alone"
+    )]
+    TooManyFrequenciesOfPiece {
+        /// The piece.
+        piece: String,
+        /// Frequencies in its lists.
+        found: usize,
+        /// The limit.
+        most: usize,
+    },
     /// Records in which too few resonances stand out.
     #[error(
         "{found} resonances stand out from the records, for {needed} constants: {}look at the accelerance; a \

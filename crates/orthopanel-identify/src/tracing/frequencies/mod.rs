@@ -56,6 +56,14 @@ pub(super) fn trace_frequencies(
     if longest > limits::FREQUENCIES_TRACED {
         return Err(IdentifyError::TooManyFrequencies { found: longest, most: limits::FREQUENCIES_TRACED });
     }
+    let most = limits::FREQUENCIES_TRACED_OF_PIECE;
+    for (index, piece) in test.pieces.iter().enumerate() {
+        let of_piece = test.measurements.iter().filter(|of| of.piece == index);
+        let found = of_piece.map(|of| listed(&of.data)).sum();
+        if found > most {
+            return Err(IdentifyError::TooManyFrequenciesOfPiece { piece: piece.name.clone(), found, most });
+        }
+    }
     let problem = ListProblem::of(test)?;
     let (declared, held) = &only_seen(&problem, &problem.usual(), declared.clone())?;
     let base = fit(&problem, declared, &problem.usual())?;
