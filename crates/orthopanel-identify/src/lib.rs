@@ -1,15 +1,23 @@
 #![doc = include_str!("../README.md")]
 
 mod accelerance_fit;
+mod comparison;
 mod downhill_simplex;
 mod entry;
 mod error;
 mod free_constants;
 mod frequency_fit;
+mod hypothesis;
 mod identification;
+mod inference;
+mod judge;
 mod least_squares;
 mod matching;
 mod measured;
+mod model_error;
+mod posterior;
+mod predicted;
+mod search;
 mod settings;
 mod starting_constants;
 mod structures;
@@ -23,6 +31,8 @@ pub use error::IdentifyError;
 pub use identification::{
     AcceleranceFit, Correlation, HiddenMode, Identification, IdentifiedConstant, ModeFit, NotIdentified, PieceFit,
 };
+pub use inference::{Inference, InferredEffect, InferredValue, infer};
+pub use judge::Finding;
 pub use matching::ModeMatch;
 pub use measured::{MeasuredModes, MeasuredRecord, Pole, measured_modes};
 pub use settings::{PaperWeights, Search, Settings};

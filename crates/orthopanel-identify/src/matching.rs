@@ -50,18 +50,33 @@ impl MeasuredModes {
 
     /// `modes` has the force and the response of record $r$ as its ports number $r$.
     fn matched(&self, modes: &ModalModel) -> Vec<Option<ModeMatch>> {
-        let candidate = |(index, mode): (usize, &orthopanel_model::Mode)| {
+        let candidate = |mode: &orthopanel_model::Mode| {
             let shape = mode.at_forces.iter().zip(&mode.at_responses).map(|(force, response)| force * response);
-            (index + 1, mode.angular_frequency, shape.collect::<Vec<f64>>())
+            (mode.angular_frequency, shape.collect::<Vec<f64>>())
         };
-        let candidates: Vec<(usize, f64, Vec<f64>)> = modes.flexible().enumerate().map(candidate).collect();
+        let candidates: Vec<(f64, Vec<f64>)> = modes.flexible().map(candidate).collect();
+        let partner = |(index, assurance): (usize, Option<f64>)| ModeMatch {
+            mode: index + 1,
+            frequency: candidates[index].0 / TAU,
+            assurance,
+        };
+        self.partners(&candidates, |_| APART).into_iter().map(|found| found.map(partner)).collect()
+    }
+
+    /// Of each pole the number of its partner among predicted modes, given by $\omega$ and $W_r$ of each record, and their modal
+    /// assurance criterion; `apart` is the standard deviation of the logarithm of the frequency of such a mode.
+    pub(crate) fn partners(
+        &self,
+        candidates: &[(f64, Vec<f64>)],
+        apart: impl Fn(usize) -> f64,
+    ) -> Vec<Option<(usize, Option<f64>)>> {
         let pairs = |pole: usize| {
-            let of = move |(_, omega, shape): &(usize, f64, Vec<f64>)| {
+            let of = |(index, (omega, shape)): (usize, &(f64, Vec<f64>))| {
                 let assurance = self.assurance(pole, shape);
-                let apart = (self.poles[pole].angular_frequency / omega).ln() / APART;
+                let apart = (self.poles[pole].angular_frequency / omega).ln() / apart(index);
                 (apart * apart + SHAPE * (1.0 - assurance.unwrap_or(1.0)), assurance)
             };
-            candidates.iter().map(of).collect::<Vec<_>>()
+            candidates.iter().enumerate().map(of).collect::<Vec<_>>()
         };
         let pairs: Vec<Vec<(f64, Option<f64>)>> = (0..self.poles.len()).map(pairs).collect();
         if pairs.is_empty() {
@@ -74,9 +89,8 @@ impl MeasuredModes {
         };
         let (_, columns) = kuhn_munkres_min(&Matrix::from_fn(pairs.len(), candidates.len() + pairs.len(), cost));
         let partner = |(pole, column): (usize, usize)| {
-            let (mode, omega, _) = candidates.get(column)?;
-            let (cost, assurance) = pairs[pole][column];
-            (cost < ALONE).then_some(ModeMatch { mode: *mode, frequency: omega / TAU, assurance })
+            let (cost, assurance) = *pairs[pole].get(column)?;
+            (cost < ALONE).then_some((column, assurance))
         };
         columns.into_iter().enumerate().map(partner).collect()
     }

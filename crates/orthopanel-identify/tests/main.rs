@@ -11,6 +11,7 @@ mod damping_bound;
 mod damping_laws;
 mod hard_records;
 mod honest_lists;
+mod inference;
 mod made_records;
 mod measured_beam;
 mod paper_frequencies;

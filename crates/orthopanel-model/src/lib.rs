@@ -39,9 +39,10 @@ pub use boundary::{Boundary, End};
 pub use constant::Constant;
 pub use effects::{
     Action, CORE_WAVES, ChannelFactor, CoreFit, CoreLine, CoreModulus, Effect, EffectParameter, EffectSetting,
-    EffectState, ElementLaw, ElementLine, FactorLine, FieldTerm, LineBlock, LineDerivatives, LineEvaluator,
-    NaturalFrequencies, Owner, PointElement, ReceptanceModel, ReceptanceSetup, RecordSetting, Reference, RelaxingLines,
-    Scale, Seat, Share, Shift, SuspensionMotion, catalogue, effect, natural_frequencies, roughness,
+    EffectState, ElementLaw, ElementLine, FactorLine, Field, FieldTerm, LineBlock, LineDerivatives, LineEvaluator,
+    ModifiedPanel, NaturalFrequencies, Owner, PointElement, Prior, ReceptanceModel, ReceptanceSetup, RecordSetting,
+    Reference, RelaxingLines, Scale, Seat, SeenModes, Share, Shift, SuspensionMotion, catalogue, effect,
+    natural_frequencies, roughness,
 };
 pub use error::{ModelError, Readable};
 pub use mindlin_plate::{MindlinPlate, ModeKind, ModeName, PLATE_CONSTANTS};

@@ -16,6 +16,11 @@ pub fn made(folder: &Path, set: &str, kind: &str) -> Option<(ImpactTest, Value)>
 
 /// The same with a seed.
 pub fn made_with(folder: &Path, set: &str, kind: &str, seed: u32) -> Option<(ImpactTest, Value)> {
+    made_of(folder, set, (kind, 1), seed)
+}
+
+/// The first of a kind in a set of some count.
+pub fn made_of(folder: &Path, set: &str, (kind, count): (&str, usize), seed: u32) -> Option<(ImpactTest, Value)> {
     let Some(python) = std::env::var_os("ORTHOPANEL_PYTHON") else {
         println!("skipped: ORTHOPANEL_PYTHON names no Python with numpy, scipy and pyuff");
         return None;
@@ -25,7 +30,7 @@ pub fn made_with(folder: &Path, set: &str, kind: &str, seed: u32) -> Option<(Imp
         .current_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests"))
         .args(["-m", "blind_tracing", "make"])
         .arg(folder)
-        .args(["--set", set, "--kind", kind, "--count", "1", "--seed", &seed.to_string()])
+        .args(["--set", set, "--kind", kind, "--count", &count.to_string(), "--seed", &seed.to_string()])
         .output()
         .unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));

@@ -9,7 +9,8 @@ use crate::ModelError;
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ChannelDelay;
 
-const PARAMETERS: [EffectParameter; 1] = [EffectParameter::linear("delay", "s", [-5e-3, 5e-3], &[1e-5, -1e-5, 1e-4])];
+const PARAMETERS: [EffectParameter; 1] =
+    [EffectParameter::linear("delay", "s", [-5e-3, 5e-3], &[1e-5, -1e-5, 1e-4]).signed(1.5e-5, 2.5)];
 
 impl Effect for ChannelDelay {
     fn id(&self) -> &'static str {

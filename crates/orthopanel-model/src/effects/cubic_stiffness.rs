@@ -17,7 +17,8 @@ use crate::{ModelError, Place};
 #[derive(Debug, Clone, Copy)]
 pub(super) struct CubicStiffness;
 
-const PARAMETERS: [EffectParameter; 1] = [EffectParameter::log("k3", "N/m3", [1e6, 1e18], &[1e10, 1e9, 1e11, 1e13])];
+const PARAMETERS: [EffectParameter; 1] =
+    [EffectParameter::log("k3", "N/m3", [1e6, 1e18], &[1e10, 1e9, 1e11, 1e13]).sized(1e10, 4.0)];
 
 impl Effect for CubicStiffness {
     fn id(&self) -> &'static str {

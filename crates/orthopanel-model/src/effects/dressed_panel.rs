@@ -10,7 +10,9 @@ use super::{Action, CoreModulus, EffectSetting, EffectState, ElementLaw, PointEl
 use crate::mindlin_plate::PlateTerms;
 use crate::panel_mode::crossings;
 use crate::structure::Motion;
-use crate::{BeamTerms, Damping, MindlinPlate, ModeName, ModelError, Piece, Place, RitzMode, TimoshenkoBeam};
+use crate::{
+    BeamTerms, Damping, MindlinPlate, ModeName, ModelError, Piece, Place, RitzMode, Structure, TimoshenkoBeam,
+};
 
 /// Modes of the bare structure beyond those asked for.
 pub(crate) const SPARE_MODES: usize = 10;
@@ -175,6 +177,11 @@ impl Dressed {
         Ok(Self { structure, plate, is_even, piece, values: values.to_vec(), low, elements, core })
     }
 
+    /// What vibrates.
+    pub(super) fn structure(&self) -> &dyn Structure {
+        self.structure.as_ref()
+    }
+
     /// The plate, where it is one and nothing is spread over it.
     pub(super) fn even_plate(&self) -> Option<Arc<MindlinPlate>> {
         self.plate.clone().filter(|_| self.is_even)
@@ -196,8 +203,12 @@ impl Dressed {
 
     /// What the modes beyond the lowest do at the elements and at `ports`.
     pub(super) fn far_answers(&self, ports: &[Place]) -> Result<FarAnswers, ModelError> {
-        let rows = self.elements.iter().filter_map(row);
-        let rows: Vec<Row> = rows.chain(ports.iter().map(|&port| (Motion::Deflection, port))).collect();
+        self.far_answers_in(&ports.iter().map(|&port| (Motion::Deflection, port)).collect::<Vec<_>>())
+    }
+
+    /// The same in any rows.
+    pub(super) fn far_answers_in(&self, rows: &[Row]) -> Result<FarAnswers, ModelError> {
+        let rows: Vec<Row> = self.elements.iter().filter_map(row).chain(rows.iter().copied()).collect();
         self.low.far_answers(self.structure.as_ref(), &self.values, &rows)
     }
 

@@ -11,7 +11,7 @@ use crate::{ModelError, Place};
 pub(super) struct EdgeMass;
 
 const PARAMETERS: [EffectParameter; 1] =
-    [EffectParameter::linear("mass", "kg", [-0.05, 0.5], &[0.01, -0.01, 0.05]).of(Reference::Mass)];
+    [EffectParameter::linear("mass", "kg", [-0.05, 0.5], &[0.01, -0.01, 0.05]).signed(6e-3, 2.2).of(Reference::Mass)];
 
 impl Effect for EdgeMass {
     fn id(&self) -> &'static str {

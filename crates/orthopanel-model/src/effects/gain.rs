@@ -9,7 +9,8 @@ use crate::ModelError;
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Gain;
 
-const PARAMETERS: [EffectParameter; 1] = [EffectParameter::log("gain", "1", [0.05, 20.0], &[1.0, 0.9, 1.1])];
+const PARAMETERS: [EffectParameter; 1] =
+    [EffectParameter::log("gain", "1", [0.05, 20.0], &[1.0, 0.9, 1.1]).sized(1.0, 1.12)];
 
 impl Effect for Gain {
     fn id(&self) -> &'static str {

@@ -9,8 +9,10 @@ use crate::ModelError;
 #[derive(Debug, Clone, Copy)]
 pub(super) struct HammerOffset;
 
-const PARAMETERS: [EffectParameter; 1] =
-    [EffectParameter::linear("offset", "m", [-0.1, 0.1], &[0.0]).of(Reference::Length).in_each_record()];
+const PARAMETERS: [EffectParameter; 1] = [EffectParameter::linear("offset", "m", [-0.1, 0.1], &[0.0])
+    .about(0.0, 6e-3)
+    .of(Reference::Length)
+    .in_each_record()];
 
 impl Effect for HammerOffset {
     fn id(&self) -> &'static str {

@@ -10,7 +10,8 @@ use crate::ModelError;
 #[derive(Debug, Clone, Copy)]
 pub(super) struct HighPass;
 
-const PARAMETERS: [EffectParameter; 1] = [EffectParameter::log("corner", "Hz", [1e-2, 1e3], &[5.0, 0.5, 30.0])];
+const PARAMETERS: [EffectParameter; 1] =
+    [EffectParameter::log("corner", "Hz", [1e-2, 1e3], &[5.0, 0.5, 30.0]).sized(5.0, 2.3)];
 
 impl Effect for HighPass {
     fn id(&self) -> &'static str {

@@ -11,7 +11,7 @@ use crate::{ModelError, Place};
 pub(super) struct LocalMass;
 
 const PARAMETERS: [EffectParameter; 2] = [
-    EffectParameter::linear("mass", "kg", [-0.1, 0.5], &[0.01, -0.01, 0.05]).of(Reference::Mass),
+    EffectParameter::linear("mass", "kg", [-0.1, 0.5], &[0.01, -0.01, 0.05]).signed(1.2e-2, 2.2).of(Reference::Mass),
     EffectParameter::place(),
 ];
 

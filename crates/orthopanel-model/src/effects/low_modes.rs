@@ -11,7 +11,7 @@ use crate::{ModelError, RitzMode};
 
 /// The lowest modes of a structure at some values of its constants: rigid ones first, then rising.
 #[derive(Debug, Clone)]
-pub(super) struct LowModes {
+pub(crate) struct LowModes {
     /// Block, coordinates and $\omega^2$ of each.
     pub modes: Vec<(usize, Vec<f64>, f64)>,
     /// How many are rigid.

@@ -14,6 +14,7 @@ mod dressed_panel;
 mod dressed_system;
 mod dressing;
 mod low_modes;
+mod modified_panel;
 mod parameter;
 mod point_element;
 mod receptance;
@@ -21,6 +22,7 @@ mod relaxing_lines;
 mod relaxing_panel;
 mod setting;
 mod state;
+mod uneven_beam;
 
 mod channel_delay;
 mod cubic_stiffness;
@@ -52,13 +54,15 @@ pub(crate) use dressed_flexibility::{Flexibilities, MOST_SUMMED};
 pub(crate) use dressed_modes::DressedMode;
 pub use dressed_modes::{NaturalFrequencies, natural_frequencies};
 pub(crate) use dressed_panel::{DressedPanel, Even, PanelWithEffects, SPARE_MODES};
-pub use parameter::{EffectParameter, Reference, Scale};
+pub use modified_panel::{ModifiedPanel, SeenModes};
+pub use parameter::{EffectParameter, Prior, Reference, Scale};
 pub use point_element::{ElementLaw, ElementLine, PointElement, Seat, Share};
 pub use receptance::{LineBlock, LineDerivatives, LineEvaluator, ReceptanceModel, ReceptanceSetup};
 pub use relaxing_lines::RelaxingLines;
 pub use roughness::{CORE_WAVES, roughness};
 pub use setting::{EffectSetting, RecordSetting, SuspensionMotion};
 pub use state::EffectState;
+pub use uneven_beam::Field;
 
 use crate::{ModelError, Piece};
 

@@ -19,6 +19,31 @@ pub struct EffectParameter {
     pub each_record: bool,
     /// The value that it keeps unless it is asked for; `None` where the effect always needs it.
     pub held_at: Option<f64>,
+    /// What is thought of it before a test.
+    pub prior: Prior,
+}
+
+/// What is thought of a parameter before a test: an honest range over panels, sensors and rigs, in the parameter's own unit.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Prior {
+    /// Evenly between its bounds.
+    Even,
+    /// Its size is log-normal: two of three lie within a factor of the median.
+    Size {
+        /// The median.
+        median: f64,
+        /// The factor, above one.
+        factor: f64,
+        /// Whether it is as likely below zero.
+        signed: bool,
+    },
+    /// Gaussian.
+    Gaussian {
+        /// The mean.
+        mean: f64,
+        /// The standard deviation.
+        std: f64,
+    },
 }
 
 /// How a search should step through the values of a parameter.
@@ -51,7 +76,18 @@ impl EffectParameter {
         starts: &'static [f64],
     ) -> Self {
         let ([low, high], relative_to, scale) = (range, Reference::Unit, Scale::Linear);
-        Self { name, unit, low, high, starts, relative_to, scale, each_record: false, held_at: None }
+        Self {
+            name,
+            unit,
+            low,
+            high,
+            starts,
+            relative_to,
+            scale,
+            each_record: false,
+            held_at: None,
+            prior: Prior::Even,
+        }
     }
 
     pub(super) const fn log(name: &'static str, unit: &'static str, range: [f64; 2], starts: &'static [f64]) -> Self {
@@ -61,6 +97,21 @@ impl EffectParameter {
     /// Held at a value unless it is asked for.
     pub(super) const fn held_at(self, value: f64) -> Self {
         Self { held_at: Some(value), ..self }
+    }
+
+    /// With a size that is log-normal: its median, and the factor within which two of three lie.
+    pub(super) const fn sized(self, median: f64, factor: f64) -> Self {
+        Self { prior: Prior::Size { median, factor, signed: false }, ..self }
+    }
+
+    /// With a size that is log-normal, and either sign.
+    pub(super) const fn signed(self, median: f64, factor: f64) -> Self {
+        Self { prior: Prior::Size { median, factor, signed: true }, ..self }
+    }
+
+    /// Gaussian about a mean.
+    pub(super) const fn about(self, mean: f64, std: f64) -> Self {
+        Self { prior: Prior::Gaussian { mean, std }, ..self }
     }
 
     /// With a value of its own in each record.

@@ -11,7 +11,7 @@ use crate::ModelError;
 pub(super) struct PositionError;
 
 const PARAMETERS: [EffectParameter; 1] =
-    [EffectParameter::linear("offset", "m", [-0.1, 0.1], &[0.005, -0.005]).of(Reference::Length)];
+    [EffectParameter::linear("offset", "m", [-0.1, 0.1], &[0.005, -0.005]).about(0.0, 1e-2).of(Reference::Length)];
 
 impl Effect for PositionError {
     fn id(&self) -> &'static str {

@@ -10,7 +10,7 @@ use crate::ModelError;
 pub(super) struct RecordGain;
 
 const PARAMETERS: [EffectParameter; 2] =
-    [EffectParameter::log("gain", "1", [0.05, 20.0], &[0.9, 1.1]), EffectParameter::record()];
+    [EffectParameter::log("gain", "1", [0.05, 20.0], &[0.9, 1.1]).sized(1.0, 1.14), EffectParameter::record()];
 
 impl Effect for RecordGain {
     fn id(&self) -> &'static str {

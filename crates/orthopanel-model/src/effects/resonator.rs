@@ -12,9 +12,10 @@ use crate::{ModelError, Place};
 pub(super) struct Resonator;
 
 const PARAMETERS: [EffectParameter; 4] = [
-    EffectParameter::log("mass", "kg", [1e-5, 0.5], &[0.01, 0.05]).of(Reference::Mass),
-    EffectParameter::log("frequency", "Hz", [5.0, 2e4], &[100.0, 300.0, 600.0, 1000.0, 1700.0, 2500.0, 3500.0]),
-    EffectParameter::log("zeta", "1", [1e-4, 0.9], &[0.02, 0.1]),
+    EffectParameter::log("mass", "kg", [1e-5, 0.5], &[0.01, 0.05]).sized(1.2e-2, 2.0).of(Reference::Mass),
+    EffectParameter::log("frequency", "Hz", [5.0, 2e4], &[100.0, 300.0, 600.0, 1000.0, 1700.0, 2500.0, 3500.0])
+        .sized(800.0, 2.3),
+    EffectParameter::log("zeta", "1", [1e-4, 0.9], &[0.02, 0.1]).sized(0.02, 2.0),
     EffectParameter::place(),
 ];
 

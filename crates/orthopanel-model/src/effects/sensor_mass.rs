@@ -12,7 +12,7 @@ use crate::{ModelError, Motion};
 pub(super) struct SensorMass;
 
 const PARAMETERS: [EffectParameter; 2] = [
-    EffectParameter::log("mass", "kg", [1e-5, 0.5], &[0.01, 0.002, 0.05]).of(Reference::Mass),
+    EffectParameter::log("mass", "kg", [1e-5, 0.5], &[0.01, 0.002, 0.05]).sized(8e-3, 2.2).of(Reference::Mass),
     EffectParameter::linear("inertia", "kg m2", [0.0, 1e-3], &[1e-7]).held_at(0.0),
 ];
 

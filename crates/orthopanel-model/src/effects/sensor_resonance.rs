@@ -11,8 +11,8 @@ use crate::ModelError;
 pub(super) struct SensorResonance;
 
 const PARAMETERS: [EffectParameter; 2] = [
-    EffectParameter::log("frequency", "Hz", [100.0, 1e5], &[6e3, 1e4, 2e4]),
-    EffectParameter::log("zeta", "1", [1e-3, 1.0], &[0.02, 0.1]),
+    EffectParameter::log("frequency", "Hz", [100.0, 1e5], &[6e3, 1e4, 2e4]).sized(1.2e4, 1.5),
+    EffectParameter::log("zeta", "1", [1e-3, 1.0], &[0.02, 0.1]).sized(0.03, 2.0),
 ];
 
 impl Effect for SensorResonance {

@@ -1,6 +1,6 @@
 //! Effects that are switched on, with the values of their parameters.
 
-use super::{Effect, effect};
+use super::{Action, Effect, EffectSetting, effect};
 use crate::{EffectEntry, ModelError};
 
 /// An effect that is switched on, at some values of its parameters.
@@ -44,6 +44,14 @@ impl EffectState {
             return Ok(found);
         }
         Err(ModelError::EffectValues { effect: self.effect.id(), found: found.len(), expected })
+    }
+
+    /// What it does in the record of this setting.
+    ///
+    /// # Errors
+    /// As [`Effect::act`].
+    pub fn acting_in(&self, setting: &EffectSetting) -> Result<Vec<Action>, ModelError> {
+        self.effect.act(&self.values_in(setting.record.number)?, setting)
     }
 
     /// The column of each effect's first value.

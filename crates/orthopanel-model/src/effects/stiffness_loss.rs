@@ -14,8 +14,8 @@ use crate::{ModelError, ShearLoss};
 pub(super) struct StiffnessLoss;
 
 const PARAMETERS: [EffectParameter; 3] = [
-    EffectParameter::linear("loss", "1", [-0.5, 0.98], &[0.3, 0.8]),
-    EffectParameter::linear("span", "m", [0.01, 1.0], &[0.1, 0.3, 0.04]).of(Reference::Length),
+    EffectParameter::linear("loss", "1", [-0.5, 0.98], &[0.3, 0.8]).sized(0.4, 1.7),
+    EffectParameter::linear("span", "m", [0.01, 1.0], &[0.1, 0.3, 0.04]).sized(0.06, 1.5).of(Reference::Length),
     EffectParameter::place(),
 ];
 

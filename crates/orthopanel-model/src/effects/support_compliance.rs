@@ -13,8 +13,8 @@ use crate::{End, ModelError, Support};
 pub(super) struct SupportCompliance;
 
 const PARAMETERS: [EffectParameter; 2] = [
-    EffectParameter::log("rotation", "N m/rad", [1.0, 1e12], &[1e3, 1e4, 1e5, 1e2]),
-    EffectParameter::log("translation", "N/m", [1e2, 1e15], &[1e6, 1e8, 1e10]),
+    EffectParameter::log("rotation", "N m/rad", [1.0, 1e12], &[1e3, 1e4, 1e5, 1e2]).sized(3e4, 10.0),
+    EffectParameter::log("translation", "N/m", [1e2, 1e15], &[1e6, 1e8, 1e10]).sized(1e8, 30.0),
 ];
 
 impl Effect for SupportCompliance {

@@ -10,8 +10,8 @@ use crate::ModelError;
 pub(super) struct Suspension;
 
 const PARAMETERS: [EffectParameter; 2] = [
-    EffectParameter::log("stiffness", "N/m", [1.0, 1e7], &[1e3, 1e4, 1e5]),
-    EffectParameter::log("damping", "N s/m", [1e-3, 1e3], &[1.0, 0.1]),
+    EffectParameter::log("stiffness", "N/m", [1.0, 1e7], &[1e3, 1e4, 1e5]).sized(3e3, 3.0),
+    EffectParameter::log("damping", "N s/m", [1e-3, 1e3], &[1.0, 0.1]).sized(3.0, 3.0),
 ];
 
 impl Effect for Suspension {

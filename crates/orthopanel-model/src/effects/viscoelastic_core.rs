@@ -11,9 +11,9 @@ use crate::ModelError;
 pub(super) struct ViscoelasticCore;
 
 const PARAMETERS: [EffectParameter; 3] = [
-    EffectParameter::log("strength", "1", [1e-3, 3.0], &[0.1, 0.5]),
-    EffectParameter::log("tau", "s", [1e-6, 1.0], &[1e-4, 1e-3, 1e-5]),
-    EffectParameter::linear("alpha", "1", [0.1, 1.0], &[0.5, 0.8]),
+    EffectParameter::log("strength", "1", [1e-3, 3.0], &[0.1, 0.5]).sized(0.12, 2.2),
+    EffectParameter::log("tau", "s", [1e-6, 1.0], &[1e-4, 1e-3, 1e-5]).sized(1.8e-4, 2.5),
+    EffectParameter::linear("alpha", "1", [0.1, 1.0], &[0.5, 0.8]).about(0.65, 0.15),
 ];
 
 impl Effect for ViscoelasticCore {

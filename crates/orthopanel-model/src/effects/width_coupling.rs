@@ -12,10 +12,10 @@ use crate::ModelError;
 pub(super) struct WidthCoupling;
 
 const PARAMETERS: [EffectParameter; 4] = [
-    EffectParameter::log("e_y_ratio", "1", [0.02, 50.0], &[1.0]),
-    EffectParameter::linear("nu_xy", "1", [0.0, 0.9], &[0.3]),
-    EffectParameter::log("g_xy_ratio", "1", [0.005, 5.0], &[0.385]),
-    EffectParameter::log("g_yz_ratio", "1", [0.05, 20.0], &[1.0, 0.5]),
+    EffectParameter::log("e_y_ratio", "1", [0.02, 50.0], &[1.0]).sized(1.0, 1.5),
+    EffectParameter::linear("nu_xy", "1", [0.0, 0.9], &[0.3]).about(0.3, 0.1),
+    EffectParameter::log("g_xy_ratio", "1", [0.005, 5.0], &[0.385]).sized(0.385, 1.5),
+    EffectParameter::log("g_yz_ratio", "1", [0.05, 20.0], &[1.0, 0.5]).sized(0.7, 1.6),
 ];
 
 impl Effect for WidthCoupling {

@@ -1,0 +1,120 @@
+//! What is compared: measured and predicted frequencies, residues and remainders, in one list of numbers.
+
+use std::ops::Range;
+
+use faer::Mat;
+use num_complex::Complex64;
+
+use crate::measured::MeasuredModes;
+
+/// Predicted modes without a pole that are counted, the strongest first.
+pub(crate) const UNSEEN: usize = 4;
+/// What a predicted mode without a pole may have of a typical residue: so weak a mode is not found.
+const UNSEEN_DEVIATION: f64 = 0.01;
+/// What the carrier itself misses of the logarithm of a frequency: residual shapes stand for all modes beyond.
+const CARRIER: f64 = 2e-6;
+
+/// What the few terms of a series miss of a remainder: they make all its values follow from a few.
+const SERIES: f64 = 1e-3;
+
+/// The measured values in units that make them alike, with the covariance of their noise: $\ln\omega_m$ of each pole; a record after the
+/// other its residues over the rms of that pole's, and its remainder times the mass of the piece, each as real and imaginary part;
+/// then a zero for each predicted mode that no pole belongs to.
+pub(crate) struct Comparison<'a> {
+    pub measured: &'a MeasuredModes,
+    /// Rms over the records of each pole's residues.
+    pub residue: Vec<f64>,
+    /// Accelerance of the piece as a rigid body at its centre \[1/kg\].
+    pub rigid: f64,
+    pub values: Vec<f64>,
+    pub noise: Mat<f64>,
+}
+
+impl<'a> Comparison<'a> {
+    pub(crate) fn new(measured: &'a MeasuredModes, mass: f64) -> Self {
+        let (poles, records) = (measured.poles.len(), measured.records.len());
+        let rms = |pole: usize| {
+            let squares: f64 = measured.records.iter().map(|record| record.residues[pole].norm_sqr()).sum();
+            (squares / records.max(1) as f64).sqrt().max(f64::MIN_POSITIVE)
+        };
+        let residue: Vec<f64> = (0..poles).map(rms).collect();
+        let mut comparison = Self { measured, residue, rigid: mass.recip(), values: vec![], noise: Mat::new() };
+        let scales: Vec<f64> = (0..comparison.size()).map(|place| comparison.scale(place)).collect();
+        let damped = measured.poles.iter().filter(|pole| pole.damping_ratio.is_some()).count();
+        // Damping ratios are free, and left out.
+        let own = |place: usize| if place < poles { place } else { place + damped };
+        let measured_values = measured.values();
+        let told = comparison.unseen().start;
+        comparison.values = (0..comparison.size())
+            .map(|place| if place < told { measured_values[own(place)] / scales[place] } else { 0.0 })
+            .collect();
+        comparison.noise = Mat::from_fn(comparison.size(), comparison.size(), |i, j| {
+            let of_noise = if i < told && j < told {
+                measured.covariance[(own(i), own(j))] / (scales[i] * scales[j])
+            } else {
+                0.0
+            };
+            let beside = match i {
+                _ if i != j => 0.0,
+                _ if i < poles => CARRIER.powi(2),
+                _ if i < told && comparison.is_remainder(i) => (SERIES * comparison.values[i].abs().max(1.0)).powi(2),
+                _ if i < told => f64::EPSILON,
+                _ => UNSEEN_DEVIATION.powi(2),
+            };
+            of_noise + beside
+        });
+        comparison
+    }
+
+    /// Number of values.
+    pub(crate) fn size(&self) -> usize {
+        self.unseen().end
+    }
+
+    /// Where a residue's real part stands; the imaginary part follows.
+    pub(crate) fn residue_place(&self, record: usize, pole: usize) -> usize {
+        self.measured.poles.len() + record * self.block() + 2 * pole
+    }
+
+    /// Where the real part of a value of a remainder stands.
+    pub(crate) fn remainder_place(&self, record: usize, number: usize) -> usize {
+        self.residue_place(record, self.measured.poles.len() + number)
+    }
+
+    /// Where the modes without a pole stand.
+    pub(crate) fn unseen(&self) -> Range<usize> {
+        let from = self.measured.poles.len() + self.measured.records.len() * self.block();
+        let count = if self.measured.records.is_empty() { 0 } else { UNSEEN };
+        from..from + count
+    }
+
+    /// All values of a record.
+    pub(crate) fn block_of(&self, record: usize) -> Range<usize> {
+        self.residue_place(record, 0)..self.residue_place(record + 1, 0)
+    }
+
+    fn block(&self) -> usize {
+        2 * (self.measured.poles.len() + self.measured.remainder_frequencies.len())
+    }
+
+    fn is_remainder(&self, place: usize) -> bool {
+        let poles = self.measured.poles.len();
+        place >= poles && (place - poles) % self.block() >= 2 * poles
+    }
+
+    fn scale(&self, place: usize) -> f64 {
+        let poles = self.measured.poles.len();
+        match place.checked_sub(poles) {
+            None => 1.0,
+            Some(_) if place >= self.unseen().start => 1.0,
+            Some(within) => self.residue.get(within % self.block() / 2).copied().unwrap_or(self.rigid),
+        }
+    }
+
+    /// Puts a complex number at a place and the next, in the units of the values.
+    pub(crate) fn put(&self, values: &mut [f64], place: usize, value: Complex64) {
+        let scale = self.scale(place);
+        values[place] = value.re / scale;
+        values[place + 1] = value.im / scale;
+    }
+}

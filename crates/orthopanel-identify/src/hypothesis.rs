@@ -1,0 +1,335 @@
+//! A hypothesis: effects with free parameters, in coordinates in which each prior is a standard one.
+
+use faer::Mat;
+use orthopanel_model::{Action, Effect, EffectParameter, EffectState, ModelError, Piece, Prior, Scale};
+
+use crate::predicted::Predictor;
+
+/// Largest size of a coordinate with a Gaussian prior.
+const FARTHEST: f64 = 5.0;
+/// Places along the piece at which a search begins, and values of the other coordinates there.
+const PLACES: usize = 15;
+
+/// From a coordinate to a value.
+#[derive(Debug, Clone, Copy)]
+enum Map {
+    /// Size and sign: $\pm m\,f^z$.
+    Size { median: f64, log_factor: f64, sign: f64 },
+    /// $\mu + \sigma z$.
+    Gaussian { mean: f64, std: f64 },
+    /// Even between two bounds, $-1 \le z \le 1$.
+    Even { low: f64, high: f64 },
+}
+
+/// A value that is free, between bounds.
+#[derive(Debug, Clone, Copy)]
+struct Coordinate {
+    map: Map,
+    range: (f64, f64),
+}
+
+impl Coordinate {
+    fn value(&self, z: f64) -> f64 {
+        let value = match self.map {
+            Map::Size { median, log_factor, sign } => sign * median * (log_factor * z).exp(),
+            Map::Gaussian { mean, std } => mean + std * z,
+            Map::Even { low, high } => low + 0.5 * (high - low) * (z + 1.0),
+        };
+        value.clamp(self.range.0, self.range.1)
+    }
+
+    /// The coordinate of a value, as near as the prior comes to it.
+    fn of_value(&self, value: f64) -> f64 {
+        let z = match self.map {
+            Map::Size { median, log_factor, sign } => (sign * value / median).max(f64::MIN_POSITIVE).ln() / log_factor,
+            Map::Gaussian { mean, std } => (value - mean) / std,
+            Map::Even { low, high } => 2.0 * (value - low) / (high - low) - 1.0,
+        };
+        z.clamp(-self.farthest(), self.farthest())
+    }
+
+    fn farthest(&self) -> f64 {
+        if matches!(self.map, Map::Even { .. }) { 1.0 } else { FARTHEST }
+    }
+
+    /// $dv/dz$.
+    fn slope(&self, z: f64) -> f64 {
+        match self.map {
+            Map::Size { log_factor, .. } => log_factor * self.value(z),
+            Map::Gaussian { std, .. } => std,
+            Map::Even { low, high } => 0.5 * (high - low),
+        }
+    }
+}
+
+/// A value of an effect.
+#[derive(Debug, Clone, Copy)]
+enum Slot {
+    Held(f64),
+    Free(Coordinate),
+}
+
+impl Slot {
+    fn coordinate(&self) -> Option<&Coordinate> {
+        match self {
+            Self::Free(coordinate) => Some(coordinate),
+            Self::Held(_) => None,
+        }
+    }
+}
+
+/// An effect in one of the ways in which it may act: a mass added or one that is missing, the gain of this record or of that.
+#[derive(Clone)]
+pub(crate) struct Part {
+    pub effect: &'static dyn Effect,
+    slots: Vec<Slot>,
+    /// Whether the test file declares it.
+    pub declared: bool,
+}
+
+impl Part {
+    /// Every way in which an effect may act in a test of so many records.
+    pub(crate) fn ways(effect: &'static dyn Effect, piece: &Piece, records: usize) -> Vec<Self> {
+        let mut ways: Vec<Vec<Slot>> = vec![vec![]];
+        for parameter in effect.parameters() {
+            let choices: Vec<Vec<Slot>> = choices(parameter, piece, records);
+            ways = ways.iter().flat_map(|way| choices.iter().map(|choice| [&way[..], choice].concat())).collect();
+        }
+        ways.into_iter().map(|slots| Self { effect, slots, declared: false }).collect()
+    }
+
+    /// As declared: the values that the test file gives are held.
+    pub(crate) fn declared(
+        effect: &'static dyn Effect,
+        values: &[Option<f64>],
+        piece: &Piece,
+        records: usize,
+    ) -> Option<Self> {
+        let mut way = Self::ways(effect, piece, records).into_iter().next()?;
+        for (slot, value) in way.slots.iter_mut().zip(values) {
+            if let Some(value) = value {
+                *slot = Slot::Held(*value);
+            }
+        }
+        Some(Self { declared: true, ..way })
+    }
+
+    fn coordinates(&self) -> impl Iterator<Item = &Coordinate> {
+        self.slots.iter().filter_map(Slot::coordinate)
+    }
+
+    pub(crate) fn free(&self) -> usize {
+        self.coordinates().count()
+    }
+
+    /// The parameter of each value.
+    pub(crate) fn parameters(&self) -> impl Iterator<Item = &'static EffectParameter> {
+        let times = self.slots.len().saturating_sub(self.effect.parameters().len()) + 1;
+        self.effect
+            .parameters()
+            .iter()
+            .flat_map(move |parameter| std::iter::repeat_n(parameter, if parameter.each_record { times } else { 1 }))
+    }
+
+    /// The values at these coordinates.
+    pub(crate) fn values(&self, z: &[f64]) -> Vec<f64> {
+        let mut z = z.iter();
+        let value = |slot: &Slot| match slot {
+            Slot::Held(value) => *value,
+            Slot::Free(coordinate) => coordinate.value(z.next().copied().unwrap_or(0.0)),
+        };
+        self.slots.iter().map(value).collect()
+    }
+
+    /// Of each value, its derivative by the coordinate it follows.
+    pub(crate) fn slopes(&self, z: &[f64]) -> Vec<Option<f64>> {
+        let mut z = z.iter();
+        let slope = |slot: &Slot| match slot {
+            Slot::Held(_) => None,
+            Slot::Free(coordinate) => Some(coordinate.slope(z.next().copied().unwrap_or(0.0))),
+        };
+        self.slots.iter().map(slope).collect()
+    }
+
+    /// Which places of a record a coordinate moves, of the response or else of the force; `None` where it does more than that.
+    pub(crate) fn shifts(&self, predictor: &Predictor, record: usize, coordinate: usize) -> Option<Vec<bool>> {
+        let parameters = self.effect.parameters();
+        let [Slot::Free(_)] = self.slots[..] else {
+            // With a value in each record, the coordinates are the records'.
+            if parameters.len() != 1 || !parameters[0].each_record {
+                return None;
+            }
+            return self
+                .place_shifts(predictor, record)
+                .map(|shifts| if coordinate == record { shifts } else { vec![] });
+        };
+        self.place_shifts(predictor, record)
+    }
+
+    fn place_shifts(&self, predictor: &Predictor, record: usize) -> Option<Vec<bool>> {
+        let values = vec![0.0; self.effect.parameters().len()];
+        let shift = |action: Action| match action {
+            Action::Place(shift) => Some(shift.of_response),
+            _ => None,
+        };
+        self.effect.act(&values, &predictor.setting(record)).ok()?.into_iter().map(shift).collect()
+    }
+
+    /// Where a search begins: a net over the prior, the finer the fewer the coordinates; `resonances` \[Hz\] are those of the data.
+    pub(crate) fn starts(&self, resonances: &[f64]) -> Vec<Vec<f64>> {
+        let count = self.free();
+        let has_place = self.coordinates().any(|coordinate| matches!(coordinate.map, Map::Even { .. }));
+        let mut starts: Vec<Vec<f64>> = vec![vec![]];
+        let mut index = 0;
+        for (number, slot) in self.slots.iter().enumerate() {
+            let Slot::Free(coordinate) = slot else { continue };
+            let unit = self.effect.parameters().get(number).map_or("", |parameter| parameter.unit);
+            let net: Vec<f64> = match coordinate.map {
+                Map::Even { .. } => even_net(PLACES, 0.95),
+                // A frequency of its own is that of a resonance, or a little beside it.
+                Map::Size { .. } if unit == "Hz" && has_place => resonances
+                    .iter()
+                    .flat_map(|f| [coordinate.of_value(0.985 * f), coordinate.of_value(1.01 * f)])
+                    .collect(),
+                Map::Size { .. } if count == 1 => even_net(9, 2.0),
+                Map::Size { .. } if index == 0 => vec![-0.8, 0.8],
+                Map::Size { .. } | Map::Gaussian { .. } => vec![0.0],
+            };
+            index += 1;
+            starts = starts.iter().flat_map(|start| net.iter().map(|z| [&start[..], &[*z]].concat())).collect();
+        }
+        starts
+    }
+}
+
+fn even_net(count: usize, to: f64) -> Vec<f64> {
+    (0..count).map(|i| to * (2.0 * i as f64 / (count - 1) as f64 - 1.0)).collect()
+}
+
+fn choices(parameter: &EffectParameter, piece: &Piece, records: usize) -> Vec<Vec<Slot>> {
+    let range = parameter.range(piece);
+    if parameter.scale == Scale::Index {
+        return (1..=records.max(1)).map(|record| vec![Slot::Held(record as f64)]).collect();
+    }
+    if let Some(value) = parameter.held_at {
+        return vec![vec![Slot::Held(value)]];
+    }
+    let times = if parameter.each_record { records } else { 1 };
+    let of = |map: Map| vec![Slot::Free(Coordinate { map, range }); times];
+    match parameter.prior {
+        Prior::Even => vec![of(Map::Even { low: range.0, high: range.1 })],
+        Prior::Gaussian { mean, std } => vec![of(Map::Gaussian { mean, std })],
+        Prior::Size { median, factor, signed } => {
+            let signs: &[f64] = if signed { &[1.0, -1.0] } else { &[1.0] };
+            signs.iter().map(|&sign| of(Map::Size { median, log_factor: factor.ln(), sign })).collect()
+        }
+    }
+}
+
+/// Constants and effects, all that is free in one list of coordinates: the constants first.
+#[derive(Clone)]
+pub(crate) struct Hypothesis {
+    constants: Vec<Slot>,
+    pub parts: Vec<Part>,
+    records: usize,
+}
+
+/// Factor within which two of three constants lie of where a search begins: any start serves, and all hypotheses share it.
+const CONSTANTS: f64 = 2.0;
+
+impl Hypothesis {
+    /// Constants about these values, or held.
+    pub(crate) fn new(constants: &[(f64, bool)], parts: Vec<Part>, records: usize) -> Self {
+        let slot = |&(value, held): &(f64, bool)| {
+            let map = Map::Size { median: value, log_factor: CONSTANTS.ln(), sign: 1.0 };
+            if held { Slot::Held(value) } else { Slot::Free(Coordinate { map, range: (0.0, f64::MAX) }) }
+        };
+        Self { constants: constants.iter().map(slot).collect(), parts, records }
+    }
+
+    /// With one part more.
+    pub(crate) fn with(&self, part: Part) -> Self {
+        let mut more = self.clone();
+        more.parts.push(part);
+        more
+    }
+
+    fn coordinates(&self) -> impl Iterator<Item = &Coordinate> {
+        self.constants.iter().filter_map(Slot::coordinate).chain(self.parts.iter().flat_map(Part::coordinates))
+    }
+
+    pub(crate) fn free_constants(&self) -> usize {
+        self.constants.iter().filter(|slot| matches!(slot, Slot::Free(_))).count()
+    }
+
+    /// Undeclared effects.
+    pub(crate) fn undeclared(&self) -> impl Iterator<Item = &Part> {
+        self.parts.iter().filter(|part| !part.declared)
+    }
+
+    pub(crate) fn constants(&self, z: &[f64]) -> Vec<f64> {
+        let mut z = z.iter();
+        let value = |slot: &Slot| match slot {
+            Slot::Held(value) => *value,
+            Slot::Free(coordinate) => coordinate.value(z.next().copied().unwrap_or(0.0)),
+        };
+        self.constants.iter().map(value).collect()
+    }
+
+    /// The coordinates of each part, in order.
+    pub(crate) fn of_parts<'z>(&self, z: &'z [f64]) -> Vec<&'z [f64]> {
+        let mut from = self.free_constants();
+        let part = |part: &Part| {
+            let own = &z[from..from + part.free()];
+            from += part.free();
+            own
+        };
+        self.parts.iter().map(part).collect()
+    }
+
+    /// # Errors
+    /// As [`EffectState::new`].
+    pub(crate) fn effects(&self, z: &[f64]) -> Result<Vec<EffectState>, ModelError> {
+        let states = self.parts.iter().zip(self.of_parts(z));
+        states.map(|(part, z)| EffectState::new(part.effect, part.values(z), self.records.max(1))).collect()
+    }
+
+    /// Constants, then the values of each effect, with their standard deviations where they are free.
+    pub(crate) fn values_with_deviations(&self, z: &[f64], covariance: &Mat<f64>) -> Vec<(f64, Option<f64>)> {
+        let slots = self.constants.iter().chain(self.parts.iter().flat_map(|part| &part.slots));
+        let mut place = 0..;
+        let value = |slot: &Slot| match slot {
+            Slot::Held(value) => (*value, None),
+            Slot::Free(coordinate) => {
+                let at = place.next().unwrap_or(0);
+                let std = covariance[(at, at)].sqrt() * coordinate.slope(z[at]).abs();
+                (coordinate.value(z[at]), Some(std))
+            }
+        };
+        slots.map(value).collect()
+    }
+
+    /// Logarithm of the prior density of the coordinates.
+    pub(crate) fn log_prior(&self, z: &[f64]) -> f64 {
+        let density = |(coordinate, z): (&Coordinate, &f64)| match coordinate.map {
+            Map::Even { .. } => -std::f64::consts::LN_2,
+            _ => -0.5 * z * z - 0.5 * std::f64::consts::TAU.ln(),
+        };
+        self.coordinates().zip(z).map(density).sum()
+    }
+
+    /// Curvature of its negative: one, or zero where it is even.
+    pub(crate) fn precision(&self) -> Vec<f64> {
+        self.coordinates().map(|coordinate| f64::from(u8::from(coordinate.farthest() != 1.0))).collect()
+    }
+
+    /// Within its bounds.
+    pub(crate) fn clamp(&self, z: &mut [f64]) {
+        z.iter_mut().zip(self.coordinates()).for_each(|(z, of)| *z = z.clamp(-of.farthest(), of.farthest()));
+    }
+
+    /// Largest size of each coordinate.
+    pub(crate) fn farthest(&self) -> Vec<f64> {
+        self.coordinates().map(Coordinate::farthest).collect()
+    }
+}

@@ -1,0 +1,211 @@
+//! By how much a sound model of a real panel misses: the only place that says how far a model is trusted.
+//!
+//! The covariance of what is measured less what is predicted is
+//! $$C = C_\text{noise} + \sum_k\tau_k^2F_kF_k^T,$$
+//! where each kind $k$ of error has its columns $F_k$ and a size $\tau_k$, which is estimated with the rest and has a log-normal prior.
+
+use faer::Mat;
+use num_complex::Complex64;
+use orthopanel_model::{Field, ModelError};
+
+use crate::comparison::Comparison;
+use crate::predicted::{Prediction, Predictor};
+
+/// A kind of model error.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Kind {
+    /// Of the logarithm of each frequency, by itself.
+    Frequency,
+    /// Of each residue along its predicted phase.
+    Residue,
+    /// The same in quadrature: small, for delays and filters show there.
+    Quadrature,
+    /// Of the place of each record's hits \[m\].
+    ForcePlace,
+    /// Of the gain of each record.
+    RecordGain,
+    /// Of the core's shear stiffness along the panel, in each of the longest waves.
+    Core,
+    /// Of the sensor's place \[m\].
+    ResponsePlace,
+    /// Of the gain of all records alike.
+    Gain,
+    /// Of the core's shear stiffness in each of the shorter waves.
+    ShortCore,
+    /// Of the faces' bending stiffness along the panel, in each wave.
+    Faces,
+    /// Of the mass along the panel, in each wave.
+    Mass,
+    /// Of what modes beyond the band leave in each record.
+    Remainder,
+    /// Of what motions of the piece as a whole leave in each record above them, and of their residues: cords are no springs, and damp as they
+    /// like.
+    Hanging,
+}
+
+/// Median of a kind's size before any test, and the factor within which two of three lie.
+const PRIORS: [(Kind, f64, f64); 13] = [
+    (Kind::Frequency, 5e-4, 4.0),
+    (Kind::Residue, 3e-3, 4.0),
+    (Kind::Quadrature, 1e-3, 4.0),
+    (Kind::ForcePlace, 8e-4, 1.6),
+    (Kind::RecordGain, 3e-3, 1.6),
+    (Kind::Core, 1e-2, 2.0),
+    (Kind::ResponsePlace, 4e-4, 1.6),
+    (Kind::Gain, 3e-3, 1.6),
+    (Kind::ShortCore, 4e-3, 3.0),
+    (Kind::Faces, 3e-3, 2.2),
+    (Kind::Mass, 2e-3, 2.2),
+    (Kind::Remainder, 5e-3, 4.0),
+    (Kind::Hanging, 2e-2, 4.0),
+];
+/// Kinds of error.
+pub(crate) const KINDS: usize = PRIORS.len();
+/// The frequency of a motion of the piece as a whole on its suspension is predicted so many times worse.
+const HANGING: f64 = 10.0;
+/// Part of an error of a remainder that is in quadrature.
+const QUADRATURE: f64 = 0.3;
+/// Waves of unevenness, and how many of the core's are long: cells are stretched, and adhesive is spread, alike over 40 mm to the length.
+const WAVES: usize = 20;
+const LONG_WAVES: usize = 6;
+
+/// The columns $F$ of all kinds, side by side.
+#[derive(Clone)]
+pub(crate) struct ErrorColumns {
+    pub columns: Mat<f64>,
+    /// Of each column its kind, as a number below [`KINDS`].
+    pub kinds: Vec<usize>,
+    /// Values that tell no more than their size, with their variance.
+    untold: Vec<(usize, f64)>,
+}
+
+/// $\ln\tau_k$ of every kind at its median.
+pub(crate) fn medians() -> [f64; KINDS] {
+    PRIORS.map(|(_, median, _)| median.ln())
+}
+
+/// Standard deviation of $\ln\tau_k$ of every kind.
+pub(crate) fn deviations() -> [f64; KINDS] {
+    PRIORS.map(|(_, _, factor)| factor.ln())
+}
+
+/// What unevenness along the panel does to all values: of each wave its kind and its column.
+pub(crate) type Waves = Vec<(usize, Vec<f64>)>;
+
+/// [`Waves`] of every field.
+///
+/// # Errors
+/// As [`Predictor::uneven`].
+pub(crate) fn waves(predictor: &Predictor, constants: &[f64]) -> Result<Waves, ModelError> {
+    let mut waves = Vec::new();
+    for field in Field::ALL {
+        for (number, column) in predictor.uneven(constants, field, WAVES)?.into_iter().enumerate() {
+            let kind = match field {
+                Field::Shear if number < LONG_WAVES => Kind::Core,
+                Field::Shear => Kind::ShortCore,
+                Field::Bending => Kind::Faces,
+                Field::Mass => Kind::Mass,
+            };
+            waves.push((kind as usize, column));
+        }
+    }
+    Ok(waves)
+}
+
+impl ErrorColumns {
+    /// About a prediction; `uneven` as [`waves`] finds them.
+    pub(crate) fn about(comparison: &Comparison, at: &Prediction, waves: &Waves) -> Self {
+        let mut columns: Vec<(usize, Vec<(usize, f64)>)> = Vec::new();
+        let measured = comparison.measured;
+        for pole in 0..measured.poles.len() {
+            let times = if at.hangs[pole] { HANGING } else { 1.0 };
+            columns.push((Kind::Frequency as usize, vec![(pole, times)]));
+        }
+        for record in 0..measured.records.len() {
+            for pole in 0..measured.poles.len() {
+                let place = comparison.residue_place(record, pole);
+                let phase = at.phase[pole];
+                let kinds = if at.hangs[pole] { [Kind::Hanging; 2] } else { [Kind::Residue, Kind::Quadrature] };
+                for (kind, turn) in kinds.into_iter().zip([Complex64::ONE, Complex64::I]) {
+                    let mut column = vec![(place, (phase * turn).re), (place + 1, (phase * turn).im)];
+                    // A mode that is another is so in all of its lines.
+                    for (number, brings) in at.brings[record][pole].iter().enumerate() {
+                        let value = comparison.residue[pole] / comparison.rigid * brings * turn;
+                        let place = comparison.remainder_place(record, number);
+                        column.extend([(place, value.re), (place + 1, value.im)]);
+                    }
+                    columns.push((kind as usize, column));
+                }
+            }
+            // Modes below the band and above: on springs, as masses, and as springs.
+            let frequencies = &measured.remainder_frequencies;
+            let clear = &frequencies[at.near_hanging.min(frequencies.len())..];
+            let end = |power: i32| if power < 0 { clear.first() } else { clear.last() }.copied().unwrap_or(1.0);
+            let mut along = |kind: Kind, part: usize, power: i32, times: f64| {
+                let value = |(number, frequency): (usize, &f64)| {
+                    (comparison.remainder_place(record, number) + part, times * (frequency / end(power)).powi(power))
+                };
+                let column = frequencies.iter().enumerate().skip(at.near_hanging).map(value);
+                columns.push((kind as usize, column.collect()));
+            };
+            along(Kind::Remainder, 0, 0, 1.0);
+            along(Kind::Remainder, 0, 2, 1.0);
+            along(Kind::Remainder, 1, 1, QUADRATURE);
+            if at.near_hanging > 0 {
+                // The series of a hanging mode in 1/s, far above it.
+                for (power, times) in [(-1, 1.0), (-2, 1.0), (-3, QUADRATURE), (-4, QUADRATURE)] {
+                    along(Kind::Hanging, usize::from(power % 2 != 0), power, times);
+                }
+            }
+        }
+        let unseen = comparison.unseen().start;
+        let dense = |kind: Kind, from: &[f64], range: std::ops::Range<usize>| {
+            (kind as usize, range.map(|place| (place, from[place])).collect::<Vec<_>>())
+        };
+        for record in 0..measured.records.len() {
+            let range = comparison.residue_place(record, 0)..comparison.residue_place(record + 1, 0).min(unseen);
+            columns.push(dense(Kind::ForcePlace, &at.by_force, range.clone()));
+            columns.push(dense(Kind::RecordGain, &at.values, range));
+        }
+        let range = || 0..unseen;
+        columns.extend(waves.iter().map(|(kind, wave)| (*kind, range().map(|place| (place, wave[place])).collect())));
+        if !measured.records.is_empty() {
+            let residues = comparison.residue_place(0, 0)..unseen;
+            columns.push(dense(Kind::Gain, &at.values, residues));
+            let mut places = Vec::new();
+            for record in &measured.records {
+                if !places.contains(&record.response_at) {
+                    places.push(record.response_at);
+                }
+            }
+            for own in places {
+                let mut column = vec![0.0; comparison.size()];
+                for (number, _) in measured.records.iter().enumerate().filter(|(_, record)| record.response_at == own) {
+                    let range =
+                        comparison.residue_place(number, 0)..comparison.residue_place(number + 1, 0).min(unseen);
+                    column[range.clone()].copy_from_slice(&at.by_response[range]);
+                }
+                columns.push(dense(Kind::ResponsePlace, &column, 0..unseen));
+            }
+        }
+        let mut matrix = Mat::zeros(comparison.size(), columns.len());
+        for (number, (_, entries)) in columns.iter().enumerate() {
+            entries.iter().for_each(|(place, value)| matrix[(*place, number)] = *value);
+        }
+        let near = (0..measured.records.len())
+            .flat_map(|record| (0..at.near_hanging).map(move |number| comparison.remainder_place(record, number)))
+            .flat_map(|place| [place, place + 1]);
+        let untold = near.map(|place| (place, comparison.values[place].powi(2).max(1.0))).collect();
+        Self { columns: matrix, kinds: columns.into_iter().map(|(kind, _)| kind).collect(), untold }
+    }
+
+    /// $C_\text{noise} + \sum\tau_k^2F_kF_k^T$.
+    pub(crate) fn covariance(&self, noise: &Mat<f64>, log_sizes: &[f64; KINDS]) -> Mat<f64> {
+        let scaled = Mat::from_fn(self.columns.nrows(), self.columns.ncols(), |i, j| {
+            self.columns[(i, j)] * log_sizes[self.kinds[j]].exp()
+        });
+        let mut covariance = noise + &scaled * scaled.transpose();
+        self.untold.iter().for_each(|(place, variance)| covariance[(*place, *place)] += variance);
+        covariance
+    }
+}

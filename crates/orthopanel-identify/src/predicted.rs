@@ -1,0 +1,396 @@
+//! Predicted modes of a structure with any effects, in the terms of the measured ones.
+
+use std::collections::VecDeque;
+use std::f64::consts::TAU;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use num_complex::Complex64;
+use orthopanel_model::{
+    Action, ChannelFactor, EffectSetting, EffectState, Field, ModelError, ModifiedPanel, Piece, Place, RecordSetting,
+    Seat, SeenModes, StructureKind,
+};
+
+use crate::comparison::{Comparison, UNSEEN};
+
+/// Predicted modes beyond the number of poles that take part.
+const SPARE: usize = 6;
+/// Up to so many times the highest measured frequency a predicted mode may be the partner of a pole.
+const ABOVE: f64 = 1.3;
+/// Deviation of the logarithm of the frequency of a mode that is to be matched: of the piece itself, and of the piece as a whole on its
+/// suspension.
+const APART: [f64; 2] = [0.06, 0.25];
+/// Amplitude of a wave of unevenness from which its derivative is taken.
+const WAVE_STEP: f64 = 1e-5;
+/// Times the highest frequency of the piece as a whole from which on a remainder is that of a free piece but for small terms.
+const CLEAR_OF_HANGING: f64 = 3.0;
+/// Sets of modes that are kept.
+const KEPT: usize = 48;
+/// Part of the lowest pole's frequency, from which on a predicted mode may be its partner.
+const LOWEST: f64 = 0.4;
+/// Part of the band up to which a mode of some strength is seen.
+const MOSTLY_SEEN: f64 = 0.97;
+const MOST_DAMPING: f64 = 0.9;
+/// Damping ratio of modes that no pole belongs to.
+const USUAL_DAMPING: f64 = 0.003;
+
+/// A structure with the places of a test, in which effects act.
+pub(crate) struct Predictor<'a> {
+    pub comparison: &'a Comparison<'a>,
+    panel: ModifiedPanel,
+    setting: EffectSetting,
+    /// Every place of the test once.
+    places: Vec<Place>,
+    /// Modes that were found last: what acts on the channel alone asks for the same ones again.
+    found: Mutex<VecDeque<(Vec<f64>, Arc<SeenModes>)>>,
+}
+
+/// What a hypothesis predicts.
+pub(crate) struct Prediction {
+    /// In the order of [`Comparison::values`].
+    pub values: Vec<f64>,
+    /// The same by the place of the force of all records, and of the response \[1/m\]: zeros where no record tells.
+    pub by_force: Vec<f64>,
+    pub by_response: Vec<f64>,
+    /// Direction of each pole's residues in the complex plane, where all differ by sign alone.
+    pub phase: Vec<Complex64>,
+    /// Of each record and pole what a residue of size one, along the phase, brings to the remainder at each of its frequencies.
+    pub brings: Vec<Vec<Vec<Complex64>>>,
+    /// Whether each pole is a motion of the piece as a whole on its suspension.
+    pub hangs: Vec<bool>,
+    /// Number of the remainders' frequencies that lie too near such motions: cords are no springs, and damp as they like.
+    pub near_hanging: usize,
+}
+
+/// What acts on one record besides the structure.
+#[derive(Default)]
+struct Channel {
+    factors: Vec<ChannelFactor>,
+    force_offset: f64,
+    response_offset: f64,
+    /// $1/\tau$ of windows \[1/s\].
+    decay: f64,
+    /// Whether the sensor loads the structure.
+    loads: bool,
+}
+
+impl Channel {
+    fn at(&self, s: Complex64) -> Complex64 {
+        self.factors.iter().map(|factor| factor.line(s).value).product()
+    }
+}
+
+impl<'a> Predictor<'a> {
+    pub(crate) fn new(
+        comparison: &'a Comparison<'a>,
+        structure: StructureKind,
+        setting: &EffectSetting,
+    ) -> Result<Self, ModelError> {
+        let measured = comparison.measured;
+        let panel = ModifiedPanel::new(structure, setting, measured.poles.len() + SPARE)?;
+        let mut places: Vec<Place> = Vec::new();
+        for place in measured.records.iter().flat_map(|record| [record.force_at, record.response_at]) {
+            if !places.contains(&place) {
+                places.push(place);
+            }
+        }
+        Ok(Self { comparison, panel, setting: setting.clone(), places, found: Mutex::default() })
+    }
+
+    /// The piece.
+    pub(crate) fn piece(&self) -> &Piece {
+        &self.setting.piece
+    }
+
+    /// The setting of a record, from 0.
+    pub(crate) fn setting(&self, record: usize) -> EffectSetting {
+        let places = self.comparison.measured.records.get(record);
+        let record = RecordSetting {
+            number: record + 1,
+            force_at: places.map(|record| record.force_at),
+            response_at: places.map(|record| record.response_at).or(self.setting.record.response_at),
+            ..RecordSetting::default()
+        };
+        EffectSetting { record, ..self.setting.clone() }
+    }
+
+    /// The modes of the structure as seen from these ports.
+    fn modes(
+        &self,
+        setting: &EffectSetting,
+        ports: &[Place],
+        with_slopes: bool,
+        constants: &[f64],
+        effects: &[EffectState],
+    ) -> Result<Arc<SeenModes>, ModelError> {
+        let mut key = vec![f64::from(u8::from(with_slopes)), constants.len() as f64, ports.len() as f64];
+        key.extend(constants);
+        key.extend(ports.iter().chain(&setting.record.response_at).flat_map(|place| [place.x, place.y]));
+        let mut structural = Vec::new();
+        for (number, state) in effects.iter().enumerate() {
+            let acts = |action: &Action| {
+                matches!(action, Action::Element(_) | Action::Field(..) | Action::Core(_) | Action::Plate(_))
+            };
+            if state.acting_in(setting)?.iter().any(acts) {
+                key.push(number as f64);
+                key.extend(&state.values);
+                structural.push(state.clone());
+            }
+        }
+        let lock = || self.found.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((_, modes)) = lock().iter().find(|(other, _)| *other == key) {
+            return Ok(Arc::clone(modes));
+        }
+        let modes = Arc::new(self.panel.seen_from(setting, ports, with_slopes, constants, &structural)?);
+        let mut found = lock();
+        found.truncate(KEPT - 1);
+        found.push_front((key, Arc::clone(&modes)));
+        Ok(modes)
+    }
+
+    fn channel(&self, record: usize, effects: &[EffectState]) -> Result<Channel, ModelError> {
+        let setting = self.setting(record);
+        let mut channel = Channel::default();
+        for state in effects {
+            for action in state.acting_in(&setting)? {
+                match action {
+                    Action::Channel(factor, _) => channel.factors.push(factor),
+                    Action::Place(shift) if shift.of_response => channel.response_offset += shift.offset,
+                    Action::Place(shift) => channel.force_offset += shift.offset,
+                    Action::Window { tau, .. } => channel.decay += tau.recip(),
+                    Action::Element(element) => channel.loads |= element.seat == Seat::AtResponse,
+                    Action::Field(..) | Action::Core(_) | Action::Plate(_) => {}
+                }
+            }
+        }
+        Ok(channel)
+    }
+
+    /// At these constants with these effects.
+    ///
+    /// # Errors
+    /// As [`ModifiedPanel::seen_from`].
+    pub(crate) fn at(
+        &self,
+        constants: &[f64],
+        effects: &[EffectState],
+        with_slopes: bool,
+    ) -> Result<Prediction, ModelError> {
+        let measured = self.comparison.measured;
+        let channels =
+            (0..measured.records.len()).map(|record| self.channel(record, effects)).collect::<Result<Vec<_>, _>>()?;
+        let offset = |place: Place, by: f64| {
+            let half = 0.5 * self.piece().length;
+            Place { x: (place.x + by).clamp(-half, half), ..place }
+        };
+        let moved = measured.records.iter().zip(&channels).map(|(record, channel)| {
+            [offset(record.force_at, channel.force_offset), offset(record.response_at, channel.response_offset)]
+        });
+        let places: Vec<[Place; 2]> = moved.collect();
+        // A structure of its own for each place of a sensor that loads it.
+        let loads = channels.iter().any(|channel| channel.loads);
+        let mut modes: Vec<(Option<Place>, Vec<Place>, Arc<SeenModes>)> = Vec::new();
+        for (record, [_, response]) in places.iter().enumerate() {
+            let own = loads.then_some(*response);
+            if modes.iter().any(|(of, ..)| *of == own) {
+                continue;
+            }
+            let mut ports: Vec<Place> = Vec::new();
+            for place in places.iter().filter(|places| own.is_none_or(|own| places[1] == own)).flatten() {
+                if !ports.contains(place) {
+                    ports.push(*place);
+                }
+            }
+            let mut setting = self.setting(record);
+            setting.record.response_at = setting.record.response_at.map(|_| *response);
+            let seen = self.modes(&setting, &ports, with_slopes, constants, effects)?;
+            modes.push((own, ports, seen));
+        }
+        if modes.is_empty() {
+            modes.push((None, vec![], self.modes(&self.setting, &[], false, constants, effects)?));
+        }
+        Ok(self.compared(&channels, &Views { places, modes }))
+    }
+
+    /// Derivatives of all values by the amplitudes of waves of a field that is uneven along the panel, at these constants without effects.
+    ///
+    /// # Errors
+    /// As [`ModifiedPanel::uneven`].
+    pub(crate) fn uneven(&self, constants: &[f64], field: Field, waves: usize) -> Result<Vec<Vec<f64>>, ModelError> {
+        let measured = self.comparison.measured;
+        let places: Vec<[Place; 2]> =
+            measured.records.iter().map(|record| [record.force_at, record.response_at]).collect();
+        let channels: Vec<Channel> = places.iter().map(|_| Channel::default()).collect();
+        let setting = self.setting(0);
+        let even = self.panel.seen_from(&setting, &self.places, false, constants, &[])?;
+        let values_of = |modes: SeenModes| {
+            let modes = vec![(None, self.places.clone(), Arc::new(modes))];
+            self.compared(&channels, &Views { places: places.clone(), modes }).values
+        };
+        let at = values_of(even.clone());
+        let derivative = |by: SeenModes| {
+            let mut moved = even.clone();
+            let shift = |value: &mut f64, by: &f64| *value += WAVE_STEP * by;
+            moved.angular_frequency.iter_mut().zip(&by.angular_frequency).for_each(|(value, by)| shift(value, by));
+            for (mode, by) in moved.deflection.iter_mut().zip(&by.deflection) {
+                mode.iter_mut().zip(by).for_each(|(value, by)| shift(value, by));
+            }
+            values_of(moved).iter().zip(&at).map(|(moved, at)| (moved - at) / WAVE_STEP).collect()
+        };
+        let by_waves = self.panel.uneven(&setting, &self.places, constants, (field, waves))?;
+        Ok(by_waves.into_iter().map(derivative).collect())
+    }
+
+    /// The partner of each pole among the modes that the first record sees.
+    fn partners(&self, seen: &Views, omega: &[f64], bottom: f64) -> Vec<Option<usize>> {
+        let measured = self.comparison.measured;
+        let top = ABOVE * measured.poles.last().map_or(TAU * measured.band[1], |pole| pole.angular_frequency);
+        let candidates: Vec<usize> = (0..omega.len()).filter(|&n| omega[n] > bottom && omega[n] < top).collect();
+        let product = |record: usize, n: usize| {
+            let (modes, [force, response]) = seen.of_record(record);
+            modes.deflection.get(n).map_or(0.0, |mode| mode[force] * mode[response])
+        };
+        let shape = |&n: &usize| (omega[n], (0..measured.records.len()).map(|record| product(record, n)).collect());
+        let shapes: Vec<(f64, Vec<f64>)> = candidates.iter().map(shape).collect();
+        let found = measured.partners(&shapes, |index| APART[usize::from(self.hangs(candidates[index]))]);
+        found.into_iter().map(|found| found.map(|(index, _)| candidates[index])).collect()
+    }
+
+    /// Whether a mode is a motion of the piece as a whole: those that would be at zero but for the suspension are the lowest.
+    fn hangs(&self, mode: usize) -> bool {
+        mode < self.setting.boundary.rigid_modes()
+    }
+
+    /// In the order of the comparison.
+    fn compared(&self, channels: &[Channel], seen: &Views) -> Prediction {
+        let (comparison, measured) = (self.comparison, self.comparison.measured);
+        let omega = &seen.modes[0].2.angular_frequency;
+        let bottom = LOWEST * measured.poles.first().map_or(0.0, |pole| pole.angular_frequency);
+        let top = MOSTLY_SEEN * TAU * measured.band[1];
+        let partners = self.partners(seen, omega, bottom);
+        let size = comparison.size();
+        let [mut values, mut by_force, mut by_response] = [(); 3].map(|()| vec![0.0; size]);
+        let mut phase = vec![Complex64::I; measured.poles.len()];
+        for (pole, partner) in partners.iter().enumerate() {
+            // A pole without a partner tells nothing by its frequency; its residue is missed altogether.
+            values[pole] = partner.map_or(measured.poles[pole].angular_frequency, |n| omega[n]).ln();
+        }
+        let remainders = measured.remainder_frequencies.len();
+        let mut brings = vec![vec![vec![Complex64::ZERO; remainders]; measured.poles.len()]; measured.records.len()];
+        let mut strength = vec![0.0; omega.len()];
+        for (record, channel) in channels.iter().enumerate() {
+            let mut put = |place: usize, [value, force, response]: [Complex64; 3]| {
+                comparison.put(&mut values, place, value);
+                comparison.put(&mut by_force, place, force);
+                comparison.put(&mut by_response, place, response);
+            };
+            let mut remainder = vec![[Complex64::ZERO; 3]; remainders];
+            let add = |sum: &mut [Complex64; 3], shape: [f64; 3], value: Complex64| {
+                sum.iter_mut().zip(shape).for_each(|(sum, shape)| *sum += shape * value);
+            };
+            for n in 0..seen.of_record(record).0.angular_frequency.len() {
+                let pole = partners.iter().position(|partner| *partner == Some(n));
+                let mode = ModeInRecord::of(
+                    seen,
+                    (record, n),
+                    pole.and_then(|pole| measured.poles[pole].damping_ratio),
+                    channel,
+                );
+                let stands = mode.omega > 0.0 && (pole.is_some() || (mode.omega > bottom && mode.omega < top));
+                let unit = if stands { mode.residue(channel) } else { Complex64::ZERO };
+                match pole {
+                    Some(pole) => {
+                        phase[pole] = unit / unit.norm();
+                        put(comparison.residue_place(record, pole), mode.shape.map(|shape| shape * unit));
+                    }
+                    None => strength.get_mut(n).into_iter().for_each(|sum| *sum += (mode.shape[0] * unit).norm_sqr()),
+                }
+                // What stands by itself is no part of the remainder.
+                for (number, frequency) in measured.remainder_frequencies.iter().enumerate() {
+                    let s = Complex64::new(0.0, TAU * frequency);
+                    let left = mode.line(s, channel) - mode.apart(unit, s, channel);
+                    add(&mut remainder[number], mode.shape, left);
+                    if let Some(pole) = pole {
+                        brings[record][pole][number] = left / unit.norm();
+                    }
+                }
+            }
+            for (number, sums) in remainder.into_iter().enumerate() {
+                put(comparison.remainder_place(record, number), sums);
+            }
+        }
+        let mut typical = comparison.residue.clone();
+        typical.sort_by(f64::total_cmp);
+        let typical = typical.get(typical.len() / 2).copied().unwrap_or(1.0);
+        let is_unseen = |n: &usize| !partners.contains(&Some(*n)) && !self.hangs(*n);
+        let size_of = |n: usize| (strength[n] / measured.records.len().max(1) as f64).sqrt() / typical;
+        let mut unseen: Vec<f64> = (0..omega.len()).filter(is_unseen).map(size_of).collect();
+        unseen.sort_by(|a, b| b.total_cmp(a));
+        comparison.unseen().zip(unseen.into_iter().take(UNSEEN)).for_each(|(place, value)| values[place] = value);
+        let hanging = (0..omega.len()).filter(|&n| self.hangs(n)).map(|n| omega[n]).fold(0.0, f64::max);
+        let near = |frequency: &&f64| TAU * **frequency < CLEAR_OF_HANGING * hanging;
+        let near_hanging = measured.remainder_frequencies.iter().filter(near).count();
+        let hangs = partners.iter().map(|partner| partner.is_some_and(|n| self.hangs(n))).collect();
+        Prediction { values, by_force, by_response, phase, brings, hangs, near_hanging }
+    }
+}
+
+/// Modes as records see them.
+struct Views {
+    /// Places of force and response of each record, with what offsets bring.
+    places: Vec<[Place; 2]>,
+    /// The place of the sensor, where it loads the structure, the ports, and the modes that they see.
+    modes: Vec<(Option<Place>, Vec<Place>, Arc<SeenModes>)>,
+}
+
+impl Views {
+    /// The modes that a record sees, and its ports of force and response.
+    fn of_record(&self, record: usize) -> (&SeenModes, [usize; 2]) {
+        let places = self.places[record];
+        let own = |(of, ..): &&(Option<Place>, _, _)| of.is_none_or(|of| of == places[1]);
+        let (_, ports, modes) = self.modes.iter().find(own).unwrap_or(&self.modes[0]);
+        (modes, places.map(|place| ports.iter().position(|port| *port == place).unwrap_or(0)))
+    }
+}
+
+/// A mode in a record: $\omega$, $\zeta$, the product of its deflections at force and response, and how that follows either place.
+struct ModeInRecord {
+    omega: f64,
+    zeta: f64,
+    shape: [f64; 3],
+}
+
+impl ModeInRecord {
+    /// With the damping ratio of the pole that is its partner, less what a window brings.
+    fn of(seen: &Views, (record, n): (usize, usize), measured: Option<f64>, channel: &Channel) -> Self {
+        let (modes, [force, response]) = seen.of_record(record);
+        let omega = modes.angular_frequency[n];
+        let own = measured.map_or(USUAL_DAMPING + modes.damping_ratio[n], |zeta| zeta - channel.decay / omega);
+        let zeta = if omega > 0.0 { own.clamp(0.0, MOST_DAMPING) } else { 0.0 };
+        let slope = |port: usize| modes.slope[n].get(port).copied().unwrap_or(0.0);
+        let [at_force, at_response] = [force, response].map(|port| modes.deflection[n][port]);
+        Self { omega, zeta, shape: [at_force * at_response, slope(force) * at_response, at_force * slope(response)] }
+    }
+
+    /// $\lambda$.
+    fn pole(&self) -> Complex64 {
+        self.omega * Complex64::new(-self.zeta, (1.0 - self.zeta * self.zeta).sqrt())
+    }
+
+    /// Residue of the accelerance over the product of deflections, $c(\lambda)\lambda^2/(\lambda-\bar\lambda)$.
+    fn residue(&self, channel: &Channel) -> Complex64 {
+        let lambda = self.pole();
+        channel.at(lambda) * lambda * lambda / (lambda - lambda.conj())
+    }
+
+    /// Its accelerance over the product of deflections, as the channel shows it.
+    fn line(&self, s: Complex64, channel: &Channel) -> Complex64 {
+        let s = s + channel.decay;
+        channel.at(s) * s * s / (s * s + 2.0 * self.zeta * self.omega * s + self.omega * self.omega)
+    }
+
+    /// The two terms of a residue, which stand by themselves.
+    fn apart(&self, residue: Complex64, s: Complex64, channel: &Channel) -> Complex64 {
+        let lambda = self.pole() - channel.decay;
+        residue / (s - lambda) + residue.conj() / (s - lambda.conj())
+    }
+}

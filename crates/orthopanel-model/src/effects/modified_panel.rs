@@ -1,0 +1,152 @@
+//! What a test sees of a panel with effects of panel and rig: its modes at places, and what all further modes add.
+
+use super::dressed_panel::{Dressed, Even, PanelWithEffects};
+use super::receptance::modal_base::Row;
+use super::{EffectSetting, EffectState};
+use crate::{Damping, ModelError, Motion, Place, StructureKind};
+
+/// A structure that effects modify, seen from places; what is the same for all constants and effects is worked out once.
+#[derive(Debug, Clone)]
+pub struct ModifiedPanel {
+    pub(super) count: usize,
+    pub(super) even: Even,
+    pub(super) damping: Damping,
+}
+
+/// Modes of a [`ModifiedPanel`] at places, rigid ones first.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SeenModes {
+    /// $\omega_n$ \[rad/s\].
+    pub angular_frequency: Vec<f64>,
+    /// Damping ratios that the effects' dashpots give, those of the panel itself being zero.
+    pub damping_ratio: Vec<f64>,
+    /// Mass-normalised deflection $W_n$ \[kg^-1/2\], a list a mode with an entry a place.
+    pub deflection: Vec<Vec<f64>>,
+    /// $\partial W_n/\partial x$ \[kg^-1/2/m\], alike, where that was asked for.
+    pub slope: Vec<Vec<f64>>,
+}
+
+impl ModifiedPanel {
+    /// Of the rigid modes and the first `count` flexible ones.
+    ///
+    /// # Errors
+    /// As [`TimoshenkoBeam::new`](crate::TimoshenkoBeam::new).
+    pub fn new(structure: StructureKind, setting: &EffectSetting, count: usize) -> Result<Self, ModelError> {
+        let even = match structure {
+            StructureKind::TimoshenkoBeam => Even::beam(setting, count)?,
+            StructureKind::MindlinPlate => Even::Plate,
+        };
+        Ok(Self { count, even, damping: Damping::default() })
+    }
+
+    /// The modes in a setting at these constants with these effects, as seen from places, and beyond them as many shapes as the places and the
+    /// effects have of their own: with these the sum over all is the static flexibility between places.
+    ///
+    /// # Errors
+    /// [`ModelError::EffectNeeds`] and [`ModelError::EffectParameter`] where an effect cannot act, [`ModelError::Unsupported`] for
+    /// a core that depends on frequency, and as [`crate::ritz_modes()`].
+    pub fn seen_from(
+        &self,
+        setting: &EffectSetting,
+        places: &[Place],
+        with_slopes: bool,
+        values: &[f64],
+        effects: &[EffectState],
+    ) -> Result<SeenModes, ModelError> {
+        let Self { count, even, damping } = self;
+        let dressed = Dressed::for_modes(PanelWithEffects { setting, even, values, effects, damping }, *count)?;
+        if dressed.core.is_some() {
+            return Err(ModelError::Unsupported("viscoelastic-core in a model of modes".into()));
+        }
+        let ports: Vec<Row> = places.iter().map(|&place| (Motion::Deflection, place)).collect();
+        let slopes: Vec<Row> = places.iter().map(|&place| (Motion::Slope, place)).collect();
+        let asked = if with_slopes { &slopes[..] } else { &[] };
+        let answers = dressed.far_answers_in(&[&ports[..], asked].concat())?;
+        let (_, system) = dressed.with_residuals(&answers, places, damping);
+        // Elements stand before the ports among the answers, and no coordinates belong to slopes.
+        let elements = answers.near.ncols() - ports.len() - asked.len();
+        let (low, residuals) = (answers.near.nrows(), elements + ports.len());
+        let row = |row: usize, shares: &[f64]| -> f64 {
+            let near: f64 = (0..low).map(|m| answers.near[(m, row)] * shares[m]).sum();
+            near + (0..residuals).map(|q| answers.series[0][(row, q)] * shares[low + q]).sum::<f64>()
+        };
+        let mut seen =
+            SeenModes { angular_frequency: vec![], damping_ratio: vec![], deflection: vec![], slope: vec![] };
+        for (omega, zeta, shares) in system.solve()? {
+            seen.angular_frequency.push(omega);
+            seen.damping_ratio.push(zeta);
+            seen.deflection.push((elements..residuals).map(|port| row(port, &shares)).collect());
+            seen.slope.push((residuals..residuals + asked.len()).map(|slope| row(slope, &shares)).collect());
+        }
+        Ok(seen)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::TAU;
+
+    use super::*;
+    use crate::{Boundary, ModeRange, PanelModel, Piece, RecordSetting, effect};
+
+    fn place(x: f64) -> Place {
+        Place { x, y: 0.0 }
+    }
+
+    fn setting() -> EffectSetting {
+        EffectSetting {
+            piece: Piece { length: 0.8, width: 0.1, thickness: 0.03, mass_per_area: 6.88 },
+            boundary: Boundary::default(),
+            suspension: vec![],
+            record: RecordSetting { number: 1, response_at: Some(place(0.31)), ..RecordSetting::default() },
+        }
+    }
+
+    /// What identification sees is what the model file of the same panel says: the carrier of the FMU, and the same without ports.
+    #[test]
+    fn val_modes_are_those_of_the_model_file() {
+        let setting = setting();
+        let places = [-0.33, 0.05, 0.31].map(place);
+        let text = r#"{"schema": "orthopanel.model/1", "structure": "timoshenko-beam",
+            "piece": {"length": 0.8, "width": 0.1, "thickness": 0.03, "mass_per_area": 6.88},
+            "constants": {"e_x": 1.07e10, "g_zx": 5.363e8},
+            "effects": [{"id": "local-mass", "owner": "panel", "mass": 0.02, "x": 0.11},
+                        {"id": "stiffness-loss", "owner": "panel", "loss": 0.4, "span": 0.06, "x": -0.2}]}"#;
+        let model = PanelModel::from_json(text).expect("a model");
+        let (_, effects) = model.with_effects().expect("effects");
+        let panel = ModifiedPanel::new(StructureKind::TimoshenkoBeam, &setting, 10).expect("a beam");
+        let seen = panel.seen_from(&setting, &places, false, &[1.07e10, 5.363e8], &effects).expect("modes");
+        let modes = model.modal_model(ModeRange::Count(10), &places, &places).expect("modes");
+        for (n, mode) in modes.flexible().take(8).enumerate() {
+            let own = seen.angular_frequency[n + 2];
+            assert!((own / mode.angular_frequency - 1.0).abs() < 2e-6, "mode {n}: {} Hz", own / TAU);
+            for (port, deflection) in mode.at_forces.iter().enumerate() {
+                let product = seen.deflection[n + 2][port] * seen.deflection[n + 2][0];
+                let whole = deflection * mode.at_forces[0];
+                assert!((product - whole).abs() < 1e-3 * whole.abs().max(2.0), "mode {n} at {port}: {product} {whole}");
+            }
+        }
+    }
+
+    #[test]
+    fn val_slopes_are_those_of_differences() {
+        let setting = setting();
+        let mass = EffectState::new(effect("sensor-mass").expect("known"), vec![0.01, 0.0], 1).expect("a sensor");
+        let panel = ModifiedPanel::new(StructureKind::TimoshenkoBeam, &setting, 8).expect("a beam");
+        let seen = |x: f64, slopes: bool| {
+            panel
+                .seen_from(&setting, &[place(x)], slopes, &[1.07e10, 5.363e8], std::slice::from_ref(&mass))
+                .expect("modes")
+        };
+        let (here, before, after) = (seen(0.12, true), seen(0.1199, false), seen(0.1201, false));
+        for n in 2..9 {
+            // Each solution has a sense of its own.
+            let sense = |modes: &SeenModes| {
+                modes.deflection[n][0] * here.deflection[n][0].signum() * modes.deflection[n][0].signum()
+            };
+            let difference = (sense(&after) - sense(&before)) / 2e-4;
+            let slope = here.slope[n][0];
+            assert!((slope - difference).abs() < 2e-3 * difference.abs().max(10.0), "mode {n}: {slope} {difference}");
+        }
+    }
+}
