@@ -12,7 +12,7 @@ use thiserror::Error;
 use crate::fmu_refusal::FmuRefusal;
 
 /// The data or the model says no.
-const SAYS_NO: u8 = 1;
+pub const SAYS_NO: u8 = 1;
 /// Bad usage or input.
 pub const BAD_INPUT: u8 = 2;
 

@@ -458,3 +458,25 @@ fn a_command_killed_at_any_moment_leaves_every_result_whole() {
         assert!(contents(&bench.path("out")) == *whole);
     }
 }
+
+#[test]
+fn regress_a_run_without_a_model_leaves_the_results_of_an_earlier_one() {
+    let bench = Bench::new();
+    bench.done(&format!("run {HITS} -o out"));
+    let earlier = contents(&bench.path("out"));
+    let test = std::fs::read_to_string(bench.path(HITS)).expect("a test");
+    let length = test.lines().find(|line| line.starts_with("length = ")).expect("a length");
+    bench.write(HITS, &changed(&test, length, "length = 1.4"));
+    let output = bench.run(&format!("run {HITS} -o out"));
+    let message = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{message}");
+    assert_eq!(message.matches("note: out: the results in it are of an earlier run").count(), 1, "{message}");
+    assert!(!message.contains("wrote ") && !message.contains("removed "), "{message}");
+    assert!(contents(&bench.path("out")) == earlier);
+    // Where there are none, what the trace found is written.
+    let output = bench.run(&format!("run {HITS} -o new"));
+    let message = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{message}");
+    assert!(!message.contains("earlier run"), "{message}");
+    assert_eq!(names(&bench, "new"), ["manifest.json", "report.html", "trace.json"]);
+}

@@ -159,6 +159,12 @@ impl Outputs {
     }
 }
 
+/// Whether the manifest at `path` lists results that are still there.
+pub fn lists_results(path: &Path) -> bool {
+    let is_there = |name: &str| path.with_file_name(name).is_file();
+    manifest::listed(path).is_ok_and(|listed| listed.iter().filter_map(manifest::Listed::plain_name).any(is_there))
+}
+
 /// `folder/stem.extension` as `folder/stem{suffix}.extension`.
 pub fn with_suffix(path: &Path, suffix: &str) -> PathBuf {
     if suffix.is_empty() {
