@@ -3,13 +3,17 @@
 use std::io::ErrorKind;
 use std::path::{Component, Path, PathBuf};
 
-use super::{Outputs, folder};
+use super::{Outputs, folder, streams};
 use crate::error::CommandError;
 
 impl Outputs {
     /// Where a file really goes: behind a link, the file it points to, whether that is there or not. What is there must be a file,
     /// since renaming onto a device or a pipe would take its place, and none that the command reads.
     pub(super) fn destination(&self, path: &Path) -> Result<PathBuf, CommandError> {
+        if let Some(stream) = streams::stream_at(path) {
+            let reason = format!("it is {stream}, and a file would take its place");
+            return Err(CommandError::Unwritable { path: path.into(), reason, kind: ErrorKind::Other });
+        }
         let there = match std::fs::metadata(path) {
             Ok(there) => there,
             Err(error) if error.kind() != ErrorKind::NotFound => return Err(CommandError::unwritable(path, &error)),
