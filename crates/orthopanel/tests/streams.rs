@@ -112,6 +112,30 @@ fn regress_an_output_that_is_an_open_stream_is_refused() {
     }
 }
 
+#[cfg(unix)]
+#[test]
+fn regress_an_answer_is_not_appended_to_an_input() {
+    let bench = Bench::new();
+    std::os::unix::fs::symlink("force.csv", bench.path("link.csv")).expect("linked");
+    for (line, input) in [
+        ("simulate model.json --force-file force.csv", "force.csv"),
+        ("simulate model.json --force-file link.csv", "force.csv"),
+        ("simulate model.json --force-file force.csv", "model.json"),
+        ("simulate model.json --force-file examples/made-hits", "examples/made-hits/point-0.uff"),
+        ("modes model.json --json", "model.json"),
+        ("identify test.toml", "test.toml"),
+        ("trace examples/made-hits", "examples/made-hits/point-0.uff"),
+        ("accelerance model.json --force 0 --response 0.1 --from 1 --to 9 --lines 3", "model.json"),
+    ] {
+        let before = std::fs::read(bench.path(input)).expect("an input");
+        let status = shell(&bench, &format!("\"$0\" {line} >> {input} 2> said"));
+        let said = std::fs::read_to_string(bench.path("said")).expect("a message");
+        assert_eq!(status, Some(2), "{line}: {said}");
+        assert!(said.contains("which this command reads") && said.lines().count() == 1, "{line}: {said}");
+        assert!(std::fs::read(bench.path(input)).expect("an input") == before, "{line}");
+    }
+}
+
 /// Searches of seconds, in lists and in records.
 #[cfg(unix)]
 const SEARCHES: [&str; 2] = ["trace examples/pieces-1-2/test.toml", "trace examples/made-hits/test.toml"];

@@ -45,7 +45,7 @@ pub struct Arguments {
 pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
     let Arguments { test: path, output, options, json } = arguments;
     let test = given_file::read_test(path)?;
-    let outputs = model_file::planned_each(Outputs::of(Inputs::of_test(path, &test)), output.as_deref(), &test)?;
+    let outputs = model_file::planned_each(Outputs::of(Inputs::of_test(path, &test))?, output.as_deref(), &test)?;
     let identified = Identified::from_test(&test, path, options)?;
     if let Some(output) = output {
         let models = identified.found.pieces.iter().zip(&identified.models);

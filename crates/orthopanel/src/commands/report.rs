@@ -51,7 +51,7 @@ struct Answer<'a> {
 pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
     let Arguments { test: path, output, options, json } = arguments;
     let test = given_file::read_test(path)?;
-    let outputs = Outputs::of(Inputs::of_test(path, &test));
+    let outputs = Outputs::of(Inputs::of_test(path, &test))?;
     let outputs = match output.parent().filter(|folder| !folder.as_os_str().is_empty()) {
         Some(folder) => outputs.making(folder),
         None => outputs,

@@ -96,7 +96,8 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
 fn make(arguments: &Arguments, holds_earlier: bool) -> Result<(), CommandError> {
     let Arguments { test: path, output, options, json } = arguments;
     let test = given_file::read_test(path)?;
-    let mut files = Outputs::of(Inputs::of_test(path, &test)).filling(output, MANIFEST).planned_inside(names(&test))?;
+    let mut files =
+        Outputs::of(Inputs::of_test(path, &test))?.filling(output, MANIFEST).planned_inside(names(&test))?;
     let identified = match Identified::from_test(&test, path, options) {
         Err(refused) => {
             let contradicted = Contradicted::of(test, path, refused)?;

@@ -39,7 +39,7 @@ pub struct Arguments {
 pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
     let Arguments { test: path, output, json } = arguments;
     let test = given_file::read_test(path)?;
-    let outputs = model_file::planned_each(Outputs::of(Inputs::of_test(path, &test)), output.as_deref(), &test)?;
+    let outputs = model_file::planned_each(Outputs::of(Inputs::of_test(path, &test))?, output.as_deref(), &test)?;
     let traced = Traced::from_test(&test).map_err(|source| CommandError::Identify { path: path.clone(), source })?;
     let written = match output {
         Some(output) => write_models(outputs, output, &test, path, &traced),

@@ -37,8 +37,14 @@ pub struct Outputs {
 
 impl Outputs {
     /// Of a command that reads `inputs`.
-    pub fn of(inputs: Inputs) -> Self {
-        Self { inputs, folder: None, manifest: None, extension: None, files: Vec::new() }
+    ///
+    /// # Errors
+    /// [`CommandError::InputIsAnswer`] where standard output goes to one of them.
+    pub fn of(inputs: Inputs) -> Result<Self, CommandError> {
+        if let Some(input) = streams::fed_by_stdout(inputs.paths()) {
+            return Err(CommandError::InputIsAnswer { input: input.into() });
+        }
+        Ok(Self { inputs, folder: None, manifest: None, extension: None, files: Vec::new() })
     }
 
     /// `folder` is to be made where it is not there.
@@ -181,7 +187,7 @@ mod tests {
     use super::*;
 
     fn write(path: &Path, content: &str) -> Result<Vec<PathBuf>, CommandError> {
-        let mut outputs = Outputs::of(Inputs::default());
+        let mut outputs = Outputs::of(Inputs::default()).expect("no inputs");
         outputs.add(path, content);
         outputs.write()
     }
@@ -199,7 +205,7 @@ mod tests {
         assert!(matches!(write(home.path(), "x"), Err(CommandError::Unwritable { .. })));
         assert!(matches!(write(Path::new("/dev/null"), "x"), Err(CommandError::Unwritable { .. })));
         // Two results behind links to one file: the second would take the place of the first.
-        let mut outputs = Outputs::of(Inputs::default());
+        let mut outputs = Outputs::of(Inputs::default()).expect("no inputs");
         outputs.add(&link, "one");
         outputs.add(&real, "two");
         assert!(matches!(outputs.write(), Err(CommandError::Unwritable { .. })));
@@ -225,7 +231,7 @@ mod tests {
         let home = tempfile::tempdir().expect("a temporary folder");
         std::fs::create_dir(home.path().join("out")).expect("made");
         std::fs::write(home.path().join("out/old"), "").expect("written");
-        let outputs = Outputs::of(Inputs::default());
+        let outputs = Outputs::of(Inputs::default()).expect("no inputs");
         let folder = |name: &str| {
             let destination = outputs.destination(&home.path().join("out/../out").join(name)).expect("writable");
             folder::of(&destination).to_path_buf()
@@ -237,7 +243,7 @@ mod tests {
     fn files_are_written_all_or_none() {
         let home = tempfile::tempdir().expect("a temporary folder");
         let folder = home.path().join("deep/out");
-        let mut outputs = Outputs::of(Inputs::default()).making(&folder);
+        let mut outputs = Outputs::of(Inputs::default()).expect("no inputs").making(&folder);
         outputs.add_inside("first", "1");
         outputs.add_inside("no-such-folder/second", "2");
         assert!(matches!(outputs.write(), Err(CommandError::Unwritable { .. })));
@@ -253,7 +259,7 @@ mod tests {
     /// Results full of one letter; `a` has one more than `b`.
     #[cfg(unix)]
     fn replace_by(letter: char, folder: &Path) -> Result<Vec<PathBuf>, CommandError> {
-        let mut outputs = Outputs::of(Inputs::default()).filling(folder, "manifest.json");
+        let mut outputs = Outputs::of(Inputs::default()).expect("no inputs").filling(folder, "manifest.json");
         for number in 0..RESULTS + usize::from(letter == 'a') {
             outputs.add_inside(&format!("result-{number}"), letter.to_string().repeat(5000 + number));
         }

@@ -46,7 +46,7 @@ pub fn execute(
 ) -> Result<(), CommandError> {
     let estimation = options.estimation(Window::None)?;
     let test = given_file::read_test(path)?;
-    let mut outputs = Outputs::of(Inputs::of_test(path, &test)).all_planned(output.iter().flat_map(|&output| {
+    let mut outputs = Outputs::of(Inputs::of_test(path, &test))?.all_planned(output.iter().flat_map(|&output| {
         // Into a folder that is not there goes nothing that is.
         let files = if is_folder(output, true) && !output.is_dir() { 0 } else { test.files().count() };
         (0..files).map(move |index| named(output, true, index)).chain([named(output, false, 0)])

@@ -119,7 +119,7 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
         Some(test) => inputs.and_all(Inputs::of_test(force_file, test)),
         None => inputs.and(force_file),
     };
-    let mut outputs = Outputs::of(inputs).all_planned(arguments.output.clone())?;
+    let mut outputs = Outputs::of(inputs)?.all_planned(arguments.output.clone())?;
     if test.is_some() || on_records::is_measured(force_file)? {
         return on_records::execute(arguments, test.as_ref(), outputs);
     }
