@@ -339,3 +339,31 @@ fn a_file_of_another_kind_is_called_by_its_name() {
         refused(&bench, line, 2, said);
     }
 }
+
+#[test]
+fn regress_a_name_that_ends_as_a_folder_is_no_file() {
+    let bench = Bench::new();
+    for line in [
+        "report test.toml",
+        "identify test.toml",
+        "trace test.toml",
+        "identify examples/pieces-3-4",
+        "trace examples/pieces-3-4",
+        "accelerance model.json --force 0 --response 0.1 --from 1 --to 9 --lines 3",
+        "simulate model.json --force-file force.csv",
+    ] {
+        for output in ["new/", "new//", "new/.", "examples/new/"] {
+            refused(&bench, &format!("{line} -o {output}"), 2, &["cannot be written", "folder", "name a file in it"]);
+        }
+    }
+    // Here a folder is as good as a file, whether the test has one pair of places or several.
+    for (test, output) in [("examples/one", "new/one/"), ("examples/made-hits", "new/several/")] {
+        std::fs::create_dir_all(bench.path("examples/one")).expect("a folder is made");
+        bench.write("examples/one/a.csv", "frequency_hz,real,imag\n1,2,3\n2,3,4\n3,4,5\n");
+        let measured = "kind = \"accelerance\"\nfile = \"a.csv\"\nforce_at = [0.1, 0]\nresponse_at = [0.3, 0]\n";
+        let pieces = TEST.split("[[measurement]]").next().unwrap_or_default();
+        bench.write("examples/one/test.toml", &format!("{pieces}[[measurement]]\n{measured}"));
+        bench.done(&format!("accelerance {test} -o {output}"));
+        assert!(bench.path(&format!("{output}accelerance-1.csv")).is_file(), "{output}");
+    }
+}

@@ -49,6 +49,20 @@ impl Outputs {
     }
 }
 
+/// Whether `path` ends as the name of a folder, by a separator or by one and a dot; both are forgotten by its components.
+pub fn ends_as_folder(path: &Path) -> bool {
+    let text = path.to_string_lossy();
+    text.strip_suffix('.').unwrap_or(&text).ends_with(std::path::is_separator)
+}
+
+pub(super) fn names_file(path: &Path) -> Result<(), CommandError> {
+    if ends_as_folder(path) {
+        let reason = "it ends as the name of a folder does".into();
+        return Err(CommandError::Unwritable { path: path.into(), reason, kind: ErrorKind::IsADirectory });
+    }
+    Ok(())
+}
+
 /// Whether a folder that is not there can be made, as far as names tell: below a folder, and not by way of one that is not there.
 pub(super) fn makeable(folder: &Path) -> Result<(), CommandError> {
     let is_there = |path: &&Path| path.as_os_str().is_empty() || std::fs::symlink_metadata(path).is_ok();

@@ -19,6 +19,7 @@ use std::path::{Path, PathBuf};
 
 use crate::console;
 use crate::error::CommandError;
+pub use destination::ends_as_folder;
 use destination::{made, makeable, unmade};
 pub use inputs::Inputs;
 use listing::Listing;
@@ -63,6 +64,7 @@ impl Outputs {
     /// # Errors
     /// As [`Outputs::planned`], of the manifest.
     pub fn beside(self, output: &Path, several: bool) -> Result<Self, CommandError> {
+        destination::names_file(output)?;
         let manifest = with_suffix(output, "-manifest").with_extension("json");
         let is_used = several || manifest::listed(&manifest).is_ok_and(|listed| !listed.is_empty());
         let extension = Some(output.extension().unwrap_or_default().into());
@@ -83,6 +85,7 @@ impl Outputs {
             }
             _ => {}
         }
+        destination::names_file(path)?;
         let destination = self.destination(path)?;
         if self.folder.as_ref().is_none_or(|own| own.exists()) {
             std::fs::metadata(folder::of(&destination)).map_err(|error| CommandError::unwritable(path, &error))?;
