@@ -30,6 +30,8 @@ pub enum CommandError {
         if path == input { "read by this command".into() } else { format!("{}, which this command reads", input.display()) }
     )]
     OutputIsInput { path: PathBuf, input: PathBuf },
+    #[error("{}: changed while it was read: run again", .path.display())]
+    Changed { path: PathBuf },
     #[error("standard output: it goes to {}, which this command reads: send it to another file", .input.display())]
     InputIsAnswer { input: PathBuf },
     #[error("standard output: the answer could not be written whole: {0}")]

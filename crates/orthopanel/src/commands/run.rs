@@ -20,7 +20,7 @@ use crate::outputs::{self, Inputs, Outputs};
 use crate::record_options::IdentifyOptions;
 use crate::time_response::Hold;
 use crate::traced::Traced;
-use crate::{console, given_file, json, pictures, progress, report, time_response};
+use crate::{console, json, pictures, progress, report, time_response};
 
 /// Do all of it: identify the panel of a test, trace what its model lacks, export its FMUs, simulate a hit, draw the result
 ///
@@ -95,9 +95,8 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
 
 fn make(arguments: &Arguments, holds_earlier: bool) -> Result<(), CommandError> {
     let Arguments { test: path, output, options, json } = arguments;
-    let test = given_file::read_test(path)?;
-    let mut files =
-        Outputs::of(Inputs::of_test(path, &test))?.filling(output, MANIFEST).planned_inside(names(&test))?;
+    let (inputs, test) = Inputs::reading_test(path)?;
+    let mut files = Outputs::of(inputs)?.filling(output, MANIFEST).planned_inside(names(&test))?;
     let identified = match Identified::from_test(&test, path, options) {
         Err(refused) => {
             let contradicted = Contradicted::of(test, path, refused)?;

@@ -55,7 +55,12 @@ impl Outputs {
 
     /// The results fill `folder`, made where it is not there, and a manifest of that name lists them.
     pub fn filling(self, folder: &Path, manifest: &'static str) -> Self {
-        Self { folder: Some(folder.into()), manifest: Some(folder.join(manifest)), ..self }
+        Self { folder: Some(folder.into()), manifest: Some(folder.join(manifest)), ..self }.hashing()
+    }
+
+    /// The inputs are to be read, and a manifest may list them.
+    pub fn hashing(self) -> Self {
+        Self { inputs: self.inputs.hashed(), ..self }
     }
 
     /// The results are called as `output`, with a suffix each where they are `several`; then `STEM-manifest.json` lists them, and
@@ -69,7 +74,8 @@ impl Outputs {
         let is_used = several || manifest::listed(&manifest).is_ok_and(|listed| !listed.is_empty());
         let extension = Some(output.extension().unwrap_or_default().into());
         let manifest = is_used.then_some(manifest);
-        Self { manifest: manifest.clone(), extension, ..self }.all_planned(manifest)
+        let outputs = if is_used { self.hashing() } else { self };
+        Self { manifest: manifest.clone(), extension, ..outputs }.all_planned(manifest)
     }
 
     /// Names an output that may be written later.

@@ -10,7 +10,7 @@ use crate::error::CommandError;
 use crate::measured_pairs::{ToldHit, place_text, told};
 use crate::outputs::{Inputs, Outputs, ends_as_folder, with_suffix};
 use crate::record_options::EstimationOptions;
-use crate::{console, csv_text, given_file, notes, progress, tables};
+use crate::{console, csv_text, notes, progress, tables};
 
 /// Not that of `run`, whose results may lie in the same folder.
 const MANIFEST: &str = "accelerance-manifest.json";
@@ -45,8 +45,8 @@ pub fn execute(
     json: bool,
 ) -> Result<(), CommandError> {
     let estimation = options.estimation(Window::None)?;
-    let test = given_file::read_test(path)?;
-    let mut outputs = Outputs::of(Inputs::of_test(path, &test))?.all_planned(output.iter().flat_map(|&output| {
+    let (inputs, test) = Inputs::reading_test(path)?;
+    let mut outputs = Outputs::of(inputs)?.all_planned(output.iter().flat_map(|&output| {
         // Into a folder that is not there goes nothing that is.
         let files = if is_folder(output, true) && !output.is_dir() { 0 } else { test.files().count() };
         let is_new_folder = ends_as_folder(output) && !output.is_dir();
@@ -55,6 +55,9 @@ pub fn execute(
     }))?;
     if let Some(output) = output.filter(|path| !is_folder(path, true)) {
         outputs = outputs.beside(output, test.files().count() > 1)?;
+    }
+    if output.is_some_and(|path| is_folder(path, test.files().count() > 1)) {
+        outputs = outputs.hashing();
     }
     options.say_if_idle(&test);
     let mut measured = {
