@@ -367,3 +367,18 @@ fn regress_a_name_that_ends_as_a_folder_is_no_file() {
         assert!(bench.path(&format!("{output}accelerance-1.csv")).is_file(), "{output}");
     }
 }
+
+#[test]
+fn regress_a_force_beyond_all_numbers_is_blamed_on_its_file() {
+    let bench = Bench::new();
+    bench.done("export model.json -o panel.fmu");
+    for force in ["1e308", "-1e308", "1e200", "1e30"] {
+        bench.write("force.csv", &changed(FORCE, "58.8", force));
+        for model in ["model.json", "panel.fmu"] {
+            for hold in ["", " --hold held"] {
+                let line = format!("simulate {model} --force-file force.csv{hold} -o out.csv");
+                refused(&bench, &line, 2, &["force.csv:3: force_n = ", "must be less than", " N"]);
+            }
+        }
+    }
+}
