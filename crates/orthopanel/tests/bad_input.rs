@@ -382,3 +382,18 @@ fn regress_a_force_beyond_all_numbers_is_blamed_on_its_file() {
         }
     }
 }
+
+#[test]
+fn regress_records_with_a_byte_order_mark_are_records() {
+    let bench = Bench::new();
+    let plain = bench.done("accelerance examples/made-hits --json");
+    for entry in std::fs::read_dir(bench.path("examples/made-hits")).expect("a folder") {
+        let path = entry.expect("an entry").path();
+        if path.extension().is_some_and(|extension| extension == "uff") {
+            let content = std::fs::read(&path).expect("a record");
+            std::fs::write(&path, [b"\xef\xbb\xbf", &content[..]].concat()).expect("written");
+        }
+    }
+    assert_eq!(bench.done("accelerance examples/made-hits --json"), plain);
+    refused(&bench, "modes examples/made-hits/point-0.uff", 2, &["a file of records, where a model file"]);
+}

@@ -487,7 +487,7 @@ fn regress_an_input_that_changes_while_it_is_read_is_no_input() {
     use std::io::Write as _;
 
     let bench = Bench::new();
-    accelerances(&bench, "pairs", &["a.csv", "b.csv"], 3);
+    accelerances(&bench, "pairs", &["a.csv", "b.csv"], 20_000);
     for (line, input) in [
         (format!("run {HITS} -o out"), HITS),
         ("accelerance pairs -o out".into(), "pairs/test.toml"),
@@ -500,6 +500,7 @@ fn regress_an_input_that_changes_while_it_is_read_is_no_input() {
         let mut process = process.stderr(std::process::Stdio::piped()).spawn().expect("the program starts");
         while process.try_wait().expect("a process").is_none() {
             file.write_all(b"# one line more\n").expect("written");
+            std::thread::sleep(std::time::Duration::from_micros(20));
         }
         let output = process.wait_with_output().expect("ended");
         let message = String::from_utf8_lossy(&output.stderr);
