@@ -397,3 +397,14 @@ fn regress_records_with_a_byte_order_mark_are_records() {
     assert_eq!(bench.done("accelerance examples/made-hits --json"), plain);
     refused(&bench, "modes examples/made-hits/point-0.uff", 2, &["a file of records, where a model file"]);
 }
+
+#[test]
+fn regress_a_standard_deviation_below_zero_is_none() {
+    for (std, said) in
+        [("-1e7", "constants.e_x.std = -"), ("-1e-9", "constants.e_x.std = -"), ("1e999", "out of range")]
+    {
+        model_refused("1.07e10", &format!("{{\"value\": 1.07e10, \"std\": {std}}}"), &[said]);
+    }
+    let effects = "\"effects\": [{\"id\": \"point-mass\", \"owner\": \"rig\", \"m\": {\"value\": 0.01, \"std\": -1}}]";
+    model_refused("\"ports\"", &format!("{effects}, \"ports\""), &["effects[0].m.std = -1", "zero or more"]);
+}
