@@ -121,7 +121,7 @@ fn regress_an_answer_is_not_appended_to_an_input() {
         ("simulate model.json --force-file force.csv", "force.csv"),
         ("simulate model.json --force-file link.csv", "force.csv"),
         ("simulate model.json --force-file force.csv", "model.json"),
-        ("simulate model.json --force-file examples/made-hits", "examples/made-hits/point-0.uff"),
+        ("simulate model.json --force-file examples/made-hits/test.toml", "examples/made-hits/point-0.uff"),
         ("modes model.json --json", "model.json"),
         ("identify test.toml", "test.toml"),
         ("trace examples/made-hits", "examples/made-hits/point-0.uff"),
