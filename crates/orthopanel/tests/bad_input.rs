@@ -363,7 +363,7 @@ fn regress_a_name_that_ends_as_a_folder_is_no_file() {
         let measured = "kind = \"accelerance\"\nfile = \"a.csv\"\nforce_at = [0.1, 0]\nresponse_at = [0.3, 0]\n";
         let pieces = TEST.split("[[measurement]]").next().unwrap_or_default();
         bench.write("examples/one/test.toml", &format!("{pieces}[[measurement]]\n{measured}"));
-        bench.done(&format!("accelerance {test} -o {output}"));
+        bench.done(&format!("accelerance {test}/test.toml -o {output}"));
         assert!(bench.path(&format!("{output}accelerance-1.csv")).is_file(), "{output}");
     }
 }
@@ -386,7 +386,7 @@ fn regress_a_force_beyond_all_numbers_is_blamed_on_its_file() {
 #[test]
 fn regress_records_with_a_byte_order_mark_are_records() {
     let bench = Bench::new();
-    let plain = bench.done("accelerance examples/made-hits --json");
+    let plain = bench.done("accelerance examples/made-hits/test.toml --json");
     for entry in std::fs::read_dir(bench.path("examples/made-hits")).expect("a folder") {
         let path = entry.expect("an entry").path();
         if path.extension().is_some_and(|extension| extension == "uff") {
@@ -394,7 +394,7 @@ fn regress_records_with_a_byte_order_mark_are_records() {
             std::fs::write(&path, [b"\xef\xbb\xbf", &content[..]].concat()).expect("written");
         }
     }
-    assert_eq!(bench.done("accelerance examples/made-hits --json"), plain);
+    assert_eq!(bench.done("accelerance examples/made-hits/test.toml --json"), plain);
     refused(&bench, "modes examples/made-hits/point-0.uff", 2, &["a file of records, where a model file"]);
 }
 

@@ -490,9 +490,9 @@ fn regress_an_input_that_changes_while_it_is_read_is_no_input() {
     accelerances(&bench, "pairs", &["a.csv", "b.csv"], 20_000);
     for (line, input) in [
         (format!("run {HITS} -o out"), HITS),
-        ("accelerance pairs -o out".into(), "pairs/test.toml"),
-        ("accelerance pairs -o out".into(), "pairs/b.csv"),
-        ("accelerance pairs -o h.csv".into(), "pairs/b.csv"),
+        ("accelerance pairs/test.toml -o out".into(), "pairs/test.toml"),
+        ("accelerance pairs/test.toml -o out".into(), "pairs/b.csv"),
+        ("accelerance pairs/test.toml -o h.csv".into(), "pairs/b.csv"),
     ] {
         let before = bench.listing();
         let mut file = std::fs::File::options().append(true).open(bench.path(input)).expect("an input");
