@@ -180,6 +180,14 @@ pub enum ModelError {
         /// Angular frequency of the mode \[rad/s\].
         angular_frequency: f64,
     },
+    /// A standard deviation that is none.
+    #[error("{name}.std = {}: must be a finite number, zero or more", Readable(*.value))]
+    Deviation {
+        /// What it is of, as the file has it.
+        name: String,
+        /// Its value.
+        value: f64,
+    },
     /// A number that is not finite where one is needed.
     #[error("{what} = {}: must be a finite number", Readable(*.value))]
     NotFinite {

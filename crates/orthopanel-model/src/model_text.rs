@@ -14,8 +14,8 @@ impl PanelModel {
     ///
     /// # Errors
     /// [`ModelError::ModelText`] where the text is not such a file (with line, key and what is wanted),
-    /// [`ModelError::MissingSchema`] and [`ModelError::Schema`] for no or another schema, and what
-    /// [`PanelModel::check`] finds.
+    /// [`ModelError::MissingSchema`] and [`ModelError::Schema`] for no or another schema, what [`PanelModel::check`] finds, and
+    /// [`ModelError::Deviation`].
     pub fn from_json(text: &str) -> Result<Self, ModelError> {
         #[derive(Deserialize)]
         struct SchemaOnly {
@@ -30,6 +30,7 @@ impl PanelModel {
         }
         let model: Self = read(text)?;
         model.check()?;
+        model.check_deviations()?;
         Ok(model)
     }
 

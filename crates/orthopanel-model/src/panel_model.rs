@@ -202,6 +202,20 @@ impl PanelModel {
         Ok(())
     }
 
+    /// Checks the standard deviations, which a file may give; a fit that tells none may leave what is no number.
+    pub(crate) fn check_deviations(&self) -> Result<(), ModelError> {
+        let of_constants = self.constants.iter().map(|(name, estimate)| (format!("constants.{name}"), estimate));
+        let of_effects = self.effects.iter().enumerate().flat_map(|(index, effect)| {
+            effect.parameters.iter().map(move |(name, estimate)| (format!("effects[{index}].{name}"), estimate))
+        });
+        for (name, Estimate { std, .. }) in of_constants.chain(of_effects) {
+            if let Some(value) = std.filter(|std| !(0.0..f64::INFINITY).contains(std)) {
+                return Err(ModelError::Deviation { name, value });
+            }
+        }
+        Ok(())
+    }
+
     /// The model without the effects of rig and measuring chain, which are no part of a panel, and the ids of these.
     ///
     /// # Errors

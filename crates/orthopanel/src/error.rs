@@ -12,7 +12,7 @@ use thiserror::Error;
 use crate::fmu_refusal::FmuRefusal;
 
 /// The data or the model says no.
-const SAYS_NO: u8 = 1;
+pub const SAYS_NO: u8 = 1;
 /// Bad usage or input.
 pub const BAD_INPUT: u8 = 2;
 
@@ -30,6 +30,10 @@ pub enum CommandError {
         if path == input { "read by this command".into() } else { format!("{}, which this command reads", input.display()) }
     )]
     OutputIsInput { path: PathBuf, input: PathBuf },
+    #[error("{}: changed while it was read: run again", .path.display())]
+    Changed { path: PathBuf },
+    #[error("standard output: it goes to {}, which this command reads: send it to another file", .input.display())]
+    InputIsAnswer { input: PathBuf },
     #[error("standard output: the answer could not be written whole: {0}")]
     Answer(std::io::Error),
     #[error(transparent)]

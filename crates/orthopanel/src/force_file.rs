@@ -2,6 +2,9 @@
 
 use orthopanel_model::Readable;
 
+/// No hammer or shaker has as much \[N\]; the motion under more is no number.
+const NO_FORCE: f64 = 1e30;
+
 /// Forces against time, as read: at least two samples, time rising, every number finite.
 pub struct ForceHistory {
     /// Time \[s\].
@@ -67,6 +70,10 @@ impl ForceHistory {
                     fault(line, format!("{name} = {found:?}: must be a finite number"))
                 })?;
                 match column.checked_sub(1) {
+                    Some(_) if value.abs() >= NO_FORCE => {
+                        let (value, most) = (Readable(value), Readable(NO_FORCE));
+                        return Err(fault(line, format!("{name} = {value}: must be less than {most} N")));
+                    }
                     Some(port) => history.forces[port].push(value),
                     None => history.push_time(value).map_err(|problem| fault(line, problem))?,
                 }

@@ -32,7 +32,7 @@ pub fn read(path: &Path) -> Result<PanelModel, CommandError> {
 pub fn planned_each(outputs: Outputs, path: Option<&Path>, test: &ImpactTest) -> Result<Outputs, CommandError> {
     let Some(path) = path else { return Ok(outputs) };
     let named = suffixes(test).map(|suffix| with_suffix(path, &suffix));
-    outputs.all_planned(named)?.beside(path, test.pieces.len() > 1)
+    outputs.beside(path, test.pieces.len() > 1)?.all_planned(named)
 }
 
 /// Writes one model a piece, as `with_suffix` names them, and says so on standard error.

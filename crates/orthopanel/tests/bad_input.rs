@@ -339,3 +339,72 @@ fn a_file_of_another_kind_is_called_by_its_name() {
         refused(&bench, line, 2, said);
     }
 }
+
+#[test]
+fn regress_a_name_that_ends_as_a_folder_is_no_file() {
+    let bench = Bench::new();
+    for line in [
+        "report test.toml",
+        "identify test.toml",
+        "trace test.toml",
+        "identify examples/pieces-3-4",
+        "trace examples/pieces-3-4",
+        "accelerance model.json --force 0 --response 0.1 --from 1 --to 9 --lines 3",
+        "simulate model.json --force-file force.csv",
+    ] {
+        for output in ["new/", "new//", "new/.", "examples/new/"] {
+            refused(&bench, &format!("{line} -o {output}"), 2, &["cannot be written", "folder", "name a file in it"]);
+        }
+    }
+    // Here a folder is as good as a file, whether the test has one pair of places or several.
+    for (test, output) in [("examples/one", "one/"), ("examples/made-hits", "several/")] {
+        std::fs::create_dir_all(bench.path("examples/one")).expect("a folder is made");
+        bench.write("examples/one/a.csv", "frequency_hz,real,imag\n1,2,3\n2,3,4\n3,4,5\n");
+        let measured = "kind = \"accelerance\"\nfile = \"a.csv\"\nforce_at = [0.1, 0]\nresponse_at = [0.3, 0]\n";
+        let pieces = TEST.split("[[measurement]]").next().unwrap_or_default();
+        bench.write("examples/one/test.toml", &format!("{pieces}[[measurement]]\n{measured}"));
+        bench.done(&format!("accelerance {test}/test.toml -o {output}"));
+        assert!(bench.path(&format!("{output}accelerance-1.csv")).is_file(), "{output}");
+    }
+}
+
+#[test]
+fn regress_a_force_beyond_all_numbers_is_blamed_on_its_file() {
+    let bench = Bench::new();
+    bench.done("export model.json -o panel.fmu");
+    for force in ["1e308", "-1e308", "1e200", "1e30"] {
+        bench.write("force.csv", &changed(FORCE, "58.8", force));
+        for model in ["model.json", "panel.fmu"] {
+            for hold in ["", " --hold held"] {
+                let line = format!("simulate {model} --force-file force.csv{hold} -o out.csv");
+                refused(&bench, &line, 2, &["force.csv:3: force_n = ", "must be less than", " N"]);
+            }
+        }
+    }
+}
+
+#[test]
+fn regress_records_with_a_byte_order_mark_are_records() {
+    let bench = Bench::new();
+    let plain = bench.done("accelerance examples/made-hits/test.toml --json");
+    for entry in std::fs::read_dir(bench.path("examples/made-hits")).expect("a folder") {
+        let path = entry.expect("an entry").path();
+        if path.extension().is_some_and(|extension| extension == "uff") {
+            let content = std::fs::read(&path).expect("a record");
+            std::fs::write(&path, [b"\xef\xbb\xbf", &content[..]].concat()).expect("written");
+        }
+    }
+    assert_eq!(bench.done("accelerance examples/made-hits/test.toml --json"), plain);
+    refused(&bench, "modes examples/made-hits/point-0.uff", 2, &["a file of records, where a model file"]);
+}
+
+#[test]
+fn regress_a_standard_deviation_below_zero_is_none() {
+    for (std, said) in
+        [("-1e7", "constants.e_x.std = -"), ("-1e-9", "constants.e_x.std = -"), ("1e999", "out of range")]
+    {
+        model_refused("1.07e10", &format!("{{\"value\": 1.07e10, \"std\": {std}}}"), &[said]);
+    }
+    let effects = "\"effects\": [{\"id\": \"point-mass\", \"owner\": \"rig\", \"m\": {\"value\": 0.01, \"std\": -1}}]";
+    model_refused("\"ports\"", &format!("{effects}, \"ports\""), &["effects[0].m.std = -1", "zero or more"]);
+}

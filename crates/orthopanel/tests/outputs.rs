@@ -458,3 +458,55 @@ fn a_command_killed_at_any_moment_leaves_every_result_whole() {
         assert!(contents(&bench.path("out")) == *whole);
     }
 }
+
+#[test]
+fn regress_a_run_without_a_model_leaves_the_results_of_an_earlier_one() {
+    let bench = Bench::new();
+    bench.done(&format!("run {HITS} -o out"));
+    let earlier = contents(&bench.path("out"));
+    let test = std::fs::read_to_string(bench.path(HITS)).expect("a test");
+    let length = test.lines().find(|line| line.starts_with("length = ")).expect("a length");
+    bench.write(HITS, &changed(&test, length, "length = 1.4"));
+    let output = bench.run(&format!("run {HITS} -o out"));
+    let message = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{message}");
+    assert_eq!(message.matches("note: out: the results in it are of an earlier run").count(), 1, "{message}");
+    assert!(!message.contains("wrote ") && !message.contains("removed "), "{message}");
+    assert!(contents(&bench.path("out")) == earlier);
+    // Where there are none, what the trace found is written.
+    let output = bench.run(&format!("run {HITS} -o new"));
+    let message = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{message}");
+    assert!(!message.contains("earlier run"), "{message}");
+    assert_eq!(names(&bench, "new"), ["manifest.json", "report.html", "trace.json"]);
+}
+
+/// An input that grows all the while: what the results are of is what the manifest lists, or there are none.
+#[test]
+fn regress_an_input_that_changes_while_it_is_read_is_no_input() {
+    use std::io::Write as _;
+
+    let bench = Bench::new();
+    accelerances(&bench, "pairs", &["a.csv", "b.csv"], 20_000);
+    for (line, input) in [
+        (format!("run {HITS} -o out"), HITS),
+        ("accelerance pairs/test.toml -o out".into(), "pairs/test.toml"),
+        ("accelerance pairs/test.toml -o out".into(), "pairs/b.csv"),
+        ("accelerance pairs/test.toml -o h.csv".into(), "pairs/b.csv"),
+    ] {
+        let before = bench.listing();
+        let mut file = std::fs::File::options().append(true).open(bench.path(input)).expect("an input");
+        let mut process = bench.command(&line);
+        let mut process = process.stderr(std::process::Stdio::piped()).spawn().expect("the program starts");
+        while process.try_wait().expect("a process").is_none() {
+            file.write_all(b"# one line more\n").expect("written");
+            std::thread::sleep(std::time::Duration::from_micros(20));
+        }
+        let output = process.wait_with_output().expect("ended");
+        let message = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{line}: {message}");
+        let name = input.rsplit('/').next().unwrap_or(input);
+        assert!(message.contains(&format!("{name}: changed while it was read: run again")), "{line}: {message}");
+        assert_eq!(bench.listing(), before, "{line} wrote something");
+    }
+}

@@ -77,6 +77,65 @@ fn shell(bench: &Bench, script: &str) -> Option<i32> {
     shell.stdout(std::process::Stdio::null()).stderr(std::process::Stdio::null()).status().expect("a shell").code()
 }
 
+/// An output that is a stream of the process: nothing is computed, and what the shell appends to keeps its lines.
+#[cfg(unix)]
+#[test]
+fn regress_an_output_that_is_an_open_stream_is_refused() {
+    let bench = Bench::new();
+    std::os::unix::fs::symlink("/dev/stdout", bench.path("link")).expect("linked");
+    let line = "\"$0\" identify examples/piece-1 -o";
+    for (output, streams) in [
+        ("/dev/stdout", ">> log 2> said"),
+        ("/dev/fd/1", ">> log 2> said"),
+        ("/proc/self/fd/1", ">> log 2> said"),
+        ("/dev/fd/../fd/1", ">> log 2> said"),
+        ("link", ">> log 2> said"),
+        ("log", ">> log 2> said"),
+        ("./examples/../log", ">> log 2> said"),
+        ("/dev/stderr", "2>> log"),
+        ("/dev/fd/2", "2>> log"),
+        ("log", "2>> log"),
+        ("/dev/stdout", "2> said | cat >> log"),
+    ] {
+        if output.starts_with("/proc") && !cfg!(target_os = "linux") {
+            continue;
+        }
+        bench.write("log", "old\n");
+        bench.write("said", "");
+        let status = shell(&bench, &format!("{line} {output} {streams}"));
+        assert!(status == Some(2) || streams.contains('|'), "{output} {streams}: {status:?}");
+        let [log, said] = ["log", "said"].map(|name| std::fs::read_to_string(bench.path(name)).expect("a file"));
+        let said = if streams.starts_with("2>>") { log.strip_prefix("old\n").unwrap_or_default() } else { &said };
+        assert!(log.starts_with("old\n"), "{output} {streams}: {log:?}");
+        assert!(said.contains("cannot be written: it is") && said.lines().count() == 1, "{output} {streams}: {said}");
+        assert!(streams.starts_with("2>>") || log == "old\n", "{output} {streams}: {log:?}");
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn regress_an_answer_is_not_appended_to_an_input() {
+    let bench = Bench::new();
+    std::os::unix::fs::symlink("force.csv", bench.path("link.csv")).expect("linked");
+    for (line, input) in [
+        ("simulate model.json --force-file force.csv", "force.csv"),
+        ("simulate model.json --force-file link.csv", "force.csv"),
+        ("simulate model.json --force-file force.csv", "model.json"),
+        ("simulate model.json --force-file examples/made-hits/test.toml", "examples/made-hits/point-0.uff"),
+        ("modes model.json --json", "model.json"),
+        ("identify test.toml", "test.toml"),
+        ("trace examples/made-hits", "examples/made-hits/point-0.uff"),
+        ("accelerance model.json --force 0 --response 0.1 --from 1 --to 9 --lines 3", "model.json"),
+    ] {
+        let before = std::fs::read(bench.path(input)).expect("an input");
+        let status = shell(&bench, &format!("\"$0\" {line} >> {input} 2> said"));
+        let said = std::fs::read_to_string(bench.path("said")).expect("a message");
+        assert_eq!(status, Some(2), "{line}: {said}");
+        assert!(said.contains("which this command reads") && said.lines().count() == 1, "{line}: {said}");
+        assert!(std::fs::read(bench.path(input)).expect("an input") == before, "{line}");
+    }
+}
+
 /// Searches of seconds, in lists and in records.
 #[cfg(unix)]
 const SEARCHES: [&str; 2] = ["trace examples/pieces-1-2/test.toml", "trace examples/made-hits/test.toml"];

@@ -68,7 +68,7 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
     }
     let path = &arguments.model;
     let inputs = arguments.libraries.iter().fold(Inputs::of(path), |inputs, (_, library)| inputs.and(library));
-    let mut outputs = Outputs::of(inputs).planned(&arguments.output)?;
+    let mut outputs = Outputs::of(inputs)?.planned(&arguments.output)?;
     let model = model_file::read(path)?;
     let ports = arguments.ports.needed(&model, path)?;
     let shown = progress::spinner("finding modes and making the FMU");

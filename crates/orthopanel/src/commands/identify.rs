@@ -6,7 +6,7 @@ use crate::error::CommandError;
 use crate::identified::Identified;
 use crate::outputs::{Inputs, Outputs};
 use crate::record_options::IdentifyOptions;
-use crate::{console, given_file, model_file};
+use crate::{console, model_file};
 
 /// Identify the elastic constants, and the damping where there are records, from a test
 ///
@@ -44,8 +44,8 @@ pub struct Arguments {
 
 pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
     let Arguments { test: path, output, options, json } = arguments;
-    let test = given_file::read_test(path)?;
-    let outputs = model_file::planned_each(Outputs::of(Inputs::of_test(path, &test)), output.as_deref(), &test)?;
+    let (inputs, test) = Inputs::reading_test(path)?;
+    let outputs = model_file::planned_each(Outputs::of(inputs)?, output.as_deref(), &test)?;
     let identified = Identified::from_test(&test, path, options)?;
     if let Some(output) = output {
         let models = identified.found.pieces.iter().zip(&identified.models);

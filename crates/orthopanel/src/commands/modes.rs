@@ -64,7 +64,7 @@ struct ModeEntry {
 const CORE: &str = "each mode at the storage modulus at its own frequency; zeta holds the core's loss there";
 
 pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
-    let mut outputs = Outputs::of(Inputs::of(&arguments.model)).all_planned(arguments.picture.clone())?;
+    let mut outputs = Outputs::of(Inputs::of(&arguments.model))?.all_planned(arguments.picture.clone())?;
     let model = model_file::read(&arguments.model)?;
     let modes = {
         let _shown = progress::spinner("finding the modes");

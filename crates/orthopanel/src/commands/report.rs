@@ -11,7 +11,7 @@ use crate::identified::Identified;
 use crate::outputs::{Inputs, Outputs};
 use crate::record_options::IdentifyOptions;
 use crate::traced::Traced;
-use crate::{console, given_file, report};
+use crate::{console, report};
 
 /// Write what a test shows onto one HTML page, which needs no network and nothing beside it
 ///
@@ -50,8 +50,8 @@ struct Answer<'a> {
 
 pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
     let Arguments { test: path, output, options, json } = arguments;
-    let test = given_file::read_test(path)?;
-    let outputs = Outputs::of(Inputs::of_test(path, &test));
+    let (inputs, test) = Inputs::reading_test(path)?;
+    let outputs = Outputs::of(inputs)?;
     let outputs = match output.parent().filter(|folder| !folder.as_os_str().is_empty()) {
         Some(folder) => outputs.making(folder),
         None => outputs,

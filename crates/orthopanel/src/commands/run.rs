@@ -11,16 +11,16 @@ use serde::Serialize;
 use crate::arguments::USUAL_MODES;
 use crate::contradicted::Contradicted;
 use crate::driving_force::DrivingForce;
-use crate::error::{CommandError, InFile as _};
+use crate::error::{CommandError, InFile as _, SAYS_NO};
 use crate::evidence::{Evidence, PieceEvidence};
 use crate::force_file::ForceHistory;
 use crate::identified::{Answer, Identified, suffixes};
 use crate::measured_pairs::{HitMisfit, misfit_table};
-use crate::outputs::{Inputs, Outputs};
+use crate::outputs::{self, Inputs, Outputs};
 use crate::record_options::IdentifyOptions;
 use crate::time_response::Hold;
 use crate::traced::Traced;
-use crate::{console, given_file, json, pictures, progress, report, time_response};
+use crate::{console, json, pictures, progress, report, time_response};
 
 /// Do all of it: identify the panel of a test, trace what its model lacks, export its FMUs, simulate a hit, draw the result
 ///
@@ -36,7 +36,8 @@ use crate::{console, given_file, json, pictures, progress, report, time_response
 ///
 /// A manifest.json lists the results, each with its SHA-256, and what they were made from. What it lists is removed by the
 /// next run into DIR that does not write it anew, unless it was changed since; no other file is, and none that is read. Where
-/// a run replaces a file that was changed since, or that no run wrote, it keeps that as NAME.edited.
+/// a run replaces a file that was changed since, or that no run wrote, it keeps that as NAME.edited. A run that ends
+/// with exit status 1 and no model leaves the results of an earlier one as they are.
 ///
 /// Of records, each pair of places gets a picture of the accelerance, measured and calculated, and one of a hit with
 /// the accelerations measured and calculated under it; time-histories.json tells how far the model is from every hit.
@@ -83,11 +84,25 @@ struct HitsAnswer<'a> {
 }
 
 pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
+    let holds_earlier = outputs::lists_results(&arguments.output.join(MANIFEST));
+    let done = make(arguments, holds_earlier);
+    if holds_earlier && done.as_ref().is_err_and(|refused| refused.exit_code() == SAYS_NO) {
+        let folder = arguments.output.display();
+        console::say(format_args!("note: {folder}: the results in it are of an earlier run, and stay as they are"));
+    }
+    done
+}
+
+fn make(arguments: &Arguments, holds_earlier: bool) -> Result<(), CommandError> {
     let Arguments { test: path, output, options, json } = arguments;
-    let test = given_file::read_test(path)?;
-    let mut files = Outputs::of(Inputs::of_test(path, &test)).filling(output, MANIFEST).planned_inside(names(&test))?;
+    let (inputs, test) = Inputs::reading_test(path)?;
+    let mut files = Outputs::of(inputs)?.filling(output, MANIFEST).planned_inside(names(&test))?;
     let identified = match Identified::from_test(&test, path, options) {
-        Err(refused) => return trace_alone(arguments, files, Contradicted::of(test, path, refused)?),
+        Err(refused) => {
+            let contradicted = Contradicted::of(test, path, refused)?;
+            let files = (contradicted.traced.explains() || !holds_earlier).then_some(files);
+            return trace_alone(arguments, files, contradicted);
+        }
         Ok(identified) => identified,
     };
     let traced = Traced::where_possible(&test, path);
@@ -163,18 +178,23 @@ fn names(test: &ImpactTest) -> Vec<String> {
     of_test.into_iter().chain(suffixes(test).flat_map(of_piece)).collect()
 }
 
-/// What there is of a test whose base model was refused.
-fn trace_alone(arguments: &Arguments, mut files: Outputs, contradicted: Contradicted) -> Result<(), CommandError> {
+/// What there is of a test whose base model was refused; `files` is `None` where results of an earlier run are to stay.
+fn trace_alone(arguments: &Arguments, files: Option<Outputs>, contradicted: Contradicted) -> Result<(), CommandError> {
     let Arguments { test: path, options, json, .. } = arguments;
     let Contradicted { test, traced, .. } = &contradicted;
-    files.add_inside("trace.json", json::line(&traced.tracing));
-    files.add_inside("report.html", contradicted.page(path, options)?);
-    if traced.explains() {
-        for (suffix, model) in suffixes(test).zip(&traced.applied_to(&traced.tracing.panels)) {
-            add_model(&mut files, path, &suffix, model)?;
+    let files = match files {
+        Some(mut files) => {
+            files.add_inside("trace.json", json::line(&traced.tracing));
+            files.add_inside("report.html", contradicted.page(path, options)?);
+            if traced.explains() {
+                for (suffix, model) in suffixes(test).zip(&traced.applied_to(&traced.tracing.panels)) {
+                    add_model(&mut files, path, &suffix, model)?;
+                }
+            }
+            written(files)?
         }
-    }
-    let files = written(files)?;
+        None => Vec::new(),
+    };
     if *json {
         let trace = Some(&traced.tracing);
         console::print_json(&RunAnswer {

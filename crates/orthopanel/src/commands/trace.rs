@@ -8,7 +8,7 @@ use crate::error::CommandError;
 use crate::identified::suffixes;
 use crate::outputs::{Inputs, Outputs};
 use crate::traced::Traced;
-use crate::{console, given_file, model_file};
+use crate::{console, model_file};
 
 /// Name the physical effect that the model of a test lacks
 ///
@@ -38,8 +38,8 @@ pub struct Arguments {
 
 pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
     let Arguments { test: path, output, json } = arguments;
-    let test = given_file::read_test(path)?;
-    let outputs = model_file::planned_each(Outputs::of(Inputs::of_test(path, &test)), output.as_deref(), &test)?;
+    let (inputs, test) = Inputs::reading_test(path)?;
+    let outputs = model_file::planned_each(Outputs::of(inputs)?, output.as_deref(), &test)?;
     let traced = Traced::from_test(&test).map_err(|source| CommandError::Identify { path: path.clone(), source })?;
     let written = match output {
         Some(output) => write_models(outputs, output, &test, path, &traced),

@@ -3,13 +3,17 @@
 use std::io::ErrorKind;
 use std::path::{Component, Path, PathBuf};
 
-use super::{Outputs, folder};
+use super::{Outputs, folder, streams};
 use crate::error::CommandError;
 
 impl Outputs {
     /// Where a file really goes: behind a link, the file it points to, whether that is there or not. What is there must be a file,
     /// since renaming onto a device or a pipe would take its place, and none that the command reads.
     pub(super) fn destination(&self, path: &Path) -> Result<PathBuf, CommandError> {
+        if let Some(stream) = streams::stream_at(path) {
+            let reason = format!("it is {stream}, and a file would take its place");
+            return Err(CommandError::Unwritable { path: path.into(), reason, kind: ErrorKind::Other });
+        }
         let there = match std::fs::metadata(path) {
             Ok(there) => there,
             Err(error) if error.kind() != ErrorKind::NotFound => return Err(CommandError::unwritable(path, &error)),
@@ -43,6 +47,20 @@ impl Outputs {
         }
         std::fs::canonicalize(path).map_err(|error| CommandError::unwritable(path, &error))
     }
+}
+
+/// Whether `path` ends as the name of a folder, by a separator or by one and a dot; both are forgotten by its components.
+pub fn ends_as_folder(path: &Path) -> bool {
+    let text = path.to_string_lossy();
+    text.strip_suffix('.').unwrap_or(&text).ends_with(std::path::is_separator)
+}
+
+pub(super) fn names_file(path: &Path) -> Result<(), CommandError> {
+    if ends_as_folder(path) {
+        let reason = "it ends as the name of a folder does".into();
+        return Err(CommandError::Unwritable { path: path.into(), reason, kind: ErrorKind::IsADirectory });
+    }
+    Ok(())
 }
 
 /// Whether a folder that is not there can be made, as far as names tell: below a folder, and not by way of one that is not there.

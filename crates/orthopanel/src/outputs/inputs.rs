@@ -2,36 +2,84 @@
 
 use std::path::{Path, PathBuf};
 
-use orthopanel_data::ImpactTest;
+use orthopanel_data::{ImpactTest, limits};
+
+use super::manifest::sha256_of;
+use crate::error::CommandError;
+use crate::given_file;
 
 /// All files that a command reads, each once.
 #[derive(Default)]
-pub struct Inputs(Vec<PathBuf>);
+pub struct Inputs(Vec<Input>);
+
+struct Input {
+    path: PathBuf,
+    /// Before it was read, where it was asked for.
+    sha256: Option<String>,
+}
 
 impl Inputs {
     pub fn of(path: &Path) -> Self {
-        Self(vec![path.into()])
+        Self::default().and(path)
     }
 
-    /// The test file at `path`, or in the folder there, and every file that it names.
-    pub fn of_test(path: &Path, test: &ImpactTest) -> Self {
-        test.files().fold(Self::of(&ImpactTest::file_at(path)), |inputs, file| inputs.and(file))
+    /// Reads the test at `path`, or in the folder there; the inputs are its file and every file that it names.
+    ///
+    /// # Errors
+    /// As [`given_file::read_test`].
+    pub fn reading_test(path: &Path) -> Result<(Self, ImpactTest), CommandError> {
+        let inputs = Self::of(&ImpactTest::file_at(path)).hashed();
+        let test = given_file::read_test(path)?;
+        let inputs = test.files().fold(inputs, Self::and);
+        Ok((inputs, test))
     }
 
     pub fn and(mut self, path: &Path) -> Self {
-        if !self.0.iter().any(|known| known == path) {
-            self.0.push(path.into());
+        if !self.paths().any(|known| known == path) {
+            self.0.push(Input { path: path.into(), sha256: None });
         }
         self
     }
 
     pub fn and_all(self, others: Self) -> Self {
-        others.0.iter().fold(self, |inputs, path| inputs.and(path))
+        others.0.into_iter().fold(self, |mut inputs, other| {
+            if !inputs.paths().any(|known| known == other.path) {
+                inputs.0.push(other);
+            }
+            inputs
+        })
     }
 
     /// As the command names them.
     pub fn paths(&self) -> impl Iterator<Item = &Path> {
-        self.0.iter().map(PathBuf::as_path)
+        self.0.iter().map(|input| input.path.as_path())
+    }
+
+    /// Takes the SHA-256 of each before it is read; what cannot be read is refused by its reader.
+    pub fn hashed(mut self) -> Self {
+        let is_read = |found: std::fs::Metadata| found.is_file() && found.len() <= limits::RECORD_FILE.most_bytes;
+        for input in self.0.iter_mut().filter(|input| input.sha256.is_none()) {
+            // Nothing that may never end.
+            if std::fs::metadata(&input.path).is_ok_and(is_read) {
+                input.sha256 = sha256_of(&input.path).ok();
+            }
+        }
+        self
+    }
+
+    /// Each with the SHA-256 of what was read.
+    ///
+    /// # Errors
+    /// [`CommandError::Changed`] where a file is another than before it was read, [`CommandError::Unreadable`].
+    pub fn unchanged(&self) -> Result<Vec<(&Path, String)>, CommandError> {
+        let unchanged = |Input { path, sha256: before }: &'_ Input| {
+            let now = sha256_of(path).map_err(|source| CommandError::Unreadable { path: path.clone(), source })?;
+            match before {
+                Some(before) if *before != now => Err(CommandError::Changed { path: path.clone() }),
+                _ => Ok(now),
+            }
+        };
+        self.0.iter().map(|input| Ok((input.path.as_path(), unchanged(input)?))).collect()
     }
 
     /// The input that lies at `path`, under whatever name: through links, hard links, and other spellings.

@@ -44,17 +44,14 @@ impl Manifest {
     /// Of the command under way.
     ///
     /// # Errors
-    /// [`CommandError::Unreadable`] for an input.
+    /// As [`Inputs::unchanged`].
     pub fn new(inputs: &Inputs, files: Vec<Listed>, replacing: Vec<Listed>) -> Result<Self, CommandError> {
-        let input = |path: &Path| {
-            let sha256 = sha256_of(path).map_err(|source| CommandError::Unreadable { path: path.into(), source })?;
-            Ok(Listed { file: path.to_string_lossy().into_owned(), sha256 })
-        };
+        let listed = |(path, sha256): (&Path, String)| Listed { file: path.to_string_lossy().into_owned(), sha256 };
         Ok(Self {
             schema: SCHEMA,
             command: std::env::args_os().skip(1).map(|word| word.to_string_lossy().into_owned()).collect(),
             version: env!("CARGO_PKG_VERSION"),
-            inputs: inputs.paths().map(input).collect::<Result<_, CommandError>>()?,
+            inputs: inputs.unchanged()?.into_iter().map(listed).collect(),
             files,
             replacing,
         })

@@ -11,6 +11,7 @@ mod inputs;
 mod listing;
 mod manifest;
 mod replacement;
+mod streams;
 
 use std::ffi::OsString;
 use std::io::ErrorKind;
@@ -18,6 +19,7 @@ use std::path::{Path, PathBuf};
 
 use crate::console;
 use crate::error::CommandError;
+pub use destination::ends_as_folder;
 use destination::{made, makeable, unmade};
 pub use inputs::Inputs;
 use listing::Listing;
@@ -36,8 +38,14 @@ pub struct Outputs {
 
 impl Outputs {
     /// Of a command that reads `inputs`.
-    pub fn of(inputs: Inputs) -> Self {
-        Self { inputs, folder: None, manifest: None, extension: None, files: Vec::new() }
+    ///
+    /// # Errors
+    /// [`CommandError::InputIsAnswer`] where standard output goes to one of them.
+    pub fn of(inputs: Inputs) -> Result<Self, CommandError> {
+        if let Some(input) = streams::fed_by_stdout(inputs.paths()) {
+            return Err(CommandError::InputIsAnswer { input: input.into() });
+        }
+        Ok(Self { inputs, folder: None, manifest: None, extension: None, files: Vec::new() })
     }
 
     /// `folder` is to be made where it is not there.
@@ -47,7 +55,12 @@ impl Outputs {
 
     /// The results fill `folder`, made where it is not there, and a manifest of that name lists them.
     pub fn filling(self, folder: &Path, manifest: &'static str) -> Self {
-        Self { folder: Some(folder.into()), manifest: Some(folder.join(manifest)), ..self }
+        Self { folder: Some(folder.into()), manifest: Some(folder.join(manifest)), ..self }.hashing()
+    }
+
+    /// The inputs are to be read, and a manifest may list them.
+    pub fn hashing(self) -> Self {
+        Self { inputs: self.inputs.hashed(), ..self }
     }
 
     /// The results are called as `output`, with a suffix each where they are `several`; then `STEM-manifest.json` lists them, and
@@ -56,11 +69,13 @@ impl Outputs {
     /// # Errors
     /// As [`Outputs::planned`], of the manifest.
     pub fn beside(self, output: &Path, several: bool) -> Result<Self, CommandError> {
+        destination::names_file(output)?;
         let manifest = with_suffix(output, "-manifest").with_extension("json");
         let is_used = several || manifest::listed(&manifest).is_ok_and(|listed| !listed.is_empty());
         let extension = Some(output.extension().unwrap_or_default().into());
         let manifest = is_used.then_some(manifest);
-        Self { manifest: manifest.clone(), extension, ..self }.all_planned(manifest)
+        let outputs = if is_used { self.hashing() } else { self };
+        Self { manifest: manifest.clone(), extension, ..outputs }.all_planned(manifest)
     }
 
     /// Names an output that may be written later.
@@ -76,6 +91,7 @@ impl Outputs {
             }
             _ => {}
         }
+        destination::names_file(path)?;
         let destination = self.destination(path)?;
         if self.folder.as_ref().is_none_or(|own| own.exists()) {
             std::fs::metadata(folder::of(&destination)).map_err(|error| CommandError::unwritable(path, &error))?;
@@ -159,6 +175,12 @@ impl Outputs {
     }
 }
 
+/// Whether the manifest at `path` lists results that are still there.
+pub fn lists_results(path: &Path) -> bool {
+    let is_there = |name: &str| path.with_file_name(name).is_file();
+    manifest::listed(path).is_ok_and(|listed| listed.iter().filter_map(manifest::Listed::plain_name).any(is_there))
+}
+
 /// `folder/stem.extension` as `folder/stem{suffix}.extension`.
 pub fn with_suffix(path: &Path, suffix: &str) -> PathBuf {
     if suffix.is_empty() {
@@ -174,7 +196,7 @@ mod tests {
     use super::*;
 
     fn write(path: &Path, content: &str) -> Result<Vec<PathBuf>, CommandError> {
-        let mut outputs = Outputs::of(Inputs::default());
+        let mut outputs = Outputs::of(Inputs::default()).expect("no inputs");
         outputs.add(path, content);
         outputs.write()
     }
@@ -192,7 +214,7 @@ mod tests {
         assert!(matches!(write(home.path(), "x"), Err(CommandError::Unwritable { .. })));
         assert!(matches!(write(Path::new("/dev/null"), "x"), Err(CommandError::Unwritable { .. })));
         // Two results behind links to one file: the second would take the place of the first.
-        let mut outputs = Outputs::of(Inputs::default());
+        let mut outputs = Outputs::of(Inputs::default()).expect("no inputs");
         outputs.add(&link, "one");
         outputs.add(&real, "two");
         assert!(matches!(outputs.write(), Err(CommandError::Unwritable { .. })));
@@ -218,7 +240,7 @@ mod tests {
         let home = tempfile::tempdir().expect("a temporary folder");
         std::fs::create_dir(home.path().join("out")).expect("made");
         std::fs::write(home.path().join("out/old"), "").expect("written");
-        let outputs = Outputs::of(Inputs::default());
+        let outputs = Outputs::of(Inputs::default()).expect("no inputs");
         let folder = |name: &str| {
             let destination = outputs.destination(&home.path().join("out/../out").join(name)).expect("writable");
             folder::of(&destination).to_path_buf()
@@ -230,7 +252,7 @@ mod tests {
     fn files_are_written_all_or_none() {
         let home = tempfile::tempdir().expect("a temporary folder");
         let folder = home.path().join("deep/out");
-        let mut outputs = Outputs::of(Inputs::default()).making(&folder);
+        let mut outputs = Outputs::of(Inputs::default()).expect("no inputs").making(&folder);
         outputs.add_inside("first", "1");
         outputs.add_inside("no-such-folder/second", "2");
         assert!(matches!(outputs.write(), Err(CommandError::Unwritable { .. })));
@@ -246,7 +268,7 @@ mod tests {
     /// Results full of one letter; `a` has one more than `b`.
     #[cfg(unix)]
     fn replace_by(letter: char, folder: &Path) -> Result<Vec<PathBuf>, CommandError> {
-        let mut outputs = Outputs::of(Inputs::default()).filling(folder, "manifest.json");
+        let mut outputs = Outputs::of(Inputs::default()).expect("no inputs").filling(folder, "manifest.json");
         for number in 0..RESULTS + usize::from(letter == 'a') {
             outputs.add_inside(&format!("result-{number}"), letter.to_string().repeat(5000 + number));
         }

@@ -44,6 +44,9 @@ impl<'a> Line<'a> {
     }
 }
 
+/// Some editors put it before a text.
+pub(super) const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
+
 /// The mark as the definition has it, in format I6.
 const MARK: &[u8] = b"    -1";
 
@@ -78,8 +81,10 @@ pub(super) fn begins_with_mark(bytes: &[u8]) -> bool {
 }
 
 impl<'a> Cursor<'a> {
+    /// At the beginning, after a byte order mark; bytes are counted with it.
     pub(super) fn new(bytes: &'a [u8], path: &'a Path) -> Self {
-        Self { bytes, path, position: 0 }
+        let position = if bytes.starts_with(BYTE_ORDER_MARK) { BYTE_ORDER_MARK.len() } else { 0 };
+        Self { bytes, path, position }
     }
 
     pub(super) fn position(&self) -> usize {

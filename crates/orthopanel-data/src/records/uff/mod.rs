@@ -21,6 +21,7 @@ use header::{Encoding, Header};
 pub(super) const FORMAT: Format = Format {
     name: "universal file (-1, then 58 or 58b)",
     recognises: |bytes| {
+        let bytes = bytes.strip_prefix(cursor::BYTE_ORDER_MARK).unwrap_or(bytes);
         let first = bytes.split(|&byte| byte == b'\n').find(|line| !line.trim_ascii().is_empty());
         first.is_some_and(cursor::is_mark)
     },

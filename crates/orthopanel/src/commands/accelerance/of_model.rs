@@ -78,7 +78,7 @@ pub fn execute(path: &Path, grid: &Grid, output: Option<&Path>, json: bool) -> R
         let remedy = format!("must lie above --from {}, or be the same for a single line", Readable(from));
         return Err(CommandError::Option { option: "to", value: Readable(to).to_string(), remedy });
     }
-    let mut outputs = Outputs::of(Inputs::of(path)).all_planned(output.map(Path::to_path_buf))?;
+    let mut outputs = Outputs::of(Inputs::of(path))?.all_planned(output.map(Path::to_path_buf))?;
     let model = model_file::read(path)?;
     on_piece(&model, "force", &[force])?;
     on_piece(&model, "response", &[response])?;

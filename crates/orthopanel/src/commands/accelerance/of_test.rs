@@ -8,9 +8,9 @@ use serde::Serialize;
 
 use crate::error::CommandError;
 use crate::measured_pairs::{ToldHit, place_text, told};
-use crate::outputs::{Inputs, Outputs, with_suffix};
+use crate::outputs::{Inputs, Outputs, ends_as_folder, with_suffix};
 use crate::record_options::EstimationOptions;
-use crate::{console, csv_text, given_file, notes, progress, tables};
+use crate::{console, csv_text, notes, progress, tables};
 
 /// Not that of `run`, whose results may lie in the same folder.
 const MANIFEST: &str = "accelerance-manifest.json";
@@ -45,14 +45,19 @@ pub fn execute(
     json: bool,
 ) -> Result<(), CommandError> {
     let estimation = options.estimation(Window::None)?;
-    let test = given_file::read_test(path)?;
-    let mut outputs = Outputs::of(Inputs::of_test(path, &test)).all_planned(output.iter().flat_map(|&output| {
+    let (inputs, test) = Inputs::reading_test(path)?;
+    let mut outputs = Outputs::of(inputs)?.all_planned(output.iter().flat_map(|&output| {
         // Into a folder that is not there goes nothing that is.
         let files = if is_folder(output, true) && !output.is_dir() { 0 } else { test.files().count() };
-        (0..files).map(move |index| named(output, true, index)).chain([named(output, false, 0)])
+        let is_new_folder = ends_as_folder(output) && !output.is_dir();
+        let single = if is_new_folder { output.components().collect() } else { named(output, false, 0) };
+        (0..files).map(move |index| named(output, true, index)).chain([single])
     }))?;
     if let Some(output) = output.filter(|path| !is_folder(path, true)) {
         outputs = outputs.beside(output, test.files().count() > 1)?;
+    }
+    if output.is_some_and(|path| is_folder(path, test.files().count() > 1)) {
+        outputs = outputs.hashing();
     }
     options.say_if_idle(&test);
     let mut measured = {
@@ -99,10 +104,10 @@ pub fn execute(
     }
 }
 
-/// Whether `output` is the name of a folder: it is there as one, or there are several files and it is not that of a CSV.
+/// Whether `output` is the name of a folder: it is there as one, ends in a separator, or there are several files and it is not that of a CSV.
 fn is_folder(output: &Path, several: bool) -> bool {
     let is_csv = output.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("csv"));
-    output.is_dir() || (several && !is_csv)
+    output.is_dir() || ends_as_folder(output) || (several && !is_csv)
 }
 
 fn named(output: &Path, several: bool, index: usize) -> PathBuf {

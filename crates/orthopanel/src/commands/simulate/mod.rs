@@ -114,12 +114,13 @@ struct ResponseEntry<'a> {
 
 pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
     let (inputs, force_file) = (Inputs::of(&arguments.model), &arguments.force_file);
-    let test = is_test_file(force_file).then(|| given_file::read_test(force_file)).transpose()?;
-    let inputs = match &test {
-        Some(test) => inputs.and_all(Inputs::of_test(force_file, test)),
-        None => inputs.and(force_file),
+    let (inputs, test) = if is_test_file(force_file) {
+        let (of_test, test) = Inputs::reading_test(force_file)?;
+        (inputs.and_all(of_test), Some(test))
+    } else {
+        (inputs.and(force_file), None)
     };
-    let mut outputs = Outputs::of(inputs).all_planned(arguments.output.clone())?;
+    let mut outputs = Outputs::of(inputs)?.all_planned(arguments.output.clone())?;
     if test.is_some() || on_records::is_measured(force_file)? {
         return on_records::execute(arguments, test.as_ref(), outputs);
     }
