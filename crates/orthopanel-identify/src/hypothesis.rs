@@ -78,6 +78,16 @@ impl Slot {
     }
 }
 
+/// The values of some slots, whose coordinates stand first in `z`.
+fn values(slots: &[Slot], z: &[f64]) -> Vec<f64> {
+    let mut z = z.iter();
+    let value = |slot: &Slot| match slot {
+        Slot::Held(value) => *value,
+        Slot::Free(coordinate) => coordinate.value(z.next().copied().unwrap_or(0.0)),
+    };
+    slots.iter().map(value).collect()
+}
+
 /// An effect in one of the ways in which it may act: a mass added or one that is missing, the gain of this record or of that.
 #[derive(Clone)]
 pub(crate) struct Part {
@@ -133,22 +143,12 @@ impl Part {
 
     /// The values at these coordinates.
     pub(crate) fn values(&self, z: &[f64]) -> Vec<f64> {
-        let mut z = z.iter();
-        let value = |slot: &Slot| match slot {
-            Slot::Held(value) => *value,
-            Slot::Free(coordinate) => coordinate.value(z.next().copied().unwrap_or(0.0)),
-        };
-        self.slots.iter().map(value).collect()
+        values(&self.slots, z)
     }
 
-    /// Of each value, its derivative by the coordinate it follows.
-    pub(crate) fn slopes(&self, z: &[f64]) -> Vec<Option<f64>> {
-        let mut z = z.iter();
-        let slope = |slot: &Slot| match slot {
-            Slot::Held(_) => None,
-            Slot::Free(coordinate) => Some(coordinate.slope(z.next().copied().unwrap_or(0.0))),
-        };
-        self.slots.iter().map(slope).collect()
+    /// Of each coordinate, the derivative of the value that follows it.
+    pub(crate) fn slopes(&self, z: &[f64]) -> Vec<f64> {
+        self.coordinates().zip(z).map(|(coordinate, z)| coordinate.slope(*z)).collect()
     }
 
     /// Which places of a record a coordinate moves, of the response or else of the force; `None` where it does more than that.
@@ -259,7 +259,7 @@ impl Hypothesis {
     }
 
     pub(crate) fn free_constants(&self) -> usize {
-        self.constants.iter().filter(|slot| matches!(slot, Slot::Free(_))).count()
+        self.constants.iter().filter_map(Slot::coordinate).count()
     }
 
     /// Undeclared effects.
@@ -268,12 +268,7 @@ impl Hypothesis {
     }
 
     pub(crate) fn constants(&self, z: &[f64]) -> Vec<f64> {
-        let mut z = z.iter();
-        let value = |slot: &Slot| match slot {
-            Slot::Held(value) => *value,
-            Slot::Free(coordinate) => coordinate.value(z.next().copied().unwrap_or(0.0)),
-        };
-        self.constants.iter().map(value).collect()
+        values(&self.constants, z)
     }
 
     /// The coordinates of each part, in order.

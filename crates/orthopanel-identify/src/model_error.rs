@@ -9,7 +9,7 @@ use num_complex::Complex64;
 use orthopanel_model::{Field, ModelError};
 
 use crate::comparison::Comparison;
-use crate::predicted::{Prediction, Predictor};
+use crate::predicted::{Prediction, Predictor, distinct};
 
 /// A kind of model error.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -113,7 +113,7 @@ pub(crate) fn waves(predictor: &Predictor, constants: &[f64]) -> Result<Waves, M
 }
 
 impl ErrorColumns {
-    /// About a prediction; `uneven` as [`waves`] finds them.
+    /// About a prediction; `waves` as [`waves()`] finds them.
     pub(crate) fn about(comparison: &Comparison, at: &Prediction, waves: &Waves) -> Self {
         let mut columns: Vec<(usize, Vec<(usize, f64)>)> = Vec::new();
         let measured = comparison.measured;
@@ -163,26 +163,19 @@ impl ErrorColumns {
             (kind as usize, range.map(|place| (place, from[place])).collect::<Vec<_>>())
         };
         for record in 0..measured.records.len() {
-            let range = comparison.residue_place(record, 0)..comparison.residue_place(record + 1, 0).min(unseen);
+            let range = comparison.block_of(record);
             columns.push(dense(Kind::ForcePlace, &at.by_force, range.clone()));
             columns.push(dense(Kind::RecordGain, &at.values, range));
         }
-        let range = || 0..unseen;
-        columns.extend(waves.iter().map(|(kind, wave)| (*kind, range().map(|place| (place, wave[place])).collect())));
+        columns
+            .extend(waves.iter().map(|(kind, wave)| (*kind, wave.iter().copied().enumerate().take(unseen).collect())));
         if !measured.records.is_empty() {
             let residues = comparison.residue_place(0, 0)..unseen;
             columns.push(dense(Kind::Gain, &at.values, residues));
-            let mut places = Vec::new();
-            for record in &measured.records {
-                if !places.contains(&record.response_at) {
-                    places.push(record.response_at);
-                }
-            }
-            for own in places {
+            for own in distinct(measured.records.iter().map(|record| record.response_at)) {
                 let mut column = vec![0.0; comparison.size()];
                 for (number, _) in measured.records.iter().enumerate().filter(|(_, record)| record.response_at == own) {
-                    let range =
-                        comparison.residue_place(number, 0)..comparison.residue_place(number + 1, 0).min(unseen);
+                    let range = comparison.block_of(number);
                     column[range.clone()].copy_from_slice(&at.by_response[range]);
                 }
                 columns.push(dense(Kind::ResponsePlace, &column, 0..unseen));

@@ -169,8 +169,7 @@ impl Problem<'_> {
         let mut columns: Vec<Option<Vec<f64>>> = vec![None; self.hypothesis.free_constants()];
         let measured = self.predictor.comparison.measured;
         for (part, z) in self.hypothesis.parts.iter().zip(self.hypothesis.of_parts(z)) {
-            let slopes: Vec<f64> = part.slopes(z).into_iter().flatten().collect();
-            for (number, slope) in slopes.iter().enumerate() {
+            for (number, slope) in part.slopes(z).iter().enumerate() {
                 let mut column = vec![0.0; at.values.len()];
                 let mut places_alone = true;
                 for record in 0..measured.records.len() {
@@ -309,17 +308,16 @@ impl Problem<'_> {
     /// Parameters and sizes of model error in turn, then the marginal likelihood by Laplace's approximation over both.
     pub(crate) fn posterior(&self, from: Vec<f64>, mut log_sizes: [f64; KINDS], rounds: usize) -> Option<Posterior> {
         let mut z = from;
+        let mut errors = self.errors(&self.with_slopes(&z).ok()?);
         let mut last = f64::INFINITY;
         for round in 0..rounds {
-            let at = self.with_slopes(&z).ok()?;
-            let errors = self.errors(&at);
             let by = self.whitening(&errors, &log_sizes)?;
             let point = self.point(z, &by)?;
             // A few steps before the sizes are what they are to be.
             let (point, _) = self.follow(point, &by, if round == 0 { 3 } else { 8 }, 0.05)?;
             z = point.z;
             let at = self.with_slopes(&z).ok()?;
-            let errors = self.errors(&at);
+            errors = self.errors(&at);
             let (next, _, cost) = self.sizes(&at, &errors, log_sizes, 6)?;
             log_sizes = next;
             let value = cost - self.hypothesis.log_prior(&z);
@@ -328,8 +326,6 @@ impl Problem<'_> {
             }
             last = value;
         }
-        let at = self.with_slopes(&z).ok()?;
-        let errors = self.errors(&at);
         let by = self.whitening(&errors, &log_sizes)?;
         let (point, curvature) = self.follow(self.point(z, &by)?, &by, 3, 0.01)?;
         let at = self.at(&point.z).ok()?;

@@ -87,12 +87,7 @@ impl<'a> Predictor<'a> {
     ) -> Result<Self, ModelError> {
         let measured = comparison.measured;
         let panel = ModifiedPanel::new(structure, setting, measured.poles.len() + SPARE)?;
-        let mut places: Vec<Place> = Vec::new();
-        for place in measured.records.iter().flat_map(|record| [record.force_at, record.response_at]) {
-            if !places.contains(&place) {
-                places.push(place);
-            }
-        }
+        let places = distinct(measured.records.iter().flat_map(|record| [record.force_at, record.response_at]));
         Ok(Self { comparison, panel, setting: setting.clone(), places, found: Mutex::default() })
     }
 
@@ -194,12 +189,8 @@ impl<'a> Predictor<'a> {
             if modes.iter().any(|(of, ..)| *of == own) {
                 continue;
             }
-            let mut ports: Vec<Place> = Vec::new();
-            for place in places.iter().filter(|places| own.is_none_or(|own| places[1] == own)).flatten() {
-                if !ports.contains(place) {
-                    ports.push(*place);
-                }
-            }
+            let ports =
+                distinct(places.iter().filter(|places| own.is_none_or(|own| places[1] == own)).flatten().copied());
             let mut setting = self.setting(record);
             setting.record.response_at = setting.record.response_at.map(|_| *response);
             let seen = self.modes(&setting, &ports, with_slopes, constants, effects)?;
@@ -332,6 +323,17 @@ impl<'a> Predictor<'a> {
         let hangs = partners.iter().map(|partner| partner.is_some_and(|n| self.hangs(n))).collect();
         Prediction { values, by_force, by_response, phase, brings, hangs, near_hanging }
     }
+}
+
+/// Each place once, in the order in which they come.
+pub(crate) fn distinct(all: impl Iterator<Item = Place>) -> Vec<Place> {
+    let mut places: Vec<Place> = Vec::new();
+    for place in all {
+        if !places.contains(&place) {
+            places.push(place);
+        }
+    }
+    places
 }
 
 /// Modes as records see them.
