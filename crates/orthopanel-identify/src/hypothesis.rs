@@ -175,30 +175,37 @@ impl Part {
         self.effect.act(&values, &predictor.setting(record)).ok()?.into_iter().map(shift).collect()
     }
 
-    /// Where a search begins: a net over the prior, the finer the fewer the coordinates; `resonances` \[Hz\] are those of the data.
-    pub(crate) fn starts(&self, resonances: &[f64]) -> Vec<Vec<f64>> {
+    /// Where a search begins: a net over the prior, the finer the fewer the coordinates. What vibrates by itself at a place begins where the
+    /// panel with it has a mode at each of the measured frequencies, as `tuned(mass, x)` finds them \[Hz\].
+    pub(crate) fn starts(&self, tuned: impl Fn(f64, f64) -> Vec<f64>) -> Vec<Vec<f64>> {
         let count = self.free();
-        let has_place = self.coordinates().any(|coordinate| matches!(coordinate.map, Map::Even { .. }));
+        let unit = |number: usize| self.effect.parameters().get(number).map_or("", |parameter| parameter.unit);
         let mut starts: Vec<Vec<f64>> = vec![vec![]];
-        let mut index = 0;
+        let mut units = Vec::new();
         for (number, slot) in self.slots.iter().enumerate() {
             let Slot::Free(coordinate) = slot else { continue };
-            let unit = self.effect.parameters().get(number).map_or("", |parameter| parameter.unit);
             let net: Vec<f64> = match coordinate.map {
                 Map::Even { .. } => even_net(PLACES, 0.95),
-                // A frequency of its own is that of a resonance, or a little beside it.
-                Map::Size { .. } if unit == "Hz" && has_place => resonances
-                    .iter()
-                    .flat_map(|f| [coordinate.of_value(0.985 * f), coordinate.of_value(1.01 * f)])
-                    .collect(),
                 Map::Size { .. } if count == 1 => even_net(9, 2.0),
-                Map::Size { .. } if index == 0 => vec![-0.8, 0.8],
+                Map::Size { .. } if units.is_empty() => vec![-0.8, 0.8],
                 Map::Size { .. } | Map::Gaussian { .. } => vec![0.0],
             };
-            index += 1;
+            units.push(unit(number));
             starts = starts.iter().flat_map(|start| net.iter().map(|z| [&start[..], &[*z]].concat())).collect();
         }
-        starts
+        let of = |wanted: &str| units.iter().position(|unit| *unit == wanted);
+        let (Some(mass), Some(frequency), Some(x)) = (of("kg"), of("Hz"), of("m")) else { return starts };
+        let coordinates: Vec<&Coordinate> = self.coordinates().collect();
+        let tune = |start: Vec<f64>| {
+            let [mass, x] = [mass, x].map(|number| coordinates[number].value(start[number]));
+            let at = |hertz: f64| {
+                let mut start = start.clone();
+                start[frequency] = coordinates[frequency].of_value(hertz);
+                start
+            };
+            tuned(mass, x).into_iter().map(at).collect::<Vec<_>>()
+        };
+        starts.into_iter().flat_map(tune).collect()
     }
 }
 
@@ -252,6 +259,14 @@ impl Hypothesis {
         let mut more = self.clone();
         more.parts.push(part);
         more
+    }
+
+    /// Without one of its parts, and the coordinates that remain.
+    pub(crate) fn without(&self, part: usize, z: &[f64]) -> (Self, Vec<f64>) {
+        let mut fewer = self.clone();
+        fewer.parts.remove(part);
+        let before = self.free_constants() + self.parts[..part].iter().map(Part::free).sum::<usize>();
+        (fewer, [&z[..before], &z[before + self.parts[part].free()..]].concat())
     }
 
     fn coordinates(&self) -> impl Iterator<Item = &Coordinate> {

@@ -126,7 +126,7 @@ impl Inference {
     fn of(all: &[Judged]) -> Option<Self> {
         let (chosen, finding, rivals) = judged(all)?;
         let hypothesis = &chosen.hypothesis;
-        let values = hypothesis.values_with_deviations(&chosen.posterior.z, &chosen.posterior.covariance);
+        let values = hypothesis.values_with_deviations(&chosen.posterior.point.z, &chosen.posterior.covariance);
         let mut values = values.into_iter();
         let constants = BEAM_CONSTANTS.iter().zip(values.by_ref());
         let constants = constants

@@ -20,6 +20,8 @@ pub(crate) enum Kind {
     Residue,
     /// The same in quadrature: small, for delays and filters show there.
     Quadrature,
+    /// Of the damping between two modes, over the geometric mean of their own: without it modes are real.
+    Coupling,
     /// Of the place of each record's hits \[m\].
     ForcePlace,
     /// Of the gain of each record.
@@ -44,15 +46,16 @@ pub(crate) enum Kind {
 }
 
 /// Median of a kind's size before any test, and the factor within which two of three lie.
-const PRIORS: [(Kind, f64, f64); 13] = [
+const PRIORS: [(Kind, f64, f64); 14] = [
     (Kind::Frequency, 5e-4, 4.0),
     (Kind::Residue, 3e-3, 4.0),
     (Kind::Quadrature, 1e-3, 4.0),
+    (Kind::Coupling, 3e-2, 5.0),
     (Kind::ForcePlace, 8e-4, 1.6),
     (Kind::RecordGain, 3e-3, 1.6),
     (Kind::Core, 1e-2, 2.0),
-    (Kind::ResponsePlace, 4e-4, 1.6),
-    (Kind::Gain, 3e-3, 1.6),
+    (Kind::ResponsePlace, 4e-4, 1.3),
+    (Kind::Gain, 3e-3, 1.3),
     (Kind::ShortCore, 4e-3, 3.0),
     (Kind::Faces, 3e-3, 2.2),
     (Kind::Mass, 2e-3, 2.2),
@@ -63,6 +66,8 @@ const PRIORS: [(Kind, f64, f64); 13] = [
 pub(crate) const KINDS: usize = PRIORS.len();
 /// The frequency of a motion of the piece as a whole on its suspension is predicted so many times worse.
 const HANGING: f64 = 10.0;
+/// Deviation of the logarithm of a faint pole's frequency.
+const FAINT_FREQUENCY: f64 = 0.05;
 /// Part of an error of a remainder that is in quadrature.
 const QUADRATURE: f64 = 0.3;
 /// Waves of unevenness, and how many of the core's are long: cells are stretched, and adhesive is spread, alike over 40 mm to the length.
@@ -75,8 +80,10 @@ pub(crate) struct ErrorColumns {
     pub columns: Mat<f64>,
     /// Of each column its kind, as a number below [`KINDS`].
     pub kinds: Vec<usize>,
-    /// Values that tell no more than their size, with their variance.
+    /// Values that tell no more than their size, with their variance: near motions of the piece as a whole and of faint poles,
     untold: Vec<(usize, f64)>,
+    /// and residues of poles that are no modes of the model, which may be false.
+    alone: Vec<(usize, f64)>,
 }
 
 /// $\ln\tau_k$ of every kind at its median.
@@ -110,6 +117,50 @@ pub(crate) fn waves(predictor: &Predictor, constants: &[f64]) -> Result<Waves, M
         }
     }
     Ok(waves)
+}
+
+/// What damping between two modes of each pair does, to first order. With $c_{nm}$ the damping matrix in the real modes $\phi$,
+/// $$\delta\psi_n = \frac{\lambda_nc_{nm}}{\lambda_n^2-\lambda_m\bar\lambda_m}\phi_m\ ,\qquad
+/// \delta H(s) = -\frac{c_{nm}s^3}{D_n(s)D_m(s)}(\phi_n\phi_m^T+\phi_m\phi_n^T)\ ,$$
+/// which is small below the band: what the residues there gain, the remainder loses.
+fn couplings(comparison: &Comparison, at: &Prediction) -> Vec<(usize, Vec<(usize, f64)>)> {
+    let measured = comparison.measured;
+    let pole = |n: usize| at.partners.iter().find_map(|record| record[n]).map(|partner| partner.pole);
+    let flexible: Vec<usize> = (0..measured.poles.len()).filter(|&n| !at.hangs[n] && pole(n).is_some()).collect();
+    let mut columns = Vec::new();
+    for (number, &n) in flexible.iter().enumerate() {
+        for &m in &flexible[..number] {
+            let (Some(of_n), Some(of_m)) = (pole(n), pole(m)) else { continue };
+            let own = 2.0 * (of_n.re * of_m.re).sqrt();
+            let mut column = Vec::new();
+            for (record, partners) in at.partners.iter().enumerate() {
+                let (Some(a), Some(b)) = (partners[n], partners[m]) else { continue };
+                let product = a.deflection[0] * b.deflection[1] + a.deflection[1] * b.deflection[0];
+                let gained = |own_pole: Complex64, other: Complex64, unit: Complex64| {
+                    // Beside the pole itself, $D_m(\lambda_n)$.
+                    let beside = (own_pole - other) * (own_pole - other.conj());
+                    -own * own_pole * product * unit / beside
+                };
+                let ends = [(n, of_n, gained(of_n, of_m, a.unit)), (m, of_m, gained(of_m, of_n, b.unit))];
+                for (pole, _, residue) in ends {
+                    let value = residue / comparison.residue[pole];
+                    let place = comparison.residue_place(record, pole);
+                    column.extend([(place, value.re), (place + 1, value.im)]);
+                }
+                for (line, frequency) in measured.remainder_frequencies.iter().enumerate() {
+                    let s = Complex64::new(0.0, std::f64::consts::TAU * frequency);
+                    let apart = |(_, pole, residue): (usize, Complex64, Complex64)| {
+                        residue / (s - pole) + residue.conj() / (s - pole.conj())
+                    };
+                    let value = -ends.into_iter().map(apart).sum::<Complex64>() / comparison.rigid;
+                    let place = comparison.remainder_place(record, line);
+                    column.extend([(place, value.re), (place + 1, value.im)]);
+                }
+            }
+            columns.push((Kind::Coupling as usize, column));
+        }
+    }
+    columns
 }
 
 impl ErrorColumns {
@@ -158,6 +209,7 @@ impl ErrorColumns {
                 }
             }
         }
+        columns.extend(couplings(comparison, at));
         let unseen = comparison.unseen().start;
         let dense = |kind: Kind, from: &[f64], range: std::ops::Range<usize>| {
             (kind as usize, range.map(|place| (place, from[place])).collect::<Vec<_>>())
@@ -186,10 +238,29 @@ impl ErrorColumns {
             entries.iter().for_each(|(place, value)| matrix[(*place, number)] = *value);
         }
         let near = (0..measured.records.len())
-            .flat_map(|record| (0..at.near_hanging).map(move |number| comparison.remainder_place(record, number)))
-            .flat_map(|place| [place, place + 1]);
-        let untold = near.map(|place| (place, comparison.values[place].powi(2).max(1.0))).collect();
-        Self { columns: matrix, kinds: columns.into_iter().map(|(kind, _)| kind).collect(), untold }
+            .flat_map(|record| (0..at.near_hanging).map(move |number| comparison.remainder_place(record, number)));
+        // A pole that is no mode of the model may be a false one: its residues tell no more than their size.
+        let alone = at.partners.iter().enumerate().flat_map(|(record, partners)| {
+            let without =
+                partners.iter().enumerate().filter(|(pole, partner)| partner.is_none() && !comparison.faint[*pole]);
+            without.map(move |(pole, _)| comparison.residue_place(record, pole))
+        });
+        let of_size = |place: usize| [place, place + 1].map(|place| (place, comparison.values[place].powi(2).max(1.0)));
+        let faint = (0..measured.poles.len()).filter(|&pole| comparison.faint[pole]);
+        let residues_of = |pole| (0..measured.records.len()).map(move |record| comparison.residue_place(record, pole));
+        let untold = near
+            .chain(faint.clone().flat_map(residues_of))
+            .flat_map(of_size)
+            .chain(faint.map(|pole| (pole, FAINT_FREQUENCY.powi(2))))
+            .collect();
+        let alone = alone.flat_map(of_size).collect();
+        Self { columns: matrix, kinds: columns.into_iter().map(|(kind, _)| kind).collect(), untold, alone }
+    }
+
+    /// The same where every pole is to be a mode of the model: for the search of an effect that gives it one.
+    pub(crate) fn without_alone(mut self) -> Self {
+        self.alone.clear();
+        self
     }
 
     /// $C_\text{noise} + \sum\tau_k^2F_kF_k^T$.
@@ -198,7 +269,7 @@ impl ErrorColumns {
             self.columns[(i, j)] * log_sizes[self.kinds[j]].exp()
         });
         let mut covariance = noise + &scaled * scaled.transpose();
-        self.untold.iter().for_each(|(place, variance)| covariance[(*place, *place)] += variance);
+        self.untold.iter().chain(&self.alone).for_each(|(place, variance)| covariance[(*place, *place)] += variance);
         covariance
     }
 }

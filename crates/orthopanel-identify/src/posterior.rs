@@ -1,5 +1,7 @@
 //! The most probable parameters of a hypothesis, their covariance, and its evidence.
 
+use std::sync::Arc;
+
 use faer::linalg::solvers::Llt;
 use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
 use faer::prelude::Solve;
@@ -15,6 +17,8 @@ const STEP: f64 = 1e-4;
 /// Longest step of a coordinate, and of the logarithm of a size of model error.
 const LONGEST: f64 = 0.7;
 const LONGEST_SIZE: f64 = 1.0;
+/// A step this long, in coordinates, may bend.
+const CURVED: f64 = 0.01;
 /// Bounds of a size of model error.
 const SIZES: [f64; 2] = [1e-6, 0.5];
 
@@ -57,12 +61,18 @@ pub(crate) struct Problem<'a> {
 pub(crate) struct Point {
     pub z: Vec<f64>,
     pub misfit: f64,
+    /// The misfit and $\ln\det C$: what points that have covariances of their own are compared by.
+    pub cost: f64,
+    /// What is predicted there, with derivatives by places.
+    pub at: Arc<Prediction>,
+    /// $\partial f/\partial z$ there or not far from there; empty where it is not known.
+    pub derivatives: Mat<f64>,
 }
 
 /// The posterior about its mode.
 #[derive(Clone)]
 pub(crate) struct Posterior {
-    pub z: Vec<f64>,
+    pub point: Point,
     /// Of the coordinates.
     pub covariance: Mat<f64>,
     /// $\ln\tau_k$.
@@ -87,21 +97,47 @@ impl Judged {
     }
 }
 
+/// What some coordinates make good of a misfit, to first order.
+pub(crate) struct Projection<'a> {
+    by: &'a Whitening,
+    /// $L^{-1}J$.
+    derivatives: Mat<f64>,
+    precision: Vec<f64>,
+    curvature: Llt<f64>,
+}
+
+impl<'a> Projection<'a> {
+    pub(crate) fn new(derivatives: &Mat<f64>, precision: &[f64], by: &'a Whitening) -> Option<Self> {
+        let mut derivatives = derivatives.clone();
+        by.whiten(&mut derivatives);
+        let mut curvature = derivatives.transpose() * &derivatives;
+        precision.iter().enumerate().for_each(|(i, precision)| curvature[(i, i)] += precision);
+        Some(Self { by, derivatives, precision: precision.to_vec(), curvature: curvature.llt(Side::Lower).ok()? })
+    }
+
+    /// The step of the coordinates from `z` that makes most of it good, and by how much the misfit falls.
+    pub(crate) fn of(&self, missed: &[f64], z: &[f64]) -> (Vec<f64>, f64) {
+        let missed = self.by.whitened(missed);
+        let descent = Mat::from_fn(self.precision.len(), 1, |i, _| {
+            self.derivatives.col_as_slice(i).iter().zip(&missed).map(|(a, b)| a * b).sum::<f64>() - self.precision[i] * z[i]
+        });
+        let step = self.curvature.solve(&descent);
+        let gain = (0..step.nrows()).map(|i| step[(i, 0)] * descent[(i, 0)]).sum();
+        (step.col_as_slice(0).to_vec(), gain)
+    }
+}
+
 fn square(values: &[f64]) -> f64 {
     values.iter().map(|value| value * value).sum()
 }
 
 impl Problem<'_> {
-    fn at(&self, z: &[f64]) -> Result<Prediction, ModelError> {
-        self.predictor.at(&self.hypothesis.constants(z), &self.hypothesis.effects(z)?, false)
-    }
-
-    /// With the derivatives by places that model errors want.
-    pub(crate) fn with_slopes(&self, z: &[f64]) -> Result<Prediction, ModelError> {
+    /// What is predicted at a point, with derivatives by places.
+    pub(crate) fn at(&self, z: &[f64]) -> Result<Prediction, ModelError> {
         self.predictor.at(&self.hypothesis.constants(z), &self.hypothesis.effects(z)?, true)
     }
 
-    fn missed(&self, at: &Prediction) -> Vec<f64> {
+    pub(crate) fn missed(&self, at: &Prediction) -> Vec<f64> {
         self.predictor
             .comparison
             .values
@@ -137,31 +173,55 @@ impl Problem<'_> {
 
     /// The misfit at a point; `None` where the model has no meaning.
     pub(crate) fn point(&self, z: Vec<f64>, by: &Whitening) -> Option<Point> {
-        let at = self.at(&z).ok()?;
-        let misfit = square(&by.whitened(&self.missed(&at))) + self.prior(&z);
-        misfit.is_finite().then_some(Point { z, misfit })
+        let at = Arc::new(self.at(&z).ok()?);
+        self.judged_by(Point { z, misfit: 0.0, cost: 0.0, at, derivatives: Mat::new() }, by)
     }
 
-    /// $L^{-1}\partial f/\partial z$ by differences that stay inside the bounds.
-    fn derivatives(&self, z: &[f64], at: &Prediction, by: &Whitening) -> Option<Mat<f64>> {
+    /// The same point with its misfit by another covariance.
+    pub(crate) fn judged_by(&self, point: Point, by: &Whitening) -> Option<Point> {
+        let misfit = square(&by.whitened(&self.missed(&point.at))) + self.prior(&point.z);
+        misfit.is_finite().then_some(Point { misfit, cost: misfit + by.log_determinant, ..point })
+    }
+
+    /// $\partial f/\partial z$ from the coordinate `from` on, by differences that stay inside the bounds.
+    pub(crate) fn derivatives(&self, point: &Point, from: usize) -> Option<Mat<f64>> {
         let farthest = self.hypothesis.farthest();
-        let mut columns = Mat::zeros(at.values.len(), z.len());
-        let by_places = self.by_places(z, at);
-        for (number, farthest) in farthest.iter().enumerate() {
-            if let Some(column) = by_places.get(number).and_then(Option::as_ref) {
-                column.iter().enumerate().for_each(|(row, value)| columns[(row, number)] = *value);
+        let by_places = self.by_places(&point.z, &point.at);
+        let mut columns = Mat::zeros(point.at.values.len(), point.z.len() - from);
+        for (column, number) in (from..point.z.len()).enumerate() {
+            if let Some(of_places) = by_places.get(number).and_then(Option::as_ref) {
+                columns.col_as_slice_mut(column).copy_from_slice(of_places);
                 continue;
             }
-            let step = if z[number] + STEP < *farthest { STEP } else { -STEP };
-            let mut moved = z.to_vec();
+            let step = if point.z[number] + STEP < farthest[number] { STEP } else { -STEP };
+            let mut moved = point.z.clone();
             moved[number] += step;
             let moved = self.at(&moved).ok()?;
-            for (row, (moved, at)) in moved.values.iter().zip(&at.values).enumerate() {
-                columns[(row, number)] = (moved - at) / step;
+            for (row, (moved, at)) in moved.values.iter().zip(&point.at.values).enumerate() {
+                columns[(row, column)] = (moved - at) / step;
             }
         }
-        by.whiten(&mut columns);
         Some(columns)
+    }
+
+    /// The derivatives once the point has moved: exact by places, else Broyden's, the least change that foretells the step.
+    fn moved_derivatives(&self, from: &Point, to: &Point) -> Mat<f64> {
+        let mut derivatives = from.derivatives.clone();
+        let step: Vec<f64> = to.z.iter().zip(&from.z).map(|(to, from)| to - from).collect();
+        let length = square(&step);
+        if length > 0.0 {
+            for row in 0..derivatives.nrows() {
+                let foretold: f64 = step.iter().enumerate().map(|(column, step)| derivatives[(row, column)] * step).sum();
+                let missed = (to.at.values[row] - from.at.values[row] - foretold) / length;
+                step.iter().enumerate().for_each(|(column, step)| derivatives[(row, column)] += missed * step);
+            }
+        }
+        for (number, of_places) in self.by_places(&to.z, &to.at).iter().enumerate() {
+            if let Some(of_places) = of_places {
+                derivatives.col_as_slice_mut(number).copy_from_slice(of_places);
+            }
+        }
+        derivatives
     }
 
     /// Derivatives by the coordinates that move places alone, which need no modes of their own.
@@ -187,37 +247,53 @@ impl Problem<'_> {
         columns
     }
 
-    /// Down from a point (Levenberg and Marquardt), with the curvature $J^TJ + P$ where it ends.
+    /// Down from a point (Levenberg and Marquardt, with geodesic acceleration along curved valleys: Transtrum and Sethna,
+    /// arXiv:1201.5885), with the curvature $J^TJ + P$ where it ends. Derivatives by the coordinates before `exact_from` that the point
+    /// brings are kept up by its steps, and found anew where they lead nowhere.
     pub(crate) fn follow(
         &self,
         from: Point,
         by: &Whitening,
         most: usize,
-        least_gain: f64,
+        (least_gain, exact_from): (f64, usize),
     ) -> Option<(Point, Mat<f64>)> {
         let precision = self.hypothesis.precision();
         let size = from.z.len();
-        let (mut point, mut damping) = (from, 1e-3);
-        let mut curvature = Mat::identity(size, size);
-        for round in 0..=most {
-            let at = self.with_slopes(&point.z).ok()?;
-            let derivatives = self.derivatives(&point.z, &at, by)?;
-            curvature = derivatives.transpose() * &derivatives;
+        let mut point = self.judged_by(from, by)?;
+        let mut fresh = point.derivatives.ncols() != size;
+        if fresh {
+            point.derivatives = self.derivatives(&point, 0)?;
+        }
+        let (mut damping, mut round) = (1e-3, 0);
+        loop {
+            let mut derivatives = point.derivatives.clone();
+            by.whiten(&mut derivatives);
+            let mut curvature = derivatives.transpose() * &derivatives;
             (0..size).for_each(|i| curvature[(i, i)] += precision[i]);
             if round == most || size == 0 {
-                break;
+                return Some((point, curvature));
             }
-            let missed = by.whitened(&self.missed(&at));
-            let descent = Mat::from_fn(size, 1, |i, _| {
-                derivatives.col_as_slice(i).iter().zip(&missed).map(|(a, b)| a * b).sum::<f64>()
-                    - precision[i] * point.z[i]
-            });
+            let along = |values: &[f64]| {
+                let values = by.whitened(values);
+                Mat::from_fn(size, 1, |i, _| derivatives.col_as_slice(i).iter().zip(&values).map(|(a, b)| a * b).sum())
+            };
+            let mut descent: Mat<f64> = along(&self.missed(&point.at));
+            (0..size).for_each(|i| descent[(i, 0)] -= precision[i] * point.z[i]);
             let mut lower = None;
-            while damping < 1e6 {
+            let steepest = if fresh { 1e6 } else { 1.0 };
+            while damping < steepest {
                 let damped = Mat::from_fn(size, size, |i, j| {
                     curvature[(i, j)] + if i == j { damping * (curvature[(i, i)] + 1e-6) } else { 0.0 }
                 });
-                let step = damped.llt(Side::Lower).ok()?.solve(&descent);
+                let solved = damped.llt(Side::Lower).ok()?;
+                let mut step = solved.solve(&descent);
+                let size_of = |step: &Mat<f64>| (0..size).map(|i| step[(i, 0)].abs()).fold(0.0, f64::max);
+                if size_of(&step) > CURVED && let Some(bend) = self.bend(&point, &step) {
+                    let bend = solved.solve(along(&bend));
+                    if 2.0 * size_of(&bend) < 0.75 * size_of(&step) {
+                        step += bend;
+                    }
+                }
                 let mut z: Vec<f64> = (0..size).map(|i| point.z[i] + step[(i, 0)].clamp(-LONGEST, LONGEST)).collect();
                 self.hypothesis.clamp(&mut z);
                 lower = self.point(z, by).filter(|next| next.misfit < point.misfit);
@@ -226,14 +302,43 @@ impl Problem<'_> {
                 }
                 damping = (8.0 * damping).max(1e-4);
             }
-            let Some(next) = lower else { break };
-            let gain = point.misfit - next.misfit;
-            (point, damping) = (next, (damping / 8.0).max(1e-7));
-            if gain < least_gain {
-                break;
+            let gain = lower.as_ref().map_or(0.0, |next| point.misfit - next.misfit);
+            if let Some(next) = lower {
+                let derivatives = self.moved_derivatives(&point, &next);
+                point = Point { derivatives, ..next };
+                damping = (damping / 8.0).max(1e-7);
+            }
+            round += 1;
+            if gain >= least_gain {
+                fresh = exact_from == 0;
+                let exact_from = exact_from.min(size);
+                let own = self.derivatives(&point, exact_from)?;
+                (exact_from..size).for_each(|i| {
+                    point.derivatives.col_as_slice_mut(i).copy_from_slice(own.col_as_slice(i - exact_from));
+                });
+            } else if fresh {
+                round = most;
+            } else {
+                point.derivatives = self.derivatives(&point, 0)?;
+                damping = 1e-3;
+                fresh = true;
             }
         }
-        Some((point, curvature))
+    }
+
+    /// $-\tfrac12\,\partial^2f/\partial\delta^2$ along a step $\delta$, what is predicted less by the way's bend.
+    fn bend(&self, point: &Point, step: &Mat<f64>) -> Option<Vec<f64>> {
+        const PART: f64 = 0.1;
+        let mut z: Vec<f64> = point.z.iter().enumerate().map(|(i, z)| z + PART * step[(i, 0)]).collect();
+        let unbounded = z.clone();
+        self.hypothesis.clamp(&mut z);
+        if z != unbounded {
+            return None;
+        }
+        let moved = self.at(&z).ok()?;
+        let straight = &point.derivatives * step;
+        let bend = |(row, (moved, at)): (usize, (&f64, &f64))| -((moved - at) / PART - straight[(row, 0)]) / PART;
+        Some(moved.values.iter().zip(&point.at.values).enumerate().map(bend).collect())
     }
 
     /// The most probable sizes of model error at a point, by Fisher's scores; with their curvature and
@@ -306,31 +411,29 @@ impl Problem<'_> {
     }
 
     /// Parameters and sizes of model error in turn, then the marginal likelihood by Laplace's approximation over both.
-    pub(crate) fn posterior(&self, from: Vec<f64>, mut log_sizes: [f64; KINDS], rounds: usize) -> Option<Posterior> {
-        let mut z = from;
-        let mut errors = self.errors(&self.with_slopes(&z).ok()?);
+    pub(crate) fn posterior(&self, from: Point, mut log_sizes: [f64; KINDS], rounds: usize) -> Option<Posterior> {
+        let mut point = from;
+        let mut errors = self.errors(&point.at);
         let mut last = f64::INFINITY;
         for round in 0..rounds {
             let by = self.whitening(&errors, &log_sizes)?;
-            let point = self.point(z, &by)?;
             // A few steps before the sizes are what they are to be.
-            let (point, _) = self.follow(point, &by, if round == 0 { 3 } else { 8 }, 0.05)?;
-            z = point.z;
-            let at = self.with_slopes(&z).ok()?;
-            errors = self.errors(&at);
-            let (next, _, cost) = self.sizes(&at, &errors, log_sizes, 6)?;
+            (point, _) = self.follow(point, &by, if round == 0 { 4 } else { 8 }, (0.05, usize::MAX))?;
+            errors = self.errors(&point.at);
+            let (next, _, cost) = self.sizes(&point.at, &errors, log_sizes, 6)?;
             log_sizes = next;
-            let value = cost - self.hypothesis.log_prior(&z);
+            let value = cost - self.hypothesis.log_prior(&point.z);
             if (last - value).abs() < 0.05 {
                 break;
             }
             last = value;
         }
         let by = self.whitening(&errors, &log_sizes)?;
-        let (point, curvature) = self.follow(self.point(z, &by)?, &by, 3, 0.01)?;
-        let at = self.at(&point.z).ok()?;
-        let (_, of_sizes, _) = self.sizes(&at, &errors, log_sizes, 0)?;
-        let missed = by.whitened(&self.missed(&at));
+        point.derivatives = Mat::new();
+        let (point, curvature) = self.follow(point, &by, 3, (0.01, usize::MAX))?;
+        let at = &point.at;
+        let (_, of_sizes, _) = self.sizes(at, &errors, log_sizes, 0)?;
+        let missed = by.whitened(&self.missed(at));
         let chi_square = square(&missed);
         let count = point.z.len() as f64;
         let half_log = |matrix: &Mat<f64>| Some(0.5 * Whitening::new(matrix)?.log_determinant);
@@ -346,6 +449,6 @@ impl Problem<'_> {
             + prior_of_sizes
             - half_log(&of_sizes)?;
         let covariance = curvature.llt(Side::Lower).ok()?.solve(Mat::<f64>::identity(point.z.len(), point.z.len()));
-        Some(Posterior { z: point.z, covariance, log_sizes, log_evidence })
+        Some(Posterior { point, covariance, log_sizes, log_evidence })
     }
 }

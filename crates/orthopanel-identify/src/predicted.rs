@@ -55,10 +55,23 @@ pub(crate) struct Prediction {
     pub phase: Vec<Complex64>,
     /// Of each record and pole what a residue of size one, along the phase, brings to the remainder at each of its frequencies.
     pub brings: Vec<Vec<Vec<Complex64>>>,
+    /// Of each record and pole its partner as the record sees it; `None` without one.
+    pub partners: Vec<Vec<Option<PartnerInRecord>>>,
     /// Whether each pole is a motion of the piece as a whole on its suspension.
     pub hangs: Vec<bool>,
     /// Number of the remainders' frequencies that lie too near such motions: cords are no springs, and damp as they like.
     pub near_hanging: usize,
+}
+
+/// The predicted mode that belongs to a pole, in one record.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct PartnerInRecord {
+    /// Mass-normalised deflection at the force and at the response \[kg^-1/2\].
+    pub deflection: [f64; 2],
+    /// Its pole $\lambda$ \[1/s\].
+    pub pole: Complex64,
+    /// Its residue over the product of the deflections.
+    pub unit: Complex64,
 }
 
 /// What acts on one record besides the structure.
@@ -140,6 +153,19 @@ impl<'a> Predictor<'a> {
         found.truncate(KEPT - 1);
         found.push_front((key, Arc::clone(&modes)));
         Ok(modes)
+    }
+
+    /// The modes of the structure as seen from a place.
+    ///
+    /// # Errors
+    /// As [`ModifiedPanel::seen_from`].
+    pub(crate) fn seen_at(
+        &self,
+        x: f64,
+        constants: &[f64],
+        effects: &[EffectState],
+    ) -> Result<Arc<SeenModes>, ModelError> {
+        self.modes(&self.setting(0), &[Place { x, y: 0.0 }], false, constants, effects)
     }
 
     fn channel(&self, record: usize, effects: &[EffectState]) -> Result<Channel, ModelError> {
@@ -267,6 +293,7 @@ impl<'a> Predictor<'a> {
         }
         let remainders = measured.remainder_frequencies.len();
         let mut brings = vec![vec![vec![Complex64::ZERO; remainders]; measured.poles.len()]; measured.records.len()];
+        let mut in_records = vec![vec![None; measured.poles.len()]; measured.records.len()];
         let mut strength = vec![0.0; omega.len()];
         for (record, channel) in channels.iter().enumerate() {
             let mut put = |place: usize, [value, force, response]: [Complex64; 3]| {
@@ -291,6 +318,9 @@ impl<'a> Predictor<'a> {
                 match pole {
                     Some(pole) => {
                         phase[pole] = unit / unit.norm();
+                        let pole_of = mode.pole() - channel.decay;
+                        in_records[record][pole] =
+                            Some(PartnerInRecord { deflection: mode.deflection, pole: pole_of, unit });
                         put(comparison.residue_place(record, pole), mode.shape.map(|shape| shape * unit));
                     }
                     None => strength.get_mut(n).into_iter().for_each(|sum| *sum += (mode.shape[0] * unit).norm_sqr()),
@@ -321,7 +351,7 @@ impl<'a> Predictor<'a> {
         let near = |frequency: &&f64| TAU * **frequency < CLEAR_OF_HANGING * hanging;
         let near_hanging = measured.remainder_frequencies.iter().filter(near).count();
         let hangs = partners.iter().map(|partner| partner.is_some_and(|n| self.hangs(n))).collect();
-        Prediction { values, by_force, by_response, phase, brings, hangs, near_hanging }
+        Prediction { values, by_force, by_response, phase, brings, partners: in_records, hangs, near_hanging }
     }
 }
 
@@ -358,6 +388,8 @@ impl Views {
 struct ModeInRecord {
     omega: f64,
     zeta: f64,
+    /// At the force and at the response.
+    deflection: [f64; 2],
     shape: [f64; 3],
 }
 
@@ -370,7 +402,8 @@ impl ModeInRecord {
         let zeta = if omega > 0.0 { own.clamp(0.0, MOST_DAMPING) } else { 0.0 };
         let slope = |port: usize| modes.slope[n].get(port).copied().unwrap_or(0.0);
         let [at_force, at_response] = [force, response].map(|port| modes.deflection[n][port]);
-        Self { omega, zeta, shape: [at_force * at_response, slope(force) * at_response, at_force * slope(response)] }
+        let shape = [at_force * at_response, slope(force) * at_response, at_force * slope(response)];
+        Self { omega, zeta, deflection: [at_force, at_response], shape }
     }
 
     /// $\lambda$.

@@ -7,15 +7,24 @@ use rayon::prelude::*;
 
 use crate::comparison::Comparison;
 use crate::hypothesis::{Hypothesis, Part};
+use crate::measured::Pole;
 use crate::judge::ODDS;
-use crate::model_error::{KINDS, Waves, medians, waves};
-use crate::posterior::{Judged, Point, Problem, Whitening};
+use crate::model_error::{ErrorColumns, KINDS, Waves, medians, waves};
+use crate::posterior::{Judged, Point, Problem, Projection};
 use crate::predicted::Predictor;
 
 /// $\ln\tau_k$ with which starts are judged: wide, so that far ones have a slope to follow.
-const LOOSE: [f64; KINDS] = [5e-3, 5e-2, 2e-2, 1e-3, 5e-3, 1e-2, 5e-4, 5e-3, 5e-3, 5e-3, 5e-3, 5e-2, 0.2];
+const LOOSE: [f64; KINDS] = [5e-3, 5e-2, 2e-2, 0.1, 1e-3, 5e-3, 1e-2, 5e-4, 5e-3, 5e-3, 5e-3, 5e-3, 5e-2, 0.2];
 /// and from which the sizes are estimated: from the sizes of too poor a hypothesis effects drown.
-const SMALL: [f64; KINDS] = [3e-4, 2e-3, 1e-3, 8e-4, 3e-3, 4e-3, 4e-4, 3e-3, 2e-3, 1e-3, 5e-4, 1e-2, 5e-2];
+const SMALL: [f64; KINDS] = [3e-4, 2e-3, 1e-3, 3e-2, 8e-4, 3e-3, 4e-3, 4e-4, 3e-3, 2e-3, 1e-3, 5e-4, 1e-2, 5e-2];
+/// So many times wider where no start is followed yet: a net is coarse.
+const NET: f64 = 4.0;
+/// Poles at which something that vibrates by itself is looked for,
+const MISSED: usize = 4;
+/// and how far beside them.
+const BESIDE_POLE: [f64; 2] = [0.985, 1.01];
+/// Furthest shift of the base's coordinates from which a start is followed.
+const SHIFT: f64 = 0.2;
 /// Ratios $E/G$ at which the constants are looked for.
 const RATIOS: usize = 28;
 /// Starts that are followed.
@@ -31,6 +40,10 @@ const MOST_EFFECTS: usize = 3;
 pub(crate) struct Inquiry<'a> {
     predictor: Predictor<'a>,
     waves: Waves,
+}
+
+fn of_errors(problem: &Problem, z: &[f64]) -> Option<ErrorColumns> {
+    Some(problem.errors(&problem.at(z).ok()?))
 }
 
 fn logs(sizes: [f64; KINDS]) -> [f64; KINDS] {
@@ -84,7 +97,7 @@ impl<'a> Inquiry<'a> {
         let records = comparison.measured.records.len();
         let mut inquiry = Self { predictor, waves: vec![] };
         let starts = starting_constants(comparison, setting)?;
-        let mut best: Option<(f64, Hypothesis, Vec<f64>)> = None;
+        let mut best: Option<(f64, Hypothesis, Point)> = None;
         for start in starts {
             let constants: Vec<(f64, bool)> =
                 start.iter().zip(held).map(|(start, held)| (held.unwrap_or(*start), held.is_some())).collect();
@@ -92,29 +105,29 @@ impl<'a> Inquiry<'a> {
             let problem = inquiry.problem(&hypothesis);
             let mut nets: Vec<Vec<f64>> = vec![vec![0.0; hypothesis.free_constants()]];
             for part in &hypothesis.parts {
-                let starts = part.starts(&[]);
+                let starts = part.starts(|_, _| vec![]);
                 nets = nets.iter().flat_map(|net| starts.iter().map(|start| [&net[..], start].concat())).collect();
             }
-            let Ok(at) = problem.with_slopes(&nets[0]) else { continue };
+            let Ok(at) = problem.at(&nets[0]) else { continue };
             // Modes first: a remainder near the resonances of cords leads nowhere from afar.
             let errors = problem.errors(&at);
             let Some(modes) = problem.whitening_of_modes(&errors, &logs(LOOSE)) else { continue };
             let points = nets.into_iter().filter_map(|net| problem.point(net, &modes));
             let Some(point) = points.min_by(|a, b| a.misfit.total_cmp(&b.misfit)) else { continue };
-            let Some((point, _)) = problem.follow(point, &modes, 12, 0.1) else { continue };
+            let Some((point, _)) = problem.follow(point, &modes, 12, (0.1, usize::MAX)) else { continue };
             let misfit = point.misfit + modes.log_determinant;
             if best.as_ref().is_none_or(|(least, ..)| misfit < *least) {
-                best = Some((misfit, hypothesis, point.z));
+                best = Some((misfit, hypothesis, point));
             }
         }
-        let Some((_, hypothesis, z)) = best else { return Ok(None) };
-        inquiry.waves = waves(&inquiry.predictor, &hypothesis.constants(&z))?;
+        let Some((_, hypothesis, point)) = best else { return Ok(None) };
+        inquiry.waves = waves(&inquiry.predictor, &hypothesis.constants(&point.z))?;
         // Here sizes first: small ones would lead the constants away where an effect is large.
         let problem = inquiry.problem(&hypothesis);
-        let at = problem.with_slopes(&z)?;
-        let sizes = problem.sizes(&at, &problem.errors(&at), logs(SMALL), 12).map_or(logs(LOOSE), |(sizes, ..)| sizes);
+        let errors = problem.errors(&point.at);
+        let sizes = problem.sizes(&point.at, &errors, logs(SMALL), 12).map_or(logs(LOOSE), |(sizes, ..)| sizes);
         let from = [sizes, logs(SMALL), medians()];
-        let posteriors = from.into_iter().filter_map(|sizes| problem.posterior(z.clone(), sizes, 4));
+        let posteriors = from.into_iter().filter_map(|sizes| problem.posterior(point.clone(), sizes, 4));
         let judged = posteriors.max_by(|a, b| a.log_evidence.total_cmp(&b.log_evidence));
         Ok(judged.map(|posterior| {
             let log_odds = posterior.log_evidence;
@@ -122,32 +135,79 @@ impl<'a> Inquiry<'a> {
         }))
     }
 
-    fn problem<'p>(&'p self, hypothesis: &'p Hypothesis) -> Problem<'p> {
+    pub(crate) fn problem<'p>(&'p self, hypothesis: &'p Hypothesis) -> Problem<'p> {
         Problem { predictor: &self.predictor, hypothesis, waves: &self.waves }
+    }
+
+    /// The poles that the base misses most, those that are none of its modes first.
+    fn most_missed(&self, base: &Judged) -> Vec<Pole> {
+        let measured = self.predictor.comparison.measured;
+        let at = &base.posterior.point.at;
+        let missed = |pole: usize| {
+            if at.partners.iter().any(|record| record[pole].is_none()) {
+                return f64::INFINITY;
+            }
+            let places = (0..measured.records.len()).map(|record| self.predictor.comparison.residue_place(record, pole));
+            let missed = |place: usize| (self.predictor.comparison.values[place] - at.values[place]).powi(2);
+            places.flat_map(|place| [place, place + 1]).map(missed).sum::<f64>()
+        };
+        let mut poles: Vec<(f64, Pole)> =
+            measured.poles.iter().enumerate().map(|(number, pole)| (missed(number), pole.clone())).collect();
+        poles.sort_by(|a, b| b.0.total_cmp(&a.0));
+        poles.into_iter().take(MISSED).map(|(_, pole)| pole).collect()
+    }
+
+    /// Frequencies \[Hz\] of a mass on a spring at $x$ with which the panel has a mode at each of these poles: with $\alpha$ the receptance
+    /// of the panel there, $\omega_r^2 = \omega^2/(1-\omega^2m\,\alpha(\omega))$; and frequencies beside each pole, for the panel is not known well.
+    fn tuned(&self, base: &Judged, poles: &[Pole], mass: f64, x: f64) -> Vec<f64> {
+        let at = &base.posterior.point.z;
+        let (constants, effects) = (base.hypothesis.constants(at), base.hypothesis.effects(at));
+        let Ok(seen) = effects.and_then(|effects| self.predictor.seen_at(x, &constants, &effects)) else { return vec![] };
+        let tuned = |pole: &Pole| {
+            let square = pole.angular_frequency.powi(2);
+            let share = |(deflection, omega): (&Vec<f64>, &f64)| deflection[0].powi(2) / (omega.powi(2) - square);
+            let receptance: f64 = seen.deflection.iter().zip(&seen.angular_frequency).map(share).sum();
+            let left = 1.0 - square * mass * receptance;
+            let exact = (left > 0.0).then(|| (square / left).sqrt());
+            let beside = BESIDE_POLE.map(|factor| Some(factor * pole.angular_frequency));
+            beside.into_iter().chain([exact]).flatten().map(|omega| omega / TAU).collect::<Vec<_>>()
+        };
+        poles.iter().flat_map(tuned).collect()
     }
 
     /// An effect more, in the way and from the start that serve best: a net of starts of all ways is ranked, the best are followed with
     /// wide sizes of model error, the best of these to the posterior.
     fn with_effect(&self, base: &Judged, effect: &'static dyn Effect) -> Option<Judged> {
         let measured = self.predictor.comparison.measured;
-        let resonances: Vec<f64> = measured.poles.iter().map(|pole| pole.angular_frequency / TAU).collect();
         let of_base = self.problem(&base.hypothesis);
-        let errors = of_base.errors(&of_base.with_slopes(&base.posterior.z).ok()?);
-        let loose = of_base.whitening(&errors, &logs(LOOSE))?;
-        let small = of_base.whitening(&errors, &logs(SMALL))?;
-        let based = of_base.whitening(&errors, &base.posterior.log_sizes)?;
+        let at_base = &base.posterior.point;
+        let errors = of_base.errors(&at_base.at).without_alone();
+        let loose = of_base.whitening(&errors, &logs(LOOSE.map(|size| NET * size)))?;
         let ways: Vec<Hypothesis> = Part::ways(effect, self.predictor.piece(), measured.records.len())
             .into_iter()
             .map(|part| base.hypothesis.with(part))
             .collect();
+        let missed = self.most_missed(base);
+        // What the base's own coordinates make good of a start, to first order.
+        let projection = Projection::new(&at_base.derivatives, &of_base.hypothesis.precision(), &loose)?;
         let starts = |(way, hypothesis): (usize, &Hypothesis)| {
             let problem = self.problem(hypothesis);
-            let starts = hypothesis.parts.last().map_or(vec![], |part| part.starts(&resonances));
-            let point = |start: Vec<f64>| problem.point([&base.posterior.z[..], &start].concat(), &loose);
+            let starts = hypothesis
+                .parts
+                .last()
+                .map_or(vec![], |part| part.starts(|mass, x| self.tuned(base, &missed, mass, x)));
+            let point = |start: Vec<f64>| {
+                let point = problem.point([&at_base.z[..], &start].concat(), &loose)?;
+                let (shift, gain) = projection.of(&problem.missed(&point.at), &at_base.z);
+                let mut z = point.z.clone();
+                z.iter_mut().zip(&shift).for_each(|(z, shift)| *z += shift.clamp(-SHIFT, SHIFT));
+                hypothesis.clamp(&mut z);
+                Some(Point { z, cost: point.cost - gain, ..point })
+            };
             starts.into_iter().filter_map(point).map(|point| (way, point)).collect::<Vec<_>>()
         };
         let best = |mut points: Vec<(usize, Point)>, most: usize| {
-            points.sort_by(|a, b| a.1.misfit.total_cmp(&b.1.misfit));
+            points.sort_by(|a, b| a.1.cost.total_cmp(&b.1.cost));
             let mut apart: Vec<(usize, Point)> = Vec::new();
             for (way, point) in points {
                 let near = |(other, of): &(usize, Point)| {
@@ -159,21 +219,30 @@ impl<'a> Inquiry<'a> {
             }
             apart
         };
-        let follow = |points: Vec<(usize, Point)>, by: &Whitening, most: usize| -> Vec<(usize, Point)> {
-            let on = |(way, point): (usize, Point)| {
+        let follow = |points: Vec<(usize, Point)>, sizes: &[f64; KINDS], most: usize| -> Vec<(usize, Point)> {
+            let on = |(way, mut point): (usize, Point)| {
                 let problem = self.problem(&ways[way]);
-                let point = problem.point(point.z, by)?;
-                problem.follow(point, by, most, 1.0).map(|(point, _)| (way, point))
+                if point.derivatives.ncols() == 0 {
+                    // The shift is of first order about the base: where it leads nowhere, it is left out.
+                    let unshifted = [&at_base.z[..], &point.z[at_base.z.len()..]].concat();
+                    let both = [point.z, unshifted].into_iter().filter_map(|z| problem.point(z, &loose));
+                    point = both.min_by(|a, b| a.misfit.total_cmp(&b.misfit))?;
+                }
+                let by = problem.whitening(&problem.errors(&point.at).without_alone(), sizes)?;
+                problem.follow(point, &by, most, (1.0, at_base.z.len())).map(|(point, _)| (way, point))
             };
             points.into_iter().filter_map(on).collect()
         };
         let points = best(ways.iter().enumerate().flat_map(starts).collect(), 4 * FOLLOWED);
-        let points = best(follow(points, &loose, 3), FOLLOWED);
+        let points = best(follow(points, &logs(LOOSE), 5), FOLLOWED);
+        let points = best(follow(points, &std::array::from_fn(|k| 0.5 * (LOOSE[k] * SMALL[k]).ln()), 4), FOLLOWED);
         // From small sizes, since an effect drowns in those of too poor a hypothesis; and from those, since it need not be all that lacks.
-        let from = [(logs(SMALL), &small), (base.posterior.log_sizes, &based)];
-        let ends = from.into_iter().filter_map(|(sizes, by)| {
-            let (way, point) = best(follow(points.clone(), by, 4), 1).pop()?;
-            Some((way, self.problem(&ways[way]).posterior(point.z, sizes, 2)?))
+        let from = [logs(SMALL), base.posterior.log_sizes];
+        let ends = from.into_iter().filter_map(|sizes| {
+            let all = best(follow(best(follow(points.clone(), &sizes, 4), 1), &sizes, 8), 1);
+            let (way, point) = all.into_iter().next()?;
+            let posterior = self.problem(&ways[way]).posterior(point, sizes, 2)?;
+            Some((way, posterior))
         });
         let (way, posterior) = ends.max_by(|a, b| a.1.log_evidence.total_cmp(&b.1.log_evidence))?;
         let hypothesis = ways[way].clone();
@@ -187,7 +256,7 @@ impl<'a> Inquiry<'a> {
         let problem = self.problem(&judged.hypothesis);
         let mut closer = judged.clone();
         for sizes in [judged.posterior.log_sizes, *best] {
-            let Some(posterior) = problem.posterior(judged.posterior.z.clone(), sizes, 4) else { continue };
+            let Some(posterior) = problem.posterior(judged.posterior.point.clone(), sizes, 4) else { continue };
             if posterior.log_evidence > closer.posterior.log_evidence {
                 closer.log_odds += posterior.log_evidence - closer.posterior.log_evidence;
                 closer.posterior = posterior;
@@ -220,6 +289,33 @@ impl<'a> Inquiry<'a> {
         judged
     }
 
+    /// A hypothesis without each of its undeclared effects in turn, from where it ends: what was added first may not be needed with what came
+    /// after.
+    fn each_left_out(&self, of: &Judged, seen: &mut Vec<Vec<&'static str>>) -> Vec<Judged> {
+        let undeclared = |part: &usize| !of.hypothesis.parts[*part].declared;
+        let parts: Vec<usize> = (0..of.hypothesis.parts.len()).filter(undeclared).collect();
+        let left_out = |part: usize| {
+            let (hypothesis, z) = of.hypothesis.without(part, &of.posterior.point.z);
+            let problem = self.problem(&hypothesis);
+            let by = problem.whitening(&of_errors(&problem, &z)?, &of.posterior.log_sizes)?;
+            let posterior = problem.posterior(problem.point(z, &by)?, of.posterior.log_sizes, 4)?;
+            let way = &of.hypothesis.parts[part];
+            let ways = Part::ways(way.effect, self.predictor.piece(), self.predictor.comparison.measured.records.len()).len();
+            let log_odds = of.log_odds - of.posterior.log_evidence
+                + posterior.log_evidence
+                + ((ways * catalogue().len()) as f64).ln();
+            Some(Judged { hypothesis, posterior, log_odds })
+        };
+        let mut fewer: Vec<Judged> = parts.into_par_iter().filter_map(left_out).collect();
+        fewer.retain(|judged| !judged.names().is_empty());
+        seen.extend(fewer.iter().map(|judged| {
+            let mut names = judged.names();
+            names.sort_unstable();
+            names
+        }));
+        fewer
+    }
+
     /// All hypotheses that were looked at, the likeliest first.
     pub(crate) fn search(&self, base: Judged) -> Vec<Judged> {
         let mut all = vec![base];
@@ -231,6 +327,11 @@ impl<'a> Inquiry<'a> {
                 added.extend(self.each_effect(base, &mut seen));
             }
             added.sort_by(|a, b| b.log_odds.total_cmp(&a.log_odds));
+            if added.first().is_some_and(|best| best.log_odds > before && best.names().len() > 1) {
+                let fewer = self.each_left_out(&added[0].clone(), &mut seen);
+                added.extend(fewer);
+                added.sort_by(|a, b| b.log_odds.total_cmp(&a.log_odds));
+            }
             let grown = added.first().is_some_and(|best| best.log_odds > before + ODDS.ln());
             let near = |judged: &&Judged| judged.log_odds > added[0].log_odds - BESIDE * ODDS.ln();
             from = added.iter().filter(near).take(2).cloned().collect();
