@@ -101,7 +101,8 @@ impl Problem<'_> {
         self.predictor.at(&self.hypothesis.constants(z), &self.hypothesis.effects(z)?, true)
     }
 
-    fn missed(&self, at: &Prediction) -> Vec<f64> {
+    /// What is measured less what is predicted.
+    pub(crate) fn missed(&self, at: &Prediction) -> Vec<f64> {
         self.predictor
             .comparison
             .values
@@ -143,7 +144,7 @@ impl Problem<'_> {
     }
 
     /// $L^{-1}\partial f/\partial z$ by differences that stay inside the bounds.
-    fn derivatives(&self, z: &[f64], at: &Prediction, by: &Whitening) -> Option<Mat<f64>> {
+    pub(crate) fn derivatives(&self, z: &[f64], at: &Prediction, by: &Whitening) -> Option<Mat<f64>> {
         let farthest = self.hypothesis.farthest();
         let mut columns = Mat::zeros(at.values.len(), z.len());
         let by_places = self.by_places(z, at);

@@ -171,7 +171,7 @@ fn val_nothing_is_missing_where_nothing_was_put_in() {
     assert_eq!((found.verdict, found.effects.len()), (Verdict::NothingMissing, 0));
     assert_eq!(found.error.before, found.error.after);
     let json = serde_json::to_value(&found).unwrap();
-    assert_eq!((&json["schema"], &json["verdict"]), (&"orthopanel.trace/1".into(), &"nothing-missing".into()));
+    assert_eq!((&json["schema"], &json["verdict"]), (&"orthopanel.trace/2".into(), &"nothing-missing".into()));
     // A free piece has no clamp that could yield.
     let reason = found.not_tested.iter().find(|known| known.id == "support-compliance").unwrap();
     assert!(reason.reason.contains("clamped"), "{}", reason.reason);

@@ -9,7 +9,7 @@ const MISPLACED: &str = "examples/misplaced-hit/test.toml";
 fn val_a_misplaced_hammer_is_named_and_its_way_found() {
     let bench = Bench::new();
     let answer = bench.json(&format!("trace {MISPLACED} -o model.json"));
-    assert_eq!(answer["schema"], "orthopanel.trace/1");
+    assert_eq!(answer["schema"], "orthopanel.trace/2");
     assert_eq!(answer["verdict"], "explained");
     assert_eq!(answer["effects"][0]["id"], "hammer-offset");
     assert_eq!(answer["effects"][0]["owner"], "channel");

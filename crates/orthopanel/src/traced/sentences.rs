@@ -1,6 +1,7 @@
 //! What a trace found, in sentences.
 
 use orthopanel_identify::{TracedEffect, Verdict};
+use orthopanel_model::Readable;
 
 use super::Traced;
 
@@ -39,6 +40,17 @@ impl Traced {
                 format!("Something is missing that no effect of the catalogue explains; the nearest is {named}.")
             }
         }
+    }
+
+    /// By how much the model misses beside noise, where that was estimated.
+    pub fn model_error(&self) -> Option<String> {
+        let of = self.tracing.model_error?;
+        let percent = |part: f64| format!("{:.1} %", Readable(100.0 * part));
+        Some(format!(
+            "Beside noise the model misses frequencies by {} and residues by {}.",
+            percent(of.frequency),
+            percent(of.residue)
+        ))
     }
 
     fn alternatives(&self) -> String {

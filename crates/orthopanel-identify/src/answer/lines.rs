@@ -1,0 +1,81 @@
+//! The records' lines beside what a hypothesis predicts of them.
+
+use orthopanel_data::{Accelerance, Estimation, ImpactTest, TimeHistory};
+use orthopanel_model::{BEAM_CONSTANTS, BeamConstants, EffectState, ExactBeam, Place, ReceptanceSetup, RecordSetting};
+use rayon::prelude::*;
+
+use super::damping::TracedDamping;
+use crate::curves::curves;
+use crate::measured::MeasuredModes;
+use crate::{AcceleranceFit, IdentifyError};
+
+/// Lines sum the modes up to so many times the highest.
+const SUMMED: f64 = 2.5;
+/// Force lost over the band that is drawn \[dB\].
+const FORCE_DROP: f64 = 20.0;
+/// Modes of the beam that are looked through for those.
+const MOST_MODES: usize = 200;
+
+/// The accelerances of the hits, as an analyser shows them.
+pub(super) struct Lines {
+    accelerances: Vec<Accelerance>,
+    /// Hits that were left out, and why.
+    pub notes: Vec<String>,
+}
+
+/// A hypothesis with the damping ratios that the poles then say.
+pub(super) struct Drawn {
+    pub curves: Vec<AcceleranceFit>,
+    pub damping: TracedDamping,
+}
+
+impl Lines {
+    /// # Errors
+    /// Records that cannot be read.
+    pub(super) fn of(test: &ImpactTest) -> Result<Self, IdentifyError> {
+        let histories: Vec<TimeHistory> = test.time_histories()?.into_iter().map(|(_, history)| history).collect();
+        let estimation = Estimation { force_drop: FORCE_DROP, ..Estimation::default() };
+        let accelerances = histories.par_iter().map(|history| Ok(history.accelerance(estimation)?));
+        let accelerances = accelerances.collect::<Result<Vec<_>, IdentifyError>>()?;
+        let mut notes = Vec::new();
+        for (history, accelerance) in histories.iter().zip(&accelerances) {
+            let [force, response] = [history.force_at, history.response_at].map(|place| place.x);
+            let left_out = history.left_out_of(&accelerance.verdicts).into_iter();
+            notes.extend(left_out.map(|note| format!("force at x = {force} m, response at x = {response} m: {note}")));
+        }
+        Ok(Self { accelerances, notes })
+    }
+
+    /// At these constants with these effects; `of_effects` as in [`TracedDamping::of`].
+    ///
+    /// # Errors
+    /// What the model refuses.
+    pub(super) fn drawn(
+        &self,
+        test: &ImpactTest,
+        measured: &MeasuredModes,
+        (constants, effects, of_effects): (&[f64], &[EffectState], &[f64]),
+    ) -> Result<Drawn, IdentifyError> {
+        let piece = test.pieces[measured.piece].piece;
+        let band = measured.band[1];
+        let value = |at: usize| constants.get(at).copied().unwrap_or_default();
+        debug_assert_eq!(constants.len(), BEAM_CONSTANTS.len());
+        let beam = ExactBeam::new(&piece, test.boundary, BeamConstants { e_x: value(0), g_zx: value(1) })?;
+        let low = |mode: &orthopanel_model::BeamMode| mode.frequency() < SUMMED * band;
+        let summed = beam.flexible_modes().take(MOST_MODES).take_while(low).count();
+        let setting = |accelerance: &Accelerance| RecordSetting {
+            force_at: Some(accelerance.force_at),
+            response_at: Some(accelerance.response_at),
+            ..RecordSetting::default()
+        };
+        let settings: Vec<RecordSetting> = self.accelerances.iter().map(setting).collect();
+        let setup = ReceptanceSetup::new(&piece, test.boundary, &test.suspension, &settings, summed + 1)?;
+        let (forces, responses): (Vec<Place>, Vec<Place>) =
+            measured.records.iter().map(|record| (record.force_at, record.response_at)).unzip();
+        let bare = orthopanel_model::Damping::default();
+        let modes = setup.summed_modes(constants, (&bare, effects), [&forces, &responses], SUMMED * band)?;
+        let damping = TracedDamping::of(measured, &modes, of_effects);
+        let curves = curves(&self.accelerances, &setup, (constants, &damping.damping, effects), band)?;
+        Ok(Drawn { curves, damping })
+    }
+}
