@@ -4,6 +4,7 @@ mod accelerance_fit;
 mod answer;
 mod comparison;
 mod curves;
+mod declared_doubt;
 mod downhill_simplex;
 mod entry;
 mod error;

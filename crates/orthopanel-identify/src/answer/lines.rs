@@ -1,10 +1,13 @@
 //! The records' lines beside what a hypothesis predicts of them.
 
 use orthopanel_data::{Accelerance, Estimation, ImpactTest, TimeHistory};
-use orthopanel_model::{BEAM_CONSTANTS, BeamConstants, EffectState, ExactBeam, Place, ReceptanceSetup, RecordSetting};
+use orthopanel_model::{
+    BEAM_CONSTANTS, BeamConstants, BeamMode, Damping, EffectState, ExactBeam, Place, ReceptanceSetup, RecordSetting,
+};
 use rayon::prelude::*;
 
 use super::damping::TracedDamping;
+use crate::accelerance_fit::{ResonanceStart, resonance_starts};
 use crate::curves::curves;
 use crate::measured::MeasuredModes;
 use crate::{AcceleranceFit, IdentifyError};
@@ -19,6 +22,8 @@ const MOST_MODES: usize = 200;
 /// The accelerances of the hits, as an analyser shows them.
 pub(super) struct Lines {
     accelerances: Vec<Accelerance>,
+    /// Of all resonances, those too that stand by themselves in no record.
+    resonances: Option<ResonanceStart>,
     /// Hits that were left out, and why.
     pub notes: Vec<String>,
 }
@@ -43,7 +48,10 @@ impl Lines {
             let left_out = history.left_out_of(&accelerance.verdicts).into_iter();
             notes.extend(left_out.map(|note| format!("force at x = {force} m, response at x = {response} m: {note}")));
         }
-        Ok(Self { accelerances, notes })
+        let held = BEAM_CONSTANTS.each_ref().map(|constant| test.constants.get(constant.name).copied());
+        let starts = resonance_starts(&test.pieces[0].piece, test.boundary, held, &accelerances);
+        let resonances = starts.ok().and_then(|starts| starts.into_iter().next());
+        Ok(Self { accelerances, resonances, notes })
     }
 
     /// At these constants with these effects; `of_effects` as in [`TracedDamping::of`].
@@ -59,9 +67,8 @@ impl Lines {
         let piece = test.pieces[measured.piece].piece;
         let band = measured.band[1];
         let value = |at: usize| constants.get(at).copied().unwrap_or_default();
-        debug_assert_eq!(constants.len(), BEAM_CONSTANTS.len());
         let beam = ExactBeam::new(&piece, test.boundary, BeamConstants { e_x: value(0), g_zx: value(1) })?;
-        let low = |mode: &orthopanel_model::BeamMode| mode.frequency() < SUMMED * band;
+        let low = |mode: &BeamMode| mode.frequency() < SUMMED * band;
         let summed = beam.flexible_modes().take(MOST_MODES).take_while(low).count();
         let setting = |accelerance: &Accelerance| RecordSetting {
             force_at: Some(accelerance.force_at),
@@ -72,9 +79,9 @@ impl Lines {
         let setup = ReceptanceSetup::new(&piece, test.boundary, &test.suspension, &settings, summed + 1)?;
         let (forces, responses): (Vec<Place>, Vec<Place>) =
             measured.records.iter().map(|record| (record.force_at, record.response_at)).unzip();
-        let bare = orthopanel_model::Damping::default();
+        let bare = Damping::default();
         let modes = setup.summed_modes(constants, (&bare, effects), [&forces, &responses], SUMMED * band)?;
-        let damping = TracedDamping::of(measured, &modes, of_effects);
+        let damping = TracedDamping::of(measured, &modes, (of_effects, self.resonances.as_ref()));
         let curves = curves(&self.accelerances, &setup, (constants, &damping.damping, effects), band)?;
         Ok(Drawn { curves, damping })
     }

@@ -1,6 +1,8 @@
 //! From the hypotheses that the inference judged to all that a trace tells.
 
+mod bounds;
 mod damping;
+mod doubt;
 mod estimates;
 mod left_out;
 mod lines;
@@ -21,6 +23,8 @@ use crate::posterior::Judged;
 use crate::search::Inquiry;
 use crate::to_check::GAIN_OR_MASS;
 
+use bounds::notes_on_bound;
+use doubt::{check_first, doubts};
 use estimates::{Estimates, id};
 use lines::{Drawn, Lines};
 use misfit::Yardstick;
@@ -55,8 +59,12 @@ fn told(test: &ImpactTest, inquiry: &Inquiry, all: &[Judged]) -> Result<Tracing,
     let not_finite = |what: &str| IdentifyError::NotFinite { what: what.into() };
     let none = IdentifyError::TooFewResonances { found: measured.poles.len(), needed: 2, noise_percent: None };
     let (chosen, finding, alternatives) = judged(all).ok_or(none)?;
-    let verdict = Verdict::from(finding);
     let base = all.iter().find(|judged| judged.names().is_empty()).unwrap_or(chosen);
+    let mut doubts = doubts(inquiry, base, &all[0]);
+    let is_unexplained = finding == Finding::Unexplained;
+    doubts.retain(|doubt| doubt.is_rival || is_unexplained);
+    let check = doubts.iter().filter(|_| !is_unexplained);
+    let verdict = if check.clone().next().is_some() { Verdict::Ambiguous } else { Verdict::from(finding) };
     let problem = inquiry.problem(&chosen.hypothesis);
     let yardstick = Yardstick::of(&problem, &chosen.posterior);
     let yardstick = yardstick.ok_or_else(|| not_finite("covariance of the measured modes"))?;
@@ -93,16 +101,22 @@ fn told(test: &ImpactTest, inquiry: &Inquiry, all: &[Judged]) -> Result<Tracing,
     if chosen.names().contains(&"gain") {
         notes.push(GAIN_OR_MASS.to_owned());
     }
+    notes.extend(doubts.iter().map(|doubt| doubt.sentence.clone()));
     notes.extend(near.iter().map(|rival| standing(chosen, rival)));
+    notes.extend(notes_on_bound(&estimates, &test.pieces[measured.piece].piece));
+    let next_experiment = match check.clone().next() {
+        Some(doubt) => check_first(doubt),
+        None => next_measurement((test, inquiry), (chosen, verdict, after.fitted), &near),
+    };
     Ok(Tracing {
         verdict,
         effects: estimates.undeclared(),
-        alternatives: alternatives.into_iter().map(str::to_owned).collect(),
+        alternatives: check.map(|doubt| doubt.id).chain(alternatives).map(str::to_owned).collect(),
         error: TracedError { measure: MEASURE.to_owned(), before, after, noise_floor: 1.0, independent: None },
         model_error: Some(EstimatedModelError { frequency: size(Kind::Frequency), residue: size(Kind::Residue) }),
         candidates: all.par_iter().map(candidate).collect(),
         not_tested: not_tested(inquiry, all),
-        next_experiment: next_measurement((test, inquiry), (chosen, verdict, after.fitted), &near),
+        next_experiment,
         chi_square: after.fitted.powi(2),
         panels: vec![panel],
         removed,

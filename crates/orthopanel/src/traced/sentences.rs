@@ -1,9 +1,9 @@
 //! What a trace found, in sentences.
 
 use orthopanel_identify::{TracedEffect, Verdict};
-use orthopanel_model::Readable;
 
 use super::Traced;
+use crate::identified::to_digits;
 
 /// How a next experiment begins that is none: the test file is likelier wrong than the model.
 const CHECK_FIRST: &str = "before another measurement check";
@@ -45,7 +45,7 @@ impl Traced {
     /// By how much the model misses beside noise, where that was estimated.
     pub fn model_error(&self) -> Option<String> {
         let of = self.tracing.model_error?;
-        let percent = |part: f64| format!("{:.1} %", Readable(100.0 * part));
+        let percent = |part: f64| format!("{} %", to_digits(100.0 * part, 2));
         Some(format!(
             "Beside noise the model misses frequencies by {} and residues by {}.",
             percent(of.frequency),

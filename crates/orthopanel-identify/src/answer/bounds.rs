@@ -1,0 +1,40 @@
+//! Numbers that ended on a bound of what is looked for.
+
+use orthopanel_model::{Piece, Scale, effect};
+
+use crate::error::spaced;
+
+use super::estimates::Estimates;
+
+/// Part of a range that counts as its end.
+const MARGIN: f64 = 1e-3;
+
+/// A sentence on each free number at an end of its range: then the bound tells it, not the data. A place at the end of the piece is a place.
+pub(super) fn notes_on_bound(estimates: &Estimates, piece: &Piece) -> Vec<String> {
+    let mut notes = Vec::new();
+    for (found, declared) in &estimates.effects {
+        let Ok(known) = effect(found.id) else { continue };
+        for (parameter, found_of) in known.parameters().iter().zip(&found.parameters) {
+            let (low, high) = parameter.range(piece);
+            let part = |value: f64| match parameter.scale {
+                Scale::Log => (value / low).ln() / (high / low).ln(),
+                Scale::Linear | Scale::Index => (value - low) / (high - low),
+            };
+            let at_end = |value: f64| !(MARGIN..=1.0 - MARGIN).contains(&part(value));
+            let free = found_of.values.iter().filter(|value| value.std.is_some() && at_end(value.value));
+            if parameter.name == "x" {
+                continue;
+            }
+            let means = if *declared {
+                "the test file declares it without this number, and the data do not tell it: give the number, or leave the effect out"
+            } else {
+                "the name fits, the number is the bound's"
+            };
+            notes.extend(free.map(|value| {
+                let (name, unit, id) = (parameter.name, spaced(parameter.unit), found.id);
+                format!("{name} = {:.1e}{unit} of {id} lies on the bound of what is looked for: {means}", value.value)
+            }));
+        }
+    }
+    notes
+}
