@@ -21,7 +21,7 @@ fn val_a_misplaced_hammer_is_named_and_its_way_found() {
     assert!(error("after/held_out") < 0.5 * error("before/held_out"));
     assert!(error("after/held_out") < 1.2 * error("noise_floor"));
     // The beam that the hits were made with is the model's own.
-    assert!(number(&answer, "/model_error/frequency") < 1e-4, "{}", answer["model_error"]);
+    assert!(number(&answer, "/model_error/frequency") < 3e-4, "{}", answer["model_error"]);
     let evidence = |id: &str| {
         let of = answer["candidates"].as_array().and_then(|all| all.iter().find(|candidate| candidate["id"] == id));
         of.and_then(|candidate| candidate["log_evidence"].as_f64()).expect("an evidence")

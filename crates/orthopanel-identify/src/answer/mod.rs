@@ -23,7 +23,7 @@ use crate::posterior::Judged;
 use crate::search::Inquiry;
 use crate::to_check::GAIN_OR_MASS;
 
-use bounds::notes_on_bound;
+use bounds::{notes_on_bound, notes_on_untold};
 use doubt::{check_first, doubts};
 use estimates::{Estimates, id};
 use lines::{Drawn, Lines};
@@ -103,6 +103,7 @@ fn told(test: &ImpactTest, inquiry: &Inquiry, all: &[Judged]) -> Result<Tracing,
     }
     notes.extend(doubts.iter().map(|doubt| doubt.sentence.clone()));
     notes.extend(near.iter().map(|rival| standing(chosen, rival)));
+    notes.extend(notes_on_untold(chosen, &estimates));
     notes.extend(notes_on_bound(&estimates, &test.pieces[measured.piece].piece));
     let next_experiment = match check.clone().next() {
         Some(doubt) => check_first(doubt),
