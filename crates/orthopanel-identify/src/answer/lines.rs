@@ -16,6 +16,8 @@ use crate::{AcceleranceFit, IdentifyError};
 const SUMMED: f64 = 2.5;
 /// Force lost over the band that is drawn \[dB\].
 const FORCE_DROP: f64 = 20.0;
+/// Pairs of places from which one hit at each will do.
+const FEW: usize = 3;
 /// Modes of the beam that are looked through for those.
 const MOST_MODES: usize = 200;
 
@@ -24,6 +26,8 @@ pub(super) struct Lines {
     accelerances: Vec<Accelerance>,
     /// Of all resonances, those too that stand by themselves in no record.
     resonances: Option<ResonanceStart>,
+    /// Whether neither hits nor places could tell by how much hits differ.
+    pub hits_are_few: bool,
     /// Hits that were left out, and why.
     pub notes: Vec<String>,
 }
@@ -51,7 +55,9 @@ impl Lines {
         let held = BEAM_CONSTANTS.each_ref().map(|constant| test.constants.get(constant.name).copied());
         let starts = resonance_starts(&test.pieces[0].piece, test.boundary, held, &accelerances);
         let resonances = starts.ok().and_then(|starts| starts.into_iter().next());
-        Ok(Self { accelerances, resonances, notes })
+        let single = |(history, accelerance): (&TimeHistory, &Accelerance)| history.kept_in(accelerance).hits.len() < 2;
+        let hits_are_few = histories.len() < FEW && histories.iter().zip(&accelerances).all(single);
+        Ok(Self { accelerances, resonances, hits_are_few, notes })
     }
 
     /// At these constants with these effects; `of_effects` as in [`TracedDamping::of`].

@@ -33,6 +33,8 @@ use not_tested::not_tested;
 use panel::panel;
 use rayon::prelude::*;
 
+const FEW_HITS: &str = "one hit at each of fewer than three pairs of places: how hits differ is not seen. Hit each place three times, or hit three places";
+
 const MEASURE: &str = "misfit of the measured modes over noise and model error, rms (1: as far as these go)";
 
 /// What the measured modes of the hits of one beam say.
@@ -101,13 +103,16 @@ fn told(test: &ImpactTest, inquiry: &Inquiry, all: &[Judged]) -> Result<Tracing,
     if chosen.names().contains(&"gain") {
         notes.push(GAIN_OR_MASS.to_owned());
     }
+    if lines.hits_are_few {
+        notes.push(FEW_HITS.to_owned());
+    }
     notes.extend(doubts.iter().map(|doubt| doubt.sentence.clone()));
     notes.extend(near.iter().map(|rival| standing(chosen, rival)));
     notes.extend(notes_on_untold(chosen, &estimates));
     notes.extend(notes_on_bound(&estimates, &test.pieces[measured.piece].piece));
     let next_experiment = match check.clone().next() {
         Some(doubt) => check_first(doubt),
-        None => next_measurement((test, inquiry), (chosen, verdict, after.fitted), &near),
+        None => next_measurement((test, inquiry), (chosen, verdict, after.fitted), (&near, all)),
     };
     Ok(Tracing {
         verdict,

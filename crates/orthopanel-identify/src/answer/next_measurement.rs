@@ -35,15 +35,21 @@ struct Proposal {
 pub(super) fn next_measurement(
     (test, inquiry): (&ImpactTest, &Inquiry),
     (chosen, verdict, left): (&Judged, Verdict, f64),
-    rivals: &[&Judged],
+    (rivals, all): (&[&Judged], &[Judged]),
 ) -> String {
+    let names = chosen.names();
+    let is_other = |judged: &&Judged| {
+        let own = judged.names();
+        !own.is_empty() && names.iter().any(|name| !own.contains(name))
+    };
     match verdict {
         Verdict::NothingMissing => "none: the base model meets the measured modes".to_owned(),
         Verdict::Unexplained => to_check(test, left),
-        _ if rivals.is_empty() => {
-            "none: every other effect of the catalogue that could be tried stayed clearly behind".to_owned()
-        }
-        _ => parting(inquiry, chosen, rivals),
+        _ if !rivals.is_empty() => parting(inquiry, chosen, rivals),
+        _ => match all.iter().find(is_other) {
+            Some(nearest) => format!("to be surer still: {}", parting(inquiry, chosen, &[nearest])),
+            None => "none: no other effect of the catalogue could be tried".to_owned(),
+        },
     }
 }
 
