@@ -108,7 +108,7 @@ fn a_declared_number_that_no_record_shows_is_told_as_such() {
     let answer = bench.json(&format!("trace {hung}"));
     assert_eq!(answer["verdict"], "nothing-missing");
     let notes = answer["notes"].to_string();
-    assert!(notes.contains("N/m of suspension is what is usual"), "{notes}");
+    assert!(notes.contains("N s/m of suspension is what is usual"), "{notes}");
     assert!(notes.contains("the test file declares it without this number"), "{notes}");
     assert!(!notes.contains("the name fits") && !notes.contains("is named fits"), "{notes}");
 }
