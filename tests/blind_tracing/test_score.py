@@ -143,7 +143,7 @@ def test_a_tracer_that_reads_the_truth_reaches_every_rate(tmp_path):
         "effects = [{'id': e['id'], 'parameters': {k: {'value': v, 'std': 1e-9} for k, v in e['parameters'].items()}}\n"
         "           for e in truth[0]['effects']]\n"
         "error = {'after': {'held_out': 1.0}, 'noise_floor': 1.0}\n"
-        "print(json.dumps({'schema': 'orthopanel.trace/1', 'verdict': 'explained', 'effects': effects,\n"
+        "print(json.dumps({'schema': 'orthopanel.trace/2', 'verdict': 'explained', 'effects': effects,\n"
         "                  'alternatives': [], 'error': error}))\n"
     )
     result = score.score(out, [sys.executable, str(cheat)])

@@ -141,6 +141,12 @@ impl Part {
             .flat_map(move |parameter| std::iter::repeat_n(parameter, if parameter.each_record { times } else { 1 }))
     }
 
+    /// The coordinates nearest to these values.
+    pub(crate) fn coordinates_of(&self, values: &[f64]) -> Vec<f64> {
+        let pairs = self.slots.iter().zip(values);
+        pairs.filter_map(|(slot, value)| Some(slot.coordinate()?.of_value(*value))).collect()
+    }
+
     /// The values at these coordinates.
     pub(crate) fn values(&self, z: &[f64]) -> Vec<f64> {
         values(&self.slots, z)

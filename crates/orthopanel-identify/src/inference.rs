@@ -9,8 +9,10 @@ use crate::hypothesis::Part;
 use crate::judge::{Finding, judged};
 use crate::measured::measured_modes;
 use crate::model_error::Kind;
+use crate::outcome::Progress;
 use crate::posterior::Judged;
 use crate::search::Inquiry;
+use crate::search_progress::SearchProgress;
 
 /// What a test says of a beam: its constants, the effects that the model lacked, and by how much the model still misses.
 ///
@@ -27,8 +29,7 @@ use crate::search::Inquiry;
 /// # Limits
 /// Hits or accelerances of one piece, as a beam. Not looked for: `viscoelastic-core` and `width-coupling`, which are no modes of the same
 /// beam, and `cubic-stiffness`, which shows between hits alone. Standard deviations hold the sizes of model error as they are estimated, not
-/// their own uncertainty, which makes them small where modes are few. How often it is right has not been judged on blind sets yet:
-/// [`trace`](crate::trace) is what the command asks.
+/// their own uncertainty, which makes them small where modes are few. [`trace`](crate::trace) answers tests of hits by it.
 #[derive(Debug, Clone)]
 pub struct Inference {
     /// What is said.
@@ -87,6 +88,22 @@ pub struct InferredValue {
 /// As [`measured_modes`]; [`IdentifyError::Unsupported`] for what it does not take, and [`IdentifyError::Model`] for a piece or an effect that has
 /// no meaning.
 pub fn infer(test: &ImpactTest) -> Result<Inference, IdentifyError> {
+    with_hypotheses(test, &|_| {}, |_, all| Ok(Inference::of(all)))?.ok_or_else(|| too_few(0))
+}
+
+fn too_few(found: usize) -> IdentifyError {
+    IdentifyError::TooFewResonances { found, needed: 2, noise_percent: None }
+}
+
+/// What is said of the hypotheses that were held against a test, the likeliest first, while all that they were held against is at hand.
+///
+/// # Errors
+/// As [`infer`], and what is said.
+pub(crate) fn with_hypotheses<T>(
+    test: &ImpactTest,
+    progress: &(dyn Fn(Progress) + Sync),
+    say: impl FnOnce(&Inquiry, &[Judged]) -> Result<T, IdentifyError>,
+) -> Result<T, IdentifyError> {
     let refused = |what: &str| Err(IdentifyError::Unsupported(what.into()));
     let listed = |data: &MeasurementData| matches!(data, MeasurementData::NaturalFrequencies(_));
     if test.pieces.len() != 1 || test.measurements.iter().any(|measurement| listed(&measurement.data)) {
@@ -116,10 +133,11 @@ pub fn infer(test: &ImpactTest) -> Result<Inference, IdentifyError> {
     let held: Vec<Option<f64>> =
         BEAM_CONSTANTS.iter().map(|constant| test.constants.get(constant.name).copied()).collect();
     let comparison = Comparison::new(measured, piece.mass());
-    let none = || IdentifyError::TooFewResonances { found: measured.poles.len(), needed: 2, noise_percent: None };
-    let (inquiry, base) = Inquiry::begin(&comparison, &setting, &held, &declared)?.ok_or_else(none)?;
+    let begun = Inquiry::begin(&comparison, &setting, &held, &declared)?;
+    let (mut inquiry, base) = begun.ok_or_else(|| too_few(measured.poles.len()))?;
+    inquiry.progress = SearchProgress::telling(progress);
     let all = inquiry.search(base);
-    Inference::of(&all).ok_or_else(none)
+    say(&inquiry, &all)
 }
 
 impl Inference {

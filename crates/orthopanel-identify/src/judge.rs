@@ -35,11 +35,18 @@ pub(crate) fn judged(all: &[Judged]) -> Option<(&Judged, Finding, Vec<&'static s
     if names.is_empty() {
         return Some((chosen, Finding::NothingMissing, vec![]));
     }
-    let has_all = |judged: &Judged| names.iter().all(|name| judged.names().contains(name));
-    let mut rivals: Vec<&'static str> = near().filter(|judged| !has_all(judged)).flat_map(Judged::names).collect();
+    let mut rivals: Vec<&'static str> = rivals(all, chosen).flat_map(Judged::names).collect();
     rivals.retain(|name| !names.contains(name));
     rivals.sort_unstable();
     rivals.dedup();
     let finding = if rivals.is_empty() { Finding::Explained } else { Finding::Ambiguous };
     Some((chosen, finding, rivals))
+}
+
+/// The hypotheses that are not clearly behind and lack one of the chosen effects, the likeliest first.
+pub(crate) fn rivals<'a>(all: &'a [Judged], chosen: &Judged) -> impl Iterator<Item = &'a Judged> {
+    let best = all.first().map_or(f64::NEG_INFINITY, |judged| judged.log_odds);
+    let names = chosen.names();
+    let has_all = move |judged: &Judged| names.iter().all(|name| judged.names().contains(name));
+    all.iter().filter(move |judged| best - judged.log_odds < ODDS.ln() && !has_all(judged))
 }

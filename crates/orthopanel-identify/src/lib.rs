@@ -1,7 +1,10 @@
 #![doc = include_str!("../README.md")]
 
 mod accelerance_fit;
+mod answer;
 mod comparison;
+mod curves;
+mod declared_doubt;
 mod downhill_simplex;
 mod entry;
 mod error;
@@ -15,13 +18,18 @@ mod least_squares;
 mod matching;
 mod measured;
 mod model_error;
+mod outcome;
 mod posterior;
 mod predicted;
 mod search;
+mod search_progress;
 mod settings;
 mod starting_constants;
 mod structures;
 mod time_history;
+mod to_check;
+mod trace;
+mod trace_rows;
 mod tracing;
 mod usual_ratios;
 
@@ -35,11 +43,13 @@ pub use inference::{Inference, InferredEffect, InferredValue, infer};
 pub use judge::Finding;
 pub use matching::ModeMatch;
 pub use measured::{MeasuredModes, MeasuredRecord, Pole, measured_modes};
+pub use outcome::{
+    Candidate, EstimatedModelError, FittedError, IndependentLines, NotTested, Progress, Removed, TracedEffect,
+    TracedError, TracedParameter, Tracing, Verdict,
+};
 pub use settings::{PaperWeights, Search, Settings};
 pub use time_history::{
     ComparedSignals, ForceBetweenSamples, HistorySettings, HitComparison, Misfit, Stepping, compare_time_history,
 };
-pub use tracing::{
-    Candidate, FittedError, IndependentLines, NotTested, Progress, Removed, TRACE_SCHEMA, TracedEffect, TracedError,
-    TracedParameter, Tracing, Verdict, trace, trace_with,
-};
+pub use trace::{trace, trace_with};
+pub use trace_rows::TRACE_SCHEMA;

@@ -49,7 +49,7 @@ impl MeasuredModes {
     }
 
     /// `modes` has the force and the response of record $r$ as its ports number $r$.
-    fn matched(&self, modes: &ModalModel) -> Vec<Option<ModeMatch>> {
+    pub(crate) fn matched(&self, modes: &ModalModel) -> Vec<Option<ModeMatch>> {
         let candidate = |mode: &orthopanel_model::Mode| {
             let shape = mode.at_forces.iter().zip(&mode.at_responses).map(|(force, response)| force * response);
             (mode.angular_frequency, shape.collect::<Vec<f64>>())

@@ -137,6 +137,7 @@ impl Problem<'_> {
         self.predictor.at(&self.hypothesis.constants(z), &self.hypothesis.effects(z)?, true)
     }
 
+    /// What is measured less what is predicted.
     pub(crate) fn missed(&self, at: &Prediction) -> Vec<f64> {
         self.predictor
             .comparison

@@ -57,6 +57,8 @@ pub(crate) struct Prediction {
     pub brings: Vec<Vec<Vec<Complex64>>>,
     /// Of each record and pole its partner as the record sees it; `None` without one.
     pub partners: Vec<Vec<Option<PartnerInRecord>>>,
+    /// Damping ratio that dashpots and windows among the effects bring to each pole.
+    pub damping_of_effects: Vec<f64>,
     /// Whether each pole is a motion of the piece as a whole on its suspension.
     pub hangs: Vec<bool>,
     /// Number of the remainders' frequencies that lie too near such motions: cords are no springs, and damp as they like.
@@ -351,7 +353,10 @@ impl<'a> Predictor<'a> {
         let near = |frequency: &&f64| TAU * **frequency < CLEAR_OF_HANGING * hanging;
         let near_hanging = measured.remainder_frequencies.iter().filter(near).count();
         let hangs = partners.iter().map(|partner| partner.is_some_and(|n| self.hangs(n))).collect();
-        Prediction { values, by_force, by_response, phase, brings, partners: in_records, hangs, near_hanging }
+        let decay = channels.first().map_or(0.0, |channel| channel.decay);
+        let of_effects = |n: usize| seen.modes[0].2.damping_ratio[n] + decay / omega[n];
+        let damping_of_effects = partners.iter().map(|partner| partner.map_or(0.0, of_effects)).collect();
+        Prediction { values, by_force, by_response, phase, brings, partners: in_records, damping_of_effects, hangs, near_hanging }
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use orthopanel_model::{Effect, EffectSetting, ModelError, StructureKind, catalogue, natural_frequencies};
+use orthopanel_model::{Effect, EffectSetting, ModelError, Scale, StructureKind, catalogue, natural_frequencies};
 use rayon::prelude::*;
 
 use crate::comparison::Comparison;
@@ -12,6 +12,7 @@ use crate::judge::ODDS;
 use crate::model_error::{ErrorColumns, KINDS, Waves, medians, waves};
 use crate::posterior::{Judged, Point, Problem, Projection};
 use crate::predicted::Predictor;
+use crate::search_progress::SearchProgress;
 
 /// $\ln\tau_k$ with which starts are judged: wide, so that far ones have a slope to follow.
 const LOOSE: [f64; KINDS] = [5e-3, 5e-2, 2e-2, 0.1, 1e-3, 5e-3, 1e-2, 5e-4, 5e-3, 5e-3, 5e-3, 5e-3, 5e-2, 0.2];
@@ -40,6 +41,8 @@ const MOST_EFFECTS: usize = 3;
 pub(crate) struct Inquiry<'a> {
     predictor: Predictor<'a>,
     waves: Waves,
+    /// How far it is.
+    pub progress: SearchProgress<'a>,
 }
 
 fn of_errors(problem: &Problem, z: &[f64]) -> Option<ErrorColumns> {
@@ -95,7 +98,7 @@ impl<'a> Inquiry<'a> {
     ) -> Result<Option<(Self, Judged)>, ModelError> {
         let predictor = Predictor::new(comparison, StructureKind::TimoshenkoBeam, setting)?;
         let records = comparison.measured.records.len();
-        let mut inquiry = Self { predictor, waves: vec![] };
+        let mut inquiry = Self { predictor, waves: vec![], progress: SearchProgress::default() };
         let starts = starting_constants(comparison, setting)?;
         let mut best: Option<(f64, Hypothesis, Point)> = None;
         for start in starts {
@@ -265,6 +268,12 @@ impl<'a> Inquiry<'a> {
         closer
     }
 
+    /// Whether the test has records enough: the gain of the only record is the gain.
+    pub(crate) fn can_show(&self, effect: &dyn Effect) -> bool {
+        let is_of_one = effect.parameters().iter().any(|parameter| parameter.scale == Scale::Index);
+        !is_of_one || self.predictor.comparison.measured.records.len() > 1
+    }
+
     /// Every effect of the catalogue added to a base, but those sets that were `seen`, the likeliest first.
     fn each_effect(&self, base: &Judged, seen: &mut Vec<Vec<&'static str>>) -> Vec<Judged> {
         let has = |id: &str| base.hypothesis.parts.iter().any(|part| part.effect.id() == id);
@@ -275,10 +284,18 @@ impl<'a> Inquiry<'a> {
             seen.push(names);
             new
         };
-        let effects: Vec<&'static dyn Effect> =
-            catalogue().iter().copied().filter(|effect| !has(effect.id()) && is_new(effect.id())).collect();
-        let mut judged: Vec<Judged> =
-            effects.into_par_iter().filter_map(|effect| self.with_effect(base, effect)).collect();
+        let effects: Vec<&'static dyn Effect> = catalogue()
+            .iter()
+            .copied()
+            .filter(|effect| self.can_show(*effect) && !has(effect.id()) && is_new(effect.id()))
+            .collect();
+        self.progress.more(effects.len());
+        let added = |effect: &'static dyn Effect| {
+            let judged = self.with_effect(base, effect);
+            self.progress.tried(effect.id());
+            judged
+        };
+        let mut judged: Vec<Judged> = effects.into_par_iter().filter_map(added).collect();
         judged.sort_by(|a, b| b.log_odds.total_cmp(&a.log_odds));
         let Some(best) = judged.first().map(|best| (best.log_odds, best.posterior.log_sizes)) else { return vec![] };
         let closer = |one: Judged| {

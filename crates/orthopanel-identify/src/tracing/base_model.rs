@@ -7,7 +7,6 @@ use orthopanel_model::{
 };
 
 use super::accelerances::base_of_accelerances;
-use super::curves::curves;
 use super::frequencies::identify_lists;
 use super::hypothesis::Hypothesis;
 use super::record_problem::State;
@@ -108,7 +107,7 @@ impl RecordsBase {
         let errors: f64 = modes.iter().map(|mode| mode.error_percent().powi(2)).sum();
         let shown: Vec<Accelerance> =
             test.accelerances(estimation)?.into_iter().map(|(_, accelerance)| accelerance).collect();
-        let accelerances = curves(&shown, &self.setup, &self.state, self.band)?;
+        let accelerances = self.state.curves(&shown, &self.setup, self.band)?;
         let lines = || accelerances.iter().flat_map(|pair| pair.model.iter().zip(&pair.measured));
         let missed: f64 = lines().map(|(model, measured)| (model - measured).norm_sqr()).sum();
         let total: f64 = lines().map(|(_, measured)| measured.norm_sqr()).sum();

@@ -3,9 +3,9 @@
 use orthopanel_model::{Piece, Scale};
 
 use super::hypothesis::{FreeParameter, Hypothesis, Switched, ends_of_range, is_place};
-use super::outcome::Verdict;
 use super::rough::ROUGHNESS;
 use crate::error::spaced;
+use crate::outcome::Verdict;
 
 /// Effect and parameter on a bound, of the effects beyond the first `declared`; parameters of the names that are `untold` show in no
 /// data of this kind.

@@ -7,11 +7,11 @@ use rayon::prelude::*;
 
 use super::elsewhere::put_elsewhere;
 use super::fit::Fit;
-use super::outcome::{NotTested, Progress};
 use super::ranking::{Ranking, Search, least_cost};
 use super::starts::declared::base_fit;
 use super::starts::{Costed, Look, followed_where_told, scored_starts};
 use crate::IdentifyError;
+use crate::outcome::{NotTested, Progress};
 
 /// How many effects are done of those that a round of the search tries.
 pub(super) struct Count {

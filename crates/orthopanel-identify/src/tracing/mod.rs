@@ -15,7 +15,6 @@ mod base_model;
 mod bounds;
 mod closer_look;
 mod core_modes;
-mod curves;
 mod declared_doubt;
 mod each_effect;
 mod elsewhere;
@@ -33,7 +32,6 @@ mod line_noise;
 mod made_rows;
 mod model_error;
 mod next_experiment;
-mod outcome;
 mod ranking;
 mod reactions;
 mod record_problem;
@@ -41,7 +39,6 @@ mod records_of_test;
 mod report;
 mod rough;
 mod row_products;
-mod rows;
 mod search_work;
 mod starts;
 mod valley;
@@ -51,45 +48,31 @@ mod wide_panel;
 mod widened_lines;
 
 use orthopanel_data::{ImpactTest, MeasurementData, TimeHistory};
-use orthopanel_model::StructureKind;
-
-pub use outcome::{
-    Candidate, FittedError, IndependentLines, NotTested, Progress, Removed, TracedEffect, TracedError, TracedParameter,
-    Tracing, Verdict,
-};
 
 pub(crate) use base_model::identify_with_effects;
 pub(crate) use frequencies::without_repeats;
-pub use rows::TRACE_SCHEMA;
 
 use crate::IdentifyError;
+use crate::outcome::{Progress, Tracing};
 use hypothesis::Hypothesis;
 use ranking::Search;
 use records_of_test::TestRecords;
 
-/// Names the effect that the base model of a test lacks, from its records or its natural frequencies. Effects that the test
-/// file declares are part of the base model.
+/// Refuses what a test of hits of one piece declares wrongly.
 ///
 /// # Errors
-/// [`IdentifyError::PlateNotTraced`] for a declared plate; records that cannot be read or show too few resonances, and tests
-/// that this version cannot trace.
-pub fn trace(test: &ImpactTest) -> Result<Tracing, IdentifyError> {
-    trace_with(test, &|_| {})
+/// What a declared effect refuses of its numbers, or needs and the test has not.
+pub(crate) fn check_declared(test: &ImpactTest) -> Result<(), IdentifyError> {
+    let [named] = &test.pieces[..] else { return Ok(()) };
+    let histories = test.time_histories()?.len();
+    Hypothesis::declared(test, &named.piece, histories)?.check_that_each_acts(test, &named.piece)
 }
 
-/// [`trace`], telling how far it is. The callback is called from several threads.
+/// Fits the lines of records, or the numbers of lists, with each effect, one after the other.
 ///
 /// # Errors
-/// As [`trace`].
-pub fn trace_with(test: &ImpactTest, progress: &(dyn Fn(Progress) + Sync)) -> Result<Tracing, IdentifyError> {
-    traced(test, progress)?.finite()
-}
-
-fn traced(test: &ImpactTest, progress: &(dyn Fn(Progress) + Sync)) -> Result<Tracing, IdentifyError> {
-    // The base of every trace is a beam: of a plate it would judge another model than the one that the file declares.
-    if test.structure == Some(StructureKind::MindlinPlate) {
-        return Err(IdentifyError::PlateNotTraced);
-    }
+/// Records that cannot be read or show too few resonances, and tests that this version cannot trace.
+pub(crate) fn trace_by_fits(test: &ImpactTest, progress: &(dyn Fn(Progress) + Sync)) -> Result<Tracing, IdentifyError> {
     let lists = |data: &MeasurementData| matches!(data, MeasurementData::NaturalFrequencies(_));
     if test.measurements.iter().all(|measurement| lists(&measurement.data)) {
         let piece = test.pieces.iter().map(|named| named.piece).max_by(|a, b| a.mass().total_cmp(&b.mass()));

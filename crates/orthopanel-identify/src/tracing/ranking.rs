@@ -8,7 +8,6 @@ use super::fit::{Fit, LAST, PATIENCE, fit, polish, settle};
 use super::held_out::held_out;
 use super::hypothesis::Hypothesis;
 use super::information::LikelihoodScale;
-use super::outcome::{NotTested, Progress};
 use super::record_problem::{Grouping, State};
 use super::records_of_test::TestRecords;
 use super::rough::{exceeds_any_test, is_roughness};
@@ -17,6 +16,7 @@ use super::valley::lead_on;
 use super::verdict::{CLEAR, MET};
 use super::whiteness::{independent_part, whitened};
 use crate::IdentifyError;
+use crate::outcome::{NotTested, Progress};
 
 /// Every hypothesis that was fitted, the base first.
 pub(super) struct Ranking {

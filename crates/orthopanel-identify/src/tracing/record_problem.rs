@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use faer::Mat;
 use num_complex::Complex64;
+use orthopanel_data::Accelerance;
 use orthopanel_model::{BEAM_CONSTANTS, Damping, LineBlock, ModelError, ReceptanceModel, ReceptanceSetup};
 use rayon::prelude::*;
 
@@ -17,7 +18,9 @@ use super::rough::{RoughScales, add_prior, is_roughness};
 use super::row_products::RowProducts;
 use super::search_work::SearchWork;
 use super::widened_lines::WidenedLines;
+use crate::curves::curves;
 use crate::least_squares::Quadratic;
+use crate::{AcceleranceFit, IdentifyError};
 
 /// What stays the same whichever effects are on.
 #[derive(Clone, Copy)]
@@ -66,6 +69,20 @@ impl State {
         let mut ratios: Vec<f64> = self.zetas.iter().map(|log| log.exp()).collect();
         let beyond = ratios.pop().unwrap_or_default();
         Damping { ratios, beyond }
+    }
+
+    /// Every record beside the model, up to `band` \[Hz\].
+    ///
+    /// # Errors
+    /// What the model refuses.
+    pub(super) fn curves(
+        &self,
+        accelerances: &[Accelerance],
+        setup: &ReceptanceSetup,
+        band: f64,
+    ) -> Result<Vec<AcceleranceFit>, IdentifyError> {
+        let effects = self.hypothesis.states(accelerances.len())?;
+        curves(accelerances, setup, (&self.constants.map(f64::exp), &self.damping(), &effects), band)
     }
 
     /// Whether the two are the same, number by number.

@@ -7,7 +7,6 @@ use orthopanel_model::{
 use rayon::prelude::*;
 
 use super::base_model::RecordsBase;
-use super::curves::curves;
 use super::fit::{Fit, LAST, by_group};
 use super::held_out::LEAST_PLACES;
 use super::hypothesis::Hypothesis;
@@ -202,7 +201,7 @@ impl TestRecords {
     /// # Errors
     /// What the model refuses.
     pub(super) fn curves(&self, fit: &Fit) -> Result<Vec<AcceleranceFit>, IdentifyError> {
-        curves(&self.accelerances, &self.setup, &fit.state, self.band)
+        fit.state.curves(&self.accelerances, &self.setup, self.band)
     }
 
     /// Scatter of the hits about their mean per datum, over the noise as it is modelled; 1 where a single hit tells none.

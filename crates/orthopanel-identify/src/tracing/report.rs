@@ -14,9 +14,6 @@ use super::held_out::held_out;
 use super::hypothesis::{Hypothesis, PLATE, Switched, WINDOW};
 use super::model_error::{of_amplitude, spread_of_gradient};
 use super::next_experiment::next_experiment;
-use super::outcome::{
-    Candidate, FittedError, IndependentLines, Removed, TracedEffect, TracedError, TracedParameter, Tracing, Verdict,
-};
 use super::ranking::{Ranking, Search};
 use super::record_problem::Grouping;
 use super::records_of_test::TestRecords;
@@ -25,6 +22,10 @@ use super::verdict::{is_too_rough, verdict};
 use super::whiteness::{independent_lines, whitened};
 use super::widened_lines::{WIDENINGS, WidenedLines};
 use crate::IdentifyError;
+use crate::outcome::{
+    Candidate, FittedError, IndependentLines, Removed, TracedEffect, TracedError, TracedParameter, Tracing, Verdict,
+};
+use crate::to_check::GAIN_OR_MASS;
 
 const MEASURE: &str = "misfit of the accelerances over the noise of the hits, rms over all lines (1: noise alone)";
 
@@ -38,9 +39,6 @@ const COLOURED: f64 = 0.7;
 
 const TOO_ROUGH: &str =
     "what is named leaves more roughness than a test by hand has: it may not be all that is missing";
-
-const GAIN_OR_MASS: &str = "a gain of all records is also what a wrong mass makes: mass and all moduli times one number divide every accelerance by it. Weigh \
-                            the piece before the gain is put down to the measuring chain";
 
 const TOO_FEW: &str = "one hit at each of fewer than three pairs of places: nothing can be left out to judge by, and what hits scatter \
                        by is taken to be 0.1 % of the motion. Hit each place three times, or hit three places";
@@ -67,12 +65,11 @@ pub(super) fn report(test: &ImpactTest, search: &Search, ranking: &Ranking) -> R
     let candidates = order.iter().map(|&index| {
         let fit = &ranking.fits[index];
         let std = deviations(search, ranking, fit)?;
+        let held_out = held_out(records, fit, ranking.grouping(records, index))?.sqrt();
+        let effects = traced(fit, &std, search.declared());
         Ok(Candidate {
-            id: name(fit, search.declared()),
-            bic: ranking.bic(index),
-            held_out: held_out(records, fit, ranking.grouping(records, index))?.sqrt(),
-            effects: traced(fit, &std, search.declared()),
             left_behind: fit.given_up.map(|stage| WIDENINGS[stage].decay_rate),
+            ..Candidate::by_criterion(name(fit, search.declared()), ranking.bic(index), held_out, effects)
         })
     });
     let candidates = candidates.collect::<Result<Vec<_>, IdentifyError>>()?;
@@ -101,6 +98,7 @@ pub(super) fn report(test: &ImpactTest, search: &Search, ranking: &Ranking) -> R
             noise_floor: records.noise_floor(chosen)?.sqrt(),
             independent: Some(independent),
         },
+        model_error: None,
         candidates,
         not_tested: ranking.not_tested.clone(),
         next_experiment: match doubts.first() {
@@ -243,17 +241,7 @@ pub(super) fn take_out(all: Vec<TracedEffect>, declared: usize, panel: &mut Pane
             }
             continue;
         }
-        removed.push(removal(&effect, index < declared));
+        removed.push(Removed::of(&effect, index < declared));
     }
     removed
-}
-
-/// Why an effect is not in the panel's model.
-pub(super) fn removal(effect: &TracedEffect, is_declared: bool) -> Removed {
-    let told = if is_declared { "declared in the test file" } else { "found in the data" };
-    let why = match effect.owner {
-        Owner::Rig => "it belongs to the rig: the panel in service carries neither sensor nor suspension",
-        _ => "it belongs to the measuring chain: the panel itself does not have it",
-    };
-    Removed { id: effect.id, owner: effect.owner, why: format!("{told}; {why}") }
 }

@@ -1,11 +1,11 @@
 //! Which word the ranking deserves, and which effects fit about as well as the chosen ones.
 
 use super::fit::Fit;
-use super::outcome::Verdict;
 use super::ranking::Ranking;
 use super::records_of_test::TestRecords;
 use super::rough::exceeds_any_test;
 use crate::IdentifyError;
+use crate::outcome::Verdict;
 
 /// A rival must stay behind by this much of the scaled criterion to be out of the question.
 pub(super) const CLEAR: f64 = 100.0;

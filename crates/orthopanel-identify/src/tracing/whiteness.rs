@@ -3,9 +3,9 @@
 use num_complex::Complex64;
 
 use super::fit::{Fit, LAST};
-use super::outcome::IndependentLines;
 use super::records_of_test::TestRecords;
 use crate::IdentifyError;
+use crate::outcome::IndependentLines;
 
 /// Most lines apart at which lines are compared.
 const REACH: usize = 60;

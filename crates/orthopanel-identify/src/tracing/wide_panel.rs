@@ -4,7 +4,7 @@ use orthopanel_model::{
     Estimate, MindlinPlate, ModelError, PLATE_CONSTANTS, PanelModel, RitzMode, Structure, StructureKind, ritz_modes,
 };
 
-use super::outcome::TracedEffect;
+use crate::outcome::TracedEffect;
 
 /// Modes of the plate among which those that the records show are looked for, for each of these.
 const EACH: usize = 4;

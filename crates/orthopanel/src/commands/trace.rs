@@ -12,8 +12,9 @@ use crate::{console, model_file};
 
 /// Name the physical effect that the model of a test lacks
 ///
-/// The base model, with every effect that the test file declares, is fitted to the data; then every
-/// effect of the catalogue with it, alone and together, and each is judged by what was held out. The verdict is one of
+/// The base model, with every effect that the test file declares, is held against the data; then every
+/// effect of the catalogue with it, alone and together. Of hits the hypotheses are compared by their evidence, beside noise and
+/// a model error that is estimated; else each is judged by what was held out. The verdict is one of
 /// nothing-missing, explained, ambiguous (with the effects that fit alike, and the measurement that would part them) and
 /// unexplained.
 ///
@@ -31,7 +32,7 @@ pub struct Arguments {
     /// Model file to write (orthopanel.model/1, JSON)
     #[arg(short, long, value_name = "MODEL.json")]
     output: Option<PathBuf>,
-    /// Print one JSON object (orthopanel.trace/1) on standard output
+    /// Print one JSON object (orthopanel.trace/2) on standard output
     #[arg(long)]
     json: bool,
 }

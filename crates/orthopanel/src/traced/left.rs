@@ -19,7 +19,8 @@ impl Traced {
     pub fn left(&self) -> Option<String> {
         let tracing = &self.tracing;
         // Files of accelerances tell neither hits nor, at the resonances, how far they drift.
-        if tracing.verdict != Verdict::Unexplained || tracing.error.independent.is_none() {
+        let of_hits = tracing.error.independent.is_some() || tracing.model_error.is_some();
+        if tracing.verdict != Verdict::Unexplained || !of_hits {
             return None;
         }
         let pairs: Vec<PairResidual> = tracing.accelerances.iter().map(PairResidual::of).collect();

@@ -1,4 +1,4 @@
-//! What a trace found, as text for people and as the panel's model; its JSON (`orthopanel.trace/1`) is the layer's own.
+//! What a trace found, as text for people and as the panel's model; its JSON (`orthopanel.trace/2`) is the layer's own.
 
 mod left;
 mod lists;
@@ -14,11 +14,16 @@ use serde_json::Value;
 
 use crate::identified::{ASSUMED_DAMPING, base_models, to_digits};
 use crate::{console, notes, progress};
-pub use tables::{INDEPENDENT, comparison, effect_rows, ranking_rows};
+pub use tables::{INDEPENDENT, comparison, effect_rows, ranking_headings, ranking_rows};
 
 /// What a mode's entry in a model's provenance tells of the test alone.
 const AS_MEASURED: [&str; 4] = ["mode", "nodes", "measured_hz", "measured_std_hz"];
 
+/// Standard deviations of a traced panel's damping ratios, in its provenance.
+const DAMPING_STD: &str = "damping_std";
+
+const DAMPING_OF_MODES: &str = "with the effects, the ratios of the measured modes less what dashpots and windows among the effects bring; beyond \
+                                their geometric mean";
 const DAMPING_OF_RECORDS: &str = "with the effects, the ratios with which the records as a whole fit best; beyond the band \
                                   assumed, one usual for their resonances";
 
@@ -83,6 +88,9 @@ impl Traced {
             model.structure = panel.structure;
             model.constants.clone_from(&panel.constants);
             model.damping.clone_from(&panel.damping);
+            model
+                .provenance
+                .extend(panel.provenance.get_key_value(DAMPING_STD).map(|(key, std)| (key.clone(), std.clone())));
             model.effects.clone_from(&panel.effects);
             if let Some(modes) = model.provenance.get_mut("modes").and_then(Value::as_array_mut) {
                 // The rest is that of the model without the effects.
@@ -136,7 +144,8 @@ impl Traced {
         };
         provenance.insert("accelerance_rms_percent".into(), to_digits(accelerances, 2).into());
         provenance.remove("damping_law");
-        provenance.insert("damping".into(), DAMPING_OF_RECORDS.into());
+        let of = if self.tracing.model_error.is_some() { DAMPING_OF_MODES } else { DAMPING_OF_RECORDS };
+        provenance.insert("damping".into(), of.into());
     }
 
     /// Rms of what the model with the effects leaves of the records over the rms measured \[%\]; `None` where lists

@@ -3,6 +3,7 @@
 use orthopanel_identify::{TracedEffect, Verdict};
 
 use super::Traced;
+use crate::identified::to_digits;
 
 /// How a next experiment begins that is none: the test file is likelier wrong than the model.
 const CHECK_FIRST: &str = "before another measurement check";
@@ -39,6 +40,17 @@ impl Traced {
                 format!("Something is missing that no effect of the catalogue explains; the nearest is {named}.")
             }
         }
+    }
+
+    /// By how much the model misses beside noise, where that was estimated.
+    pub fn model_error(&self) -> Option<String> {
+        let of = self.tracing.model_error?;
+        let percent = |part: f64| format!("{} %", to_digits(100.0 * part, 2));
+        Some(format!(
+            "Beside noise the model misses frequencies by {} and residues by {}.",
+            percent(of.frequency),
+            percent(of.residue)
+        ))
     }
 
     fn alternatives(&self) -> String {

@@ -30,7 +30,8 @@ pub fn comparison(tracing: &Tracing) -> (Vec<&'static str>, Vec<Vec<String>>) {
     let row = |name: &str, error: FittedError| vec![name.into(), number(error.fitted), number(error.held_out)];
     let floor = FittedError { fitted: error.noise_floor, held_out: error.noise_floor };
     let mut headings = vec!["", "fitted", "held out"];
-    let mut rows = vec![row("before", error.before), row("after", error.after), row("noise floor", floor)];
+    let least = if tracing.model_error.is_some() { "noise and model error" } else { "noise floor" };
+    let mut rows = vec![row("before", error.before), row("after", error.after), row(least, floor)];
     if let Some(of) = error.independent {
         headings.push("independent");
         let parts = [of.before, of.after, of.noise];
@@ -39,11 +40,18 @@ pub fn comparison(tracing: &Tracing) -> (Vec<&'static str>, Vec<Vec<String>>) {
     (headings, rows)
 }
 
-/// Candidate, how much worse its information criterion is than the best, error held out and parameters.
+/// Headings of [`ranking_rows`].
+pub fn ranking_headings(tracing: &Tracing) -> [&'static str; 3] {
+    let by_criterion = tracing.candidates.iter().any(|candidate| candidate.bic.is_some());
+    ["hypothesis", if by_criterion { "BIC above best" } else { "log evidence" }, "held out"]
+}
+
+/// Candidate, its evidence beside the best one's, or how much worse its information criterion is, error held out and parameters.
 pub fn ranking_rows(tracing: &Tracing, most: usize) -> Vec<Vec<String>> {
-    let best = tracing.candidates.iter().map(|candidate| candidate.bic).fold(f64::INFINITY, f64::min);
+    let of = |candidate: &Candidate| candidate.bic.map_or(candidate.log_evidence, |bic| -bic);
+    let best = tracing.candidates.iter().map(of).fold(f64::NEG_INFINITY, f64::max);
     let row = |candidate: &Candidate| {
-        let margin = candidate.bic - best;
+        let margin = if candidate.bic.is_some() { best - of(candidate) } else { of(candidate) - best };
         let parameters = parameters_text(candidate);
         let told = match candidate.left_behind {
             Some(rate) => format!("left behind at peaks widened by {rate:.0} /s; {parameters}"),
@@ -118,8 +126,10 @@ impl Traced {
         if tracing.error.independent.is_some() {
             text += &format!("{INDEPENDENT}\n");
         }
+        text.extend(self.model_error().map(|told| told + "\n"));
         text.extend(self.left().map(|left| left + ".\n"));
-        let headings = ["hypothesis", "BIC above best", "held out", "parameters"];
+        let [hypothesis, evidence, held_out] = ranking_headings(tracing);
+        let headings = [hypothesis, evidence, held_out, "parameters"];
         text += &format!("\n{}", ending_in_words(&headings, &ranking_rows(tracing, LISTED)));
         match tracing.candidates.len().saturating_sub(LISTED) {
             0 => {}

@@ -15,12 +15,12 @@ use orthopanel_model::{BEAM_CONSTANTS, BeamConstants, ExactBeam, Piece, Receptan
 
 use super::base_model::RecordsBase;
 use super::hypothesis::{Hypothesis, Switched};
-use super::outcome::{NotTested, Progress, Tracing};
 use super::record_problem::State;
 use super::starts::supports::{REACH, SUPPORT, SupportStarts, support_starts};
 use crate::IdentifyError;
 use crate::accelerance_fit::{ResonanceStart, resonance_starts};
 use crate::free_constants::FreeConstants;
+use crate::outcome::{NotTested, Progress, Tracing};
 use between_peaks::BetweenPeaks;
 use problem::AccelerancesProblem;
 use search::Search;

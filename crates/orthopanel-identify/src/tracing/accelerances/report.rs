@@ -7,10 +7,9 @@ use super::parting::next_experiment;
 use super::problem::AccelerancesFit;
 use super::search::{Found, Search};
 use crate::IdentifyError;
+use crate::outcome::{Candidate, FittedError, TracedEffect, TracedError, Tracing, Verdict};
 use crate::tracing::bare_panel::bare_panel;
 use crate::tracing::bounds;
-use crate::tracing::curves::curves;
-use crate::tracing::outcome::{Candidate, FittedError, TracedEffect, TracedError, Tracing, Verdict};
 use crate::tracing::record_problem::total;
 use crate::tracing::report::{effects_of, take_out};
 
@@ -39,13 +38,8 @@ pub(super) fn report(
     };
     let candidate = |&index: &usize| -> Result<Candidate, IdentifyError> {
         let fit = &found.fits[index];
-        Ok(Candidate {
-            left_behind: None,
-            id: name(search, fit),
-            bic: search.bic(fit),
-            held_out: percent(search.held_out(fit)?),
-            effects: traced(fit, &deviations(search, fit)?).split_off(search.declared),
-        })
+        let effects = traced(fit, &deviations(search, fit)?).split_off(search.declared);
+        Ok(Candidate::by_criterion(name(search, fit), search.bic(fit), percent(search.held_out(fit)?), effects))
     };
     let std = deviations(search, chosen)?;
     let mut effects = traced(chosen, &std);
@@ -98,14 +92,15 @@ pub(super) fn report(
             noise_floor: 100.0 * floor,
             independent: None,
         },
+        model_error: None,
         candidates: order.iter().map(candidate).collect::<Result<_, _>>()?,
         not_tested: found.not_tested.clone(),
         next_experiment,
         chi_square: chosen.missed / floor.max(f64::MIN_POSITIVE).powi(2),
         panels: vec![panel],
         removed,
-        accelerances: curves(&search.accelerances, &problem.setup, &chosen.state, search.band)?,
-        base_accelerances: curves(&search.accelerances, &problem.setup, &base.state, search.band)?,
+        accelerances: chosen.state.curves(&search.accelerances, &problem.setup, search.band)?,
+        base_accelerances: base.state.curves(&search.accelerances, &problem.setup, search.band)?,
         notes,
     })
 }

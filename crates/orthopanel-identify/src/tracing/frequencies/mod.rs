@@ -26,8 +26,8 @@ use orthopanel_model::catalogue;
 use rayon::prelude::*;
 
 use super::hypothesis::{Hypothesis, PLATE, RESONATOR, Switched, has_place, is_place};
-use super::outcome::{NotTested, Progress, Tracing};
 use crate::IdentifyError;
+use crate::outcome::{NotTested, Progress, Tracing};
 pub(super) use declared::identify_lists;
 use list_fit::{ListFit, fit};
 use list_problem::ListProblem;

@@ -15,12 +15,12 @@ use super::trust::Trust;
 use super::verdict::{CLEAR, Choice};
 use super::width::as_plate;
 use crate::IdentifyError;
-use crate::tracing::bounds;
-use crate::tracing::hypothesis::PLATE;
-use crate::tracing::outcome::{
+use crate::outcome::{
     Candidate, FittedError, NotTested, Removed, TracedEffect, TracedError, TracedParameter, Tracing, Verdict,
 };
-use crate::tracing::report::{effects_of, removal};
+use crate::tracing::bounds;
+use crate::tracing::hypothesis::PLATE;
+use crate::tracing::report::effects_of;
 
 const UNTOLD: &str = "no list of frequencies tells its scatter: the criterion takes it from the residuals themselves, and a margin of 10 is clear";
 const UNMEASURED: &str =
@@ -60,12 +60,10 @@ pub(super) fn report(
     let told = problem.scatter();
     let floor = problem.noise().map(|noise| rms(&noise));
     let error = |fit: &ListFit| FittedError { fitted: fit.percent(), held_out: fit.left_out_percent() };
-    let candidate = |&index: &usize| Candidate {
-        left_behind: None,
-        id: name(&fits[index], index == 0, declared),
-        bic: fits[index].bic(),
-        held_out: fits[index].left_out_percent(),
-        effects: traced(problem, &fits[index], declared),
+    let candidate = |&index: &usize| {
+        let fit = &fits[index];
+        let effects = traced(problem, fit, declared);
+        Candidate::by_criterion(name(fit, index == 0, declared), fit.bic(), fit.left_out_percent(), effects)
     };
     let too_few = verdict == Verdict::Ambiguous && chosen == 0;
     let untested = verdict == Verdict::Ambiguous && (too_few || choice.leaves_room(&fits[chosen], &trust));
@@ -111,6 +109,7 @@ pub(super) fn report(
             noise_floor: 100.0 * floor.unwrap_or_else(|| fits[chosen].scatter()),
             independent: None,
         },
+        model_error: None,
         candidates: ranked.iter().map(candidate).collect(),
         not_tested,
         next_experiment,
@@ -212,7 +211,7 @@ fn take_out(problem: &ListProblem, fit: &ListFit, declared: usize, panels: &mut 
     let mut removed = Vec::new();
     for (index, found) in traced(problem, fit, 0).into_iter().enumerate() {
         if effect(found.id).is_ok_and(|effect| effect.owner() != Owner::Panel) {
-            removed.push(removal(&found, index < declared));
+            removed.push(Removed::of(&found, index < declared));
             continue;
         }
         for panel in &mut *panels {

@@ -2,7 +2,7 @@
 
 use super::list_fit::ListFit;
 use super::trust::Trust;
-use crate::tracing::outcome::Verdict;
+use crate::outcome::Verdict;
 
 /// By so much the criterion must fall for an effect, and so far behind a rival must stay: odds of a hundred and fifty to one.
 pub(super) const CLEAR: f64 = 10.0;

@@ -6,15 +6,15 @@
 mod foretold;
 mod harder;
 mod places;
-mod to_check;
 
 use orthopanel_data::ImpactTest;
 
 use super::fit::Fit;
-use super::outcome::Verdict;
 use super::ranking::{Ranking, Search};
 use super::reactions::cubic;
 use super::report::name;
+use crate::outcome::Verdict;
+use crate::to_check::to_check;
 
 /// What to measure next, in words, with the difference that the hypotheses then show over the noise.
 pub(super) fn next_experiment(
@@ -33,7 +33,7 @@ pub(super) fn next_experiment(
     }
     if verdict == Verdict::Unexplained {
         let left = ranking.fits[ranking.chosen].chi_square(search.records).sqrt();
-        return to_check::to_check(test, left);
+        return to_check(test, left);
     }
     let chosen = &ranking.fits[ranking.chosen];
     let is_cubic = |fit: &Fit| cubic(&fit.state.hypothesis, 0).is_some();

@@ -8,10 +8,10 @@ use orthopanel_model::{ModelError, Piece};
 use rayon::prelude::*;
 
 use crate::IdentifyError;
+use crate::outcome::Progress;
 use crate::tracing::fit::{Fit, LAST, PATIENCE, polish, polished_through, settle};
 use crate::tracing::hypothesis::CUBIC;
 use crate::tracing::model_error::TRUSTED;
-use crate::tracing::outcome::Progress;
 use crate::tracing::ranking::{LITTLE, Ranking, Search, least_cost};
 use crate::tracing::record_problem::State;
 use crate::tracing::records_of_test::TestRecords;

@@ -1,11 +1,10 @@
-//! The accelerances that a model with effects foretells for the records that it was fitted to.
+//! The accelerances that a model with effects foretells for the records that it is held against.
 
 use num_complex::Complex64;
 use orthopanel_data::Accelerance;
-use orthopanel_model::ReceptanceSetup;
+use orthopanel_model::{Damping, EffectState, ReceptanceSetup};
 use rayon::prelude::*;
 
-use super::record_problem::State;
 use crate::accelerance_fit::told_variance;
 use crate::{AcceleranceFit, IdentifyError};
 
@@ -13,14 +12,13 @@ use crate::{AcceleranceFit, IdentifyError};
 ///
 /// # Errors
 /// What the model refuses.
-pub(super) fn curves(
+pub(crate) fn curves(
     accelerances: &[Accelerance],
     setup: &ReceptanceSetup,
-    state: &State,
+    (constants, damping, effects): (&[f64], &Damping, &[EffectState]),
     band: f64,
 ) -> Result<Vec<AcceleranceFit>, IdentifyError> {
-    let effects = state.hypothesis.states(accelerances.len())?;
-    let model = setup.model(&state.constants.map(f64::exp), &state.damping(), &effects)?;
+    let model = setup.model(constants, damping, effects)?;
     let curve = |(index, record): (usize, &Accelerance)| {
         let lines = record.frequency.partition_point(|&frequency| frequency <= band);
         let frequency = record.frequency[..lines].to_vec();

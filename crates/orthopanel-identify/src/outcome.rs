@@ -1,4 +1,4 @@
-//! What a trace found.
+//! What a trace found, whichever search found it.
 
 use orthopanel_model::{EffectEntry, Estimate, Owner, PanelModel};
 
@@ -40,6 +40,8 @@ pub struct Tracing {
     pub alternatives: Vec<String>,
     /// Error of the base and of the model with the effects.
     pub error: TracedError,
+    /// By how much the model misses beside noise, as it was estimated with the rest; `None` where lines or lists were traced one by one.
+    pub model_error: Option<EstimatedModelError>,
     /// Every hypothesis that was fitted, the likeliest first.
     pub candidates: Vec<Candidate>,
     /// Effects that these data cannot show, with the reason.
@@ -65,7 +67,7 @@ impl Tracing {
     ///
     /// # Errors
     /// [`IdentifyError::NotFinite`].
-    pub(super) fn finite(mut self) -> Result<Self, IdentifyError> {
+    pub(crate) fn finite(mut self) -> Result<Self, IdentifyError> {
         let TracedError { before, after, noise_floor, .. } = &self.error;
         for (what, value) in [
             ("error of the base model", before.fitted),
@@ -79,7 +81,7 @@ impl Tracing {
                 return Err(IdentifyError::NotFinite { what: what.into() });
             }
         }
-        let is_finite = |of: &Candidate| of.bic.is_finite() && of.held_out.is_finite();
+        let is_finite = |of: &Candidate| of.log_evidence.is_finite() && of.held_out.is_finite();
         let (ranked, lost): (Vec<_>, Vec<_>) = std::mem::take(&mut self.candidates).into_iter().partition(is_finite);
         self.candidates = ranked;
         let left_out =
@@ -123,6 +125,15 @@ pub struct TracedParameter {
     pub values: Vec<Estimate>,
 }
 
+/// By how much a sound model of this panel misses what was measured, beside noise.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct EstimatedModelError {
+    /// Standard deviation of the logarithm of each natural frequency \[1\].
+    pub frequency: f64,
+    /// The same of each residue along its phase, over the rms of its mode's residues \[1\].
+    pub residue: f64,
+}
+
 /// Error before and after, on what was fitted and on what was held out.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TracedError {
@@ -134,8 +145,8 @@ pub struct TracedError {
     pub after: FittedError,
     /// The error that noise alone makes.
     pub noise_floor: f64,
-    /// How white the residuals of records of hits are; `None` for lists and for files of accelerances, of which means of lines
-    /// between the resonances are judged, as far from each other as these leave.
+    /// How white the residuals of lines of hits are; `None` where measured modes were judged, for lists, and for files of accelerances, of
+    /// which means of lines between the resonances are judged, as far from each other as these leave.
     pub independent: Option<IndependentLines>,
 }
 
@@ -165,8 +176,12 @@ pub struct FittedError {
 pub struct Candidate {
     /// Its effects' ids joined by ` + `; `base` for none.
     pub id: String,
-    /// Bayes' information criterion, scaled by the whiteness of the residuals: less is better.
-    pub bic: f64,
+    /// Natural logarithm of the evidence times the prior of the hypothesis: differences are logarithms of odds. Of a search of lines or
+    /// lists, $-\tfrac12$ of the criterion.
+    pub log_evidence: f64,
+    /// Bayes' information criterion, scaled by the whiteness of the residuals: less is better. `None` where measured modes were judged,
+    /// by their evidence itself.
+    pub bic: Option<f64>,
     /// Error on what was held out, as in [`TracedError`].
     pub held_out: f64,
     /// What was found of the effects.
@@ -185,6 +200,13 @@ pub struct NotTested {
     pub reason: String,
 }
 
+impl Candidate {
+    /// One that is judged by a criterion.
+    pub(crate) fn by_criterion(id: String, bic: f64, held_out: f64, effects: Vec<TracedEffect>) -> Self {
+        Self { id, log_evidence: -0.5 * bic, bic: Some(bic), held_out, effects, left_behind: None }
+    }
+}
+
 /// An effect that is in the data and not of the panel.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Removed {
@@ -194,6 +216,18 @@ pub struct Removed {
     pub owner: Owner,
     /// Why it is not in the panel's model, a sentence.
     pub why: String,
+}
+
+impl Removed {
+    /// Why an effect is not in the panel's model.
+    pub(crate) fn of(effect: &TracedEffect, is_declared: bool) -> Self {
+        let told = if is_declared { "declared in the test file" } else { "found in the data" };
+        let why = match effect.owner {
+            Owner::Rig => "it belongs to the rig: the panel in service carries neither sensor nor suspension",
+            _ => "it belongs to the measuring chain: the panel itself does not have it",
+        };
+        Self { id: effect.id, owner: effect.owner, why: format!("{told}; {why}") }
+    }
 }
 
 /// How far a trace is: one effect of the catalogue after the other.

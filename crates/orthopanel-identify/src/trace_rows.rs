@@ -1,13 +1,13 @@
-//! A trace as `orthopanel.trace/1`.
+//! A trace as `orthopanel.trace/2`.
 
 use std::collections::BTreeMap;
 
 use serde::{Serialize, Serializer};
 
-use super::outcome::{TracedEffect, TracedParameter, Tracing};
+use crate::outcome::{TracedEffect, TracedParameter, Tracing};
 
 /// The name of the format.
-pub const TRACE_SCHEMA: &str = "orthopanel.trace/1";
+pub const TRACE_SCHEMA: &str = "orthopanel.trace/2";
 
 #[derive(Serialize)]
 struct Rows<'a> {
@@ -17,6 +17,7 @@ struct Rows<'a> {
     alternatives: &'a [String],
     error: ErrorRow<'a>,
     chi_square: f64,
+    model_error: Option<ModelErrorRow>,
     candidates: Vec<CandidateRow<'a>>,
     not_tested: Vec<NotTestedRow<'a>>,
     removed: Vec<RemovedRow<'a>>,
@@ -64,6 +65,12 @@ struct IndependentRow {
 }
 
 #[derive(Serialize)]
+struct ModelErrorRow {
+    frequency: f64,
+    residue: f64,
+}
+
+#[derive(Serialize)]
 struct PairRow {
     fitted: f64,
     held_out: f64,
@@ -72,7 +79,10 @@ struct PairRow {
 #[derive(Serialize)]
 struct CandidateRow<'a> {
     id: &'a str,
-    bic: f64,
+    log_evidence: f64,
+    /// Only of a candidate that was judged by it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    bic: Option<f64>,
     held_out: f64,
     parameters: BTreeMap<String, ParameterRow>,
     /// Only of a candidate that was left behind: by how much peaks were widened there \[1/s\].
@@ -117,11 +127,13 @@ impl Serialize for Tracing {
                 }),
             },
             chi_square: self.chi_square,
+            model_error: self.model_error.map(|of| ModelErrorRow { frequency: of.frequency, residue: of.residue }),
             candidates: self
                 .candidates
                 .iter()
                 .map(|candidate| CandidateRow {
                     id: &candidate.id,
+                    log_evidence: candidate.log_evidence,
                     bic: candidate.bic,
                     held_out: candidate.held_out,
                     parameters: of_candidate(&candidate.effects),

@@ -1,0 +1,49 @@
+//! The constants and the effects of a hypothesis, with their standard deviations.
+
+use orthopanel_model::Estimate;
+
+use crate::outcome::{TracedEffect, TracedParameter};
+use crate::posterior::Judged;
+
+/// What a hypothesis says.
+pub(super) struct Estimates {
+    /// Of the structure, in its order.
+    pub constants: Vec<Estimate>,
+    /// All effects, and whether the test file declares each.
+    pub effects: Vec<(TracedEffect, bool)>,
+}
+
+impl Estimates {
+    pub(super) fn of(Judged { hypothesis, posterior, .. }: &Judged) -> Self {
+        let values = hypothesis.values_with_deviations(&posterior.point.z, &posterior.covariance);
+        let mut values = values.into_iter().map(|(value, std)| Estimate { value, std });
+        let constants = values.by_ref().take(hypothesis.constants(&posterior.point.z).len()).collect();
+        let effects = hypothesis.parts.iter().map(|part| {
+            let mut parameters: Vec<TracedParameter> = Vec::new();
+            for (parameter, value) in part.parameters().zip(values.by_ref()) {
+                match parameters.last_mut() {
+                    // A value more of a parameter that each record has of its own.
+                    Some(last) if last.name == parameter.name => last.values.push(value),
+                    _ => {
+                        let (name, unit) = (parameter.name, parameter.unit);
+                        parameters.push(TracedParameter { name, unit, values: vec![value] });
+                    }
+                }
+            }
+            let (id, owner) = (part.effect.id(), part.effect.owner());
+            (TracedEffect { id, owner, parameters }, part.declared)
+        });
+        Self { constants, effects: effects.collect() }
+    }
+
+    /// The effects that the file does not declare.
+    pub(super) fn undeclared(self) -> Vec<TracedEffect> {
+        self.effects.into_iter().filter(|(_, declared)| !declared).map(|(effect, _)| effect).collect()
+    }
+}
+
+/// The ids of the undeclared effects of a hypothesis joined by ` + `; `base` for none.
+pub(super) fn id(judged: &Judged) -> String {
+    let names = judged.names();
+    if names.is_empty() { "base".to_owned() } else { names.join(" + ") }
+}

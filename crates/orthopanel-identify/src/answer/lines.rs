@@ -1,0 +1,94 @@
+//! The records' lines beside what a hypothesis predicts of them.
+
+use orthopanel_data::{Accelerance, Estimation, ImpactTest, TimeHistory};
+use orthopanel_model::{
+    BEAM_CONSTANTS, BeamConstants, BeamMode, Damping, EffectState, ExactBeam, Place, ReceptanceSetup, RecordSetting,
+};
+use rayon::prelude::*;
+
+use super::damping::TracedDamping;
+use crate::accelerance_fit::{ResonanceStart, resonance_starts};
+use crate::curves::curves;
+use crate::measured::MeasuredModes;
+use crate::{AcceleranceFit, IdentifyError};
+
+/// Lines sum the modes up to so many times the highest.
+const SUMMED: f64 = 2.5;
+/// Force lost over the band that is drawn \[dB\].
+const FORCE_DROP: f64 = 20.0;
+/// Pairs of places from which one hit at each will do.
+const FEW: usize = 3;
+/// Modes of the beam that are looked through for those.
+const MOST_MODES: usize = 200;
+
+/// The accelerances of the hits, as an analyser shows them.
+pub(super) struct Lines {
+    accelerances: Vec<Accelerance>,
+    /// Of all resonances, those too that stand by themselves in no record.
+    resonances: Option<ResonanceStart>,
+    /// Whether neither hits nor places could tell by how much hits differ.
+    pub hits_are_few: bool,
+    /// Hits that were left out, and why.
+    pub notes: Vec<String>,
+}
+
+/// A hypothesis with the damping ratios that the poles then say.
+pub(super) struct Drawn {
+    pub curves: Vec<AcceleranceFit>,
+    pub damping: TracedDamping,
+}
+
+impl Lines {
+    /// # Errors
+    /// Records that cannot be read.
+    pub(super) fn of(test: &ImpactTest) -> Result<Self, IdentifyError> {
+        let histories: Vec<TimeHistory> = test.time_histories()?.into_iter().map(|(_, history)| history).collect();
+        let estimation = Estimation { force_drop: FORCE_DROP, ..Estimation::default() };
+        let accelerances = histories.par_iter().map(|history| Ok(history.accelerance(estimation)?));
+        let accelerances = accelerances.collect::<Result<Vec<_>, IdentifyError>>()?;
+        let mut notes = Vec::new();
+        for (history, accelerance) in histories.iter().zip(&accelerances) {
+            let [force, response] = [history.force_at, history.response_at].map(|place| place.x);
+            let left_out = history.left_out_of(&accelerance.verdicts).into_iter();
+            notes.extend(left_out.map(|note| format!("force at x = {force} m, response at x = {response} m: {note}")));
+        }
+        let held = BEAM_CONSTANTS.each_ref().map(|constant| test.constants.get(constant.name).copied());
+        let starts = resonance_starts(&test.pieces[0].piece, test.boundary, held, &accelerances);
+        let resonances = starts.ok().and_then(|starts| starts.into_iter().next());
+        let single = |(history, accelerance): (&TimeHistory, &Accelerance)| history.kept_in(accelerance).hits.len() < 2;
+        let hits_are_few = histories.len() < FEW && histories.iter().zip(&accelerances).all(single);
+        Ok(Self { accelerances, resonances, hits_are_few, notes })
+    }
+
+    /// At these constants with these effects; `of_effects` as in [`TracedDamping::of`].
+    ///
+    /// # Errors
+    /// What the model refuses.
+    pub(super) fn drawn(
+        &self,
+        test: &ImpactTest,
+        measured: &MeasuredModes,
+        (constants, effects, of_effects): (&[f64], &[EffectState], &[f64]),
+    ) -> Result<Drawn, IdentifyError> {
+        let piece = test.pieces[measured.piece].piece;
+        let band = measured.band[1];
+        let value = |at: usize| constants.get(at).copied().unwrap_or_default();
+        let beam = ExactBeam::new(&piece, test.boundary, BeamConstants { e_x: value(0), g_zx: value(1) })?;
+        let low = |mode: &BeamMode| mode.frequency() < SUMMED * band;
+        let summed = beam.flexible_modes().take(MOST_MODES).take_while(low).count();
+        let setting = |accelerance: &Accelerance| RecordSetting {
+            force_at: Some(accelerance.force_at),
+            response_at: Some(accelerance.response_at),
+            ..RecordSetting::default()
+        };
+        let settings: Vec<RecordSetting> = self.accelerances.iter().map(setting).collect();
+        let setup = ReceptanceSetup::new(&piece, test.boundary, &test.suspension, &settings, summed + 1)?;
+        let (forces, responses): (Vec<Place>, Vec<Place>) =
+            measured.records.iter().map(|record| (record.force_at, record.response_at)).unzip();
+        let bare = Damping::default();
+        let modes = setup.summed_modes(constants, (&bare, effects), [&forces, &responses], SUMMED * band)?;
+        let damping = TracedDamping::of(measured, &modes, (of_effects, self.resonances.as_ref()));
+        let curves = curves(&self.accelerances, &setup, (constants, &damping.damping, effects), band)?;
+        Ok(Drawn { curves, damping })
+    }
+}

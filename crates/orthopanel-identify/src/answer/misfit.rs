@@ -1,0 +1,70 @@
+//! How far hypotheses are from the measured modes, in units of noise and of the model error of the chosen one.
+
+use faer::Mat;
+
+use crate::comparison::Comparison;
+use crate::outcome::FittedError;
+use crate::posterior::{Judged, Point, Posterior, Problem, Whitening};
+
+use super::left_out::Linear;
+
+/// Steps that a hypothesis is given to come as near as it can, and the gain from which one more is worth while.
+const STEPS: usize = 12;
+const GAIN: f64 = 0.05;
+
+/// The covariance of the chosen hypothesis, with which all are judged, and what is left out together.
+pub(super) struct Yardstick {
+    by: Whitening,
+    /// $L^{-1}$ of $C = LL^T$.
+    inverse_factor: Mat<f64>,
+    groups: Vec<Vec<usize>>,
+}
+
+impl Yardstick {
+    /// `None` where the model has no meaning there.
+    pub(super) fn of(problem: &Problem, posterior: &Posterior) -> Option<Self> {
+        let errors = problem.errors(&posterior.point.at);
+        let by = problem.whitening(&errors, &posterior.log_sizes)?;
+        let comparison = problem.predictor.comparison;
+        let mut inverse_factor = Mat::identity(comparison.size(), comparison.size());
+        by.whiten(&mut inverse_factor);
+        Some(Self { by, inverse_factor, groups: groups(comparison) })
+    }
+
+    /// The error of a hypothesis as near as it comes under this covariance, which need not be its own.
+    pub(super) fn nearest(&self, problem: &Problem, judged: &Judged) -> Option<FittedError> {
+        let (point, _) = problem.follow(judged.posterior.point.clone(), &self.by, STEPS, (GAIN, usize::MAX))?;
+        self.error(problem, &point)
+    }
+
+    /// The error at a point: rms over all values, and what is foretold of each group by the others, to first order.
+    pub(super) fn error(&self, problem: &Problem, point: &Point) -> Option<FittedError> {
+        let z = &point.z;
+        let missed = self.by.whitened(&problem.missed(&point.at));
+        let mut derivatives = problem.derivatives(point, 0)?;
+        self.by.whiten(&mut derivatives);
+        let fitted = (missed.iter().map(|value| value * value).sum::<f64>() / missed.len().max(1) as f64).sqrt();
+        // What was measured less what is thought of it before any datum.
+        let moved = |(row, missed): (usize, &f64)| {
+            missed + (0..z.len()).map(|column| derivatives[(row, column)] * z[column]).sum::<f64>()
+        };
+        let values = missed.iter().enumerate().map(moved).collect();
+        let precision = problem.hypothesis.precision();
+        let linear = Linear { inverse_factor: &self.inverse_factor, values, derivatives, precision };
+        let left_out = linear.left_out(&self.groups)?;
+        let mean_square = |(left_out, group): (f64, &Vec<usize>)| left_out / group.len().max(1) as f64;
+        let sum: f64 = left_out.into_iter().zip(&self.groups).map(mean_square).sum();
+        Some(FittedError { fitted, held_out: (sum / self.groups.len().max(1) as f64).sqrt() })
+    }
+}
+
+/// The values of each record; of a single one those of each mode.
+fn groups(comparison: &Comparison) -> Vec<Vec<usize>> {
+    let records = comparison.measured.records.len();
+    if records > 1 {
+        return (0..records).map(|record| comparison.block_of(record).collect()).collect();
+    }
+    let residues = |pole: usize| (0..records).map(move |record| comparison.residue_place(record, pole));
+    let of_mode = |pole: usize| [pole].into_iter().chain(residues(pole).flat_map(|at| [at, at + 1])).collect();
+    (0..comparison.measured.poles.len()).map(of_mode).collect()
+}
