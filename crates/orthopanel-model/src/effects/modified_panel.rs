@@ -3,7 +3,7 @@
 use super::dressed_panel::{Dressed, Even, PanelWithEffects};
 use super::receptance::modal_base::Row;
 use super::{EffectSetting, EffectState};
-use crate::{Damping, ModelError, Motion, Place, StructureKind};
+use crate::{BEAM_CONSTANTS, Constant, Damping, ModelError, Motion, PLATE_CONSTANTS, Place, StructureKind};
 
 /// A structure that effects modify, seen from places; what is the same for all constants and effects is worked out once.
 #[derive(Debug, Clone)]
@@ -39,12 +39,23 @@ impl ModifiedPanel {
         Ok(Self { count, even, damping: Damping::default() })
     }
 
+    /// Constants of which those of the core are multiplied.
+    pub fn with_core_times(&self, values: &[f64], factor: f64) -> Vec<f64> {
+        let constants: &[Constant] = match &self.even {
+            Even::Beam(_) => &BEAM_CONSTANTS,
+            Even::Plate => &PLATE_CONSTANTS,
+        };
+        let is_of_core = |constant: &Constant| matches!(constant.name, "g_zx" | "g_yz");
+        let value = |(constant, value): (&Constant, &f64)| if is_of_core(constant) { factor * value } else { *value };
+        constants.iter().zip(values).map(value).collect()
+    }
+
     /// The modes in a setting at these constants with these effects, as seen from places, and beyond them as many shapes as the places and the
     /// effects have of their own: with these the sum over all is the static flexibility between places.
     ///
     /// # Errors
     /// [`ModelError::EffectNeeds`] and [`ModelError::EffectParameter`] where an effect cannot act, [`ModelError::Unsupported`] for
-    /// a core that depends on frequency, and as [`crate::ritz_modes()`].
+    /// a core that depends on frequency (see [`RelaxingModes`](super::RelaxingModes)), and as [`crate::ritz_modes()`].
     pub fn seen_from(
         &self,
         setting: &EffectSetting,
