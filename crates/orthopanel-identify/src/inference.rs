@@ -25,8 +25,8 @@ use crate::search::Inquiry;
 /// catalogue.
 ///
 /// # Limits
-/// Hits or accelerances of one piece, as a beam. Not looked for: `width-coupling`, which is another structure,
-/// and `cubic-stiffness`, which shows between hits alone. Standard deviations hold the sizes of model error as they are estimated, not
+/// Hits or accelerances of one piece, as a beam that may turn out a plate, hit and seen on its centre line. Not looked for:
+/// `cubic-stiffness`, which shows between hits alone. Standard deviations hold the sizes of model error as they are estimated, not
 /// their own uncertainty, which makes them small where modes are few. How often it is right has not been judged on blind sets yet:
 /// [`trace`](crate::trace) is what the command asks.
 #[derive(Debug, Clone)]

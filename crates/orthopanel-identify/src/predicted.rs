@@ -11,7 +11,7 @@ use orthopanel_model::{
 };
 
 use crate::comparison::{Comparison, UNSEEN};
-use crate::measured::MeasuredModes;
+use crate::measured::{MeasuredModes, SKIRT};
 
 /// Predicted modes beyond the number of poles that take part.
 const SPARE: usize = 6;
@@ -26,10 +26,14 @@ const WAVE_STEP: f64 = 1e-5;
 const CLEAR_OF_HANGING: f64 = 3.0;
 /// Sets of modes that are kept.
 const KEPT: usize = 48;
+/// Modes of a plate are told up to so many times the highest pole.
+const WIDE: f64 = 1.6;
 /// Part of the lowest pole's frequency, from which on a predicted mode may be its partner.
 const LOWEST: f64 = 0.4;
 /// Part of the band up to which a mode of some strength is seen.
 const MOSTLY_SEEN: f64 = 0.97;
+/// Poles whose damping ratios say how far a resonance reaches at the band's end.
+const BESIDE: usize = 3;
 const MOST_DAMPING: f64 = 0.9;
 /// Damping ratio of modes that no pole belongs to.
 const USUAL_DAMPING: f64 = 0.003;
@@ -87,8 +91,10 @@ impl<'a> Predictor<'a> {
         setting: &EffectSetting,
     ) -> Result<Self, ModelError> {
         let measured = comparison.measured;
-        let panel = ModifiedPanel::new(structure, setting, measured.poles.len() + SPARE)?;
         let places = distinct(measured.records.iter().flat_map(|record| [record.force_at, record.response_at]));
+        let panel = ModifiedPanel::new(structure, setting, measured.poles.len() + SPARE)?;
+        let top = measured.poles.last().map_or(measured.band[1], |pole| pole.angular_frequency / TAU);
+        let panel = panel.perhaps_wide(setting, &places, WIDE * top);
         Ok(Self { comparison, panel, setting: setting.clone(), places, found: Mutex::default() })
     }
 
@@ -292,7 +298,9 @@ impl<'a> Predictor<'a> {
         let first = &seen.views[0];
         let omega = &first.modes.angular_frequency;
         let bottom = LOWEST * measured.poles.first().map_or(0.0, |pole| pole.angular_frequency);
-        let top = MOSTLY_SEEN * TAU * measured.band[1];
+        // A mode whose skirt leaves the band is not told: it may be as damped as those below it are.
+        let beside = measured.poles.iter().rev().take(BESIDE).filter_map(|pole| pole.damping_ratio);
+        let top = MOSTLY_SEEN * TAU * measured.band[1] / (1.0 + SKIRT * beside.fold(0.0, f64::max));
         let partners = self.partners(seen, omega, bottom);
         let size = comparison.size();
         let [mut values, mut by_force, mut by_response] = [(); 3].map(|()| vec![0.0; size]);

@@ -18,6 +18,8 @@ const LOOSE: [f64; KINDS] = [5e-3, 5e-2, 2e-2, 1e-3, 5e-3, 1e-2, 5e-4, 5e-3, 5e-
 const SMALL: [f64; KINDS] = [3e-4, 2e-3, 1e-3, 8e-4, 3e-3, 4e-3, 4e-4, 3e-3, 2e-3, 1e-3, 5e-4, 1e-2, 5e-2];
 /// Ratios $E/G$ at which the constants are looked for.
 const RATIOS: usize = 28;
+/// Numbers of the lowest poles that a plate shares with a beam: below the first that bends across.
+const LOWEST_POLES: [usize; 3] = [3, 4, 6];
 /// Starts that are followed.
 const FOLLOWED: usize = 3;
 /// How far a hypothesis may be behind the best, in logarithms of [`ODDS`], to be looked at more closely,
@@ -38,9 +40,14 @@ fn logs(sizes: [f64; KINDS]) -> [f64; KINDS] {
 }
 
 /// Constants of a beam that fit the frequencies alone, the likeliest first: at each ratio $E/G$ the scale that puts most poles near modes.
-fn starting_constants(comparison: &Comparison, setting: &EffectSetting) -> Result<Vec<[f64; 2]>, ModelError> {
+/// Of the `lowest` poles.
+fn starting_constants(
+    comparison: &Comparison,
+    setting: &EffectSetting,
+    lowest: usize,
+) -> Result<Vec<[f64; 2]>, ModelError> {
     let measured = comparison.measured;
-    let poles: Vec<f64> = measured.poles.iter().map(|pole| pole.angular_frequency / TAU).collect();
+    let poles: Vec<f64> = measured.poles.iter().take(lowest).map(|pole| pole.angular_frequency / TAU).collect();
     let top = poles.last().copied().unwrap_or(0.0);
     let mut found: Vec<(f64, [f64; 2])> = Vec::new();
     for step in 0..RATIOS {
@@ -83,7 +90,7 @@ impl<'a> Inquiry<'a> {
         let predictor = Predictor::new(comparison, StructureKind::TimoshenkoBeam, setting)?;
         let records = comparison.measured.records.len();
         let mut inquiry = Self { predictor, waves: vec![] };
-        let starts = starting_constants(comparison, setting)?;
+        let starts = starting_constants(comparison, setting, usize::MAX)?;
         let mut best: Option<(f64, Hypothesis, Vec<f64>)> = None;
         for start in starts {
             let constants: Vec<(f64, bool)> =
@@ -126,6 +133,24 @@ impl<'a> Inquiry<'a> {
         Problem { predictor: &self.predictor, hypothesis, waves: &self.waves }
     }
 
+    /// Where the coordinates of a base stand as an effect joins it: as they are, and where that puts another structure in the place of the first,
+    /// which may have fitted it anyhow, at constants that fit the lowest poles alone as well.
+    fn bases(&self, base: &Judged, with: &Hypothesis) -> Vec<Vec<f64>> {
+        let mut bases = vec![base.posterior.z.clone()];
+        if with.parts.last().is_some_and(|part| part.replaces_structure(&self.predictor)) {
+            let (comparison, setting) = (self.predictor.comparison, self.predictor.setting(0));
+            for lowest in LOWEST_POLES {
+                for constants in starting_constants(comparison, &setting, lowest).unwrap_or_default() {
+                    let mut z = base.posterior.z.clone();
+                    let own = base.hypothesis.of_constants(&constants);
+                    z.iter_mut().zip(own).for_each(|(z, own)| *z = own);
+                    bases.push(z);
+                }
+            }
+        }
+        bases
+    }
+
     /// An effect more, in the way and from the start that serve best: a net of starts of all ways is ranked, the best are followed with
     /// wide sizes of model error, the best of these to the posterior.
     fn with_effect(&self, base: &Judged, effect: &'static dyn Effect) -> Option<Judged> {
@@ -140,11 +165,12 @@ impl<'a> Inquiry<'a> {
             .into_iter()
             .map(|part| base.hypothesis.with(part))
             .collect();
+        let bases = self.bases(base, &ways[0]);
         let starts = |(way, hypothesis): (usize, &Hypothesis)| {
             let problem = self.problem(hypothesis);
             let starts = hypothesis.parts.last().map_or(vec![], |part| part.starts(&resonances));
-            let point = |start: Vec<f64>| problem.point([&base.posterior.z[..], &start].concat(), &loose);
-            starts.into_iter().filter_map(point).map(|point| (way, point)).collect::<Vec<_>>()
+            let starts = bases.iter().flat_map(|z| starts.iter().map(|start| [&z[..], start].concat()));
+            starts.filter_map(|z| problem.point(z, &loose)).map(|point| (way, point)).collect::<Vec<_>>()
         };
         let best = |mut points: Vec<(usize, Point)>, most: usize| {
             points.sort_by(|a, b| a.1.misfit.total_cmp(&b.1.misfit));

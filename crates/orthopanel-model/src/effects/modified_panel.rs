@@ -1,8 +1,11 @@
 //! What a test sees of a panel with effects of panel and rig: its modes at places, and what all further modes add.
 
+use std::sync::Arc;
+
 use super::dressed_panel::{Dressed, Even, PanelWithEffects};
 use super::receptance::modal_base::Row;
-use super::{EffectSetting, EffectState};
+use super::receptance::wide_plate::WidePlates;
+use super::{Action, EffectSetting, EffectState};
 use crate::{BEAM_CONSTANTS, Constant, Damping, ModelError, Motion, PLATE_CONSTANTS, Place, StructureKind};
 
 /// A structure that effects modify, seen from places; what is the same for all constants and effects is worked out once.
@@ -11,6 +14,8 @@ pub struct ModifiedPanel {
     pub(super) count: usize,
     pub(super) even: Even,
     pub(super) damping: Damping,
+    /// What the beam is where its width counts, with the frequency \[Hz\] up to which its modes are told.
+    wide: Option<Arc<(WidePlates, f64)>>,
 }
 
 /// Modes of a [`ModifiedPanel`] at places, rigid ones first.
@@ -36,7 +41,31 @@ impl ModifiedPanel {
             StructureKind::TimoshenkoBeam => Even::beam(setting, count)?,
             StructureKind::MindlinPlate => Even::Plate,
         };
-        Ok(Self { count, even, damping: Damping::default() })
+        Ok(Self { count, even, damping: Damping::default(), wide: None })
+    }
+
+    /// A beam that may turn out a plate: seen from about these places, with its modes up to a frequency \[Hz\].
+    #[must_use]
+    pub fn perhaps_wide(self, setting: &EffectSetting, places: &[Place], highest: f64) -> Self {
+        let plates = WidePlates::new(setting.piece, setting.boundary, places.to_vec());
+        Self { wide: Some(Arc::new((plates, highest))), ..self }
+    }
+
+    /// What vibrates with these effects.
+    fn dressed(&self, parts: PanelWithEffects) -> Result<Dressed, ModelError> {
+        let PanelWithEffects { setting, values, effects, .. } = parts;
+        let mut ratios = None;
+        let mut others = Vec::new();
+        for state in effects {
+            match state.acting_in(setting)?.first() {
+                Some(Action::Plate(found)) => ratios = Some(*found),
+                _ => others.push(state.clone()),
+            }
+        }
+        match (ratios, &self.wide) {
+            (Some(ratios), Some(wide)) => Dressed::wide(&wide.0, wide.1, (setting, values, ratios), effects, &others),
+            _ => Dressed::for_modes(parts, self.count),
+        }
     }
 
     /// Constants of which those of the core are multiplied.
@@ -64,8 +93,8 @@ impl ModifiedPanel {
         values: &[f64],
         effects: &[EffectState],
     ) -> Result<SeenModes, ModelError> {
-        let Self { count, even, damping } = self;
-        let dressed = Dressed::for_modes(PanelWithEffects { setting, even, values, effects, damping }, *count)?;
+        let Self { even, damping, .. } = self;
+        let dressed = self.dressed(PanelWithEffects { setting, even, values, effects, damping })?;
         if dressed.core.is_some() {
             return Err(ModelError::Unsupported("viscoelastic-core in a model of modes".into()));
         }
