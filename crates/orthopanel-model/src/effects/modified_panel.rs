@@ -168,6 +168,48 @@ mod tests {
         }
     }
 
+    /// A beam that turns out a plate has the modes of the plate's own model file, as far as they are seen from its centre line.
+    #[test]
+    fn val_a_wide_panel_is_the_plate_of_the_model_file() {
+        let setting = EffectSetting {
+            piece: Piece { length: 0.8, width: 0.25, thickness: 0.03, mass_per_area: 6.88 },
+            ..setting()
+        };
+        let places = [-0.33, 0.05, 0.31].map(place);
+        let text = r#"{"schema": "orthopanel.model/1", "structure": "mindlin-plate",
+            "piece": {"length": 0.8, "width": 0.25, "thickness": 0.03, "mass_per_area": 6.88},
+            "constants": {"e_x": 1.07e10, "e_y": 8.56e9, "nu_xy": 0.3, "g_xy": 3.745e9, "g_yz": 3.2178e8, "g_zx": 5.363e8}}"#;
+        let model = PanelModel::from_json(text).expect("a model");
+        let wide =
+            EffectState::new(effect("width-coupling").expect("known"), vec![0.8, 0.3, 0.35, 0.6], 1).expect("wide");
+        let panel = ModifiedPanel::new(StructureKind::TimoshenkoBeam, &setting, 8).expect("a beam");
+        let panel = panel.perhaps_wide(&setting, &places, 5000.0);
+        let seen = panel.seen_from(&setting, &places, false, &[1.07e10, 5.363e8], &[wide]).expect("modes");
+        let modes = model.modal_model(ModeRange::UpTo(4500.0), &places, &places).expect("modes");
+        let mut own = seen.angular_frequency.iter().enumerate().skip(2);
+        let mut met = 0;
+        for mode in modes.flexible().filter(|mode| mode.at_forces.iter().any(|value| value.abs() > 1e-3)) {
+            let (n, omega) = own.next().expect("as many modes");
+            assert!(
+                (omega / mode.angular_frequency - 1.0).abs() < 1e-5,
+                "{} Hz: {}",
+                mode.angular_frequency / TAU,
+                omega / TAU
+            );
+            for (port, deflection) in mode.at_forces.iter().enumerate() {
+                let (product, whole) =
+                    (seen.deflection[n][port] * seen.deflection[n][0], deflection * mode.at_forces[0]);
+                assert!(
+                    (product - whole).abs() < 2e-3 * whole.abs().max(2.0),
+                    "{} Hz at {port}: {product} {whole}",
+                    mode.angular_frequency / TAU
+                );
+            }
+            met += 1;
+        }
+        assert!(met >= 8, "{met} modes");
+    }
+
     #[test]
     fn val_slopes_are_those_of_differences() {
         let setting = setting();
