@@ -7,8 +7,8 @@ use rayon::prelude::*;
 
 use crate::comparison::Comparison;
 use crate::hypothesis::{Hypothesis, Part};
-use crate::judge::ODDS;
-use crate::model_error::{KINDS, Waves, medians, waves};
+use crate::judge::{MOST_FREQUENCY, ODDS};
+use crate::model_error::{KINDS, Kind, Waves, medians, waves};
 use crate::posterior::{Judged, Point, Problem, Whitening};
 use crate::predicted::Predictor;
 
@@ -134,13 +134,16 @@ impl<'a> Inquiry<'a> {
     }
 
     /// Where the coordinates of a base stand as an effect joins it: as they are, and where that puts another structure in the place of the first,
-    /// which may have fitted it anyhow, at constants that fit the lowest poles alone as well.
+    /// which then may have fitted it anyhow if it missed more than a real panel does, at constants that fit the lowest poles alone as well.
     fn bases(&self, base: &Judged, with: &Hypothesis) -> Vec<Vec<f64>> {
         let mut bases = vec![base.posterior.z.clone()];
-        if with.parts.last().is_some_and(|part| part.replaces_structure(&self.predictor)) {
+        let misses = base.posterior.log_sizes[Kind::Frequency as usize].exp() > MOST_FREQUENCY;
+        if misses && with.parts.last().is_some_and(|part| part.replaces_structure(&self.predictor)) {
             let (comparison, setting) = (self.predictor.comparison, self.predictor.setting(0));
             for lowest in LOWEST_POLES {
-                for constants in starting_constants(comparison, &setting, lowest).unwrap_or_default() {
+                for constants in
+                    starting_constants(comparison, &setting, lowest).unwrap_or_default().into_iter().take(2)
+                {
                     let mut z = base.posterior.z.clone();
                     let own = base.hypothesis.of_constants(&constants);
                     z.iter_mut().zip(own).for_each(|(z, own)| *z = own);

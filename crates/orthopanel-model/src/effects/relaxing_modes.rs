@@ -6,9 +6,10 @@ use num_complex::Complex64;
 
 use super::{CoreModulus, SeenModes};
 
-/// Nodes at least, and one more for so much of the stretch of $\ln g$: then frequencies are right to 1e-6.
-const NODES: usize = 5;
-const NODE_EACH: f64 = 0.25;
+/// Nodes at least, and one more for so much of the stretch $2h$ of $\ln g$: what $n$ of them leave of a frequency,
+/// $h^n/2^{n-1}n!$ times a derivative below one, is then some 1e-6 at most.
+const NODES: usize = 3;
+const NODE_EACH: f64 = 0.16;
 /// Stretches of $\ln g$ are of these lengths, so that cores that differ little share their nodes.
 const STRETCHES: [f64; 8] = [0.05, 0.1, 0.2, 0.35, 0.6, 0.9, 1.2, 1.5];
 /// Rounds for a mode's own modulus: a frequency follows the modulus by less than half, the modulus the frequency by less than that, so that
