@@ -172,6 +172,13 @@ impl Part {
         self.place_shifts(predictor, record)
     }
 
+    /// Whether another structure stands in the place of the one that the constants are of.
+    pub(crate) fn replaces_structure(&self, predictor: &Predictor) -> bool {
+        let values = self.values(&vec![0.0; self.free()]);
+        let acts = self.effect.act(&values, &predictor.setting(0));
+        acts.is_ok_and(|acts| acts.iter().any(|action| matches!(action, Action::Plate(_))))
+    }
+
     fn place_shifts(&self, predictor: &Predictor, record: usize) -> Option<Vec<bool>> {
         let values = vec![0.0; self.effect.parameters().len()];
         let shift = |action: Action| match action {
@@ -290,6 +297,12 @@ impl Hypothesis {
 
     pub(crate) fn constants(&self, z: &[f64]) -> Vec<f64> {
         values(&self.constants, z)
+    }
+
+    /// The coordinates of these constants, as far as they are free.
+    pub(crate) fn of_constants(&self, values: &[f64]) -> Vec<f64> {
+        let of = |(slot, value): (&Slot, &f64)| slot.coordinate().map(|coordinate| coordinate.of_value(*value));
+        self.constants.iter().zip(values).filter_map(of).collect()
     }
 
     /// The coordinates of each part, in order.

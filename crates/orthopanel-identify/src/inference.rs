@@ -27,8 +27,8 @@ use crate::search_progress::SearchProgress;
 /// catalogue.
 ///
 /// # Limits
-/// Hits or accelerances of one piece, as a beam. Not looked for: `viscoelastic-core` and `width-coupling`, which are no modes of the same
-/// beam, and `cubic-stiffness`, which shows between hits alone. Standard deviations hold the sizes of model error as they are estimated, not
+/// Hits or accelerances of one piece, as a beam that may turn out a plate, hit and seen on its centre line. Not looked for:
+/// `cubic-stiffness`, which shows between hits alone. Standard deviations hold the sizes of model error as they are estimated, not
 /// their own uncertainty, which makes them small where modes are few. [`trace`](crate::trace) answers tests of hits by it.
 #[derive(Debug, Clone)]
 pub struct Inference {

@@ -6,7 +6,7 @@ use crate::posterior::Judged;
 /// Odds from which a hypothesis is clearly ahead: an effect is named at these odds against the best hypothesis without it.
 pub(crate) const ODDS: f64 = 20.0;
 /// Largest model errors that real panels have: of the logarithm of a frequency, and of a residue along its phase.
-const MOST_FREQUENCY: f64 = 1e-2;
+pub(crate) const MOST_FREQUENCY: f64 = 1e-2;
 const MOST_RESIDUE: f64 = 3e-2;
 
 /// What is found of a test.

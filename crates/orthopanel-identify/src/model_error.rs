@@ -207,6 +207,10 @@ impl ErrorColumns {
                 for (power, times) in [(-1, 1.0), (-2, 1.0), (-3, QUADRATURE), (-4, QUADRATURE)] {
                     along(Kind::Hanging, usize::from(power % 2 != 0), power, times);
                 }
+            } else if at.is_free {
+                // A pendulum on strings, with what damps it.
+                along(Kind::Hanging, 0, -2, 1.0);
+                along(Kind::Hanging, 1, -1, QUADRATURE);
             }
         }
         columns.extend(couplings(comparison, at));

@@ -6,11 +6,12 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use num_complex::Complex64;
 use orthopanel_model::{
-    Action, ChannelFactor, EffectSetting, EffectState, Field, ModelError, ModifiedPanel, Piece, Place, RecordSetting,
-    Seat, SeenModes, StructureKind,
+    Action, ChannelFactor, CoreModulus, EffectSetting, EffectState, Field, ModelError, ModesAtLine, ModifiedPanel,
+    Piece, Place, RecordSetting, RelaxingMode, RelaxingModes, Seat, SeenModes, StructureKind,
 };
 
 use crate::comparison::{Comparison, UNSEEN};
+use crate::measured::{MeasuredModes, SKIRT};
 
 /// Predicted modes beyond the number of poles that take part.
 const SPARE: usize = 6;
@@ -25,10 +26,14 @@ const WAVE_STEP: f64 = 1e-5;
 const CLEAR_OF_HANGING: f64 = 3.0;
 /// Sets of modes that are kept.
 const KEPT: usize = 48;
+/// Modes of a plate are told up to so many times the highest pole.
+const WIDE: f64 = 1.6;
 /// Part of the lowest pole's frequency, from which on a predicted mode may be its partner.
 const LOWEST: f64 = 0.4;
 /// Part of the band up to which a mode of some strength is seen.
 const MOSTLY_SEEN: f64 = 0.97;
+/// Poles whose damping ratios say how far a resonance reaches at the band's end.
+const BESIDE: usize = 3;
 const MOST_DAMPING: f64 = 0.9;
 /// Damping ratio of modes that no pole belongs to.
 const USUAL_DAMPING: f64 = 0.003;
@@ -61,6 +66,8 @@ pub(crate) struct Prediction {
     pub damping_of_effects: Vec<f64>,
     /// Whether each pole is a motion of the piece as a whole on its suspension.
     pub hangs: Vec<bool>,
+    /// Whether the piece moves as a whole: it hangs on something.
+    pub is_free: bool,
     /// Number of the remainders' frequencies that lie too near such motions: cords are no springs, and damp as they like.
     pub near_hanging: usize,
 }
@@ -69,7 +76,7 @@ pub(crate) struct Prediction {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct PartnerInRecord {
     /// Mass-normalised deflection at the force and at the response \[kg^-1/2\].
-    pub deflection: [f64; 2],
+    pub deflection: [Complex64; 2],
     /// Its pole $\lambda$ \[1/s\].
     pub pole: Complex64,
     /// Its residue over the product of the deflections.
@@ -101,8 +108,10 @@ impl<'a> Predictor<'a> {
         setting: &EffectSetting,
     ) -> Result<Self, ModelError> {
         let measured = comparison.measured;
-        let panel = ModifiedPanel::new(structure, setting, measured.poles.len() + SPARE)?;
         let places = distinct(measured.records.iter().flat_map(|record| [record.force_at, record.response_at]));
+        let panel = ModifiedPanel::new(structure, setting, measured.poles.len() + SPARE)?;
+        let top = measured.poles.last().map_or(measured.band[1], |pole| pole.angular_frequency / TAU);
+        let panel = panel.perhaps_wide(setting, &places, WIDE * top);
         Ok(Self { comparison, panel, setting: setting.clone(), places, found: Mutex::default() })
     }
 
@@ -137,9 +146,7 @@ impl<'a> Predictor<'a> {
         key.extend(ports.iter().chain(&setting.record.response_at).flat_map(|place| [place.x, place.y]));
         let mut structural = Vec::new();
         for (number, state) in effects.iter().enumerate() {
-            let acts = |action: &Action| {
-                matches!(action, Action::Element(_) | Action::Field(..) | Action::Core(_) | Action::Plate(_))
-            };
+            let acts = |action: &Action| matches!(action, Action::Element(_) | Action::Field(..) | Action::Plate(_));
             if state.acting_in(setting)?.iter().any(acts) {
                 key.push(number as f64);
                 key.extend(&state.values);
@@ -168,6 +175,31 @@ impl<'a> Predictor<'a> {
         effects: &[EffectState],
     ) -> Result<Arc<SeenModes>, ModelError> {
         self.modes(&self.setting(0), &[Place { x, y: 0.0 }], false, constants, effects)
+    }
+
+    /// The modes of the structure as seen from these ports, with a core that depends on frequency.
+    fn view(
+        &self,
+        setting: &EffectSetting,
+        ports: &[Place],
+        with_slopes: bool,
+        constants: &[f64],
+        effects: &[EffectState],
+    ) -> Result<View, ModelError> {
+        let Some(core) = core_of(setting, effects)? else {
+            let modes = self.modes(setting, ports, with_slopes, constants, effects)?;
+            return Ok(View { of: None, ports: ports.to_vec(), modes, relaxing: None });
+        };
+        let measured = self.comparison.measured;
+        let top = measured.poles.last().map_or(TAU * measured.band[1], |pole| pole.angular_frequency);
+        let nodes = core.nodes(ABOVE * top);
+        let at = |node: &f64| {
+            self.modes(setting, ports, with_slopes, &self.panel.with_core_times(constants, *node), effects)
+        };
+        let found = nodes.iter().map(at).collect::<Result<Vec<_>, _>>()?;
+        let near = measured.poles.len() + SPARE + setting.boundary.rigid_modes();
+        let relaxing = Relaxing::new(RelaxingModes::new(core, &nodes, &found, near), measured);
+        Ok(View { of: None, ports: ports.to_vec(), modes: Arc::new(relaxing.usual()), relaxing: Some(relaxing) })
     }
 
     fn channel(&self, record: usize, effects: &[EffectState]) -> Result<Channel, ModelError> {
@@ -211,23 +243,22 @@ impl<'a> Predictor<'a> {
         let places: Vec<[Place; 2]> = moved.collect();
         // A structure of its own for each place of a sensor that loads it.
         let loads = channels.iter().any(|channel| channel.loads);
-        let mut modes: Vec<(Option<Place>, Vec<Place>, Arc<SeenModes>)> = Vec::new();
+        let mut views: Vec<View> = Vec::new();
         for (record, [_, response]) in places.iter().enumerate() {
             let own = loads.then_some(*response);
-            if modes.iter().any(|(of, ..)| *of == own) {
+            if views.iter().any(|view| view.of == own) {
                 continue;
             }
             let ports =
                 distinct(places.iter().filter(|places| own.is_none_or(|own| places[1] == own)).flatten().copied());
             let mut setting = self.setting(record);
             setting.record.response_at = setting.record.response_at.map(|_| *response);
-            let seen = self.modes(&setting, &ports, with_slopes, constants, effects)?;
-            modes.push((own, ports, seen));
+            views.push(View { of: own, ..self.view(&setting, &ports, with_slopes, constants, effects)? });
         }
-        if modes.is_empty() {
-            modes.push((None, vec![], self.modes(&self.setting, &[], false, constants, effects)?));
+        if views.is_empty() {
+            views.push(self.view(&self.setting, &[], false, constants, effects)?);
         }
-        Ok(self.compared(&channels, &Views { places, modes }))
+        Ok(self.compared(&channels, &Views { places, views }))
     }
 
     /// Derivatives of all values by the amplitudes of waves of a field that is uneven along the panel, at these constants without effects.
@@ -242,8 +273,8 @@ impl<'a> Predictor<'a> {
         let setting = self.setting(0);
         let even = self.panel.seen_from(&setting, &self.places, false, constants, &[])?;
         let values_of = |modes: SeenModes| {
-            let modes = vec![(None, self.places.clone(), Arc::new(modes))];
-            self.compared(&channels, &Views { places: places.clone(), modes }).values
+            let view = View { of: None, ports: self.places.clone(), modes: Arc::new(modes), relaxing: None };
+            self.compared(&channels, &Views { places: places.clone(), views: vec![view] }).values
         };
         let at = values_of(even.clone());
         let derivative = |by: SeenModes| {
@@ -265,8 +296,8 @@ impl<'a> Predictor<'a> {
         let top = ABOVE * measured.poles.last().map_or(TAU * measured.band[1], |pole| pole.angular_frequency);
         let candidates: Vec<usize> = (0..omega.len()).filter(|&n| omega[n] > bottom && omega[n] < top).collect();
         let product = |record: usize, n: usize| {
-            let (modes, [force, response]) = seen.of_record(record);
-            modes.deflection.get(n).map_or(0.0, |mode| mode[force] * mode[response])
+            let (view, [force, response]) = seen.of_record(record);
+            view.modes.deflection.get(n).map_or(0.0, |mode| mode[force] * mode[response])
         };
         let shape = |&n: &usize| (omega[n], (0..measured.records.len()).map(|record| product(record, n)).collect());
         let shapes: Vec<(f64, Vec<f64>)> = candidates.iter().map(shape).collect();
@@ -279,19 +310,40 @@ impl<'a> Predictor<'a> {
         mode < self.setting.boundary.rigid_modes()
     }
 
+    /// Damping ratio of a mode: that of the pole that is its partner, less what a window brings.
+    fn damping(&self, view: &View, n: usize, pole: Option<usize>, channel: Option<&Channel>) -> f64 {
+        let omega = view.modes.angular_frequency[n];
+        if omega <= 0.0 {
+            return 0.0;
+        }
+        let measured = pole.and_then(|pole| self.comparison.measured.poles[pole].damping_ratio);
+        let decay = channel.map_or(0.0, |channel| channel.decay);
+        let own = measured.map_or(USUAL_DAMPING + view.modes.damping_ratio[n], |zeta| zeta - decay / omega);
+        own.clamp(0.0, MOST_DAMPING)
+    }
+
     /// In the order of the comparison.
     fn compared(&self, channels: &[Channel], seen: &Views) -> Prediction {
         let (comparison, measured) = (self.comparison, self.comparison.measured);
-        let omega = &seen.modes[0].2.angular_frequency;
+        let first = &seen.views[0];
+        let omega = &first.modes.angular_frequency;
         let bottom = LOWEST * measured.poles.first().map_or(0.0, |pole| pole.angular_frequency);
-        let top = MOSTLY_SEEN * TAU * measured.band[1];
+        // A mode whose skirt leaves the band is not told: it may be as damped as those below it are.
+        let beside = measured.poles.iter().rev().take(BESIDE).filter_map(|pole| pole.damping_ratio);
+        let top = MOSTLY_SEEN * TAU * measured.band[1] / (1.0 + SKIRT * beside.fold(0.0, f64::max));
         let partners = self.partners(seen, omega, bottom);
         let size = comparison.size();
         let [mut values, mut by_force, mut by_response] = [(); 3].map(|()| vec![0.0; size]);
         let mut phase = vec![Complex64::I; measured.poles.len()];
         for (pole, partner) in partners.iter().enumerate() {
             // A pole without a partner tells nothing by its frequency; its residue is missed altogether.
-            values[pole] = partner.map_or(measured.poles[pole].angular_frequency, |n| omega[n]).ln();
+            let own = |n: usize| match &first.relaxing {
+                Some(relaxing) => {
+                    relaxing.mode(n, self.damping(first, n, Some(pole), channels.first())).angular_frequency
+                }
+                None => omega[n],
+            };
+            values[pole] = partner.map_or(measured.poles[pole].angular_frequency, own).ln();
         }
         let remainders = measured.remainder_frequencies.len();
         let mut brings = vec![vec![vec![Complex64::ZERO; remainders]; measured.poles.len()]; measured.records.len()];
@@ -304,17 +356,10 @@ impl<'a> Predictor<'a> {
                 comparison.put(&mut by_response, place, response);
             };
             let mut remainder = vec![[Complex64::ZERO; 3]; remainders];
-            let add = |sum: &mut [Complex64; 3], shape: [f64; 3], value: Complex64| {
-                sum.iter_mut().zip(shape).for_each(|(sum, shape)| *sum += shape * value);
-            };
-            for n in 0..seen.of_record(record).0.angular_frequency.len() {
+            let (view, ports) = seen.of_record(record);
+            for n in 0..view.near() {
                 let pole = partners.iter().position(|partner| *partner == Some(n));
-                let mode = ModeInRecord::of(
-                    seen,
-                    (record, n),
-                    pole.and_then(|pole| measured.poles[pole].damping_ratio),
-                    channel,
-                );
+                let mode = view.mode((n, ports), self.damping(view, n, pole, Some(channel)));
                 let stands = mode.omega > 0.0 && (pole.is_some() || (mode.omega > bottom && mode.omega < top));
                 let unit = if stands { mode.residue(channel) } else { Complex64::ZERO };
                 match pole {
@@ -330,11 +375,20 @@ impl<'a> Predictor<'a> {
                 // What stands by itself is no part of the remainder.
                 for (number, frequency) in measured.remainder_frequencies.iter().enumerate() {
                     let s = Complex64::new(0.0, TAU * frequency);
-                    let left = mode.line(s, channel) - mode.apart(unit, s, channel);
-                    add(&mut remainder[number], mode.shape, left);
-                    if let Some(pole) = pole {
-                        brings[record][pole][number] = left / unit.norm();
+                    let (line, shape) = view.line(&mode, (n, ports), (number, s), channel);
+                    for (part, sum) in remainder[number].iter_mut().enumerate() {
+                        *sum += shape[part] * line - mode.apart(mode.shape[part] * unit, s, channel);
                     }
+                    if let Some(pole) = pole {
+                        brings[record][pole][number] = (line - mode.apart(unit, s, channel)) / unit.norm();
+                    }
+                }
+            }
+            if let Some(relaxing) = &view.relaxing {
+                for (line, sum) in relaxing.lines.iter().zip(&mut remainder) {
+                    let s = line.s() + channel.decay;
+                    let far = relaxing.modes.far(line, ports);
+                    sum.iter_mut().zip(far).for_each(|(sum, far)| *sum += channel.at(s) * far);
                 }
             }
             for (number, sums) in remainder.into_iter().enumerate() {
@@ -354,9 +408,21 @@ impl<'a> Predictor<'a> {
         let near_hanging = measured.remainder_frequencies.iter().filter(near).count();
         let hangs = partners.iter().map(|partner| partner.is_some_and(|n| self.hangs(n))).collect();
         let decay = channels.first().map_or(0.0, |channel| channel.decay);
-        let of_effects = |n: usize| seen.modes[0].2.damping_ratio[n] + decay / omega[n];
+        let of_effects = |n: usize| first.modes.damping_ratio[n] + decay / omega[n];
         let damping_of_effects = partners.iter().map(|partner| partner.map_or(0.0, of_effects)).collect();
-        Prediction { values, by_force, by_response, phase, brings, partners: in_records, damping_of_effects, hangs, near_hanging }
+        let is_free = self.setting.boundary.rigid_modes() > 0;
+        Prediction {
+            values,
+            by_force,
+            by_response,
+            phase,
+            brings,
+            partners: in_records,
+            damping_of_effects,
+            hangs,
+            is_free,
+            near_hanging,
+        }
     }
 }
 
@@ -371,21 +437,142 @@ pub(crate) fn distinct(all: impl Iterator<Item = Place>) -> Vec<Place> {
     places
 }
 
+/// The core among effects, if any depends on frequency.
+fn core_of(setting: &EffectSetting, effects: &[EffectState]) -> Result<Option<CoreModulus>, ModelError> {
+    let mut core = None;
+    for state in effects {
+        for action in state.acting_in(setting)? {
+            if let Action::Core(found) = action {
+                core = Some(found);
+            }
+        }
+    }
+    Ok(core)
+}
+
 /// Modes as records see them.
 struct Views {
     /// Places of force and response of each record, with what offsets bring.
     places: Vec<[Place; 2]>,
-    /// The place of the sensor, where it loads the structure, the ports, and the modes that they see.
-    modes: Vec<(Option<Place>, Vec<Place>, Arc<SeenModes>)>,
+    views: Vec<View>,
 }
 
 impl Views {
     /// The modes that a record sees, and its ports of force and response.
-    fn of_record(&self, record: usize) -> (&SeenModes, [usize; 2]) {
+    fn of_record(&self, record: usize) -> (&View, [usize; 2]) {
         let places = self.places[record];
-        let own = |(of, ..): &&(Option<Place>, _, _)| of.is_none_or(|of| of == places[1]);
-        let (_, ports, modes) = self.modes.iter().find(own).unwrap_or(&self.modes[0]);
-        (modes, places.map(|place| ports.iter().position(|port| *port == place).unwrap_or(0)))
+        let own = |view: &&View| view.of.is_none_or(|of| of == places[1]);
+        let view = self.views.iter().find(own).unwrap_or(&self.views[0]);
+        (view, places.map(|place| view.ports.iter().position(|port| *port == place).unwrap_or(0)))
+    }
+}
+
+/// Modes as some records see them.
+struct View {
+    /// The place of the sensor, where it loads the structure.
+    of: Option<Place>,
+    ports: Vec<Place>,
+    /// With a core that depends on frequency, about as they are.
+    modes: Arc<SeenModes>,
+    relaxing: Option<Relaxing>,
+}
+
+impl View {
+    /// How many modes count each by itself.
+    fn near(&self) -> usize {
+        self.modes.angular_frequency.len()
+    }
+
+    /// A mode between two ports, with this damping ratio.
+    fn mode(&self, (n, [force, response]): (usize, [usize; 2]), zeta: f64) -> ModeInRecord {
+        if let Some(relaxing) = &self.relaxing {
+            let mode = relaxing.mode(n, zeta);
+            let shape = between(&mode.deflection, &mode.slope, [force, response]);
+            let deflection = [force, response].map(|port| mode.deflection[port]);
+            let core = Some((mode.damping, mode.by_s));
+            return ModeInRecord { omega: mode.angular_frequency, zeta, deflection, shape, core };
+        }
+        let deflection = &self.modes.deflection[n];
+        let slope = |port: usize| self.modes.slope[n].get(port).copied().unwrap_or(0.0);
+        let shape = [
+            deflection[force] * deflection[response],
+            slope(force) * deflection[response],
+            deflection[force] * slope(response),
+        ];
+        let omega = self.modes.angular_frequency[n];
+        let deflection = [force, response].map(|port| deflection[port].into());
+        ModeInRecord { omega, zeta, deflection, shape: shape.map(Complex64::from), core: None }
+    }
+
+    /// A mode's accelerance over the product of deflections, as the channel shows it, at a frequency of the remainder; and that product.
+    fn line(
+        &self,
+        mode: &ModeInRecord,
+        (n, ports): (usize, [usize; 2]),
+        (number, s): (usize, Complex64),
+        channel: &Channel,
+    ) -> (Complex64, [Complex64; 3]) {
+        let s = s + channel.decay;
+        let factor = channel.at(s) * s * s;
+        match (&self.relaxing, mode.core) {
+            (Some(relaxing), Some((damping, _))) => {
+                let line = &relaxing.lines[number];
+                let shape = between(&line.deflection[n], &line.slope[n], ports);
+                (factor / (s * s + damping * s + line.lambda[n]), shape)
+            }
+            _ => {
+                let stiffness = 2.0 * mode.zeta * mode.omega * s + mode.omega * mode.omega;
+                (factor / (s * s + stiffness), mode.shape)
+            }
+        }
+    }
+}
+
+/// The product of deflections at force and response, and how that follows either place.
+fn between(deflection: &[Complex64], slope: &[Complex64], [force, response]: [usize; 2]) -> [Complex64; 3] {
+    let slope = |port: usize| slope.get(port).copied().unwrap_or(Complex64::ZERO);
+    [deflection[force] * deflection[response], slope(force) * deflection[response], deflection[force] * slope(response)]
+}
+
+/// Modes of a panel whose core depends on frequency.
+struct Relaxing {
+    modes: RelaxingModes,
+    /// At the remainder's frequencies.
+    lines: Vec<ModesAtLine>,
+    /// The last mode that was asked for at a damping ratio: records ask one after the other.
+    known: Mutex<Vec<Option<(f64, RelaxingMode)>>>,
+}
+
+impl Relaxing {
+    fn new(modes: RelaxingModes, measured: &MeasuredModes) -> Self {
+        let line = |frequency: &f64| modes.at(Complex64::new(0.0, TAU * frequency));
+        let lines = measured.remainder_frequencies.iter().map(line).collect();
+        let known = Mutex::new(vec![None; modes.near()]);
+        Self { modes, lines, known }
+    }
+
+    fn mode(&self, n: usize, zeta: f64) -> RelaxingMode {
+        let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
+        match &known[n] {
+            Some((own, mode)) if *own == zeta => mode.clone(),
+            _ => {
+                let mode = self.modes.mode(n, zeta);
+                known[n] = Some((zeta, mode.clone()));
+                mode
+            }
+        }
+    }
+
+    /// Each mode as it is without damping beside the core's, without phases.
+    fn usual(&self) -> SeenModes {
+        let real = |values: &[Complex64]| values.iter().map(|value| value.re).collect::<Vec<f64>>();
+        let modes: Vec<RelaxingMode> = (0..self.modes.near()).map(|n| self.modes.mode(n, 0.0)).collect();
+        SeenModes {
+            angular_frequency: modes.iter().map(|mode| mode.angular_frequency).collect(),
+            damping_ratio: modes.iter().map(RelaxingMode::core_damping).collect(),
+            deflection: modes.iter().map(|mode| real(&mode.deflection)).collect(),
+            slope: modes.iter().map(|mode| real(&mode.slope)).collect(),
+        }
     }
 }
 
@@ -394,23 +581,13 @@ struct ModeInRecord {
     omega: f64,
     zeta: f64,
     /// At the force and at the response.
-    deflection: [f64; 2],
-    shape: [f64; 3],
+    deflection: [Complex64; 2],
+    shape: [Complex64; 3],
+    /// With a core that depends on frequency what damps it beside that, and the derivative of its dynamic stiffness at the pole.
+    core: Option<(f64, Complex64)>,
 }
 
 impl ModeInRecord {
-    /// With the damping ratio of the pole that is its partner, less what a window brings.
-    fn of(seen: &Views, (record, n): (usize, usize), measured: Option<f64>, channel: &Channel) -> Self {
-        let (modes, [force, response]) = seen.of_record(record);
-        let omega = modes.angular_frequency[n];
-        let own = measured.map_or(USUAL_DAMPING + modes.damping_ratio[n], |zeta| zeta - channel.decay / omega);
-        let zeta = if omega > 0.0 { own.clamp(0.0, MOST_DAMPING) } else { 0.0 };
-        let slope = |port: usize| modes.slope[n].get(port).copied().unwrap_or(0.0);
-        let [at_force, at_response] = [force, response].map(|port| modes.deflection[n][port]);
-        let shape = [at_force * at_response, slope(force) * at_response, at_force * slope(response)];
-        Self { omega, zeta, deflection: [at_force, at_response], shape }
-    }
-
     /// $\lambda$.
     fn pole(&self) -> Complex64 {
         self.omega * Complex64::new(-self.zeta, (1.0 - self.zeta * self.zeta).sqrt())
@@ -419,13 +596,8 @@ impl ModeInRecord {
     /// Residue of the accelerance over the product of deflections, $c(\lambda)\lambda^2/(\lambda-\bar\lambda)$.
     fn residue(&self, channel: &Channel) -> Complex64 {
         let lambda = self.pole();
-        channel.at(lambda) * lambda * lambda / (lambda - lambda.conj())
-    }
-
-    /// Its accelerance over the product of deflections, as the channel shows it.
-    fn line(&self, s: Complex64, channel: &Channel) -> Complex64 {
-        let s = s + channel.decay;
-        channel.at(s) * s * s / (s * s + 2.0 * self.zeta * self.omega * s + self.omega * self.omega)
+        let by_s = self.core.map_or(lambda - lambda.conj(), |(_, by_s)| by_s);
+        channel.at(lambda) * lambda * lambda / by_s
     }
 
     /// The two terms of a residue, which stand by themselves.

@@ -7,9 +7,9 @@ use rayon::prelude::*;
 
 use crate::comparison::Comparison;
 use crate::hypothesis::{Hypothesis, Part};
+use crate::judge::{MOST_FREQUENCY, ODDS};
 use crate::measured::Pole;
-use crate::judge::ODDS;
-use crate::model_error::{ErrorColumns, KINDS, Waves, medians, waves};
+use crate::model_error::{ErrorColumns, KINDS, Kind, Waves, medians, waves};
 use crate::posterior::{Judged, Point, Problem, Projection};
 use crate::predicted::Predictor;
 use crate::search_progress::SearchProgress;
@@ -28,6 +28,8 @@ const BESIDE_POLE: [f64; 2] = [0.985, 1.01];
 const SHIFT: f64 = 0.2;
 /// Ratios $E/G$ at which the constants are looked for.
 const RATIOS: usize = 28;
+/// Numbers of the lowest poles that a plate shares with a beam: below the first that bends across.
+const LOWEST_POLES: [usize; 3] = [3, 4, 6];
 /// Starts that are followed.
 const FOLLOWED: usize = 3;
 /// How far a hypothesis may be behind the best, in logarithms of [`ODDS`], to be looked at more closely,
@@ -54,9 +56,14 @@ fn logs(sizes: [f64; KINDS]) -> [f64; KINDS] {
 }
 
 /// Constants of a beam that fit the frequencies alone, the likeliest first: at each ratio $E/G$ the scale that puts most poles near modes.
-fn starting_constants(comparison: &Comparison, setting: &EffectSetting) -> Result<Vec<[f64; 2]>, ModelError> {
+/// Of the `lowest` poles.
+fn starting_constants(
+    comparison: &Comparison,
+    setting: &EffectSetting,
+    lowest: usize,
+) -> Result<Vec<[f64; 2]>, ModelError> {
     let measured = comparison.measured;
-    let poles: Vec<f64> = measured.poles.iter().map(|pole| pole.angular_frequency / TAU).collect();
+    let poles: Vec<f64> = measured.poles.iter().take(lowest).map(|pole| pole.angular_frequency / TAU).collect();
     let top = poles.last().copied().unwrap_or(0.0);
     let mut found: Vec<(f64, [f64; 2])> = Vec::new();
     for step in 0..RATIOS {
@@ -99,7 +106,7 @@ impl<'a> Inquiry<'a> {
         let predictor = Predictor::new(comparison, StructureKind::TimoshenkoBeam, setting)?;
         let records = comparison.measured.records.len();
         let mut inquiry = Self { predictor, waves: vec![], progress: SearchProgress::default() };
-        let starts = starting_constants(comparison, setting)?;
+        let starts = starting_constants(comparison, setting, usize::MAX)?;
         let mut best: Option<(f64, Hypothesis, Point)> = None;
         for start in starts {
             let constants: Vec<(f64, bool)> =
@@ -178,6 +185,27 @@ impl<'a> Inquiry<'a> {
         poles.iter().flat_map(tuned).collect()
     }
 
+    /// Where the coordinates of a base stand as an effect joins it: as they are, and where that puts another structure in the place of the first,
+    /// which then may have fitted it anyhow if it missed more than a real panel does, at constants that fit the lowest poles alone as well.
+    fn bases(&self, base: &Judged, with: &Hypothesis) -> Vec<Vec<f64>> {
+        let mut bases = vec![base.posterior.point.z.clone()];
+        let misses = base.posterior.log_sizes[Kind::Frequency as usize].exp() > MOST_FREQUENCY;
+        if misses && with.parts.last().is_some_and(|part| part.replaces_structure(&self.predictor)) {
+            let (comparison, setting) = (self.predictor.comparison, self.predictor.setting(0));
+            for lowest in LOWEST_POLES {
+                for constants in
+                    starting_constants(comparison, &setting, lowest).unwrap_or_default().into_iter().take(2)
+                {
+                    let mut z = base.posterior.point.z.clone();
+                    let own = base.hypothesis.of_constants(&constants);
+                    z.iter_mut().zip(own).for_each(|(z, own)| *z = own);
+                    bases.push(z);
+                }
+            }
+        }
+        bases
+    }
+
     /// An effect more, in the way and from the start that serve best: a net of starts of all ways is ranked, the best are followed with
     /// wide sizes of model error, the best of these to the posterior.
     fn with_effect(&self, base: &Judged, effect: &'static dyn Effect) -> Option<Judged> {
@@ -193,21 +221,26 @@ impl<'a> Inquiry<'a> {
         let missed = self.most_missed(base);
         // What the base's own coordinates make good of a start, to first order.
         let projection = Projection::new(&at_base.derivatives, &of_base.hypothesis.precision(), &loose)?;
+        let bases = self.bases(base, &ways[0]);
         let starts = |(way, hypothesis): (usize, &Hypothesis)| {
             let problem = self.problem(hypothesis);
             let starts = hypothesis
                 .parts
                 .last()
                 .map_or(vec![], |part| part.starts(|mass, x| self.tuned(base, &missed, mass, x)));
-            let point = |start: Vec<f64>| {
-                let point = problem.point([&at_base.z[..], &start].concat(), &loose)?;
+            let point = |(of_base, start): (&Vec<f64>, &Vec<f64>)| {
+                let point = problem.point([&of_base[..], start].concat(), &loose)?;
+                if bases.len() > 1 {
+                    return Some(point);
+                }
                 let (shift, gain) = projection.of(&problem.missed(&point.at), &at_base.z);
                 let mut z = point.z.clone();
                 z.iter_mut().zip(&shift).for_each(|(z, shift)| *z += shift.clamp(-SHIFT, SHIFT));
                 hypothesis.clamp(&mut z);
                 Some(Point { z, cost: point.cost - gain, ..point })
             };
-            starts.into_iter().filter_map(point).map(|point| (way, point)).collect::<Vec<_>>()
+            let starts = bases.iter().flat_map(|of_base| starts.iter().map(move |start| (of_base, start)));
+            starts.filter_map(point).map(|point| (way, point)).collect::<Vec<_>>()
         };
         let best = |mut points: Vec<(usize, Point)>, most: usize| {
             points.sort_by(|a, b| a.1.cost.total_cmp(&b.1.cost));

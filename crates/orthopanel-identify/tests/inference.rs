@@ -41,6 +41,46 @@ fn val_a_resonator_on_a_real_panel_is_found() {
     }
 }
 
+/// The core's three numbers are those that it was made with, by modes that share no code with the crates'.
+#[test]
+fn val_a_core_that_relaxes_is_found() {
+    let folder = tempfile::tempdir().unwrap();
+    let Some((test, truth)) = made_of(folder.path(), "clean", ("viscoelastic-core", 2), 71) else { return };
+    let said = infer(&test).unwrap();
+    assert_constants(&said, &truth);
+    let core = said.effects.iter().find(|effect| effect.id == "viscoelastic-core").unwrap();
+    for (parameter, within) in core.parameters.iter().zip([0.2, 0.4, 0.1]) {
+        let value = truth["effects"][0]["parameters"][parameter.name].as_f64().unwrap();
+        assert!(
+            (parameter.value / value - 1.0).abs() < within,
+            "{} {} beside {value}",
+            parameter.name,
+            parameter.value
+        );
+    }
+}
+
+/// A strip so wide that it bends across and twists: all constants of the plate, by records along its centre line.
+#[test]
+fn val_a_plate_in_the_place_of_the_beam_is_found() {
+    let folder = tempfile::tempdir().unwrap();
+    let Some((test, truth)) = made_of(folder.path(), "clean", ("width-coupling", 2), 71) else { return };
+    let said = infer(&test).unwrap();
+    assert_constants(&said, &truth);
+    let plate = said.effects.iter().find(|effect| effect.id == "width-coupling").unwrap();
+    let constant = |name: &str| truth["constants"][name].as_f64().unwrap();
+    let across = |name: &str| truth["across"][name].as_f64().unwrap();
+    let ratios = [
+        across("e_y") / constant("e_x"),
+        across("nu_xy"),
+        across("g_xy") / constant("e_x"),
+        across("g_yz") / constant("g_zx"),
+    ];
+    for (parameter, value) in plate.parameters.iter().zip(ratios) {
+        assert!((parameter.value / value - 1.0).abs() < 0.01, "{} {} beside {value}", parameter.name, parameter.value);
+    }
+}
+
 #[test]
 fn lists_are_refused_with_the_way_out() {
     let text = "[piece]\nlength = 0.8\nwidth = 0.1\nthickness = 0.03\nmass_per_area = 6.88\n\

@@ -40,9 +40,9 @@ pub use constant::Constant;
 pub use effects::{
     Action, CORE_WAVES, ChannelFactor, CoreFit, CoreLine, CoreModulus, Effect, EffectParameter, EffectSetting,
     EffectState, ElementLaw, ElementLine, FactorLine, Field, FieldTerm, LineBlock, LineDerivatives, LineEvaluator,
-    ModifiedPanel, NaturalFrequencies, Owner, PointElement, Prior, ReceptanceModel, ReceptanceSetup, RecordSetting,
-    Reference, RelaxingLines, Scale, Seat, SeenModes, Share, Shift, SuspensionMotion, catalogue, effect,
-    natural_frequencies, roughness,
+    ModesAtLine, ModifiedPanel, NaturalFrequencies, Owner, PointElement, Prior, ReceptanceModel, ReceptanceSetup,
+    RecordSetting, Reference, RelaxingLines, RelaxingMode, RelaxingModes, Scale, Seat, SeenModes, Share, Shift,
+    SuspensionMotion, catalogue, effect, natural_frequencies, roughness,
 };
 pub use error::{ModelError, Readable};
 pub use mindlin_plate::{MindlinPlate, ModeKind, ModeName, PLATE_CONSTANTS};

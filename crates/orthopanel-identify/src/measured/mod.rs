@@ -11,6 +11,7 @@ mod lines;
 mod modal_fit;
 mod pole_search;
 mod records;
+pub(crate) use records::SKIRT;
 mod scatter;
 #[cfg(test)]
 mod tests;

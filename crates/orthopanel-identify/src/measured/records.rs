@@ -21,7 +21,7 @@ const LEAST_PERIODS: f64 = 6.0;
 /// Highest frequency of the band, over the sampling rate: analysers' filters are flat up to there.
 const FLAT: f64 = 1.0 / 2.56;
 /// Half-widths of a resonance that have to lie inside the band.
-const SKIRT: f64 = 4.0;
+pub(crate) const SKIRT: f64 = 4.0;
 /// Most that the logarithm of a frequency may be unsure by for its mode to stand by itself.
 const MOST_UNSURE: f64 = 5e-3;
 /// The same of the logarithm of its damping: beyond, noise could have made it of nothing.

@@ -6,6 +6,7 @@ use super::dressed_system::{FoundMode, System};
 use super::dressing::Dressing;
 use super::low_modes::{FarAnswers, LowModes};
 use super::receptance::modal_base::{Row, SharedStructure};
+use super::receptance::wide_plate::{Summed, WidePlate, WidePlates};
 use super::{Action, CoreModulus, EffectSetting, EffectState, ElementLaw, PointElement, Seat};
 use crate::mindlin_plate::PlateTerms;
 use crate::panel_mode::crossings;
@@ -140,6 +141,26 @@ impl Dressed {
             }
             other => other,
         })
+    }
+
+    /// A plate in the place of the beam with these constants, by its ratios, with its modes up to a frequency \[Hz\] and the elements of
+    /// `others`; `effects` are all, of which no other may be spread over the panel.
+    pub(super) fn wide(
+        plates: &WidePlates,
+        highest: f64,
+        (setting, values, ratios): (&EffectSetting, &[f64], [f64; 4]),
+        effects: &[EffectState],
+        others: &[EffectState],
+    ) -> Result<Self, ModelError> {
+        let dressing = Dressing::of(effects, setting, 0)?;
+        if dressing.terms.is_some() || dressing.core.is_some() {
+            return Err(ModelError::Unsupported("width-coupling beside another effect spread over the panel".into()));
+        }
+        let values = [values, &ratios].concat();
+        let WidePlate { structure, summed } = plates.near(&values, Summed::To(highest))?;
+        let low = Arc::new(LowModes::new(structure.as_ref(), &values, summed)?);
+        let elements = elements(others, setting)?;
+        Ok(Self { structure, plate: None, is_even: true, piece: setting.piece, values, low, elements, core: None })
     }
 
     /// On the first `summed` flexible modes of the structure with what effects spread over it.

@@ -1,9 +1,12 @@
 //! What a test sees of a panel with effects of panel and rig: its modes at places, and what all further modes add.
 
+use std::sync::Arc;
+
 use super::dressed_panel::{Dressed, Even, PanelWithEffects};
 use super::receptance::modal_base::Row;
-use super::{EffectSetting, EffectState};
-use crate::{Damping, ModelError, Motion, Place, StructureKind};
+use super::receptance::wide_plate::WidePlates;
+use super::{Action, EffectSetting, EffectState};
+use crate::{BEAM_CONSTANTS, Constant, Damping, ModelError, Motion, PLATE_CONSTANTS, Place, StructureKind};
 
 /// A structure that effects modify, seen from places; what is the same for all constants and effects is worked out once.
 #[derive(Debug, Clone)]
@@ -11,6 +14,8 @@ pub struct ModifiedPanel {
     pub(super) count: usize,
     pub(super) even: Even,
     pub(super) damping: Damping,
+    /// What the beam is where its width counts, with the frequency \[Hz\] up to which its modes are told.
+    wide: Option<Arc<(WidePlates, f64)>>,
 }
 
 /// Modes of a [`ModifiedPanel`] at places, rigid ones first.
@@ -36,7 +41,42 @@ impl ModifiedPanel {
             StructureKind::TimoshenkoBeam => Even::beam(setting, count)?,
             StructureKind::MindlinPlate => Even::Plate,
         };
-        Ok(Self { count, even, damping: Damping::default() })
+        Ok(Self { count, even, damping: Damping::default(), wide: None })
+    }
+
+    /// A beam that may turn out a plate: seen from about these places, with its modes up to a frequency \[Hz\].
+    #[must_use]
+    pub fn perhaps_wide(self, setting: &EffectSetting, places: &[Place], highest: f64) -> Self {
+        let plates = WidePlates::new(setting.piece, setting.boundary, places.to_vec());
+        Self { wide: Some(Arc::new((plates, highest))), ..self }
+    }
+
+    /// What vibrates with these effects.
+    fn dressed(&self, parts: PanelWithEffects) -> Result<Dressed, ModelError> {
+        let PanelWithEffects { setting, values, effects, .. } = parts;
+        let mut ratios = None;
+        let mut others = Vec::new();
+        for state in effects {
+            match state.acting_in(setting)?.first() {
+                Some(Action::Plate(found)) => ratios = Some(*found),
+                _ => others.push(state.clone()),
+            }
+        }
+        match (ratios, &self.wide) {
+            (Some(ratios), Some(wide)) => Dressed::wide(&wide.0, wide.1, (setting, values, ratios), effects, &others),
+            _ => Dressed::for_modes(parts, self.count),
+        }
+    }
+
+    /// Constants of which those of the core are multiplied.
+    pub fn with_core_times(&self, values: &[f64], factor: f64) -> Vec<f64> {
+        let constants: &[Constant] = match &self.even {
+            Even::Beam(_) => &BEAM_CONSTANTS,
+            Even::Plate => &PLATE_CONSTANTS,
+        };
+        let is_of_core = |constant: &Constant| matches!(constant.name, "g_zx" | "g_yz");
+        let value = |(constant, value): (&Constant, &f64)| if is_of_core(constant) { factor * value } else { *value };
+        constants.iter().zip(values).map(value).collect()
     }
 
     /// The modes in a setting at these constants with these effects, as seen from places, and beyond them as many shapes as the places and the
@@ -44,7 +84,7 @@ impl ModifiedPanel {
     ///
     /// # Errors
     /// [`ModelError::EffectNeeds`] and [`ModelError::EffectParameter`] where an effect cannot act, [`ModelError::Unsupported`] for
-    /// a core that depends on frequency, and as [`crate::ritz_modes()`].
+    /// a core that depends on frequency (see [`RelaxingModes`](super::RelaxingModes)), and as [`crate::ritz_modes()`].
     pub fn seen_from(
         &self,
         setting: &EffectSetting,
@@ -53,8 +93,8 @@ impl ModifiedPanel {
         values: &[f64],
         effects: &[EffectState],
     ) -> Result<SeenModes, ModelError> {
-        let Self { count, even, damping } = self;
-        let dressed = Dressed::for_modes(PanelWithEffects { setting, even, values, effects, damping }, *count)?;
+        let Self { even, damping, .. } = self;
+        let dressed = self.dressed(PanelWithEffects { setting, even, values, effects, damping })?;
         if dressed.core.is_some() {
             return Err(ModelError::Unsupported("viscoelastic-core in a model of modes".into()));
         }
@@ -126,6 +166,48 @@ mod tests {
                 assert!((product - whole).abs() < 1e-3 * whole.abs().max(2.0), "mode {n} at {port}: {product} {whole}");
             }
         }
+    }
+
+    /// A beam that turns out a plate has the modes of the plate's own model file, as far as they are seen from its centre line.
+    #[test]
+    fn val_a_wide_panel_is_the_plate_of_the_model_file() {
+        let setting = EffectSetting {
+            piece: Piece { length: 0.8, width: 0.25, thickness: 0.03, mass_per_area: 6.88 },
+            ..setting()
+        };
+        let places = [-0.33, 0.05, 0.31].map(place);
+        let text = r#"{"schema": "orthopanel.model/1", "structure": "mindlin-plate",
+            "piece": {"length": 0.8, "width": 0.25, "thickness": 0.03, "mass_per_area": 6.88},
+            "constants": {"e_x": 1.07e10, "e_y": 8.56e9, "nu_xy": 0.3, "g_xy": 3.745e9, "g_yz": 3.2178e8, "g_zx": 5.363e8}}"#;
+        let model = PanelModel::from_json(text).expect("a model");
+        let wide =
+            EffectState::new(effect("width-coupling").expect("known"), vec![0.8, 0.3, 0.35, 0.6], 1).expect("wide");
+        let panel = ModifiedPanel::new(StructureKind::TimoshenkoBeam, &setting, 8).expect("a beam");
+        let panel = panel.perhaps_wide(&setting, &places, 5000.0);
+        let seen = panel.seen_from(&setting, &places, false, &[1.07e10, 5.363e8], &[wide]).expect("modes");
+        let modes = model.modal_model(ModeRange::UpTo(4500.0), &places, &places).expect("modes");
+        let mut own = seen.angular_frequency.iter().enumerate().skip(2);
+        let mut met = 0;
+        for mode in modes.flexible().filter(|mode| mode.at_forces.iter().any(|value| value.abs() > 1e-3)) {
+            let (n, omega) = own.next().expect("as many modes");
+            assert!(
+                (omega / mode.angular_frequency - 1.0).abs() < 1e-5,
+                "{} Hz: {}",
+                mode.angular_frequency / TAU,
+                omega / TAU
+            );
+            for (port, deflection) in mode.at_forces.iter().enumerate() {
+                let (product, whole) =
+                    (seen.deflection[n][port] * seen.deflection[n][0], deflection * mode.at_forces[0]);
+                assert!(
+                    (product - whole).abs() < 2e-3 * whole.abs().max(2.0),
+                    "{} Hz at {port}: {product} {whole}",
+                    mode.angular_frequency / TAU
+                );
+            }
+            met += 1;
+        }
+        assert!(met >= 8, "{met} modes");
     }
 
     #[test]

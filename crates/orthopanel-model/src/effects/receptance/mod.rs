@@ -14,7 +14,7 @@ mod record;
 mod setup;
 pub(super) mod view;
 mod wide;
-mod wide_plate;
+pub(super) mod wide_plate;
 
 pub use model::{LineBlock, LineDerivatives, LineEvaluator, ReceptanceModel};
 pub use setup::ReceptanceSetup;

@@ -8,7 +8,7 @@ use super::modulus_path::NodeBases;
 use super::moved_structure::Moved;
 use super::record::RecordPlan;
 use super::view::View;
-use super::wide_plate::WidePlates;
+use super::wide_plate::{Summed, WidePlates};
 use crate::effects::dressing::Dressing;
 use crate::effects::{CoreModulus, EffectSetting, EffectState, RecordSetting};
 use crate::{
@@ -160,7 +160,7 @@ impl ReceptanceSetup {
         let constants = 0..BEAM_CONSTANTS.len();
         if let Some((ratios, column)) = dressed.plate {
             let values: Vec<f64> = values.iter().chain(&ratios).copied().collect();
-            let plate = self.plates.near(&values, self.summed)?;
+            let plate = self.plates.near(&values, Summed::Beam(self.summed))?;
             let base = ModalBase::new(&plate.structure, &values, plate.summed, &[], &[])?;
             let columns = constants.chain(column..column + ratios.len()).collect();
             return Ok(Based { bases: Bases::Real(Arc::new(base)), core: None, columns, summed: plate.summed });

@@ -80,14 +80,23 @@ impl Structure for RatioPlate {
 
 /// A plate that lines can sum.
 #[derive(Clone)]
-pub(super) struct WidePlate {
+pub(in crate::effects) struct WidePlate {
     pub structure: SharedStructure,
     /// Flexible modes that every line sums.
     pub summed: usize,
 }
 
+/// Up to where modes of a plate are summed.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::effects) enum Summed {
+    /// Where the beam's mode of this number lies, times [`SUMMED`].
+    Beam(usize),
+    /// A frequency \[Hz\].
+    To(f64),
+}
+
 /// The plates that a search has met.
-pub(super) struct WidePlates {
+pub(in crate::effects) struct WidePlates {
     piece: Piece,
     boundary: Boundary,
     /// Where forces act and responses are seen.
@@ -111,12 +120,12 @@ const SUMMED: f64 = 0.8;
 const HELD: f64 = 1.0;
 
 impl WidePlates {
-    pub(super) fn new(piece: Piece, boundary: Boundary, places: Vec<Place>) -> Self {
+    pub(in crate::effects) fn new(piece: Piece, boundary: Boundary, places: Vec<Place>) -> Self {
         Self { piece, boundary, places, known: Mutex::new(vec![]) }
     }
 
-    /// The plate for values near these, up to where the beam's mode `summed` lies.
-    pub(super) fn near(&self, values: &[f64], summed: usize) -> Result<WidePlate, ModelError> {
+    /// The plate for values near these.
+    pub(in crate::effects) fn near(&self, values: &[f64], summed: Summed) -> Result<WidePlate, ModelError> {
         let values = six(values)?;
         for (constant, &value) in RATIO_CONSTANTS.iter().zip(&values) {
             constant.check(value)?;
@@ -140,11 +149,17 @@ impl WidePlates {
         Ok(plate)
     }
 
-    fn at(&self, values: Ratios, summed: usize) -> Result<WidePlate, ModelError> {
+    fn at(&self, values: Ratios, summed: Summed) -> Result<WidePlate, ModelError> {
         let Self { piece, boundary, .. } = self;
         let [e_x, g_zx, ..] = values;
-        let beam = ExactBeam::new(piece, *boundary, BeamConstants { e_x, g_zx })?;
-        let top = beam.flexible_modes().nth(summed.saturating_sub(1)).map_or(f64::INFINITY, |mode| mode.frequency());
+        let top = match summed {
+            Summed::Beam(summed) => {
+                let beam = ExactBeam::new(piece, *boundary, BeamConstants { e_x, g_zx })?;
+                let mode = beam.flexible_modes().nth(summed.saturating_sub(1));
+                mode.map_or(f64::INFINITY, |mode| mode.frequency())
+            }
+            Summed::To(frequency) => frequency / SUMMED,
+        };
         let constants = plate_constants(values);
         let mut nodes = MindlinPlate::estimated_nodes(piece, *boundary, &constants, HELD * top)?;
         let mut plate = match MindlinPlate::with_basis_for(piece, *boundary, &constants, nodes.len().max(1)) {
@@ -170,5 +185,11 @@ impl WidePlates {
         let limit = SUMMED * top * std::f64::consts::TAU;
         let below = modes.iter().filter(|mode| (f64::MIN_POSITIVE..limit).contains(&mode.angular_frequency)).count();
         Ok(WidePlate { structure: Arc::new(reduced), summed: below.max(1) })
+    }
+}
+
+impl std::fmt::Debug for WidePlates {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("WidePlates").field("piece", &self.piece).finish_non_exhaustive()
     }
 }
