@@ -45,7 +45,7 @@ fn val_a_resonator_on_a_real_panel_is_found() {
 #[test]
 fn val_a_core_that_relaxes_is_found() {
     let folder = tempfile::tempdir().unwrap();
-    let Some((test, truth)) = made_of(folder.path(), "clean", ("viscoelastic-core", 2), 71) else { return };
+    let Some((test, truth)) = made_of(folder.path(), "clean", ("viscoelastic-core", 5), 71) else { return };
     let said = infer(&test).unwrap();
     assert_constants(&said, &truth);
     let core = said.effects.iter().find(|effect| effect.id == "viscoelastic-core").unwrap();
@@ -64,7 +64,7 @@ fn val_a_core_that_relaxes_is_found() {
 #[test]
 fn val_a_plate_in_the_place_of_the_beam_is_found() {
     let folder = tempfile::tempdir().unwrap();
-    let Some((test, truth)) = made_of(folder.path(), "clean", ("width-coupling", 2), 71) else { return };
+    let Some((test, truth)) = made_of(folder.path(), "clean", ("width-coupling", 5), 71) else { return };
     let said = infer(&test).unwrap();
     assert_constants(&said, &truth);
     let plate = said.effects.iter().find(|effect| effect.id == "width-coupling").unwrap();
