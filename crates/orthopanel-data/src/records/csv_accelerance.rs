@@ -5,7 +5,7 @@ use std::{path::Path, sync::Arc};
 
 use num_complex::Complex64;
 
-use super::{Axis, Format, Port, Record, RecordFile, RecordKind, Samples, csv_columns, record};
+use super::{Axis, Format, Port, Record, RecordFile, RecordKind, Samples, csv_columns, data_type};
 use crate::{DataError, Location};
 
 pub(super) const FORMAT: Format = Format {
@@ -38,9 +38,8 @@ fn read(bytes: &[u8], path: &Path) -> Result<RecordFile, DataError> {
         numerator,
         denominator,
     };
-    let axis = |data_type, unit: &str| Axis { data_type, unit: unit.into() };
     let mut records = Vec::new();
-    let (motion, force) = (axis(record::ACCELERATION, ""), axis(record::FORCE, "N"));
+    let (motion, force) = (Axis::new(data_type::ACCELERATION, ""), Axis::new(data_type::FORCE, "N"));
     let frf = RecordKind::FrequencyResponse;
     records.push(record(frf, "accelerance", frequency.clone(), Samples::Complex(value), motion, force));
     let beside = [

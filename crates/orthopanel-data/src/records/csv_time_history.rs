@@ -2,7 +2,7 @@
 
 use std::{path::Path, sync::Arc};
 
-use super::{Axis, Format, Port, Record, RecordFile, RecordKind, Samples, csv_columns, record};
+use super::{Axis, Format, Port, Record, RecordFile, RecordKind, Samples, csv_columns, data_type};
 use crate::{DataError, Location};
 
 pub(super) const FORMAT: Format = Format {
@@ -32,12 +32,12 @@ fn read(bytes: &[u8], path: &Path) -> Result<RecordFile, DataError> {
         reference: Port::default(),
         abscissa,
         ordinate: Samples::Real(ordinate),
-        numerator: Axis { data_type, unit: unit.into() },
+        numerator: Axis::new(data_type, unit),
         denominator: Axis::default(),
     };
     let records = vec![
-        record("force_n", time.clone(), force, record::FORCE, "N"),
-        record(title, time, acceleration, record::ACCELERATION, unit),
+        record("force_n", time.clone(), force, data_type::FORCE, "N"),
+        record(title, time, acceleration, data_type::ACCELERATION, unit),
     ];
     Ok(RecordFile { records, notes: Vec::new() })
 }

@@ -4,13 +4,15 @@ mod csv_accelerance;
 mod csv_columns;
 mod csv_time_history;
 mod record;
+mod step;
 mod uff;
 
 use std::path::Path;
 
 use crate::{DataError, Location, limits};
-pub(crate) use record::{ACCELERATION, FORCE};
+pub(crate) use record::{UnitSystem, data_type};
 pub use record::{Axis, Port, Record, RecordFile, RecordKind, Samples};
+pub(crate) use step::round_step;
 
 /// One file format: how its bytes are known, and how they are read.
 struct Format {

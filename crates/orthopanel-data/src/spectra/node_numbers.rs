@@ -82,7 +82,7 @@ fn nodes(record: &Record, chosen: bool) -> impl Iterator<Item = (Channel, i64)> 
     let (response, reference) = (record.response.node, record.reference.node);
     let told = match (record.kind, channels::quantity(&record.numerator)) {
         (RecordKind::Time, Quantity::Force) => vec![(Channel::Hammer, response)],
-        (RecordKind::Time, Quantity::Acceleration) => vec![(Channel::Sensor, response)],
+        (RecordKind::Time, Quantity::Motion(_)) => vec![(Channel::Sensor, response)],
         (RecordKind::FrequencyResponse, _) if chosen => vec![(Channel::Hammer, reference), (Channel::Sensor, response)],
         _ => vec![],
     };

@@ -16,9 +16,7 @@ use orthopanel_model::{Boundary, Place, StructureKind};
 
 use crate::{DataError, Location, Position, limits};
 pub use declared::DeclaredEffect;
-pub use measurements::{
-    AccelerationUnit, Direction, Measurement, MeasurementData, NaturalFrequencies, RecordedResponse,
-};
+pub use measurements::{Direction, Measurement, MeasurementData, NaturalFrequencies, RecordedResponse};
 pub use pieces::NamedPiece;
 use source::Source;
 

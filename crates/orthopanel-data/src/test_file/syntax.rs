@@ -66,6 +66,13 @@ pub(super) struct Measurement {
     pub(super) force_at: Option<Spanned<[f64; 2]>>,
     pub(super) response_at: Option<Spanned<[f64; 2]>>,
     pub(super) unit: Option<Spanned<String>>,
+    pub(super) response_unit: Option<Spanned<String>>,
+    pub(super) force_unit: Option<Spanned<String>>,
+    pub(super) quantity: Option<Spanned<String>>,
+    pub(super) response_sensitivity: Option<Spanned<f64>>,
+    pub(super) force_sensitivity: Option<Spanned<f64>>,
+    pub(super) sampling_rate: Option<Spanned<f64>>,
+    pub(super) window_decay: Option<Spanned<f64>>,
     pub(super) direction: Option<Spanned<f64>>,
     pub(super) record: Option<Spanned<u32>>,
 }

@@ -11,7 +11,7 @@ use toml::Spanned;
 use super::{pieces::NamedPiece, source::Source, syntax};
 use crate::{DataError, Location, limits};
 pub use frequencies::NaturalFrequencies;
-pub use recorded::{AccelerationUnit, Direction, RecordedResponse};
+pub use recorded::{Direction, RecordedResponse};
 
 /// One measurement on one piece.
 #[derive(Debug, Clone, PartialEq)]
@@ -97,6 +97,13 @@ impl Entry<'_> {
                 self.unwanted(kind, entry.unit.as_ref(), "unit")?;
                 self.unwanted(kind, entry.direction.as_ref(), "direction")?;
                 self.unwanted(kind, entry.record.as_ref(), "record")?;
+                self.unwanted(kind, entry.response_unit.as_ref(), "response_unit")?;
+                self.unwanted(kind, entry.force_unit.as_ref(), "force_unit")?;
+                self.unwanted(kind, entry.quantity.as_ref(), "quantity")?;
+                self.unwanted(kind, entry.response_sensitivity.as_ref(), "response_sensitivity")?;
+                self.unwanted(kind, entry.force_sensitivity.as_ref(), "force_sensitivity")?;
+                self.unwanted(kind, entry.sampling_rate.as_ref(), "sampling_rate")?;
+                self.unwanted(kind, entry.window_decay.as_ref(), "window_decay")?;
                 MeasurementData::NaturalFrequencies(self.natural_frequencies(&entry, named)?)
             }
             "time-history" | "accelerance" => {
@@ -106,6 +113,8 @@ impl Entry<'_> {
                 self.unwanted(kind, entry.shape.as_ref(), "shape")?;
                 if kind.get_ref() == "time-history" {
                     self.unwanted(kind, entry.record.as_ref(), "record")?;
+                } else {
+                    self.unwanted(kind, entry.sampling_rate.as_ref(), "sampling_rate")?;
                 }
                 let recorded = self.recorded(&entry, &named.piece)?;
                 if kind.get_ref() == "accelerance" {

@@ -1,4 +1,4 @@
-//! The even step, which is printed with six digits and so is often rounded.
+//! The even step, which is printed with few digits and so is often rounded.
 
 /// Digits of a number that passes for round: 25600 Hz and 51.2 s have three, 48000 Hz two.
 const ROUND_DIGITS: i32 = 4;
@@ -9,7 +9,7 @@ const ROUND_DIGITS: i32 = 4;
 /// of few digits, or a power of two. 0.0195312 Hz is 1/51.2 s, for between 1/0.01953125 and 1/0.01953115 nothing else
 /// is as round; at line 50944 the difference is 2.5 mHz. Looked for are round values of $1/\Delta$, $(N-1)\Delta$ and
 /// $N\Delta$ within half a unit of the last printed digit; the roundest wins, and none is made up where none fits.
-pub(super) fn restored(step: f64, digits: u32, points: usize) -> Option<f64> {
+pub(in crate::records) fn restored(step: f64, digits: u32, points: usize) -> Option<f64> {
     // Nine digits are as good as a single-precision number ever was: nothing is lost.
     if digits == 0 || digits >= 9 {
         return None;
@@ -17,6 +17,13 @@ pub(super) fn restored(step: f64, digits: u32, points: usize) -> Option<f64> {
     let decade = step.log10().floor();
     let half_unit = 0.5 * 10f64.powf(decade - f64::from(digits) + 1.0);
     let (low, high) = (step - half_unit, step + half_unit);
+    let best = round_step(low, high, points)?;
+    let changed = (best - step).abs() > 1e-12 * step;
+    changed.then_some(best)
+}
+
+/// The step between `low` and `high` that makes rate or length of so many points roundest; `None` where none is round.
+pub(crate) fn round_step(low: f64, high: f64, points: usize) -> Option<f64> {
     if low <= 0.0 {
         return None;
     }
@@ -24,9 +31,7 @@ pub(super) fn restored(step: f64, digits: u32, points: usize) -> Option<f64> {
     let length = |factor: f64| roundest(low * factor, high * factor).map(|(digits, round)| (digits, round / factor));
     let rate = roundest(1.0 / high, 1.0 / low).map(|(digits, round)| (digits, 1.0 / round));
     let candidates = [rate, length(count - 1.0), length(count)];
-    let (_, best) = candidates.into_iter().flatten().min_by_key(|&(digits, _)| digits)?;
-    let changed = (best - step).abs() > 1e-12 * step;
-    changed.then_some(best)
+    candidates.into_iter().flatten().min_by_key(|&(digits, _)| digits).map(|(_, step)| step)
 }
 
 /// The number of fewest digits in an interval, with its digits; a power of two counts as one digit.
