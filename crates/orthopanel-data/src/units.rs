@@ -229,8 +229,13 @@ const NAMES: [(&[&str], f64, Dimension, bool); 17] = [
 ];
 
 /// Prefixes, by whole words too.
-const PREFIXES: [(&[&str], f64); 5] =
-    [(&["n", "nano"], 1e-9), (&["u", "micro"], 1e-6), (&["m", "milli"], 1e-3), (&["c", "centi"], 1e-2), (&["k", "kilo"], 1e3)];
+const PREFIXES: [(&[&str], f64); 5] = [
+    (&["n", "nano"], 1e-9),
+    (&["u", "micro"], 1e-6),
+    (&["m", "milli"], 1e-3),
+    (&["c", "centi"], 1e-2),
+    (&["k", "kilo"], 1e3),
+];
 
 /// A name with or without a prefix.
 fn named(name: &str) -> Option<(f64, Dimension)> {
@@ -387,7 +392,11 @@ mod tests {
         let receptance = MotionOverForce(Motion::Displacement);
         let accelerance = MotionOverForce(Motion::Acceleration);
         let cases: &[(&[&str], f64, Measured)] = &[
-            (&["m/s2", "m/s^2", "m/s²", "m/s**2", "M/S2", "m/s/s", "m s-2", "ms-2", "m.s-2", "m·s⁻²"], 1.0, acceleration),
+            (
+                &["m/s2", "m/s^2", "m/s²", "m/s**2", "M/S2", "m/s/s", "m s-2", "ms-2", "m.s-2", "m·s⁻²"],
+                1.0,
+                acceleration,
+            ),
             (&["m/sec^2", "meters/second^2", "[m/s2]", "(m/s^2)", "m/s?", "m/s??", "m/(s*s)"], 1.0, acceleration),
             (&["g", "G", "Gs", "g's", "gn", "g0"], 9.80665, acceleration),
             (&["mg"], 9.80665e-3, acceleration),
@@ -436,7 +445,9 @@ mod tests {
     #[test]
     fn val_what_is_no_unit_here() {
         let deep = "(".repeat(1000);
-        for text in ["", "1", "NONE", "furlong", "Pa", "deg", "m/s^22", "m^", "m/", "(m/s", "m)s", "s^99999999999", "%", &deep] {
+        for text in
+            ["", "1", "NONE", "furlong", "Pa", "deg", "m/s^22", "m^", "m/", "(m/s", "m)s", "s^99999999999", "%", &deep]
+        {
             assert_eq!(Unit::parse(text), None, "{text}");
         }
     }

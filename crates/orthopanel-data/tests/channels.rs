@@ -5,9 +5,7 @@ use crate::support::{
     hammer::{Noise, RATE},
     recorded::{DAMPED, good, history, measurement, pair},
 };
-use orthopanel_data::{
-    Accelerance, Direction, Estimation, Hit, RecordFile, RecordedResponse, TimeHistory, Unit,
-};
+use orthopanel_data::{Accelerance, Direction, Estimation, Hit, RecordFile, RecordedResponse, TimeHistory, Unit};
 
 #[test]
 fn val_pairs_are_found_whatever_their_order() {
@@ -115,7 +113,9 @@ fn val_unit_and_direction_are_put_right_and_said() {
     assert!(contradicted.unwrap_err().contains("is in \"m/s^2\", the test file declares another unit"));
     let volts = Dataset { numerator: (12, "mV".into()), ..in_g };
     assert!(
-        history(&[force, volts], &measurement()).unwrap_err().contains("the acceleration is in volts (\"mV\"): give response_sens")
+        history(&[force, volts], &measurement())
+            .unwrap_err()
+            .contains("the acceleration is in volts (\"mV\"): give response_sens")
     );
 }
 

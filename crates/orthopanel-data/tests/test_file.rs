@@ -57,10 +57,7 @@ fn val_the_whole_file_of_the_design_is_read() {
     let MeasurementData::Accelerance(recorded) = &test.measurements[1].data else { panic!("not an accelerance") };
     assert_eq!(recorded.file, folder.path().join("point-0.uff"));
     assert_eq!(recorded.force_at, Place { x: -0.3, y: 0.0 });
-    assert_eq!(
-        (recorded.response_unit.clone(), recorded.direction),
-        (Unit::parse("g"), Some(Direction::AgainstForce))
-    );
+    assert_eq!((recorded.response_unit.clone(), recorded.direction), (Unit::parse("g"), Some(Direction::AgainstForce)));
 }
 
 #[test]

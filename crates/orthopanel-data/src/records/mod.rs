@@ -10,9 +10,9 @@ mod uff;
 use std::path::Path;
 
 use crate::{DataError, Location, limits};
-pub(crate) use record::{UnitSystem, data_type};
 pub use record::{Axis, Port, Record, RecordFile, RecordKind, Samples};
-pub(crate) use step::round_step;
+pub(crate) use record::{UnitSystem, data_type};
+pub(crate) use step::round_rate;
 
 /// One file format: how its bytes are known, and how they are read.
 struct Format {

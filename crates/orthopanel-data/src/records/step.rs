@@ -17,13 +17,6 @@ pub(in crate::records) fn restored(step: f64, digits: u32, points: usize) -> Opt
     let decade = step.log10().floor();
     let half_unit = 0.5 * 10f64.powf(decade - f64::from(digits) + 1.0);
     let (low, high) = (step - half_unit, step + half_unit);
-    let best = round_step(low, high, points)?;
-    let changed = (best - step).abs() > 1e-12 * step;
-    changed.then_some(best)
-}
-
-/// The step between `low` and `high` that makes rate or length of so many points roundest; `None` where none is round.
-pub(crate) fn round_step(low: f64, high: f64, points: usize) -> Option<f64> {
     if low <= 0.0 {
         return None;
     }
@@ -31,7 +24,14 @@ pub(crate) fn round_step(low: f64, high: f64, points: usize) -> Option<f64> {
     let length = |factor: f64| roundest(low * factor, high * factor).map(|(digits, round)| (digits, round / factor));
     let rate = roundest(1.0 / high, 1.0 / low).map(|(digits, round)| (digits, 1.0 / round));
     let candidates = [rate, length(count - 1.0), length(count)];
-    candidates.into_iter().flatten().min_by_key(|&(digits, _)| digits).map(|(_, step)| step)
+    let (_, best) = candidates.into_iter().flatten().min_by_key(|&(digits, _)| digits)?;
+    let changed = (best - step).abs() > 1e-12 * step;
+    changed.then_some(best)
+}
+
+/// The roundest sampling rate between two; `None` where none is round.
+pub(crate) fn round_rate(low: f64, high: f64) -> Option<f64> {
+    roundest(low, high).map(|(_, rate)| rate)
 }
 
 /// The number of fewest digits in an interval, with its digits; a power of two counts as one digit.

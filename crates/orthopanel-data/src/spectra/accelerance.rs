@@ -178,7 +178,10 @@ impl Accelerance {
         result.decay_rate = decay_rate(of_kind(RecordKind::DecayRate).next(), measurement.window_decay)?;
         if motion != Motion::Acceleration {
             result.differentiate(motion.derivatives());
-            notes.push(format!("{}: {motion} over force differentiated to an accelerance, with its noise", record.at.key));
+            notes.push(format!(
+                "{}: {motion} over force differentiated to an accelerance, with its noise",
+                record.at.key
+            ));
         }
         result.notes = notes;
         result.leave_out_zeros(record)?;
@@ -188,9 +191,10 @@ impl Accelerance {
     /// Times $s^n$, and the noise with it: a motion becomes its derivative. Under an exponential window a line stands at
     /// $s = \sigma + j\omega$.
     fn differentiate(&mut self, times: u8) {
-        let factors = self.frequency.iter().map(|f| {
-            Complex64::new(self.decay_rate, std::f64::consts::TAU * f).powu(times.into())
-        });
+        let factors = self
+            .frequency
+            .iter()
+            .map(|f| Complex64::new(self.decay_rate, std::f64::consts::TAU * f).powu(times.into()));
         let factors: Vec<Complex64> = factors.collect();
         self.value.iter_mut().zip(&factors).for_each(|(value, factor)| *value *= factor);
         if let Some(variance) = &mut self.variance {

@@ -85,15 +85,20 @@ pub(super) fn response(
     let motion = motion_of(record, declared, notes)?;
     let directions = [record.response.direction, record.reference.direction];
     // Some writers put the whole quotient into the numerator's unit: then the denominator's says nothing more.
-    let whole = Unit::parse(&record.numerator.unit).filter(|unit| unit.measured() == Some(Measured::MotionOverForce(motion)));
+    let whole =
+        Unit::parse(&record.numerator.unit).filter(|unit| unit.measured() == Some(Measured::MotionOverForce(motion)));
     let to_si = match whole {
         Some(unit) => {
-            let [over, under] = [&declared.response_unit, &declared.force_unit].map(|unit| unit.as_ref().map(Unit::to_si));
+            let [over, under] =
+                [&declared.response_unit, &declared.force_unit].map(|unit| unit.as_ref().map(Unit::to_si));
             let due = over.unwrap_or(1.0) / under.unwrap_or(1.0);
             if (over.is_some() || under.is_some()) && (due / unit.to_si() - 1.0).abs() > 1e-4 {
                 return Err(refused(
                     record,
-                    format!("the record is in {:?}, the test file declares another unit: correct or drop it", unit.to_string()),
+                    format!(
+                        "the record is in {:?}, the test file declares another unit: correct or drop it",
+                        unit.to_string()
+                    ),
                 ));
             }
             if (unit.to_si() - 1.0).abs() > 1e-12 {
@@ -122,7 +127,10 @@ fn motion_of(record: &Record, declared: &RecordedResponse, notes: &mut Vec<Strin
     let by_unit = declared.response_unit.as_ref().and_then(Unit::motion);
     match (declared.quantity, by_unit, told) {
         (Some(declared), _, Some(told)) if declared != told => {
-            notes.push(format!("{}: a {told} by its type, taken as {declared}, as the test file declares", record.at.key));
+            notes.push(format!(
+                "{}: a {told} by its type, taken as {declared}, as the test file declares",
+                record.at.key
+            ));
             Ok(declared)
         }
         (Some(declared), ..) => Ok(declared),
@@ -237,7 +245,9 @@ fn resolved(
             );
             return Err(refused(record, problem));
         }
-        (None, None, _) if !label.is_empty() => return Err(refused(record, unknown(label, parsed.as_ref(), (name, unit_key, si)))),
+        (None, None, _) if !label.is_empty() => {
+            return Err(refused(record, unknown(label, parsed.as_ref(), (name, unit_key, si))));
+        }
         (None, None, Some(of_file)) => of_file,
         (None, None, None) => {
             // Whatever a hammer is calibrated in, its record mostly says nothing.
@@ -264,8 +274,8 @@ fn is_gravity(unit: &Unit) -> bool {
 fn unknown(label: &str, parsed: Option<&Unit>, (name, unit_key, si): (&str, &str, &str)) -> String {
     match parsed.and_then(Unit::motion) {
         Some(motion) if unit_key == "response_unit" => format!(
-            "{label:?} is a unit of {motion}, and the record's type is {name}: declare quantity = \"{motion}\" in its [[measurement]], or \
-             {unit_key} as it is"
+            "{label:?} is a unit of {motion}, and the record is taken as {name}: declare quantity = \"{motion}\" in its \
+             [[measurement]], or {unit_key} as it is"
         ),
         _ => format!(
             "unit {label:?} of the {name} is unknown: where it is {si}, or another unit under a name of its own, declare {unit_key} = \

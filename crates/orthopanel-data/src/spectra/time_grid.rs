@@ -7,7 +7,7 @@ use orthopanel_model::Readable;
 use super::extremes::median;
 use crate::{
     DataError, Location, limits,
-    records::{Record, round_step},
+    records::{Record, round_rate},
 };
 
 /// Samples below which no spectrum is worth the name.
@@ -47,7 +47,10 @@ pub(super) fn common(
         let told = (length - 1) as f64 / span;
         if (told / rate - 1.0).abs() > RATE_TOLERANCE || !told.is_finite() {
             let told = Readable(told);
-            notes.push(format!("{}: sampled at {rate} Hz, as the test file declares; its times say {told} Hz", force.at.key));
+            notes.push(format!(
+                "{}: sampled at {rate} Hz, as the test file declares; its times say {told} Hz",
+                force.at.key
+            ));
         }
         return Ok((length, rate));
     }
@@ -60,7 +63,8 @@ pub(super) fn common(
     if (least..=most).contains(&rate) {
         return Ok((length, rate));
     }
-    let guess = [(1e3, "ms"), (1e6, "µs"), (1e-3, "s")].into_iter().find(|(factor, _)| LIKELY.contains(&(rate * factor)));
+    let guess =
+        [(1e3, "ms"), (1e6, "µs"), (1e-3, "s")].into_iter().find(|(factor, _)| LIKELY.contains(&(rate * factor)));
     let remedy = match guess {
         Some((factor, unit)) => format!(
             "are its times in {unit}? declare sampling_rate = {} in its [[measurement]]",
@@ -68,7 +72,8 @@ pub(super) fn common(
         ),
         None => "times are in s; declare sampling_rate in its [[measurement]] where they are not".into(),
     };
-    let problem = format!("sampled at {:.3} Hz, where hammer tests are at {least} to {most:e} Hz: {remedy}", Readable(rate));
+    let problem =
+        format!("sampled at {:.3} Hz, where hammer tests are at {least} to {most:e} Hz: {remedy}", Readable(rate));
     refused(force.at.clone(), problem)
 }
 
@@ -109,11 +114,11 @@ impl Grid {
         let rounding = Rounding::of(times);
         let exact = Self { start: times[0], step, rounding };
         let Some(off) = exact.first_off(times, |_| STEP_TOLERANCE * step) else {
-            return Ok(exact.restored(times, record, notes));
+            return exact.restored(times, record, notes);
         };
         let printed = exact.fitted(times);
         if leap(times).is_none() && printed.first_off(times, |time| ROUNDED * rounding.quantum(time)).is_none() {
-            return Ok(printed.restored(times, record, notes));
+            return printed.restored(times, record, notes);
         }
         Err(exact.uneven(record, name, off))
     }
@@ -143,16 +148,27 @@ impl Grid {
     }
 
     /// With the round sampling rate that the printed times hide, where there is one; said where it moves a line.
-    fn restored(self, times: &[f64], record: &Record, notes: &mut Vec<String>) -> Self {
+    fn restored(self, times: &[f64], record: &Record, notes: &mut Vec<String>) -> Result<Self, DataError> {
         let last = times.last().copied().unwrap_or_default();
         let quantum = self.rounding.quantum(last);
         if quantum < EXACT * self.step {
-            return self;
+            return Ok(self);
         }
         let fitted = self.fitted(times);
         // Errors of rounding are spread evenly over a quantum; the step of least squares is off by 1/N^1.5 of it, rms.
         let doubt = FAR * quantum / (times.len() as f64).powf(1.5);
-        let step = round_step(fitted.step - doubt, fitted.step + doubt, times.len()).unwrap_or(fitted.step);
+        let rate = round_rate(1.0 / (fitted.step + doubt), 1.0 / (fitted.step - doubt));
+        if doubt > MOST_DOUBT * fitted.step {
+            let problem = format!(
+                "the times are rounded to {} s, and so few tell the sampling rate to {:.1} % only: export them with more digits, or declare \
+                 it, such as sampling_rate = {}, in its [[measurement]]",
+                Readable(quantum),
+                Readable(100.0 * doubt / fitted.step),
+                Readable(rate.unwrap_or((1.0 / fitted.step).round()))
+            );
+            return refused(record.at.clone(), problem);
+        }
+        let step = rate.map_or(fitted.step, |rate| 1.0 / rate);
         if quantum > STEP_TOLERANCE * step {
             notes.push(format!(
                 "{}: the times are rounded to {} s; read on the even times that they round, at {} Hz",
@@ -161,14 +177,13 @@ impl Grid {
                 Readable(1.0 / step)
             ));
         }
-        Self { step, ..fitted }
+        Ok(Self { step, ..fitted })
     }
 
     /// Refuses a motion that stands at other times than the force.
     fn holds(&self, motion: &Record) -> Result<(), DataError> {
         let own = Rounding::of(&motion.abscissa);
-        let tolerance =
-            |time: f64| (STEP_TOLERANCE * self.step).max(own.quantum(time) + self.rounding.quantum(time));
+        let tolerance = |time: f64| (STEP_TOLERANCE * self.step).max(own.quantum(time) + self.rounding.quantum(time));
         match self.first_off(&motion.abscissa, tolerance) {
             None => Ok(()),
             Some(off) => Err(self.uneven(motion, "acceleration", off)),
@@ -203,6 +218,8 @@ impl Grid {
 const ROUNDED: f64 = 0.75;
 /// Part of a step below which nothing of it is lost by rounding.
 const EXACT: f64 = 1e-9;
+/// Part of a step by which rounded times may leave it open: a frequency is told no better.
+const MOST_DOUBT: f64 = 2e-4;
 /// Standard deviations beyond which the true step is not sought.
 const FAR: f64 = 6.0;
 

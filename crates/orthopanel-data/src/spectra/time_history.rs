@@ -106,7 +106,8 @@ impl TimeHistory {
         let by_unit = measurement.response_unit.as_ref().and_then(Unit::motion);
         let untold_motion = measurement.quantity.or(by_unit).unwrap_or(Motion::Acceleration);
         let in_time = || records.iter().filter(|record| record.kind == RecordKind::Time);
-        let is_there = |wanted: fn(Quantity) -> bool| in_time().any(|record| wanted(channels::quantity(&record.numerator)));
+        let is_there =
+            |wanted: fn(Quantity) -> bool| in_time().any(|record| wanted(channels::quantity(&record.numerator)));
         let is_motion = |quantity| matches!(quantity, Quantity::Motion(_));
         // Beside one channel that is told, what tells nothing is the other.
         let beside = match (is_there(|quantity| quantity == Quantity::Force), is_there(is_motion)) {
@@ -134,10 +135,8 @@ impl TimeHistory {
                 Quantity::Untold => untold.push(record),
                 Quantity::Other(kind) => {
                     let name = channels::type_name(kind);
-                    let note = format!(
-                        "{}: data type {kind}{name} is neither force nor motion: left out",
-                        record.at.key
-                    );
+                    let note =
+                        format!("{}: data type {kind}{name} is neither force nor motion: left out", record.at.key);
                     others.push(note.clone());
                     notes.push(note);
                 }

@@ -73,7 +73,8 @@ mod tests {
             ("Panel", "Impact Hammer"),
             ("Accelerometer12", "NONE"),
         ] {
-            let line = format!("    4         0    0         0 {response:<10}        12   3 {reference:<10}         7  -3");
+            let line =
+                format!("    4         0    0         0 {response:<10}        12   3 {reference:<10}         7  -3");
             assert_eq!(ports(&line), due, "{line:?}");
             let long = response.len() > 10 || reference.len() > 10;
             assert_eq!(of_line(&line).1.is_some(), long, "{line:?}");
@@ -85,7 +86,8 @@ mod tests {
     /// A name that was cut short by one writer, and pushes the columns of another: nothing is made up.
     #[test]
     fn val_nodes_that_cannot_be_told_are_left_out() {
-        let (found, note) = of_line("    4         0    0         0 a name without any number that one could count at all, for long");
+        let (found, note) =
+            of_line("    4         0    0         0 a name without any number that one could count at all, for long");
         assert_eq!(found, [Port::default(); 2]);
         assert!(note.is_some_and(|note| note.contains("left out")));
     }

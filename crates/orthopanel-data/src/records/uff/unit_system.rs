@@ -29,7 +29,8 @@ pub(super) fn read(cursor: &mut Cursor) -> Result<UnitSystem, DataError> {
         match cursor.line() {
             Some(line) if !line.is_mark() => lines.push(line.text().into_owned()),
             _ => {
-                let problem = "the units of dataset 164 expected, the dataset ends: take it out, or export the file again".into();
+                let problem =
+                    "the units of dataset 164 expected, the dataset ends: take it out, or export the file again".into();
                 return Err(DataError::Header { at: cursor.at(start, "dataset 164"), problem });
             }
         }
@@ -51,7 +52,9 @@ pub(super) fn read(cursor: &mut Cursor) -> Result<UnitSystem, DataError> {
     let factors = numbers(by_columns).or_else(|| numbers(by_blanks)).or_else(by_code);
     let (length, force) = factors.ok_or_else(|| DataError::Header {
         at: cursor.at(start, "dataset 164"),
-        problem: "the factors of length and force expected in columns 1 to 50 of its second line: export the file again".into(),
+        problem:
+            "the factors of length and force expected in columns 1 to 50 of its second line: export the file again"
+                .into(),
     })?;
     Ok(UnitSystem { name, length: inverse(length), force: inverse(force) })
 }

@@ -167,7 +167,8 @@ impl Entry<'_> {
         };
         match unit.and_then(|unit| Some((unit, unit.motion()?))) {
             Some((unit, motion)) if motion != quantity => {
-                let problem = format!("a {quantity} is not in {unit}, which is a unit of {motion}: correct one of them");
+                let problem =
+                    format!("a {quantity} is not in {unit}, which is a unit of {motion}: correct one of them");
                 Err(DataError::Contradiction { at: self.at(given.span(), "quantity"), problem })
             }
             _ => Ok(Some(quantity)),
@@ -179,4 +180,3 @@ impl Entry<'_> {
 const FORCE_UNITS: (bool, &str) = (true, "a unit of force, such as \"N\", \"kN\", \"lbf\" or \"kgf\"");
 const MOTION_UNITS: (bool, &str) =
     (false, "a unit of motion, such as \"m/s2\", \"g\", \"in/s2\", \"mm/s\", \"m/s\" or \"mm\"");
-

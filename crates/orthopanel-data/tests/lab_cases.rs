@@ -1,0 +1,54 @@
+//! Folders of records that labs' tools made, one of a kind each: what they hold must be one panel's accelerances.
+
+use orthopanel_data::{Accelerance, Estimation, ImpactTest};
+
+use crate::support::measured;
+
+/// The accelerances of a folder beside the measured data; `None` where it is absent.
+fn accelerances(name: &str, keys: &str) -> Option<Vec<Accelerance>> {
+    let folder = measured(&format!("../cases/records/{name}"))?;
+    let text = std::fs::read_to_string(folder.join("test.toml")).unwrap();
+    let text = text.replace("kind = \"accelerance\"\n", &format!("kind = \"accelerance\"\n{keys}\n"));
+    let test = ImpactTest::from_toml(&text, folder.join("test.toml")).unwrap();
+    let found = test.accelerances(Estimation::default()).unwrap_or_else(|error| panic!("{name}: {error}"));
+    Some(found.into_iter().map(|(_, accelerance)| accelerance).collect())
+}
+
+/// The median over all lines of the error over the line's size.
+fn error(found: &Accelerance, due: &Accelerance) -> f64 {
+    assert_eq!(found.frequency.len(), due.frequency.len());
+    let lines = found.value.iter().zip(&due.value).map(|(found, due)| (found - due).norm() / due.norm());
+    let mut lines: Vec<f64> = lines.collect();
+    lines.sort_by(f64::total_cmp);
+    lines[lines.len() / 2]
+}
+
+#[test]
+fn val_every_folder_holds_the_accelerances_of_one_panel() {
+    let Some(due) = accelerances("f08_kHz", "") else { return };
+    for (name, keys) in [
+        ("f02e_nonode", ""),
+        ("f16_runs", ""),
+        ("f06c_164", ""),
+        ("f04_mobility", ""),
+        ("f05b_rec_0", "quantity = \"displacement\""),
+    ] {
+        let Some(found) = accelerances(name, keys) else { return };
+        for (found, due) in found.iter().zip(&due) {
+            // The second run of a pair was 5 % off.
+            assert!(error(found, due) < 0.06, "{name}: {}", error(found, due));
+        }
+    }
+}
+
+/// Run 1 has a poor coherence, and so have other files' firsts: each response has its own.
+#[test]
+fn val_each_response_has_its_own_coherence() {
+    for name in ["f16_runs", "f02e_nonode"] {
+        let Some(found) = accelerances(name, "") else { return };
+        let firsts: Vec<f64> = found.iter().map(|of| of.coherence.as_ref().unwrap()[100]).collect();
+        assert!(firsts[0] != firsts[1] && firsts[1] != firsts[2], "{firsts:?}");
+        let mean = |of: &Accelerance| of.coherence.as_ref().unwrap().iter().sum::<f64>() / of.frequency.len() as f64;
+        assert!(found.iter().all(|of| mean(of) > 0.9), "{name}: {:?}", found.iter().map(mean).collect::<Vec<_>>());
+    }
+}
