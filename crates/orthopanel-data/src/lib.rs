@@ -16,7 +16,7 @@ pub use spectra::{
     Window,
 };
 pub use test_file::{
-    DeclaredEffect, Direction, ImpactTest, Measurement, MeasurementData, NamedPiece, NaturalFrequencies,
-    RecordedResponse,
+    ChannelName, DeclaredEffect, Direction, ImpactTest, Measurement, MeasurementData, NamedPiece, NaturalFrequencies,
+    RecordedResponse, Trigger,
 };
 pub use units::{Motion, Unit};

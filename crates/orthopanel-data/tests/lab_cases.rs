@@ -41,6 +41,37 @@ fn val_every_folder_holds_the_accelerances_of_one_panel() {
     }
 }
 
+/// One blow and three responses a blow, at the places of dataset 15: each measurement finds its own.
+#[test]
+fn val_a_file_of_several_responses_holds_the_same_accelerances() {
+    let (Some(due), Some(found)) = (accelerances("f08_kHz", ""), accelerances("t01_multi", "")) else { return };
+    assert_eq!(found.len(), 3);
+    for (found, due) in found.iter().zip(&due) {
+        let mut errors = Vec::new();
+        for (frequency, value) in found.frequency.iter().zip(&found.value) {
+            if let Some(line) = due.frequency.iter().position(|line| (line - frequency).abs() < 1e-6 * frequency) {
+                errors.push((value - due.value[line]).norm() / due.value[line].norm());
+            }
+        }
+        errors.sort_by(f64::total_cmp);
+        assert!(
+            errors.len() > 1000 && errors[errors.len() / 2] < 0.03,
+            "{}: {}",
+            errors.len(),
+            errors[errors.len() / 2]
+        );
+    }
+}
+
+/// Five blows in one record are five hits.
+#[test]
+fn val_a_continuous_record_holds_its_hits() {
+    let Some(found) = accelerances("t03_cont", "") else { return };
+    let [found] = &found[..] else { panic!("{} accelerances", found.len()) };
+    assert_eq!(found.hits, 5, "{:?}", found.notes);
+    assert!(found.notes.iter().any(|note| note.contains("5 blows in one record of 9.90 s")), "{:?}", found.notes);
+}
+
 /// Run 1 has a poor coherence, and so have other files' firsts: each response has its own.
 #[test]
 fn val_each_response_has_its_own_coherence() {

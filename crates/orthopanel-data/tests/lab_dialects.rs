@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use orthopanel_data::{Estimation, ImpactTest};
+use num_complex::Complex64;
+use orthopanel_data::{Accelerance, Estimation, ImpactTest};
 
 use crate::support::python;
 
@@ -16,8 +17,20 @@ fn expected(path: &Path) -> Vec<[f64; 4]> {
     text.lines().map(row).collect()
 }
 
+/// The value at a frequency, between two lines that of the straight line through them.
+fn line_at(of: &Accelerance, frequency: f64) -> Option<Complex64> {
+    let next = of.frequency.iter().position(|line| *line > frequency * (1.0 - 1e-9))?;
+    let found = of.frequency[next];
+    if (found - frequency).abs() < 1e-6 * frequency {
+        return Some(of.value[next]);
+    }
+    let before = next.checked_sub(1)?;
+    let part = (frequency - of.frequency[before]) / (found - of.frequency[before]);
+    Some(of.value[before] * (1.0 - part) + of.value[next] * part)
+}
+
 /// The worst error over the greatest of the lines about it, over what is allowed.
-fn worst(folder: &Path) -> Result<(f64, orthopanel_data::Accelerance), String> {
+fn worst(folder: &Path) -> Result<(f64, Accelerance), String> {
     let test = ImpactTest::read(folder).map_err(|error| error.to_string())?;
     let found = test.accelerances(Estimation::default()).map_err(|error| error.to_string())?;
     let [(_, accelerance)] = &found[..] else { return Err(format!("{} accelerances", found.len())) };
@@ -28,9 +41,8 @@ fn worst(folder: &Path) -> Result<(f64, orthopanel_data::Accelerance), String> {
     };
     let mut worst = 0.0f64;
     for [frequency, re, im, allowed] in due.iter().copied() {
-        let line = accelerance.frequency.iter().position(|line| (line - frequency).abs() < 1e-6 * frequency);
-        let value = accelerance.value[line.ok_or_else(|| format!("no line at {frequency} Hz"))?];
-        worst = worst.max((value.re - re).hypot(value.im - im) / greatest(frequency) / allowed);
+        let value = line_at(accelerance, frequency).ok_or_else(|| format!("no line at {frequency} Hz"))?;
+        worst = worst.max((value - Complex64::new(re, im)).norm() / greatest(frequency) / allowed);
     }
     Ok((worst, accelerance.clone()))
 }

@@ -1,6 +1,6 @@
 //! What a record leaves open is asked about, with the line of the test file that answers it.
 
-use orthopanel_data::{Accelerance, ImpactTest, Motion, RecordFile, RecordedResponse, TimeHistory, Unit};
+use orthopanel_data::{Accelerance, ChannelName, ImpactTest, Motion, RecordFile, RecordedResponse, TimeHistory, Unit};
 
 use crate::support::{
     Dataset,
@@ -229,6 +229,16 @@ fn val_the_keys_of_channels_are_checked_with_their_line() {
             "sampling_rate = 1000",
             "measurement[1].sampling_rate: does not belong to kind = \"accelerance\"",
         ),
+        (
+            "time-history",
+            "force_channel = 0",
+            "measurement[1].force_channel: 0 given, wanted is a record's number from 1",
+        ),
+        (
+            "accelerance",
+            "response_channel = [1]",
+            "measurement[1].response_channel: [1] given, wanted is a record's number",
+        ),
         ("time-history", "sampling_rate = 3", "measurement[1].sampling_rate = 3: must lie between 100 and"),
         ("time-history", "window_decay = 0", "measurement[1].window_decay = 0: must be a finite number of s"),
         (
@@ -245,4 +255,25 @@ fn val_the_keys_of_channels_are_checked_with_their_line() {
         let message = read(kind, keys).unwrap_err();
         assert!(message.contains(said), "{said}\n{message}");
     }
+}
+
+/// Of several channels none is guessed: the message lists them, or the key that chooses.
+#[test]
+fn val_a_channel_that_is_not_there_is_told_with_those_that_are() {
+    let [force, motion] = pair();
+    let at = |node, direction| Dataset { response_node: node, response_direction: direction, ..motion.clone() };
+    let hammer = Dataset { response_node: 1, ..force.clone() };
+    let file = [hammer.clone(), at(4, 3), at(5, -3)];
+    let of = |channel| RecordedResponse { response_channel: Some(channel), ..measurement() };
+    let said = history(&file, &of(ChannelName::Port { node: 6, direction: 3 })).unwrap_err();
+    assert!(
+        said.contains("response_channel = \"6:+z\" is none of its channels: \"1:+z\", \"4:+z\", \"5:-z\""),
+        "{said}"
+    );
+    let said = history(&file, &of(ChannelName::Number(9))).unwrap_err();
+    assert!(said.contains("response_channel = 9 is none of its channels"), "{said}");
+    let said = history(&file, &measurement()).unwrap_err();
+    assert!(said.contains("1 force and 2 acceleration records against time"), "{said}");
+    assert!(said.contains("name the channels by force_channel and response_channel"), "{said}");
+    assert_eq!(history(&file, &of(ChannelName::Port { node: 5, direction: 0 })).unwrap().hits.len(), 1);
 }

@@ -192,6 +192,57 @@ def csv(header, number="%.9g"):
     return of
 
 
+def several(name, keys, sets_of, nodes=()):
+    """A dialect of several channels in one file: what is not wanted is three times too large."""
+    time = np.arange(SAMPLES) / RATE
+    make = lambda data, axis, node, direction=3, title="NONE": dict(
+        dataset(time, noisy(data), kind=1, axis=axis, nodes=(node, 1)), rsp_dir=direction, id1=title)
+    sets = [each for force, motion in HITS for each in sets_of(make, force, motion[2])]
+    used = (FREQUENCY > 20) & (FREQUENCY < 700)
+    text = "    -1\n    15\n" + "".join(f"{n:10}{0:10}{0:10}{8:10}{x:13.5e}{y:13.5e}{0:13.5e}\n" for n, x, y in nodes) + "    -1\n"
+    def write(path):
+        path.write_text(text if nodes else "")
+        universal(*sets)(path)
+    dialect(name, "time-history", keys, {"all.uff": write}, FREQUENCY[used], (S**2 * receptance(S))[used], 0.01)
+
+
+def continuous(name, keys, error):
+    """Five blows in one record, with pauses of different lengths, the last one cut short by the record's end."""
+    blows = [HITS[n % 3] for n in range(5)]
+    pauses = [3000, 500, 4000, 900, 0]
+    join = lambda parts: noisy(np.concatenate([np.concatenate([part, np.zeros(pause)]) for part, pause in zip(parts, pauses)])[:-9000])
+    force, motion = join([blow[0] for blow in blows]), join([blow[1][2] for blow in blows])
+    x = np.arange(len(force)) / RATE
+    sets = [dataset(x, force, kind=1, axis=(13, "N"), nodes=(1, 1)), dataset(x, motion, kind=1, axis=(12, "m/s2"))]
+    used = (FREQUENCY > 20) & (FREQUENCY < 700)
+    dialect(name, "time-history", keys, {"all.uff": universal(*sets)}, FREQUENCY[used], (S**2 * receptance(S))[used], error)
+
+
+continuous("continuous: cut by what is found", "", 0.05)
+continuous("continuous: cut as declared", "trigger = {level = 30, before = 0.015, length = 1.28}", 0.01)
+
+F, A = (13, "N"), (12, "m/s2")
+several("channels: one response by its node", 'response_channel = "5:+z"',
+        lambda make, f, a: [make(f, F, 1), make(3 * a, A, 4), make(a, A, 5), make(3 * a, A, 6)])
+several("channels: one response by its number", "response_channel = 3",
+        lambda make, f, a: [make(f, F, 1), make(3 * a, A, 4), make(a, A, 5), make(3 * a, A, 6)])
+several("channels: one response by its name", 'response_channel = "Point 5"',
+        lambda make, f, a: [make(f, F, 1), make(3 * a, A, 4, title="Point 4"), make(a, A, 4, title="Point 5")])
+several("channels: the force behind its responses", 'response_channel = "5"',
+        lambda make, f, a: [make(3 * a, A, 4), make(a, A, 5), make(f, F, 1)])
+several("channels: a triaxial sensor", "",
+        lambda make, f, a: [make(f, F, 1), make(3 * a, A, 5, 1), make(3 * a, A, 5, 2), make(a, A, 5, 3)])
+several("channels: a roving test by its nodes' places", "",
+        lambda make, f, a: [make(f, F, 1), make(a, A, 5), make(f, F, 2), make(3 * a, A, 5)],
+        nodes=[(1, -0.2, 0.0), (2, 0.1, 0.0), (5, 0.3, 0.0)])
+several("channels: a roving test by force_channel", 'force_channel = "2:+z"',
+        lambda make, f, a: [make(f, F, 1), make(3 * a, A, 5), make(f, F, 2), make(a, A, 5)])
+several("channels: neither type nor unit", "force_channel = \"Hammer\"\nresponse_channel = \"Sensor\"",
+        lambda make, f, a: [make(3 * a, (0, ""), 0, title="Temperature"), make(a, (0, ""), 0, title="Sensor"),
+                            make(f, (0, ""), 0, title="Hammer")])
+response("channels: one of several responses by its nodes", [frf(scale=2.0, nodes=(3, 1)), frf(nodes=(2, 1)), frf(scale=3.0, nodes=(2, 4))],
+         'response_channel = "2"\nforce_channel = "1"')
+
 SI = "time_s,force_n,acceleration_m_s2"
 NEWTON, ACCELERATION = (13, "N"), (12, "m/s2")
 history("hits: m/s2 and N", axes=(NEWTON, ACCELERATION))

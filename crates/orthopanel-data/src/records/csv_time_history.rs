@@ -23,7 +23,8 @@ fn read(bytes: &[u8], path: &Path) -> Result<RecordFile, DataError> {
     let time: Arc<[f64]> = columns.next().unwrap_or_default().into();
     let force = columns.next().unwrap_or_default();
     let acceleration = columns.next().unwrap_or_default();
-    let record = |title: &str, abscissa: Arc<[f64]>, ordinate: Vec<f64>, data_type: i64, unit: &str| Record {
+    let record = |number, title: &str, abscissa: Arc<[f64]>, ordinate: Vec<f64>, data_type: i64, unit: &str| Record {
+        number,
         kind: RecordKind::Time,
         title: title.into(),
         at: Box::new(Location { position: names_at, key: title.into(), ..*Location::whole(path) }),
@@ -36,8 +37,8 @@ fn read(bytes: &[u8], path: &Path) -> Result<RecordFile, DataError> {
         denominator: Axis::default(),
     };
     let records = vec![
-        record("force_n", time.clone(), force, data_type::FORCE, "N"),
-        record(title, time, acceleration, data_type::ACCELERATION, unit),
+        record(1, "force_n", time.clone(), force, data_type::FORCE, "N"),
+        record(2, title, time, acceleration, data_type::ACCELERATION, unit),
     ];
-    Ok(RecordFile { records, notes: Vec::new() })
+    Ok(RecordFile { records, notes: Vec::new(), nodes: Vec::new() })
 }

@@ -11,7 +11,7 @@ use std::path::Path;
 
 use crate::{DataError, Location, limits};
 pub use record::{Axis, Port, Record, RecordFile, RecordKind, Samples};
-pub(crate) use record::{UnitSystem, data_type};
+pub(crate) use record::{Node, UnitSystem, data_type};
 pub(crate) use step::round_rate;
 
 /// One file format: how its bytes are known, and how they are read.

@@ -13,6 +13,17 @@ pub struct RecordFile {
     pub records: Vec<Record>,
     /// What was skipped, mended or assumed, a sentence each.
     pub notes: Vec<String>,
+    /// Places of the file's nodes, where it tells them.
+    pub(crate) nodes: Vec<Node>,
+}
+
+/// A node of a universal file, as dataset 15 or 2411 places it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Node {
+    /// Its number.
+    pub(crate) number: i64,
+    /// Its coordinates \[m\].
+    pub(crate) at: [f64; 3],
 }
 
 /// One record: a function of time or frequency.
@@ -21,6 +32,8 @@ pub struct RecordFile {
 /// which stand as the file has them: they may be rounded until neighbours are the same.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Record {
+    /// Number among the file's records, from 1.
+    pub number: usize,
     /// What the function is.
     pub kind: RecordKind,
     /// The file's words on it, without blank lines.

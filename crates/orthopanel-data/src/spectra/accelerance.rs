@@ -3,6 +3,7 @@
 use num_complex::Complex64;
 use orthopanel_model::{Place, Readable};
 
+use super::channel_choice;
 use super::channels::{self, Calibration, Quantity};
 use super::coherence::{self, Pairing};
 use super::force_noise::ForceNoise;
@@ -92,17 +93,18 @@ impl Accelerance {
     /// [`DataError::NoRecords`] where no frequency response is in the file; [`DataError::Channels`] where there are
     /// several and none is named, where it is not complex or no motion over force, or where unit or coherence do not fit.
     pub fn from_records(file: RecordFile, measurement: &RecordedResponse) -> Result<Self, DataError> {
-        let RecordFile { records, mut notes } = file;
+        let named = channel_choice::response(&file, measurement)?;
+        let RecordFile { records, mut notes, .. } = file;
         let of_kind = |kind| records.iter().filter(move |record| record.kind == kind);
         let responses: Vec<(usize, &Record)> =
             (1..).zip(&records).filter(|(_, record)| record.kind == RecordKind::FrequencyResponse).collect();
-        let chosen = match measurement.record {
+        let chosen = match named {
             Some(number) => responses.iter().find(|(of, _)| *of == number),
             None => responses.first(),
         };
         let numbers = || some_of(&responses.iter().map(|(number, _)| number.to_string()).collect::<Vec<_>>(), ", ");
         let refused = |record: &Record, problem: String| Err(DataError::Channels { at: record.at.clone(), problem });
-        if let (None, Some(number), Some((_, first))) = (chosen, measurement.record, responses.first()) {
+        if let (None, Some(number), Some((_, first))) = (chosen, named, responses.first()) {
             let problem = format!("record = {number} is no frequency response: those of the file are {}", numbers());
             return refused(first, problem);
         }
@@ -110,10 +112,10 @@ impl Accelerance {
             let at = Location::whole(&measurement.file);
             return Err(DataError::NoRecords { at, what: "frequency response (function type 4)" });
         };
-        if let (None, Some((_, second))) = (measurement.record, responses.get(1)) {
+        if let (None, Some((_, second))) = (named, responses.get(1)) {
             let problem = format!(
-                "a second frequency response: say which by record = N in its [[measurement]], one of {}, or give each \
-                 pair of places a file of its own",
+                "a second frequency response: say which by record = N in its [[measurement]], one of {}, or by \
+                 response_channel and force_channel, or give each pair of places a file of its own",
                 numbers()
             );
             return refused(second, problem);

@@ -33,6 +33,16 @@ pub(super) fn quantity(axis: &Axis) -> Quantity {
     }
 }
 
+/// The data type of the motion that a measurement declares, an acceleration where it declares none.
+pub(super) fn data_type_of(declared: &RecordedResponse) -> i64 {
+    let by_unit = declared.response_unit.as_ref().and_then(Unit::motion);
+    match declared.quantity.or(by_unit).unwrap_or(Motion::Acceleration) {
+        Motion::Acceleration => data_type::ACCELERATION,
+        Motion::Velocity => data_type::VELOCITY,
+        Motion::Displacement => data_type::DISPLACEMENT,
+    }
+}
+
 /// What a specific data type of a universal file is called, in brackets; nothing for a rare one.
 pub(super) fn type_name(kind: i64) -> &'static str {
     match kind {

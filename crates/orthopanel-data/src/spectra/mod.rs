@@ -3,6 +3,7 @@
 mod accelerance;
 mod blow;
 mod blow_window;
+mod channel_choice;
 mod channel_noise;
 mod channels;
 mod coherence;
@@ -21,6 +22,7 @@ mod scatter;
 mod spectrum;
 mod time_grid;
 mod time_history;
+mod trigger;
 mod window;
 mod wrong_sample;
 

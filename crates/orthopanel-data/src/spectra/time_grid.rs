@@ -113,6 +113,9 @@ impl Grid {
         }
         let rounding = Rounding::of(times);
         let exact = Self { start: times[0], step, rounding };
+        if exact.first_off(times, |_| ROUND_OFF * step).is_none() {
+            return Ok(exact);
+        }
         let Some(off) = exact.first_off(times, |_| STEP_TOLERANCE * step) else {
             return exact.restored(times, record, notes);
         };
@@ -151,9 +154,6 @@ impl Grid {
     fn restored(self, times: &[f64], record: &Record, notes: &mut Vec<String>) -> Result<Self, DataError> {
         let last = times.last().copied().unwrap_or_default();
         let quantum = self.rounding.quantum(last);
-        if quantum < EXACT * self.step {
-            return Ok(self);
-        }
         let fitted = self.fitted(times);
         // Errors of rounding are spread evenly over a quantum; the step of least squares is off by 1/N^1.5 of it, rms.
         let doubt = FAR * quantum / (times.len() as f64).powf(1.5);
@@ -216,8 +216,8 @@ impl Grid {
 
 /// Quanta that a rounded time lies from its own, at most; half of one, and a last digit.
 const ROUNDED: f64 = 0.75;
-/// Part of a step below which nothing of it is lost by rounding.
-const EXACT: f64 = 1e-9;
+/// Part of a step that times printed in full are off their grid.
+const ROUND_OFF: f64 = 1e-6;
 /// Part of a step by which rounded times may leave it open: a frequency is told no better.
 const MOST_DOUBT: f64 = 2e-4;
 /// Standard deviations beyond which the true step is not sought.

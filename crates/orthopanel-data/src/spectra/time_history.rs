@@ -6,11 +6,12 @@ use orthopanel_model::Place;
 
 use super::{
     accelerance::Accelerance,
+    channel_choice,
     channels::{self, Calibration, Quantity},
     derivative::derivative,
     extremes::{LANES, extremes, sampled_median},
     misplaced_channel::{self, Ordered},
-    time_grid,
+    time_grid, trigger,
     window::milliseconds,
 };
 use crate::{
@@ -92,7 +93,7 @@ impl TimeHistory {
     /// [`DataError::Channels`] where a channel is missing or swapped, where lengths or rates differ, where samples are
     /// uneven in time, or where a unit is unknown or contradicts the declared one.
     pub fn from_records(file: RecordFile, measurement: &RecordedResponse) -> Result<Self, DataError> {
-        let RecordFile { records, mut notes } = file;
+        let RecordFile { records, mut notes, .. } = channel_choice::hits(file, measurement)?;
         let (mut forces, mut accelerations) = (Vec::new(), Vec::new());
         let mut untold = Vec::new();
         let mut order: Vec<Ordered> = Vec::new();
@@ -151,6 +152,11 @@ impl TimeHistory {
         if forces.len() != accelerations.len() || forces.is_empty() {
             let (f, a) = (forces.len(), accelerations.len());
             let problem = format!("{f} force and {a} acceleration records against time: one of each a hit is needed");
+            let problem = if f > 0 && a > 0 {
+                format!("{problem}; of several to a blow name the channels by force_channel and response_channel")
+            } else {
+                problem
+            };
             let problem = others.first().map_or(problem.clone(), |other| format!("{problem} ({other})"));
             return Err(misplaced_channel::alone(&order, problem, first));
         }
@@ -181,9 +187,18 @@ impl TimeHistory {
                 }
                 _ => grid = Some((length, rate)),
             }
-            hits.push(hit((force, acceleration), rate, measurement, &mut notes)?);
+            let at = force.at.clone();
+            let of_record = hit((force, acceleration), rate, measurement, &mut notes)?;
+            hits.extend(trigger::cut(of_record, rate, measurement.trigger, &at, &mut notes)?);
         }
         let rate = grid.map_or(0.0, |(_, rate)| rate);
+        check_hits(hits.len(), || Location::whole(&measurement.file))?;
+        // Records that were cut by gaps of their own have hits of one length too: the shortest.
+        let shortest = hits.iter().map(|hit: &Hit| hit.force.len()).min().unwrap_or_default();
+        for hit in &mut hits {
+            hit.force.truncate(shortest);
+            hit.acceleration.truncate(shortest);
+        }
         let RecordedResponse { force_at, response_at, .. } = *measurement;
         let file = measurement.file.clone();
         Ok(Self { notes, ..Self::new(file, [force_at, response_at], rate, hits) })

@@ -16,7 +16,9 @@ use orthopanel_model::{Boundary, Place, StructureKind};
 
 use crate::{DataError, Location, Position, limits};
 pub use declared::DeclaredEffect;
-pub use measurements::{Direction, Measurement, MeasurementData, NaturalFrequencies, RecordedResponse};
+pub use measurements::{
+    ChannelName, Direction, Measurement, MeasurementData, NaturalFrequencies, RecordedResponse, Trigger,
+};
 pub use pieces::NamedPiece;
 use source::Source;
 

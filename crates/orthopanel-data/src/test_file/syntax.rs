@@ -71,10 +71,21 @@ pub(super) struct Measurement {
     pub(super) quantity: Option<Spanned<String>>,
     pub(super) response_sensitivity: Option<Spanned<f64>>,
     pub(super) force_sensitivity: Option<Spanned<f64>>,
+    pub(super) force_channel: Option<Spanned<toml::Value>>,
+    pub(super) response_channel: Option<Spanned<toml::Value>>,
+    pub(super) trigger: Option<Trigger>,
     pub(super) sampling_rate: Option<Spanned<f64>>,
     pub(super) window_decay: Option<Spanned<f64>>,
     pub(super) direction: Option<Spanned<f64>>,
     pub(super) record: Option<Spanned<u32>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Trigger {
+    pub(super) level: Option<Spanned<f64>>,
+    pub(super) before: Option<Spanned<f64>>,
+    pub(super) length: Option<Spanned<f64>>,
 }
 
 /// One number for all modes, or one a mode.

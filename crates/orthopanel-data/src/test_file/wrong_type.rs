@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 /// What each key wants.
-const WANTED: [(&str, &str); 35] = [
+const WANTED: [(&str, &str); 38] = [
     ("length", "a number in m"),
     ("width", "a number in m"),
     ("thickness", "a number in m"),
@@ -35,6 +35,9 @@ const WANTED: [(&str, &str); 35] = [
     ("quantity", "\"acceleration\", \"velocity\" or \"displacement\""),
     ("response_sensitivity", "a number in V a response_unit"),
     ("force_sensitivity", "a number in V a force_unit"),
+    ("trigger", "a table {level = .., before = .., length = ..} in N, s and s"),
+    ("level", "a number in N"),
+    ("before", "a number in s"),
     ("sampling_rate", "a number in Hz"),
     ("window_decay", "a number in s"),
     ("direction", "1 or -1"),

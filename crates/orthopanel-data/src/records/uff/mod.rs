@@ -1,4 +1,5 @@
-//! Universal file, datasets 58 and 58b: functions at nodal degrees of freedom; 164: their units.
+//! Universal file, datasets 58 and 58b: functions at nodal degrees of freedom; 164: their units; 15 and 2411: the
+//! places of nodes.
 //!
 //! Source: the dataset's definition by SDRC, as kept by the University of Cincinnati (Structural Dynamics Research
 //! Laboratory, "Universal file formats"), and files as real writers leave them: see the comments where those differ.
@@ -7,6 +8,7 @@ mod ascii;
 mod binary;
 mod cursor;
 mod header;
+mod nodes;
 mod ports;
 mod unit_system;
 
@@ -14,7 +16,7 @@ use std::{collections::BTreeMap, path::Path, sync::Arc};
 
 use num_complex::Complex64;
 
-use super::{Axis, Format, Record, RecordFile, RecordKind, Samples, may_be_read};
+use super::{Axis, Format, Record, RecordFile, RecordKind, Samples, UnitSystem, may_be_read};
 use crate::{DataError, Location, Unit, limits, units::Measured};
 use cursor::Cursor;
 use header::{Encoding, Header};
@@ -32,7 +34,7 @@ pub(super) const FORMAT: Format = Format {
 fn read(bytes: &[u8], path: &Path) -> Result<RecordFile, DataError> {
     let mut cursor = Cursor::new(bytes, path);
     let (mut records, mut notes) = (Vec::new(), Vec::new());
-    let mut system = None;
+    let (mut system, mut nodes) = (None, Vec::new());
     // Number of those of a kind, and the byte of the first.
     let mut skipped: BTreeMap<u32, (usize, usize)> = BTreeMap::new();
     // Between datasets any number of marks may stand: one closes, one opens, and some writers write both twice or
@@ -68,6 +70,10 @@ fn read(bytes: &[u8], path: &Path) -> Result<RecordFile, DataError> {
                 records.push(read);
             }
             Some(164) => system = Some(Arc::new(unit_system::read(&mut cursor)?)),
+            Some(dataset @ (15 | 2411)) => {
+                let metre = system.as_ref().map_or(1.0, |system: &Arc<UnitSystem>| system.length);
+                nodes::read(&mut cursor, dataset, metre, &mut nodes);
+            }
             Some(other) => {
                 cursor.skip_dataset();
                 skipped.entry(other).or_insert((0, line.start)).0 += 1;
@@ -80,7 +86,7 @@ fn read(bytes: &[u8], path: &Path) -> Result<RecordFile, DataError> {
     }
     notes.extend(skipped.into_iter().map(|(number, (count, first))| {
         let times = if count == 1 { String::new() } else { format!(" and {} more", count - 1) };
-        format!("dataset {number} at byte {first}{times} skipped: only 58, 58b and 164 are read")
+        format!("dataset {number} at byte {first}{times} skipped: only 58, 58b, 164, 15 and 2411 are read")
     }));
     if let Some(byte) = cursor::opens_at_end(bytes) {
         notes.push(format!("the mark at byte {byte} opens a dataset, and the file ends: it may be cut off"));
@@ -88,7 +94,7 @@ fn read(bytes: &[u8], path: &Path) -> Result<RecordFile, DataError> {
     if records.is_empty() {
         return Err(DataError::NoRecords { at: Location::whole(path), what: "dataset 58 or 58b" });
     }
-    Ok(RecordFile { records, notes })
+    Ok(RecordFile { records, notes, nodes })
 }
 
 fn record(
@@ -162,7 +168,7 @@ fn record(
     check_numbers(cursor, (data_start, point_width), &key, &abscissa, &ordinate, rise)?;
     let Header { title, response, reference, numerator, denominator, .. } = header;
     let at = cursor.at(start, &key);
-    Ok(Record { kind, title, at, lines: None, response, reference, abscissa, ordinate, numerator, denominator })
+    Ok(Record { number, kind, title, at, lines: None, response, reference, abscissa, ordinate, numerator, denominator })
 }
 
 /// What the abscissa of a record is asked to do.

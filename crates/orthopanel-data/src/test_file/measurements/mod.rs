@@ -11,7 +11,7 @@ use toml::Spanned;
 use super::{pieces::NamedPiece, source::Source, syntax};
 use crate::{DataError, Location, limits};
 pub use frequencies::NaturalFrequencies;
-pub use recorded::{Direction, RecordedResponse};
+pub use recorded::{ChannelName, Direction, RecordedResponse, Trigger};
 
 /// One measurement on one piece.
 #[derive(Debug, Clone, PartialEq)]
@@ -90,6 +90,11 @@ impl Entry<'_> {
     fn read(&self, entry: syntax::Measurement, pieces: &[NamedPiece]) -> Result<Measurement, DataError> {
         let kind = self.needed(entry.kind.as_ref(), "kind", "one of natural-frequencies, time-history, accelerance")?;
         let (piece, named) = self.piece(entry.piece.as_ref(), pieces)?;
+        if let Some(trigger) = entry.trigger.as_ref().filter(|_| kind.get_ref() != "time-history") {
+            for (value, key) in [(&trigger.level, "level"), (&trigger.before, "before"), (&trigger.length, "length")] {
+                self.unwanted(kind, value.as_ref(), &format!("trigger.{key}"))?;
+            }
+        }
         let data = match kind.get_ref().as_str() {
             "natural-frequencies" => {
                 self.unwanted(kind, entry.file.as_ref(), "file")?;
@@ -102,6 +107,8 @@ impl Entry<'_> {
                 self.unwanted(kind, entry.quantity.as_ref(), "quantity")?;
                 self.unwanted(kind, entry.response_sensitivity.as_ref(), "response_sensitivity")?;
                 self.unwanted(kind, entry.force_sensitivity.as_ref(), "force_sensitivity")?;
+                self.unwanted(kind, entry.force_channel.as_ref(), "force_channel")?;
+                self.unwanted(kind, entry.response_channel.as_ref(), "response_channel")?;
                 self.unwanted(kind, entry.sampling_rate.as_ref(), "sampling_rate")?;
                 self.unwanted(kind, entry.window_decay.as_ref(), "window_decay")?;
                 MeasurementData::NaturalFrequencies(self.natural_frequencies(&entry, named)?)

@@ -1,6 +1,6 @@
 //! `kind = "time-history"` and `"accelerance"`: a file of records, the places, and what the file does not tell of its channels.
 
-use std::{io, path::PathBuf};
+use std::{fmt, io, path::PathBuf};
 
 use orthopanel_model::{Piece, Place};
 use toml::Spanned;
@@ -31,6 +31,12 @@ pub struct RecordedResponse {
     pub direction: Option<Direction>,
     /// Number of the frequency response among the file's records, from 1; needed where the file holds several.
     pub record: Option<usize>,
+    /// Which of the file's records hold the force, where declared.
+    pub force_channel: Option<ChannelName>,
+    /// Which of the file's records hold the motion, where declared.
+    pub response_channel: Option<ChannelName>,
+    /// How continuous records are cut into hits, where declared.
+    pub trigger: Option<Trigger>,
     /// Sampling rate \[Hz\], where declared: it counts instead of the file's times.
     pub sampling_rate: Option<f64>,
     /// Time constant $\tau$ \[s\] of the exponential window $e^{-t/\tau}$ that lies over the records, where declared.
@@ -51,8 +57,72 @@ impl RecordedResponse {
             response_sensitivity: None,
             direction: None,
             record: None,
+            force_channel: None,
+            response_channel: None,
+            trigger: None,
             sampling_rate: None,
             window_decay: None,
+        }
+    }
+}
+
+/// How a continuous record of several blows is cut into hits; what is left out is found from the record.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Trigger {
+    /// Force over its rest \[N\] that a blow passes.
+    pub level: Option<f64>,
+    /// Time of a hit before its blow passes the level \[s\].
+    pub before: Option<f64>,
+    /// Time of a hit in all \[s\].
+    pub length: Option<f64>,
+}
+
+/// A channel of a file with several.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum ChannelName {
+    /// That of a record, by its number in the file, from 1.
+    Number(usize),
+    /// `"12"` or `"12:+z"`: a node, and 1, 2, 3 along x, y, z, negative against them, 0 in any direction.
+    Port {
+        /// The node's number.
+        node: i64,
+        /// The direction.
+        direction: i64,
+    },
+    /// A line of the record's title.
+    Name(String),
+}
+
+impl ChannelName {
+    /// Of a text in a test file.
+    fn of(text: &str) -> Self {
+        let (node, along) = text.split_once(':').unwrap_or((text, ""));
+        let (sign, axis) = match along.trim().strip_prefix('-') {
+            Some(axis) => (-1, axis),
+            None => (1, along.trim().trim_start_matches('+')),
+        };
+        let direction = ["", "x", "y", "z"].iter().zip(0..).find(|(name, _)| axis.eq_ignore_ascii_case(name));
+        match (node.trim().parse(), direction) {
+            (Ok(node), Some((_, direction))) => Self::Port { node, direction: sign * direction },
+            _ => Self::Name(text.trim().to_owned()),
+        }
+    }
+}
+
+impl fmt::Display for ChannelName {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Number(number) => write!(f, "{number}"),
+            Self::Port { node, direction } => {
+                let sign = if *direction < 0 { "-" } else { "+" };
+                match direction.abs() {
+                    1 => write!(f, "\"{node}:{sign}x\""),
+                    2 => write!(f, "\"{node}:{sign}y\""),
+                    3 => write!(f, "\"{node}:{sign}z\""),
+                    _ => write!(f, "\"{node}\""),
+                }
+            }
+            Self::Name(name) => write!(f, "{name:?}"),
         }
     }
 }
@@ -82,6 +152,14 @@ impl Entry<'_> {
             number.as_ref().map(|number| self.source.positive(number, &self.name(key), unit)).transpose()
         };
         let sampling_rate = positive(&entry.sampling_rate, "sampling_rate", "Hz")?;
+        let trigger = match &entry.trigger {
+            None => None,
+            Some(given) => Some(Trigger {
+                level: positive(&given.level, "trigger.level", "N")?,
+                before: positive(&given.before, "trigger.before", "s")?,
+                length: positive(&given.length, "trigger.length", "s")?,
+            }),
+        };
         let [least, most] = limits::SAMPLING_RATE;
         if let (Some(value), Some(given)) =
             (sampling_rate.filter(|rate| !(least..=most).contains(rate)), &entry.sampling_rate)
@@ -121,6 +199,9 @@ impl Entry<'_> {
             response_sensitivity: positive(&entry.response_sensitivity, "response_sensitivity", "V a unit of motion")?,
             direction,
             record,
+            force_channel: self.channel(entry.force_channel.as_ref(), "force_channel")?,
+            response_channel: self.channel(entry.response_channel.as_ref(), "response_channel")?,
+            trigger,
             sampling_rate,
             window_decay: positive(&entry.window_decay, "window_decay", "s")?,
             ..RecordedResponse::new(file, [force_at, response_at])
@@ -153,6 +234,22 @@ impl Entry<'_> {
             _ => {
                 let (name, remedy) = (given.get_ref().clone(), format!("must be {wanted}"));
                 Err(DataError::UnknownName { at: self.at(given.span(), key), name, remedy })
+            }
+        }
+    }
+
+    /// The channel that a key names.
+    fn channel(&self, given: Option<&Spanned<toml::Value>>, key: &str) -> Result<Option<ChannelName>, DataError> {
+        let Some(given) = given else { return Ok(None) };
+        match given.get_ref() {
+            toml::Value::Integer(number) if *number > 0 => Ok(usize::try_from(*number).ok().map(ChannelName::Number)),
+            toml::Value::String(text) if !text.trim().is_empty() => Ok(Some(ChannelName::of(text))),
+            other => {
+                let message = format!(
+                    "{} given, wanted is a record's number from 1, \"node:direction\" such as \"12:+z\", or a line of its title",
+                    crate::error::short(&other.to_string())
+                );
+                Err(DataError::Syntax { at: self.at(given.span(), key), message })
             }
         }
     }
