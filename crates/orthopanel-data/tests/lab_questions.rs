@@ -277,3 +277,35 @@ fn val_a_channel_that_is_not_there_is_told_with_those_that_are() {
     assert!(said.contains("name the channels by force_channel and response_channel"), "{said}");
     assert_eq!(history(&file, &of(ChannelName::Port { node: 5, direction: 0 })).unwrap().hits.len(), 1);
 }
+
+/// Hits in files of their own are one measurement: a list, or a pattern.
+#[test]
+fn val_a_measurement_names_several_files() {
+    let folder = tempfile::tempdir().unwrap();
+    for name in ["hit-2.uff", "hit-10.uff", "hit-1.uff", "other.uff"] {
+        std::fs::write(folder.path().join(name), "").unwrap();
+    }
+    let read = |file: &str| {
+        let text = format!(
+            "[piece]\nlength = 1\nwidth = 0.1\nthickness = 0.02\nmass_per_area = 5\n[[measurement]]\nkind = \"time-history\"\nfile = {file}\n\
+             force_at = [0, 0]\nresponse_at = [0.1, 0]\nresponse_unit = \"g\"\n"
+        );
+        let test = ImpactTest::from_toml(&text, folder.path().join("test.toml")).map_err(|error| error.to_string())?;
+        let name = |path: &std::path::Path| path.file_name().unwrap().to_str().unwrap().to_owned();
+        Ok::<_, String>(test.files().map(name).collect::<Vec<_>>())
+    };
+    assert_eq!(read("[\"other.uff\", \"hit-2.uff\"]").unwrap(), ["other.uff", "hit-2.uff"]);
+    assert_eq!(read("\"hit-*.uff\"").unwrap(), ["hit-1.uff", "hit-10.uff", "hit-2.uff"]);
+    assert_eq!(read("[\"hit-?.uff\", \"other.uff\"]").unwrap(), ["hit-1.uff", "hit-2.uff", "other.uff"]);
+    for (file, said) in [
+        ("\"blow-*.uff\"", "measurement[1].file: cannot be read"),
+        ("\"blow-*.uff\"", "no file matches: * stands for any characters"),
+        ("[\"other.uff\", \"gone.uff\"]", "gone.uff"),
+        ("[]", "[] given, wanted is a file's name in quotes, or a list of names"),
+        ("[3]", "3 given, wanted is a file's name"),
+        ("true", "true given, wanted is a file's name"),
+    ] {
+        let message = read(file).unwrap_err();
+        assert!(message.contains(said) && message.contains("test.toml:8"), "{said}\n{message}");
+    }
+}

@@ -62,7 +62,7 @@ pub(super) struct Measurement {
     pub(super) resolution: Option<Spanned<OneOrEach>>,
     pub(super) scatter: Option<Spanned<OneOrEach>>,
     pub(super) shape: Option<Spanned<Vec<Spanned<[u32; 2]>>>>,
-    pub(super) file: Option<Spanned<String>>,
+    pub(super) file: Option<Spanned<toml::Value>>,
     pub(super) force_at: Option<Spanned<[f64; 2]>>,
     pub(super) response_at: Option<Spanned<[f64; 2]>>,
     pub(super) unit: Option<Spanned<String>>,

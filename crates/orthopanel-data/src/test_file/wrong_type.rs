@@ -28,7 +28,7 @@ const WANTED: [(&str, &str); 38] = [
     ("resolution", "one number [Hz], or a list with one number a mode"),
     ("scatter", "one number [Hz], or a list with one number a mode"),
     ("shape", "a list with one [nodes_x, nodes_y] a mode, whole numbers from 0"),
-    ("file", "a file's name in quotes"),
+    ("file", "a file's name in quotes, or a list of names"),
     ("unit", "a unit in quotes, such as \"m/s2\" or \"g\""),
     ("response_unit", "a unit in quotes, such as \"m/s2\", \"g\" or \"mm/s\""),
     ("force_unit", "a unit in quotes, such as \"N\" or \"lbf\""),

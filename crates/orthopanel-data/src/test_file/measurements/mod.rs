@@ -1,5 +1,6 @@
 //! `[[measurement]]`: natural frequencies as read off an analyser, or files of records.
 
+mod files;
 mod frequencies;
 mod recorded;
 
@@ -50,7 +51,15 @@ pub(super) fn measurements(
         Entry { source, key: format!("measurement[{}]", index + 1), span: entry.span() }
             .read(entry.into_inner(), pieces)
     };
-    let read: Vec<Measurement> = given.into_iter().enumerate().map(read).collect::<Result<_, _>>()?;
+    let read: Vec<Vec<Measurement>> = given.into_iter().enumerate().map(read).collect::<Result<_, _>>()?;
+    let read: Vec<Measurement> = read.into_iter().flatten().collect();
+    let whole = || source.whole("measurement");
+    source.at_most(
+        (read.len(), "files of measurements"),
+        limits::MEASUREMENTS,
+        whole,
+        "put some into a test of their own",
+    )?;
     let listed = |of: &Measurement| match &of.data {
         MeasurementData::NaturalFrequencies(list) => list.values.len(),
         _ => 0,
@@ -87,7 +96,7 @@ struct Entry<'a> {
 }
 
 impl Entry<'_> {
-    fn read(&self, entry: syntax::Measurement, pieces: &[NamedPiece]) -> Result<Measurement, DataError> {
+    fn read(&self, entry: syntax::Measurement, pieces: &[NamedPiece]) -> Result<Vec<Measurement>, DataError> {
         let kind = self.needed(entry.kind.as_ref(), "kind", "one of natural-frequencies, time-history, accelerance")?;
         let (piece, named) = self.piece(entry.piece.as_ref(), pieces)?;
         if let Some(trigger) = entry.trigger.as_ref().filter(|_| kind.get_ref() != "time-history") {
@@ -111,7 +120,7 @@ impl Entry<'_> {
                 self.unwanted(kind, entry.response_channel.as_ref(), "response_channel")?;
                 self.unwanted(kind, entry.sampling_rate.as_ref(), "sampling_rate")?;
                 self.unwanted(kind, entry.window_decay.as_ref(), "window_decay")?;
-                MeasurementData::NaturalFrequencies(self.natural_frequencies(&entry, named)?)
+                vec![MeasurementData::NaturalFrequencies(self.natural_frequencies(&entry, named)?)]
             }
             "time-history" | "accelerance" => {
                 self.unwanted(kind, entry.values.as_ref(), "values")?;
@@ -123,19 +132,19 @@ impl Entry<'_> {
                 } else {
                     self.unwanted(kind, entry.sampling_rate.as_ref(), "sampling_rate")?;
                 }
-                let recorded = self.recorded(&entry, &named.piece)?;
-                if kind.get_ref() == "accelerance" {
-                    MeasurementData::Accelerance(recorded)
+                let of_kind = if kind.get_ref() == "accelerance" {
+                    MeasurementData::Accelerance
                 } else {
-                    MeasurementData::TimeHistory(recorded)
-                }
+                    MeasurementData::TimeHistory
+                };
+                self.recorded(&entry, &named.piece)?.into_iter().map(of_kind).collect()
             }
             other => {
                 let (name, remedy) = (other.to_owned(), format!("must be {KINDS}"));
                 return Err(DataError::UnknownName { at: self.at(kind.span(), "kind"), name, remedy });
             }
         };
-        Ok(Measurement { piece, data })
+        Ok(data.into_iter().map(|data| Measurement { piece, data }).collect())
     }
 
     fn piece<'p>(

@@ -1,12 +1,12 @@
 //! `kind = "time-history"` and `"accelerance"`: a file of records, the places, and what the file does not tell of its channels.
 
-use std::{fmt, io, path::PathBuf};
+use std::{fmt, path::PathBuf};
 
 use orthopanel_model::{Piece, Place};
 use toml::Spanned;
 
 use super::{super::syntax, Entry};
-use crate::{DataError, Motion, Unit, limits, regular_file};
+use crate::{DataError, Motion, Unit, limits};
 
 /// A file of records and where they were taken.
 #[derive(Debug, Clone, PartialEq)]
@@ -137,7 +137,12 @@ pub enum Direction {
 }
 
 impl Entry<'_> {
-    pub(super) fn recorded(&self, entry: &syntax::Measurement, piece: &Piece) -> Result<RecordedResponse, DataError> {
+    /// The records of each file of the measurement.
+    pub(super) fn recorded(
+        &self,
+        entry: &syntax::Measurement,
+        piece: &Piece,
+    ) -> Result<Vec<RecordedResponse>, DataError> {
         let name = self.needed(entry.file.as_ref(), "file", "name a .uff or .csv file beside the test file")?;
         let places = [(&entry.force_at, "force_at"), (&entry.response_at, "response_at")].map(|(place, key)| {
             let place = self.needed(place.as_ref(), key, "give the place [x, y] in m from the piece's centre")?;
@@ -184,14 +189,7 @@ impl Entry<'_> {
                 return Err(DataError::OutOfRange { at, value, range: "records are counted from 1".into() });
             }
         };
-        let file = self.source.beside(name.get_ref());
-        // Asked now, so that the line is known which names a file that is not there, or is none.
-        let found = regular_file(&file).and_then(|found| limits::RECORD_FILE.check(&found));
-        found.map_err(|error| DataError::Unreadable {
-            at: self.at(name.span(), "file"),
-            source: io::Error::new(error.kind(), format!("{}: {error}", file.display())),
-        })?;
-        Ok(RecordedResponse {
+        let one = RecordedResponse {
             force_unit,
             response_unit,
             quantity,
@@ -204,8 +202,10 @@ impl Entry<'_> {
             trigger,
             sampling_rate,
             window_decay: positive(&entry.window_decay, "window_decay", "s")?,
-            ..RecordedResponse::new(file, [force_at, response_at])
-        })
+            ..RecordedResponse::new("", [force_at, response_at])
+        };
+        let of_file = |file| RecordedResponse { file, ..one.clone() };
+        Ok(self.files(name)?.into_iter().map(of_file).collect())
     }
 
     /// `response_unit`, or `unit`, as it was called before.
