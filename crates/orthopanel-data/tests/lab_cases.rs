@@ -72,6 +72,15 @@ fn val_a_continuous_record_holds_its_hits() {
     assert!(found.notes.iter().any(|note| note.contains("5 blows in one record of 9.90 s")), "{:?}", found.notes);
 }
 
+/// Receptances without type and unit are asked about, and mobilities; an accelerance is taken.
+#[test]
+fn val_what_tells_nothing_is_asked_about_by_its_slope() {
+    let Some(folder) = measured("../cases/records/f05b_rec_0") else { return };
+    let test = ImpactTest::read(&folder).unwrap();
+    let said = test.accelerances(Estimation::default()).unwrap_err().to_string();
+    assert!(said.contains("falls over frequency as a receptance does: is it one? declare quantity = \"displacement\" in its [[measurement]]"), "{said}");
+}
+
 /// Run 1 has a poor coherence, and so have other files' firsts: each response has its own.
 #[test]
 fn val_each_response_has_its_own_coherence() {

@@ -309,3 +309,35 @@ fn val_a_measurement_names_several_files() {
         assert!(message.contains(said) && message.contains("test.toml:8"), "{said}\n{message}");
     }
 }
+
+/// Two resonances by hand, as motion over force without type or unit.
+#[test]
+fn val_a_response_that_tells_nothing_is_asked_about_by_its_slope() {
+    let response = |power: i32| {
+        let at = |line: usize| {
+            let s = num_complex::Complex64::new(0.0, std::f64::consts::TAU * line as f64);
+            let mode = |hertz: f64| {
+                let omega = std::f64::consts::TAU * hertz;
+                1.0 / (s * s + 0.02 * omega * s + omega * omega)
+            };
+            let value = s.powi(power) * (mode(30.0) + 0.7 * mode(190.0) - 0.4 * mode(420.0));
+            vec![value.re, value.im]
+        };
+        Dataset {
+            points: (0..800).map(at).collect(),
+            even: Some(("0.00000e+00".into(), "1.00000e+00".into())),
+            ..response((0, "NONE"), (0, "NONE"))
+        }
+    };
+    let of = |power, declared: &RecordedResponse| accelerance(records(&[response(power)]), declared);
+    assert!(of(2, &measurement()).is_ok());
+    assert!(
+        of(1, &measurement()).unwrap_err().contains("as a mobility does: is it one? declare quantity = \"velocity\"")
+    );
+    assert!(of(0, &measurement()).unwrap_err().contains("as a receptance does: is it one?"));
+    let declared = |quantity| RecordedResponse { quantity: Some(quantity), ..measurement() };
+    assert!(of(0, &declared(Motion::Acceleration)).is_ok());
+    let [due, found] =
+        [of(2, &measurement()), of(0, &declared(Motion::Displacement))].map(|found| found.unwrap().value);
+    assert!(due.iter().zip(&found).all(|(due, found)| (due - found).norm() < 1e-6 * due.norm()));
+}

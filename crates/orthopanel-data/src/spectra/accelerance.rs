@@ -8,6 +8,7 @@ use super::channels::{self, Calibration, Quantity};
 use super::coherence::{self, Pairing};
 use super::force_noise::ForceNoise;
 use super::hit_verdict::HitVerdict;
+use super::likely_motion::likely_motion;
 use crate::{
     DataError, Location, Motion, RecordedResponse,
     error::some_of,
@@ -130,6 +131,18 @@ impl Accelerance {
         let Samples::Complex(values) = &record.ordinate else {
             return refused(record, "a frequency response must be complex: magnitude alone is not enough".into());
         };
+        // What tells nothing is an accelerance, unless its lines say otherwise.
+        let told = channels::quantity(&record.numerator) != Quantity::Untold || channels::is_declared(measurement);
+        if let (false, Some(likely @ (Motion::Velocity | Motion::Displacement))) =
+            (told, likely_motion(&record.abscissa, values))
+        {
+            let name = if likely == Motion::Velocity { "mobility" } else { "receptance" };
+            let problem = format!(
+                "tells neither type nor unit, and falls over frequency as a {name} does: is it one? declare quantity = \"{likely}\" in \
+                 its [[measurement]], or quantity = \"acceleration\" where it is an accelerance"
+            );
+            return refused(record, problem);
+        }
         let coherence = match coherence::of_response(&records, number - 1) {
             Pairing::None => None,
             Pairing::Own(coherence) => Some(matching_coherence(record, coherence)?),

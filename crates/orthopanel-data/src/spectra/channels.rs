@@ -33,6 +33,11 @@ pub(super) fn quantity(axis: &Axis) -> Quantity {
     }
 }
 
+/// Whether the test file tells what the sensor reads, by its quantity or its unit.
+pub(super) fn is_declared(declared: &RecordedResponse) -> bool {
+    declared.quantity.is_some() || declared.response_unit.is_some()
+}
+
 /// The data type of the motion that a measurement declares, an acceleration where it declares none.
 pub(super) fn data_type_of(declared: &RecordedResponse) -> i64 {
     let by_unit = declared.response_unit.as_ref().and_then(Unit::motion);

@@ -15,6 +15,7 @@ mod gather;
 mod hit_agreement;
 mod hit_faults;
 mod hit_verdict;
+mod likely_motion;
 mod misplaced_channel;
 mod node_numbers;
 mod overload;
