@@ -22,7 +22,7 @@ const RECEPTANCE: f64 = -1.25;
 /// over resonances.
 pub(super) fn likely_motion(frequency: &[f64], value: &[Complex64]) -> Option<Motion> {
     let lines = || frequency.iter().zip(value).filter(|(f, value)| **f > 0.0 && value.norm() > 0.0);
-    let (first, last) = (*lines().next()?.0, *lines().last()?.0);
+    let (first, last) = (*lines().next()?.0, *lines().next_back()?.0);
     if lines().count() < LEAST_LINES || last < LEAST_RANGE * first {
         return None;
     }
