@@ -19,14 +19,7 @@ use orthopanel_model::{PanelModel, Place};
 pub fn records(bytes: &[u8]) -> bool {
     let Ok(file) = RecordFile::from_bytes(bytes, "fuzz") else { return false };
     let place = Place { x: 0.0, y: 0.0 };
-    let measurement = RecordedResponse {
-        file: "fuzz".into(),
-        force_at: place,
-        response_at: place,
-        unit: None,
-        direction: None,
-        record: None,
-    };
+    let measurement = RecordedResponse::new("fuzz", [place; 2]);
     let _ = Accelerance::from_records(file.clone(), &measurement);
     if let Ok(history) = TimeHistory::from_records(file, &measurement) {
         for window in [Window::None, Window::Hann, Window::ForceExponential { half_width: 0.01, tau: 0.1 }] {

@@ -6,6 +6,7 @@ pub mod limits;
 mod records;
 mod spectra;
 mod test_file;
+mod units;
 
 pub use error::{DataError, Location, Position};
 pub use input::{InputKind, regular_file};
@@ -15,6 +16,7 @@ pub use spectra::{
     Window,
 };
 pub use test_file::{
-    AccelerationUnit, DeclaredEffect, Direction, ImpactTest, Measurement, MeasurementData, NamedPiece,
-    NaturalFrequencies, RecordedResponse,
+    ChannelName, DeclaredEffect, Direction, ImpactTest, Measurement, MeasurementData, NamedPiece, NaturalFrequencies,
+    RecordedResponse, Trigger,
 };
+pub use units::{Motion, Unit};

@@ -53,6 +53,10 @@ pub const RECORDS: usize = 100_000;
 /// mistake, and nothing that is computed from them makes sense.
 pub const HERTZ: [f64; 2] = [1e-6, 1e8];
 
+/// Sampling rates of hammer tests \[Hz\]: below, a blow falls between two samples, and times were in ms or µs; no recorder of motion
+/// goes above.
+pub const SAMPLING_RATE: [f64; 2] = [100.0, 2e7];
+
 /// Hits of one pair of places. Three to twenty are usual.
 pub const HITS: usize = 2000;
 

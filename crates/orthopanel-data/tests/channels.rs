@@ -5,9 +5,7 @@ use crate::support::{
     hammer::{Noise, RATE},
     recorded::{DAMPED, good, history, measurement, pair},
 };
-use orthopanel_data::{
-    Accelerance, AccelerationUnit, Direction, Estimation, Hit, RecordFile, RecordedResponse, TimeHistory,
-};
+use orthopanel_data::{Accelerance, Direction, Estimation, Hit, RecordFile, RecordedResponse, TimeHistory, Unit};
 
 #[test]
 fn val_pairs_are_found_whatever_their_order() {
@@ -34,13 +32,13 @@ fn val_channels_that_do_not_fit_are_refused() {
     let [as_force, as_acceleration] = swapped;
     let swapped_force = Dataset { numerator: as_force, ..acceleration.clone() };
     let swapped_acceleration = Dataset { numerator: as_acceleration, ..force.clone() };
-    let pounds = Dataset { numerator: (13, "lbf".into()), ..force.clone() };
+    let stones = Dataset { numerator: (13, "stone".into()), ..force.clone() };
     let cases = [
         (vec![force.clone()], "1 force and 0 acceleration records against time"),
         (vec![force.clone(), shorter], "900 samples of acceleration, 1000 of force"),
         (vec![force.clone(), faster], "acceleration, sample 2: t = 0.0005 s, 0.001 s expected"),
         (vec![swapped_force, swapped_acceleration], "the channels are swapped"),
-        (vec![pounds, acceleration], "the force is in \"lbf\": only N is read"),
+        (vec![stones, acceleration], "unit \"stone\" of the force is unknown"),
     ];
     for (datasets, said) in cases {
         let message = history(&datasets, &measurement()).unwrap_err();
@@ -94,28 +92,30 @@ fn val_unit_and_direction_are_put_right_and_said() {
     let in_g = Dataset { numerator: (12, "g".into()), ..acceleration.clone() };
     let untold = Dataset { numerator: (12, "NONE".into()), ..acceleration.clone() };
     let opposite = Dataset { response_direction: -3, ..acceleration.clone() };
-    let g = Some(AccelerationUnit::StandardGravity);
+    let g = Unit::parse("g");
     let (along, against) = (Some(Direction::AlongForce), Some(Direction::AgainstForce));
     let cases = [
         (&in_g, None, None, 9.80665, "brought from g"),
-        (&in_g, g, None, 9.80665, "brought from g"),
-        (&untold, g, None, 9.80665, "brought from g"),
+        (&in_g, g.clone(), None, 9.80665, "brought from g"),
+        (&untold, g.clone(), None, 9.80665, "brought from g"),
         (&acceleration, None, against, -1.0, "turned round, as the test file declares"),
         (&opposite, None, None, -1.0, "opposite directions (-3 and 3): turned round"),
         (&opposite, None, against, -1.0, "turned round, as the test file declares"),
         (&opposite, None, along, 1.0, "declares 1: not turned round"),
     ];
     for (record, unit, direction, factor, said) in cases {
-        let declared = RecordedResponse { unit, direction, ..measurement() };
+        let declared = RecordedResponse { response_unit: unit, direction, ..measurement() };
         let history = history(&[force.clone(), record.clone()], &declared).unwrap();
         assert_eq!(history.hits[0].acceleration[210], factor * good().acceleration[210], "{said}");
         assert!(history.notes.iter().any(|note| note.contains(said)), "{said}: {:?}", history.notes);
     }
-    let contradicted = history(&[force.clone(), acceleration], &RecordedResponse { unit: g, ..measurement() });
+    let contradicted = history(&[force.clone(), acceleration], &RecordedResponse { response_unit: g, ..measurement() });
     assert!(contradicted.unwrap_err().contains("is in \"m/s^2\", the test file declares another unit"));
     let volts = Dataset { numerator: (12, "mV".into()), ..in_g };
     assert!(
-        history(&[force, volts], &measurement()).unwrap_err().contains("unit \"mV\" of the acceleration is unknown")
+        history(&[force, volts], &measurement())
+            .unwrap_err()
+            .contains("the acceleration is in volts (\"mV\"): give response_sens")
     );
 }
 
@@ -130,7 +130,7 @@ fn val_csv_in_g_is_told_by_its_column_or_by_the_test_file() {
     let in_g = TimeHistory::from_records(csv("acceleration_g"), &measurement()).unwrap();
     assert_eq!(in_g.hits[0].acceleration[210], 9.80665 * good().acceleration[210]);
     assert!(in_g.notes.iter().any(|note| note.contains("brought from g")), "{:?}", in_g.notes);
-    let declared = RecordedResponse { unit: Some(AccelerationUnit::StandardGravity), ..measurement() };
+    let declared = RecordedResponse { response_unit: Unit::parse("g"), ..measurement() };
     assert!(TimeHistory::from_records(csv("acceleration_m_s2"), &declared).is_err());
     let file = RecordFile::from_bytes(b"frequency_hz,real,imag\n1,2,0\n", "a.csv").unwrap();
     assert_eq!(Accelerance::from_records(file, &declared).unwrap().value[0].re, 2.0 * 9.80665);
@@ -260,9 +260,9 @@ fn val_an_untold_channel_beside_a_told_one_is_the_other() {
         let note = format!("tells neither type nor unit, taken as {name}");
         assert!(found.notes.iter().any(|said| said.contains(&note)), "{:?}", found.notes);
     }
-    let velocity = Dataset { numerator: (11, "m/s".into()), ..motion };
-    let refused = history(&[force, velocity], &measurement()).unwrap_err();
-    assert!(refused.contains("(record 2: data type 11 (velocity) is neither force nor acceleration"), "{refused}");
+    let strain = Dataset { numerator: (3, "1".into()), ..motion };
+    let refused = history(&[force, strain], &measurement()).unwrap_err();
+    assert!(refused.contains("(record 2: data type 3 (strain) is neither force nor motion"), "{refused}");
 }
 
 /// A hit that stands twice counts once.

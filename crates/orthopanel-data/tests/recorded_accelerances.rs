@@ -58,13 +58,13 @@ fn val_an_accelerance_csv_may_bring_its_variance() {
 
 #[test]
 fn val_what_is_no_single_accelerance_is_refused() {
-    let mobility = Dataset { numerator: (11, "m/s".into()), ..response(3) };
+    let strain = Dataset { numerator: (3, "1".into()), ..response(3) };
     let magnitude = Dataset { complex: false, points: vec![vec![1.0]; 3], ..response(3) };
     let shorter = Dataset { function: 6, ..Dataset::time(&[1.0; 2], (0, "NONE")) };
     let above_one = Dataset { function: 6, ..Dataset::time(&[1.0, 1.5, 1.0], (0, "NONE")) };
     let cases = [
         (vec![response(3), response(3)], "a second frequency response"),
-        (vec![mobility], "Other(11) over Force: acceleration over force is needed"),
+        (vec![strain], "Other(3) over Force: motion over force is needed"),
         (vec![magnitude], "must be complex"),
         (vec![response(3), shorter], "other frequencies"),
         (vec![response(3), above_one], "coherence 1.5 at point 2"),

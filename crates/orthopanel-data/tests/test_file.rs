@@ -1,6 +1,6 @@
 //! The test file: what it means, and one clear message for each way to get it wrong.
 
-use orthopanel_data::{AccelerationUnit, DataError, Direction, ImpactTest, MeasurementData, Position};
+use orthopanel_data::{DataError, Direction, ImpactTest, MeasurementData, Position, Unit};
 use orthopanel_model::{Boundary, End, Place, StructureKind};
 use proptest::prelude::*;
 
@@ -57,10 +57,7 @@ fn val_the_whole_file_of_the_design_is_read() {
     let MeasurementData::Accelerance(recorded) = &test.measurements[1].data else { panic!("not an accelerance") };
     assert_eq!(recorded.file, folder.path().join("point-0.uff"));
     assert_eq!(recorded.force_at, Place { x: -0.3, y: 0.0 });
-    assert_eq!(
-        (recorded.unit, recorded.direction),
-        (Some(AccelerationUnit::StandardGravity), Some(Direction::AgainstForce))
-    );
+    assert_eq!((recorded.response_unit.clone(), recorded.direction), (Unit::parse("g"), Some(Direction::AgainstForce)));
 }
 
 #[test]
@@ -266,7 +263,7 @@ fn val_a_recorded_response_needs_file_places_and_known_units() {
             "[0.4]",
             "test.toml:9: measurement[1].force_at: a list of 1 given, wanted is a place [x, y] in m from the piece's centre",
         ),
-        ("m/s2", "m/s", "measurement[1].unit = \"m/s\": must be \"m/s2\" or \"g\""),
+        ("m/s2", "N", "measurement[1].unit = \"N\": must be a unit of motion, such as \"m/s2\", \"g\""),
         ("direction = 1", "direction = 0", "measurement[1].direction = 0: must be 1 (sensor along the force) or -1"),
         ("direction = 1", "record = 2", "measurement[1].record: does not belong to kind = \"time-history\""),
         ("direction = 1", "values = [1]", "measurement[1].values: does not belong to kind = \"time-history\""),

@@ -225,10 +225,10 @@ fn val_a_rounded_step_is_restored_and_said() {
 
 #[test]
 fn val_other_datasets_are_skipped_and_said() {
-    let geometry = b"    -1\n    15\n         1         0\n    -1\n  0.0\n    -1\n";
+    let geometry = b"    -1\n    55\n         1         0\n    -1\n  0.0\n    -1\n";
     let file = read(&[&geometry[..], &Dataset::time(&VALUES, (12, "m/s^2")).text()].concat());
     assert_eq!(file.records.len(), 1);
-    assert!(file.notes[0].contains("dataset 15 at byte 7 skipped"), "{:?}", file.notes);
+    assert!(file.notes[0].contains("dataset 55 at byte 7 skipped"), "{:?}", file.notes);
     assert!(matches!(refused(geometry), DataError::NoRecords { .. }));
 }
 

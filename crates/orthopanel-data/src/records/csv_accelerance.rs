@@ -5,7 +5,7 @@ use std::{path::Path, sync::Arc};
 
 use num_complex::Complex64;
 
-use super::{Axis, Format, Port, Record, RecordFile, RecordKind, Samples, csv_columns, record};
+use super::{Axis, Format, Port, Record, RecordFile, RecordKind, Samples, csv_columns, data_type};
 use crate::{DataError, Location};
 
 pub(super) const FORMAT: Format = Format {
@@ -26,7 +26,8 @@ fn read(bytes: &[u8], path: &Path) -> Result<RecordFile, DataError> {
     let (frequency, re, im) = (next().unwrap_or_default(), next().unwrap_or_default(), next().unwrap_or_default());
     let frequency: Arc<[f64]> = frequency.into();
     let value = re.iter().zip(&im).map(|(&re, &im)| Complex64::new(re, im)).collect();
-    let record = |kind, title: &str, abscissa, ordinate, numerator, denominator| Record {
+    let record = |number, kind, title: &str, abscissa, ordinate, numerator, denominator| Record {
+        number,
         kind,
         title: title.into(),
         at: Box::new(Location { position: names_at, key: title.into(), ..*Location::whole(path) }),
@@ -38,11 +39,10 @@ fn read(bytes: &[u8], path: &Path) -> Result<RecordFile, DataError> {
         numerator,
         denominator,
     };
-    let axis = |data_type, unit: &str| Axis { data_type, unit: unit.into() };
     let mut records = Vec::new();
-    let (motion, force) = (axis(record::ACCELERATION, ""), axis(record::FORCE, "N"));
+    let (motion, force) = (Axis::new(data_type::ACCELERATION, ""), Axis::new(data_type::FORCE, "N"));
     let frf = RecordKind::FrequencyResponse;
-    records.push(record(frf, "accelerance", frequency.clone(), Samples::Complex(value), motion, force));
+    records.push(record(1, frf, "accelerance", frequency.clone(), Samples::Complex(value), motion, force));
     let beside = [
         (RecordKind::Coherence, "coherence"),
         (RecordKind::Variance, "variance"),
@@ -51,8 +51,8 @@ fn read(bytes: &[u8], path: &Path) -> Result<RecordFile, DataError> {
     for (kind, title) in beside {
         if let Some(values) = next() {
             let (abscissa, values) = (Arc::clone(&frequency), Samples::Real(values));
-            records.push(record(kind, title, abscissa, values, Axis::default(), Axis::default()));
+            records.push(record(records.len() + 1, kind, title, abscissa, values, Axis::default(), Axis::default()));
         }
     }
-    Ok(RecordFile { records, notes: Vec::new() })
+    Ok(RecordFile { records, notes: Vec::new(), nodes: Vec::new() })
 }

@@ -35,8 +35,9 @@ pub(super) struct Columns {
 
 /// Reads the columns `needed`, and `optional` where they are there, in this order; each is as long as the first.
 ///
-/// The first column must rise, since it is time or frequency.
+/// The first column must rise where it is a frequency; times may be rounded, and are judged with the sampling rate in view.
 pub(super) fn read(bytes: &[u8], path: &Path, needed: &[&str], optional: &[&str]) -> Result<Columns, DataError> {
+    let rises = needed.first() == Some(&"frequency_hz");
     let at = |line: u64, key: &str| {
         Box::new(Location { file: path.to_path_buf(), position: position(line), key: key.into() })
     };
@@ -85,7 +86,7 @@ pub(super) fn read(bytes: &[u8], path: &Path, needed: &[&str], optional: &[&str]
             }
             let Some(column) = columns.get_mut(place) else { continue };
             let column = column.get_or_insert_with(Vec::new);
-            if place == 0 && column.last().is_some_and(|&before| before >= value) {
+            if rises && place == 0 && column.last().is_some_and(|&before| before >= value) {
                 let problem =
                     format!("{} does not rise above the row before: sort the rows, once each", Readable(value));
                 return Err(DataError::Header { at: at(line, name), problem });

@@ -2,7 +2,7 @@
 
 use std::{path::Path, sync::Arc};
 
-use super::{Axis, Format, Port, Record, RecordFile, RecordKind, Samples, csv_columns, record};
+use super::{Axis, Format, Port, Record, RecordFile, RecordKind, Samples, csv_columns, data_type};
 use crate::{DataError, Location};
 
 pub(super) const FORMAT: Format = Format {
@@ -23,7 +23,8 @@ fn read(bytes: &[u8], path: &Path) -> Result<RecordFile, DataError> {
     let time: Arc<[f64]> = columns.next().unwrap_or_default().into();
     let force = columns.next().unwrap_or_default();
     let acceleration = columns.next().unwrap_or_default();
-    let record = |title: &str, abscissa: Arc<[f64]>, ordinate: Vec<f64>, data_type: i64, unit: &str| Record {
+    let record = |number, title: &str, abscissa: Arc<[f64]>, ordinate: Vec<f64>, data_type: i64, unit: &str| Record {
+        number,
         kind: RecordKind::Time,
         title: title.into(),
         at: Box::new(Location { position: names_at, key: title.into(), ..*Location::whole(path) }),
@@ -32,12 +33,12 @@ fn read(bytes: &[u8], path: &Path) -> Result<RecordFile, DataError> {
         reference: Port::default(),
         abscissa,
         ordinate: Samples::Real(ordinate),
-        numerator: Axis { data_type, unit: unit.into() },
+        numerator: Axis::new(data_type, unit),
         denominator: Axis::default(),
     };
     let records = vec![
-        record("force_n", time.clone(), force, record::FORCE, "N"),
-        record(title, time, acceleration, record::ACCELERATION, unit),
+        record(1, "force_n", time.clone(), force, data_type::FORCE, "N"),
+        record(2, title, time, acceleration, data_type::ACCELERATION, unit),
     ];
-    Ok(RecordFile { records, notes: Vec::new() })
+    Ok(RecordFile { records, notes: Vec::new(), nodes: Vec::new() })
 }

@@ -4,13 +4,15 @@ mod csv_accelerance;
 mod csv_columns;
 mod csv_time_history;
 mod record;
+mod step;
 mod uff;
 
 use std::path::Path;
 
 use crate::{DataError, Location, limits};
-pub(crate) use record::{ACCELERATION, FORCE};
 pub use record::{Axis, Port, Record, RecordFile, RecordKind, Samples};
+pub(crate) use record::{Node, UnitSystem, data_type};
+pub(crate) use step::round_rate;
 
 /// One file format: how its bytes are known, and how they are read.
 struct Format {

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use num_complex::Complex64;
 
-use crate::{Location, Position};
+use crate::{Location, Position, Unit, units::Measured};
 
 /// The records of one file, and what the reader had to say about them.
 #[derive(Debug, Clone, PartialEq)]
@@ -13,13 +13,27 @@ pub struct RecordFile {
     pub records: Vec<Record>,
     /// What was skipped, mended or assumed, a sentence each.
     pub notes: Vec<String>,
+    /// Places of the file's nodes, where it tells them.
+    pub(crate) nodes: Vec<Node>,
+}
+
+/// A node of a universal file, as dataset 15 or 2411 places it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Node {
+    /// Its number.
+    pub(crate) number: i64,
+    /// Its coordinates \[m\].
+    pub(crate) at: [f64; 3],
 }
 
 /// One record: a function of time or frequency.
 ///
-/// Every number in it is finite, `abscissa` and `ordinate` are equally long and not empty, and `abscissa` rises.
+/// Every number in it is finite, and `abscissa` and `ordinate` are equally long and not empty. `abscissa` rises, but for listed times,
+/// which stand as the file has them: they may be rounded until neighbours are the same.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Record {
+    /// Number among the file's records, from 1.
+    pub number: usize,
     /// What the function is.
     pub kind: RecordKind,
     /// The file's words on it, without blank lines.
@@ -120,16 +134,57 @@ pub struct Port {
 }
 
 /// What an axis shows.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Axis {
     /// Universal file's specific data type: 12 acceleration, 13 excitation force, 17 time, 18 frequency; 0 unknown.
     pub data_type: i64,
     /// Unit as the file writes it; empty where it does not tell.
     pub unit: String,
+    /// The units of the whole file, where it tells them.
+    pub(crate) system: Option<Arc<UnitSystem>>,
 }
 
-/// Specific data type of an acceleration.
-pub(crate) const ACCELERATION: i64 = 12;
+impl Axis {
+    /// An axis of a file that tells no units of the whole.
+    pub(super) fn new(data_type: i64, unit: &str) -> Self {
+        Self { data_type, unit: unit.into(), system: None }
+    }
 
-/// Specific data type of an excitation force.
-pub(crate) const FORCE: i64 = 13;
+    /// The unit that the file as a whole gives what is measured along the axis.
+    pub(crate) fn unit_by_system(&self, measured: Measured) -> Option<Unit> {
+        let UnitSystem { name, length, force } = self.system.as_deref()?;
+        match measured {
+            Measured::Motion(motion) => {
+                let rate = ["/s2", "/s", ""][usize::from(motion.derivatives())];
+                Some(Unit::of_motion(format!("{name:?}, a unit of length of {length} m{rate}"), motion, *length))
+            }
+            Measured::Force => Some(Unit::of_force(format!("{name:?}, a unit of force of {force} N"), *force)),
+            _ => None,
+        }
+    }
+}
+
+/// The units of a file, as dataset 164 of a universal file gives them.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct UnitSystem {
+    /// The file's words for it.
+    pub(crate) name: String,
+    /// Its unit of length \[m\].
+    pub(crate) length: f64,
+    /// Its unit of force \[N\].
+    pub(crate) force: f64,
+}
+
+/// Specific data types of universal files.
+pub(crate) mod data_type {
+    /// Of a displacement.
+    pub(crate) const DISPLACEMENT: i64 = 8;
+    /// Of a reaction force; analysers give it to hammers too.
+    pub(crate) const REACTION_FORCE: i64 = 9;
+    /// Of a velocity.
+    pub(crate) const VELOCITY: i64 = 11;
+    /// Of an acceleration.
+    pub(crate) const ACCELERATION: i64 = 12;
+    /// Of an excitation force.
+    pub(crate) const FORCE: i64 = 13;
+}

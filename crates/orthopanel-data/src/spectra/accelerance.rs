@@ -3,11 +3,14 @@
 use num_complex::Complex64;
 use orthopanel_model::{Place, Readable};
 
-use super::channels::{self, Quantity};
+use super::channel_choice;
+use super::channels::{self, Calibration, Quantity};
+use super::coherence::{self, Pairing};
 use super::force_noise::ForceNoise;
 use super::hit_verdict::HitVerdict;
+use super::likely_motion::likely_motion;
 use crate::{
-    DataError, Location, RecordedResponse,
+    DataError, Location, Motion, RecordedResponse,
     error::some_of,
     limits,
     records::{Record, RecordFile, RecordKind, Samples},
@@ -82,61 +85,75 @@ impl Accelerance {
     /// Takes the frequency response of a file, the one that [`RecordedResponse::record`] names where there are several, with its coherence where that is there too, and puts unit and
     /// direction right.
     ///
+    /// Mobilities and receptances become accelerances, $A = s^n H$, their variance with them.
+    ///
     /// With coherence the variance is $|H|^2 (1 - \gamma^2)/\gamma^2$, that of one hit: files do not tell how many
     /// were averaged, so it is the greatest it may be; the weights of the lines among each other are right.
     ///
     /// # Errors
     /// [`DataError::NoRecords`] where no frequency response is in the file; [`DataError::Channels`] where there are
-    /// several and none is named, where it is not complex or no accelerance, or where unit or coherence do not fit.
+    /// several and none is named, where it is not complex or no motion over force, or where unit or coherence do not fit.
     pub fn from_records(file: RecordFile, measurement: &RecordedResponse) -> Result<Self, DataError> {
-        let RecordFile { records, mut notes } = file;
+        let named = channel_choice::response(&file, measurement)?;
+        let RecordFile { records, mut notes, .. } = file;
         let of_kind = |kind| records.iter().filter(move |record| record.kind == kind);
         let responses: Vec<(usize, &Record)> =
             (1..).zip(&records).filter(|(_, record)| record.kind == RecordKind::FrequencyResponse).collect();
-        let chosen = match measurement.record {
+        let chosen = match named {
             Some(number) => responses.iter().find(|(of, _)| *of == number),
             None => responses.first(),
         };
         let numbers = || some_of(&responses.iter().map(|(number, _)| number.to_string()).collect::<Vec<_>>(), ", ");
         let refused = |record: &Record, problem: String| Err(DataError::Channels { at: record.at.clone(), problem });
-        if let (None, Some(number), Some((_, first))) = (chosen, measurement.record, responses.first()) {
+        if let (None, Some(number), Some((_, first))) = (chosen, named, responses.first()) {
             let problem = format!("record = {number} is no frequency response: those of the file are {}", numbers());
             return refused(first, problem);
         }
-        let Some(&(_, record)) = chosen else {
+        let Some(&(number, record)) = chosen else {
             let at = Location::whole(&measurement.file);
             return Err(DataError::NoRecords { at, what: "frequency response (function type 4)" });
         };
-        if let (None, Some((_, second))) = (measurement.record, responses.get(1)) {
+        if let (None, Some((_, second))) = (named, responses.get(1)) {
             let problem = format!(
-                "a second frequency response: say which by record = N in its [[measurement]], one of {}, or give each \
-                 pair of places a file of its own",
+                "a second frequency response: say which by record = N in its [[measurement]], one of {}, or by \
+                 response_channel and force_channel, or give each pair of places a file of its own",
                 numbers()
             );
             return refused(second, problem);
         }
         match (channels::quantity(&record.numerator), channels::quantity(&record.denominator)) {
-            (Quantity::Acceleration | Quantity::Untold, Quantity::Force | Quantity::Untold) => {}
+            (Quantity::Motion(_) | Quantity::Untold, Quantity::Force | Quantity::Untold) => {}
             (numerator, denominator) => {
-                return refused(
-                    record,
-                    format!("{numerator:?} over {denominator:?}: acceleration over force is needed"),
-                );
+                return refused(record, format!("{numerator:?} over {denominator:?}: motion over force is needed"));
             }
         }
-        channels::check_force_unit(record, &record.denominator)?;
-        let directions = [record.response.direction, record.reference.direction];
-        let factor = channels::acceleration_factor(record, &record.numerator, directions, measurement, &mut notes)?;
+        let Calibration { factor, motion } = channels::response(record, measurement, &mut notes)?;
         let Samples::Complex(values) = &record.ordinate else {
             return refused(record, "a frequency response must be complex: magnitude alone is not enough".into());
         };
-        // Beside several responses a coherence is known by its places and directions.
-        let alone = responses.len() == 1;
-        let of_same =
-            |other: &&Record| alone || (other.response, other.reference) == (record.response, record.reference);
-        let coherence = match of_kind(RecordKind::Coherence).find(of_same) {
-            None => None,
-            Some(coherence) => Some(matching_coherence(record, coherence)?),
+        // What tells nothing is an accelerance, unless its lines say otherwise.
+        let told = channels::quantity(&record.numerator) != Quantity::Untold || channels::is_declared(measurement);
+        if let (false, Some(likely @ (Motion::Velocity | Motion::Displacement))) =
+            (told, likely_motion(&record.abscissa, values))
+        {
+            let name = if likely == Motion::Velocity { "mobility" } else { "receptance" };
+            let problem = format!(
+                "tells neither type nor unit, and falls over frequency as a {name} does: is it one? declare quantity = \"{likely}\" in \
+                 its [[measurement]], or quantity = \"acceleration\" where it is an accelerance"
+            );
+            return refused(record, problem);
+        }
+        let coherence = match coherence::of_response(&records, number - 1) {
+            Pairing::None => None,
+            Pairing::Own(coherence) => Some(matching_coherence(record, coherence)?),
+            Pairing::Untold { coherences, responses } => {
+                notes.push(format!(
+                    "{}: left without coherence: {coherences} of the file may belong to {responses} frequency responses, and neither \
+                     their order nor their nodes tell which",
+                    record.at.key
+                ));
+                None
+            }
         };
         let told = of_kind(RecordKind::Variance).next();
         let told = told.map(|variance| matching_variance(record, variance)).transpose()?;
@@ -173,12 +190,31 @@ impl Accelerance {
             let factor = factor * factor;
             result.variance = Some(variance.into_iter().skip(positive).map(|variance| variance * factor).collect());
         }
-        if let Some(record) = of_kind(RecordKind::DecayRate).next() {
-            result.decay_rate = one_decay_rate(record)?;
+        result.decay_rate = decay_rate(of_kind(RecordKind::DecayRate).next(), measurement.window_decay)?;
+        if motion != Motion::Acceleration {
+            result.differentiate(motion.derivatives());
+            notes.push(format!(
+                "{}: {motion} over force differentiated to an accelerance, with its noise",
+                record.at.key
+            ));
         }
         result.notes = notes;
         result.leave_out_zeros(record)?;
         Ok(result)
+    }
+
+    /// Times $s^n$, and the noise with it: a motion becomes its derivative. Under an exponential window a line stands at
+    /// $s = \sigma + j\omega$.
+    fn differentiate(&mut self, times: u8) {
+        let factors = self
+            .frequency
+            .iter()
+            .map(|f| Complex64::new(self.decay_rate, std::f64::consts::TAU * f).powu(times.into()));
+        let factors: Vec<Complex64> = factors.collect();
+        self.value.iter_mut().zip(&factors).for_each(|(value, factor)| *value *= factor);
+        if let Some(variance) = &mut self.variance {
+            variance.iter_mut().zip(&factors).for_each(|(variance, factor)| *variance *= factor.norm_sqr());
+        }
     }
 
     /// Leaves out the lines that are exactly zero: no measurement gives one, but where an analyser fills what it did not take.
@@ -211,6 +247,27 @@ impl Accelerance {
 
 /// Fewer lines than these show no resonance.
 const LEAST_LINES: usize = 3;
+
+/// The decay rate of the exponential window under which a frequency response was averaged, as the file and the test file tell it.
+fn decay_rate(recorded: Option<&Record>, declared: Option<f64>) -> Result<f64, DataError> {
+    match (recorded, declared) {
+        (None, None) => Ok(0.0),
+        (None, Some(tau)) => Ok(1.0 / tau),
+        (Some(record), None) => one_decay_rate(record),
+        (Some(record), Some(tau)) => {
+            let found = one_decay_rate(record)?;
+            if (found * tau - 1.0).abs() < 1e-3 {
+                return Ok(found);
+            }
+            let problem = format!(
+                "decay rate {} 1/s, and window_decay = {tau} s declares {} 1/s: drop window_decay, the column tells it",
+                Readable(found),
+                Readable(1.0 / tau)
+            );
+            Err(DataError::Channels { at: record.at.clone(), problem })
+        }
+    }
+}
 
 /// The decay rate of all lines, checked.
 fn one_decay_rate(of: &Record) -> Result<f64, DataError> {

@@ -9,10 +9,11 @@ use std::{
 use orthopanel_model::Place;
 use rayon::prelude::*;
 
+use super::channel_choice;
 use super::node_numbers::{self, NumberedPlace};
 use super::time_history::check_hits;
 use super::{Accelerance, Estimation, Hit, TimeHistory};
-use crate::{DataError, ImpactTest, Location, Measurement, MeasurementData, RecordFile};
+use crate::{DataError, ImpactTest, Location, Measurement, MeasurementData, RecordFile, RecordedResponse};
 
 impl TimeHistory {
     /// Force and response.
@@ -72,6 +73,14 @@ impl GatheredFile {
         };
         let read = || {
             let file = RecordFile::read(&recorded.file)?;
+            let is_hits = matches!(measurement.data, MeasurementData::TimeHistory(_));
+            let (file, recorded) = if is_hits {
+                (channel_choice::hits(file, recorded)?, recorded.clone())
+            } else {
+                let record = channel_choice::response(&file, recorded)?;
+                (file, RecordedResponse { record, ..recorded.clone() })
+            };
+            let recorded = &recorded;
             let numbered = NumberedPlace::of(&file, recorded)?;
             let content = match &measurement.data {
                 MeasurementData::Accelerance(_) => Gathered::Line(Accelerance::from_records(file, recorded)?),

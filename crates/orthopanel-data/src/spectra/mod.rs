@@ -3,8 +3,11 @@
 mod accelerance;
 mod blow;
 mod blow_window;
+mod channel_choice;
 mod channel_noise;
 mod channels;
+mod coherence;
+mod derivative;
 mod estimate;
 mod extremes;
 mod force_noise;
@@ -12,12 +15,15 @@ mod gather;
 mod hit_agreement;
 mod hit_faults;
 mod hit_verdict;
+mod likely_motion;
 mod misplaced_channel;
 mod node_numbers;
 mod overload;
 mod scatter;
 mod spectrum;
+mod time_grid;
 mod time_history;
+mod trigger;
 mod window;
 mod wrong_sample;
 

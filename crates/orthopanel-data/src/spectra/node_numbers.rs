@@ -26,6 +26,13 @@ impl Channel {
         }
     }
 
+    fn choice(self) -> &'static str {
+        match self {
+            Self::Hammer => "force_channel",
+            Self::Sensor => "response_channel",
+        }
+    }
+
     fn key(self) -> &'static str {
         match self {
             Self::Hammer => "force_at",
@@ -57,9 +64,10 @@ impl NumberedPlace {
                 Some(earlier) if earlier.node != node => {
                     let (name, key, before) = (channel.name(), channel.key(), &earlier.at.key);
                     let problem = format!(
-                        "the {name} is at node {node}, in {before} at node {}: {key} tells one place; give the records \
-                         of each place a file of its own",
-                        earlier.node
+                        "the {name} is at node {node}, in {before} at node {}: {key} tells one place; name one by {} = \
+                         \"{node}\" in its [[measurement]], or give the records of each place a file of its own",
+                        earlier.node,
+                        channel.choice()
                     );
                     return Err(DataError::Contradiction { at: record.at.clone(), problem });
                 }
@@ -82,7 +90,7 @@ fn nodes(record: &Record, chosen: bool) -> impl Iterator<Item = (Channel, i64)> 
     let (response, reference) = (record.response.node, record.reference.node);
     let told = match (record.kind, channels::quantity(&record.numerator)) {
         (RecordKind::Time, Quantity::Force) => vec![(Channel::Hammer, response)],
-        (RecordKind::Time, Quantity::Acceleration) => vec![(Channel::Sensor, response)],
+        (RecordKind::Time, Quantity::Motion(_)) => vec![(Channel::Sensor, response)],
         (RecordKind::FrequencyResponse, _) if chosen => vec![(Channel::Hammer, reference), (Channel::Sensor, response)],
         _ => vec![],
     };

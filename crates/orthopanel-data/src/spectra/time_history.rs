@@ -2,17 +2,20 @@
 
 use std::{path::PathBuf, sync::Arc};
 
-use orthopanel_model::{Place, Readable};
+use orthopanel_model::Place;
 
 use super::{
     accelerance::Accelerance,
-    channels::{self, Quantity},
-    extremes::{LANES, extremes, median, sampled_median},
+    channel_choice,
+    channels::{self, Calibration, Quantity},
+    derivative::derivative,
+    extremes::{LANES, extremes, sampled_median},
     misplaced_channel::{self, Ordered},
+    time_grid, trigger,
     window::milliseconds,
 };
 use crate::{
-    DataError, Location, RecordedResponse, limits,
+    DataError, Location, Motion, RecordedResponse, Unit, limits,
     records::{Record, RecordFile, RecordKind, Samples},
 };
 
@@ -44,14 +47,8 @@ pub struct Hit {
     pub acceleration: Vec<f64>,
 }
 
-/// An acceleration record has to follow each force record with its abscissa, within this part of a step.
-const STEP_TOLERANCE: f64 = 0.1;
-
 /// A blow on a panel may be as short as this \[s\].
 const SHORT_BLOW: f64 = 5e-4;
-
-/// Samples below which no spectrum is worth the name.
-const LEAST_SAMPLES: usize = 16;
 
 impl TimeHistory {
     /// Hits of one length at the sampling rate \[Hz\], from a force at the first place to a response at the second; `file` is
@@ -96,7 +93,7 @@ impl TimeHistory {
     /// [`DataError::Channels`] where a channel is missing or swapped, where lengths or rates differ, where samples are
     /// uneven in time, or where a unit is unknown or contradicts the declared one.
     pub fn from_records(file: RecordFile, measurement: &RecordedResponse) -> Result<Self, DataError> {
-        let RecordFile { records, mut notes } = file;
+        let RecordFile { records, mut notes, .. } = channel_choice::hits(file, measurement)?;
         let (mut forces, mut accelerations) = (Vec::new(), Vec::new());
         let mut untold = Vec::new();
         let mut order: Vec<Ordered> = Vec::new();
@@ -107,11 +104,15 @@ impl TimeHistory {
             });
         };
         let mut others = Vec::new();
+        let by_unit = measurement.response_unit.as_ref().and_then(Unit::motion);
+        let untold_motion = measurement.quantity.or(by_unit).unwrap_or(Motion::Acceleration);
         let in_time = || records.iter().filter(|record| record.kind == RecordKind::Time);
-        let is_there = |quantity| in_time().any(|record| channels::quantity(&record.numerator) == quantity);
+        let is_there =
+            |wanted: fn(Quantity) -> bool| in_time().any(|record| wanted(channels::quantity(&record.numerator)));
+        let is_motion = |quantity| matches!(quantity, Quantity::Motion(_));
         // Beside one channel that is told, what tells nothing is the other.
-        let beside = match (is_there(Quantity::Force), is_there(Quantity::Acceleration)) {
-            (true, false) => Some((Quantity::Acceleration, "acceleration")),
+        let beside = match (is_there(|quantity| quantity == Quantity::Force), is_there(is_motion)) {
+            (true, false) => Some((Quantity::Motion(untold_motion), untold_motion.name())),
             (false, true) => Some((Quantity::Force, "force")),
             _ => None,
         };
@@ -128,17 +129,15 @@ impl TimeHistory {
                     order.push((record.at.clone(), true));
                     forces.push(record);
                 }
-                Quantity::Acceleration => {
+                Quantity::Motion(_) => {
                     order.push((record.at.clone(), false));
                     accelerations.push(record);
                 }
                 Quantity::Untold => untold.push(record),
                 Quantity::Other(kind) => {
                     let name = channels::type_name(kind);
-                    let note = format!(
-                        "{}: data type {kind}{name} is neither force nor acceleration: left out",
-                        record.at.key
-                    );
+                    let note =
+                        format!("{}: data type {kind}{name} is neither force nor motion: left out", record.at.key);
                     others.push(note.clone());
                     notes.push(note);
                 }
@@ -153,6 +152,11 @@ impl TimeHistory {
         if forces.len() != accelerations.len() || forces.is_empty() {
             let (f, a) = (forces.len(), accelerations.len());
             let problem = format!("{f} force and {a} acceleration records against time: one of each a hit is needed");
+            let problem = if f > 0 && a > 0 {
+                format!("{problem}; of several to a blow name the channels by force_channel and response_channel")
+            } else {
+                problem
+            };
             let problem = others.first().map_or(problem.clone(), |other| format!("{problem} ({other})"));
             return Err(misplaced_channel::alone(&order, problem, first));
         }
@@ -168,16 +172,8 @@ impl TimeHistory {
                 .filter(|(known, _)| Arc::ptr_eq(known, &force.abscissa) && Arc::ptr_eq(known, &acceleration.abscissa));
             let (length, rate) = match known {
                 Some((known, rate)) => (known.len(), *rate),
-                None => common_grid(&force, &acceleration)?,
+                None => time_grid::common(&force, &acceleration, measurement.sampling_rate, &mut notes)?,
             };
-            let [least, most] = limits::HERTZ;
-            if !(least..=most).contains(&rate) {
-                let problem = format!(
-                    "sampled at {:.3} Hz: hammer tests are sampled at {least} to {most:e} Hz; times are in s",
-                    Readable(rate)
-                );
-                return Err(DataError::Channels { at: force.at, problem });
-            }
             times = Some((Arc::clone(&force.abscissa), rate));
             match grid {
                 Some((first_length, first_rate))
@@ -191,9 +187,18 @@ impl TimeHistory {
                 }
                 _ => grid = Some((length, rate)),
             }
-            hits.push(hit((force, acceleration), rate, measurement, &mut notes)?);
+            let at = force.at.clone();
+            let of_record = hit((force, acceleration), rate, measurement, &mut notes)?;
+            hits.extend(trigger::cut(of_record, rate, measurement.trigger, &at, &mut notes)?);
         }
         let rate = grid.map_or(0.0, |(_, rate)| rate);
+        check_hits(hits.len(), || Location::whole(&measurement.file))?;
+        // Records that were cut by gaps of their own have hits of one length too: the shortest.
+        let shortest = hits.iter().map(|hit: &Hit| hit.force.len()).min().unwrap_or_default();
+        for hit in &mut hits {
+            hit.force.truncate(shortest);
+            hit.acceleration.truncate(shortest);
+        }
         let RecordedResponse { force_at, response_at, .. } = *measurement;
         let file = measurement.file.clone();
         Ok(Self { notes, ..Self::new(file, [force_at, response_at], rate, hits) })
@@ -213,9 +218,9 @@ fn hit(
     measurement: &RecordedResponse,
     notes: &mut Vec<String>,
 ) -> Result<Hit, DataError> {
-    channels::check_force_unit(&force, &force.numerator)?;
     let directions = [acceleration.response.direction, force.response.direction];
-    let factor = channels::acceleration_factor(&acceleration, &acceleration.numerator, directions, measurement, notes)?;
+    let to_newtons = channels::force(&force, measurement, notes)?;
+    let Calibration { factor, motion } = channels::motion(&acceleration, measurement, directions, notes)?;
     let real = |record: Record| match record.ordinate {
         Samples::Real(values) => Ok(values),
         Samples::Complex(_) => {
@@ -225,9 +230,21 @@ fn hit(
     };
     let (force_record, motion_record) = (force.at.clone(), acceleration.at.clone());
     let mut hit = Hit { force: real(force)?, acceleration: real(acceleration)? };
-    misplaced_channel::check_apart(&hit, motion_record)?;
-    if factor != 1.0 {
-        hit.acceleration.iter_mut().for_each(|value| *value *= factor);
+    misplaced_channel::check_apart(&hit, motion_record.clone())?;
+    for (channel, factor) in [(&mut hit.force, to_newtons), (&mut hit.acceleration, factor)] {
+        if factor != 1.0 {
+            channel.iter_mut().for_each(|value| *value *= factor);
+        }
+    }
+    if let Some(tau) = measurement.window_decay {
+        undo_window(&mut hit, rate, tau, &motion_record)?;
+        notes.push(format!("{}: the exponential window of {} undone", motion_record.key, milliseconds(tau)));
+    }
+    for _ in 0..motion.derivatives() {
+        hit.acceleration = derivative(&hit.acceleration, rate);
+    }
+    if motion != Motion::Acceleration {
+        notes.push(format!("{}: {motion} differentiated to an acceleration, with its noise", motion_record.key));
     }
     // A hammer's channel rests at its offset nearly all the time, and the motion swings about its own.
     let [pulse, ringing] =
@@ -261,6 +278,29 @@ fn hit(
     Ok(hit)
 }
 
+/// Takes an exponential window $e^{-t/\tau}$ over both channels out of them: what was multiplied is divided.
+///
+/// # Errors
+/// [`DataError::Channels`] where hardly a digit of the record's end outlived it.
+fn undo_window(hit: &mut Hit, rate: f64, tau: f64, at: &Location) -> Result<(), DataError> {
+    let length = hit.force.len() as f64 / rate;
+    if length > MOST_FALL * tau {
+        let problem = format!(
+            "window_decay = {tau} s leaves e^-{:.1} of the record's end, after {length:.4} s: no digit of it is left; is it the time constant, \
+             in s?",
+            length / tau
+        );
+        return Err(DataError::Channels { at: Box::new(at.clone()), problem });
+    }
+    for channel in [&mut hit.force, &mut hit.acceleration] {
+        channel.iter_mut().enumerate().for_each(|(n, value)| *value *= (n as f64 / (rate * tau)).exp());
+    }
+    Ok(())
+}
+
+/// Time constants that a record may last: a converter of 24 bits has no digit below $e^{-16}$.
+const MOST_FALL: f64 = 14.0;
+
 /// Number of samples over which the energy of a signal about its `offset` is spread, $(\sum x^2)^2 / \sum x^4$.
 fn effective_samples(values: &[f64], offset: f64) -> f64 {
     let [least, greatest] = extremes(values);
@@ -280,69 +320,4 @@ fn effective_samples(values: &[f64], offset: f64) -> f64 {
     }
     let (squares, fourths) = (squares.iter().sum::<f64>(), fourths.iter().sum::<f64>());
     if fourths > 0.0 { squares * squares / fourths } else { 0.0 }
-}
-
-/// Samples and rate that two records share.
-fn common_grid(force: &Record, acceleration: &Record) -> Result<(usize, f64), DataError> {
-    let refused = |record: &Record, problem: String| Err(DataError::Channels { at: record.at.clone(), problem });
-    let (length, other) = (force.abscissa.len(), acceleration.abscissa.len());
-    if length != other {
-        return refused(acceleration, format!("{other} samples of acceleration, {length} of force: must be as many"));
-    }
-    if length < LEAST_SAMPLES {
-        return refused(force, format!("{length} samples: at least {LEAST_SAMPLES} are needed"));
-    }
-    let step = mean_step(force)?;
-    let shared = Arc::ptr_eq(&force.abscissa, &acceleration.abscissa);
-    let both = [(force, "force"), (acceleration, "acceleration")];
-    for (record, name) in both.into_iter().take(if shared { 1 } else { 2 }) {
-        let start = force.abscissa.first().copied().unwrap_or_default();
-        let uneven = record.abscissa.iter().enumerate().find(|(index, time)| {
-            let due = start + step * *index as f64;
-            (*time - due).abs() > STEP_TOLERANCE * step
-        });
-        if let Some((off, time)) = uneven {
-            let due = start + step * off as f64;
-            let (index, found) = match leap(&record.abscissa) {
-                Some((index, ratio)) => (
-                    index,
-                    format!(
-                        "{ratio:.3} times the usual step after the one before: samples are missing or stand twice;"
-                    ),
-                ),
-                None => (off, format!("t = {} s, {} s expected:", Readable(*time), Readable(due))),
-            };
-            let problem =
-                format!("{name}, sample {}: {found} force and acceleration need the same even times", index + 1);
-            return Err(DataError::Channels { at: record.at_point(index), problem });
-        }
-    }
-    Ok((length, 1.0 / step))
-}
-
-/// The first sample that does not follow the one before after the usual step, where nearly all do, and its step over the usual one.
-fn leap(times: &[f64]) -> Option<(usize, f64)> {
-    let steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    let usual = median(steps.clone());
-    let is_leap = |step: &f64| (step / usual - 1.0).abs() > LEAP;
-    let first = steps.iter().position(is_leap)?;
-    let few = LEAPS_AT_MOST.max(steps.len() / 1000);
-    (steps.iter().filter(|step| is_leap(step)).count() <= few).then(|| (first + 1, steps[first] / usual))
-}
-
-/// Part by which a step of times printed with few digits stays within the usual one, ...
-const LEAP: f64 = 0.5;
-/// ... and leaps that are faults of a record whose times else are even.
-const LEAPS_AT_MOST: usize = 8;
-
-fn mean_step(record: &Record) -> Result<f64, DataError> {
-    let span = record.abscissa.last().zip(record.abscissa.first()).map(|(last, first)| last - first);
-    let step = span.unwrap_or_default() / (record.abscissa.len().saturating_sub(1)) as f64;
-    if step.is_finite() && step > 0.0 && (1.0 / step).is_finite() {
-        return Ok(step);
-    }
-    Err(DataError::Channels {
-        at: record.at.clone(),
-        problem: format!("a time step of {} s makes no sampling rate", Readable(step)),
-    })
 }

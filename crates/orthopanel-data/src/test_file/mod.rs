@@ -17,7 +17,7 @@ use orthopanel_model::{Boundary, Place, StructureKind};
 use crate::{DataError, Location, Position, limits};
 pub use declared::DeclaredEffect;
 pub use measurements::{
-    AccelerationUnit, Direction, Measurement, MeasurementData, NaturalFrequencies, RecordedResponse,
+    ChannelName, Direction, Measurement, MeasurementData, NaturalFrequencies, RecordedResponse, Trigger,
 };
 pub use pieces::NamedPiece;
 use source::Source;

@@ -62,12 +62,30 @@ pub(super) struct Measurement {
     pub(super) resolution: Option<Spanned<OneOrEach>>,
     pub(super) scatter: Option<Spanned<OneOrEach>>,
     pub(super) shape: Option<Spanned<Vec<Spanned<[u32; 2]>>>>,
-    pub(super) file: Option<Spanned<String>>,
+    pub(super) file: Option<Spanned<toml::Value>>,
     pub(super) force_at: Option<Spanned<[f64; 2]>>,
     pub(super) response_at: Option<Spanned<[f64; 2]>>,
     pub(super) unit: Option<Spanned<String>>,
+    pub(super) response_unit: Option<Spanned<String>>,
+    pub(super) force_unit: Option<Spanned<String>>,
+    pub(super) quantity: Option<Spanned<String>>,
+    pub(super) response_sensitivity: Option<Spanned<f64>>,
+    pub(super) force_sensitivity: Option<Spanned<f64>>,
+    pub(super) force_channel: Option<Spanned<toml::Value>>,
+    pub(super) response_channel: Option<Spanned<toml::Value>>,
+    pub(super) trigger: Option<Trigger>,
+    pub(super) sampling_rate: Option<Spanned<f64>>,
+    pub(super) window_decay: Option<Spanned<f64>>,
     pub(super) direction: Option<Spanned<f64>>,
     pub(super) record: Option<Spanned<u32>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Trigger {
+    pub(super) level: Option<Spanned<f64>>,
+    pub(super) before: Option<Spanned<f64>>,
+    pub(super) length: Option<Spanned<f64>>,
 }
 
 /// One number for all modes, or one a mode.

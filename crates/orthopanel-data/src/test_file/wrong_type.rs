@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 /// What each key wants.
-const WANTED: [(&str, &str); 28] = [
+const WANTED: [(&str, &str); 38] = [
     ("length", "a number in m"),
     ("width", "a number in m"),
     ("thickness", "a number in m"),
@@ -28,8 +28,18 @@ const WANTED: [(&str, &str); 28] = [
     ("resolution", "one number [Hz], or a list with one number a mode"),
     ("scatter", "one number [Hz], or a list with one number a mode"),
     ("shape", "a list with one [nodes_x, nodes_y] a mode, whole numbers from 0"),
-    ("file", "a file's name in quotes"),
-    ("unit", "\"m/s2\" or \"g\""),
+    ("file", "a file's name in quotes, or a list of names"),
+    ("unit", "a unit in quotes, such as \"m/s2\" or \"g\""),
+    ("response_unit", "a unit in quotes, such as \"m/s2\", \"g\" or \"mm/s\""),
+    ("force_unit", "a unit in quotes, such as \"N\" or \"lbf\""),
+    ("quantity", "\"acceleration\", \"velocity\" or \"displacement\""),
+    ("response_sensitivity", "a number in V a response_unit"),
+    ("force_sensitivity", "a number in V a force_unit"),
+    ("trigger", "a table {level = .., before = .., length = ..} in N, s and s"),
+    ("level", "a number in N"),
+    ("before", "a number in s"),
+    ("sampling_rate", "a number in Hz"),
+    ("window_decay", "a number in s"),
     ("direction", "1 or -1"),
     ("record", "the record's number in the file, from 1"),
 ];

@@ -16,14 +16,7 @@ pub fn good() -> Hit {
 
 pub fn measurement() -> RecordedResponse {
     let place = Place { x: 0.0, y: 0.0 };
-    RecordedResponse {
-        file: "hits.uff".into(),
-        force_at: place,
-        response_at: place,
-        unit: None,
-        direction: None,
-        record: None,
-    }
+    RecordedResponse::new("hits.uff", [place; 2])
 }
 
 /// A force and an acceleration record of one hit.

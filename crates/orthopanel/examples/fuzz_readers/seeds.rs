@@ -34,7 +34,7 @@ pub fn readers() -> Vec<Reader> {
             name: "csv_records",
             feed: readers::records,
             files: vec![
-                rows("time_s,force_n,acceleration_m_s2\n", |n| format!("{n},{},{n}e-3\n", n % 7)),
+                rows("time_s,force_n,acceleration_m_s2\n", |n| format!("{n}e-3,{},{n}e-3\n", n % 7)),
                 rows("frequency_hz,real,imag,coherence\n", |n| format!("{n},1.5,-{n},0.9\n")),
                 rows("frequency_hz,real,imag,variance,decay_rate_1_s\n", |n| format!("{n},1.5,-{n},0.01,2\n")),
                 blow(),
@@ -98,9 +98,43 @@ file = "point-0.uff"
 record = 2
 force_at = [0.0, 0.0]
 response_at = [0.3, 0.0]
-unit = "g"
+response_unit = "mm/s"
+force_unit = "lbf"
+quantity = "velocity"
+response_sensitivity = 0.01
+force_sensitivity = 0.002
+response_channel = "12:+z"
+force_channel = 1
+window_decay = 0.25
 direction = -1
+[[measurement]]
+kind = "time-history"
+piece = "1"
+file = ["point-*.uff"]
+sampling_rate = 25600
+trigger = {level = 30, before = 0.02, length = 1.6}
+force_at = [0.0, 0.0]
+response_at = [0.3, 0.0]
+unit = "g"
 "#;
+
+/// What comes before records: units, and places of nodes in both of their datasets.
+const BEFORE_RECORDS: &str = "    -1
+   164
+         7IN: Inch (pound f)           2
+   3.9370078740000000D+01   2.2480894310000000D-01   1.0000000000000000D+00
+   2.7315000000000000D+02
+    -1
+    -1
+    15
+         1         0         0         8 -3.00000e-01  0.00000e+00  0.00000e+00
+    -1
+    -1
+  2411
+         2         0         0         8
+   3.0000000000000000D-01   0.0000000000000000D+00   0.0000000000000000D+00
+    -1
+";
 
 /// What is no good file for the reader of its ending.
 const OTHERS: [&str; 2] = ["truth.json", "terminalsAndIcons.xml"];
@@ -139,11 +173,18 @@ fn universal_files(force: &[f64], motion: &[f64]) -> Vec<Vec<u8>> {
             let (complex, double, even) = (layout & 4 > 0, layout & 2 > 0, layout & 1 > 0);
             let dataset = |axes, samples: &[f64]| dataset(order, [complex, double, even], axes, samples);
             let (newton, metre, none) = ((13, "N"), (12, "m/s^2"), (0, "NONE"));
+            let (untold_force, speed) = ((13, "NONE"), (11, "NONE"));
             files.push(if complex {
                 dataset([metre, newton], motion)
             } else {
                 [dataset([newton, none], force), dataset([metre, none], motion)].concat()
             });
+            let in_file_units = if complex {
+                dataset([speed, untold_force], motion)
+            } else {
+                [dataset([untold_force, none], force), dataset([speed, none], motion)].concat()
+            };
+            files.push([BEFORE_RECORDS.as_bytes(), &in_file_units].concat());
         }
     }
     files
@@ -178,12 +219,12 @@ fn dataset(order: u8, [complex, double, even]: [bool; 3], axes: [(i64, &str); 2]
             samples.len(),
             u8::from(even),
             "0.00000e+00",
-            "1.95312e-02",
+            "1.95312e-04",
             "0.0e+00"
         )
         + &[abscissa, axes[0], axes[1], (0, "NONE")].map(axis).concat();
     let numbers = samples.iter().enumerate().flat_map(|(index, &sample)| {
-        let abscissa = (!even).then_some(index as f64 * 1.95312e-2);
+        let abscissa = (!even).then_some(index as f64 * 1.95312e-4);
         abscissa.into_iter().chain([sample]).chain(complex.then_some(-sample))
     });
     let data: Vec<u8> = match (order, double) {

@@ -2,7 +2,7 @@
 
 use orthopanel_model::Readable;
 
-use super::{cursor::Cursor, shortened};
+use super::{cursor::Cursor, field, ports, shortened};
 use crate::{
     DataError,
     records::{Axis, Port},
@@ -44,8 +44,11 @@ pub(super) struct Header {
     pub(super) step: f64,
     /// Significant digits to which the step is printed.
     pub(super) step_digits: u32,
+    pub(super) abscissa: Axis,
     pub(super) numerator: Axis,
     pub(super) denominator: Axis,
+    /// What was assumed, a sentence each.
+    pub(super) notes: Vec<String>,
 }
 
 impl Header {
@@ -69,7 +72,7 @@ impl Header {
         }
         let (at_kind, kind) = next("the function's kind")?;
         let (at_form, form) = next("the data's form")?;
-        let _abscissa = next("the abscissa's axis")?;
+        let (_, abscissa) = next("the abscissa's axis")?;
         let (_, numerator) = next("the ordinate's axis")?;
         let (_, denominator) = next("the denominator's axis")?;
         let _z = next("the z axis")?;
@@ -79,10 +82,7 @@ impl Header {
             at: cursor.at(at_kind, key),
             problem: format!("the function's kind, a number, expected in columns 1 to 5 of {:?}", shortened(&kind)),
         })?;
-        let port = |node: usize, direction: usize| Port {
-            node: field(&kind, node, 10).and_then(|text| text.parse().ok()).unwrap_or(0),
-            direction: field(&kind, direction, 4).and_then(|text| text.parse().ok()).unwrap_or(0),
-        };
+        let ([response, reference], note) = ports::of_line(&kind);
         let malformed = |problem: String| DataError::Header { at: cursor.at(at_form, key), problem };
         let form = Form::parse(&form).ok_or_else(|| {
             malformed(format!("data type, points, spacing, start and step expected, found {:?}", shortened(&form)))
@@ -108,13 +108,15 @@ impl Header {
             encoding,
             title: title.join(" | "),
             function,
-            response: port(41, 51),
-            reference: port(66, 76),
+            response,
+            reference,
             layout,
             points,
             start: form.start,
             step: form.step,
             step_digits: form.step_digits,
+            abscissa: axis(&abscissa),
+            notes: note.into_iter().collect(),
             numerator: axis(&numerator),
             denominator: axis(&denominator),
         })
@@ -179,15 +181,6 @@ fn significant_digits(number: &str) -> u32 {
 }
 
 fn axis(line: &str) -> Axis {
-    let unit = field(line, 47, 20).unwrap_or_default();
-    Axis {
-        data_type: field(line, 0, 10).and_then(|text| text.parse().ok()).unwrap_or(0),
-        unit: if unit == "NONE" { String::new() } else { unit.to_owned() },
-    }
-}
-
-/// The text in `width` columns from column `from` (from 0), trimmed; `None` where the columns are empty or absent.
-fn field(line: &str, from: usize, width: usize) -> Option<&str> {
-    let text = line.get(from..(from + width).min(line.len()))?.trim();
-    (!text.is_empty()).then_some(text)
+    let data_type = field(line, 0, 10).and_then(|text| text.parse().ok()).unwrap_or(0);
+    Axis::new(data_type, field(line, 47, 20).filter(|unit| *unit != "NONE").unwrap_or_default())
 }

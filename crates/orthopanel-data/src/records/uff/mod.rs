@@ -1,4 +1,5 @@
-//! Universal file, datasets 58 and 58b: functions at nodal degrees of freedom.
+//! Universal file, datasets 58 and 58b: functions at nodal degrees of freedom; 164: their units; 15 and 2411: the
+//! places of nodes.
 //!
 //! Source: the dataset's definition by SDRC, as kept by the University of Cincinnati (Structural Dynamics Research
 //! Laboratory, "Universal file formats"), and files as real writers leave them: see the comments where those differ.
@@ -7,14 +8,16 @@ mod ascii;
 mod binary;
 mod cursor;
 mod header;
-mod step;
+mod nodes;
+mod ports;
+mod unit_system;
 
 use std::{collections::BTreeMap, path::Path, sync::Arc};
 
 use num_complex::Complex64;
 
-use super::{Format, Record, RecordFile, RecordKind, Samples, may_be_read};
-use crate::{DataError, Location, limits};
+use super::{Axis, Format, Record, RecordFile, RecordKind, Samples, UnitSystem, may_be_read};
+use crate::{DataError, Location, Unit, limits, units::Measured};
 use cursor::Cursor;
 use header::{Encoding, Header};
 
@@ -31,6 +34,7 @@ pub(super) const FORMAT: Format = Format {
 fn read(bytes: &[u8], path: &Path) -> Result<RecordFile, DataError> {
     let mut cursor = Cursor::new(bytes, path);
     let (mut records, mut notes) = (Vec::new(), Vec::new());
+    let (mut system, mut nodes) = (None, Vec::new());
     // Number of those of a kind, and the byte of the first.
     let mut skipped: BTreeMap<u32, (usize, usize)> = BTreeMap::new();
     // Between datasets any number of marks may stand: one closes, one opens, and some writers write both twice or
@@ -59,8 +63,16 @@ fn read(bytes: &[u8], path: &Path) -> Result<RecordFile, DataError> {
                     });
                 }
                 let before = records.last().map(|record: &Record| &record.abscissa);
-                let read = record(&mut cursor, &text, line.start, number, before, &mut notes)?;
+                let mut read = record(&mut cursor, &text, line.start, number, before, &mut notes)?;
+                for axis in [&mut read.numerator, &mut read.denominator] {
+                    axis.system.clone_from(&system);
+                }
                 records.push(read);
+            }
+            Some(164) => system = Some(Arc::new(unit_system::read(&mut cursor)?)),
+            Some(dataset @ (15 | 2411)) => {
+                let metre = system.as_ref().map_or(1.0, |system: &Arc<UnitSystem>| system.length);
+                nodes::read(&mut cursor, dataset, metre, &mut nodes);
             }
             Some(other) => {
                 cursor.skip_dataset();
@@ -74,7 +86,7 @@ fn read(bytes: &[u8], path: &Path) -> Result<RecordFile, DataError> {
     }
     notes.extend(skipped.into_iter().map(|(number, (count, first))| {
         let times = if count == 1 { String::new() } else { format!(" and {} more", count - 1) };
-        format!("dataset {number} at byte {first}{times} skipped: only 58 and 58b hold records")
+        format!("dataset {number} at byte {first}{times} skipped: only 58, 58b, 164, 15 and 2411 are read")
     }));
     if let Some(byte) = cursor::opens_at_end(bytes) {
         notes.push(format!("the mark at byte {byte} opens a dataset, and the file ends: it may be cut off"));
@@ -82,7 +94,7 @@ fn read(bytes: &[u8], path: &Path) -> Result<RecordFile, DataError> {
     if records.is_empty() {
         return Err(DataError::NoRecords { at: Location::whole(path), what: "dataset 58 or 58b" });
     }
-    Ok(RecordFile { records, notes })
+    Ok(RecordFile { records, notes, nodes })
 }
 
 fn record(
@@ -102,11 +114,13 @@ fn record(
         Encoding::Binary { big_endian, .. } => binary::values(cursor, &header, big_endian, &key, notes)?,
     };
     let layout = header.layout;
+    let kind = RecordKind::from(header.function);
+    notes.extend(header.notes.drain(..).map(|note| format!("{key}: {note}")));
     let mut listed = Vec::new();
     let mut real = Vec::new();
     let mut complex = Vec::new();
     if layout.even
-        && let Some(restored) = step::restored(header.step, header.step_digits, header.points)
+        && let Some(restored) = super::step::restored(header.step, header.step_digits, header.points)
     {
         notes.push(format!(
             "{key}: the step printed as {} is a rounded {restored}, which makes rate or length round: used that",
@@ -114,6 +128,9 @@ fn record(
         ));
         header.step = restored;
     }
+    let scale = abscissa_scale(&header.abscissa, kind, &key, notes);
+    header.start = scaled(header.start, scale);
+    header.step = scaled(header.step, scale);
     match (layout.even, layout.complex) {
         (true, false) => real = values,
         (true, true) => complex.extend(values.chunks_exact(2).filter_map(complex_number)),
@@ -121,11 +138,11 @@ fn record(
             for point in values.chunks_exact(layout.values_per_point()) {
                 match point {
                     [x, value] => {
-                        listed.push(*x);
+                        listed.push(scaled(*x, scale));
                         real.push(*value);
                     }
                     [x, value @ ..] => {
-                        listed.push(*x);
+                        listed.push(scaled(*x, scale));
                         complex.extend(complex_number(value));
                     }
                     [] => {}
@@ -133,7 +150,6 @@ fn record(
             }
         }
     }
-    let kind = RecordKind::from(header.function);
     if kind == RecordKind::Coherence {
         // Analysers divide 0 by 0 where no force was: a line without coherence, not a broken file.
         let mended = real.iter_mut().filter(|value| !value.is_finite()).map(|value| *value = 0.0).count();
@@ -143,10 +159,50 @@ fn record(
     }
     let ordinate = if layout.complex { Samples::Complex(complex) } else { Samples::Real(real) };
     let abscissa = if layout.even { even(&header, before) } else { listed.into() };
-    check_numbers(cursor, (data_start, point_width), &key, &abscissa, &ordinate, layout.even)?;
+    let rise = match (layout.even, kind) {
+        (true, _) => Rise::Even,
+        // Listed times are judged where their rounding and the declared rate are.
+        (false, RecordKind::Time) => Rise::Any,
+        (false, _) => Rise::Listed,
+    };
+    check_numbers(cursor, (data_start, point_width), &key, &abscissa, &ordinate, rise)?;
     let Header { title, response, reference, numerator, denominator, .. } = header;
     let at = cursor.at(start, &key);
-    Ok(Record { kind, title, at, lines: None, response, reference, abscissa, ordinate, numerator, denominator })
+    Ok(Record { number, kind, title, at, lines: None, response, reference, abscissa, ordinate, numerator, denominator })
+}
+
+/// What the abscissa of a record is asked to do.
+#[derive(Clone, Copy, PartialEq)]
+enum Rise {
+    /// Made of start and step.
+    Even,
+    /// Listed, and rising.
+    Listed,
+    /// Listed as it may.
+    Any,
+}
+
+/// Seconds or hertz in one unit of the abscissa, by its label.
+fn abscissa_scale(axis: &Axis, kind: RecordKind, key: &str, notes: &mut Vec<String>) -> f64 {
+    let (wanted, si) = if kind == RecordKind::Time { (Measured::Time, "s") } else { (Measured::Frequency, "Hz") };
+    match Unit::parse(&axis.unit) {
+        _ if axis.unit.is_empty() => 1.0,
+        Some(unit) if unit.measured() == Some(wanted) => {
+            if unit.to_si() != 1.0 {
+                notes.push(format!("{key}: abscissa brought from {unit} to {si}"));
+            }
+            unit.to_si()
+        }
+        _ => {
+            notes.push(format!("{key}: unit {:?} of the abscissa is none of {wanted:?}, taken as {si}", axis.unit));
+            1.0
+        }
+    }
+}
+
+/// `value` times a factor; a small one divides, so that decimals stay decimals.
+fn scaled(value: f64, factor: f64) -> f64 {
+    if factor < 1.0 { value / (1.0 / factor).round() } else { value * factor }
 }
 
 /// Times or frequencies of an even record: those of the record before where they are the same.
@@ -177,7 +233,7 @@ fn check_numbers(
     key: &str,
     abscissa: &[f64],
     ordinate: &Samples,
-    even: bool,
+    rise: Rise,
 ) -> Result<(), DataError> {
     let sound = |value: &Complex64| may_be_read(value.re) && may_be_read(value.im);
     let bad = match ordinate {
@@ -187,13 +243,13 @@ fn check_numbers(
     let last = abscissa.len().saturating_sub(1);
     let bad_abscissa = || match abscissa.last() {
         // Even times rise by a step that the header's reader has checked: only their end can overflow.
-        Some(end) if even => (!end.is_finite()).then_some(last),
+        Some(end) if rise == Rise::Even => (!end.is_finite()).then_some(last),
         _ => first_unsound(abscissa),
     };
     if let Some(point) = bad.or_else(bad_abscissa) {
         return Err(DataError::NotFinite { at: cursor.at(data_start + point * point_width, key), point: point + 1 });
     }
-    if even && ends_rise(abscissa) {
+    if rise == Rise::Any || (rise == Rise::Even && ends_rise(abscissa)) {
         return Ok(());
     }
     let falls = abscissa.windows(2).position(|pair| !matches!(pair, [before, after] if before < after));
@@ -216,6 +272,12 @@ fn ends_rise(abscissa: &[f64]) -> bool {
 fn first_unsound(values: &[f64]) -> Option<usize> {
     let sound = values.iter().fold(true, |sound, value| sound & may_be_read(*value));
     if sound { None } else { values.iter().position(|value| !may_be_read(*value)) }
+}
+
+/// The text in `width` columns from column `from` (from 0), trimmed; `None` where the columns are empty or absent.
+fn field(line: &str, from: usize, width: usize) -> Option<&str> {
+    let text = line.get(from..(from + width).min(line.len()))?.trim();
+    (!text.is_empty()).then_some(text)
 }
 
 /// Enough of a line to know it by: a corrupt file's line may be a megabyte long.

@@ -1,5 +1,6 @@
 //! `[[measurement]]`: natural frequencies as read off an analyser, or files of records.
 
+mod files;
 mod frequencies;
 mod recorded;
 
@@ -11,7 +12,7 @@ use toml::Spanned;
 use super::{pieces::NamedPiece, source::Source, syntax};
 use crate::{DataError, Location, limits};
 pub use frequencies::NaturalFrequencies;
-pub use recorded::{AccelerationUnit, Direction, RecordedResponse};
+pub use recorded::{ChannelName, Direction, RecordedResponse, Trigger};
 
 /// One measurement on one piece.
 #[derive(Debug, Clone, PartialEq)]
@@ -50,7 +51,15 @@ pub(super) fn measurements(
         Entry { source, key: format!("measurement[{}]", index + 1), span: entry.span() }
             .read(entry.into_inner(), pieces)
     };
-    let read: Vec<Measurement> = given.into_iter().enumerate().map(read).collect::<Result<_, _>>()?;
+    let read: Vec<Vec<Measurement>> = given.into_iter().enumerate().map(read).collect::<Result<_, _>>()?;
+    let read: Vec<Measurement> = read.into_iter().flatten().collect();
+    let whole = || source.whole("measurement");
+    source.at_most(
+        (read.len(), "files of measurements"),
+        limits::MEASUREMENTS,
+        whole,
+        "put some into a test of their own",
+    )?;
     let listed = |of: &Measurement| match &of.data {
         MeasurementData::NaturalFrequencies(list) => list.values.len(),
         _ => 0,
@@ -87,9 +96,14 @@ struct Entry<'a> {
 }
 
 impl Entry<'_> {
-    fn read(&self, entry: syntax::Measurement, pieces: &[NamedPiece]) -> Result<Measurement, DataError> {
+    fn read(&self, entry: syntax::Measurement, pieces: &[NamedPiece]) -> Result<Vec<Measurement>, DataError> {
         let kind = self.needed(entry.kind.as_ref(), "kind", "one of natural-frequencies, time-history, accelerance")?;
         let (piece, named) = self.piece(entry.piece.as_ref(), pieces)?;
+        if let Some(trigger) = entry.trigger.as_ref().filter(|_| kind.get_ref() != "time-history") {
+            for (value, key) in [(&trigger.level, "level"), (&trigger.before, "before"), (&trigger.length, "length")] {
+                self.unwanted(kind, value.as_ref(), &format!("trigger.{key}"))?;
+            }
+        }
         let data = match kind.get_ref().as_str() {
             "natural-frequencies" => {
                 self.unwanted(kind, entry.file.as_ref(), "file")?;
@@ -97,7 +111,16 @@ impl Entry<'_> {
                 self.unwanted(kind, entry.unit.as_ref(), "unit")?;
                 self.unwanted(kind, entry.direction.as_ref(), "direction")?;
                 self.unwanted(kind, entry.record.as_ref(), "record")?;
-                MeasurementData::NaturalFrequencies(self.natural_frequencies(&entry, named)?)
+                self.unwanted(kind, entry.response_unit.as_ref(), "response_unit")?;
+                self.unwanted(kind, entry.force_unit.as_ref(), "force_unit")?;
+                self.unwanted(kind, entry.quantity.as_ref(), "quantity")?;
+                self.unwanted(kind, entry.response_sensitivity.as_ref(), "response_sensitivity")?;
+                self.unwanted(kind, entry.force_sensitivity.as_ref(), "force_sensitivity")?;
+                self.unwanted(kind, entry.force_channel.as_ref(), "force_channel")?;
+                self.unwanted(kind, entry.response_channel.as_ref(), "response_channel")?;
+                self.unwanted(kind, entry.sampling_rate.as_ref(), "sampling_rate")?;
+                self.unwanted(kind, entry.window_decay.as_ref(), "window_decay")?;
+                vec![MeasurementData::NaturalFrequencies(self.natural_frequencies(&entry, named)?)]
             }
             "time-history" | "accelerance" => {
                 self.unwanted(kind, entry.values.as_ref(), "values")?;
@@ -106,20 +129,22 @@ impl Entry<'_> {
                 self.unwanted(kind, entry.shape.as_ref(), "shape")?;
                 if kind.get_ref() == "time-history" {
                     self.unwanted(kind, entry.record.as_ref(), "record")?;
-                }
-                let recorded = self.recorded(&entry, &named.piece)?;
-                if kind.get_ref() == "accelerance" {
-                    MeasurementData::Accelerance(recorded)
                 } else {
-                    MeasurementData::TimeHistory(recorded)
+                    self.unwanted(kind, entry.sampling_rate.as_ref(), "sampling_rate")?;
                 }
+                let of_kind = if kind.get_ref() == "accelerance" {
+                    MeasurementData::Accelerance
+                } else {
+                    MeasurementData::TimeHistory
+                };
+                self.recorded(&entry, &named.piece)?.into_iter().map(of_kind).collect()
             }
             other => {
                 let (name, remedy) = (other.to_owned(), format!("must be {KINDS}"));
                 return Err(DataError::UnknownName { at: self.at(kind.span(), "kind"), name, remedy });
             }
         };
-        Ok(Measurement { piece, data })
+        Ok(data.into_iter().map(|data| Measurement { piece, data }).collect())
     }
 
     fn piece<'p>(

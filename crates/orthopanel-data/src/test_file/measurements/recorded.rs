@@ -1,11 +1,12 @@
-//! `kind = "time-history"` and `"accelerance"`: a file of records, the places, and the sensor's unit and direction.
+//! `kind = "time-history"` and `"accelerance"`: a file of records, the places, and what the file does not tell of its channels.
 
-use std::{fmt, io, path::PathBuf};
+use std::{fmt, path::PathBuf};
 
 use orthopanel_model::{Piece, Place};
+use toml::Spanned;
 
 use super::{super::syntax, Entry};
-use crate::{DataError, limits, regular_file};
+use crate::{DataError, Motion, Unit, limits};
 
 /// A file of records and where they were taken.
 #[derive(Debug, Clone, PartialEq)]
@@ -14,23 +15,116 @@ pub struct RecordedResponse {
     pub file: PathBuf,
     /// Where the hammer hit.
     pub force_at: Place,
-    /// Where the accelerometer sat.
+    /// Where the sensor of the motion sat.
     pub response_at: Place,
-    /// Unit of the acceleration in the file, where declared.
-    pub unit: Option<AccelerationUnit>,
+    /// Unit of the force in the file, where declared; with a sensitivity the unit that it is a volt for.
+    pub force_unit: Option<Unit>,
+    /// Unit of the motion in the file, where declared; with a sensitivity the unit that it is a volt for.
+    pub response_unit: Option<Unit>,
+    /// What the sensor of the motion reads, where declared.
+    pub quantity: Option<Motion>,
+    /// Volts a unit of force, where the channel was recorded in volts.
+    pub force_sensitivity: Option<f64>,
+    /// Volts a unit of motion, where the channel was recorded in volts.
+    pub response_sensitivity: Option<f64>,
     /// Direction of the sensor, where declared.
     pub direction: Option<Direction>,
     /// Number of the frequency response among the file's records, from 1; needed where the file holds several.
     pub record: Option<usize>,
+    /// Which of the file's records hold the force, where declared.
+    pub force_channel: Option<ChannelName>,
+    /// Which of the file's records hold the motion, where declared.
+    pub response_channel: Option<ChannelName>,
+    /// How continuous records are cut into hits, where declared.
+    pub trigger: Option<Trigger>,
+    /// Sampling rate \[Hz\], where declared: it counts instead of the file's times.
+    pub sampling_rate: Option<f64>,
+    /// Time constant $\tau$ \[s\] of the exponential window $e^{-t/\tau}$ that lies over the records, where declared.
+    pub window_decay: Option<f64>,
 }
 
-/// Unit of a recorded acceleration, or of the acceleration in an accelerance.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum AccelerationUnit {
-    /// `"m/s2"`.
-    MetrePerSecondSquared,
-    /// `"g"`.
-    StandardGravity,
+impl RecordedResponse {
+    /// A file of records with nothing declared but the places of force and response.
+    pub fn new(file: impl Into<PathBuf>, [force_at, response_at]: [Place; 2]) -> Self {
+        Self {
+            file: file.into(),
+            force_at,
+            response_at,
+            force_unit: None,
+            response_unit: None,
+            quantity: None,
+            force_sensitivity: None,
+            response_sensitivity: None,
+            direction: None,
+            record: None,
+            force_channel: None,
+            response_channel: None,
+            trigger: None,
+            sampling_rate: None,
+            window_decay: None,
+        }
+    }
+}
+
+/// How a continuous record of several blows is cut into hits; what is left out is found from the record.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Trigger {
+    /// Force over its rest \[N\] that a blow passes.
+    pub level: Option<f64>,
+    /// Time of a hit before its blow passes the level \[s\].
+    pub before: Option<f64>,
+    /// Time of a hit in all \[s\].
+    pub length: Option<f64>,
+}
+
+/// A channel of a file with several.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum ChannelName {
+    /// That of a record, by its number in the file, from 1.
+    Number(usize),
+    /// `"12"` or `"12:+z"`: a node, and 1, 2, 3 along x, y, z, negative against them, 0 in any direction.
+    Port {
+        /// The node's number.
+        node: i64,
+        /// The direction.
+        direction: i64,
+    },
+    /// A line of the record's title.
+    Name(String),
+}
+
+impl ChannelName {
+    /// Of a text in a test file.
+    fn of(text: &str) -> Self {
+        let (node, along) = text.split_once(':').unwrap_or((text, ""));
+        let (sign, axis) = match along.trim().strip_prefix('-') {
+            Some(axis) => (-1, axis),
+            None => (1, along.trim().trim_start_matches('+')),
+        };
+        let direction = ["", "x", "y", "z"].iter().zip(0..).find(|(name, _)| axis.eq_ignore_ascii_case(name));
+        match (node.trim().parse(), direction) {
+            (Ok(node), Some((_, direction))) => Self::Port { node, direction: sign * direction },
+            _ => Self::Name(text.trim().to_owned()),
+        }
+    }
+}
+
+impl fmt::Display for ChannelName {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Number(number) => write!(f, "{number}"),
+            Self::Port { node, direction } => {
+                let sign = if *direction < 0 { "-" } else { "+" };
+                match direction.abs() {
+                    1 => write!(f, "\"{node}:{sign}x\""),
+                    2 => write!(f, "\"{node}:{sign}y\""),
+                    3 => write!(f, "\"{node}:{sign}z\""),
+                    _ => write!(f, "\"{node}\""),
+                }
+            }
+            Self::Name(name) => write!(f, "{name:?}"),
+        }
+    }
 }
 
 /// Which way a recorded acceleration counts positive.
@@ -42,27 +136,13 @@ pub enum Direction {
     AgainstForce,
 }
 
-impl fmt::Display for AccelerationUnit {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::MetrePerSecondSquared => "m/s2",
-            Self::StandardGravity => "g",
-        })
-    }
-}
-
-impl AccelerationUnit {
-    /// Factor to m/s²: $1$, or $g_n = 9.80665$ (3rd CGPM, 1901, exact).
-    pub fn to_si(self) -> f64 {
-        match self {
-            Self::MetrePerSecondSquared => 1.0,
-            Self::StandardGravity => 9.806_65,
-        }
-    }
-}
-
 impl Entry<'_> {
-    pub(super) fn recorded(&self, entry: &syntax::Measurement, piece: &Piece) -> Result<RecordedResponse, DataError> {
+    /// The records of each file of the measurement.
+    pub(super) fn recorded(
+        &self,
+        entry: &syntax::Measurement,
+        piece: &Piece,
+    ) -> Result<Vec<RecordedResponse>, DataError> {
         let name = self.needed(entry.file.as_ref(), "file", "name a .uff or .csv file beside the test file")?;
         let places = [(&entry.force_at, "force_at"), (&entry.response_at, "response_at")].map(|(place, key)| {
             let place = self.needed(place.as_ref(), key, "give the place [x, y] in m from the piece's centre")?;
@@ -70,15 +150,28 @@ impl Entry<'_> {
         });
         let [force_at, response_at] = places;
         let (force_at, response_at) = (force_at?, response_at?);
-        let unit = match entry.unit.as_ref().map(|unit| (unit.get_ref().as_str(), unit)) {
-            None => None,
-            Some(("m/s2", _)) => Some(AccelerationUnit::MetrePerSecondSquared),
-            Some(("g", _)) => Some(AccelerationUnit::StandardGravity),
-            Some((other, unit)) => {
-                let (name, remedy) = (other.to_owned(), "must be \"m/s2\" or \"g\"".into());
-                return Err(DataError::UnknownName { at: self.at(unit.span(), "unit"), name, remedy });
-            }
+        let response_unit = self.response_unit(entry)?;
+        let force_unit = self.unit(entry.force_unit.as_ref(), "force_unit", FORCE_UNITS)?;
+        let quantity = self.quantity(entry, response_unit.as_ref())?;
+        let positive = |number: &Option<Spanned<f64>>, key: &str, unit: &str| {
+            number.as_ref().map(|number| self.source.positive(number, &self.name(key), unit)).transpose()
         };
+        let sampling_rate = positive(&entry.sampling_rate, "sampling_rate", "Hz")?;
+        let trigger = match &entry.trigger {
+            None => None,
+            Some(given) => Some(Trigger {
+                level: positive(&given.level, "trigger.level", "N")?,
+                before: positive(&given.before, "trigger.before", "s")?,
+                length: positive(&given.length, "trigger.length", "s")?,
+            }),
+        };
+        let [least, most] = limits::SAMPLING_RATE;
+        if let (Some(value), Some(given)) =
+            (sampling_rate.filter(|rate| !(least..=most).contains(rate)), &entry.sampling_rate)
+        {
+            let range = format!("must lie between {least} and {most:e} Hz");
+            return Err(DataError::OutOfRange { at: self.at(given.span(), "sampling_rate"), value, range });
+        }
         let direction = match entry.direction.as_ref().map(|direction| (*direction.get_ref(), direction)) {
             None => None,
             Some((1.0, _)) => Some(Direction::AlongForce),
@@ -96,13 +189,91 @@ impl Entry<'_> {
                 return Err(DataError::OutOfRange { at, value, range: "records are counted from 1".into() });
             }
         };
-        let file = self.source.beside(name.get_ref());
-        // Asked now, so that the line is known which names a file that is not there, or is none.
-        let found = regular_file(&file).and_then(|found| limits::RECORD_FILE.check(&found));
-        found.map_err(|error| DataError::Unreadable {
-            at: self.at(name.span(), "file"),
-            source: io::Error::new(error.kind(), format!("{}: {error}", file.display())),
-        })?;
-        Ok(RecordedResponse { file, force_at, response_at, unit, direction, record })
+        let one = RecordedResponse {
+            force_unit,
+            response_unit,
+            quantity,
+            force_sensitivity: positive(&entry.force_sensitivity, "force_sensitivity", "V a unit of force")?,
+            response_sensitivity: positive(&entry.response_sensitivity, "response_sensitivity", "V a unit of motion")?,
+            direction,
+            record,
+            force_channel: self.channel(entry.force_channel.as_ref(), "force_channel")?,
+            response_channel: self.channel(entry.response_channel.as_ref(), "response_channel")?,
+            trigger,
+            sampling_rate,
+            window_decay: positive(&entry.window_decay, "window_decay", "s")?,
+            ..RecordedResponse::new("", [force_at, response_at])
+        };
+        let of_file = |file| RecordedResponse { file, ..one.clone() };
+        Ok(self.files(name)?.into_iter().map(of_file).collect())
+    }
+
+    /// `response_unit`, or `unit`, as it was called before.
+    fn response_unit(&self, entry: &syntax::Measurement) -> Result<Option<Unit>, DataError> {
+        let (given, key) = match (&entry.response_unit, &entry.unit) {
+            (Some(_), Some(unit)) => {
+                let problem = "is another name of response_unit: leave one of them out".into();
+                return Err(DataError::Contradiction { at: self.at(unit.span(), "unit"), problem });
+            }
+            (None, Some(unit)) => (Some(unit), "unit"),
+            (given, None) => (given.as_ref(), "response_unit"),
+        };
+        self.unit(given, key, MOTION_UNITS)
+    }
+
+    /// The unit that a key names; `wanted` tells examples, and whether a force or a motion is.
+    fn unit(
+        &self,
+        given: Option<&Spanned<String>>,
+        key: &str,
+        (is_force, wanted): (bool, &str),
+    ) -> Result<Option<Unit>, DataError> {
+        let Some(given) = given else { return Ok(None) };
+        match Unit::parse(given.get_ref()) {
+            Some(unit) if unit.is_force() == is_force && (is_force || unit.motion().is_some()) => Ok(Some(unit)),
+            _ => {
+                let (name, remedy) = (given.get_ref().clone(), format!("must be {wanted}"));
+                Err(DataError::UnknownName { at: self.at(given.span(), key), name, remedy })
+            }
+        }
+    }
+
+    /// The channel that a key names.
+    fn channel(&self, given: Option<&Spanned<toml::Value>>, key: &str) -> Result<Option<ChannelName>, DataError> {
+        let Some(given) = given else { return Ok(None) };
+        match given.get_ref() {
+            toml::Value::Integer(number) if *number > 0 => Ok(usize::try_from(*number).ok().map(ChannelName::Number)),
+            toml::Value::String(text) if !text.trim().is_empty() => Ok(Some(ChannelName::of(text))),
+            other => {
+                let message = format!(
+                    "{} given, wanted is a record's number from 1, \"node:direction\" such as \"12:+z\", or a line of its title",
+                    crate::error::short(&other.to_string())
+                );
+                Err(DataError::Syntax { at: self.at(given.span(), key), message })
+            }
+        }
+    }
+
+    /// What the sensor reads: as `quantity` tells, else as its unit does.
+    fn quantity(&self, entry: &syntax::Measurement, unit: Option<&Unit>) -> Result<Option<Motion>, DataError> {
+        let Some(given) = &entry.quantity else { return Ok(None) };
+        let Some(quantity) = Motion::ALL.into_iter().find(|motion| motion.name() == given.get_ref()) else {
+            let name = given.get_ref().clone();
+            let remedy = "must be \"acceleration\", \"velocity\" or \"displacement\"".into();
+            return Err(DataError::UnknownName { at: self.at(given.span(), "quantity"), name, remedy });
+        };
+        match unit.and_then(|unit| Some((unit, unit.motion()?))) {
+            Some((unit, motion)) if motion != quantity => {
+                let problem =
+                    format!("a {quantity} is not in {unit}, which is a unit of {motion}: correct one of them");
+                Err(DataError::Contradiction { at: self.at(given.span(), "quantity"), problem })
+            }
+            _ => Ok(Some(quantity)),
+        }
     }
 }
+
+/// Whether a force is meant, and units of it for messages.
+const FORCE_UNITS: (bool, &str) = (true, "a unit of force, such as \"N\", \"kN\", \"lbf\" or \"kgf\"");
+const MOTION_UNITS: (bool, &str) =
+    (false, "a unit of motion, such as \"m/s2\", \"g\", \"in/s2\", \"mm/s\", \"m/s\" or \"mm\"");

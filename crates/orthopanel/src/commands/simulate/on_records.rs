@@ -195,14 +195,7 @@ fn histories(
         );
         return Err(refused(problem));
     };
-    let record = RecordedResponse {
-        file: path.clone(),
-        force_at: *force_at,
-        response_at: *response_at,
-        unit: None,
-        direction: None,
-        record: None,
-    };
+    let record = RecordedResponse::new(path, [*force_at, *response_at]);
     Ok(vec![TimeHistory::read(&record)?])
 }
 

@@ -1,4 +1,4 @@
-//! The even step, which is printed with six digits and so is often rounded.
+//! The even step, which is printed with few digits and so is often rounded.
 
 /// Digits of a number that passes for round: 25600 Hz and 51.2 s have three, 48000 Hz two.
 const ROUND_DIGITS: i32 = 4;
@@ -9,7 +9,7 @@ const ROUND_DIGITS: i32 = 4;
 /// of few digits, or a power of two. 0.0195312 Hz is 1/51.2 s, for between 1/0.01953125 and 1/0.01953115 nothing else
 /// is as round; at line 50944 the difference is 2.5 mHz. Looked for are round values of $1/\Delta$, $(N-1)\Delta$ and
 /// $N\Delta$ within half a unit of the last printed digit; the roundest wins, and none is made up where none fits.
-pub(super) fn restored(step: f64, digits: u32, points: usize) -> Option<f64> {
+pub(in crate::records) fn restored(step: f64, digits: u32, points: usize) -> Option<f64> {
     // Nine digits are as good as a single-precision number ever was: nothing is lost.
     if digits == 0 || digits >= 9 {
         return None;
@@ -27,6 +27,11 @@ pub(super) fn restored(step: f64, digits: u32, points: usize) -> Option<f64> {
     let (_, best) = candidates.into_iter().flatten().min_by_key(|&(digits, _)| digits)?;
     let changed = (best - step).abs() > 1e-12 * step;
     changed.then_some(best)
+}
+
+/// The roundest sampling rate between two; `None` where none is round.
+pub(crate) fn round_rate(low: f64, high: f64) -> Option<f64> {
+    roundest(low, high).map(|(_, rate)| rate)
 }
 
 /// The number of fewest digits in an interval, with its digits; a power of two counts as one digit.

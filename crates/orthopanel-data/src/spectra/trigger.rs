@@ -1,0 +1,148 @@
+//! Several blows in one continuous record: cut into hits where the force passes a level.
+
+use orthopanel_model::Readable;
+
+use super::{
+    extremes::{median, peak, sampled_median},
+    time_history::Hit,
+};
+use crate::{DataError, Location, Trigger};
+
+/// Blows stand this far apart at least \[s\]; what comes sooner is a second touch of one blow, and is judged as such.
+const APART: f64 = 0.5;
+
+/// A level over the highest blow, and over the noise of the force's channel in standard deviations, where none is declared.
+const LEVEL: f64 = 0.1;
+const ABOVE_NOISE: f64 = 10.0;
+
+/// Time before the level is passed \[s\], and samples, where none is declared: enough to read the noise of the channels.
+const BEFORE: f64 = 0.02;
+const LEAST_BEFORE: usize = 128;
+
+/// A gap between blows shorter than this part of their median is a blow too soon.
+const SOON: f64 = 0.6;
+
+/// Response at the end of a hit over its own at the beginning, rms, up to which blows apart are hits of their own.
+const DECAYED: f64 = 0.2;
+
+/// The hits in a record, cut by the force; the record as it is, where it holds one blow.
+///
+/// What is not declared in `trigger` is found: the level from the highest blow and the noise, the length from the gaps between blows.
+/// Blows that follow too soon, and a last one that the record's end cuts short, are left out, which the notes tell.
+///
+/// # Errors
+/// [`DataError::Channels`] where a declared trigger finds no blow.
+pub(super) fn cut(
+    hit: Hit,
+    rate: f64,
+    trigger: Option<Trigger>,
+    at: &Location,
+    notes: &mut Vec<String>,
+) -> Result<Vec<Hit>, DataError> {
+    let declared = trigger.unwrap_or_default();
+    let offset = sampled_median(&hit.force);
+    let (_, height) = peak(&hit.force, offset);
+    let push = |value: f64| height.signum() * (value - offset);
+    let noise = {
+        let stride = (hit.force.len() / 1000).max(1);
+        median(hit.force.iter().step_by(stride).map(|value| (value - offset).abs()).collect()) / 0.674_49
+    };
+    let level = declared.level.unwrap_or((LEVEL * height.abs()).max(ABOVE_NOISE * noise));
+    let apart = (APART * rate) as usize;
+    let mut starts: Vec<usize> = Vec::new();
+    let mut last_touch: Option<usize> = None;
+    for (n, _) in hit.force.iter().enumerate().filter(|(_, value)| push(**value) > level) {
+        if last_touch.is_none_or(|last| n - last > apart) {
+            starts.push(n);
+        }
+        last_touch = Some(n);
+    }
+    let refused = |problem: String| Err(DataError::Channels { at: Box::new(at.clone()), problem });
+    if trigger.is_some() && starts.is_empty() {
+        return refused(format!(
+            "no blow passes trigger.level = {} N: the highest has {:.4} N",
+            Readable(level),
+            Readable(height.abs())
+        ));
+    }
+    if trigger.is_none() && starts.len() < 2 {
+        return Ok(vec![hit]);
+    }
+    let ends = || starts.iter().skip(1).copied().chain([hit.force.len()]);
+    let gaps: Vec<usize> = starts.iter().zip(ends()).map(|(start, end)| end - start).collect();
+    let usual = median(
+        gaps.get(..gaps.len().saturating_sub(1).max(1)).unwrap_or_default().iter().map(|gap| *gap as f64).collect(),
+    );
+    let full = gaps.iter().copied().filter(|gap| *gap as f64 >= SOON * usual).min().unwrap_or(0);
+    let before = declared.before.map_or_else(
+        || ((BEFORE * rate) as usize).max(LEAST_BEFORE).min(full / 10),
+        |seconds| (seconds * rate).round() as usize,
+    );
+    let length = match declared.length {
+        Some(seconds) => (seconds * rate).round() as usize,
+        // The next blow begins before its level is passed.
+        None => full.saturating_sub(before.min(full / 20)),
+    };
+    if length < 2 * LEAST_BEFORE || before >= length {
+        let problem = format!(
+            "blows {:.4} s apart leave hits of {:.4} s: give trigger = {{level = ..., before = ..., length = ...}} (N, s, s)",
+            Readable(usual / rate),
+            Readable(length as f64 / rate)
+        );
+        return if trigger.is_some() { refused(problem) } else { Ok(vec![hit]) };
+    }
+    let (mut hits, mut left_out) = (Vec::new(), Vec::new());
+    for (number, ((&start, gap), earlier)) in (1..).zip(starts.iter().zip(&gaps).zip([usize::MAX].iter().chain(&gaps)))
+    {
+        let from = start.saturating_sub(before);
+        // A record that begins with its first blow gives that less rest before it, and as much after.
+        let whole = hit.force.get(from..from + length).zip(hit.acceleration.get(from..from + length));
+        let soon = (*earlier as f64) < SOON * usual || start + gap < from + length;
+        match whole {
+            Some((force, acceleration)) if !soon => {
+                hits.push(Hit { force: force.to_vec(), acceleration: acceleration.to_vec() });
+            }
+            _ => left_out.push(number.to_string()),
+        }
+    }
+    if hits.is_empty() {
+        let problem = format!(
+            "no blow has {:.4} s of the record to itself: declare a shorter trigger.length",
+            Readable(length as f64 / rate)
+        );
+        return if trigger.is_some() { refused(problem) } else { Ok(vec![hit]) };
+    }
+    if trigger.is_none() && !hits.iter().all(|hit| has_decayed(&hit.acceleration, before)) {
+        return Ok(vec![hit]);
+    }
+    let seconds = |samples: usize| Readable((samples as f64 / rate * 1e6).round() / 1e6);
+    notes.push(format!(
+        "{}: {} blows in one record of {:.2} s, cut into hits by trigger = {{level = {}, before = {}, length = {}}}",
+        at.key,
+        starts.len(),
+        hit.force.len() as f64 / rate,
+        Readable((level * 100.0).round() / 100.0),
+        seconds(before),
+        seconds(length)
+    ));
+    if !left_out.is_empty() {
+        let which = crate::error::some_of(&left_out, ", ");
+        notes.push(format!(
+            "{}: blow {which} left out: too soon before or after another, or cut short by an end of the record",
+            at.key
+        ));
+    }
+    Ok(hits)
+}
+
+/// Whether a response has mostly died away at its end; `before` samples stand before the blow.
+fn has_decayed(response: &[f64], before: usize) -> bool {
+    let part = (response.len() / 20).max(1);
+    let rms = |range: Option<&[f64]>| {
+        let range = range.unwrap_or_default();
+        let mean = range.iter().sum::<f64>() / range.len().max(1) as f64;
+        (range.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / range.len().max(1) as f64).sqrt()
+    };
+    let first = rms(response.get(before..(before + part).min(response.len())));
+    rms(response.get(response.len() - part..)) <= DECAYED * first
+}

@@ -1,0 +1,343 @@
+//! What a record leaves open is asked about, with the line of the test file that answers it.
+
+use orthopanel_data::{Accelerance, ChannelName, ImpactTest, Motion, RecordFile, RecordedResponse, TimeHistory, Unit};
+
+use crate::support::{
+    Dataset,
+    hammer::RATE,
+    recorded::{good, history, measurement, pair, records},
+};
+
+fn response(numerator: (i64, &str), denominator: (i64, &str)) -> Dataset {
+    Dataset {
+        function: 4,
+        complex: true,
+        numerator: (numerator.0, numerator.1.into()),
+        denominator: (denominator.0, denominator.1.into()),
+        points: (0..5).map(|line| vec![1.0, f64::from(line)]).collect(),
+        ..Dataset::time(&[], (12, ""))
+    }
+}
+
+fn accelerance(file: RecordFile, declared: &RecordedResponse) -> Result<Accelerance, String> {
+    Accelerance::from_records(file, declared).map_err(|error| error.to_string())
+}
+
+#[test]
+fn val_units_that_contradict_each_other_are_asked_about() {
+    let unit = |text: &str| RecordedResponse { response_unit: Unit::parse(text), ..measurement() };
+    let velocity = RecordedResponse { quantity: Some(Motion::Velocity), ..measurement() };
+    let cases = [
+        (
+            response((12, "mm/s"), (13, "N")),
+            measurement(),
+            "is a unit of velocity, and the record is taken as acceleration: declare quantity",
+        ),
+        (
+            response((12, "m/s2"), (13, "N")),
+            unit("mm/s"),
+            "response_unit = \"mm/s\" is a unit of velocity: correct it, or where",
+        ),
+        (
+            response((12, "m/s2"), (13, "N")),
+            unit("g"),
+            "in \"m/s2\", the test file declares another unit, g: correct or drop `response_unit`",
+        ),
+        (
+            response((12, "m/s2"), (13, "furlong")),
+            measurement(),
+            "unit \"furlong\" of the force is unknown: where it is N, or another",
+        ),
+        (response((12, "m/s2/N"), (13, "N")), unit("g"), "is in \"m/s2/N\", the test file declares another unit"),
+        (
+            response((12, "V"), (13, "N")),
+            measurement(),
+            "the acceleration is in volts (\"V\"): give response_sensitivity = V a m/s2",
+        ),
+        (
+            response((12, "m/s2"), (13, "mV")),
+            measurement(),
+            "the force is in volts (\"mV\"): give force_sensitivity = V a N",
+        ),
+        (response((12, "m/s2"), (13, "N")), velocity, "is a unit of acceleration, and the record is taken as velocity"),
+    ];
+    for (dataset, declared, said) in cases {
+        let message = accelerance(records(&[dataset]), &declared).unwrap_err();
+        assert!(message.starts_with("hits.uff, byte 7: record 1: ") && message.contains(said), "{said}\n{message}");
+    }
+    let calibrated = RecordedResponse { response_sensitivity: Some(0.01), ..measurement() };
+    let message = accelerance(records(&[response((12, "g"), (13, "N"))]), &calibrated).unwrap_err();
+    assert!(message.contains("the acceleration is in \"g\", not in volts: drop response_sensitivity"), "{message}");
+}
+
+/// Inches by dataset 164, metres by the label: only the person who measured knows.
+#[test]
+fn val_a_label_against_dataset_164_is_asked_about() {
+    let units = "    -1\n   164\n         7IN: Inch (pound f)           2\n   3.9370078740157480D+01   2.2480894309971047D-01   1.0D+00\n   2.7315D+02\n    -1\n";
+    let file = |numerator, denominator| {
+        let bytes = [units.as_bytes(), &response(numerator, denominator).text()].concat();
+        RecordFile::from_bytes(&bytes, "hits.uff").unwrap()
+    };
+    let message = accelerance(file((12, "m/s2"), (13, "N")), &measurement()).unwrap_err();
+    assert!(
+        message.contains("in \"m/s2\" by its label, and in \"IN: Inch (pound f)\", a unit of length of 0.0254 m/s2"),
+        "{message}"
+    );
+    assert!(message.contains("declare which by response_unit = \"m/s2\""), "{message}");
+    let [response_unit, force_unit] = ["m/s2", "N"].map(Unit::parse);
+    let declared = RecordedResponse { response_unit, force_unit, ..measurement() };
+    assert_eq!(accelerance(file((12, "m/s2"), (13, "N")), &declared).unwrap().value[0].re, 1.0);
+    let broken =
+        [b"    -1\n   164\n        99?\n   no factors\n    -1\n", &response((12, "g"), (13, "N")).text()[..]].concat();
+    let message = RecordFile::from_bytes(&broken, "hits.uff").unwrap_err().to_string();
+    assert!(message.contains("dataset 164: the factors of length and force expected"), "{message}");
+    let cut = RecordFile::from_bytes(b"    -1\n   164\n", "hits.uff").unwrap_err().to_string();
+    assert!(cut.contains("the dataset ends"), "{cut}");
+}
+
+/// A coherence that may belong to either response belongs to none, and that is said.
+#[test]
+fn val_a_coherence_that_cannot_be_paired_is_left_out_and_said() {
+    let response = response((12, "m/s2"), (13, "N"));
+    let coherence = Dataset { function: 6, ..Dataset::time(&[0.5; 5], (0, "NONE")) };
+    let elsewhere = Dataset { response_node: 99, ..coherence.clone() };
+    let of = |datasets: &[&Dataset], record| {
+        let datasets: Vec<Dataset> = datasets.iter().map(|dataset| (*dataset).clone()).collect();
+        accelerance(records(&datasets), &RecordedResponse { record, ..measurement() }).unwrap()
+    };
+    let between = of(&[&response, &coherence, &response], Some(1));
+    assert!(between.coherence.is_none());
+    let said = "left without coherence: 1 of the file may belong to 2 frequency responses";
+    assert!(between.notes.iter().any(|note| note.contains(said)), "{:?}", between.notes);
+    let other = of(&[&response, &elsewhere], None);
+    assert!(
+        other.coherence.is_none() && !other.notes.iter().any(|note| note.contains("coherence")),
+        "{:?}",
+        other.notes
+    );
+    assert!(of(&[&response, &coherence, &response, &response, &coherence], Some(4)).coherence.is_some());
+    assert!(of(&[&response, &coherence, &response, &response, &coherence], Some(3)).coherence.is_none());
+}
+
+fn csv(time: impl Fn(usize) -> String, keep: impl Fn(&usize) -> bool) -> Result<TimeHistory, String> {
+    with_rate(time, keep, None)
+}
+
+fn with_rate(
+    time: impl Fn(usize) -> String,
+    keep: impl Fn(&usize) -> bool,
+    sampling_rate: Option<f64>,
+) -> Result<TimeHistory, String> {
+    let hit = good();
+    let row = |n: usize| format!("{},{},{}\n", time(n), hit.force[n], hit.acceleration[n]);
+    let rows: String = (0..hit.force.len()).filter(keep).map(row).collect();
+    let file = RecordFile::from_bytes(format!("time_s,force_n,acceleration_m_s2\n{rows}").as_bytes(), "a.csv").unwrap();
+    TimeHistory::from_records(file, &RecordedResponse { sampling_rate, ..measurement() })
+        .map_err(|error| error.to_string())
+}
+
+#[test]
+fn val_a_sampling_rate_that_no_hammer_test_has_is_asked_about() {
+    let said = csv(|n| format!("{n}"), |_| true).unwrap_err();
+    assert!(said.contains("sampled at 1.000 Hz, where hammer tests are at 100 to"), "{said}");
+    assert!(said.contains("are its times in ms? declare sampling_rate = 1000 in its [[measurement]]"), "{said}");
+    assert_eq!(with_rate(|n| format!("{n}"), |_| true, Some(RATE)).unwrap().rate, RATE);
+    let said = csv(|n| format!("{}", 20 * n), |_| true).unwrap_err();
+    assert!(said.contains("are its times in µs? declare sampling_rate = 50000"), "{said}");
+}
+
+/// Rounded times are even, whatever repeats among them; their notes tell it where a step is lost.
+#[test]
+fn val_rounded_times_are_read_on_the_grid_that_they_round() {
+    for (digits, rate) in [(5, 12800.0), (5, 20480.0), (5, 25600.0), (6, 44100.0)] {
+        let found = csv(|n| format!("{:.digits$}", n as f64 / rate), |_| true).unwrap();
+        assert!((found.rate / rate - 1.0).abs() < 1e-12, "{digits} {rate}: {}", found.rate);
+        let told = found.notes.iter().any(|note| note.contains("the times are rounded to"));
+        assert_eq!(told, digits == 5, "{digits}: {:?}", found.notes);
+    }
+    // A thousand samples of 0.05 s in all: 20500 Hz would do as well.
+    let said = csv(|n| format!("{:.3}", n as f64 / 20480.0), |_| true).unwrap_err();
+    assert!(said.contains("the times are rounded to 0.001 s, and so few tell the sampling rate to 0."), "{said}");
+    assert!(said.contains("or declare it, such as sampling_rate = 20500, in its [[measurement]]"), "{said}");
+}
+
+#[test]
+fn val_uneven_times_are_refused_with_what_mends_them() {
+    let even = |n: usize| n as f64 / RATE;
+    let refused = |said: &str, found: Result<TimeHistory, String>| {
+        let message = found.unwrap_err();
+        assert!(message.starts_with("a.csv:") && message.contains(said), "{said}\n{message}");
+        assert!(!message.contains("sort the rows"), "{message}");
+    };
+    refused(
+        "or resample both onto even times; where the column of times alone is wrong",
+        csv(|n| format!("{}", even(n) * (1.0 + even(n))), |_| true),
+    );
+    refused("samples are missing or stand twice", csv(|n| format!("{}", even(n)), |n| !(500..520).contains(n)));
+    refused("the times begin anew, or rows are out of order", csv(|n| format!("{}", even(n % 500)), |_| true));
+    refused("a time step of 0 s makes no sampling rate", csv(|_| "0.5".into(), |_| true));
+    assert_eq!(with_rate(|n| format!("{}", even(n % 500)), |_| true, Some(RATE)).unwrap().rate, RATE);
+}
+
+/// A window is told by its time constant; what no window leaves, or another file's column contradicts, is refused.
+#[test]
+fn val_a_declared_window_is_taken_out_or_refused() {
+    let declared = |tau| RecordedResponse { window_decay: Some(tau), ..measurement() };
+    let line = accelerance(records(&[response((12, "m/s2"), (13, "N"))]), &declared(0.25)).unwrap();
+    assert_eq!(line.decay_rate, 4.0);
+    let column = |tau| {
+        let file =
+            RecordFile::from_bytes(b"frequency_hz,real,imag,decay_rate_1_s\n1,2,3,4\n2,3,4,4\n", "a.csv").unwrap();
+        accelerance(file, &declared(tau))
+    };
+    assert_eq!(column(0.25).unwrap().decay_rate, 4.0);
+    assert!(column(0.5).unwrap_err().contains("decay rate 4 1/s, and window_decay = 0.5 s declares 2 1/s"));
+    let [force, motion] = pair();
+    let message = history(&[force, motion], &declared(0.01)).unwrap_err();
+    assert!(message.contains("window_decay = 0.01 s leaves e^-100.0 of the record's end, after 1.0000 s"), "{message}");
+}
+
+#[test]
+fn val_the_keys_of_channels_are_checked_with_their_line() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("a.uff"), "").unwrap();
+    let read = |kind: &str, keys: &str| {
+        let text = format!(
+            "[piece]\nlength = 1\nwidth = 0.1\nthickness = 0.02\nmass_per_area = 5\n[[measurement]]\nkind = \"{kind}\"\nfile = \"a.uff\"\n\
+             force_at = [0, 0]\nresponse_at = [0.1, 0]\n{keys}\n"
+        );
+        ImpactTest::from_toml(&text, folder.path().join("test.toml")).map_err(|error| error.to_string())
+    };
+    read("time-history", "response_unit = \"in/s\"\nforce_unit = \"lbf\"\nquantity = \"velocity\"\nsampling_rate = 25600\nwindow_decay = 0.3").unwrap();
+    read("accelerance", "response_sensitivity = 0.01\nforce_sensitivity = 2e-3\nwindow_decay = 0.3").unwrap();
+    for (kind, keys, said) in [
+        (
+            "accelerance",
+            "response_unit = \"parsec\"",
+            "test.toml:11: measurement[1].response_unit = \"parsec\": must be a unit of motion",
+        ),
+        ("accelerance", "force_unit = \"g\"", "measurement[1].force_unit = \"g\": must be a unit of force"),
+        ("accelerance", "unit = \"g\"\nresponse_unit = \"g\"", "measurement[1].unit: is another name of response_unit"),
+        ("accelerance", "quantity = \"speed\"", "measurement[1].quantity = \"speed\": must be \"acceleration\""),
+        (
+            "accelerance",
+            "quantity = \"velocity\"\nresponse_unit = \"g\"",
+            "a velocity is not in g, which is a unit of acceleration",
+        ),
+        (
+            "accelerance",
+            "sampling_rate = 1000",
+            "measurement[1].sampling_rate: does not belong to kind = \"accelerance\"",
+        ),
+        (
+            "time-history",
+            "force_channel = 0",
+            "measurement[1].force_channel: 0 given, wanted is a record's number from 1",
+        ),
+        (
+            "accelerance",
+            "response_channel = [1]",
+            "measurement[1].response_channel: [1] given, wanted is a record's number",
+        ),
+        ("time-history", "sampling_rate = 3", "measurement[1].sampling_rate = 3: must lie between 100 and"),
+        ("time-history", "window_decay = 0", "measurement[1].window_decay = 0: must be a finite number of s"),
+        (
+            "time-history",
+            "response_sensitivity = -1",
+            "must be a finite number of V a unit of motion, greater than zero",
+        ),
+        (
+            "time-history",
+            "force_sensitivity = \"2 mV/N\"",
+            "text \"2 mV/N\" given, wanted is a number in V a force_unit",
+        ),
+    ] {
+        let message = read(kind, keys).unwrap_err();
+        assert!(message.contains(said), "{said}\n{message}");
+    }
+}
+
+/// Of several channels none is guessed: the message lists them, or the key that chooses.
+#[test]
+fn val_a_channel_that_is_not_there_is_told_with_those_that_are() {
+    let [force, motion] = pair();
+    let at = |node, direction| Dataset { response_node: node, response_direction: direction, ..motion.clone() };
+    let hammer = Dataset { response_node: 1, ..force.clone() };
+    let file = [hammer.clone(), at(4, 3), at(5, -3)];
+    let of = |channel| RecordedResponse { response_channel: Some(channel), ..measurement() };
+    let said = history(&file, &of(ChannelName::Port { node: 6, direction: 3 })).unwrap_err();
+    assert!(
+        said.contains("response_channel = \"6:+z\" is none of its channels: \"1:+z\", \"4:+z\", \"5:-z\""),
+        "{said}"
+    );
+    let said = history(&file, &of(ChannelName::Number(9))).unwrap_err();
+    assert!(said.contains("response_channel = 9 is none of its channels"), "{said}");
+    let said = history(&file, &measurement()).unwrap_err();
+    assert!(said.contains("1 force and 2 acceleration records against time"), "{said}");
+    assert!(said.contains("name the channels by force_channel and response_channel"), "{said}");
+    assert_eq!(history(&file, &of(ChannelName::Port { node: 5, direction: 0 })).unwrap().hits.len(), 1);
+}
+
+/// Hits in files of their own are one measurement: a list, or a pattern.
+#[test]
+fn val_a_measurement_names_several_files() {
+    let folder = tempfile::tempdir().unwrap();
+    for name in ["hit-2.uff", "hit-10.uff", "hit-1.uff", "other.uff"] {
+        std::fs::write(folder.path().join(name), "").unwrap();
+    }
+    let read = |file: &str| {
+        let text = format!(
+            "[piece]\nlength = 1\nwidth = 0.1\nthickness = 0.02\nmass_per_area = 5\n[[measurement]]\nkind = \"time-history\"\nfile = {file}\n\
+             force_at = [0, 0]\nresponse_at = [0.1, 0]\nresponse_unit = \"g\"\n"
+        );
+        let test = ImpactTest::from_toml(&text, folder.path().join("test.toml")).map_err(|error| error.to_string())?;
+        let name = |path: &std::path::Path| path.file_name().unwrap().to_str().unwrap().to_owned();
+        Ok::<_, String>(test.files().map(name).collect::<Vec<_>>())
+    };
+    assert_eq!(read("[\"other.uff\", \"hit-2.uff\"]").unwrap(), ["other.uff", "hit-2.uff"]);
+    assert_eq!(read("\"hit-*.uff\"").unwrap(), ["hit-1.uff", "hit-10.uff", "hit-2.uff"]);
+    assert_eq!(read("[\"hit-?.uff\", \"other.uff\"]").unwrap(), ["hit-1.uff", "hit-2.uff", "other.uff"]);
+    for (file, said) in [
+        ("\"blow-*.uff\"", "measurement[1].file: cannot be read"),
+        ("\"blow-*.uff\"", "no file matches: * stands for any characters"),
+        ("[\"other.uff\", \"gone.uff\"]", "gone.uff"),
+        ("[]", "[] given, wanted is a file's name in quotes, or a list of names"),
+        ("[3]", "3 given, wanted is a file's name"),
+        ("true", "true given, wanted is a file's name"),
+    ] {
+        let message = read(file).unwrap_err();
+        assert!(message.contains(said) && message.contains("test.toml:8"), "{said}\n{message}");
+    }
+}
+
+/// Two resonances by hand, as motion over force without type or unit.
+#[test]
+fn val_a_response_that_tells_nothing_is_asked_about_by_its_slope() {
+    let response = |power: i32| {
+        let at = |line: usize| {
+            let s = num_complex::Complex64::new(0.0, std::f64::consts::TAU * line as f64);
+            let mode = |hertz: f64| {
+                let omega = std::f64::consts::TAU * hertz;
+                1.0 / (s * s + 0.02 * omega * s + omega * omega)
+            };
+            let value = s.powi(power) * (mode(30.0) + 0.7 * mode(190.0) - 0.4 * mode(420.0));
+            vec![value.re, value.im]
+        };
+        Dataset {
+            points: (0..800).map(at).collect(),
+            even: Some(("0.00000e+00".into(), "1.00000e+00".into())),
+            ..response((0, "NONE"), (0, "NONE"))
+        }
+    };
+    let of = |power, declared: &RecordedResponse| accelerance(records(&[response(power)]), declared);
+    assert!(of(2, &measurement()).is_ok());
+    assert!(
+        of(1, &measurement()).unwrap_err().contains("as a mobility does: is it one? declare quantity = \"velocity\"")
+    );
+    assert!(of(0, &measurement()).unwrap_err().contains("as a receptance does: is it one?"));
+    let declared = |quantity| RecordedResponse { quantity: Some(quantity), ..measurement() };
+    assert!(of(0, &declared(Motion::Acceleration)).is_ok());
+    let [due, found] =
+        [of(2, &measurement()), of(0, &declared(Motion::Displacement))].map(|found| found.unwrap().value);
+    assert!(due.iter().zip(&found).all(|(due, found)| (due - found).norm() < 1e-6 * due.norm()));
+}
