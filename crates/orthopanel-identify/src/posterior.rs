@@ -111,7 +111,9 @@ impl<'a> Projection<'a> {
         let mut derivatives = derivatives.clone();
         by.whiten(&mut derivatives);
         let mut curvature = derivatives.transpose() * &derivatives;
-        precision.iter().enumerate().for_each(|(i, precision)| curvature[(i, i)] += precision);
+        // What changes nothing has a slope of zero.
+        let ridge = |own: f64| 1e-9 * own + f64::MIN_POSITIVE.sqrt();
+        (0..precision.len()).for_each(|i| curvature[(i, i)] += precision[i] + ridge(curvature[(i, i)]));
         Some(Self { by, derivatives, precision: precision.to_vec(), curvature: curvature.llt(Side::Lower).ok()? })
     }
 

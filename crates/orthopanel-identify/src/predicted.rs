@@ -403,7 +403,12 @@ impl<'a> Predictor<'a> {
         let mut unseen: Vec<f64> = (0..omega.len()).filter(is_unseen).map(size_of).collect();
         unseen.sort_by(|a, b| b.total_cmp(a));
         comparison.unseen().zip(unseen.into_iter().take(UNSEEN)).for_each(|(place, value)| values[place] = value);
+        // By the poles where they show it, so that all hypotheses leave out the same.
+        let flexible = omega.get(self.setting.boundary.rigid_modes()).copied().unwrap_or(0.0);
+        let poles = measured.poles.iter().map(|pole| pole.angular_frequency);
+        let seen_hanging = poles.filter(|omega| self.hangs(0) && *omega < LOWEST * flexible).fold(0.0, f64::max);
         let hanging = (0..omega.len()).filter(|&n| self.hangs(n)).map(|n| omega[n]).fold(0.0, f64::max);
+        let hanging = if seen_hanging > 0.0 { seen_hanging } else { hanging };
         let near = |frequency: &&f64| TAU * **frequency < CLEAR_OF_HANGING * hanging;
         let near_hanging = measured.remainder_frequencies.iter().filter(near).count();
         let hangs = partners.iter().map(|partner| partner.is_some_and(|n| self.hangs(n))).collect();

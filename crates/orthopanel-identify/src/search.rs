@@ -2,6 +2,7 @@
 
 use std::f64::consts::TAU;
 
+use faer::Mat;
 use orthopanel_model::{Effect, EffectSetting, ModelError, Scale, StructureKind, catalogue, natural_frequencies};
 use rayon::prelude::*;
 
@@ -270,6 +271,9 @@ impl<'a> Inquiry<'a> {
             points.into_iter().filter_map(on).collect()
         };
         let points = best(ways.iter().enumerate().flat_map(starts).collect(), 4 * FOLLOWED);
+        if !base.names().is_empty() && !self.promises(base, &ways, &points)? {
+            return None;
+        }
         let points = best(follow(points, &logs(LOOSE), 5), FOLLOWED);
         let points = best(follow(points, &std::array::from_fn(|k| 0.5 * (LOOSE[k] * SMALL[k]).ln()), 4), FOLLOWED);
         // From small sizes, since an effect drowns in those of too poor a hypothesis; and from those, since it need not be all that lacks.
@@ -285,6 +289,31 @@ impl<'a> Inquiry<'a> {
         let log_odds = base.log_odds - base.posterior.log_evidence + posterior.log_evidence
             - ((ways.len() * catalogue().len()) as f64).ln();
         Some(Judged { hypothesis, posterior, log_odds })
+    }
+
+    /// Whether an effect that joins a base which has one already may come to the odds that count: by a score test, what its coordinates and its
+    /// starts make good of the base's misfit to first order, under sizes of model error that are no wider than small ones.
+    fn promises(&self, base: &Judged, ways: &[Hypothesis], starts: &[(usize, Point)]) -> Option<bool> {
+        let at_base = &base.posterior.point;
+        let of_base = self.problem(&base.hypothesis);
+        let sizes: [f64; KINDS] = std::array::from_fn(|kind| base.posterior.log_sizes[kind].min(SMALL[kind].ln()));
+        let by = of_base.whitening(&of_base.errors(&at_base.at), &sizes)?;
+        let precision = of_base.hypothesis.precision();
+        let missed = of_base.missed(&at_base.at);
+        let before = Projection::new(&at_base.derivatives, &precision, &by)?.of(&missed, &at_base.z).1;
+        let gain = |(way, start): &(usize, Point)| {
+            let problem = self.problem(&ways[*way]);
+            let z = [&at_base.z[..], &start.z[at_base.z.len()..]].concat();
+            let start = problem.point(z, &by)?;
+            let own = problem.derivatives(&start, at_base.z.len())?;
+            let towards = Mat::from_fn(own.nrows(), 1, |row, _| start.at.values[row] - at_base.at.values[row]);
+            let columns = faer::concat![[at_base.derivatives, own, towards]];
+            let free = vec![0.0; columns.ncols() - precision.len()];
+            let here = [&at_base.z[..], &free].concat();
+            let precision = [&precision[..], &free].concat();
+            Some(Projection::new(&columns, &precision, &by)?.of(&missed, &here).1 - before)
+        };
+        Some(starts.iter().filter_map(gain).any(|gain| gain > 2.0 * ODDS.ln()))
     }
 
     /// The posterior once more, to its end, from its own sizes of model error and from those of the best.
