@@ -27,15 +27,16 @@ impl Inquiry<'_> {
         }
         let predictor = self.problem(&base.hypothesis).predictor;
         let records = predictor.comparison.measured.records.len();
-        let of_parts = base.hypothesis.of_parts(&base.posterior.z);
+        let of_parts = base.hypothesis.of_parts(&base.posterior.point.z);
         let values = part.values(of_parts[index]);
         let before: usize = base.hypothesis.free_constants() + of_parts[..index].iter().map(|z| z.len()).sum::<usize>();
-        let (before, after) = (&base.posterior.z[..before], &base.posterior.z[before + of_parts[index].len()..]);
+        let (before, after) =
+            (&base.posterior.point.z[..before], &base.posterior.point.z[before + of_parts[index].len()..]);
         let ways = Part::ways(part.effect, predictor.piece(), records).into_iter();
         let ways = ways.filter(|way| way.free() > part.free());
         let freed = ways.filter_map(|mut way| {
             way.declared = true;
-            let starts = [vec![way.coordinates_of(&values)], way.starts(&[])].concat();
+            let starts = [vec![way.coordinates_of(&values)], way.starts(|_, _| vec![])].concat();
             let mut hypothesis = base.hypothesis.clone();
             hypothesis.parts[index] = way;
             let starts = starts.into_iter().map(|own| [before, &own[..], after].concat()).collect();
@@ -47,14 +48,14 @@ impl Inquiry<'_> {
     fn best_from(&self, base: &Judged, hypothesis: Hypothesis, starts: Vec<Vec<f64>>) -> Option<Judged> {
         let problem = self.problem(&hypothesis);
         let of_base = self.problem(&base.hypothesis);
-        let errors = of_base.errors(&of_base.with_slopes(&base.posterior.z).ok()?);
+        let errors = of_base.errors(&base.posterior.point.at);
         let by = of_base.whitening(&errors, &medians())?;
         let mut points: Vec<Point> = starts.into_iter().filter_map(|z| problem.point(z, &by)).collect();
         points.sort_by(|a, b| a.misfit.total_cmp(&b.misfit));
         points.truncate(FOLLOWED);
         let ends = points.into_iter().filter_map(|point| {
-            let (point, _) = problem.follow(point, &by, 8, 0.1)?;
-            problem.posterior(point.z, medians(), ROUNDS)
+            let (point, _) = problem.follow(point, &by, 8, (0.1, usize::MAX))?;
+            problem.posterior(point, medians(), ROUNDS)
         });
         let posterior = ends.max_by(|a, b| a.log_evidence.total_cmp(&b.log_evidence))?;
         let log_odds =

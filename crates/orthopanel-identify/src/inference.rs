@@ -29,7 +29,7 @@ use crate::search_progress::SearchProgress;
 /// # Limits
 /// Hits or accelerances of one piece, as a beam that may turn out a plate, hit and seen on its centre line. Not looked for:
 /// `cubic-stiffness`, which shows between hits alone. Standard deviations hold the sizes of model error as they are estimated, not
-/// their own uncertainty, which makes them small where modes are few. [`trace`](crate::trace) answers tests of hits by it.
+/// their own uncertainty, which makes them small where modes are few. [`trace_by_modes`](crate::trace_by_modes) answers by it.
 #[derive(Debug, Clone)]
 pub struct Inference {
     /// What is said.

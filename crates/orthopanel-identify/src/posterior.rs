@@ -121,7 +121,8 @@ impl<'a> Projection<'a> {
     pub(crate) fn of(&self, missed: &[f64], z: &[f64]) -> (Vec<f64>, f64) {
         let missed = self.by.whitened(missed);
         let descent = Mat::from_fn(self.precision.len(), 1, |i, _| {
-            self.derivatives.col_as_slice(i).iter().zip(&missed).map(|(a, b)| a * b).sum::<f64>() - self.precision[i] * z[i]
+            self.derivatives.col_as_slice(i).iter().zip(&missed).map(|(a, b)| a * b).sum::<f64>()
+                - self.precision[i] * z[i]
         });
         let step = self.curvature.solve(&descent);
         let gain = (0..step.nrows()).map(|i| step[(i, 0)] * descent[(i, 0)]).sum();
@@ -214,7 +215,8 @@ impl Problem<'_> {
         let length = square(&step);
         if length > 0.0 {
             for row in 0..derivatives.nrows() {
-                let foretold: f64 = step.iter().enumerate().map(|(column, step)| derivatives[(row, column)] * step).sum();
+                let foretold: f64 =
+                    step.iter().enumerate().map(|(column, step)| derivatives[(row, column)] * step).sum();
                 let missed = (to.at.values[row] - from.at.values[row] - foretold) / length;
                 step.iter().enumerate().for_each(|(column, step)| derivatives[(row, column)] += missed * step);
             }
@@ -291,7 +293,9 @@ impl Problem<'_> {
                 let solved = damped.llt(Side::Lower).ok()?;
                 let mut step = solved.solve(&descent);
                 let size_of = |step: &Mat<f64>| (0..size).map(|i| step[(i, 0)].abs()).fold(0.0, f64::max);
-                if size_of(&step) > CURVED && let Some(bend) = self.bend(&point, &step) {
+                if size_of(&step) > CURVED
+                    && let Some(bend) = self.bend(&point, &step)
+                {
                     let bend = solved.solve(along(&bend));
                     if 2.0 * size_of(&bend) < 0.75 * size_of(&step) {
                         step += bend;

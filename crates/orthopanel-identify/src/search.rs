@@ -158,12 +158,13 @@ impl<'a> Inquiry<'a> {
             if at.partners.iter().any(|record| record[pole].is_none()) {
                 return f64::INFINITY;
             }
-            let places = (0..measured.records.len()).map(|record| self.predictor.comparison.residue_place(record, pole));
+            let places =
+                (0..measured.records.len()).map(|record| self.predictor.comparison.residue_place(record, pole));
             let missed = |place: usize| (self.predictor.comparison.values[place] - at.values[place]).powi(2);
             places.flat_map(|place| [place, place + 1]).map(missed).sum::<f64>()
         };
         let mut poles: Vec<(f64, Pole)> =
-            measured.poles.iter().enumerate().map(|(number, pole)| (missed(number), pole.clone())).collect();
+            measured.poles.iter().enumerate().map(|(number, pole)| (missed(number), *pole)).collect();
         poles.sort_by(|a, b| b.0.total_cmp(&a.0));
         poles.into_iter().take(MISSED).map(|(_, pole)| pole).collect()
     }
@@ -173,7 +174,9 @@ impl<'a> Inquiry<'a> {
     fn tuned(&self, base: &Judged, poles: &[Pole], mass: f64, x: f64) -> Vec<f64> {
         let at = &base.posterior.point.z;
         let (constants, effects) = (base.hypothesis.constants(at), base.hypothesis.effects(at));
-        let Ok(seen) = effects.and_then(|effects| self.predictor.seen_at(x, &constants, &effects)) else { return vec![] };
+        let Ok(seen) = effects.and_then(|effects| self.predictor.seen_at(x, &constants, &effects)) else {
+            return vec![];
+        };
         let tuned = |pole: &Pole| {
             let square = pole.angular_frequency.powi(2);
             let share = |(deflection, omega): (&Vec<f64>, &f64)| deflection[0].powi(2) / (omega.powi(2) - square);
@@ -379,7 +382,8 @@ impl<'a> Inquiry<'a> {
             let by = problem.whitening(&of_errors(&problem, &z)?, &of.posterior.log_sizes)?;
             let posterior = problem.posterior(problem.point(z, &by)?, of.posterior.log_sizes, 4)?;
             let way = &of.hypothesis.parts[part];
-            let ways = Part::ways(way.effect, self.predictor.piece(), self.predictor.comparison.measured.records.len()).len();
+            let ways =
+                Part::ways(way.effect, self.predictor.piece(), self.predictor.comparison.measured.records.len()).len();
             let log_odds = of.log_odds - of.posterior.log_evidence
                 + posterior.log_evidence
                 + ((ways * catalogue().len()) as f64).ln();

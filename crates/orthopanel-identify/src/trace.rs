@@ -5,14 +5,14 @@ use orthopanel_model::StructureKind;
 
 use crate::IdentifyError;
 use crate::answer::answer;
-use crate::outcome::{Progress, Tracing, Verdict};
+use crate::outcome::{Progress, Tracing};
 use crate::tracing::{check_declared, trace_by_fits};
 
 /// Names the effect that the base model of a test lacks, from its records or its natural frequencies. Effects that the test
 /// file declares are part of the base model.
 ///
-/// Hits of one beam are judged by their measured modes, as [`infer`](crate::infer) does. Lists of natural frequencies and files of
-/// accelerances are fitted number by number and line by line, with each effect in turn.
+/// Records are fitted line by line, lists number by number, with each effect in turn: for panels that are as their model but for that effect.
+/// Of others see [`trace_by_modes`].
 ///
 /// # Errors
 /// [`IdentifyError::PlateNotTraced`] for a declared plate; records that cannot be read or show too few resonances, and tests
@@ -26,38 +26,30 @@ pub fn trace(test: &ImpactTest) -> Result<Tracing, IdentifyError> {
 /// # Errors
 /// As [`trace`].
 pub fn trace_with(test: &ImpactTest, progress: &(dyn Fn(Progress) + Sync)) -> Result<Tracing, IdentifyError> {
-    // The base of every trace is a beam: of a plate it would judge another model than the one that the file declares.
-    if test.structure == Some(StructureKind::MindlinPlate) {
-        return Err(IdentifyError::PlateNotTraced);
-    }
-    let hits = |data: &MeasurementData| matches!(data, MeasurementData::TimeHistory(_));
-    let tracing = if test.pieces.len() == 1 && test.measurements.iter().all(|measurement| hits(&measurement.data)) {
-        trace_hits(test, progress)?
-    } else {
-        trace_by_fits(test, progress)?
-    };
-    tracing.finite()
+    check_structure(test)?;
+    trace_by_fits(test, progress)?.finite()
 }
 
-/// Effects that measured modes are not asked for.
-const BY_LINES: [&str; 3] = ["viscoelastic-core", "width-coupling", "cubic-stiffness"];
-
-/// By measured modes; by lines what these do not take, and where they leave something that one of [`BY_LINES`] explains.
-fn trace_hits(test: &ImpactTest, progress: &(dyn Fn(Progress) + Sync)) -> Result<Tracing, IdentifyError> {
-    check_declared(test)?;
-    let by_modes = match answer(test, progress) {
-        Err(IdentifyError::Unsupported(_) | IdentifyError::TooFewResonances { .. }) => {
-            return trace_by_fits(test, progress);
-        }
-        answered => answered?,
-    };
-    if by_modes.verdict != Verdict::Unexplained {
-        return Ok(by_modes);
+/// [`trace_with`] for hits of one beam that is as real ones are: not quite its model, by an error that is estimated with the rest. Hypotheses are
+/// judged by measured modes, as [`infer`](crate::infer) does.
+///
+/// # Errors
+/// As [`trace`]; [`IdentifyError::Unsupported`] for lists, accelerances and several pieces.
+pub fn trace_by_modes(test: &ImpactTest, progress: &(dyn Fn(Progress) + Sync)) -> Result<Tracing, IdentifyError> {
+    check_structure(test)?;
+    let hits = |data: &MeasurementData| matches!(data, MeasurementData::TimeHistory(_));
+    if test.pieces.len() != 1 || !test.measurements.iter().all(|measurement| hits(&measurement.data)) {
+        let message = "a trace by modes of anything but the hits of one piece: trace it by lines";
+        return Err(IdentifyError::Unsupported(message.into()));
     }
-    let by_lines = trace_by_fits(test, progress).ok();
-    let named = by_lines.filter(|by_lines| {
-        let is_sure = matches!(by_lines.verdict, Verdict::Explained | Verdict::Ambiguous);
-        is_sure && by_lines.effects.iter().any(|effect| BY_LINES.contains(&effect.id))
-    });
-    Ok(named.unwrap_or(by_modes))
+    check_declared(test)?;
+    answer(test, progress)?.finite()
+}
+
+/// The base of every trace is a beam: of a plate it would judge another model than the one that the file declares.
+fn check_structure(test: &ImpactTest) -> Result<(), IdentifyError> {
+    match test.structure {
+        Some(StructureKind::MindlinPlate) => Err(IdentifyError::PlateNotTraced),
+        _ => Ok(()),
+    }
 }

@@ -13,20 +13,16 @@ fn val_a_misplaced_hammer_is_named_and_its_way_found() {
     assert_eq!(answer["verdict"], "explained");
     assert_eq!(answer["effects"][0]["id"], "hammer-offset");
     assert_eq!(answer["effects"][0]["owner"], "channel");
-    // No blow is trusted to fall nearer to its mark than 0.8 mm.
+    // Noise of 0.3 % in 3 hits leaves some micrometres.
     let offset = number(&answer, "/effects/0/parameters/offset/value");
-    let std = number(&answer, "/effects/0/parameters/offset/std");
-    assert!((offset + 0.01).abs() < 2.0 * std && std < 1e-3, "offset {offset} +- {std} m, put in -0.01 m");
+    assert!((offset + 0.01).abs() < 3e-5, "offset {offset} m, put in -0.01 m");
+    assert!(number(&answer, "/effects/0/parameters/offset/std") > 0.0);
     let error = |path: &str| number(&answer, &format!("/error/{path}"));
-    assert!(error("after/held_out") < 0.5 * error("before/held_out"));
+    assert!(error("after/held_out") < 0.1 * error("before/held_out"));
     assert!(error("after/held_out") < 1.2 * error("noise_floor"));
-    // The beam that the hits were made with is the model's own.
-    assert!(number(&answer, "/model_error/frequency") < 3e-4, "{}", answer["model_error"]);
-    let evidence = |id: &str| {
-        let of = answer["candidates"].as_array().and_then(|all| all.iter().find(|candidate| candidate["id"] == id));
-        of.and_then(|candidate| candidate["log_evidence"].as_f64()).expect("an evidence")
-    };
-    assert!(evidence("hammer-offset") > evidence("base") + 10.0);
+    // What is left is white: its lines are as independent as those of noise under the same window.
+    assert!((error("independent/after") / error("independent/noise") - 1.0).abs() < 0.1, "{}", answer["error"]);
+    assert!(error("independent/before") < 0.2 * error("independent/noise"));
     assert!(answer["candidates"].as_array().is_some_and(|candidates| candidates.len() > 5));
     assert!(answer["next_experiment"].is_string());
     // People read ten of them, and are told of the others.
@@ -45,6 +41,35 @@ fn val_a_misplaced_hammer_is_named_and_its_way_found() {
         let error = found / number(&truth, &format!("/constants/{name}")) - 1.0;
         assert!(error.abs() < 1e-3, "{name}: {found:e}, {error:e} from the truth");
     }
+}
+
+/// A panel as real ones are: what is found has the error of its model beside it.
+#[test]
+fn val_modes_name_a_misplaced_hammer_beside_a_model_error() {
+    let bench = Bench::new();
+    let answer = bench.json(&format!("trace {MISPLACED} --by modes -o model.json"));
+    assert_eq!(answer["schema"], "orthopanel.trace/2");
+    assert_eq!(answer["verdict"], "explained");
+    assert_eq!(answer["effects"][0]["id"], "hammer-offset");
+    // No blow is trusted to fall nearer to its mark than 0.8 mm.
+    let offset = number(&answer, "/effects/0/parameters/offset/value");
+    let std = number(&answer, "/effects/0/parameters/offset/std");
+    assert!((offset + 0.01).abs() < 2.0 * std && std < 1e-3, "offset {offset} +- {std} m, put in -0.01 m");
+    let error = |path: &str| number(&answer, &format!("/error/{path}"));
+    assert!(error("after/held_out") < 0.5 * error("before/held_out"), "{}", answer["error"]);
+    assert!(error("after/held_out") < 1.2 * error("noise_floor"), "{}", answer["error"]);
+    // The beam that the hits were made with is the model's own.
+    assert!(number(&answer, "/model_error/frequency") < 3e-4, "{}", answer["model_error"]);
+    let evidence = |id: &str| {
+        let of = answer["candidates"].as_array().and_then(|all| all.iter().find(|candidate| candidate["id"] == id));
+        of.and_then(|candidate| candidate["log_evidence"].as_f64()).expect("an evidence")
+    };
+    assert!(evidence("hammer-offset") > evidence("base") + 10.0);
+    assert!(
+        bench.done(&format!("trace {MISPLACED} --by modes")).contains("Beside noise the model misses frequencies by")
+    );
+    // Lists hold no hits.
+    refused(&bench, "trace examples/piece-1/test.toml --by modes", 1, &["trace it by lines"]);
 }
 
 #[test]
@@ -70,7 +95,8 @@ fn run_writes_the_panel_without_rig_and_channel_and_says_so() {
     for said in [
         "What the model lacks",
         "Hits before and with the effects",
-        "Beside noise the model misses frequencies by",
+        "Held out is one hit after the other",
+        "peaks wide",
         "These are the constants of the base model, before effects",
         "Fit of the natural frequencies: the base model, before effects",
         "Time histories: the base model, before effects",
@@ -82,8 +108,7 @@ fn run_writes_the_panel_without_rig_and_channel_and_says_so() {
         "Accelerances with the effects",
         "What the model with the effects leaves",
         "The same by level",
-        "noise and model error",
-        "natural logarithm of the evidence",
+        "what is left is white where this is that of noise",
         "Ranking",
     ] {
         assert!(page.contains(said), "the page does not say {said:?}");

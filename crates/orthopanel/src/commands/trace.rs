@@ -7,14 +7,13 @@ use orthopanel_data::ImpactTest;
 use crate::error::CommandError;
 use crate::identified::suffixes;
 use crate::outputs::{Inputs, Outputs};
-use crate::traced::Traced;
+use crate::traced::{By, Traced};
 use crate::{console, model_file};
 
 /// Name the physical effect that the model of a test lacks
 ///
 /// The base model, with every effect that the test file declares, is held against the data; then every
-/// effect of the catalogue with it, alone and together. Of hits the hypotheses are compared by their evidence, beside noise and
-/// a model error that is estimated; else each is judged by what was held out. The verdict is one of
+/// effect of the catalogue with it, alone and together. Each is judged by what was held out. The verdict is one of
 /// nothing-missing, explained, ambiguous (with the effects that fit alike, and the measurement that would part them) and
 /// unexplained.
 ///
@@ -23,7 +22,11 @@ use crate::{console, model_file};
 /// With several pieces in the test there is one model a piece, MODEL-NAME.json, and MODEL-manifest.json lists them (see
 /// `orthopanel identify --help`).
 ///
-/// Example: orthopanel trace examples/misplaced-hit/test.toml -o traced.json
+/// No real panel is the ideal model: where a mode lies a thousandth beside it, lines miss by many times the noise. With --by modes
+/// the modes that the hits show are compared, and by how much a sound model of this panel misses them is estimated with the rest.
+///
+/// Examples: orthopanel trace examples/misplaced-hit/test.toml -o traced.json
+///           orthopanel trace examples/misplaced-hit/test.toml --by modes
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
 pub struct Arguments {
@@ -32,16 +35,20 @@ pub struct Arguments {
     /// Model file to write (orthopanel.model/1, JSON)
     #[arg(short, long, value_name = "MODEL.json")]
     output: Option<PathBuf>,
+    /// What hypotheses are judged by
+    #[arg(long, value_enum, default_value_t = By::Lines)]
+    by: By,
     /// Print one JSON object (orthopanel.trace/2) on standard output
     #[arg(long)]
     json: bool,
 }
 
 pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
-    let Arguments { test: path, output, json } = arguments;
+    let Arguments { test: path, output, by, json } = arguments;
     let (inputs, test) = Inputs::reading_test(path)?;
     let outputs = model_file::planned_each(Outputs::of(inputs)?, output.as_deref(), &test)?;
-    let traced = Traced::from_test(&test).map_err(|source| CommandError::Identify { path: path.clone(), source })?;
+    let traced =
+        Traced::from_test(&test, *by).map_err(|source| CommandError::Identify { path: path.clone(), source })?;
     let written = match output {
         Some(output) => write_models(outputs, output, &test, path, &traced),
         None => Ok(()),

@@ -182,13 +182,27 @@ mod tests {
     use orthopanel_data::ImpactTest;
 
     use super::*;
+    use crate::traced::By;
+
+    /// The picture of what is left stands where the table beside it has its number.
+    #[test]
+    fn val_what_the_picture_shows_left_is_what_the_table_says() {
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/misplaced-hit/test.toml");
+        let test = ImpactTest::read(Path::new(path)).expect("a test");
+        let traced = Traced::from_test(&test, By::Lines).expect("a trace");
+        let told = traced.tracing.error.after.fitted;
+        for pair in &traced.tracing.accelerances {
+            let shown = PairResidual::of(pair).rms();
+            assert!((shown / told - 1.0).abs() < 0.1, "{shown} in the picture, {told} in the table");
+        }
+    }
 
     /// The lines are drawn at the numbers that the modes say: where nothing is missing, these leave little more than noise.
     #[test]
     fn val_the_picture_shows_noise_where_nothing_is_missing() {
         let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/made-hits/test.toml");
         let test = ImpactTest::read(Path::new(path)).expect("a test");
-        let traced = Traced::from_test(&test).expect("a trace");
+        let traced = Traced::from_test(&test, By::Modes).expect("a trace");
         assert!(!traced.tracing.accelerances.is_empty());
         for pair in &traced.tracing.accelerances {
             let shown = PairResidual::of(pair).rms();

@@ -8,7 +8,9 @@ mod tables;
 use std::path::Path;
 
 use orthopanel_data::ImpactTest;
-use orthopanel_identify::{AcceleranceFit, IdentifyError, Removed, Settings, Tracing, Verdict, trace_with};
+use orthopanel_identify::{
+    AcceleranceFit, IdentifyError, Progress, Removed, Settings, Tracing, Verdict, trace_by_modes, trace_with,
+};
 use orthopanel_model::{Damping, PanelModel, Place};
 use serde_json::Value;
 
@@ -27,6 +29,15 @@ const DAMPING_OF_MODES: &str = "with the effects, the ratios of the measured mod
 const DAMPING_OF_RECORDS: &str = "with the effects, the ratios with which the records as a whole fit best; beyond the band \
                                   assumed, one usual for their resonances";
 
+/// What hypotheses are judged by.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub enum By {
+    /// Every line of the records, for a panel that is as its model but for an effect
+    Lines,
+    /// The modes that the hits of one piece show, beside an error of the model that is estimated: for panels as real ones are
+    Modes,
+}
+
 /// A trace of a test.
 pub struct Traced {
     pub tracing: Tracing,
@@ -34,10 +45,14 @@ pub struct Traced {
 
 impl Traced {
     /// Traces; shows on standard error how far it is, and says what was noted.
-    pub fn from_test(test: &ImpactTest) -> Result<Self, IdentifyError> {
+    pub fn from_test(test: &ImpactTest, by: By) -> Result<Self, IdentifyError> {
         let mut tracing = {
             let shown = progress::counted("tracing what the model lacks");
-            trace_with(test, &|at| shown.at(at.done, at.of, at.effect))?
+            let tell = |at: Progress| shown.at(at.done, at.of, at.effect);
+            match by {
+                By::Lines => trace_with(test, &tell)?,
+                By::Modes => trace_by_modes(test, &tell)?,
+            }
         };
         for panel in tracing.panels.iter_mut().filter(|panel| panel.damping == Damping::default()) {
             // Lists tell no damping, and a panel without any would ring for ever.
@@ -50,8 +65,8 @@ impl Traced {
 
     /// As [`Traced::from_test`] where tracing is not all that was asked for: of a test that it refuses the sentence that
     /// says so, which goes to standard error too.
-    pub fn where_possible(test: &ImpactTest, path: &Path) -> Result<Self, String> {
-        Self::from_test(test).map_err(|error| {
+    pub fn where_possible(test: &ImpactTest, path: &Path, by: By) -> Result<Self, String> {
+        Self::from_test(test, by).map_err(|error| {
             console::say(format_args!("not traced: {}: {error}", path.display()));
             format!("Not traced: {error}.")
         })

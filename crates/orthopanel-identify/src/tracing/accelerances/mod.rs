@@ -35,7 +35,7 @@ const SCALE: &str = "gain";
 /// Names the effect that the base model lacks in the accelerances of one piece.
 ///
 /// # Errors
-/// As [`super::trace`].
+/// As [`crate::trace()`].
 pub(super) fn trace_accelerances(
     test: &ImpactTest,
     progress: &(dyn Fn(Progress) + Sync),
@@ -55,7 +55,7 @@ pub(super) fn trace_accelerances(
 /// The base model fitted to the accelerances of a test of one piece.
 ///
 /// # Errors
-/// As [`super::trace`].
+/// As [`crate::trace()`].
 pub(super) fn base_of_accelerances(test: &ImpactTest) -> Result<RecordsBase, IdentifyError> {
     let Begun { problem, state, declared, band, accelerances, start, .. } = begin(test)?;
     let (piece, poles) = (test.pieces[0].piece, start.poles.clone());

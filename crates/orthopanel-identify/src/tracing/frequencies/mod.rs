@@ -41,7 +41,7 @@ use verdict::CLEAR;
 /// Names the effect that the base model lacks in the natural frequencies of a test.
 ///
 /// # Errors
-/// As [`super::trace`].
+/// As [`crate::trace()`].
 pub(super) fn trace_frequencies(
     test: &ImpactTest,
     declared: &Hypothesis,
