@@ -5,7 +5,7 @@ use std::ops::Range;
 use faer::Mat;
 use num_complex::Complex64;
 
-use crate::measured::{MeasuredModes, MeasuredRecord, Pole};
+use crate::measured::MeasuredModes;
 
 /// Predicted modes without a pole that are counted, the strongest first.
 pub(crate) const UNSEEN: usize = 4;
@@ -14,8 +14,6 @@ const UNSEEN_DEVIATION: f64 = 0.01;
 /// What the carrier itself misses of the logarithm of a frequency: residual shapes stand for all modes beyond.
 const CARRIER: f64 = 2e-6;
 
-/// Peaks below this part of the rest are faint.
-const FAINT: f64 = 0.02;
 /// What the few terms of a series miss of a remainder: they make all its values follow from a few.
 const SERIES: f64 = 1e-3;
 
@@ -30,29 +28,6 @@ pub(crate) struct Comparison<'a> {
     pub rigid: f64,
     pub values: Vec<f64>,
     pub noise: Mat<f64>,
-    /// Poles that hardly stand out of the skirts of others: hits beside each other make twins of strong ones, which tell nothing.
-    pub faint: Vec<bool>,
-}
-
-fn lambda(pole: &Pole) -> Complex64 {
-    let zeta = pole.damping_ratio.unwrap_or(0.0);
-    pole.angular_frequency * Complex64::new(-zeta, (1.0 - zeta * zeta).max(0.0).sqrt())
-}
-
-/// Whether the peak of a pole is small beside what all others do there, rms over the records.
-fn is_faint(measured: &MeasuredModes, pole: usize) -> bool {
-    let peak = lambda(&measured.poles[pole]);
-    let at = Complex64::new(0.0, peak.im);
-    let line = |record: &MeasuredRecord, other: usize| {
-        let (residue, lambda) = (record.residues[other], lambda(&measured.poles[other]));
-        residue / (at - lambda) + residue.conj() / (at - lambda.conj())
-    };
-    let own: f64 = measured.records.iter().map(|record| line(record, pole).norm_sqr()).sum();
-    let others = |record: &MeasuredRecord| {
-        (0..measured.poles.len()).filter(|other| *other != pole).map(|other| line(record, other)).sum::<Complex64>()
-    };
-    let beside: f64 = measured.records.iter().map(|record| others(record).norm_sqr()).sum();
-    own < FAINT * FAINT * beside
 }
 
 impl<'a> Comparison<'a> {
@@ -63,8 +38,7 @@ impl<'a> Comparison<'a> {
             (squares / records.max(1) as f64).sqrt().max(f64::MIN_POSITIVE)
         };
         let residue: Vec<f64> = (0..poles).map(rms).collect();
-        let faint = (0..poles).map(|pole| is_faint(measured, pole)).collect();
-        let mut comparison = Self { measured, residue, rigid: mass.recip(), values: vec![], noise: Mat::new(), faint };
+        let mut comparison = Self { measured, residue, rigid: mass.recip(), values: vec![], noise: Mat::new() };
         let scales: Vec<f64> = (0..comparison.size()).map(|place| comparison.scale(place)).collect();
         let damped = measured.poles.iter().filter(|pole| pole.damping_ratio.is_some()).count();
         // Damping ratios are free, and left out.

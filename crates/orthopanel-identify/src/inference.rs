@@ -7,7 +7,7 @@ use crate::IdentifyError;
 use crate::comparison::Comparison;
 use crate::hypothesis::Part;
 use crate::judge::{Finding, judged};
-use crate::measured::measured_modes;
+use crate::measured::{MeasuredModes, measured_modes};
 use crate::model_error::Kind;
 use crate::outcome::Progress;
 use crate::posterior::Judged;
@@ -112,7 +112,7 @@ pub(crate) fn with_hypotheses<T>(
     if test.structure == Some(StructureKind::MindlinPlate) {
         return refused("an inference for a plate: use `identify`");
     }
-    let all = measured_modes(test)?;
+    let all: Vec<MeasuredModes> = measured_modes(test)?.into_iter().map(MeasuredModes::without_faint).collect();
     let [measured] = &all[..] else { return refused("an inference from hits and accelerances together: use `trace`") };
     let piece = test.pieces[0].piece;
     let setting = EffectSetting {

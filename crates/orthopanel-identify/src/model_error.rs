@@ -66,8 +66,6 @@ const PRIORS: [(Kind, f64, f64); 14] = [
 pub(crate) const KINDS: usize = PRIORS.len();
 /// The frequency of a motion of the piece as a whole on its suspension is predicted so many times worse.
 const HANGING: f64 = 10.0;
-/// Deviation of the logarithm of a faint pole's frequency.
-const FAINT_FREQUENCY: f64 = 0.05;
 /// Part of an error of a remainder that is in quadrature.
 const QUADRATURE: f64 = 0.3;
 /// Waves of unevenness, and how many of the core's are long: cells are stretched, and adhesive is spread, alike over 40 mm to the length.
@@ -80,10 +78,10 @@ pub(crate) struct ErrorColumns {
     pub columns: Mat<f64>,
     /// Of each column its kind, as a number below [`KINDS`].
     pub kinds: Vec<usize>,
-    /// Values that tell no more than their size, with their variance: near motions of the piece as a whole and of faint poles,
-    untold: Vec<(usize, f64)>,
+    /// Values that tell no more than their size, with their variance: near motions of the piece as a whole,
+    uninformative: Vec<(usize, f64)>,
     /// and residues of poles that are no modes of the model, which may be false.
-    alone: Vec<(usize, f64)>,
+    without_partner: Vec<(usize, f64)>,
 }
 
 /// $\ln\tau_k$ of every kind at its median.
@@ -245,25 +243,23 @@ impl ErrorColumns {
             .flat_map(|record| (0..at.near_hanging).map(move |number| comparison.remainder_place(record, number)));
         // A pole that is no mode of the model may be a false one: its residues tell no more than their size.
         let alone = at.partners.iter().enumerate().flat_map(|(record, partners)| {
-            let without =
-                partners.iter().enumerate().filter(|(pole, partner)| partner.is_none() && !comparison.faint[*pole]);
+            let without = partners.iter().enumerate().filter(|(_, partner)| partner.is_none());
             without.map(move |(pole, _)| comparison.residue_place(record, pole))
         });
         let of_size = |place: usize| [place, place + 1].map(|place| (place, comparison.values[place].powi(2).max(1.0)));
-        let faint = (0..measured.poles.len()).filter(|&pole| comparison.faint[pole]);
-        let residues_of = |pole| (0..measured.records.len()).map(move |record| comparison.residue_place(record, pole));
-        let untold = near
-            .chain(faint.clone().flat_map(residues_of))
-            .flat_map(of_size)
-            .chain(faint.map(|pole| (pole, FAINT_FREQUENCY.powi(2))))
-            .collect();
-        let alone = alone.flat_map(of_size).collect();
-        Self { columns: matrix, kinds: columns.into_iter().map(|(kind, _)| kind).collect(), untold, alone }
+        let uninformative = near.flat_map(of_size).collect();
+        let without_partner = alone.flat_map(of_size).collect();
+        Self {
+            columns: matrix,
+            kinds: columns.into_iter().map(|(kind, _)| kind).collect(),
+            uninformative,
+            without_partner,
+        }
     }
 
     /// The same where every pole is to be a mode of the model: for the search of an effect that gives it one.
-    pub(crate) fn without_alone(mut self) -> Self {
-        self.alone.clear();
+    pub(crate) fn with_every_partner(mut self) -> Self {
+        self.without_partner.clear();
         self
     }
 
@@ -273,7 +269,10 @@ impl ErrorColumns {
             self.columns[(i, j)] * log_sizes[self.kinds[j]].exp()
         });
         let mut covariance = noise + &scaled * scaled.transpose();
-        self.untold.iter().chain(&self.alone).for_each(|(place, variance)| covariance[(*place, *place)] += variance);
+        self.uninformative
+            .iter()
+            .chain(&self.without_partner)
+            .for_each(|(place, variance)| covariance[(*place, *place)] += variance);
         covariance
     }
 }

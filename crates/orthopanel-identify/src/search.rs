@@ -216,7 +216,7 @@ impl<'a> Inquiry<'a> {
         let measured = self.predictor.comparison.measured;
         let of_base = self.problem(&base.hypothesis);
         let at_base = &base.posterior.point;
-        let errors = of_base.errors(&at_base.at).without_alone();
+        let errors = of_base.errors(&at_base.at).with_every_partner();
         let loose = of_base.whitening(&errors, &logs(LOOSE.map(|size| NET * size)))?;
         let ways: Vec<Hypothesis> = Part::ways(effect, self.predictor.piece(), measured.records.len())
             .into_iter()
@@ -268,7 +268,7 @@ impl<'a> Inquiry<'a> {
                     let both = [point.z, unshifted].into_iter().filter_map(|z| problem.point(z, &loose));
                     point = both.min_by(|a, b| a.misfit.total_cmp(&b.misfit))?;
                 }
-                let by = problem.whitening(&problem.errors(&point.at).without_alone(), sizes)?;
+                let by = problem.whitening(&problem.errors(&point.at).with_every_partner(), sizes)?;
                 problem.follow(point, &by, most, (1.0, at_base.z.len())).map(|(point, _)| (way, point))
             };
             points.into_iter().filter_map(on).collect()

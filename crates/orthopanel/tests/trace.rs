@@ -69,7 +69,7 @@ fn val_modes_name_a_misplaced_hammer_beside_a_model_error() {
         bench.done(&format!("trace {MISPLACED} --by modes")).contains("Beside noise the model misses frequencies by")
     );
     // Lists hold no hits.
-    refused(&bench, "trace examples/piece-1/test.toml --by modes", 1, &["trace it by lines"]);
+    refused(&bench, "trace examples/piece-1/test.toml --by modes", 2, &["trace it by lines"]);
 }
 
 #[test]
