@@ -17,7 +17,7 @@ use crate::search_progress::SearchProgress;
 /// What a test says of a beam: its constants, the effects that the model lacked, and by how much the model still misses.
 ///
 /// # Method
-/// The records are brought to [`MeasuredModes`](crate::MeasuredModes) first, which know no physics. Every hypothesis, nothing missing, each effect of the
+/// The records are brought to [`MeasuredModes`] first, which know no physics. Every hypothesis, nothing missing, each effect of the
 /// catalogue, and more of them while the evidence grows, predicts the same modes. What is measured less what is predicted has the covariance
 /// $$C = C_\text{noise} + \sum_k\tau_k^2F_kF_k^T$$
 /// of noise and of the model errors that every real panel has: of each frequency and residue, of places and gains, of core, faces and mass
