@@ -93,6 +93,11 @@ impl<'a> Comparison<'a> {
         self.residue_place(record, 0)..self.residue_place(record + 1, 0)
     }
 
+    /// Variance of a value that tells no more than its size.
+    pub(crate) fn variance_of_size(&self, place: usize) -> f64 {
+        self.values[place].powi(2).max(1.0)
+    }
+
     fn block(&self) -> usize {
         2 * (self.measured.poles.len() + self.measured.remainder_frequencies.len())
     }

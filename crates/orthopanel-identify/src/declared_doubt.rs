@@ -1,11 +1,9 @@
 //! Whether a declared number is wrong: a sensor's mass that the file tells too large comes back as a negative mass of the panel.
 
-use orthopanel_model::catalogue;
-
 use crate::hypothesis::{Hypothesis, Part};
 use crate::model_error::medians;
 use crate::posterior::{Judged, Point};
-use crate::search::Inquiry;
+use crate::search::{Inquiry, log_prior};
 
 /// Starts that are followed to the end.
 const FOLLOWED: usize = 2;
@@ -58,8 +56,7 @@ impl Inquiry<'_> {
             problem.posterior(point, medians(), ROUNDS)
         });
         let posterior = ends.max_by(|a, b| a.log_evidence.total_cmp(&b.log_evidence))?;
-        let log_odds =
-            base.log_odds - base.posterior.log_evidence + posterior.log_evidence - (catalogue().len() as f64).ln();
+        let log_odds = base.log_odds - base.posterior.log_evidence + posterior.log_evidence + log_prior(1);
         Some(Judged { hypothesis, posterior, log_odds })
     }
 }

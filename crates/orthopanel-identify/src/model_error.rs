@@ -246,7 +246,7 @@ impl ErrorColumns {
             let without = partners.iter().enumerate().filter(|(_, partner)| partner.is_none());
             without.map(move |(pole, _)| comparison.residue_place(record, pole))
         });
-        let of_size = |place: usize| [place, place + 1].map(|place| (place, comparison.values[place].powi(2).max(1.0)));
+        let of_size = |place: usize| [place, place + 1].map(|place| (place, comparison.variance_of_size(place)));
         let uninformative = near.flat_map(of_size).collect();
         let without_partner = alone.flat_map(of_size).collect();
         Self {

@@ -165,7 +165,7 @@ impl Problem<'_> {
         let mut covariance = errors.covariance(&comparison.noise, log_sizes);
         for record in 0..comparison.measured.records.len() {
             for place in comparison.remainder_place(record, 0)..comparison.block_of(record).end {
-                covariance[(place, place)] += comparison.values[place].powi(2).max(1.0);
+                covariance[(place, place)] += comparison.variance_of_size(place);
             }
         }
         Whitening::new(&covariance)
@@ -177,8 +177,13 @@ impl Problem<'_> {
 
     /// The misfit at a point; `None` where the model has no meaning.
     pub(crate) fn point(&self, z: Vec<f64>, by: &Whitening) -> Option<Point> {
+        self.judged_by(self.unjudged(z)?, by)
+    }
+
+    /// A point whose misfit is not asked for.
+    pub(crate) fn unjudged(&self, z: Vec<f64>) -> Option<Point> {
         let at = Arc::new(self.at(&z).ok()?);
-        self.judged_by(Point { z, misfit: 0.0, cost: 0.0, at, derivatives: Mat::new() }, by)
+        Some(Point { z, misfit: 0.0, cost: 0.0, at, derivatives: Mat::new() })
     }
 
     /// The same point with its misfit by another covariance.

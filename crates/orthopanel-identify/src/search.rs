@@ -10,7 +10,7 @@ use crate::comparison::Comparison;
 use crate::hypothesis::{Hypothesis, Part};
 use crate::judge::{MOST_FREQUENCY, ODDS};
 use crate::measured::Pole;
-use crate::model_error::{ErrorColumns, KINDS, Kind, Waves, medians, waves};
+use crate::model_error::{KINDS, Kind, Waves, medians, waves};
 use crate::posterior::{Judged, Point, Problem, Projection};
 use crate::predicted::Predictor;
 use crate::search_progress::SearchProgress;
@@ -48,8 +48,9 @@ pub(crate) struct Inquiry<'a> {
     pub progress: SearchProgress<'a>,
 }
 
-fn of_errors(problem: &Problem, z: &[f64]) -> Option<ErrorColumns> {
-    Some(problem.errors(&problem.at(z).ok()?))
+/// Of an effect that lacks: one of the catalogue does, in each of so many ways alike.
+pub(crate) fn log_prior(ways: usize) -> f64 {
+    -((ways * catalogue().len()) as f64).ln()
 }
 
 fn logs(sizes: [f64; KINDS]) -> [f64; KINDS] {
@@ -150,6 +151,10 @@ impl<'a> Inquiry<'a> {
         Problem { predictor: &self.predictor, hypothesis, waves: &self.waves }
     }
 
+    fn ways(&self, effect: &'static dyn Effect) -> Vec<Part> {
+        Part::ways(effect, self.predictor.piece(), self.predictor.comparison.measured.records.len())
+    }
+
     /// The poles that the base misses most, those that are none of its modes first.
     fn most_missed(&self, base: &Judged) -> Vec<Pole> {
         let measured = self.predictor.comparison.measured;
@@ -213,15 +218,11 @@ impl<'a> Inquiry<'a> {
     /// An effect more, in the way and from the start that serve best: a net of starts of all ways is ranked, the best are followed with
     /// wide sizes of model error, the best of these to the posterior.
     fn with_effect(&self, base: &Judged, effect: &'static dyn Effect) -> Option<Judged> {
-        let measured = self.predictor.comparison.measured;
         let of_base = self.problem(&base.hypothesis);
         let at_base = &base.posterior.point;
         let errors = of_base.errors(&at_base.at).with_every_partner();
         let loose = of_base.whitening(&errors, &logs(LOOSE.map(|size| NET * size)))?;
-        let ways: Vec<Hypothesis> = Part::ways(effect, self.predictor.piece(), measured.records.len())
-            .into_iter()
-            .map(|part| base.hypothesis.with(part))
-            .collect();
+        let ways: Vec<Hypothesis> = self.ways(effect).into_iter().map(|part| base.hypothesis.with(part)).collect();
         let missed = self.most_missed(base);
         // What the base's own coordinates make good of a start, to first order.
         let projection = Projection::new(&at_base.derivatives, &of_base.hypothesis.precision(), &loose)?;
@@ -289,8 +290,7 @@ impl<'a> Inquiry<'a> {
         });
         let (way, posterior) = ends.max_by(|a, b| a.1.log_evidence.total_cmp(&b.1.log_evidence))?;
         let hypothesis = ways[way].clone();
-        let log_odds = base.log_odds - base.posterior.log_evidence + posterior.log_evidence
-            - ((ways.len() * catalogue().len()) as f64).ln();
+        let log_odds = base.log_odds - base.posterior.log_evidence + posterior.log_evidence + log_prior(ways.len());
         Some(Judged { hypothesis, posterior, log_odds })
     }
 
@@ -379,14 +379,9 @@ impl<'a> Inquiry<'a> {
         let left_out = |part: usize| {
             let (hypothesis, z) = of.hypothesis.without(part, &of.posterior.point.z);
             let problem = self.problem(&hypothesis);
-            let by = problem.whitening(&of_errors(&problem, &z)?, &of.posterior.log_sizes)?;
-            let posterior = problem.posterior(problem.point(z, &by)?, of.posterior.log_sizes, 4)?;
-            let way = &of.hypothesis.parts[part];
-            let ways =
-                Part::ways(way.effect, self.predictor.piece(), self.predictor.comparison.measured.records.len()).len();
-            let log_odds = of.log_odds - of.posterior.log_evidence
-                + posterior.log_evidence
-                + ((ways * catalogue().len()) as f64).ln();
+            let posterior = problem.posterior(problem.unjudged(z)?, of.posterior.log_sizes, 4)?;
+            let log_odds = of.log_odds - of.posterior.log_evidence + posterior.log_evidence
+                - log_prior(self.ways(of.hypothesis.parts[part].effect).len());
             Some(Judged { hypothesis, posterior, log_odds })
         };
         let mut fewer: Vec<Judged> = parts.into_par_iter().filter_map(left_out).collect();

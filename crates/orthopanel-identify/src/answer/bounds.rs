@@ -11,10 +11,10 @@ use super::estimates::Estimates;
 const MARGIN: f64 = 1e-3;
 
 /// Variance of a coordinate, one beforehand, from which its number is what is usual, and not what the data say.
-const UNTOLD: f64 = 0.5;
+const PRIOR_ALONE: f64 = 0.5;
 
 /// A sentence on each number that the test file leaves out of what it declares, and that the data do not tell.
-pub(super) fn notes_on_untold(judged: &Judged, estimates: &Estimates) -> Vec<String> {
+pub(super) fn notes_on_prior_alone(judged: &Judged, estimates: &Estimates) -> Vec<String> {
     let mut notes = Vec::new();
     let precision = judged.hypothesis.precision();
     let mut coordinates = judged.hypothesis.free_constants()..;
@@ -22,7 +22,7 @@ pub(super) fn notes_on_untold(judged: &Judged, estimates: &Estimates) -> Vec<Str
         for parameter in &found.parameters {
             for value in parameter.values.iter().filter(|value| value.std.is_some()) {
                 let at = coordinates.next().unwrap_or_default();
-                if *declared && precision[at] > 0.0 && judged.posterior.covariance[(at, at)] > UNTOLD {
+                if *declared && precision[at] > 0.0 && judged.posterior.covariance[(at, at)] > PRIOR_ALONE {
                     let (name, unit, id) = (parameter.name, spaced(parameter.unit), found.id);
                     notes.push(format!("{name} = {:.1e}{unit} of {id} is what is usual: {LEFT_OUT}", value.value));
                 }

@@ -8,7 +8,7 @@ use crate::accelerance_fit::ResonanceStart;
 use crate::measured::MeasuredModes;
 
 /// Where no pole tells one.
-const UNTOLD: f64 = 0.005;
+const WITHOUT_POLES: f64 = 0.005;
 /// Part of a pole's damping that is left to the panel at least, whatever dashpots and windows bring.
 const LEAST: f64 = 1e-2;
 /// A resonance further than this from every mode belongs to none.
@@ -29,11 +29,11 @@ impl TracedDamping {
         modes: &ModalModel,
         (of_effects, resonances): (&[f64], Option<&ResonanceStart>),
     ) -> Self {
-        let mut told: Vec<Option<(f64, Option<f64>)>> = Vec::new();
+        let mut known: Vec<Option<(f64, Option<f64>)>> = Vec::new();
         let frequencies: Vec<f64> = modes.flexible().map(|mode| mode.angular_frequency / TAU).collect();
         if let Some(resonances) = resonances {
             let nearest = resonances.nearest_to(&frequencies, REACH).into_iter();
-            told.extend(nearest.map(|found| found.map(|(_, zeta)| (zeta, None))));
+            known.extend(nearest.map(|found| found.map(|(_, zeta)| (zeta, None))));
         }
         let damped = |pole: &usize| measured.poles[*pole].damping_ratio.is_some();
         let partners = measured.matched(modes);
@@ -43,13 +43,13 @@ impl TracedDamping {
             let at = measured.poles.len() + place;
             let std = zeta * measured.covariance[(at, at)].sqrt();
             let own = (zeta - of_effects.get(pole).copied().unwrap_or(0.0)).max(LEAST * zeta);
-            told.resize(told.len().max(partner.mode), None);
-            told[partner.mode - 1] = Some((own, Some(std)));
+            known.resize(known.len().max(partner.mode), None);
+            known[partner.mode - 1] = Some((own, Some(std)));
         }
-        let logs: Vec<f64> = told.iter().flatten().map(|(zeta, _)| zeta.ln()).collect();
-        let usual = if logs.is_empty() { UNTOLD } else { (logs.iter().sum::<f64>() / logs.len() as f64).exp() };
-        let ratios = told.iter().map(|known| known.map_or(usual, |(zeta, _)| zeta)).collect();
-        let std = told.into_iter().map(|known| known.and_then(|(_, std)| std)).collect();
+        let logs: Vec<f64> = known.iter().flatten().map(|(zeta, _)| zeta.ln()).collect();
+        let usual = if logs.is_empty() { WITHOUT_POLES } else { (logs.iter().sum::<f64>() / logs.len() as f64).exp() };
+        let ratios = known.iter().map(|one| one.map_or(usual, |(zeta, _)| zeta)).collect();
+        let std = known.into_iter().map(|one| one.and_then(|(_, std)| std)).collect();
         Self { damping: Damping { ratios, beyond: usual }, std }
     }
 }

@@ -23,7 +23,7 @@ use crate::posterior::Judged;
 use crate::search::Inquiry;
 use crate::to_check::GAIN_OR_MASS;
 
-use bounds::{notes_on_bound, notes_on_untold};
+use bounds::{notes_on_bound, notes_on_prior_alone};
 use doubt::{check_first, doubts};
 use estimates::{Estimates, id};
 use lines::{Drawn, Lines};
@@ -42,7 +42,7 @@ const MEASURE: &str = "misfit of the measured modes over noise and model error, 
 /// # Errors
 /// As [`crate::infer`].
 pub(crate) fn answer(test: &ImpactTest, progress: &(dyn Fn(Progress) + Sync)) -> Result<Tracing, IdentifyError> {
-    with_hypotheses(test, progress, |inquiry, all| told(test, inquiry, all))
+    with_hypotheses(test, progress, |inquiry, all| tracing_of(test, inquiry, all))
 }
 
 impl From<Finding> for Verdict {
@@ -56,7 +56,7 @@ impl From<Finding> for Verdict {
     }
 }
 
-fn told(test: &ImpactTest, inquiry: &Inquiry, all: &[Judged]) -> Result<Tracing, IdentifyError> {
+fn tracing_of(test: &ImpactTest, inquiry: &Inquiry, all: &[Judged]) -> Result<Tracing, IdentifyError> {
     let measured = inquiry.problem(&all[0].hypothesis).predictor.comparison.measured;
     let not_finite = |what: &str| IdentifyError::NotFinite { what: what.into() };
     let none = IdentifyError::TooFewResonances { found: measured.poles.len(), needed: 2, noise_percent: None };
@@ -108,7 +108,7 @@ fn told(test: &ImpactTest, inquiry: &Inquiry, all: &[Judged]) -> Result<Tracing,
     }
     notes.extend(doubts.iter().map(|doubt| doubt.sentence.clone()));
     notes.extend(near.iter().map(|rival| standing(chosen, rival)));
-    notes.extend(notes_on_untold(chosen, &estimates));
+    notes.extend(notes_on_prior_alone(chosen, &estimates));
     notes.extend(notes_on_bound(&estimates, &test.pieces[measured.piece].piece));
     let next_experiment = match check.clone().next() {
         Some(doubt) => check_first(doubt),
