@@ -27,7 +27,7 @@ const CLEAR_OF_HANGING: f64 = 3.0;
 /// Sets of modes that are kept.
 const KEPT: usize = 48;
 /// Modes of a plate are told up to so many times the highest pole.
-const WIDE: f64 = 1.6;
+const WIDE: f64 = 1.25;
 /// Part of the lowest pole's frequency, from which on a predicted mode may be its partner.
 const LOWEST: f64 = 0.4;
 /// Part of the band up to which a mode of some strength is seen.

@@ -194,22 +194,27 @@ impl<'a> Inquiry<'a> {
         poles.iter().flat_map(tuned).collect()
     }
 
-    /// Where the coordinates of a base stand as an effect joins it: as they are, and where that puts another structure in the place of the first,
-    /// which then may have fitted it anyhow if it missed more than a real panel does, at constants that fit the lowest poles alone as well.
+    /// Where the coordinates of a base stand as an effect joins it: as they are, and where the base misses more than a real panel does, so that
+    /// it may have been led away, at constants that fit the frequencies alone, and declared effects where a search begins; at those of the lowest
+    /// poles, where another structure takes the place of the first.
     fn bases(&self, base: &Judged, with: &Hypothesis) -> Vec<Vec<f64>> {
+        let own = base.hypothesis.of_parts(&base.posterior.point.z);
+        let at = |constants: [f64; 2]| {
+            let mut nets = vec![base.hypothesis.of_constants(&constants)];
+            for (part, own) in base.hypothesis.parts.iter().zip(&own) {
+                let starts = if part.declared { part.starts(|_, _| vec![]) } else { vec![own.to_vec()] };
+                nets = nets.iter().flat_map(|net| starts.iter().map(|start| [&net[..], start].concat())).collect();
+            }
+            nets
+        };
         let mut bases = vec![base.posterior.point.z.clone()];
-        let misses = base.posterior.log_sizes[Kind::Frequency as usize].exp() > MOST_FREQUENCY;
-        if misses && with.parts.last().is_some_and(|part| part.replaces_structure(&self.predictor)) {
+        if base.posterior.log_sizes[Kind::Frequency as usize].exp() > MOST_FREQUENCY {
+            let replaces = with.parts.last().is_some_and(|part| part.replaces_structure(&self.predictor));
+            let lowest = if replaces { &LOWEST_POLES[..] } else { &[usize::MAX] };
             let (comparison, setting) = (self.predictor.comparison, self.predictor.setting(0));
-            for lowest in LOWEST_POLES {
-                for constants in
-                    starting_constants(comparison, &setting, lowest).unwrap_or_default().into_iter().take(2)
-                {
-                    let mut z = base.posterior.point.z.clone();
-                    let own = base.hypothesis.of_constants(&constants);
-                    z.iter_mut().zip(own).for_each(|(z, own)| *z = own);
-                    bases.push(z);
-                }
+            for &lowest in lowest {
+                let constants = starting_constants(comparison, &setting, lowest).unwrap_or_default();
+                bases.extend(constants.into_iter().take(2).flat_map(at));
             }
         }
         bases
@@ -275,9 +280,7 @@ impl<'a> Inquiry<'a> {
             points.into_iter().filter_map(on).collect()
         };
         let points = best(ways.iter().enumerate().flat_map(starts).collect(), 4 * FOLLOWED);
-        if !base.names().is_empty() && !self.promises(base, &ways, &points)? {
-            return None;
-        }
+        let points = if base.names().is_empty() { points } else { self.promising(base, &ways, points)? };
         let points = best(follow(points, &logs(LOOSE), 5), FOLLOWED);
         let points = best(follow(points, &std::array::from_fn(|k| 0.5 * (LOOSE[k] * SMALL[k]).ln()), 4), FOLLOWED);
         // From small sizes, since an effect drowns in those of too poor a hypothesis; and from those, since it need not be all that lacks.
@@ -294,9 +297,15 @@ impl<'a> Inquiry<'a> {
         Some(Judged { hypothesis, posterior, log_odds })
     }
 
-    /// Whether an effect that joins a base which has one already may come to the odds that count: by a score test, what its coordinates and its
-    /// starts make good of the base's misfit to first order, under sizes of model error that are no wider than small ones.
-    fn promises(&self, base: &Judged, ways: &[Hypothesis], starts: &[(usize, Point)]) -> Option<bool> {
+    /// The starts from which an effect that joins a base which has one already may come to the odds that count, the best few; none where no start
+    /// does. By a score test: what its coordinates and its starts make good of the base's misfit to first order, under sizes of model error that
+    /// are no wider than small ones.
+    fn promising(
+        &self,
+        base: &Judged,
+        ways: &[Hypothesis],
+        starts: Vec<(usize, Point)>,
+    ) -> Option<Vec<(usize, Point)>> {
         let at_base = &base.posterior.point;
         let of_base = self.problem(&base.hypothesis);
         let sizes: [f64; KINDS] = std::array::from_fn(|kind| base.posterior.log_sizes[kind].min(SMALL[kind].ln()));
@@ -304,8 +313,8 @@ impl<'a> Inquiry<'a> {
         let precision = of_base.hypothesis.precision();
         let missed = of_base.missed(&at_base.at);
         let before = Projection::new(&at_base.derivatives, &precision, &by)?.of(&missed, &at_base.z).1;
-        let gain = |(way, start): &(usize, Point)| {
-            let problem = self.problem(&ways[*way]);
+        let gain = |way: usize, start: &Point| {
+            let problem = self.problem(&ways[way]);
             let z = [&at_base.z[..], &start.z[at_base.z.len()..]].concat();
             let start = problem.point(z, &by)?;
             let own = problem.derivatives(&start, at_base.z.len())?;
@@ -316,7 +325,11 @@ impl<'a> Inquiry<'a> {
             let precision = [&precision[..], &free].concat();
             Some(Projection::new(&columns, &precision, &by)?.of(&missed, &here).1 - before)
         };
-        Some(starts.iter().filter_map(gain).any(|gain| gain > 2.0 * ODDS.ln()))
+        let gains = starts.into_iter().filter_map(|(way, start)| Some((gain(way, &start)?, (way, start))));
+        let mut promising: Vec<_> = gains.filter(|(gain, _)| *gain > 2.0 * ODDS.ln()).collect();
+        promising.sort_by(|a, b| b.0.total_cmp(&a.0));
+        promising.truncate(FOLLOWED);
+        (!promising.is_empty()).then(|| promising.into_iter().map(|(_, start)| start).collect())
     }
 
     /// The posterior once more, to its end, from its own sizes of model error and from those of the best.

@@ -2,6 +2,7 @@
 
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
+use super::beam_base::BeamBase;
 use super::dressed_system::{FoundMode, System};
 use super::dressing::Dressing;
 use super::low_modes::{FarAnswers, LowModes};
@@ -11,9 +12,7 @@ use super::{Action, CoreModulus, EffectSetting, EffectState, ElementLaw, PointEl
 use crate::mindlin_plate::PlateTerms;
 use crate::panel_mode::crossings;
 use crate::structure::Motion;
-use crate::{
-    BeamTerms, Damping, MindlinPlate, ModeName, ModelError, Piece, Place, RitzMode, Structure, TimoshenkoBeam,
-};
+use crate::{BeamTerms, Boundary, Damping, MindlinPlate, ModeName, ModelError, Piece, Place, RitzMode, TimoshenkoBeam};
 
 /// Modes of the bare structure beyond those asked for.
 pub(crate) const SPARE_MODES: usize = 10;
@@ -60,7 +59,7 @@ impl Even {
         let terms = BeamTerms::default();
         let order = basis_terms(count + SPARE_MODES);
         let beam = Arc::new(TimoshenkoBeam::with_terms(&setting.piece, setting.boundary, order, terms)?);
-        Ok(Self::Beam(Arc::new(EvenBeam { beam, known: Mutex::default() })))
+        Ok(Self::Beam(Arc::new(EvenBeam { beam, known: Mutex::default(), bases: Mutex::default() })))
     }
 }
 
@@ -70,7 +69,12 @@ pub(crate) struct EvenBeam {
     beam: Arc<TimoshenkoBeam>,
     /// The last used first.
     known: Mutex<Vec<KnownModes>>,
+    /// The same of its exact modes.
+    bases: Mutex<Vec<KnownBase>>,
 }
+
+/// Constants, rotary factor and number of a beam's exact modes, and its ends.
+type KnownBase = (([f64; 4], Boundary), Arc<BeamBase>);
 
 /// The first `count` modes at these values of the constants.
 #[derive(Debug)]
@@ -83,6 +87,29 @@ struct KnownModes {
 impl EvenBeam {
     /// So many are kept: each of some threads goes back and forth between a few.
     const KEPT: usize = 64;
+
+    /// With its exact modes between these ends, rigid ones and `count` flexible ones.
+    pub(super) fn base(
+        &self,
+        (piece, boundary): (&Piece, Boundary),
+        values: [f64; 2],
+        rotary_factor: f64,
+        count: usize,
+    ) -> Result<Arc<BeamBase>, ModelError> {
+        let key = ([values[0], values[1], rotary_factor, count as f64], boundary);
+        let known = || self.bases.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut kept = known();
+        if let Some(place) = kept.iter().position(|known| known.0 == key) {
+            kept[..=place].rotate_right(1);
+            return Ok(Arc::clone(&kept[0].1));
+        }
+        drop(kept);
+        let base = Arc::new(BeamBase::new((piece, boundary), values, rotary_factor, count)?);
+        let mut kept = known();
+        kept.truncate(Self::KEPT - 1);
+        kept.insert(0, (key, Arc::clone(&base)));
+        Ok(base)
+    }
 
     fn low_modes(&self, values: &[f64], count: usize) -> Result<Arc<LowModes>, ModelError> {
         let known = || self.known.lock().unwrap_or_else(PoisonError::into_inner);
@@ -196,11 +223,6 @@ impl Dressed {
         };
         let core = dressing.core.map(|(core, _)| core);
         Ok(Self { structure, plate, is_even, piece, values: values.to_vec(), low, elements, core })
-    }
-
-    /// What vibrates.
-    pub(super) fn structure(&self) -> &dyn Structure {
-        self.structure.as_ref()
     }
 
     /// The plate, where it is one and nothing is spread over it.

@@ -2,6 +2,7 @@
 
 use faer::Mat;
 
+use super::beam_base::InShapes;
 use super::low_modes::{FarAnswers, LowModes};
 use super::{ElementLaw, PointElement};
 use crate::dense::{Cholesky, dot, symmetric_eigen};
@@ -62,6 +63,32 @@ impl System {
             let mut row = vec![0.0; size];
             (0..modes).for_each(|m| row[m] = answers.near[(m, a)]);
             (0..count).for_each(|b| row[modes + b] = first[(a, b)]);
+            system.join(element.law, row, &mut resonators);
+        }
+        system
+    }
+
+    /// With shapes beyond the modes, and these elements, which their first rows belong to.
+    pub(super) fn in_shapes(low: &LowModes, shapes: &InShapes, elements: &[PointElement], damping: &Damping) -> Self {
+        let mut system = Self::without_elements(low, damping);
+        let (modes, held) = (system.panel, shapes.far.nrows());
+        let resonators = elements.iter().filter(|element| matches!(element.law, ElementLaw::Resonator { .. })).count();
+        let (panel, size) = (modes + held, modes + held + resonators);
+        system.grow(size);
+        system.panel = panel;
+        for (a, b) in (0..held).flat_map(|a| (0..held).map(move |b| (a, b))) {
+            system.stiffness[(modes + a, modes + b)] = shapes.stiffness[(a, b)];
+            system.mass[(modes + a, modes + b)] = shapes.mass[(a, b)];
+        }
+        if let Some(lost) = &shapes.lost {
+            for (a, b) in (0..panel).flat_map(|a| (0..panel).map(move |b| (a, b))) {
+                system.stiffness[(a, b)] -= lost[(a, b)];
+            }
+        }
+        let mut resonators = panel..size;
+        for (number, element) in elements.iter().enumerate() {
+            let mut row = [shapes.near.col_as_slice(number), shapes.far.col_as_slice(number)].concat();
+            row.resize(size, 0.0);
             system.join(element.law, row, &mut resonators);
         }
         system
@@ -174,18 +201,28 @@ impl System {
         let size = self.stiffness.nrows();
         let first = self.residuals;
         let mut kept: Vec<usize> = (0..first).collect();
+        // By Cholesky's factor of the scaled stiffness with pivots, a row each: the shape of which most is left beside those before it is next.
+        let candidates: Vec<usize> = (first..self.panel).collect();
+        let scale: Vec<f64> = candidates.iter().map(|&i| self.stiffness[(i, i)].abs().sqrt().recip()).collect();
+        let mut left = vec![1.0_f64; candidates.len()];
+        let mut rows: Vec<Vec<f64>> = vec![vec![]; candidates.len()];
         let mut residual: Vec<usize> = Vec::new();
-        for candidate in first..self.panel {
-            let with: Vec<usize> = residual.iter().copied().chain([candidate]).collect();
-            let scale = |i: usize| self.stiffness[(i, i)].abs().sqrt().recip();
-            let block = Mat::from_fn(with.len(), with.len(), |i, j| {
-                scale(with[i]) * self.stiffness[(with[i], with[j])] * scale(with[j])
-            });
-            let smallest = symmetric_eigen(&block).and_then(|(values, _)| values.first().copied()).unwrap_or(0.0);
-            if smallest > 1e-6 {
-                residual = with;
+        for _ in 0..candidates.len() {
+            let next = (0..candidates.len()).fold(0, |most, i| if left[i] > left[most] { i } else { most });
+            if left[next] <= 1e-6 {
+                break;
             }
+            let (pivot, of_next) = (left[next].sqrt(), rows[next].clone());
+            for i in 0..candidates.len() {
+                let value = scale[i] * self.stiffness[(candidates[i], candidates[next])] * scale[next];
+                let own = (value - dot(&rows[i], &of_next)) / pivot;
+                rows[i].push(own);
+                left[i] -= own * own;
+            }
+            left[next] = 0.0;
+            residual.push(candidates[next]);
         }
+        residual.sort_unstable();
         kept.extend(residual);
         kept.extend(self.panel..size);
         kept

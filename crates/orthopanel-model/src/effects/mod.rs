@@ -4,6 +4,7 @@
 //! is [`ReceptanceModel`], line by line of a spectrum. [`catalogue()`] lists all.
 
 mod action;
+mod beam_base;
 mod catalogue;
 mod channel_factor;
 mod core_fit;

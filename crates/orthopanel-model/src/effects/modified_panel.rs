@@ -2,11 +2,26 @@
 
 use std::sync::Arc;
 
-use super::dressed_panel::{Dressed, Even, PanelWithEffects};
+use super::beam_base::BeamBase;
+use super::dressed_panel::{Dressed, Even, PanelWithEffects, elements, row};
+use super::dressed_system::{FoundMode, System};
+use super::dressing::Dressing;
 use super::receptance::modal_base::Row;
 use super::receptance::wide_plate::WidePlates;
-use super::{Action, EffectSetting, EffectState};
-use crate::{BEAM_CONSTANTS, Constant, Damping, ModelError, Motion, PLATE_CONSTANTS, Place, StructureKind};
+use super::{Action, EffectSetting, EffectState, ElementLaw, PointElement, Seat};
+use crate::timoshenko_beam::Section;
+use crate::{
+    BEAM_CONSTANTS, Constant, Damping, End, ModelError, Motion, PLATE_CONSTANTS, Place, ShearLoss, StructureKind,
+};
+
+/// A beam with its exact modes, the spans that have lost shear stiffness, and what is joined to it.
+type OnBase = (Arc<BeamBase>, Vec<ShearLoss>, Vec<PointElement>);
+
+/// Exact modes of a beam beyond those asked for.
+const SPARE: usize = 8;
+
+/// A clamp's springs stiffer than so many times $E_xI/a^3$, and $E_xI/a$, would leave rounding of what else bends.
+const STIFFEST: f64 = 1e7;
 
 /// A structure that effects modify, seen from places; what is the same for all constants and effects is worked out once.
 #[derive(Debug, Clone)]
@@ -68,6 +83,69 @@ impl ModifiedPanel {
         }
     }
 
+    /// The even beam that these effects modify, with what they do to it: a clamped end that yields is a free one on springs. None where that is no
+    /// matter of a beam's exact modes.
+    pub(super) fn base(
+        &self,
+        setting: &EffectSetting,
+        values: &[f64],
+        effects: &[EffectState],
+    ) -> Result<Option<OnBase>, ModelError> {
+        let (Even::Beam(beam), &[e_x, g_zx]) = (&self.even, values) else { return Ok(None) };
+        let Dressing { terms, core, plate, .. } = Dressing::of(effects, setting, 0)?;
+        let terms = terms.unwrap_or_default();
+        if core.is_some() || plate.is_some() || !terms.core_waves.is_empty() {
+            return Ok(None);
+        }
+        terms.check()?;
+        let mut elements = elements(effects, setting)?;
+        let mut boundary = setting.boundary;
+        let half = 0.5 * setting.piece.length;
+        for (end, x) in [(&mut boundary.left, -half), (&mut boundary.right, half)] {
+            let (Some(support), End::Clamped) = (terms.support, *end) else { continue };
+            *end = End::Free;
+            let spring = |stiffness: f64, motion: Motion| PointElement {
+                motion,
+                ..PointElement::on_deflection(
+                    ElementLaw::Spring { stiffness, damping: 0.0 },
+                    Seat::At(Place { x, y: 0.0 }),
+                )
+            };
+            let length = setting.piece.length;
+            let stiffest = STIFFEST * e_x * Section::of(&setting.piece).second_moment / length;
+            if support.rotation > stiffest || support.translation > stiffest / length.powi(2) {
+                return Ok(None);
+            }
+            elements.push(spring(support.translation, Motion::Deflection));
+            elements.push(spring(support.rotation, Motion::Rotation));
+        }
+        let base = beam.base((&setting.piece, boundary), [e_x, g_zx], terms.rotary_factor, self.count + SPARE)?;
+        Ok(Some((base, terms.losses, elements)))
+    }
+
+    /// The same in the coordinates of a base's exact modes and static shapes.
+    fn seen_on_base(
+        &self,
+        (base, losses): (&BeamBase, &[ShearLoss]),
+        elements: &[PointElement],
+        places: &[Place],
+        with_slopes: bool,
+    ) -> Result<SeenModes, ModelError> {
+        let ports = places.iter().map(|&place| (Motion::Deflection, place));
+        let slopes = places.iter().filter(|_| with_slopes).map(|&place| (Motion::Slope, place));
+        let rows: Vec<Row> = elements.iter().filter_map(row).chain(ports).chain(slopes).collect();
+        let shapes = base.in_shapes(&rows, (elements.len(), places.len()), losses);
+        let system = System::in_shapes(&base.low, &shapes, elements, &self.damping);
+        let all = faer::concat![[shapes.near], [shapes.far]];
+        let seen =
+            |row: usize, shares: &[f64]| all.col_as_slice(row).iter().zip(shares).map(|(a, b)| a * b).sum::<f64>();
+        let ports = elements.len()..elements.len() + places.len();
+        Ok(SeenModes::of(system.solve()?, |shares| {
+            let row = |row: usize| seen(row, shares);
+            (ports.clone().map(row).collect(), (ports.end..rows.len()).map(row).collect())
+        }))
+    }
+
     /// Constants of which those of the core are multiplied.
     pub fn with_core_times(&self, values: &[f64], factor: f64) -> Vec<f64> {
         let constants: &[Constant] = match &self.even {
@@ -93,6 +171,21 @@ impl ModifiedPanel {
         values: &[f64],
         effects: &[EffectState],
     ) -> Result<SeenModes, ModelError> {
+        if let Some((base, losses, elements)) = self.base(setting, values, effects)? {
+            return self.seen_on_base((&base, &losses), &elements, places, with_slopes);
+        }
+        self.seen_in_basis(setting, places, with_slopes, values, effects)
+    }
+
+    /// The same on a basis for the structure with what is spread over it.
+    fn seen_in_basis(
+        &self,
+        setting: &EffectSetting,
+        places: &[Place],
+        with_slopes: bool,
+        values: &[f64],
+        effects: &[EffectState],
+    ) -> Result<SeenModes, ModelError> {
         let Self { even, damping, .. } = self;
         let dressed = self.dressed(PanelWithEffects { setting, even, values, effects, damping })?;
         if dressed.core.is_some() {
@@ -110,15 +203,25 @@ impl ModifiedPanel {
             let near: f64 = (0..low).map(|m| answers.near[(m, row)] * shares[m]).sum();
             near + (0..residuals).map(|q| answers.series[0][(row, q)] * shares[low + q]).sum::<f64>()
         };
-        let mut seen =
-            SeenModes { angular_frequency: vec![], damping_ratio: vec![], deflection: vec![], slope: vec![] };
-        for (omega, zeta, shares) in system.solve()? {
-            seen.angular_frequency.push(omega);
-            seen.damping_ratio.push(zeta);
-            seen.deflection.push((elements..residuals).map(|port| row(port, &shares)).collect());
-            seen.slope.push((residuals..residuals + asked.len()).map(|slope| row(slope, &shares)).collect());
+        Ok(SeenModes::of(system.solve()?, |shares| {
+            let row = |number: usize| row(number, shares);
+            ((elements..residuals).map(row).collect(), (residuals..residuals + asked.len()).map(row).collect())
+        }))
+    }
+}
+
+impl SeenModes {
+    /// Of modes with their deflections and slopes by coordinates.
+    fn of(found: Vec<FoundMode>, seen: impl Fn(&[f64]) -> (Vec<f64>, Vec<f64>)) -> Self {
+        let mut all = Self { angular_frequency: vec![], damping_ratio: vec![], deflection: vec![], slope: vec![] };
+        for (omega, zeta, shares) in found {
+            all.angular_frequency.push(omega);
+            all.damping_ratio.push(zeta);
+            let (deflection, slope) = seen(&shares);
+            all.deflection.push(deflection);
+            all.slope.push(slope);
         }
-        Ok(seen)
+        all
     }
 }
 
@@ -229,6 +332,69 @@ mod tests {
             let difference = (sense(&after) - sense(&before)) / 2e-4;
             let slope = here.slope[n][0];
             assert!((slope - difference).abs() < 2e-3 * difference.abs().max(10.0), "mode {n}: {slope} {difference}");
+        }
+    }
+
+    /// Exact modes and static shapes against a Ritz basis for 60 modes, with every pair of ends.
+    #[test]
+    fn val_exact_modes_and_static_shapes_meet_a_long_ritz_basis() {
+        let state =
+            |id: &str, values: &[f64]| EffectState::new(effect(id).expect("known"), values.to_vec(), 1).expect("valid");
+        let cases = [
+            state("local-mass", &[0.02, 0.11]),
+            state("sensor-mass", &[0.02, 1e-6]),
+            state("resonator", &[0.03, 800.0, 0.01, 0.11]),
+            state("rotary-inertia", &[2.4]),
+            state("stiffness-loss", &[0.4, 0.06, -0.2]),
+            state("stiffness-loss", &[0.4, 0.3, -0.1]),
+            state("stiffness-loss", &[0.4, 0.1, 0.07]),
+            state("stiffness-loss", &[0.9, 0.06, -0.2]),
+        ];
+        let places = [-0.33, 0.05, 0.31].map(place);
+        let [free, pinned, clamped] = [End::Free, End::Pinned, End::Clamped];
+        let ends = [[free; 2], [clamped, free], [clamped, pinned], [pinned; 2], [clamped; 2], [pinned, free]];
+        for (ends, thickness) in
+            ends.into_iter().flat_map(|ends| [0.003, 0.03, 0.06].map(|thickness| (ends, thickness)))
+        {
+            let piece = Piece { thickness, ..setting().piece };
+            let setting = EffectSetting {
+                piece,
+                boundary: Boundary { left: ends[0], right: ends[1], ..Boundary::default() },
+                ..setting()
+            };
+            let panel =
+                |count: usize| ModifiedPanel::new(StructureKind::TimoshenkoBeam, &setting, count).expect("a beam");
+            let (panel, long) = (panel(14), panel(60));
+            let yields = [[3e4, 1e8], [2e3, 3e6], [1e6, 1e10]].map(|values| state("support-compliance", &values));
+            let held = ends.contains(&clamped);
+            for effect in cases.iter().chain(yields.iter().filter(|_| held)) {
+                let effects = std::slice::from_ref(effect);
+                let values = [1.07e10, 5.363e8];
+                let seen = panel.seen_from(&setting, &places, true, &values, effects).expect("modes");
+                let ritz = long.seen_in_basis(&setting, &places, true, &values, effects).expect("modes");
+                let coarse = effect.values[0] == 0.9;
+                for n in setting.boundary.rigid_modes()..10 {
+                    let (own, other) = (seen.angular_frequency[n], ritz.angular_frequency[n]);
+                    let least = if coarse { 3e-5 } else { 2e-6 };
+                    assert!(
+                        (own / other - 1.0).abs() < least,
+                        "{ends:?} {thickness} {} {:?} {n}: {own} {other}",
+                        effect.effect.id(),
+                        effect.values
+                    );
+                    for (a, b) in [(0, 2), (1, 1)] {
+                        let product = |modes: &SeenModes| modes.deflection[n][a] * modes.deflection[n][b];
+                        let least = if coarse { 2e-2 } else { 2e-3 };
+                        let (own, other) = (product(&seen), product(&ritz));
+                        assert!(
+                            (own - other).abs() < least * other.abs().max(0.1),
+                            "{ends:?} {thickness} {} {:?} {n}: {own} {other}",
+                            effect.effect.id(),
+                            effect.values
+                        );
+                    }
+                }
+            }
         }
     }
 }

@@ -2,8 +2,7 @@
 
 use faer::Mat;
 
-use super::dressed_panel::{Dressed, PanelWithEffects};
-use super::receptance::modal_base::{Row, coordinate_rows};
+use super::receptance::modal_base::Row;
 use super::{EffectSetting, ModifiedPanel, SeenModes};
 use crate::legendre::gauss_legendre;
 use crate::timoshenko_beam::Section;
@@ -41,20 +40,12 @@ impl ModifiedPanel {
         values: &[f64],
         (field, waves): (Field, usize),
     ) -> Result<Vec<SeenModes>, ModelError> {
-        let parts = PanelWithEffects { setting, even: &self.even, values, effects: &[], damping: &self.damping };
-        let dressed = Dressed::for_modes(parts, self.count)?;
-        let (structure, low) = (dressed.structure(), &dressed.low);
-        let seen = |rows: &[Row]| -> Result<Mat<f64>, ModelError> {
-            let mut all = Mat::zeros(rows.len(), low.modes.len());
-            for (index, block) in structure.blocks().iter().enumerate() {
-                let of_block = coordinate_rows(structure, (index, block.size()), rows)?;
-                for (m, (_, shape, _)) in low.modes.iter().enumerate().filter(|(_, mode)| mode.0 == index) {
-                    for row in 0..rows.len() {
-                        all[(row, m)] = shape.iter().enumerate().map(|(i, share)| of_block[(row, i)] * share).sum();
-                    }
-                }
-            }
-            Ok(all)
+        let Some((base, ..)) = self.base(setting, values, &[])? else {
+            return Err(ModelError::Unsupported("a plate that is uneven along x".into()));
+        };
+        let low = &base.low;
+        let seen = |rows: &[Row]| {
+            Mat::from_fn(rows.len(), low.modes.len(), |row, m| base.modes[m].motion((rows[row].0, rows[row].1.x)))
         };
         let half = 0.5 * setting.piece.length;
         let rule = gauss_legendre(2 * low.modes.len() + waves + 8);
@@ -66,14 +57,14 @@ impl ModifiedPanel {
         // Motions whose products are the density of energy, with their factors.
         let rotation = || seen(&rows(Motion::Rotation));
         let densities: Vec<(f64, Mat<f64>)> = match field {
-            Field::Shear => vec![(g_zx * section.shear_area, seen(&rows(Motion::Slope))? + rotation()?)],
-            Field::Bending => vec![(e_x * section.second_moment, seen(&rows(Motion::Curvature))?)],
+            Field::Shear => vec![(g_zx * section.shear_area, seen(&rows(Motion::Slope)) + rotation())],
+            Field::Bending => vec![(e_x * section.second_moment, seen(&rows(Motion::Curvature)))],
             Field::Mass => {
-                vec![(section.mass, seen(&rows(Motion::Deflection))?), (section.rotary_inertia, rotation()?)]
+                vec![(section.mass, seen(&rows(Motion::Deflection))), (section.rotary_inertia, rotation())]
             }
         };
         let ports: Vec<Row> = places.iter().map(|&place| (Motion::Deflection, place)).collect();
-        let at_ports = seen(&ports)?;
+        let at_ports = seen(&ports);
         let wave = |number: usize| {
             let size = low.modes.len();
             let mut change = Mat::<f64>::zeros(size, size);

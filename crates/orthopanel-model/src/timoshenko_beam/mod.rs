@@ -14,6 +14,7 @@ mod inertial_remainder;
 mod ritz;
 mod static_field;
 mod static_flexibility;
+mod static_shape;
 mod strain_basis;
 mod term_matrices;
 
@@ -22,6 +23,7 @@ pub use exact::{BeamMode, ExactBeam};
 pub use finite_element::BeamElements;
 pub use ritz::TimoshenkoBeam;
 pub use static_flexibility::StaticFlexibility;
+pub(crate) use static_shape::{Grid, StaticShape, StaticShapes};
 
 use crate::constant::Constant;
 use crate::{ModelError, Piece};

@@ -111,7 +111,7 @@ impl StaticFlexibility {
     }
 
     /// Moment and shear force that the ends can bear without any load: $M = c + dx$, $V = d$.
-    fn self_stresses(&self) -> Vec<StaticField> {
+    pub(super) fn self_stresses(&self) -> Vec<StaticField> {
         let h = self.half_length;
         let linear = |at_centre: f64, slope: f64| StaticField::linear(at_centre, slope);
         match (self.boundary.left, self.boundary.right) {
@@ -123,7 +123,7 @@ impl StaticFlexibility {
     }
 
     /// One field in equilibrium with a unit load at `at`: $V' = -f + \rho A\ddot w$, $M' = V - c + \rho I\ddot\psi$.
-    fn loaded(&self, motion: Motion, at: f64) -> StaticField {
+    pub(super) fn loaded(&self, motion: Motion, at: f64) -> StaticField {
         let h = self.half_length;
         let Section { mass, rotary_inertia, .. } = self.section;
         let turning_inertia = |pivot: f64| 2.0 * h * (mass * (h * h / 3.0 + pivot * pivot) + rotary_inertia);

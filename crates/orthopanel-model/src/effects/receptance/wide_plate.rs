@@ -107,10 +107,12 @@ pub(in crate::effects) struct WidePlates {
 /// A neighbourhood of values.
 type Cell = [i32; 6];
 
-/// Its width in the logarithms (of $\nu_{xy}$ in itself). A plate on its own shapes at the middle then has frequencies to
-/// 1e-7, for shapes err by the square of the way from there and frequencies by the square of that; and which plate is
+/// Its width in the logarithms of $E_x/G_{zx}$ and of the ratios (of $\nu_{xy}$ in itself). A plate on its own shapes at the middle then has
+/// frequencies to 1e-7, for shapes err by the square of the way from there and frequencies by the square of that; and which plate is
 /// taken follows from the values alone, not from what a search met before.
 const CELL: f64 = 0.05;
+/// Its width in the logarithm of $E_x$: where all moduli rise alike, shapes stay.
+const SCALE: f64 = 0.3;
 /// Plates that are kept.
 const KEPT: usize = 24;
 /// Parts of the beam's highest summed frequency (2.5 times the highest line): modes below the first are summed, those below
@@ -130,17 +132,24 @@ impl WidePlates {
         for (constant, &value) in RATIO_CONSTANTS.iter().zip(&values) {
             constant.check(value)?;
         }
-        let is_linear = |index: usize| RATIO_CONSTANTS[index].low == 0.0;
-        let coordinate = |index: usize| if is_linear(index) { values[index] } else { values[index].ln() };
-        let cell: Cell = std::array::from_fn(|index| (coordinate(index) / CELL).round() as i32);
+        let [e_x, g_zx, e_y, nu_xy, g_xy, g_yz] = values;
+        let place = [
+            e_x.ln() / SCALE,
+            (e_x / g_zx).ln() / CELL,
+            e_y.ln() / CELL,
+            nu_xy / CELL,
+            g_xy.ln() / CELL,
+            g_yz.ln() / CELL,
+        ];
+        let cell: Cell = place.map(|place| place.round() as i32);
         let known = |plates: &[(Cell, WidePlate)]| plates.iter().find(|(of, _)| *of == cell).map(|(_, p)| p.clone());
         if let Some(plate) = self.known.lock().ok().and_then(|plates| known(&plates)) {
             return Ok(plate);
         }
-        let middle: Ratios = std::array::from_fn(|index| {
-            let at = f64::from(cell[index]) * CELL;
-            if is_linear(index) { at } else { at.exp() }
-        });
+        let [scale, ratio, e_y, nu_xy, g_xy, g_yz] = cell.map(f64::from);
+        let e_x = (SCALE * scale).exp();
+        let ratios = [ratio, e_y, g_xy, g_yz].map(|place| (CELL * place).exp());
+        let middle = [e_x, e_x / ratios[0], ratios[1], CELL * nu_xy, ratios[2], ratios[3]];
         let plate = self.at(middle, summed)?;
         if let Ok(mut plates) = self.known.lock() {
             plates.truncate(KEPT - 1);

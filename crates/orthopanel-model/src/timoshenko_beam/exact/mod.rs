@@ -14,7 +14,7 @@ use shape::WaveShape;
 use waves::{DEFLECTION, ROTATION, Ratios};
 
 use super::{BeamConstants, Section};
-use crate::{Boundary, End, ModelError, Piece};
+use crate::{Boundary, End, ModelError, Motion, Piece};
 
 /// A beam with given constants and ends, solved exactly.
 ///
@@ -49,6 +49,13 @@ impl ExactBeam {
         let ratios =
             Ratios { r2: section.rotary_inertia / (section.mass * a2), s2: bending / (g_zx * section.shear_area * a2) };
         Ok(Self { piece, section, boundary, ratios, omega2_per_mu: bending / (section.mass * a2 * a2) })
+    }
+
+    /// With a rotary inertia $\rho I$ of so many times that of evenly spread mass.
+    pub(crate) fn with_rotary_factor(mut self, factor: f64) -> Self {
+        self.section.rotary_inertia *= factor;
+        self.ratios.r2 *= factor;
+        self
     }
 
     /// The rigid modes, then the first `count` flexible ones in rising order.
@@ -195,6 +202,28 @@ impl BeamMode {
         match self.shape {
             Shape::Rigid(RigidShape { at_centre, slope }) => at_centre - slope * x,
             Shape::Waves { shape, length } => length * shape.field(x / length)[DEFLECTION],
+        }
+    }
+
+    /// Deflection, rotation, curvature $\Psi'$ and shear strain at $x$ from the centre \[m\].
+    pub(crate) fn field(&self, x: f64) -> [f64; 4] {
+        match self.shape {
+            Shape::Rigid(RigidShape { at_centre, slope }) => [at_centre - slope * x, slope, 0.0, 0.0],
+            Shape::Waves { shape, length } => {
+                let [deflection, rotation, moment, strain] = shape.field(x / length);
+                [length * deflection, rotation, moment / length, strain]
+            }
+        }
+    }
+
+    /// What a motion at $x$ sees of it.
+    pub(crate) fn motion(&self, (motion, x): (Motion, f64)) -> f64 {
+        let [deflection, rotation, curvature, strain] = self.field(x);
+        match motion {
+            Motion::Deflection => deflection,
+            Motion::Slope => strain - rotation,
+            Motion::Rotation => rotation,
+            Motion::Curvature => curvature,
         }
     }
 
