@@ -32,6 +32,7 @@ mod trace;
 mod trace_rows;
 mod tracing;
 mod usual_ratios;
+mod view;
 
 pub use accelerance_fit::DampingLaw;
 pub use entry::identify;

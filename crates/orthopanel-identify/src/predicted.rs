@@ -6,12 +6,13 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use num_complex::Complex64;
 use orthopanel_model::{
-    Action, ChannelFactor, CoreModulus, EffectSetting, EffectState, Field, ModelError, ModesAtLine, ModifiedPanel,
-    Piece, Place, RecordSetting, RelaxingMode, RelaxingModes, Seat, SeenModes, StructureKind,
+    Action, CoreModulus, EffectSetting, EffectState, Field, ModelError, ModifiedPanel, Piece, Place, RecordSetting,
+    RelaxingModes, Seat, SeenModes, StructureKind,
 };
 
 use crate::comparison::{Comparison, UNSEEN};
-use crate::measured::{MeasuredModes, SKIRT};
+use crate::measured::SKIRT;
+use crate::view::{Channel, Relaxing, View, Views};
 
 /// Predicted modes beyond the number of poles that take part.
 const SPARE: usize = 6;
@@ -81,24 +82,6 @@ pub(crate) struct PartnerInRecord {
     pub pole: Complex64,
     /// Its residue over the product of the deflections.
     pub unit: Complex64,
-}
-
-/// What acts on one record besides the structure.
-#[derive(Default)]
-struct Channel {
-    factors: Vec<ChannelFactor>,
-    force_offset: f64,
-    response_offset: f64,
-    /// $1/\tau$ of windows \[1/s\].
-    decay: f64,
-    /// Whether the sensor loads the structure.
-    loads: bool,
-}
-
-impl Channel {
-    fn at(&self, s: Complex64) -> Complex64 {
-        self.factors.iter().map(|factor| factor.line(s).value).product()
-    }
 }
 
 impl<'a> Predictor<'a> {
@@ -453,161 +436,4 @@ fn core_of(setting: &EffectSetting, effects: &[EffectState]) -> Result<Option<Co
         }
     }
     Ok(core)
-}
-
-/// Modes as records see them.
-struct Views {
-    /// Places of force and response of each record, with what offsets bring.
-    places: Vec<[Place; 2]>,
-    views: Vec<View>,
-}
-
-impl Views {
-    /// The modes that a record sees, and its ports of force and response.
-    fn of_record(&self, record: usize) -> (&View, [usize; 2]) {
-        let places = self.places[record];
-        let own = |view: &&View| view.of.is_none_or(|of| of == places[1]);
-        let view = self.views.iter().find(own).unwrap_or(&self.views[0]);
-        (view, places.map(|place| view.ports.iter().position(|port| *port == place).unwrap_or(0)))
-    }
-}
-
-/// Modes as some records see them.
-struct View {
-    /// The place of the sensor, where it loads the structure.
-    of: Option<Place>,
-    ports: Vec<Place>,
-    /// With a core that depends on frequency, about as they are.
-    modes: Arc<SeenModes>,
-    relaxing: Option<Relaxing>,
-}
-
-impl View {
-    /// How many modes count each by itself.
-    fn near(&self) -> usize {
-        self.modes.angular_frequency.len()
-    }
-
-    /// A mode between two ports, with this damping ratio.
-    fn mode(&self, (n, [force, response]): (usize, [usize; 2]), zeta: f64) -> ModeInRecord {
-        if let Some(relaxing) = &self.relaxing {
-            let mode = relaxing.mode(n, zeta);
-            let shape = between(&mode.deflection, &mode.slope, [force, response]);
-            let deflection = [force, response].map(|port| mode.deflection[port]);
-            let core = Some((mode.damping, mode.by_s));
-            return ModeInRecord { omega: mode.angular_frequency, zeta, deflection, shape, core };
-        }
-        let deflection = &self.modes.deflection[n];
-        let slope = |port: usize| self.modes.slope[n].get(port).copied().unwrap_or(0.0);
-        let shape = [
-            deflection[force] * deflection[response],
-            slope(force) * deflection[response],
-            deflection[force] * slope(response),
-        ];
-        let omega = self.modes.angular_frequency[n];
-        let deflection = [force, response].map(|port| deflection[port].into());
-        ModeInRecord { omega, zeta, deflection, shape: shape.map(Complex64::from), core: None }
-    }
-
-    /// A mode's accelerance over the product of deflections, as the channel shows it, at a frequency of the remainder; and that product.
-    fn line(
-        &self,
-        mode: &ModeInRecord,
-        (n, ports): (usize, [usize; 2]),
-        (number, s): (usize, Complex64),
-        channel: &Channel,
-    ) -> (Complex64, [Complex64; 3]) {
-        let s = s + channel.decay;
-        let factor = channel.at(s) * s * s;
-        match (&self.relaxing, mode.core) {
-            (Some(relaxing), Some((damping, _))) => {
-                let line = &relaxing.lines[number];
-                let shape = between(&line.deflection[n], &line.slope[n], ports);
-                (factor / (s * s + damping * s + line.lambda[n]), shape)
-            }
-            _ => {
-                let stiffness = 2.0 * mode.zeta * mode.omega * s + mode.omega * mode.omega;
-                (factor / (s * s + stiffness), mode.shape)
-            }
-        }
-    }
-}
-
-/// The product of deflections at force and response, and how that follows either place.
-fn between(deflection: &[Complex64], slope: &[Complex64], [force, response]: [usize; 2]) -> [Complex64; 3] {
-    let slope = |port: usize| slope.get(port).copied().unwrap_or(Complex64::ZERO);
-    [deflection[force] * deflection[response], slope(force) * deflection[response], deflection[force] * slope(response)]
-}
-
-/// Modes of a panel whose core depends on frequency.
-struct Relaxing {
-    modes: RelaxingModes,
-    /// At the remainder's frequencies.
-    lines: Vec<ModesAtLine>,
-    /// The last mode that was asked for at a damping ratio: records ask one after the other.
-    known: Mutex<Vec<Option<(f64, RelaxingMode)>>>,
-}
-
-impl Relaxing {
-    fn new(modes: RelaxingModes, measured: &MeasuredModes) -> Self {
-        let line = |frequency: &f64| modes.at(Complex64::new(0.0, TAU * frequency));
-        let lines = measured.remainder_frequencies.iter().map(line).collect();
-        let known = Mutex::new(vec![None; modes.near()]);
-        Self { modes, lines, known }
-    }
-
-    fn mode(&self, n: usize, zeta: f64) -> RelaxingMode {
-        let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
-        match &known[n] {
-            Some((own, mode)) if *own == zeta => mode.clone(),
-            _ => {
-                let mode = self.modes.mode(n, zeta);
-                known[n] = Some((zeta, mode.clone()));
-                mode
-            }
-        }
-    }
-
-    /// Each mode as it is without damping beside the core's, without phases.
-    fn usual(&self) -> SeenModes {
-        let real = |values: &[Complex64]| values.iter().map(|value| value.re).collect::<Vec<f64>>();
-        let modes: Vec<RelaxingMode> = (0..self.modes.near()).map(|n| self.modes.mode(n, 0.0)).collect();
-        SeenModes {
-            angular_frequency: modes.iter().map(|mode| mode.angular_frequency).collect(),
-            damping_ratio: modes.iter().map(RelaxingMode::core_damping).collect(),
-            deflection: modes.iter().map(|mode| real(&mode.deflection)).collect(),
-            slope: modes.iter().map(|mode| real(&mode.slope)).collect(),
-        }
-    }
-}
-
-/// A mode in a record: $\omega$, $\zeta$, the product of its deflections at force and response, and how that follows either place.
-struct ModeInRecord {
-    omega: f64,
-    zeta: f64,
-    /// At the force and at the response.
-    deflection: [Complex64; 2],
-    shape: [Complex64; 3],
-    /// With a core that depends on frequency what damps it beside that, and the derivative of its dynamic stiffness at the pole.
-    core: Option<(f64, Complex64)>,
-}
-
-impl ModeInRecord {
-    /// $\lambda$.
-    fn pole(&self) -> Complex64 {
-        self.omega * Complex64::new(-self.zeta, (1.0 - self.zeta * self.zeta).sqrt())
-    }
-
-    /// Residue of the accelerance over the product of deflections, $c(\lambda)\lambda^2/(\lambda-\bar\lambda)$.
-    fn residue(&self, channel: &Channel) -> Complex64 {
-        let lambda = self.pole();
-        let by_s = self.core.map_or(lambda - lambda.conj(), |(_, by_s)| by_s);
-        channel.at(lambda) * lambda * lambda / by_s
-    }
-
-    /// The two terms of a residue, which stand by themselves.
-    fn apart(&self, residue: Complex64, s: Complex64, channel: &Channel) -> Complex64 {
-        let lambda = self.pole() - channel.decay;
-        residue / (s - lambda) + residue.conj() / (s - lambda.conj())
-    }
 }

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use num_complex::Complex64;
 
-use crate::effects::{Action, CoreModulus, DressedMode, DressedPanel, RelaxingLines};
+use crate::effects::{Action, CoreModulus, CoupledMode, CoupledPanel, RelaxingLines};
 use crate::panel_modes::ModeRange;
 use crate::time_model::CORE;
 use crate::{EffectSetting, EffectState, ModelError, PanelMode, PanelModel, Place};
@@ -40,7 +40,7 @@ impl PanelModel {
             let mut values = values.clone();
             moduli.iter().for_each(|&index| values[index] *= factor);
             let parts = self.on_even(&setting, &even, &values, &elastic);
-            DressedPanel::modes(parts, count)
+            CoupledPanel::modes(parts, count)
         };
         let low = at(1.0)?;
         let mut modes = Vec::new();
@@ -50,7 +50,7 @@ impl PanelModel {
             if mode.angular_frequency > TAU * highest {
                 break;
             }
-            modes.push(PanelMode::of_dressed(mode));
+            modes.push(PanelMode::of_coupled(mode));
         }
         Ok(modes)
     }
@@ -127,11 +127,11 @@ fn apart(effects: Vec<EffectState>, setting: &EffectSetting) -> Result<(Vec<Effe
 /// The mode of this number at the modulus that the core has at its frequency, with the core's loss.
 fn own_mode(
     index: usize,
-    first: DressedMode,
+    first: CoupledMode,
     core: CoreModulus,
-    at: impl Fn(f64) -> Result<Vec<DressedMode>, ModelError>,
-) -> Result<DressedMode, ModelError> {
-    let modulus = |mode: &DressedMode| core.line(Complex64::new(0.0, mode.angular_frequency)).value;
+    at: impl Fn(f64) -> Result<Vec<CoupledMode>, ModelError>,
+) -> Result<CoupledMode, ModelError> {
+    let modulus = |mode: &CoupledMode| core.line(Complex64::new(0.0, mode.angular_frequency)).value;
     let solved = |factor: f64| at(factor)?.into_iter().nth(index).ok_or(ModelError::Eigenproblem);
     let mut mode = first;
     for _ in 0..MOST_STEPS {

@@ -3,7 +3,7 @@
 use std::sync::{Arc, OnceLock};
 
 use crate::dense::dot;
-use crate::effects::DressedMode;
+use crate::effects::CoupledMode;
 use crate::structure_modes::NaturalMode;
 use crate::{BeamMode, MindlinPlate, ModeName, Place, RitzMode, Structure};
 
@@ -22,7 +22,7 @@ enum Shape {
         length: f64,
         number: usize,
     },
-    Dressed(DressedMode),
+    Coupled(CoupledMode),
     Plate {
         plate: Arc<MindlinPlate>,
         mode: RitzMode,
@@ -35,7 +35,7 @@ impl PanelMode {
     pub fn angular_frequency(&self) -> f64 {
         match &self.shape {
             Shape::Beam { mode, .. } => mode.angular_frequency(),
-            Shape::Dressed(mode) => mode.angular_frequency,
+            Shape::Coupled(mode) => mode.angular_frequency,
             Shape::Plate { mode, .. } => mode.angular_frequency,
         }
     }
@@ -48,7 +48,7 @@ impl PanelMode {
     /// $\zeta$ where effects give it; `None` where it is the model's own for that number.
     pub fn own_damping_ratio(&self) -> Option<f64> {
         match &self.shape {
-            Shape::Dressed(mode) => Some(mode.damping_ratio),
+            Shape::Coupled(mode) => Some(mode.damping_ratio),
             Shape::Beam { .. } | Shape::Plate { .. } => None,
         }
     }
@@ -61,7 +61,7 @@ impl PanelMode {
     /// Nodal lines crossed along x and along y between the edges; a beam has none along y.
     pub fn nodes(&self) -> [usize; 2] {
         match &self.shape {
-            Shape::Dressed(mode) => mode.nodes(),
+            Shape::Coupled(mode) => mode.nodes(),
             Shape::Beam { mode, length, number } => [beam_nodes(mode, *length, *number), 0],
             Shape::Plate { plate, mode, name } => name.get_or_init(|| plate.mode_name(mode)).nodes,
         }
@@ -71,7 +71,7 @@ impl PanelMode {
     pub fn name(&self) -> Option<ModeName> {
         match &self.shape {
             Shape::Beam { .. } => None,
-            Shape::Dressed(mode) => mode.name(),
+            Shape::Coupled(mode) => mode.name(),
             Shape::Plate { plate, mode, name } => Some(*name.get_or_init(|| plate.mode_name(mode))),
         }
     }
@@ -80,7 +80,7 @@ impl PanelMode {
     pub fn deflection(&self, place: Place) -> f64 {
         match &self.shape {
             Shape::Beam { mode, .. } => mode.deflection(place.x),
-            Shape::Dressed(mode) => mode.deflection(place),
+            Shape::Coupled(mode) => mode.deflection(place),
             Shape::Plate { plate, mode, .. } => mode.deflection(plate.as_ref(), place),
         }
     }
@@ -90,8 +90,8 @@ impl PanelMode {
         Self { shape: Shape::Beam { mode, length, number } }
     }
 
-    pub(crate) fn of_dressed(mode: DressedMode) -> Self {
-        Self { shape: Shape::Dressed(mode) }
+    pub(crate) fn of_coupled(mode: CoupledMode) -> Self {
+        Self { shape: Shape::Coupled(mode) }
     }
 
     pub(crate) fn of_plate(plate: &Arc<MindlinPlate>, mode: RitzMode) -> Self {
@@ -124,17 +124,17 @@ impl NaturalMode for PanelMode {
 
     fn deflections_at(modes: &[Self], place: Place) -> Vec<f64> {
         // What a basis does there is worked out once for all modes on it.
-        let mut dressed: Option<(&DressedMode, Vec<f64>)> = None;
+        let mut modified: Option<(&CoupledMode, Vec<f64>)> = None;
         let mut plates: Option<(&Arc<MindlinPlate>, Vec<Vec<f64>>)> = None;
         let mut deflections = Vec::with_capacity(modes.len());
         for PanelMode { shape } in modes {
             deflections.push(match shape {
                 Shape::Beam { mode, .. } => mode.deflection(place.x),
-                Shape::Dressed(mode) => {
-                    if !dressed.as_ref().is_some_and(|(other, _)| other.is_beside(mode)) {
-                        dressed = Some((mode, mode.basis_at(place)));
+                Shape::Coupled(mode) => {
+                    if !modified.as_ref().is_some_and(|(other, _)| other.is_beside(mode)) {
+                        modified = Some((mode, mode.basis_at(place)));
                     }
-                    dressed.as_ref().map_or(f64::NAN, |(_, basis)| mode.in_basis(basis))
+                    modified.as_ref().map_or(f64::NAN, |(_, basis)| mode.in_basis(basis))
                 }
                 Shape::Plate { plate, mode, .. } => {
                     if !plates.as_ref().is_some_and(|(other, _)| Arc::ptr_eq(other, plate)) {
@@ -155,7 +155,7 @@ impl NaturalMode for PanelMode {
 
     fn damping_coupling(&self) -> &[f64] {
         match &self.shape {
-            Shape::Dressed(mode) => &mode.damping_coupling,
+            Shape::Coupled(mode) => &mode.damping_coupling,
             Shape::Beam { .. } | Shape::Plate { .. } => &[],
         }
     }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::effects::{DressedPanel, Even, PanelWithEffects};
+use crate::effects::{CoupledPanel, Even, PanelWithEffects};
 use crate::structure_modes::NaturalMode as _;
 use crate::{
     BeamConstants, BeamMode, EffectSetting, EffectState, ExactBeam, MindlinPlate, ModalModel, ModelError, Owner,
@@ -55,7 +55,7 @@ impl PanelModel {
 
     fn modes_without_core(&self, range: ModeRange) -> Result<Vec<PanelMode>, ModelError> {
         match self.structure {
-            _ if !self.effects.is_empty() => self.dressed_modes(range.checked(self.structure)?),
+            _ if !self.effects.is_empty() => self.coupled_modes(range.checked(self.structure)?),
             StructureKind::TimoshenkoBeam => {
                 let modes = self.beam_modes(range)?;
                 let rigid = self.boundary.rigid_modes();
@@ -94,13 +94,13 @@ impl PanelModel {
     }
 
     /// Modes of a panel with effects. Those of the bare modes' damping ratios that they hold mix in each.
-    fn dressed_modes(&self, range: ModeRange) -> Result<Vec<PanelMode>, ModelError> {
+    fn coupled_modes(&self, range: ModeRange) -> Result<Vec<PanelMode>, ModelError> {
         let (values, effects) = self.with_effects()?;
         let setting = EffectSetting::of_panel(&self.piece, self.boundary);
         let first = |count: usize| {
             let even = self.even(&setting, count)?;
             let parts = self.on_even(&setting, &even, &values, &effects);
-            DressedPanel::modes(parts, count)
+            CoupledPanel::modes(parts, count)
         };
         let modes = match range {
             ModeRange::Count(count) => first(count)?,
@@ -126,7 +126,7 @@ impl PanelModel {
                 }
             }
         };
-        Ok(modes.into_iter().map(PanelMode::of_dressed).collect())
+        Ok(modes.into_iter().map(PanelMode::of_coupled).collect())
     }
 
     /// What vibrates without effects, on a basis for `count` modes.

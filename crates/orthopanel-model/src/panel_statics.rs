@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::effects::{DressedPanel, Flexibilities, MOST_SUMMED, SPARE_MODES};
+use crate::effects::{CoupledPanel, Flexibilities, MOST_SUMMED, SPARE_MODES};
 use crate::mindlin_plate::FixedPlate;
 use crate::time_model::CORE;
 use crate::{
@@ -41,8 +41,8 @@ impl PanelModel {
             let setting = EffectSetting::of_panel(&self.piece, self.boundary);
             let even = self.even(&setting, count)?;
             let parts = self.on_even(&setting, &even, &values, &effects);
-            let dressed = DressedPanel::static_flexibility(parts, count, forces, responses)?;
-            self.on_large_basis(dressed, None, (&values, count.min(MOST_SUMMED)), forces, responses)?
+            let modified = CoupledPanel::static_flexibility(parts, count, forces, responses)?;
+            self.on_large_basis(modified, None, (&values, count.min(MOST_SUMMED)), forces, responses)?
         };
         finite(flexibility)
     }
@@ -66,10 +66,10 @@ impl PanelModel {
         let setting = EffectSetting::of_panel(&self.piece, self.boundary);
         let even = self.even(&setting, count)?;
         let parts = self.on_even(&setting, &even, &values, &effects);
-        let (modes, dressed, plate) = DressedPanel::modes_and_flexibility(parts, count, forces, responses)?;
-        let modes: Vec<_> = modes.into_iter().map(crate::PanelMode::of_dressed).collect();
+        let (modes, modified, plate) = CoupledPanel::modes_and_flexibility(parts, count, forces, responses)?;
+        let modes: Vec<_> = modes.into_iter().map(crate::PanelMode::of_coupled).collect();
         let modes = self.as_seen(&modes, forces, responses)?;
-        let all = self.on_large_basis(dressed, plate, (&values, count), forces, responses)?;
+        let all = self.on_large_basis(modified, plate, (&values, count), forces, responses)?;
         Ok((modes, finite(all)?))
     }
 
@@ -77,28 +77,28 @@ impl PanelModel {
     /// the large one. `small` is the plate without effects on that basis, where there is one already.
     fn on_large_basis(
         &self,
-        mut dressed: Flexibilities,
+        mut modified: Flexibilities,
         small: Option<Arc<MindlinPlate>>,
         (values, count): (&[f64], usize),
         forces: &[Place],
         responses: &[Place],
     ) -> Result<Flexibilities, ModelError> {
         if self.structure != StructureKind::MindlinPlate {
-            return Ok(dressed);
+            return Ok(modified);
         }
         let bare = self.bare_flexibility(count, forces, responses)?;
         let made =
             || MindlinPlate::with_basis_for(&self.piece, self.boundary, values, count + SPARE_MODES).map(Arc::new);
         let small = small.map_or_else(made, Ok)?;
         let own = static_deflections(small.as_ref(), values, forces, responses)?;
-        for (r, (row, (bare, own))) in dressed.iter_mut().zip(bare.into_iter().zip(own)).enumerate() {
+        for (r, (row, (bare, own))) in modified.iter_mut().zip(bare.into_iter().zip(own)).enumerate() {
             for (f, (sum, (bare, own))) in row.iter_mut().zip(bare.into_iter().zip(own)).enumerate() {
                 let motions = [responses[r], forces[f]].map(|place| (Motion::Deflection, place));
                 let kink = small.static_remainder(values, motions).map_or(0.0, |(kink, _)| kink);
                 *sum += bare - own - kink;
             }
         }
-        Ok(dressed)
+        Ok(modified)
     }
 
     /// Without effects.

@@ -1,6 +1,6 @@
 //! What a time stepper needs of a panel: its modes, and the internal variables of a core that relaxes.
 
-use crate::effects::{CoreFit, DressedPanel};
+use crate::effects::{CoreFit, CoupledPanel};
 use crate::{EffectSetting, ModalModel, ModeRange, ModelError, PanelModel, Place, StructureKind, modes_below};
 
 /// Modes as seen from ports, ready to be stepped.
@@ -80,9 +80,9 @@ impl PanelModel {
         let setting = EffectSetting::of_panel(&self.piece, self.boundary);
         let even = self.even(&setting, flexible)?;
         let parts = self.on_even(&setting, &even, &values, &effects);
-        let found = DressedPanel::relaxing_modes(parts, flexible)?;
+        let found = CoupledPanel::relaxing_modes(parts, flexible)?;
         let Some((modes, fit)) = found else { return Ok(None) };
-        let modes: Vec<_> = modes.into_iter().map(crate::PanelMode::of_dressed).collect();
+        let modes: Vec<_> = modes.into_iter().map(crate::PanelMode::of_coupled).collect();
         let modes = self.as_seen(&modes, forces, responses)?;
         let static_remainder = modes.left_of_flexibility(self.static_flexibility(flexible, forces, responses)?);
         Ok(Some(TimeModel { modes, flexible, core: Some(fit), static_remainder }))

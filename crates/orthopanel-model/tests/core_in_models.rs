@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use num_complex::Complex64;
 use orthopanel_model::{CoreModulus, ModalStepper, ModeRange, PanelModel};
 
-use crate::dressed_beam::{DRESSED, SAME, at, line, lines, text};
+use crate::beam_with_effects::{SAME, WITH_EFFECTS, at, line, lines, text};
 
 fn core(strength: f64, tau: f64, alpha: f64) -> String {
     format!(r#"{{"id":"viscoelastic-core","owner":"panel","strength":{strength},"tau":{tau},"alpha":{alpha}}}"#)
@@ -63,7 +63,7 @@ fn val_a_core_beside_elements_is_its_receptance() {
     for numbers in [[0.1, 1e-4, 0.6], [0.5, 1e-4, 0.5]] {
         // Three elements: two shapes and a kink each (that under the resonator has no mass, that under the missing mass has less
         // than none), two directions of shear and one for the kink, each in six terms; and the resonator's own mass.
-        assert_core_is_met(numbers, &format!(",{DRESSED}"), SAME, 3 * 3 - 2 + 6 * 9 + 1, 40);
+        assert_core_is_met(numbers, &format!(",{WITH_EFFECTS}"), SAME, 3 * 3 - 2 + 6 * 9 + 1, 40);
     }
 }
 
@@ -72,7 +72,7 @@ fn val_a_core_beside_elements_is_its_receptance() {
 #[test]
 fn val_the_static_part_makes_up_beside_a_core_too() {
     let [strength, tau, alpha] = [0.2, 1e-4, 0.5];
-    for others in [String::new(), format!(",{DRESSED}")] {
+    for others in [String::new(), format!(",{WITH_EFFECTS}")] {
         let model = undamped(&(core(strength, tau, alpha) + &others));
         let ports = [at(-0.31)];
         let found = model.time_model(ModeRange::Count(4), &ports, &ports).unwrap();
@@ -92,7 +92,7 @@ fn val_the_static_part_makes_up_beside_a_core_too() {
 /// Line by line with the law itself: the receptance at complex moduli, which sums modes along the modulus' path.
 #[test]
 fn val_lines_of_a_core_are_its_receptance() {
-    for (others, same) in [(String::new(), &[][..]), (format!(",{DRESSED}"), SAME)] {
+    for (others, same) in [(String::new(), &[][..]), (format!(",{WITH_EFFECTS}"), SAME)] {
         let [strength, tau, alpha] = [0.5, 1e-4, 0.5];
         let model = undamped(&(core(strength, tau, alpha) + &others));
         let found = model.relaxing_lines(ModeRange::Count(16), &[at(-0.31)], &[at(0.27)]).unwrap().unwrap();
@@ -107,7 +107,7 @@ fn val_lines_of_a_core_are_its_receptance() {
         }
         assert!(missed < 1e-4 * whole, "{missed} of {whole}");
     }
-    assert!(undamped(DRESSED).relaxing_lines(ModeRange::Count(16), &[at(0.0)], &[at(0.0)]).unwrap().is_none());
+    assert!(undamped(WITH_EFFECTS).relaxing_lines(ModeRange::Count(16), &[at(0.0)], &[at(0.0)]).unwrap().is_none());
 }
 
 /// A mode at its own storage modulus, with the core's loss, is where the undamped receptance at complex moduli has its pole:
@@ -202,7 +202,7 @@ fn val_a_range_up_to_a_frequency_counts_the_modes_beside_a_core() {
 /// A row a response, a column a force: the same lines one by one, on the coordinates that no place adds to.
 #[test]
 fn val_lines_of_many_places_are_those_of_each_two() {
-    let model = undamped(&(core(0.3, 1e-4, 0.5) + "," + DRESSED));
+    let model = undamped(&(core(0.3, 1e-4, 0.5) + "," + WITH_EFFECTS));
     let (forces, responses) = ([at(-0.31), at(0.05)], [at(0.27), at(-0.12), at(0.4)]);
     let of = |forces: &[_], responses: &[_]| {
         let lines = model.relaxing_lines_of_modes(ModeRange::Count(6), forces, responses).unwrap().unwrap();

@@ -5,12 +5,12 @@ use std::f64::consts::TAU;
 use num_complex::Complex64;
 use orthopanel_model::{Mode, ModeRange, ModelError, PanelMode, PanelModel};
 
-use crate::dressed_beam::{DRESSED, SAME, at, line, text};
+use crate::beam_with_effects::{SAME, WITH_EFFECTS, at, line, text};
 
 /// Every natural frequency is a pole of the undamped receptance.
 #[test]
 fn val_modes_are_the_poles_of_the_receptance() {
-    let model = PanelModel::from_json(&text(DRESSED)).unwrap();
+    let model = PanelModel::from_json(&text(WITH_EFFECTS)).unwrap();
     let modes = model.modes(ModeRange::Count(8)).unwrap();
     assert_eq!(modes.iter().filter(|mode| mode.is_rigid()).count(), 2);
     // The resonator's damping at its least leaves its own pole a hundredth of a percent beside.
@@ -83,7 +83,7 @@ fn val_masses_change_nothing_of_a_held_panel_at_rest() {
 /// makes it where the series' second term is that of a cut basis, may hide in that, so the term is taken off.
 #[test]
 fn val_the_static_part_makes_up_for_the_modes_left_out() {
-    let model = PanelModel::from_json(&text(DRESSED)).unwrap();
+    let model = PanelModel::from_json(&text(WITH_EFFECTS)).unwrap();
     let ports = [[at(-0.31)], [at(0.27)]];
     let modes = model.modal_model(ModeRange::Count(2), &ports[0], &ports[1]).unwrap();
     let beyond = model.static_remainder(&modes, &ports[0], &ports[1]).unwrap()[0][0];
@@ -104,10 +104,10 @@ fn val_the_static_part_makes_up_for_the_modes_left_out() {
     }
 }
 
-/// With one damping ratio everywhere the modes of the dressed panel hold nearly all of its accelerance.
+/// With one damping ratio everywhere the modes of the modified panel hold nearly all of its accelerance.
 #[test]
 fn val_accelerance_of_the_modes_is_the_receptance() {
-    let model = PanelModel::from_json(&text(DRESSED)).unwrap();
+    let model = PanelModel::from_json(&text(WITH_EFFECTS)).unwrap();
     let modal = model.modal_model(ModeRange::Count(60), &[at(-0.31)], &[at(0.27)]).unwrap();
     for frequency in [30.0, 321.0, 700.0, 1190.0, 2000.0] {
         let found = modal.accelerance(0, 0, frequency);
@@ -121,11 +121,11 @@ fn val_accelerance_of_the_modes_is_the_receptance() {
 fn val_an_effect_of_no_size_changes_nothing() {
     let bare = PanelModel::from_json(&text("")).unwrap().modes(ModeRange::Count(10)).unwrap();
     let none = r#"{"id":"edge-mass","owner":"panel","mass":0},{"id":"rotary-inertia","owner":"panel","factor":1}"#;
-    let dressed = PanelModel::from_json(&text(none)).unwrap().modes(ModeRange::Count(10)).unwrap();
-    assert_eq!(bare.len(), dressed.len());
-    for (bare, dressed) in bare.iter().zip(&dressed) {
-        assert!((bare.frequency() - dressed.frequency()).abs() <= 1e-8 * bare.frequency());
-        assert_eq!(bare.nodes(), dressed.nodes());
+    let modified = PanelModel::from_json(&text(none)).unwrap().modes(ModeRange::Count(10)).unwrap();
+    assert_eq!(bare.len(), modified.len());
+    for (bare, modified) in bare.iter().zip(&modified) {
+        assert!((bare.frequency() - modified.frequency()).abs() <= 1e-8 * bare.frequency());
+        assert_eq!(bare.nodes(), modified.nodes());
     }
     let in_band = PanelModel::from_json(&text(none)).unwrap().modes(ModeRange::UpTo(3500.0)).unwrap();
     assert_eq!(in_band.len(), 2 + 5);

@@ -5,8 +5,8 @@
 
 mod beam_paper;
 mod beam_three_ways;
+mod beam_with_effects;
 mod core_in_models;
-mod dressed_beam;
 mod effects_bench;
 mod effects_derivatives;
 mod effects_document;

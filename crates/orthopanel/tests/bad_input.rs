@@ -241,8 +241,8 @@ fn an_option_that_would_be_ignored_is_refused() {
 fn modes_up_to_a_frequency_that_none_reach_are_refused() {
     let bench = Bench::new();
     let mass = r#""effects": [{"id": "edge-mass", "owner": "panel", "mass": 0.05}], "damping""#;
-    bench.write("dressed.json", &changed(PLATE, r#""damping""#, mass));
-    for model in ["model.json", "plate.json", "dressed.json"] {
+    bench.write("modified.json", &changed(PLATE, r#""damping""#, mass));
+    for model in ["model.json", "plate.json", "modified.json"] {
         let said = [model, "100000000 Hz", "modes at most, up to", "ask for that frequency or less"];
         refused(&bench, &format!("export {model} -o x.fmu --up-to 1e8"), 2, &said);
     }

@@ -103,12 +103,12 @@ fn what_does_not_fit_section_3_5_is_refused() {
     );
     let model = std::fs::read_to_string(bench.path("model.json")).expect("a model");
     let effect = r#""effects": [{"id": "edge-mass", "owner": "panel", "mass": 0.01}], "ports""#;
-    bench.write("dressed.json", &changed(&model, r#""ports""#, effect));
+    bench.write("modified.json", &changed(&model, r#""ports""#, effect));
     refused(
         &bench,
-        &format!("simulate dressed.json {hits} --method runge-kutta"),
+        &format!("simulate modified.json {hits} --method runge-kutta"),
         2,
-        &["dressed.json", "beam without effects"],
+        &["modified.json", "beam without effects"],
     );
     refused(&bench, &format!("simulate plate.json {hits} --method runge-kutta"), 2, &["plate.json", "beam without"]);
 }

@@ -34,14 +34,15 @@ const BEAM: &str = r#""structure": "timoshenko-beam", "constants": {"e_x": 1.067
 const PLATE: &str = r#""structure": "mindlin-plate",
     "constants": {"e_x": 1.07e10, "e_y": 9e9, "nu_xy": 0.3, "g_xy": 3e9, "g_yz": 3e8, "g_zx": 5.363e8}"#;
 /// Modes that dampers couple, and a span that has lost stiffness.
-const DRESSED: &str = r#"
+const WITH_EFFECTS: &str = r#"
     {"id": "resonator", "owner": "panel", "mass": 0.02, "frequency": 400, "zeta": 0.05, "x": 0.1},
     {"id": "stiffness-loss", "owner": "panel", "loss": 0.2, "span": 0.1, "x": -0.1}"#;
 const CORE: &str = r#"{"id": "viscoelastic-core", "owner": "panel", "strength": 0.2, "tau": 1e-4, "alpha": 0.6}"#;
 
 /// Writes each into a folder of its own. Half of all are the plain beam, whose parameters cost the least to set.
 pub fn prepare(folder: &Path) -> Result<Vec<Fmu>, Box<dyn std::error::Error>> {
-    let panels = [(BEAM, "", 5), (BEAM, "", 3), (BEAM, "", 2), (BEAM, DRESSED, 3), (BEAM, CORE, 2), (PLATE, "", 3)];
+    let panels =
+        [(BEAM, "", 5), (BEAM, "", 3), (BEAM, "", 2), (BEAM, WITH_EFFECTS, 3), (BEAM, CORE, 2), (PLATE, "", 3)];
     let write = |(number, (panel, effects, modes)): (usize, (&str, &str, usize))| {
         let folder = folder.join(number.to_string());
         std::fs::create_dir(&folder)?;

@@ -3,11 +3,11 @@
 use std::sync::Arc;
 
 use super::beam_base::BeamBase;
-use super::dressed_panel::{Dressed, Even, PanelWithEffects, elements, row};
-use super::dressed_system::{FoundMode, System};
-use super::dressing::Dressing;
+use super::coupled_panel::{Even, ModifiedStructure, PanelWithEffects, elements, row};
+use super::coupled_system::{FoundMode, System};
 use super::receptance::modal_base::Row;
 use super::receptance::wide_plate::WidePlates;
+use super::spread_effects::SpreadEffects;
 use super::{Action, EffectSetting, EffectState, ElementLaw, PointElement, Seat};
 use crate::timoshenko_beam::Section;
 use crate::{
@@ -67,7 +67,7 @@ impl ModifiedPanel {
     }
 
     /// What vibrates with these effects.
-    fn dressed(&self, parts: PanelWithEffects) -> Result<Dressed, ModelError> {
+    fn modified(&self, parts: PanelWithEffects) -> Result<ModifiedStructure, ModelError> {
         let PanelWithEffects { setting, values, effects, .. } = parts;
         let mut ratios = None;
         let mut others = Vec::new();
@@ -78,8 +78,10 @@ impl ModifiedPanel {
             }
         }
         match (ratios, &self.wide) {
-            (Some(ratios), Some(wide)) => Dressed::wide(&wide.0, wide.1, (setting, values, ratios), effects, &others),
-            _ => Dressed::for_modes(parts, self.count),
+            (Some(ratios), Some(wide)) => {
+                ModifiedStructure::wide(&wide.0, wide.1, (setting, values, ratios), effects, &others)
+            }
+            _ => ModifiedStructure::for_modes(parts, self.count),
         }
     }
 
@@ -92,7 +94,7 @@ impl ModifiedPanel {
         effects: &[EffectState],
     ) -> Result<Option<OnBase>, ModelError> {
         let (Even::Beam(beam), &[e_x, g_zx]) = (&self.even, values) else { return Ok(None) };
-        let Dressing { terms, core, plate, .. } = Dressing::of(effects, setting, 0)?;
+        let SpreadEffects { terms, core, plate, .. } = SpreadEffects::of(effects, setting, 0)?;
         let terms = terms.unwrap_or_default();
         if core.is_some() || plate.is_some() || !terms.core_waves.is_empty() {
             return Ok(None);
@@ -187,15 +189,15 @@ impl ModifiedPanel {
         effects: &[EffectState],
     ) -> Result<SeenModes, ModelError> {
         let Self { even, damping, .. } = self;
-        let dressed = self.dressed(PanelWithEffects { setting, even, values, effects, damping })?;
-        if dressed.core.is_some() {
+        let modified = self.modified(PanelWithEffects { setting, even, values, effects, damping })?;
+        if modified.core.is_some() {
             return Err(ModelError::Unsupported("viscoelastic-core in a model of modes".into()));
         }
         let ports: Vec<Row> = places.iter().map(|&place| (Motion::Deflection, place)).collect();
         let slopes: Vec<Row> = places.iter().map(|&place| (Motion::Slope, place)).collect();
         let asked = if with_slopes { &slopes[..] } else { &[] };
-        let answers = dressed.far_answers_in(&[&ports[..], asked].concat())?;
-        let (_, system) = dressed.with_residuals(&answers, places, damping);
+        let answers = modified.far_answers_in(&[&ports[..], asked].concat())?;
+        let (_, system) = modified.with_residuals(&answers, places, damping);
         // Elements stand before the ports among the answers, and no coordinates belong to slopes.
         let elements = answers.near.ncols() - ports.len() - asked.len();
         let (low, residuals) = (answers.near.nrows(), elements + ports.len());

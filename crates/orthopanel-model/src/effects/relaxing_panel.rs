@@ -4,10 +4,10 @@ use std::sync::Arc;
 
 use faer::Mat;
 
-use super::dressed_panel::{Dressed, DressedPanel, Even, PanelWithEffects, Residual, row};
-use super::dressed_system::{System, uncoupled};
+use super::coupled_panel::{CoupledPanel, Even, ModifiedStructure, PanelWithEffects, Residual, row};
+use super::coupled_system::{System, uncoupled};
 use super::receptance::modal_base::Row;
-use super::{CoreFit, CoreModulus, DressedMode, ElementLaw};
+use super::{CoreFit, CoreModulus, CoupledMode, ElementLaw};
 use crate::block_pencil::BlockPencil;
 use crate::dense::{Cholesky, dot, product, symmetric_eigen};
 use crate::order::sorted;
@@ -16,7 +16,7 @@ use crate::{ModelError, Place, SymmetricMatrix};
 
 /// A panel on shapes that stay good while its core relaxes, at its low modulus.
 pub(super) struct Relaxing {
-    pub(super) panel: DressedPanel,
+    pub(super) panel: CoupledPanel,
     /// Its matrices, elements and all.
     pub(super) system: System,
     /// Of the flexible coordinates: their whole stiffness without elements, and the core's part of it.
@@ -31,10 +31,10 @@ impl Relaxing {
     /// On `count` flexible bare modes, with shapes of their own for the elements' places and for `ports`; `None` where no
     /// effect is a core.
     pub(super) fn new(parts: PanelWithEffects, count: usize, ports: &[Place]) -> Result<Option<Self>, ModelError> {
-        let dressed = Dressed::new(parts, count)?;
-        let (Some(core), elements) = (dressed.core, &dressed.elements) else { return Ok(None) };
-        let mut panel = dressed.panel();
-        let mut system = System::without_elements(&dressed.low, parts.damping);
+        let modified = ModifiedStructure::new(parts, count)?;
+        let (Some(core), elements) = (modified.core, &modified.elements) else { return Ok(None) };
+        let mut panel = modified.panel();
+        let mut system = System::without_elements(&modified.low, parts.damping);
         let of_elements: Vec<Row> = elements.iter().filter_map(row).collect();
         let mut seats: Vec<Row> = Vec::new();
         for seat in of_elements.iter().copied().chain(ports.iter().map(|port| (Motion::Deflection, *port))) {
@@ -57,7 +57,7 @@ impl Relaxing {
     }
 }
 
-impl DressedPanel {
+impl CoupledPanel {
     /// The rigid modes and those of `count` flexible bare modes together with all internal variables of the core, and its
     /// fit from a tenth of the first bare frequency to the last; `None` where no effect is a core, and no mode is made then.
     ///
@@ -69,7 +69,7 @@ impl DressedPanel {
     pub(crate) fn relaxing_modes(
         parts: PanelWithEffects,
         count: usize,
-    ) -> Result<Option<(Vec<DressedMode>, CoreFit)>, ModelError> {
+    ) -> Result<Option<(Vec<CoupledMode>, CoreFit)>, ModelError> {
         let Some(relaxing) = Relaxing::new(parts, count, &[])? else { return Ok(None) };
         let Relaxing { panel, mut system, stiffness, shear, core, seats } = relaxing;
         let frequency = |index: usize| panel.bare.get(index).map_or(0.0, |mode| mode.2.sqrt() / std::f64::consts::TAU);
@@ -80,7 +80,7 @@ impl DressedPanel {
         let kept = ways * (count + 2 * seats) + panel.residuals.len();
         system.relax(&shear_directions(&stiffness, &shear, kept)?, rigid, &fit);
         let found = system.solve()?;
-        Ok(Some((panel.dressed(&system, found, count), fit)))
+        Ok(Some((panel.modified(&system, found, count), fit)))
     }
 
     /// How the stiffness coefficients follow the moduli of the core, times these.
@@ -183,7 +183,7 @@ impl DressedPanel {
         Ok((with(&stiffness), with(&shear)))
     }
 
-    /// All coordinates of the panel where an element sits: as [`DressedPanel::deflections`], for any motion.
+    /// All coordinates of the panel where an element sits: as [`CoupledPanel::deflections`], for any motion.
     pub(super) fn values_in(&self, row: Row) -> Result<Vec<f64>, ModelError> {
         let mut values = self.bare_row(row)?;
         let residual = |residual: &Residual| self.beyond_basis(row, &values, residual);

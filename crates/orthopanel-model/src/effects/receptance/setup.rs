@@ -9,7 +9,7 @@ use super::moved_structure::Moved;
 use super::record::RecordPlan;
 use super::view::View;
 use super::wide_plate::{Summed, WidePlates};
-use crate::effects::dressing::Dressing;
+use crate::effects::spread_effects::SpreadEffects;
 use crate::effects::{CoreModulus, EffectSetting, EffectState, RecordSetting};
 use crate::{
     BEAM_CONSTANTS, BeamTerms, Boundary, Damping, ModalModel, Mode, ModelError, Motion, Piece, Place, TimoshenkoBeam,
@@ -156,17 +156,17 @@ impl ReceptanceSetup {
     /// The modes with what effects spread over the piece; `first_effect` is the column of the first effect's first value.
     fn based(&self, values: &[f64], effects: &[EffectState], first_effect: usize) -> Result<Based, ModelError> {
         let setting = self.setting_of(self.records.first().cloned().unwrap_or_default());
-        let dressed = Dressing::of(effects, &setting, first_effect)?;
+        let modified = SpreadEffects::of(effects, &setting, first_effect)?;
         let constants = 0..BEAM_CONSTANTS.len();
-        if let Some((ratios, column)) = dressed.plate {
+        if let Some((ratios, column)) = modified.plate {
             let values: Vec<f64> = values.iter().chain(&ratios).copied().collect();
             let plate = self.plates.near(&values, Summed::Beam(self.summed))?;
             let base = ModalBase::new(&plate.structure, &values, plate.summed, &[], &[])?;
             let columns = constants.chain(column..column + ratios.len()).collect();
             return Ok(Based { bases: Bases::Real(Arc::new(base)), core: None, columns, summed: plate.summed });
         }
-        let is_even = dressed.terms.is_none();
-        let (structure, moved): (SharedStructure, Vec<Moved>) = match dressed.terms {
+        let is_even = modified.terms.is_none();
+        let (structure, moved): (SharedStructure, Vec<Moved>) = match modified.terms {
             Some(terms) => {
                 let beam = Arc::new(self.uneven(terms.clone())?);
                 let moved = self.moved(&terms, &beam)?;
@@ -174,16 +174,16 @@ impl ReceptanceSetup {
             }
             None => (Arc::clone(&self.beam), vec![]),
         };
-        let (numbers, columns): (Vec<usize>, Vec<usize>) = dressed.parameters.into_iter().unzip();
+        let (numbers, columns): (Vec<usize>, Vec<usize>) = modified.parameters.into_iter().unzip();
         let columns = constants.chain(columns).collect();
-        let bases = match dressed.core {
+        let bases = match modified.core {
             Some((core, _)) => {
                 Bases::Complex(NodeBases::new(&structure, values, &core, self.summed, &numbers, &moved)?)
             }
             None if is_even => Bases::Real(self.even(values)?),
             None => Bases::Real(Arc::new(ModalBase::new(&structure, values, self.summed, &numbers, &moved)?)),
         };
-        Ok(Based { bases, core: dressed.core, columns, summed: self.summed })
+        Ok(Based { bases, core: modified.core, columns, summed: self.summed })
     }
 
     /// The modes of the even beam: starts of many effects are tried at the same constants.

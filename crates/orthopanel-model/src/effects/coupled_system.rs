@@ -12,7 +12,7 @@ use crate::{Damping, ModelError};
 /// $\omega$, $\zeta$ and all coordinates of a mode.
 pub(super) type FoundMode = (f64, f64, Vec<f64>);
 
-/// Stiffness, mass and damping in the coordinates of a [`DressedPanel`](super::dressed_panel::DressedPanel).
+/// Stiffness, mass and damping in the coordinates of a [`CoupledPanel`](super::coupled_panel::CoupledPanel).
 pub(super) struct System {
     pub(super) stiffness: Mat<f64>,
     pub(super) mass: Mat<f64>,

@@ -2,15 +2,15 @@
 
 use std::sync::Arc;
 
-use super::dressed_panel::{DressedPanel, Even, PanelWithEffects, elements, nodes};
-use super::dressed_system::{FoundMode, System};
+use super::coupled_panel::{CoupledPanel, Even, PanelWithEffects, elements, nodes};
+use super::coupled_system::{FoundMode, System};
 use super::{EffectSetting, EffectState, ElementLaw, PointElement, RecordSetting};
 use crate::{Boundary, Damping, ModeName, ModelError, Piece, Place};
 
-/// A mode of a [`DressedPanel`].
+/// A mode of a [`CoupledPanel`].
 #[derive(Clone)]
-pub(crate) struct DressedMode {
-    panel: Arc<DressedPanel>,
+pub(crate) struct CoupledMode {
+    panel: Arc<CoupledPanel>,
     /// $\omega$ \[rad/s\].
     pub angular_frequency: f64,
     /// Of the diagonal of the damping matrix in these modes.
@@ -23,28 +23,28 @@ pub(crate) struct DressedMode {
     count: usize,
 }
 
-impl std::fmt::Debug for DressedMode {
+impl std::fmt::Debug for CoupledMode {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("DressedMode").field("angular_frequency", &self.angular_frequency).finish_non_exhaustive()
+        f.debug_struct("CoupledMode").field("angular_frequency", &self.angular_frequency).finish_non_exhaustive()
     }
 }
 
-impl DressedPanel {
+impl CoupledPanel {
     /// The rigid modes and `count` flexible ones of a panel with effects.
-    pub(crate) fn modes(parts: PanelWithEffects, count: usize) -> Result<Vec<DressedMode>, ModelError> {
+    pub(crate) fn modes(parts: PanelWithEffects, count: usize) -> Result<Vec<CoupledMode>, ModelError> {
         let (panel, system, found) = Self::solve(parts, count)?;
-        Ok(panel.dressed(&system, found, count))
+        Ok(panel.modified(&system, found, count))
     }
 
     /// The modes as they are seen from outside.
-    pub(super) fn dressed(self, system: &System, found: Vec<FoundMode>, count: usize) -> Vec<DressedMode> {
+    pub(super) fn modified(self, system: &System, found: Vec<FoundMode>, count: usize) -> Vec<CoupledMode> {
         let panel = Arc::new(self);
         let couplings = system.couplings(&found);
-        let dressed = |((angular_frequency, damping_ratio, mut shares), damping_coupling): (FoundMode, Vec<f64>)| {
+        let modified = |((angular_frequency, damping_ratio, mut shares), damping_coupling): (FoundMode, Vec<f64>)| {
             shares.truncate(system.panel);
-            DressedMode { panel: Arc::clone(&panel), angular_frequency, damping_ratio, damping_coupling, shares, count }
+            CoupledMode { panel: Arc::clone(&panel), angular_frequency, damping_ratio, damping_coupling, shares, count }
         };
-        found.into_iter().zip(couplings).map(dressed).collect()
+        found.into_iter().zip(couplings).map(modified).collect()
     }
 }
 
@@ -55,7 +55,7 @@ impl EffectSetting {
     }
 }
 
-impl DressedMode {
+impl CoupledMode {
     /// Mass-normalised deflection \[kg^-1/2\] at a place.
     pub(crate) fn deflection(&self, place: Place) -> f64 {
         self.in_basis(&self.basis_at(place))
@@ -121,7 +121,7 @@ impl NaturalFrequencies {
         let rigid = setting.boundary.rigid_modes();
         let damping = Damping { ratios: vec![], beyond: 0.0 };
         let parts = PanelWithEffects { setting, even: beam, values, effects, damping: &damping };
-        let (panel, _, found) = DressedPanel::solve(parts, count + rigid)?;
+        let (panel, _, found) = CoupledPanel::solve(parts, count + rigid)?;
         // Without springs and resonators rigid motions stay at zero; else a free beam's have no node and one. A resonator's own mode
         // may have no more of these: the lowest are the rigid ones.
         let stays = |element: &PointElement| matches!(element.law, ElementLaw::Mass { .. });

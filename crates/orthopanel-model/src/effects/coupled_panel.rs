@@ -3,11 +3,11 @@
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use super::beam_base::BeamBase;
-use super::dressed_system::{FoundMode, System};
-use super::dressing::Dressing;
+use super::coupled_system::{FoundMode, System};
 use super::low_modes::{FarAnswers, LowModes};
 use super::receptance::modal_base::{Row, SharedStructure};
 use super::receptance::wide_plate::{Summed, WidePlate, WidePlates};
+use super::spread_effects::SpreadEffects;
 use super::{Action, CoreModulus, EffectSetting, EffectState, ElementLaw, PointElement, Seat};
 use crate::mindlin_plate::PlateTerms;
 use crate::panel_mode::crossings;
@@ -22,7 +22,7 @@ pub(crate) const SPARE_MODES: usize = 10;
 /// With $C_0$, $C_1$ the residual flexibility and its next term, stiffness and mass are
 /// $\mathrm{diag}(\omega_m^2)\oplus C_0$ and $I\oplus C_1$, and an element at row $r_p = (\phi_m(p), C_{0,p})$ adds
 /// $k\,r_pr_p^T$ or $m\,r_pr_p^T$.
-pub(crate) struct DressedPanel {
+pub(crate) struct CoupledPanel {
     pub(super) structure: SharedStructure,
     piece: Piece,
     pub(super) values: Vec<f64>,
@@ -146,7 +146,7 @@ fn basis_terms(summed: usize) -> usize {
 }
 
 /// The structure of a panel with its lowest modes, before any element joins it.
-pub(super) struct Dressed {
+pub(super) struct ModifiedStructure {
     structure: SharedStructure,
     plate: Option<Arc<MindlinPlate>>,
     /// Whether no effect is spread over it.
@@ -158,7 +158,7 @@ pub(super) struct Dressed {
     pub(super) core: Option<CoreModulus>,
 }
 
-impl Dressed {
+impl ModifiedStructure {
     /// On as many modes as `count` flexible ones with the elements want.
     pub(super) fn for_modes(parts: PanelWithEffects, count: usize) -> Result<Self, ModelError> {
         Self::new(parts, count + SPARE_MODES).map_err(|error| match error {
@@ -179,8 +179,8 @@ impl Dressed {
         effects: &[EffectState],
         others: &[EffectState],
     ) -> Result<Self, ModelError> {
-        let dressing = Dressing::of(effects, setting, 0)?;
-        if dressing.terms.is_some() || dressing.core.is_some() {
+        let spread = SpreadEffects::of(effects, setting, 0)?;
+        if spread.terms.is_some() || spread.core.is_some() {
             return Err(ModelError::Unsupported("width-coupling beside another effect spread over the panel".into()));
         }
         let values = [values, &ratios].concat();
@@ -194,15 +194,15 @@ impl Dressed {
     pub(super) fn new(parts: PanelWithEffects, summed: usize) -> Result<Self, ModelError> {
         let PanelWithEffects { setting, even, values, effects, .. } = parts;
         let (piece, boundary) = (setting.piece, setting.boundary);
-        let dressing = Dressing::of(effects, setting, 0)?;
-        if dressing.plate.is_some() {
+        let spread = SpreadEffects::of(effects, setting, 0)?;
+        if spread.plate.is_some() {
             return Err(ModelError::Unsupported(
                 "width-coupling in a model file: write structure \"mindlin-plate\" with its six constants".into(),
             ));
         }
         let mut elements = elements(effects, setting)?;
-        let mut is_even = dressing.terms.is_none();
-        let (structure, plate): (SharedStructure, _) = match (even, dressing.terms) {
+        let mut is_even = spread.terms.is_none();
+        let (structure, plate): (SharedStructure, _) = match (even, spread.terms) {
             (Even::Beam(even), None) => (Arc::<TimoshenkoBeam>::clone(&even.beam), None),
             (Even::Beam(_), Some(terms)) => {
                 let order = basis_terms(summed);
@@ -221,7 +221,7 @@ impl Dressed {
             Even::Beam(even) if is_even => even.low_modes(values, summed)?,
             _ => Arc::new(LowModes::new(structure.as_ref(), values, summed)?),
         };
-        let core = dressing.core.map(|(core, _)| core);
+        let core = spread.core.map(|(core, _)| core);
         Ok(Self { structure, plate, is_even, piece, values: values.to_vec(), low, elements, core })
     }
 
@@ -231,8 +231,8 @@ impl Dressed {
     }
 
     /// The panel without any element.
-    pub(super) fn panel(&self) -> DressedPanel {
-        DressedPanel {
+    pub(super) fn panel(&self) -> CoupledPanel {
+        CoupledPanel {
             structure: Arc::clone(&self.structure),
             piece: self.piece,
             values: self.values.clone(),
@@ -262,7 +262,7 @@ impl Dressed {
         answers: &FarAnswers,
         ports: &[Place],
         damping: &Damping,
-    ) -> (DressedPanel, System) {
+    ) -> (CoupledPanel, System) {
         let mut panel = self.panel();
         let without_mass = |&port| PointElement::on_deflection(ElementLaw::Mass { mass: 0.0 }, Seat::At(port));
         let elements: Vec<PointElement> = self.elements.iter().cloned().chain(ports.iter().map(without_mass)).collect();
@@ -279,7 +279,7 @@ impl Dressed {
     }
 }
 
-impl DressedPanel {
+impl CoupledPanel {
     /// How many of the bare modes are rigid.
     pub(super) fn rigid(&self) -> usize {
         self.rigid
@@ -349,20 +349,20 @@ impl DressedPanel {
 
     /// The modes of the panel and its matrices, in rising order, `count` flexible ones.
     pub(super) fn solve(parts: PanelWithEffects, count: usize) -> Result<(Self, System, Vec<FoundMode>), ModelError> {
-        let dressed = Dressed::for_modes(parts, count)?;
-        let answers = dressed.far_answers(&[])?;
-        dressed.solve(&answers, parts.damping, count)
+        let modified = ModifiedStructure::for_modes(parts, count)?;
+        let answers = modified.far_answers(&[])?;
+        modified.solve(&answers, parts.damping, count)
     }
 }
 
-impl Dressed {
-    /// As [`DressedPanel::solve`], with answers that may be of ports too.
+impl ModifiedStructure {
+    /// As [`CoupledPanel::solve`], with answers that may be of ports too.
     pub(super) fn solve(
         &self,
         answers: &FarAnswers,
         damping: &Damping,
         count: usize,
-    ) -> Result<(DressedPanel, System, Vec<FoundMode>), ModelError> {
+    ) -> Result<(CoupledPanel, System, Vec<FoundMode>), ModelError> {
         if self.core.is_some() {
             return Err(ModelError::Unsupported("viscoelastic-core in a model of modes".into()));
         }

@@ -5,7 +5,7 @@ use crate::{BeamTerms, ModelError};
 
 /// Terms spread over the beam, and a core that depends on frequency.
 #[derive(Default)]
-pub(super) struct Dressing {
+pub(super) struct SpreadEffects {
     /// None where the beam is even.
     pub terms: Option<BeamTerms>,
     /// Position among [`crate::Structure::term_derivatives`], and column.
@@ -16,10 +16,10 @@ pub(super) struct Dressing {
     pub plate: Option<([f64; 4], usize)>,
 }
 
-impl Dressing {
+impl SpreadEffects {
     /// Of these effects; `first` is the column of the first effect's first value.
     pub(super) fn of(effects: &[EffectState], setting: &EffectSetting, first: usize) -> Result<Self, ModelError> {
-        let mut dressing = Self::default();
+        let mut spread = Self::default();
         let mut terms = BeamTerms::default();
         let (mut rotary, mut losses, mut support, mut waves) = (vec![], vec![], vec![], vec![]);
         for (effect, start) in effects.iter().zip(EffectState::starts(effects, first)) {
@@ -45,13 +45,13 @@ impl Dressing {
                         let column = |parameter: &usize| start + effect.position(*parameter, setting.record.number);
                         waves.extend(numbers.iter().map(|parameter| (number, column(parameter))));
                     }
-                    Action::Core(core) => dressing.core = Some((core, start)),
-                    Action::Plate(ratios) => dressing.plate = Some((ratios, start)),
+                    Action::Core(core) => spread.core = Some((core, start)),
+                    Action::Plate(ratios) => spread.plate = Some((ratios, start)),
                     Action::Element(_) | Action::Channel(..) | Action::Place(_) | Action::Window { .. } => {}
                 }
             }
         }
-        if dressing.plate.is_some() && (dressing.core.is_some() || rotary.len() + losses.len() + support.len() > 0) {
+        if spread.plate.is_some() && (spread.core.is_some() || rotary.len() + losses.len() + support.len() > 0) {
             return Err(ModelError::Unsupported(
                 "width-coupling beside another effect that is spread over the panel: take one of them out".into(),
             ));
@@ -60,8 +60,8 @@ impl Dressing {
         let before = 1 + losses.len() + support.len();
         let later = losses.into_iter().chain(support).enumerate().map(|(i, column)| (i + 1, column));
         let waves = waves.into_iter().map(|(number, column)| (before + number, column));
-        dressing.parameters = rotary.into_iter().map(|column| (0, column)).chain(later).chain(waves).collect();
-        dressing.terms = (!dressing.parameters.is_empty()).then_some(terms);
-        Ok(dressing)
+        spread.parameters = rotary.into_iter().map(|column| (0, column)).chain(later).chain(waves).collect();
+        spread.terms = (!spread.parameters.is_empty()).then_some(terms);
+        Ok(spread)
     }
 }

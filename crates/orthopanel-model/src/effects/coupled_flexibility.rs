@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use super::dressed_modes::DressedMode;
-use super::dressed_panel::{Dressed, DressedPanel, PanelWithEffects};
+use super::coupled_modes::CoupledMode;
+use super::coupled_panel::{CoupledPanel, ModifiedStructure, PanelWithEffects};
 use super::low_modes::FarAnswers;
 use crate::modal_model::add_flexibility;
 use crate::{Damping, MindlinPlate, ModelError, Place};
@@ -16,46 +16,46 @@ pub(crate) const MOST_SUMMED: usize = 60;
 pub(crate) type Flexibilities = Vec<Vec<f64>>;
 
 /// Modes, what all together leave at rest, and the plate that they stand on, where nothing is spread over it.
-pub(crate) type ModesAndFlexibility = (Vec<DressedMode>, Flexibilities, Option<Arc<MindlinPlate>>);
+pub(crate) type ModesAndFlexibility = (Vec<CoupledMode>, Flexibilities, Option<Arc<MindlinPlate>>);
 
-impl DressedPanel {
+impl CoupledPanel {
     /// $\sum_m W_m(r)W_m(f)/\omega_m^2$ \[m/N\] over all flexible modes of the panel with its effects.
     ///
     /// # Errors
-    /// As [`DressedPanel::modes`].
+    /// As [`CoupledPanel::modes`].
     pub(crate) fn static_flexibility(
         parts: PanelWithEffects,
         count: usize,
         forces: &[Place],
         responses: &[Place],
     ) -> Result<Flexibilities, ModelError> {
-        let dressed = Dressed::for_modes(parts, count.min(MOST_SUMMED))?;
+        let modified = ModifiedStructure::for_modes(parts, count.min(MOST_SUMMED))?;
         let ports: Vec<Place> = forces.iter().chain(responses).copied().collect();
-        dressed.static_flexibility(&dressed.far_answers(&ports)?, parts.damping, [forces, responses])
+        modified.static_flexibility(&modified.far_answers(&ports)?, parts.damping, [forces, responses])
     }
 
-    /// [`DressedPanel::modes`] and [`DressedPanel::static_flexibility`] in one, and the plate on whose basis they are found, where
+    /// [`CoupledPanel::modes`] and [`CoupledPanel::static_flexibility`] in one, and the plate on whose basis they are found, where
     /// nothing is spread over it.
     ///
     /// # Errors
-    /// As [`DressedPanel::modes`].
+    /// As [`CoupledPanel::modes`].
     pub(crate) fn modes_and_flexibility(
         parts: PanelWithEffects,
         count: usize,
         forces: &[Place],
         responses: &[Place],
     ) -> Result<ModesAndFlexibility, ModelError> {
-        let dressed = Dressed::for_modes(parts, count)?;
+        let modified = ModifiedStructure::for_modes(parts, count)?;
         let ports: Vec<Place> = forces.iter().chain(responses).copied().collect();
-        let answers = dressed.far_answers(&ports)?;
-        let flexibility = dressed.static_flexibility(&answers, parts.damping, [forces, responses])?;
-        let (panel, system, found) = dressed.solve(&answers, parts.damping, count)?;
-        Ok((panel.dressed(&system, found, count), flexibility, dressed.even_plate()))
+        let answers = modified.far_answers(&ports)?;
+        let flexibility = modified.static_flexibility(&answers, parts.damping, [forces, responses])?;
+        let (panel, system, found) = modified.solve(&answers, parts.damping, count)?;
+        Ok((panel.modified(&system, found, count), flexibility, modified.even_plate()))
     }
 }
 
-impl Dressed {
-    /// In the coordinates of [`DressedPanel`], with a residual shape for each port as for each element, a force at a port has its
+impl ModifiedStructure {
+    /// In the coordinates of [`CoupledPanel`], with a residual shape for each port as for each element, a force at a port has its
     /// static answer: the sum over the few modes of these coordinates is that over all. For a free panel it is the answer beside the
     /// rigid motion that the force brings about.
     fn static_flexibility(

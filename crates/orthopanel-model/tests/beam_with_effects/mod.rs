@@ -18,7 +18,7 @@ pub fn at(x: f64) -> Place {
     Place { x, y: 0.0 }
 }
 
-/// The receptances that know no modal coordinates of the dressed panel.
+/// The receptances that know no modal coordinates of the modified panel.
 pub fn lines(effects: &[(&str, &[f64])], zeta: f64, s: &[Complex64]) -> Vec<Complex64> {
     let record = RecordSetting { force_at: Some(at(-0.31)), response_at: Some(at(0.27)), ..RecordSetting::default() };
     let setup = ReceptanceSetup::new(&PIECE, Boundary::FREE, &[], &[record], 16).unwrap();
@@ -34,7 +34,7 @@ pub fn line(effects: &[(&str, &[f64])], zeta: f64, s: Complex64) -> Complex64 {
     lines(effects, zeta, &[s])[0]
 }
 
-pub const DRESSED: &str = r#"{"id":"local-mass","owner":"panel","mass":0.03,"x":0.11},
+pub const WITH_EFFECTS: &str = r#"{"id":"local-mass","owner":"panel","mass":0.03,"x":0.11},
     {"id":"local-mass","owner":"panel","mass":-0.01,"x":-0.2},
     {"id":"resonator","owner":"panel","mass":0.02,"frequency":1200,"zeta":0.004,"x":-0.33},
     {"id":"stiffness-loss","owner":"panel","loss":0.4,"span":0.1,"x":0.2},
