@@ -5,6 +5,7 @@ use orthopanel_model::{BEAM_CONSTANTS, EffectSetting, RecordSetting, StructureKi
 
 use crate::IdentifyError;
 use crate::comparison::Comparison;
+use crate::hit_strength::HitStrength;
 use crate::hypothesis::Part;
 use crate::judge::{Finding, judged};
 use crate::measured::{MeasuredModes, measured_modes};
@@ -27,8 +28,8 @@ use crate::search_progress::SearchProgress;
 /// catalogue.
 ///
 /// # Limits
-/// Hits or accelerances of one piece, as a beam that may turn out a plate, hit and seen on its centre line. Not looked for:
-/// `cubic-stiffness`, which shows between hits alone. Standard deviations hold the sizes of model error as they are estimated, not
+/// Hits or accelerances of one piece, as a beam that may turn out a plate, hit and seen on its centre line. What shows between hits alone,
+/// `cubic-stiffness`, is held against the best of the other hypotheses. Standard deviations hold the sizes of model error as they are estimated, not
 /// their own uncertainty, which makes them small where modes are few. [`trace_by_modes`](crate::trace_by_modes) answers by it.
 #[derive(Debug, Clone)]
 pub struct Inference {
@@ -135,6 +136,7 @@ pub(crate) fn with_hypotheses<T>(
     let comparison = Comparison::new(measured, piece.mass());
     let begun = Inquiry::begin(&comparison, &setting, &held, &declared)?;
     let (mut inquiry, base) = begun.ok_or_else(|| too_few(measured.poles.len()))?;
+    inquiry.hits = HitStrength::new(test, measured.band)?;
     inquiry.progress = SearchProgress::telling(progress);
     let all = inquiry.search(base);
     say(&inquiry, &all)

@@ -10,6 +10,7 @@ mod entry;
 mod error;
 mod free_constants;
 mod frequency_fit;
+mod hit_strength;
 mod hypothesis;
 mod identification;
 mod inference;

@@ -6,12 +6,12 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use num_complex::Complex64;
 use orthopanel_model::{
-    Action, CoreModulus, EffectSetting, EffectState, Field, ModelError, ModifiedPanel, Piece, Place, RecordSetting,
-    RelaxingModes, Seat, SeenModes, StructureKind,
+    Action, CoreModulus, EffectSetting, EffectState, Field, Mode, ModelError, ModifiedPanel, Piece, Place,
+    RecordSetting, RelaxingModes, Seat, SeenModes, StructureKind, SuspensionMotion,
 };
 
 use crate::comparison::{Comparison, UNSEEN};
-use crate::measured::SKIRT;
+use crate::measured::{Pole, SKIRT};
 use crate::view::{Channel, Relaxing, View, Views};
 
 /// Predicted modes beyond the number of poles that take part.
@@ -95,7 +95,10 @@ impl<'a> Predictor<'a> {
         let panel = ModifiedPanel::new(structure, setting, measured.poles.len() + SPARE)?;
         let top = measured.poles.last().map_or(measured.band[1], |pole| pole.angular_frequency / TAU);
         let panel = panel.perhaps_wide(setting, &places, WIDE * top);
-        Ok(Self { comparison, panel, setting: setting.clone(), places, found: Mutex::default() })
+        // What is not linear shows between hits, not in modes.
+        let record = RecordSetting { suspension_motion: SuspensionMotion::InTime, ..setting.record.clone() };
+        let setting = EffectSetting { record, ..setting.clone() };
+        Ok(Self { comparison, panel, setting, places, found: Mutex::default() })
     }
 
     /// The piece.
@@ -110,7 +113,7 @@ impl<'a> Predictor<'a> {
             number: record + 1,
             force_at: places.map(|record| record.force_at),
             response_at: places.map(|record| record.response_at).or(self.setting.record.response_at),
-            ..RecordSetting::default()
+            ..self.setting.record.clone()
         };
         EffectSetting { record, ..self.setting.clone() }
     }
@@ -158,6 +161,32 @@ impl<'a> Predictor<'a> {
         effects: &[EffectState],
     ) -> Result<Arc<SeenModes>, ModelError> {
         self.modes(&self.setting(0), &[Place { x, y: 0.0 }], false, constants, effects)
+    }
+
+    /// The modes of the structure in a record as seen from these ports, as damped as the poles beside them, and what the channel makes of a line.
+    ///
+    /// # Errors
+    /// As [`ModifiedPanel::seen_from`].
+    pub(crate) fn in_record(
+        &self,
+        record: usize,
+        ports: &[Place],
+        constants: &[f64],
+        effects: &[EffectState],
+    ) -> Result<(Vec<Mode>, impl Fn(Complex64) -> Complex64 + use<>), ModelError> {
+        let seen = self.modes(&self.setting(record), ports, false, constants, effects)?;
+        let mode = |n: usize| {
+            let omega = seen.angular_frequency[n];
+            let away = |pole: &&Pole| (pole.angular_frequency / omega).ln().abs();
+            let beside = self.comparison.measured.poles.iter().min_by(|a, b| away(a).total_cmp(&away(b)));
+            let measured = beside.filter(|pole| away(pole) < APART[1]).and_then(|pole| pole.damping_ratio);
+            let damping_ratio =
+                if omega > 0.0 { measured.unwrap_or(USUAL_DAMPING + seen.damping_ratio[n]) } else { 0.0 };
+            let deflection = seen.deflection[n].clone();
+            Mode { angular_frequency: omega, damping_ratio, at_forces: deflection.clone(), at_responses: deflection }
+        };
+        let channel = self.channel(record, effects)?;
+        Ok(((0..seen.angular_frequency.len()).map(mode).collect(), move |s| channel.at(s)))
     }
 
     /// The modes of the structure as seen from these ports, with a core that depends on frequency.

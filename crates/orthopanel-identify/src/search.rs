@@ -3,15 +3,18 @@
 use std::f64::consts::TAU;
 
 use faer::Mat;
-use orthopanel_model::{Effect, EffectSetting, ModelError, Scale, StructureKind, catalogue, natural_frequencies};
+use orthopanel_model::{
+    Action, Effect, EffectParameter, EffectSetting, ModelError, Scale, StructureKind, catalogue, natural_frequencies,
+};
 use rayon::prelude::*;
 
 use crate::comparison::Comparison;
+use crate::hit_strength::HitStrength;
 use crate::hypothesis::{Hypothesis, Part};
 use crate::judge::{MOST_FREQUENCY, ODDS};
 use crate::measured::Pole;
 use crate::model_error::{KINDS, Kind, Waves, medians, waves};
-use crate::posterior::{Judged, Point, Problem, Projection};
+use crate::posterior::{Judged, Point, Posterior, Problem, Projection};
 use crate::predicted::Predictor;
 use crate::search_progress::SearchProgress;
 
@@ -44,6 +47,8 @@ const MOST_EFFECTS: usize = 3;
 pub(crate) struct Inquiry<'a> {
     predictor: Predictor<'a>,
     waves: Waves,
+    /// The hits, where the test has any.
+    pub hits: Option<HitStrength>,
     /// How far it is.
     pub progress: SearchProgress<'a>,
 }
@@ -107,7 +112,7 @@ impl<'a> Inquiry<'a> {
     ) -> Result<Option<(Self, Judged)>, ModelError> {
         let predictor = Predictor::new(comparison, StructureKind::TimoshenkoBeam, setting)?;
         let records = comparison.measured.records.len();
-        let mut inquiry = Self { predictor, waves: vec![], progress: SearchProgress::default() };
+        let mut inquiry = Self { predictor, waves: vec![], hits: None, progress: SearchProgress::default() };
         let starts = starting_constants(comparison, setting, usize::MAX)?;
         let mut best: Option<(f64, Hypothesis, Point)> = None;
         for start in starts {
@@ -365,7 +370,8 @@ impl<'a> Inquiry<'a> {
         let effects: Vec<&'static dyn Effect> = catalogue()
             .iter()
             .copied()
-            .filter(|effect| self.can_show(*effect) && !has(effect.id()) && is_new(effect.id()))
+            .filter(|effect| self.can_show(*effect) && !self.shows_between_hits(*effect))
+            .filter(|effect| !has(effect.id()) && is_new(effect.id()))
             .collect();
         self.progress.more(effects.len());
         let added = |effect: &'static dyn Effect| {
@@ -407,6 +413,57 @@ impl<'a> Inquiry<'a> {
         fewer
     }
 
+    /// What an effect does to the first record at usual values.
+    ///
+    /// # Errors
+    /// What the test lacks for it.
+    pub(crate) fn acts(&self, effect: &dyn Effect) -> Result<Vec<Action>, ModelError> {
+        let piece = self.predictor.piece();
+        let value = |parameter: &EffectParameter| {
+            parameter.held_at.or_else(|| parameter.starts(piece).first().copied()).unwrap_or_default()
+        };
+        let values: Vec<f64> = effect.parameters().iter().map(value).collect();
+        effect.act(&values, &self.predictor.setting(0))
+    }
+
+    /// Whether an effect leaves modes as they are, and shows between hits of unequal strength.
+    fn shows_between_hits(&self, effect: &dyn Effect) -> bool {
+        self.acts(effect).is_ok_and(|acts| acts.is_empty())
+    }
+
+    /// The hypotheses that are not clearly behind, with what hits of unequal strength show: on the likeliest it is worked out once for all.
+    fn with_strength(&self, all: &[Judged]) -> Option<Vec<Judged>> {
+        let (hits, best) = (self.hits.as_ref()?, all.first()?);
+        let effect = catalogue().iter().copied().find(|effect| self.shows_between_hits(*effect))?;
+        if best.hypothesis.parts.iter().any(|part| part.effect.id() == effect.id()) {
+            return None;
+        }
+        let ways = self.ways(effect);
+        let part = ways.first()?;
+        let at = &best.posterior.point.z;
+        let (constants, effects) = (best.hypothesis.constants(at), best.hypothesis.effects(at).ok()?);
+        let k3 = |z: f64| part.values(&[z]).first().copied().unwrap_or_default();
+        let springs = hits.springs(&self.predictor, (&constants, &effects), k3).ok()??;
+        let near = |judged: &&Judged| best.log_odds - judged.log_odds < BESIDE * ODDS.ln();
+        let with = |judged: &Judged| {
+            let hypothesis = judged.hypothesis.with(part.clone());
+            let z = [&judged.posterior.point.z[..], &[springs.z]].concat();
+            let size = z.len();
+            let own = &judged.posterior.covariance;
+            let covariance = Mat::from_fn(size, size, |i, j| match (i + 1 < size, j + 1 < size) {
+                (true, true) => own[(i, j)],
+                (false, false) => springs.variance,
+                _ => 0.0,
+            });
+            let point = Point { z, derivatives: Mat::new(), ..judged.posterior.point.clone() };
+            let log_evidence = judged.posterior.log_evidence + springs.log_evidence;
+            let posterior = Posterior { point, covariance, log_evidence, ..judged.posterior.clone() };
+            let log_odds = judged.log_odds + springs.log_evidence + log_prior(ways.len());
+            Judged { hypothesis, posterior, log_odds }
+        };
+        Some(all.iter().filter(near).map(with).collect())
+    }
+
     /// All hypotheses that were looked at, the likeliest first.
     pub(crate) fn search(&self, base: Judged) -> Vec<Judged> {
         let mut all = vec![base];
@@ -431,6 +488,8 @@ impl<'a> Inquiry<'a> {
                 break;
             }
         }
+        all.sort_by(|a, b| b.log_odds.total_cmp(&a.log_odds));
+        all.extend(self.with_strength(&all).unwrap_or_default());
         all.sort_by(|a, b| b.log_odds.total_cmp(&a.log_odds));
         all
     }

@@ -60,6 +60,18 @@ fn val_a_core_that_relaxes_is_found() {
     }
 }
 
+/// Springs whose force goes with the cube of the motion differ from hit to hit, and leave the modes as they are.
+#[test]
+fn val_a_cubic_suspension_is_found() {
+    let folder = tempfile::tempdir().unwrap();
+    let Some((test, truth)) = made_of(folder.path(), "clean", ("cubic-stiffness", 5), 71) else { return };
+    let said = infer(&test).unwrap();
+    assert_constants(&said, &truth);
+    let springs = said.effects.iter().find(|effect| effect.id == "cubic-stiffness").unwrap();
+    let value = truth["effects"][0]["parameters"]["k3"].as_f64().unwrap();
+    assert!((springs.parameters[0].value / value - 1.0).abs() < 0.02, "{:?} beside {value}", springs.parameters);
+}
+
 /// A strip so wide that it bends across and twists: all constants of the plate, by records along its centre line.
 #[test]
 #[ignore = "a minute and a half; all such run by `cargo test --release -- --ignored`"]

@@ -3,6 +3,7 @@
 use orthopanel_data::{Accelerance, Estimation, ImpactTest, TimeHistory};
 use orthopanel_model::{
     BEAM_CONSTANTS, BeamConstants, BeamMode, Damping, EffectState, ExactBeam, Place, ReceptanceSetup, RecordSetting,
+    SuspensionMotion,
 };
 use rayon::prelude::*;
 
@@ -79,6 +80,8 @@ impl Lines {
         let setting = |accelerance: &Accelerance| RecordSetting {
             force_at: Some(accelerance.force_at),
             response_at: Some(accelerance.response_at),
+            // What is not linear has no lines of its own.
+            suspension_motion: SuspensionMotion::InTime,
             ..RecordSetting::default()
         };
         let settings: Vec<RecordSetting> = self.accelerances.iter().map(setting).collect();

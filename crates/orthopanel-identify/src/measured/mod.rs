@@ -12,6 +12,7 @@ mod lines;
 mod modal_fit;
 mod pole_search;
 mod records;
+pub(crate) use hits::{HitSpectra, HitsOfRecord, transform};
 pub(crate) use records::SKIRT;
 mod scatter;
 #[cfg(test)]
@@ -126,12 +127,20 @@ pub fn measured_modes(test: &ImpactTest) -> Result<Vec<MeasuredModes>, IdentifyE
 
 /// Of the hits that are sound, up to where the force has fallen too far.
 fn of_hits(piece: usize, histories: &[TimeHistory]) -> Result<MeasuredModes, IdentifyError> {
+    let (sound, highest) = sound(histories)?;
+    MeasuredModes::of_hits(piece, &sound, highest).ok_or_else(no_resonance)
+}
+
+/// The hits that are sound, and where the force has fallen too far \[Hz\].
+///
+/// # Errors
+/// [`IdentifyError::Data`] where no hit is usable.
+pub(crate) fn sound(histories: &[TimeHistory]) -> Result<(Vec<TimeHistory>, f64), IdentifyError> {
     let judged = histories.iter().map(|history| Ok((history, history.accelerance(Estimation::default())?)));
     let judged = judged.collect::<Result<Vec<_>, IdentifyError>>()?;
     let ends = judged.iter().filter_map(|(_, accelerance)| accelerance.frequency.last().copied());
     let highest = ends.fold(f64::INFINITY, f64::min);
-    let sound: Vec<TimeHistory> = judged.iter().map(|(history, accelerance)| history.kept_in(accelerance)).collect();
-    MeasuredModes::of_hits(piece, &sound, highest).ok_or_else(no_resonance)
+    Ok((judged.iter().map(|(history, accelerance)| history.kept_in(accelerance)).collect(), highest))
 }
 
 fn no_resonance() -> IdentifyError {
