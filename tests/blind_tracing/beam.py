@@ -83,10 +83,24 @@ def solve(panel, points, zeta, spans=()):
     stiffness = mesh.bending + mesh.shear + mesh.tension
     held = _hold(panel, stiffness, mesh.nodes)
     free = np.setdiff1d(np.arange(len(stiffness)), held)
-    square, vectors = eigh(stiffness[np.ix_(free, free)], mesh.mass[np.ix_(free, free)])
+    square, vectors = lowest_first(stiffness[np.ix_(free, free)], mesh.mass[np.ix_(free, free)])
     seen = np.vstack([*(mesh.deflection(x) for x in points), *(mesh.mean_strain(*span) for span in spans)])
     loose = 0 if panel.left != "free" or panel.cords else 1 if panel.tension else 2  # a tension turns the panel back
     return reduced(square, vectors, seen[:, free], (seen @ mesh.rigid()[:, :loose]).T, zeta)
+
+
+SHIFT = (2.0 * np.pi * 30.0) ** 2  # 1/s2, of the size of a hung panel's lowest modes
+
+
+def lowest_first(stiffness, mass):
+    """Eigenvalues, rising, and mass-normalised vectors of the pencil, the lowest to rounding of themselves.
+
+    Hits a fraction of a millimetre apart make elements whose own eigenvalues are 1e13 times those of a panel on cords. Solved as it is, the
+    pencil errs by rounding of the largest: by 8 % of such a frequency. The inverse errs by rounding of the lowest.
+    """
+    flexibility, vectors = eigh(mass, stiffness + SHIFT * mass)
+    flexibility, vectors = np.maximum(flexibility[::-1], np.finfo(float).tiny), vectors[:, ::-1]
+    return 1.0 / flexibility - SHIFT, vectors / np.sqrt(flexibility)
 
 
 def boundaries(panel, points, element=ELEMENT):
