@@ -63,8 +63,11 @@ impl HitStrength {
     /// # Errors
     /// [`IdentifyError::Data`] where records cannot be read.
     pub(crate) fn new(test: &ImpactTest, band: [f64; 2]) -> Result<Option<Self>, IdentifyError> {
+        if test.suspension.is_empty() {
+            return Ok(None);
+        }
         let histories: Vec<TimeHistory> = test.time_histories()?.into_iter().map(|(_, history)| history).collect();
-        if histories.is_empty() || test.suspension.is_empty() {
+        if histories.is_empty() {
             return Ok(None);
         }
         Ok(Some(Self { histories: sound(&histories)?.0, supports: test.suspension.clone(), band }))

@@ -8,8 +8,6 @@
 //! the span join the coordinates, and $-\text{loss}\,k'G_{zx}A\int\gamma\gamma^T dx$ over the span joins the stiffness. What an element or a
 //! strain brings is answered by inertia once more, $K^{-1}MK^{-1}f$.
 
-use std::sync::Arc;
-
 use faer::Mat;
 
 use super::low_modes::LowModes;
@@ -27,7 +25,7 @@ const ANSWERED: usize = 6;
 #[derive(Debug)]
 pub(super) struct BeamBase {
     pub modes: Vec<BeamMode>,
-    pub low: Arc<LowModes>,
+    pub low: LowModes,
     statics: StaticShapes,
 }
 
@@ -77,7 +75,7 @@ impl BeamBase {
         let rigid = modes.iter().take_while(|mode| mode.angular_frequency() == 0.0).count();
         let statics = StaticShapes::new((piece, boundary), [e_x, g_zx], &terms, &modes[..rigid])?;
         let low = modes.iter().map(|mode| (0, vec![], mode.angular_frequency().powi(2))).collect();
-        Ok(Self { modes, low: Arc::new(LowModes { modes: low, rigid }), statics })
+        Ok(Self { modes, low: LowModes { modes: low, rigid }, statics })
     }
 
     /// With losses of shear stiffness, seen in `rows`, the first of which belong to elements and then to ports: these bring shapes, and follow a

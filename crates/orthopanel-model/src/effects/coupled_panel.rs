@@ -67,27 +67,40 @@ impl Even {
 #[derive(Debug)]
 pub(crate) struct EvenBeam {
     beam: Arc<TimoshenkoBeam>,
-    /// The last used first.
-    known: Mutex<Vec<KnownModes>>,
-    /// The same of its exact modes.
-    bases: Mutex<Vec<KnownBase>>,
+    /// By the values of the constants, and how many modes.
+    known: Known<(Vec<f64>, usize), LowModes>,
+    /// Its exact modes, by constants, rotary factor and number, and by the ends.
+    bases: Known<([f64; 4], Boundary), BeamBase>,
 }
 
-/// Constants, rotary factor and number of a beam's exact modes, and its ends.
-type KnownBase = (([f64; 4], Boundary), Arc<BeamBase>);
+/// What was found last, the last used first.
+type Known<K, V> = Mutex<Vec<(K, Arc<V>)>>;
 
-/// The first `count` modes at these values of the constants.
-#[derive(Debug)]
-struct KnownModes {
-    values: Vec<f64>,
-    count: usize,
-    modes: Arc<LowModes>,
+/// So many are kept: each of some threads goes back and forth between a few.
+const KEPT: usize = 64;
+
+/// What is known by a key, else found and kept.
+fn known_or<K: PartialEq, V>(
+    known: &Known<K, V>,
+    key: K,
+    find: impl FnOnce() -> Result<V, ModelError>,
+) -> Result<Arc<V>, ModelError> {
+    let lock = || known.lock().unwrap_or_else(PoisonError::into_inner);
+    let mut kept = lock();
+    if let Some(place) = kept.iter().position(|known| known.0 == key) {
+        kept[..=place].rotate_right(1);
+        return Ok(Arc::clone(&kept[0].1));
+    }
+    // Others need not wait.
+    drop(kept);
+    let found = Arc::new(find()?);
+    let mut kept = lock();
+    kept.truncate(KEPT - 1);
+    kept.insert(0, (key, Arc::clone(&found)));
+    Ok(found)
 }
 
 impl EvenBeam {
-    /// So many are kept: each of some threads goes back and forth between a few.
-    const KEPT: usize = 64;
-
     /// With its exact modes between these ends, rigid ones and `count` flexible ones.
     pub(super) fn base(
         &self,
@@ -97,35 +110,11 @@ impl EvenBeam {
         count: usize,
     ) -> Result<Arc<BeamBase>, ModelError> {
         let key = ([values[0], values[1], rotary_factor, count as f64], boundary);
-        let known = || self.bases.lock().unwrap_or_else(PoisonError::into_inner);
-        let mut kept = known();
-        if let Some(place) = kept.iter().position(|known| known.0 == key) {
-            kept[..=place].rotate_right(1);
-            return Ok(Arc::clone(&kept[0].1));
-        }
-        drop(kept);
-        let base = Arc::new(BeamBase::new((piece, boundary), values, rotary_factor, count)?);
-        let mut kept = known();
-        kept.truncate(Self::KEPT - 1);
-        kept.insert(0, (key, Arc::clone(&base)));
-        Ok(base)
+        known_or(&self.bases, key, || BeamBase::new((piece, boundary), values, rotary_factor, count))
     }
 
     fn low_modes(&self, values: &[f64], count: usize) -> Result<Arc<LowModes>, ModelError> {
-        let known = || self.known.lock().unwrap_or_else(PoisonError::into_inner);
-        let is_it = |known: &KnownModes| known.values == values && known.count == count;
-        let mut kept = known();
-        if let Some(place) = kept.iter().position(is_it) {
-            kept[..=place].rotate_right(1);
-            return Ok(Arc::clone(&kept[0].modes));
-        }
-        // Others need not wait.
-        drop(kept);
-        let found = Arc::new(LowModes::new(self.beam.as_ref(), values, count)?);
-        let mut kept = known();
-        kept.truncate(Self::KEPT - 1);
-        kept.insert(0, KnownModes { values: values.to_vec(), count, modes: Arc::clone(&found) });
-        Ok(found)
+        known_or(&self.known, (values.to_vec(), count), || LowModes::new(self.beam.as_ref(), values, count))
     }
 }
 

@@ -47,47 +47,45 @@ impl System {
 
     /// With these elements, which the first rows of `answers` belong to.
     pub(super) fn new(low: &LowModes, answers: &FarAnswers, elements: &[PointElement], damping: &Damping) -> Self {
-        let mut system = Self::without_elements(low, damping);
-        let (modes, count) = (system.panel, elements.len());
-        let resonators = elements.iter().filter(|element| matches!(element.law, ElementLaw::Resonator { .. })).count();
-        let (panel, size) = (modes + count, modes + count + resonators);
-        system.grow(size);
-        system.panel = panel;
         let [first, second] = &answers.series;
-        for (a, b) in (0..count).flat_map(|a| (0..count).map(move |b| (a, b))) {
-            system.stiffness[(modes + a, modes + b)] = first[(a, b)];
-            system.mass[(modes + a, modes + b)] = second[(a, b)];
-        }
-        let mut resonators = panel..size;
-        for (a, element) in elements.iter().enumerate() {
-            let mut row = vec![0.0; size];
-            (0..modes).for_each(|m| row[m] = answers.near[(m, a)]);
-            (0..count).for_each(|b| row[modes + b] = first[(a, b)]);
-            system.join(element.law, row, &mut resonators);
-        }
-        system
+        let count = elements.len();
+        let far = |element: usize| (0..count).map(|b| first[(element, b)]).collect();
+        Self::beyond(low, (count, first, second, None), (elements, &answers.near, far), damping)
     }
 
     /// With shapes beyond the modes, and these elements, which their first rows belong to.
     pub(super) fn in_shapes(low: &LowModes, shapes: &InShapes, elements: &[PointElement], damping: &Damping) -> Self {
+        let InShapes { near, far, stiffness, mass, lost } = shapes;
+        let far_of = |element: usize| far.col_as_slice(element).to_vec();
+        Self::beyond(low, (far.nrows(), stiffness, mass, lost.as_ref()), (elements, near, far_of), damping)
+    }
+
+    /// With `count` coordinates beyond the modes, of these stiffnesses and masses; `lost` is taken from the stiffness of all. Where an element sits
+    /// the modes have its column of `near`, and the others have `far`.
+    fn beyond(
+        low: &LowModes,
+        (count, stiffness, mass, lost): (usize, &Mat<f64>, &Mat<f64>, Option<&Mat<f64>>),
+        (elements, near, far): (&[PointElement], &Mat<f64>, impl Fn(usize) -> Vec<f64>),
+        damping: &Damping,
+    ) -> Self {
         let mut system = Self::without_elements(low, damping);
-        let (modes, held) = (system.panel, shapes.far.nrows());
+        let modes = system.panel;
         let resonators = elements.iter().filter(|element| matches!(element.law, ElementLaw::Resonator { .. })).count();
-        let (panel, size) = (modes + held, modes + held + resonators);
+        let (panel, size) = (modes + count, modes + count + resonators);
         system.grow(size);
         system.panel = panel;
-        for (a, b) in (0..held).flat_map(|a| (0..held).map(move |b| (a, b))) {
-            system.stiffness[(modes + a, modes + b)] = shapes.stiffness[(a, b)];
-            system.mass[(modes + a, modes + b)] = shapes.mass[(a, b)];
+        for (a, b) in (0..count).flat_map(|a| (0..count).map(move |b| (a, b))) {
+            system.stiffness[(modes + a, modes + b)] = stiffness[(a, b)];
+            system.mass[(modes + a, modes + b)] = mass[(a, b)];
         }
-        if let Some(lost) = &shapes.lost {
+        if let Some(lost) = lost {
             for (a, b) in (0..panel).flat_map(|a| (0..panel).map(move |b| (a, b))) {
                 system.stiffness[(a, b)] -= lost[(a, b)];
             }
         }
         let mut resonators = panel..size;
         for (number, element) in elements.iter().enumerate() {
-            let mut row = [shapes.near.col_as_slice(number), shapes.far.col_as_slice(number)].concat();
+            let mut row = [near.col_as_slice(number), &far(number)].concat();
             row.resize(size, 0.0);
             system.join(element.law, row, &mut resonators);
         }

@@ -176,20 +176,27 @@ impl ModifiedPanel {
         if let Some((base, losses, elements)) = self.base(setting, values, effects)? {
             return self.seen_on_base((&base, &losses), &elements, places, with_slopes);
         }
-        self.seen_in_basis(setting, places, with_slopes, values, effects)
+        self.seen_in_basis(self.parts(setting, values, effects), places, with_slopes)
+    }
+
+    fn parts<'a>(
+        &'a self,
+        setting: &'a EffectSetting,
+        values: &'a [f64],
+        effects: &'a [EffectState],
+    ) -> PanelWithEffects<'a> {
+        PanelWithEffects { setting, even: &self.even, values, effects, damping: &self.damping }
     }
 
     /// The same on a basis for the structure with what is spread over it.
     fn seen_in_basis(
         &self,
-        setting: &EffectSetting,
+        parts: PanelWithEffects,
         places: &[Place],
         with_slopes: bool,
-        values: &[f64],
-        effects: &[EffectState],
     ) -> Result<SeenModes, ModelError> {
-        let Self { even, damping, .. } = self;
-        let modified = self.modified(PanelWithEffects { setting, even, values, effects, damping })?;
+        let damping = parts.damping;
+        let modified = self.modified(parts)?;
         if modified.core.is_some() {
             return Err(ModelError::Unsupported("viscoelastic-core in a model of modes".into()));
         }
@@ -373,7 +380,7 @@ mod tests {
                 let effects = std::slice::from_ref(effect);
                 let values = [1.07e10, 5.363e8];
                 let seen = panel.seen_from(&setting, &places, true, &values, effects).expect("modes");
-                let ritz = long.seen_in_basis(&setting, &places, true, &values, effects).expect("modes");
+                let ritz = long.seen_in_basis(long.parts(&setting, &values, effects), &places, true).expect("modes");
                 let coarse = effect.values[0] == 0.9;
                 for n in setting.boundary.rigid_modes()..10 {
                     let (own, other) = (seen.angular_frequency[n], ritz.angular_frequency[n]);
