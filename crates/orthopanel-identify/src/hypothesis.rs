@@ -124,6 +124,11 @@ impl Part {
         Some(Self { declared: true, ..way })
     }
 
+    /// Whether it sits at a place of its own: a piece may have several of it.
+    pub(crate) fn has_place(&self) -> bool {
+        self.effect.parameters().iter().any(|parameter| parameter.name == "x")
+    }
+
     fn coordinates(&self) -> impl Iterator<Item = &Coordinate> {
         self.slots.iter().filter_map(Slot::coordinate)
     }
@@ -191,20 +196,26 @@ impl Part {
     /// Where a search begins: a net over the prior, the finer the fewer the coordinates. What vibrates by itself at a place begins where the
     /// panel with it has a mode at each of the measured frequencies, as `tuned(mass, x)` finds them \[Hz\].
     pub(crate) fn starts(&self, tuned: impl Fn(f64, f64) -> Vec<f64>) -> Vec<Vec<f64>> {
-        let count = self.free();
         let unit = |number: usize| self.effect.parameters().get(number).map_or("", |parameter| parameter.unit);
-        let mut starts: Vec<Vec<f64>> = vec![vec![]];
-        let mut units = Vec::new();
-        for (number, slot) in self.slots.iter().enumerate() {
-            let Slot::Free(coordinate) = slot else { continue };
-            let net: Vec<f64> = match coordinate.map {
-                Map::Even { .. } => even_net(PLACES, 0.95),
-                Map::Size { .. } if count == 1 => even_net(9, 2.0),
-                Map::Size { .. } if units.is_empty() => vec![-0.8, 0.8],
-                Map::Size { .. } | Map::Gaussian { .. } => vec![0.0],
-            };
-            units.push(unit(number));
-            starts = starts.iter().flat_map(|start| net.iter().map(|z| [&start[..], &[*z]].concat())).collect();
+        let free = || self.slots.iter().enumerate().filter_map(|(number, slot)| Some((number, slot.coordinate()?)));
+        let units: Vec<&str> = free().map(|(number, _)| unit(number)).collect();
+        let has_place = self.has_place();
+        let net = |each_size: bool| {
+            let mut starts: Vec<Vec<f64>> = vec![vec![]];
+            for (index, (_, coordinate)) in free().enumerate() {
+                let net: Vec<f64> = match coordinate.map {
+                    Map::Even { .. } => even_net(PLACES, 0.95),
+                    Map::Size { .. } if units.len() == 1 => even_net(9, 2.0),
+                    Map::Size { .. } if index == 0 || each_size => vec![-0.8, 0.8],
+                    Map::Size { .. } | Map::Gaussian { .. } => vec![0.0],
+                };
+                starts = starts.iter().flat_map(|start| net.iter().map(|z| [&start[..], &[*z]].concat())).collect();
+            }
+            starts
+        };
+        let mut starts = net(false);
+        if !has_place && units.len() > 1 {
+            starts.extend(net(true));
         }
         let of = |wanted: &str| units.iter().position(|unit| *unit == wanted);
         let (Some(mass), Some(frequency), Some(x)) = (of("kg"), of("Hz"), of("m")) else { return starts };

@@ -5,6 +5,7 @@ mod answer;
 mod comparison;
 mod curves;
 mod declared_doubt;
+mod declared_effects;
 mod downhill_simplex;
 mod entry;
 mod error;
@@ -41,8 +42,6 @@ pub use error::IdentifyError;
 pub use identification::{
     AcceleranceFit, Correlation, HiddenMode, Identification, IdentifiedConstant, ModeFit, NotIdentified, PieceFit,
 };
-pub use inference::{Inference, InferredEffect, InferredValue, infer};
-pub use judge::Finding;
 pub use matching::ModeMatch;
 pub use measured::{MeasuredModes, MeasuredRecord, Pole, measured_modes};
 pub use outcome::{
@@ -53,5 +52,5 @@ pub use settings::{PaperWeights, Search, Settings};
 pub use time_history::{
     ComparedSignals, ForceBetweenSamples, HistorySettings, HitComparison, Misfit, Stepping, compare_time_history,
 };
-pub use trace::{trace, trace_by_modes, trace_with};
+pub use trace::{trace, trace_by_lines, trace_with};
 pub use trace_rows::TRACE_SCHEMA;

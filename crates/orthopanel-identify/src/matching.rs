@@ -144,6 +144,7 @@ mod tests {
         let measured = MeasuredModes {
             piece: 0,
             poles: vec![pole(501.0), pole(504.0), pole(5000.0)],
+            beside: vec![],
             records: (0..3).map(record).collect(),
             remainder_frequencies: vec![],
             band: [5.0, 6000.0],

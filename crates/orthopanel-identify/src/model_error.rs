@@ -26,41 +26,56 @@ pub(crate) enum Kind {
     ForcePlace,
     /// Of the gain of each record.
     RecordGain,
-    /// Of the core's shear stiffness along the panel, in each of the longest waves.
-    Core,
     /// Of the sensor's place \[m\].
     ResponsePlace,
     /// Of the gain of all records alike.
     Gain,
-    /// Of the core's shear stiffness in each of the shorter waves.
-    ShortCore,
-    /// Of the faces' bending stiffness along the panel, in each wave.
-    Faces,
-    /// Of the mass along the panel, in each wave.
-    Mass,
     /// Of what modes beyond the band leave in each record.
     Remainder,
     /// Of what motions of the piece as a whole leave in each record above them, and of their residues: cords are no springs, and damp as they
     /// like.
     Hanging,
+    /// Of the core's shear stiffness along the panel in each of its waves, by their length: see [`LENGTHS`].
+    LongestCore,
+    LongCore,
+    ShortCore,
+    ShortestCore,
+    /// Of the faces' bending stiffness, alike.
+    LongestFaces,
+    LongFaces,
+    ShortFaces,
+    ShortestFaces,
+    /// Of the mass, alike.
+    LongestMass,
+    LongMass,
+    ShortMass,
+    ShortestMass,
 }
 
 /// Median of a kind's size before any test, and the factor within which two of three lie.
-const PRIORS: [(Kind, f64, f64); 14] = [
+const PRIORS: [(Kind, f64, f64); 22] = [
     (Kind::Frequency, 5e-4, 4.0),
     (Kind::Residue, 3e-3, 4.0),
     (Kind::Quadrature, 1e-3, 4.0),
     (Kind::Coupling, 3e-2, 5.0),
     (Kind::ForcePlace, 8e-4, 1.6),
     (Kind::RecordGain, 3e-3, 1.6),
-    (Kind::Core, 1e-2, 2.0),
     (Kind::ResponsePlace, 4e-4, 1.3),
     (Kind::Gain, 3e-3, 1.3),
-    (Kind::ShortCore, 4e-3, 3.0),
-    (Kind::Faces, 3e-3, 2.2),
-    (Kind::Mass, 2e-3, 2.2),
     (Kind::Remainder, 5e-3, 4.0),
     (Kind::Hanging, 2e-2, 4.0),
+    (Kind::LongestCore, 1e-2, 2.0),
+    (Kind::LongCore, 1e-2, 2.0),
+    (Kind::ShortCore, 5e-3, 2.5),
+    (Kind::ShortestCore, 2e-3, 2.5),
+    (Kind::LongestFaces, 3e-3, 2.2),
+    (Kind::LongFaces, 3e-3, 2.2),
+    (Kind::ShortFaces, 1.5e-3, 2.5),
+    (Kind::ShortestFaces, 7e-4, 2.5),
+    (Kind::LongestMass, 2e-3, 2.2),
+    (Kind::LongMass, 2e-3, 2.2),
+    (Kind::ShortMass, 1e-3, 2.5),
+    (Kind::ShortestMass, 5e-4, 2.5),
 ];
 /// Kinds of error.
 pub(crate) const KINDS: usize = PRIORS.len();
@@ -68,9 +83,11 @@ pub(crate) const KINDS: usize = PRIORS.len();
 const HANGING: f64 = 10.0;
 /// Part of an error of a remainder that is in quadrature.
 const QUADRATURE: f64 = 0.3;
-/// Waves of unevenness, and how many of the core's are long: cells are stretched, and adhesive is spread, alike over 40 mm to the length.
+/// Waves of unevenness along the panel.
 const WAVES: usize = 20;
-const LONG_WAVES: usize = 6;
+/// Shortest length \[m\] of waves of each size but the last: cells are stretched, and adhesive is spread, alike over some 50 to 200 mm, so that
+/// sizes fall towards short waves, each octave by one of its own.
+const LENGTHS: [f64; 3] = [0.5, 0.25, 0.125];
 
 /// The columns $F$ of all kinds, side by side.
 #[derive(Clone)]
@@ -105,13 +122,14 @@ pub(crate) fn waves(predictor: &Predictor, constants: &[f64]) -> Result<Waves, M
     let mut waves = Vec::new();
     for field in Field::ALL {
         for (number, column) in predictor.uneven(constants, field, WAVES)?.into_iter().enumerate() {
-            let kind = match field {
-                Field::Shear if number < LONG_WAVES => Kind::Core,
-                Field::Shear => Kind::ShortCore,
-                Field::Bending => Kind::Faces,
-                Field::Mass => Kind::Mass,
+            let length = 2.0 * predictor.piece().length / (number + 1) as f64;
+            let first = match field {
+                Field::Shear => Kind::LongestCore,
+                Field::Bending => Kind::LongestFaces,
+                Field::Mass => Kind::LongestMass,
             };
-            waves.push((kind as usize, column));
+            let octave = LENGTHS.iter().filter(|shortest| length < **shortest).count();
+            waves.push((first as usize + octave, column));
         }
     }
     Ok(waves)

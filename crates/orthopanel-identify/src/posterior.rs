@@ -270,7 +270,8 @@ impl Problem<'_> {
         let precision = self.hypothesis.precision();
         let size = from.z.len();
         let mut point = self.judged_by(from, by)?;
-        let mut fresh = point.derivatives.ncols() != size;
+        let known = (point.derivatives.nrows(), point.derivatives.ncols());
+        let mut fresh = known != (point.at.values.len(), size);
         if fresh {
             point.derivatives = self.derivatives(&point, 0)?;
         }

@@ -46,6 +46,8 @@ pub(crate) struct Predictor<'a> {
     setting: EffectSetting,
     /// Every place of the test once.
     places: Vec<Place>,
+    /// Highest pole \[rad/s\] that is a motion of the piece as a whole, zero without one, once a base tells: the same for all hypotheses.
+    pub hanging: Option<f64>,
     /// Modes that were found last: what acts on the channel alone asks for the same ones again.
     found: Mutex<VecDeque<(Vec<f64>, Arc<SeenModes>)>>,
 }
@@ -69,6 +71,8 @@ pub(crate) struct Prediction {
     pub hangs: Vec<bool>,
     /// Whether the piece moves as a whole: it hangs on something.
     pub is_free: bool,
+    /// Highest pole that is such a motion \[rad/s\]; zero without one.
+    pub hanging: f64,
     /// Number of the remainders' frequencies that lie too near such motions: cords are no springs, and damp as they like.
     pub near_hanging: usize,
 }
@@ -98,7 +102,7 @@ impl<'a> Predictor<'a> {
         // What is not linear shows between hits, not in modes.
         let record = RecordSetting { suspension_motion: SuspensionMotion::InTime, ..setting.record.clone() };
         let setting = EffectSetting { record, ..setting.clone() };
-        Ok(Self { comparison, panel, setting, places, found: Mutex::default() })
+        Ok(Self { comparison, panel, setting, places, hanging: None, found: Mutex::default() })
     }
 
     /// The piece.
@@ -418,7 +422,9 @@ impl<'a> Predictor<'a> {
         // By the poles where they show it, so that all hypotheses leave out the same.
         let flexible = omega.get(self.setting.boundary.rigid_modes()).copied().unwrap_or(0.0);
         let poles = measured.poles.iter().map(|pole| pole.angular_frequency);
-        let seen_hanging = poles.filter(|omega| self.hangs(0) && *omega < LOWEST * flexible).fold(0.0, f64::max);
+        let seen_hanging = self
+            .hanging
+            .unwrap_or_else(|| poles.filter(|omega| self.hangs(0) && *omega < LOWEST * flexible).fold(0.0, f64::max));
         let hanging = (0..omega.len()).filter(|&n| self.hangs(n)).map(|n| omega[n]).fold(0.0, f64::max);
         let hanging = if seen_hanging > 0.0 { seen_hanging } else { hanging };
         let near = |frequency: &&f64| TAU * **frequency < CLEAR_OF_HANGING * hanging;
@@ -438,6 +444,7 @@ impl<'a> Predictor<'a> {
             damping_of_effects,
             hangs,
             is_free,
+            hanging: seen_hanging,
             near_hanging,
         }
     }

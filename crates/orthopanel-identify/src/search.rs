@@ -19,9 +19,15 @@ use crate::predicted::Predictor;
 use crate::search_progress::SearchProgress;
 
 /// $\ln\tau_k$ with which starts are judged: wide, so that far ones have a slope to follow.
-const LOOSE: [f64; KINDS] = [5e-3, 5e-2, 2e-2, 0.1, 1e-3, 5e-3, 1e-2, 5e-4, 5e-3, 5e-3, 5e-3, 5e-3, 5e-2, 0.2];
+const LOOSE: [f64; KINDS] = [
+    5e-3, 5e-2, 2e-2, 0.1, 1e-3, 5e-3, 5e-4, 5e-3, 5e-2, 0.2, 1e-2, 1e-2, 5e-3, 5e-3, 5e-3, 5e-3, 5e-3, 5e-3, 5e-3,
+    5e-3, 5e-3, 5e-3,
+];
 /// and from which the sizes are estimated: from the sizes of too poor a hypothesis effects drown.
-const SMALL: [f64; KINDS] = [3e-4, 2e-3, 1e-3, 3e-2, 8e-4, 3e-3, 4e-3, 4e-4, 3e-3, 2e-3, 1e-3, 5e-4, 1e-2, 5e-2];
+const SMALL: [f64; KINDS] = [
+    3e-4, 2e-3, 1e-3, 3e-2, 8e-4, 3e-3, 4e-4, 3e-3, 1e-2, 5e-2, 4e-3, 4e-3, 3e-3, 1e-3, 2e-3, 2e-3, 1e-3, 5e-4, 1e-3,
+    1e-3, 5e-4, 3e-4,
+];
 /// So many times wider where no start is followed yet: a net is coarse.
 const NET: f64 = 4.0;
 /// Poles at which something that vibrates by itself is looked for,
@@ -37,9 +43,9 @@ const LOWEST_POLES: [usize; 3] = [3, 4, 6];
 /// Starts that are followed.
 const FOLLOWED: usize = 3;
 /// How far a hypothesis may be behind the best, in logarithms of [`ODDS`], to be looked at more closely,
-const NEAR: f64 = 5.0;
+const NEAR: f64 = 2.0;
 /// and for more effects to be looked for in what it has left.
-const BESIDE: f64 = 2.0;
+const BESIDE: f64 = 1.0;
 /// Effects at most, beside those declared.
 const MOST_EFFECTS: usize = 3;
 
@@ -139,6 +145,7 @@ impl<'a> Inquiry<'a> {
         }
         let Some((_, hypothesis, point)) = best else { return Ok(None) };
         inquiry.waves = waves(&inquiry.predictor, &hypothesis.constants(&point.z))?;
+        inquiry.predictor.hanging = Some(point.at.hanging);
         // Here sizes first: small ones would lead the constants away where an effect is large.
         let problem = inquiry.problem(&hypothesis);
         let errors = problem.errors(&point.at);
@@ -237,6 +244,9 @@ impl<'a> Inquiry<'a> {
         // What the base's own coordinates make good of a start, to first order.
         let projection = Projection::new(&at_base.derivatives, &of_base.hypothesis.precision(), &loose)?;
         let bases = self.bases(base, &ways[0]);
+        // Another structure is too dear for more than one set of derivatives.
+        let replaces = ways[0].parts.last().is_some_and(|part| part.replaces_structure(&self.predictor));
+        let exact_from = if replaces { usize::MAX } else { at_base.z.len() };
         let starts = |(way, hypothesis): (usize, &Hypothesis)| {
             let problem = self.problem(hypothesis);
             let starts = hypothesis
@@ -245,6 +255,11 @@ impl<'a> Inquiry<'a> {
                 .map_or(vec![], |part| part.starts(|mass, x| self.tuned(base, &missed, mass, x)));
             let point = |(of_base, start): (&Vec<f64>, &Vec<f64>)| {
                 let point = problem.point([&of_base[..], start].concat(), &loose)?;
+                // Motions of the piece as a whole have errors of their own.
+                if point.at.hangs != at_base.at.hangs {
+                    let errors = problem.errors(&point.at).with_every_partner();
+                    return problem.judged_by(point, &problem.whitening(&errors, &logs(LOOSE.map(|size| NET * size)))?);
+                }
                 if bases.len() > 1 {
                     return Some(point);
                 }
@@ -257,6 +272,12 @@ impl<'a> Inquiry<'a> {
             let starts = bases.iter().flat_map(|of_base| starts.iter().map(move |start| (of_base, start)));
             starts.filter_map(point).map(|point| (way, point)).collect::<Vec<_>>()
         };
+        let judged = |(way, posterior): (usize, Posterior)| {
+            let log_odds = base.log_odds - base.posterior.log_evidence + posterior.log_evidence + log_prior(ways.len());
+            Judged { hypothesis: ways[way].clone(), posterior, log_odds }
+        };
+        // Under wide sizes no hypothesis is far behind that comes out ahead under narrow ones.
+        let behind = 2.0 * NEAR * ODDS.ln();
         let best = |mut points: Vec<(usize, Point)>, most: usize| {
             points.sort_by(|a, b| a.1.cost.total_cmp(&b.1.cost));
             let mut apart: Vec<(usize, Point)> = Vec::new();
@@ -264,7 +285,8 @@ impl<'a> Inquiry<'a> {
                 let near = |(other, of): &(usize, Point)| {
                     *other == way && of.z.iter().zip(&point.z).all(|(a, b)| (a - b).abs() < 0.05)
                 };
-                if apart.len() < most && !apart.iter().any(near) {
+                let is_behind = apart.first().is_some_and(|(_, best)| point.cost > best.cost + behind);
+                if apart.len() < most && !is_behind && !apart.iter().any(near) {
                     apart.push((way, point));
                 }
             }
@@ -280,13 +302,28 @@ impl<'a> Inquiry<'a> {
                     point = both.min_by(|a, b| a.misfit.total_cmp(&b.misfit))?;
                 }
                 let by = problem.whitening(&problem.errors(&point.at).with_every_partner(), sizes)?;
-                problem.follow(point, &by, most, (1.0, at_base.z.len())).map(|(point, _)| (way, point))
+                problem.follow(point, &by, most, (1.0, exact_from)).map(|(point, _)| (way, point))
             };
             points.into_iter().filter_map(on).collect()
         };
         let points = best(ways.iter().enumerate().flat_map(starts).collect(), 4 * FOLLOWED);
-        let points = if base.names().is_empty() { points } else { self.promising(base, &ways, points)? };
+        let points = match self.promising(base, &ways, &points) {
+            Some(promising) if bases.len() == 1 && !promising.is_empty() => promising,
+            Some(_) if bases.len() == 1 && base.names().is_empty() => points.into_iter().take(1).collect(),
+            Some(_) if bases.len() == 1 => return None,
+            _ => points,
+        };
+        let cost = of_base.judged_by(at_base.clone(), &of_base.whitening(&errors, &logs(LOOSE))?)?.cost;
+        let points = if bases.len() > 1 {
+            best(follow(points, &logs(LOOSE.map(|size| NET * size)), 5), 2 * FOLLOWED)
+        } else {
+            points
+        };
         let points = best(follow(points, &logs(LOOSE), 5), FOLLOWED);
+        if points.first().is_some_and(|(_, best)| best.cost > cost + behind) {
+            let (way, point) = points.into_iter().next()?;
+            return self.problem(&ways[way]).posterior(point, logs(LOOSE), 1).map(|posterior| judged((way, posterior)));
+        }
         let points = best(follow(points, &std::array::from_fn(|k| 0.5 * (LOOSE[k] * SMALL[k]).ln()), 4), FOLLOWED);
         // From small sizes, since an effect drowns in those of too poor a hypothesis; and from those, since it need not be all that lacks.
         let from = [logs(SMALL), base.posterior.log_sizes];
@@ -296,25 +333,17 @@ impl<'a> Inquiry<'a> {
             let posterior = self.problem(&ways[way]).posterior(point, sizes, 2)?;
             Some((way, posterior))
         });
-        let (way, posterior) = ends.max_by(|a, b| a.1.log_evidence.total_cmp(&b.1.log_evidence))?;
-        let hypothesis = ways[way].clone();
-        let log_odds = base.log_odds - base.posterior.log_evidence + posterior.log_evidence + log_prior(ways.len());
-        Some(Judged { hypothesis, posterior, log_odds })
+        ends.max_by(|a, b| a.1.log_evidence.total_cmp(&b.1.log_evidence)).map(judged)
     }
 
     /// The starts from which an effect that joins a base which has one already may come to the odds that count, the best few; none where no start
     /// does. By a score test: what its coordinates and its starts make good of the base's misfit to first order, under sizes of model error that
     /// are no wider than small ones.
-    fn promising(
-        &self,
-        base: &Judged,
-        ways: &[Hypothesis],
-        starts: Vec<(usize, Point)>,
-    ) -> Option<Vec<(usize, Point)>> {
+    fn promising(&self, base: &Judged, ways: &[Hypothesis], starts: &[(usize, Point)]) -> Option<Vec<(usize, Point)>> {
         let at_base = &base.posterior.point;
         let of_base = self.problem(&base.hypothesis);
         let sizes: [f64; KINDS] = std::array::from_fn(|kind| base.posterior.log_sizes[kind].min(SMALL[kind].ln()));
-        let by = of_base.whitening(&of_base.errors(&at_base.at), &sizes)?;
+        let by = of_base.whitening(&of_base.errors(&at_base.at).with_every_partner(), &sizes)?;
         let precision = of_base.hypothesis.precision();
         let missed = of_base.missed(&at_base.at);
         let before = Projection::new(&at_base.derivatives, &precision, &by)?.of(&missed, &at_base.z).1;
@@ -322,6 +351,9 @@ impl<'a> Inquiry<'a> {
             let problem = self.problem(&ways[way]);
             let z = [&at_base.z[..], &start.z[at_base.z.len()..]].concat();
             let start = problem.point(z, &by)?;
+            if start.at.hangs != at_base.at.hangs {
+                return Some(f64::INFINITY);
+            }
             let own = problem.derivatives(&start, at_base.z.len())?;
             let towards = Mat::from_fn(own.nrows(), 1, |row, _| start.at.values[row] - at_base.at.values[row]);
             let columns = faer::concat![[at_base.derivatives, own, towards]];
@@ -330,11 +362,11 @@ impl<'a> Inquiry<'a> {
             let precision = [&precision[..], &free].concat();
             Some(Projection::new(&columns, &precision, &by)?.of(&missed, &here).1 - before)
         };
-        let gains = starts.into_iter().filter_map(|(way, start)| Some((gain(way, &start)?, (way, start))));
+        let gains = starts.iter().filter_map(|(way, start)| Some((gain(*way, start)?, (*way, start.clone()))));
         let mut promising: Vec<_> = gains.filter(|(gain, _)| *gain > 2.0 * ODDS.ln()).collect();
         promising.sort_by(|a, b| b.0.total_cmp(&a.0));
         promising.truncate(FOLLOWED);
-        (!promising.is_empty()).then(|| promising.into_iter().map(|(_, start)| start).collect())
+        Some(promising.into_iter().map(|(_, start)| start).collect())
     }
 
     /// The posterior once more, to its end, from its own sizes of model error and from those of the best.
@@ -477,6 +509,17 @@ impl<'a> Inquiry<'a> {
             added.sort_by(|a, b| b.log_odds.total_cmp(&a.log_odds));
             if added.first().is_some_and(|best| best.log_odds > before && best.names().len() > 1) {
                 let fewer = self.each_left_out(&added[0].clone(), &mut seen);
+                // What was looked for beside a worse end of the same hypothesis is looked for again.
+                for found in &fewer {
+                    let names = found.names();
+                    let same = |other: &&Judged| {
+                        other.names().len() == names.len() && names.iter().all(|name| other.names().contains(name))
+                    };
+                    let known = all.iter().filter(same).map(|other| other.log_odds).fold(f64::NEG_INFINITY, f64::max);
+                    if found.log_odds > known + ODDS.ln() {
+                        seen.retain(|set| set.len() <= names.len() || names.iter().any(|name| !set.contains(name)));
+                    }
+                }
                 added.extend(fewer);
                 added.sort_by(|a, b| b.log_odds.total_cmp(&a.log_odds));
             }

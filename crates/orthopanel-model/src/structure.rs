@@ -58,6 +58,11 @@ pub trait Structure {
         None
     }
 
+    /// [`Structure::static_remainder`] between any two motions of a list, zero where one has none; `None` where nothing is known.
+    fn static_remainders(&self, _values: &[f64], _motions: &[(Motion, Place)]) -> Option<Mat<f64>> {
+        None
+    }
+
     /// What the basis lacks of $\sum_m\phi_{1m}\phi_{2m}/\omega_m^4$ over all flexible modes, with its derivatives, between each of
     /// `rows` and each of the first `columns` of them, row by row; nothing where that is not known. It is the second term of the
     /// series in $s^2$ that stands for the modes above a sum, where [`Structure::static_flexibility`] is the first.

@@ -4,14 +4,13 @@ use std::f64::consts::TAU;
 
 use orthopanel_model::{Damping, ModalModel};
 
-use crate::accelerance_fit::ResonanceStart;
-use crate::measured::MeasuredModes;
+use crate::measured::{MeasuredModes, Pole};
 
 /// Where no pole tells one.
 const WITHOUT_POLES: f64 = 0.005;
 /// Part of a pole's damping that is left to the panel at least, whatever dashpots and windows bring.
 const LEAST: f64 = 1e-2;
-/// A resonance further than this from every mode belongs to none.
+/// A pole further than this part of its frequency from a mode is another's.
 const REACH: f64 = 0.04;
 
 /// Damping ratios of the flexible modes, with their standard deviations where a pole tells them.
@@ -22,19 +21,17 @@ pub(super) struct TracedDamping {
 
 impl TracedDamping {
     /// `modes` are those that damping belongs to, without point elements, with force and response of record $r$ as ports $r$; `of_effects` is what
-    /// effects bring to each pole. Modes without a pole, as near the end of the band, get what their resonance in the lines shows, and all others
-    /// what is usual for these.
-    pub(super) fn of(
-        measured: &MeasuredModes,
-        modes: &ModalModel,
-        (of_effects, resonances): (&[f64], Option<&ResonanceStart>),
-    ) -> Self {
-        let mut known: Vec<Option<(f64, Option<f64>)>> = Vec::new();
+    /// effects bring to each pole. Modes without one, as near the end of the band, get the damping of the pole beside them that does not stand by
+    /// itself, and all others what is usual for these.
+    pub(super) fn of(measured: &MeasuredModes, modes: &ModalModel, of_effects: &[f64]) -> Self {
         let frequencies: Vec<f64> = modes.flexible().map(|mode| mode.angular_frequency / TAU).collect();
-        if let Some(resonances) = resonances {
-            let nearest = resonances.nearest_to(&frequencies, REACH).into_iter();
-            known.extend(nearest.map(|found| found.map(|(_, zeta)| (zeta, None))));
-        }
+        let away = |pole: &Pole, frequency: f64| (pole.angular_frequency / (TAU * frequency) - 1.0).abs();
+        let beside = |&frequency: &f64| {
+            let near = measured.beside.iter().filter(|pole| away(pole, frequency) < REACH);
+            let nearest = near.min_by(|a, b| away(a, frequency).total_cmp(&away(b, frequency)))?;
+            nearest.damping_ratio.map(|zeta| (zeta, None))
+        };
+        let mut known: Vec<Option<(f64, Option<f64>)>> = frequencies.iter().map(beside).collect();
         let damped = |pole: &usize| measured.poles[*pole].damping_ratio.is_some();
         let partners = measured.matched(modes);
         for (place, pole) in (0..measured.poles.len()).filter(damped).enumerate() {
@@ -43,9 +40,9 @@ impl TracedDamping {
             let at = measured.poles.len() + place;
             let std = zeta * measured.covariance[(at, at)].sqrt();
             let own = (zeta - of_effects.get(pole).copied().unwrap_or(0.0)).max(LEAST * zeta);
-            known.resize(known.len().max(partner.mode), None);
             known[partner.mode - 1] = Some((own, Some(std)));
         }
+        known.truncate(known.iter().rposition(Option::is_some).map_or(0, |last| last + 1));
         let logs: Vec<f64> = known.iter().flatten().map(|(zeta, _)| zeta.ln()).collect();
         let usual = if logs.is_empty() { WITHOUT_POLES } else { (logs.iter().sum::<f64>() / logs.len() as f64).exp() };
         let ratios = known.iter().map(|one| one.map_or(usual, |(zeta, _)| zeta)).collect();

@@ -11,12 +11,12 @@ mod next_measurement;
 mod not_tested;
 mod panel;
 
-use orthopanel_data::ImpactTest;
+use orthopanel_data::{Estimation, ImpactTest};
 use orthopanel_model::Readable;
 
 use crate::IdentifyError;
 use crate::inference::with_hypotheses;
-use crate::judge::{Finding, judged, rivals};
+use crate::judge::{judged, rivals};
 use crate::model_error::Kind;
 use crate::outcome::{Candidate, EstimatedModelError, Progress, TracedError, Tracing, Verdict};
 use crate::posterior::Judged;
@@ -26,7 +26,7 @@ use crate::to_check::GAIN_OR_MASS;
 use bounds::{notes_on_bound, notes_on_prior_alone};
 use doubt::{check_first, doubts};
 use estimates::{Estimates, id};
-use lines::{Drawn, Lines};
+use lines::{Drawn, FORCE_DROP, Lines};
 use misfit::Yardstick;
 use next_measurement::next_measurement;
 use not_tested::not_tested;
@@ -40,33 +40,22 @@ const MEASURE: &str = "misfit of the measured modes over noise and model error, 
 /// What the measured modes of the hits of one beam say.
 ///
 /// # Errors
-/// As [`crate::infer`].
+/// As [`with_hypotheses`].
 pub(crate) fn answer(test: &ImpactTest, progress: &(dyn Fn(Progress) + Sync)) -> Result<Tracing, IdentifyError> {
     with_hypotheses(test, progress, |inquiry, all| tracing_of(test, inquiry, all))
-}
-
-impl From<Finding> for Verdict {
-    fn from(finding: Finding) -> Self {
-        match finding {
-            Finding::NothingMissing => Self::NothingMissing,
-            Finding::Explained => Self::Explained,
-            Finding::Ambiguous => Self::Ambiguous,
-            Finding::Unexplained => Self::Unexplained,
-        }
-    }
 }
 
 fn tracing_of(test: &ImpactTest, inquiry: &Inquiry, all: &[Judged]) -> Result<Tracing, IdentifyError> {
     let measured = inquiry.problem(&all[0].hypothesis).predictor.comparison.measured;
     let not_finite = |what: &str| IdentifyError::NotFinite { what: what.into() };
     let none = IdentifyError::TooFewResonances { found: measured.poles.len(), needed: 2, noise_percent: None };
-    let (chosen, finding, alternatives) = judged(all).ok_or(none)?;
+    let (chosen, verdict, alternatives) = judged(all).ok_or(none)?;
     let base = all.iter().find(|judged| judged.names().is_empty()).unwrap_or(chosen);
     let mut doubts = doubts(inquiry, base, &all[0]);
-    let is_unexplained = finding == Finding::Unexplained;
+    let is_unexplained = verdict == Verdict::Unexplained;
     doubts.retain(|doubt| doubt.is_rival || is_unexplained);
     let check = doubts.iter().filter(|_| !is_unexplained);
-    let verdict = if check.clone().next().is_some() { Verdict::Ambiguous } else { Verdict::from(finding) };
+    let verdict = if check.clone().next().is_some() { Verdict::Ambiguous } else { verdict };
     let problem = inquiry.problem(&chosen.hypothesis);
     let yardstick = Yardstick::of(&problem, &chosen.posterior);
     let yardstick = yardstick.ok_or_else(|| not_finite("covariance of the measured modes"))?;
@@ -91,12 +80,14 @@ fn tracing_of(test: &ImpactTest, inquiry: &Inquiry, all: &[Judged]) -> Result<Tr
         effects: Estimates::of(judged).undeclared(),
         left_behind: None,
     };
-    let lines = Lines::of(test)?;
+    let lines = Lines::of(test, Estimation { force_drop: FORCE_DROP, ..Estimation::default() })?;
     let Drawn { curves, damping } = drawn(test, (inquiry, chosen), &lines)?;
     let base_curves =
         if std::ptr::eq(base, chosen) { curves.clone() } else { drawn(test, (inquiry, base), &lines)?.curves };
     let estimates = Estimates::of(chosen);
-    let (panel, removed) = panel(test, measured, &estimates, damping);
+    let plate = chosen.hypothesis.parts.iter().position(|part| part.replaces_structure(problem.predictor));
+    let of_effects = &chosen.posterior.point.at.damping_of_effects;
+    let (panel, removed) = panel(test, (measured, of_effects), &estimates, damping, plate)?;
     let near: Vec<&Judged> = if verdict == Verdict::Ambiguous { rivals(all, chosen).collect() } else { vec![] };
     let size = |kind: Kind| chosen.posterior.log_sizes[kind as usize].exp();
     let mut notes = lines.notes;

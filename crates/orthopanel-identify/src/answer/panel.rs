@@ -1,40 +1,94 @@
-//! The panel of a hypothesis, and what is taken out of it.
+//! The panel of a hypothesis, and what is removed from it.
 
 use std::collections::BTreeMap;
+use std::f64::consts::TAU;
 
 use orthopanel_data::ImpactTest;
-use orthopanel_model::{BEAM_CONSTANTS, MODEL_SCHEMA, Owner, PanelModel, Place, Ports, StructureKind};
+use orthopanel_model::{
+    BEAM_CONSTANTS, Damping, Estimate, MODEL_SCHEMA, ModeRange, ModelError, Owner, PLATE_CONSTANTS, PanelModel, Place,
+    Ports, StructureKind,
+};
 
 use super::damping::TracedDamping;
 use super::estimates::Estimates;
 use crate::measured::MeasuredModes;
-use crate::outcome::Removed;
+use crate::outcome::{Removed, TracedEffect};
 use crate::predicted::distinct;
 
 /// Key of a model's provenance under which the standard deviations of its damping ratios stand.
 const DAMPING_STD: &str = "damping_std";
+/// Modes of a plate up to so many times the highest pole get a damping ratio.
+const ABOVE: f64 = 1.1;
 
-/// The panel with the effects that are its own, and which of the others are taken out and why.
+/// The panel with the effects that are its own, and which of the others are removed and why; `plate` is the number of the effect that stands a
+/// plate in the place of the beam, and `of_effects` as in [`TracedDamping::of`].
+///
+/// # Errors
+/// What the plate refuses.
 pub(super) fn panel(
     test: &ImpactTest,
-    measured: &MeasuredModes,
+    (measured, of_effects): (&MeasuredModes, &[f64]),
     estimates: &Estimates,
     damping: TracedDamping,
-) -> (PanelModel, Vec<Removed>) {
+    plate: Option<usize>,
+) -> Result<(PanelModel, Vec<Removed>), ModelError> {
     let places = |at: fn(&crate::MeasuredRecord) -> Place| distinct(measured.records.iter().map(at));
     let constants = BEAM_CONSTANTS.iter().zip(&estimates.constants);
+    let parts = estimates.effects.iter().enumerate().filter(|(number, _)| Some(*number) != plate);
     let (own, others): (Vec<_>, Vec<_>) =
-        estimates.effects.iter().partition(|(effect, _)| effect.owner == Owner::Panel);
-    let panel = PanelModel {
+        parts.map(|(_, part)| part).partition(|(effect, _)| effect.owner == Owner::Panel);
+    let mut panel = PanelModel {
         schema: MODEL_SCHEMA.to_owned(),
         piece: test.pieces[measured.piece].piece,
         boundary: test.boundary,
         structure: StructureKind::TimoshenkoBeam,
         constants: constants.map(|(constant, estimate)| (constant.name.to_owned(), *estimate)).collect(),
-        damping: damping.damping,
-        effects: own.into_iter().map(|(effect, _)| effect.entry()).collect(),
+        damping: Damping::default(),
+        effects: vec![],
         ports: Ports { forces: places(|record| record.force_at), responses: places(|record| record.response_at) },
-        provenance: BTreeMap::from([(DAMPING_STD.to_owned(), damping.std.into())]),
+        provenance: BTreeMap::new(),
     };
-    (panel, others.into_iter().map(|(effect, declared)| Removed::of(effect, *declared)).collect())
+    let damping = match plate.and_then(|number| estimates.effects.get(number)) {
+        Some((ratios, _)) => {
+            widen(&mut panel, (&estimates.constants, ratios));
+            damping_of_plate(&panel, (measured, of_effects))?
+        }
+        None => damping,
+    };
+    panel.damping = damping.damping;
+    panel.provenance.insert(DAMPING_STD.to_owned(), damping.std.into());
+    panel.effects = own.into_iter().map(|(effect, _)| effect.entry()).collect();
+    Ok((panel, others.into_iter().map(|(effect, declared)| Removed::of(effect, *declared)).collect()))
+}
+
+/// Turns the beam into the plate whose ratios an effect holds, $E_y = (E_y/E_x)E_x$ and so on.
+///
+/// The standard deviations of the ratios and those of $E_x$, $G_{zx}$ are added as those of independent numbers.
+fn widen(panel: &mut PanelModel, (of_beam, ratios): (&[Estimate], &TracedEffect)) {
+    let unknown = Estimate { value: 0.0, std: None };
+    let [e_x, g_zx] = [0, 1].map(|at| of_beam.get(at).copied().unwrap_or(unknown));
+    let ratio = |at: usize| {
+        let parameter = ratios.parameters.get(at).and_then(|parameter| parameter.values.first());
+        parameter.copied().unwrap_or(unknown)
+    };
+    let times = |ratio: Estimate, of: Estimate| {
+        let part = |one: Estimate| one.std.map(|std| (std / one.value).powi(2));
+        let value = ratio.value * of.value;
+        Estimate { value, std: part(ratio).zip(part(of)).map(|(a, b)| value * (a + b).sqrt()) }
+    };
+    let all = [e_x, times(ratio(0), e_x), ratio(1), times(ratio(2), e_x), times(ratio(3), g_zx), g_zx];
+    panel.structure = StructureKind::MindlinPlate;
+    panel.constants = PLATE_CONSTANTS.iter().zip(all).map(|(of, value)| (of.name.to_owned(), value)).collect();
+}
+
+/// Of all modes of the plate, those too that no record shows.
+fn damping_of_plate(
+    panel: &PanelModel,
+    (measured, of_effects): (&MeasuredModes, &[f64]),
+) -> Result<TracedDamping, ModelError> {
+    let (forces, responses): (Vec<Place>, Vec<Place>) =
+        measured.records.iter().map(|record| (record.force_at, record.response_at)).unzip();
+    let top = measured.poles.last().map_or(measured.band[1], |pole| pole.angular_frequency / TAU);
+    let modes = panel.modal_model(ModeRange::UpTo(ABOVE * top), &forces, &responses)?;
+    Ok(TracedDamping::of(measured, &modes, of_effects))
 }

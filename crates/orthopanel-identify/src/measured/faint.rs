@@ -69,6 +69,7 @@ mod tests {
         let measured = MeasuredModes {
             piece: 0,
             poles: vec![pole(2000.0), pole(2010.0), pole(5000.0)],
+            beside: vec![],
             records: vec![record],
             remainder_frequencies: vec![20.0],
             band: [10.0, 1000.0],

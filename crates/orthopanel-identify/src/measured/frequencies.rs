@@ -22,6 +22,7 @@ impl MeasuredModes {
         Self {
             piece,
             poles: list.values.iter().map(pole).collect(),
+            beside: vec![],
             records: vec![],
             remainder_frequencies: vec![],
             band: ends,

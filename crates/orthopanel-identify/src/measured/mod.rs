@@ -49,6 +49,8 @@ pub struct MeasuredModes {
     pub piece: usize,
     /// The poles, rising in frequency.
     pub poles: Vec<Pole>,
+    /// Poles of the fit that do not stand by themselves, as those whose skirts leave the band: what they are is part of the remainders.
+    pub beside: Vec<Pole>,
     /// One entry a record; empty where only frequencies were measured.
     pub records: Vec<MeasuredRecord>,
     /// Where the remainders are given \[Hz\], rising.

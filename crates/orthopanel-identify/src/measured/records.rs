@@ -171,6 +171,7 @@ fn told(piece: usize, records: &[RecordLines], found: &Found, band: [f64; 2]) ->
     MeasuredModes {
         piece,
         poles: kept.iter().map(pole).collect(),
+        beside: (0..all).filter(|pole| !kept.contains(pole)).map(|number| pole(&number)).collect(),
         records: measured,
         remainder_frequencies,
         band,

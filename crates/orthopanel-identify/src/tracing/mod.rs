@@ -58,16 +58,6 @@ use hypothesis::Hypothesis;
 use ranking::Search;
 use records_of_test::TestRecords;
 
-/// Refuses what a test of hits of one piece declares wrongly.
-///
-/// # Errors
-/// What a declared effect refuses of its numbers, or needs and the test has not.
-pub(crate) fn check_declared(test: &ImpactTest) -> Result<(), IdentifyError> {
-    let [named] = &test.pieces[..] else { return Ok(()) };
-    let histories = test.time_histories()?.len();
-    Hypothesis::declared(test, &named.piece, histories)?.check_that_each_acts(test, &named.piece)
-}
-
 /// Fits the lines of records, or the numbers of lists, with each effect, one after the other.
 ///
 /// # Errors

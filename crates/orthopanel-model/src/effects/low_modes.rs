@@ -82,14 +82,16 @@ impl LowModes {
         for (index, lacking) in structure.inertial_remainders(values, rows, rows.len()).iter().enumerate() {
             inertia[(index / rows.len(), index % rows.len())] += lacking.value;
         }
+        if let Some(lacking) = structure.static_remainders(values, rows) {
+            *far += lacking;
+            return;
+        }
         for (p, &first) in rows.iter().enumerate() {
             for (q, &second) in rows.iter().enumerate() {
                 if let Some(whole) = structure.static_flexibility(values, [first, second]) {
                     let flexible = self.modes.iter().enumerate().skip(self.rigid);
                     let summed: f64 = flexible.map(|(m, mode)| near[(m, p)] * near[(m, q)] / mode.2).sum();
                     far[(p, q)] = whole.value - summed;
-                } else if let Some((lacking, _)) = structure.static_remainder(values, [first, second]) {
-                    far[(p, q)] += lacking;
                 }
             }
         }

@@ -73,6 +73,19 @@ impl Modes {
 /// one. A line across has 6e-7 of the greatest of 80 functions.
 const FLAT: f64 = 1e-9;
 
+/// A motion at a place, as the modes along x (of each length of series) and across see it.
+struct Seen {
+    side: Side,
+    along: Vec<Vec<f64>>,
+    across: Vec<f64>,
+}
+
+/// $a_m$ of a mode across, and its derivatives by $D_{22}$ and $A_{44}$.
+struct Foundation {
+    held: f64,
+    by: [f64; 2],
+}
+
 /// A place along one direction with the order of the derivative that is asked there.
 type Side = (usize, f64);
 
@@ -91,62 +104,105 @@ impl Membrane {
     /// $\Delta R$ and its derivatives by $D_{22}$, $A_{55}$, $A_{44}$; `None` for a rotation, which has no kink.
     pub(super) fn kink(
         &self,
-        [x, y]: &[EdgeBasis; 2],
+        bases: &[EdgeBasis; 2],
         [d_22, a_55, a_44]: [f64; 3],
-        motions: [(Motion, crate::Place); 2],
+        [first, second]: [(Motion, crate::Place); 2],
     ) -> Option<[f64; 4]> {
-        let mut sides: [(Side, Vec<Vec<f64>>, Vec<f64>); 2] = Default::default();
-        for (side, (motion, place)) in sides.iter_mut().zip(motions) {
-            let (order, values) = match motion {
-                Motion::Deflection => (0, x.values_at(Field::Deflection, place.x)),
-                Motion::Slope => (1, x.slopes_at(Field::Deflection, place.x)),
-                Motion::Rotation | Motion::Curvature => return None,
-            };
-            let along = self.along.iter().map(|modes| modes.at(&values)).collect();
-            *side = ((order, place.x), along, self.across.at(&y.values_at(Field::Deflection, place.y)));
-        }
-        let [(first, u, v), (second, other_u, other_v)] = &sides;
-        // A membrane that nothing holds answers a force without end; what its series lacks is finite.
-        let least = LOOSE * a_55 / (self.half_length * self.half_length);
+        let (first, second) = (self.end(bases, first)?, self.end(bases, second)?);
         let mut sum = [0.0; 4];
         for (m, &nu) in self.across.slopes.iter().enumerate() {
-            let weight = v[m] * other_v[m];
-            let (bending, shear) = (d_22 * nu, a_44);
-            let yielding = bending / (shear + bending);
-            let a = a_44 * nu * yielding;
-            let by_a_44 = nu * yielding * yielding;
-            let by_d_22 = (nu * (1.0 - yielding)).powi(2);
-            let held = a.max(least);
-            let (exact, exact_by) = self.exact([a_55, held], *first, *second);
+            let weight = first.across[m] * second.across[m];
+            let foundation = self.foundation(nu, [d_22, a_55, a_44]);
+            let a = foundation.held;
+            let (exact, exact_by) = self.exact([a_55, a], first.side, second.side);
             let mut lacking = [exact, exact_by[0], exact_by[1]];
-            let along = self.along_of[m];
-            for (sigma, (u, other_u)) in self.along[along].slopes.iter().zip(u[along].iter().zip(&other_u[along])) {
-                let inverse = (a_55 * sigma + held).recip();
-                let term = u * other_u * inverse;
+            for (sigma, term) in self.terms(m, [&first, &second], [a_55, a]) {
+                let inverse = (a_55 * sigma + a).recip();
                 lacking[0] -= term;
                 lacking[1] += term * inverse * sigma;
                 lacking[2] += term * inverse;
             }
-            let by_a = if a > least { lacking[2] } else { 0.0 };
-            for (total, part) in sum.iter_mut().zip([lacking[0], by_a * by_d_22, lacking[1], by_a * by_a_44]) {
+            let [by_d_22, by_a_44] = foundation.by.map(|by| by * lacking[2]);
+            for (total, part) in sum.iter_mut().zip([lacking[0], by_d_22, lacking[1], by_a_44]) {
                 *total += weight * part;
             }
         }
         Some(sum)
     }
 
-    /// $G$ between two sides, and its derivatives by $A_{55}$ and $a$.
-    fn exact(&self, stiffness: [f64; 2], first: Side, second: Side) -> (f64, [f64; 2]) {
-        let by = |index: usize| {
-            let step = STEP * stiffness[index];
-            let [low, high] = [-step, step].map(|step| {
-                let mut moved = stiffness;
-                moved[index] += step;
-                self.green(moved, first, second)
-            });
-            (high - low) / (2.0 * step)
+    /// $\Delta R$ between any two motions of a list; zero for a rotation.
+    pub(super) fn kinks(
+        &self,
+        bases: &[EdgeBasis; 2],
+        stiffnesses: [f64; 3],
+        motions: &[(Motion, crate::Place)],
+    ) -> Mat<f64> {
+        let ends: Vec<Option<Seen>> = motions.iter().map(|motion| self.end(bases, *motion)).collect();
+        let between = |first: &Seen, second: &Seen| {
+            let lacking = |(m, &nu): (usize, &f64)| {
+                let stiffness = [stiffnesses[1], self.foundation(nu, stiffnesses).held];
+                let terms: f64 = self.terms(m, [first, second], stiffness).map(|(_, term)| term).sum();
+                first.across[m] * second.across[m] * (self.green(stiffness, first.side, second.side) - terms)
+            };
+            self.across.slopes.iter().enumerate().map(lacking).sum()
         };
-        (self.green(stiffness, first, second), [by(0), by(1)])
+        let mut kinks = Mat::zeros(ends.len(), ends.len());
+        for (p, first) in ends.iter().enumerate() {
+            for (q, second) in ends.iter().enumerate().skip(p) {
+                let (Some(first), Some(second)) = (first, second) else { continue };
+                kinks[(p, q)] = between(first, second);
+                kinks[(q, p)] = kinks[(p, q)];
+            }
+        }
+        kinks
+    }
+
+    /// A motion as the membrane's modes see it.
+    fn end(&self, [x, y]: &[EdgeBasis; 2], (motion, place): (Motion, crate::Place)) -> Option<Seen> {
+        let (order, values) = match motion {
+            Motion::Deflection => (0, x.values_at(Field::Deflection, place.x)),
+            Motion::Slope => (1, x.slopes_at(Field::Deflection, place.x)),
+            Motion::Rotation | Motion::Curvature => return None,
+        };
+        Some(Seen {
+            side: (order, place.x),
+            along: self.along.iter().map(|modes| modes.at(&values)).collect(),
+            across: self.across.at(&y.values_at(Field::Deflection, place.y)),
+        })
+    }
+
+    /// $a_m$ of a mode across.
+    fn foundation(&self, nu: f64, [d_22, a_55, a_44]: [f64; 3]) -> Foundation {
+        // A membrane that nothing holds answers a force without end; what its series lacks is finite.
+        let least = LOOSE * a_55 / (self.half_length * self.half_length);
+        let (bending, shear) = (d_22 * nu, a_44);
+        let yielding = bending / (shear + bending);
+        let a = a_44 * nu * yielding;
+        let by = [(nu * (1.0 - yielding)).powi(2), nu * yielding * yielding];
+        Foundation { held: a.max(least), by: if a > least { by } else { [0.0; 2] } }
+    }
+
+    /// Of each mode along x its $\int u'^2$, and what it brings to $G_n$.
+    fn terms<'a>(
+        &'a self,
+        across: usize,
+        [first, second]: [&'a Seen; 2],
+        [a_55, a]: [f64; 2],
+    ) -> impl Iterator<Item = (f64, f64)> + 'a {
+        let along = self.along_of[across];
+        let products = first.along[along].iter().zip(&second.along[along]).map(|(u, other)| u * other);
+        self.along[along]
+            .slopes
+            .iter()
+            .zip(products)
+            .map(move |(sigma, product)| (*sigma, product / (a_55 * sigma + a)))
+    }
+
+    /// $G$ between two sides, and its derivatives by $A_{55}$ and $a$: where both grow alike, $G$ falls as they grow.
+    fn exact(&self, [a_55, a]: [f64; 2], first: Side, second: Side) -> (f64, [f64; 2]) {
+        let [low, here, high] = [-STEP, 0.0, STEP].map(|step| self.green([a_55, a * (1.0 + step)], first, second));
+        let by_a = (high - low) / (2.0 * STEP * a);
+        (here, [-(here + a * by_a) / a_55, by_a])
     }
 
     /// $A_{55}G'' - aG = -\delta$: $e^{-\kappa|x-x'|}$ with what comes back from the ends.

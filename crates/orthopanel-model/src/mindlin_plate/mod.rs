@@ -249,6 +249,12 @@ impl MindlinPlate {
         let [value, by_d_22, by_a_55, by_a_44] = membrane.kink(&self.along, [d_22, a_55, a_44], motions)?;
         Some((value, vec![0.0, by_d_22, 0.0, 0.0, by_a_55, by_a_44]))
     }
+
+    /// What the basis lacks of the static flexibility between any two motions of a list.
+    pub(crate) fn kinks(&self, membrane: &Membrane, values: &[f64], motions: &[(Motion, Place)]) -> Option<Mat<f64>> {
+        let [_, d_22, _, _, a_55, a_44] = plate_stiffnesses(self.piece.thickness, values).ok()?;
+        Some(membrane.kinks(&self.along, [d_22, a_55, a_44], motions))
+    }
 }
 
 impl Structure for MindlinPlate {
@@ -288,6 +294,11 @@ impl Structure for MindlinPlate {
     fn static_remainder(&self, values: &[f64], motions: [(Motion, Place); 2]) -> Option<(f64, Vec<f64>)> {
         let membrane = self.membrane.get_or_init(|| if self.is_even { self.membrane() } else { None });
         self.kink(membrane.as_ref()?, values, motions)
+    }
+
+    fn static_remainders(&self, values: &[f64], motions: &[(Motion, Place)]) -> Option<Mat<f64>> {
+        let membrane = self.membrane.get_or_init(|| if self.is_even { self.membrane() } else { None });
+        self.kinks(membrane.as_ref()?, values, motions)
     }
 
     fn resolved_modes(&self) -> usize {

@@ -22,11 +22,11 @@ use crate::{console, model_file};
 /// With several pieces in the test there is one model a piece, MODEL-NAME.json, and MODEL-manifest.json lists them (see
 /// `orthopanel identify --help`).
 ///
-/// No real panel is the ideal model: where a mode lies a thousandth beside it, lines miss by many times the noise. With --by modes
-/// the modes that the hits show are compared, and by how much a sound model of this panel misses them is estimated with the rest.
+/// No real panel is the ideal model: the modes that hits show are compared, and by how much a sound model of this panel misses them is
+/// estimated with the rest. --by lines holds every line against the model instead, and allows for no such error.
 ///
 /// Examples: orthopanel trace examples/misplaced-hit/test.toml -o traced.json
-///           orthopanel trace examples/misplaced-hit/test.toml --by modes
+///           orthopanel trace examples/misplaced-hit/test.toml --by lines
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
 pub struct Arguments {
@@ -36,7 +36,7 @@ pub struct Arguments {
     #[arg(short, long, value_name = "MODEL.json")]
     output: Option<PathBuf>,
     /// What hypotheses are judged by
-    #[arg(long, value_enum, default_value_t = By::Lines)]
+    #[arg(long, value_enum, default_value_t = By::Modes)]
     by: By,
     /// Print one JSON object (orthopanel.trace/2) on standard output
     #[arg(long)]

@@ -73,6 +73,10 @@ impl Structure for RatioPlate {
         self.plate.kink(self.membrane.as_ref()?, &plate_constants(six(values).ok()?), motions)
     }
 
+    fn static_remainders(&self, values: &[f64], motions: &[(Motion, Place)]) -> Option<Mat<f64>> {
+        self.plate.kinks(self.membrane.as_ref()?, &plate_constants(six(values).ok()?), motions)
+    }
+
     fn resolved_modes(&self) -> usize {
         self.plate.resolved_modes()
     }
