@@ -79,7 +79,7 @@ impl Accelerance {
     /// # Errors
     /// As [`RecordFile::read`], and as [`Accelerance::from_records`].
     pub fn read(measurement: &RecordedResponse) -> Result<Self, DataError> {
-        Self::from_records(RecordFile::read(&measurement.file)?, measurement)
+        Self::from_records(measurement.records()?, measurement)
     }
 
     /// Takes the frequency response of a file, the one that [`RecordedResponse::record`] names where there are several, with its coherence where that is there too, and puts unit and
@@ -94,11 +94,17 @@ impl Accelerance {
     /// [`DataError::NoRecords`] where no frequency response is in the file; [`DataError::Channels`] where there are
     /// several and none is named, where it is not complex or no motion over force, or where unit or coherence do not fit.
     pub fn from_records(file: RecordFile, measurement: &RecordedResponse) -> Result<Self, DataError> {
-        let named = channel_choice::response(&file, measurement)?;
-        let RecordFile { records, mut notes, .. } = file;
+        Self::of_file(&file, measurement)
+    }
+
+    /// As [`Accelerance::from_records`], of a file that others read too.
+    pub(super) fn of_file(file: &RecordFile, measurement: &RecordedResponse) -> Result<Self, DataError> {
+        let named = channel_choice::response(file, measurement)?;
+        let RecordFile { records, notes, .. } = file;
+        let mut notes = notes.clone();
         let of_kind = |kind| records.iter().filter(move |record| record.kind == kind);
         let responses: Vec<(usize, &Record)> =
-            (1..).zip(&records).filter(|(_, record)| record.kind == RecordKind::FrequencyResponse).collect();
+            (1..).zip(records).filter(|(_, record)| record.kind == RecordKind::FrequencyResponse).collect();
         let chosen = match named {
             Some(number) => responses.iter().find(|(of, _)| *of == number),
             None => responses.first(),
@@ -143,7 +149,7 @@ impl Accelerance {
             );
             return refused(record, problem);
         }
-        let coherence = match coherence::of_response(&records, number - 1) {
+        let coherence = match coherence::of_response(records, number - 1) {
             Pairing::None => None,
             Pairing::Own(coherence) => Some(matching_coherence(record, coherence)?),
             Pairing::Untold { coherences, responses } => {
@@ -200,6 +206,7 @@ impl Accelerance {
         }
         result.notes = notes;
         result.leave_out_zeros(record)?;
+        result.cut_to(measurement.band, || record.at.clone())?;
         Ok(result)
     }
 
@@ -236,12 +243,47 @@ impl Accelerance {
             record.at.key,
             Readable(first)
         ));
-        let kept = |values: &[f64]| told.iter().map(|&line| values[line]).collect::<Vec<f64>>();
-        self.value = told.iter().map(|&line| self.value[line]).collect();
+        self.keep(&told);
+        Ok(())
+    }
+
+    /// Leaves out all lines outside the declared band.
+    pub(super) fn cut_to(
+        &mut self,
+        band: Option<[f64; 2]>,
+        at: impl FnOnce() -> Box<Location>,
+    ) -> Result<(), DataError> {
+        let Some([from, to]) = band else { return Ok(()) };
+        let inside: Vec<usize> =
+            (0..self.frequency.len()).filter(|&line| (from..=to).contains(&self.frequency[line])).collect();
+        if inside.len() < LEAST_LINES {
+            let ends = self.frequency.first().zip(self.frequency.last());
+            let (first, last) = ends.map_or((0.0, 0.0), |(first, last)| (*first, *last));
+            let problem = format!(
+                "band = [{from}, {to}] leaves {} of its lines, which go from {} to {} Hz: widen it",
+                inside.len(),
+                Readable(first),
+                Readable(last)
+            );
+            return Err(DataError::Channels { at: at(), problem });
+        }
+        if inside.len() < self.frequency.len() {
+            self.keep(&inside);
+        }
+        Ok(())
+    }
+
+    /// Keeps these lines and no others.
+    fn keep(&mut self, lines: &[usize]) {
+        let kept = |values: &[f64]| lines.iter().map(|&line| values[line]).collect::<Vec<f64>>();
+        self.value = lines.iter().map(|&line| self.value[line]).collect();
         self.frequency = kept(&self.frequency);
         self.variance = self.variance.as_deref().map(kept);
         self.coherence = self.coherence.as_deref().map(kept);
-        Ok(())
+        self.bias = self.bias.as_deref().map(kept);
+        if let Some(noise) = &mut self.force_noise {
+            noise.keep(lines);
+        }
     }
 }
 

@@ -29,6 +29,7 @@ mod wrong_sample;
 
 pub use accelerance::Accelerance;
 pub use channel_noise::ChannelNoise;
+pub(crate) use coherence::own_coherence;
 pub use estimate::{Estimation, Estimator};
 pub use force_noise::ForceNoise;
 pub use hit_faults::{Channel, HitFault};

@@ -34,6 +34,8 @@ pub struct TimeHistory {
     pub hits: Vec<Hit>,
     /// Where hits of several files stand together: each further file, and the index of its first hit.
     pub further_files: Vec<(usize, PathBuf)>,
+    /// Lines \[Hz\] of an accelerance that count, from and to; all where nothing is declared.
+    pub band: Option<[f64; 2]>,
     /// What was mended or assumed, a sentence each.
     pub notes: Vec<String>,
 }
@@ -54,7 +56,16 @@ impl TimeHistory {
     /// Hits of one length at the sampling rate \[Hz\], from a force at the first place to a response at the second; `file` is
     /// what messages call them.
     pub fn new(file: impl Into<PathBuf>, [force_at, response_at]: [Place; 2], rate: f64, hits: Vec<Hit>) -> Self {
-        Self { file: file.into(), force_at, response_at, rate, hits, further_files: Vec::new(), notes: Vec::new() }
+        Self {
+            file: file.into(),
+            force_at,
+            response_at,
+            rate,
+            hits,
+            further_files: Vec::new(),
+            band: None,
+            notes: Vec::new(),
+        }
     }
 
     /// A hit by its number from 1, and by its file where there are several.
@@ -84,7 +95,7 @@ impl TimeHistory {
     /// # Errors
     /// As [`RecordFile::read`], and as [`TimeHistory::from_records`].
     pub fn read(measurement: &RecordedResponse) -> Result<Self, DataError> {
-        Self::from_records(RecordFile::read(&measurement.file)?, measurement)
+        Self::from_records(measurement.records()?, measurement)
     }
 
     /// Pairs the force and acceleration records of a file, in the order of the file, and puts unit and direction right.
@@ -93,7 +104,12 @@ impl TimeHistory {
     /// [`DataError::Channels`] where a channel is missing or swapped, where lengths or rates differ, where samples are
     /// uneven in time, or where a unit is unknown or contradicts the declared one.
     pub fn from_records(file: RecordFile, measurement: &RecordedResponse) -> Result<Self, DataError> {
-        let RecordFile { records, mut notes, .. } = channel_choice::hits(file, measurement)?;
+        Self::of_chosen(channel_choice::hits(Arc::new(file), measurement)?, measurement)
+    }
+
+    /// As [`TimeHistory::from_records`], of the records that belong to the measurement.
+    pub(super) fn of_chosen(file: RecordFile, measurement: &RecordedResponse) -> Result<Self, DataError> {
+        let RecordFile { records, mut notes, .. } = file;
         let (mut forces, mut accelerations) = (Vec::new(), Vec::new());
         let mut untold = Vec::new();
         let mut order: Vec<Ordered> = Vec::new();
@@ -155,7 +171,9 @@ impl TimeHistory {
             let problem = if f > 0 && a > 0 {
                 format!("{problem}; of several to a blow name the channels by force_channel and response_channel")
             } else {
-                problem
+                format!(
+                    "{problem}; where they stand in two files, name both by file = {{force = \"..\", response = \"..\"}}"
+                )
             };
             let problem = others.first().map_or(problem.clone(), |other| format!("{problem} ({other})"));
             return Err(misplaced_channel::alone(&order, problem, first));
@@ -201,7 +219,7 @@ impl TimeHistory {
         }
         let RecordedResponse { force_at, response_at, .. } = *measurement;
         let file = measurement.file.clone();
-        Ok(Self { notes, ..Self::new(file, [force_at, response_at], rate, hits) })
+        Ok(Self { notes, band: measurement.band, ..Self::new(file, [force_at, response_at], rate, hits) })
     }
 }
 

@@ -1,18 +1,26 @@
 //! `kind = "time-history"` and `"accelerance"`: a file of records, the places, and what the file does not tell of its channels.
 
-use std::{fmt, path::PathBuf};
+use std::{
+    collections::BTreeMap,
+    fmt,
+    path::{Path, PathBuf},
+};
 
 use orthopanel_model::{Piece, Place};
 use toml::Spanned;
 
-use super::{super::syntax, Entry};
-use crate::{DataError, Motion, Unit, limits};
+use super::{super::syntax, Entry, files::MeasuredFile};
+use crate::{ColumnName, ColumnRole, DataError, DeclaredColumns, Motion, Unit, limits};
 
 /// A file of records and where they were taken.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RecordedResponse {
     /// The file, beside the test file unless absolute.
     pub file: PathBuf,
+    /// The file of the motion, where `file` holds the force alone.
+    pub response_file: Option<PathBuf>,
+    /// Which column of a text is what, where declared.
+    pub columns: Option<DeclaredColumns>,
     /// Where the hammer hit.
     pub force_at: Place,
     /// Where the sensor of the motion sat.
@@ -41,6 +49,8 @@ pub struct RecordedResponse {
     pub sampling_rate: Option<f64>,
     /// Time constant $\tau$ \[s\] of the exponential window $e^{-t/\tau}$ that lies over the records, where declared.
     pub window_decay: Option<f64>,
+    /// Lines \[Hz\] that count, from and to; all where nothing is declared.
+    pub band: Option<[f64; 2]>,
 }
 
 impl RecordedResponse {
@@ -48,6 +58,8 @@ impl RecordedResponse {
     pub fn new(file: impl Into<PathBuf>, [force_at, response_at]: [Place; 2]) -> Self {
         Self {
             file: file.into(),
+            response_file: None,
+            columns: None,
             force_at,
             response_at,
             force_unit: None,
@@ -62,7 +74,13 @@ impl RecordedResponse {
             trigger: None,
             sampling_rate: None,
             window_decay: None,
+            band: None,
         }
+    }
+
+    /// The files, of the force first where there are two.
+    pub fn files(&self) -> impl Iterator<Item = &Path> {
+        std::iter::once(self.file.as_path()).chain(self.response_file.as_deref())
     }
 }
 
@@ -142,14 +160,13 @@ impl Entry<'_> {
         &self,
         entry: &syntax::Measurement,
         piece: &Piece,
+        band: Option<[f64; 2]>,
     ) -> Result<Vec<RecordedResponse>, DataError> {
         let name = self.needed(entry.file.as_ref(), "file", "name a .uff or .csv file beside the test file")?;
-        let places = [(&entry.force_at, "force_at"), (&entry.response_at, "response_at")].map(|(place, key)| {
-            let place = self.needed(place.as_ref(), key, "give the place [x, y] in m from the piece's centre")?;
-            self.place(place, key, piece)
-        });
-        let [force_at, response_at] = places;
-        let (force_at, response_at) = (force_at?, response_at?);
+        let given = |place: &Option<Spanned<[f64; 2]>>, key: &str| {
+            place.as_ref().map(|place| self.place(place, key, piece)).transpose()
+        };
+        let places = [given(&entry.force_at, "force_at")?, given(&entry.response_at, "response_at")?];
         let response_unit = self.response_unit(entry)?;
         let force_unit = self.unit(entry.force_unit.as_ref(), "force_unit", FORCE_UNITS)?;
         let quantity = self.quantity(entry, response_unit.as_ref())?;
@@ -202,10 +219,65 @@ impl Entry<'_> {
             trigger,
             sampling_rate,
             window_decay: positive(&entry.window_decay, "window_decay", "s")?,
-            ..RecordedResponse::new("", [force_at, response_at])
+            band: self.band(entry.band.as_ref(), "band")?.or(band),
+            columns: self.columns(entry.columns.as_ref())?,
+            ..RecordedResponse::new("", [Place { x: 0.0, y: 0.0 }; 2])
         };
-        let of_file = |file| RecordedResponse { file, ..one.clone() };
-        Ok(self.files(name)?.into_iter().map(of_file).collect())
+        let mut measured = Vec::new();
+        for MeasuredFile { file, response_file } in self.files(name)? {
+            let of_file = RecordedResponse { file, response_file, ..one.clone() };
+            match &entry.places {
+                Some(given) => measured.extend(self.at_places((entry, given), of_file, places, piece)?),
+                None => {
+                    let keys = [("force_at", &entry.force_at), ("response_at", &entry.response_at)];
+                    for (key, place) in keys {
+                        self.needed(place.as_ref(), key, "give the place [x, y] in m from the piece's centre")?;
+                    }
+                    if let Some(origin) = &entry.origin {
+                        let problem = "belongs to places: take it out, or name the file of places".into();
+                        return Err(DataError::Contradiction { at: self.at(origin.span(), "origin"), problem });
+                    }
+                    let [force_at, response_at] = places.map(|place| place.unwrap_or(Place { x: 0.0, y: 0.0 }));
+                    measured.push(RecordedResponse { force_at, response_at, ..of_file });
+                }
+            }
+        }
+        Ok(measured)
+    }
+
+    /// `columns = {time = "Time (s)", force = 2, response = 3}`.
+    fn columns(
+        &self,
+        given: Option<&Spanned<BTreeMap<String, Spanned<toml::Value>>>>,
+    ) -> Result<Option<DeclaredColumns>, DataError> {
+        let Some(given) = given else { return Ok(None) };
+        let mut columns = DeclaredColumns::default();
+        for (name, value) in given.get_ref() {
+            let key = format!("columns.{name}");
+            let Some(role) = ColumnRole::ALL.into_iter().find(|role| role.name() == name) else {
+                let names = ColumnRole::ALL.map(ColumnRole::name).join(", ");
+                let remedy = format!("columns are told for {names}");
+                return Err(DataError::UnknownName {
+                    at: self.at(value.span(), "columns"),
+                    name: name.clone(),
+                    remedy,
+                });
+            };
+            let column = match value.get_ref() {
+                toml::Value::Integer(number) if *number > 0 => usize::try_from(*number).ok().map(ColumnName::Number),
+                toml::Value::String(text) => Some(ColumnName::Name(text.clone())),
+                _ => None,
+            };
+            let Some(column) = column else {
+                let message = format!(
+                    "{} given, wanted is a column's number from 1, or its name in quotes",
+                    crate::error::short(&value.get_ref().to_string())
+                );
+                return Err(DataError::Syntax { at: self.at(value.span(), &key), message });
+            };
+            columns.0.insert(role, column);
+        }
+        Ok(Some(columns))
     }
 
     /// `response_unit`, or `unit`, as it was called before.
