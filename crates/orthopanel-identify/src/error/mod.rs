@@ -4,10 +4,11 @@ use orthopanel_data::DataError;
 use orthopanel_model::{ModelError, Readable};
 use thiserror::Error;
 
-pub(crate) use self::wording::spaced;
 use self::wording::{all_times, known, much_noise, other_place, untaken};
+pub(crate) use self::wording::{one_times, spaced};
 use crate::least_squares::Stuck;
 
+mod known_factor;
 mod wording;
 
 /// Sampling rate over the band of an analyser, whose anti-alias filter needs the rest.
@@ -336,8 +337,8 @@ pub enum IdentifyError {
     /// One record that contradicts the others.
     #[error(
         "{record}: half of its lines miss the model of all records by more than {:.0} %: it contradicts the \
-         others{}; check its file, force_at and response_at, the sensor's direction, unit and gain",
-        Readable(*.percent), other_place(.fits_at)
+         others{}{}; check its file, force_at and response_at, the sensor's direction, unit and gain",
+        Readable(*.percent), other_place(.fits_at), one_times(*.factor)
     )]
     RecordContradiction {
         /// Its files, piece and places.
@@ -346,6 +347,8 @@ pub enum IdentifyError {
         percent: f64,
         /// Where it would fit as the others do: `force_at` or `response_at`, and x \[m\]; `None` where no place explains it.
         fits_at: Option<(&'static str, f64)>,
+        /// The factor with which it fits as the others do; `None` where there is none.
+        factor: Option<f64>,
     },
     /// Weights under which eq. 23 measures nothing.
     #[error(
