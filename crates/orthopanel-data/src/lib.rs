@@ -16,7 +16,7 @@ pub use input::{InputKind, regular_file};
 pub use listing::ListedRecord;
 pub use records::{Axis, ColumnName, ColumnRole, DeclaredColumns, Port, Record, RecordFile, RecordKind, Samples};
 pub use spectra::{
-    Accelerance, Channel, ChannelNoise, Estimation, Estimator, ForceNoise, Hit, HitFault, HitVerdict, TimeHistory,
+    Accelerance, Channel, ChannelNoise, Cut, Estimation, Estimator, ForceNoise, Hit, HitFault, HitVerdict, TimeHistory,
     Window,
 };
 pub use test_file::{

@@ -43,6 +43,7 @@ impl TimeHistory {
             self.further_files.push((joined, other.file));
             self.further_files.extend(other.further_files.into_iter().map(|(from, file)| (joined + from, file)));
             self.hits.extend(other.hits);
+            self.cuts.extend(other.cuts);
             self.notes.extend(other.notes);
             return Ok(());
         };
@@ -218,6 +219,19 @@ impl ImpactTest {
             Gathered::Line(_) => None,
         });
         Ok(hits.collect())
+    }
+
+    /// Reads every accelerance that a file of the test tells, in the order of the file, each with its piece's index.
+    ///
+    /// # Errors
+    /// As [`ImpactTest::time_histories`], and [`Accelerance::read`].
+    pub fn recorded_accelerances(&self) -> Result<Vec<(usize, Accelerance)>, DataError> {
+        let lines = self.gathered(|data| matches!(data, MeasurementData::Accelerance(_)))?.into_iter();
+        let lines = lines.filter_map(|(piece, gathered)| match gathered {
+            Gathered::Line(line) => Some((piece, line)),
+            Gathered::Hits(_) => None,
+        });
+        Ok(lines.collect())
     }
 
     /// Reads every time history and accelerance of the test, in the order of the file, each with its piece's index.

@@ -35,4 +35,5 @@ pub use force_noise::ForceNoise;
 pub use hit_faults::{Channel, HitFault};
 pub use hit_verdict::HitVerdict;
 pub use time_history::{Hit, TimeHistory};
+pub use trigger::Cut;
 pub use window::Window;

@@ -11,7 +11,8 @@ use super::{
     derivative::derivative,
     extremes::{LANES, extremes, sampled_median},
     misplaced_channel::{self, Ordered},
-    time_grid, trigger,
+    time_grid,
+    trigger::{self, Cut},
     window::milliseconds,
 };
 use crate::{
@@ -36,6 +37,8 @@ pub struct TimeHistory {
     pub further_files: Vec<(usize, PathBuf)>,
     /// Lines \[Hz\] of an accelerance that count, from and to; all where nothing is declared.
     pub band: Option<[f64; 2]>,
+    /// How continuous records were cut into these hits.
+    pub cuts: Vec<Cut>,
     /// What was mended or assumed, a sentence each.
     pub notes: Vec<String>,
 }
@@ -64,6 +67,7 @@ impl TimeHistory {
             hits,
             further_files: Vec::new(),
             band: None,
+            cuts: Vec::new(),
             notes: Vec::new(),
         }
     }
@@ -180,7 +184,7 @@ impl TimeHistory {
         }
         misplaced_channel::check_order(&order)?;
         check_hits(forces.len(), || first)?;
-        let mut hits = Vec::with_capacity(forces.len());
+        let (mut hits, mut cuts) = (Vec::with_capacity(forces.len()), Vec::new());
         let mut grid: Option<(usize, f64)> = None;
         let mut times: Option<(Arc<[f64]>, f64)> = None;
         for (force, acceleration) in forces.into_iter().zip(accelerations) {
@@ -207,7 +211,9 @@ impl TimeHistory {
             }
             let at = force.at.clone();
             let of_record = hit((force, acceleration), rate, measurement, &mut notes)?;
-            hits.extend(trigger::cut(of_record, rate, measurement.trigger, &at, &mut notes)?);
+            let blows = trigger::cut(of_record, rate, measurement.trigger, &at, &mut notes)?;
+            hits.extend(blows.hits);
+            cuts.extend(blows.cut);
         }
         let rate = grid.map_or(0.0, |(_, rate)| rate);
         check_hits(hits.len(), || Location::whole(&measurement.file))?;
@@ -219,7 +225,7 @@ impl TimeHistory {
         }
         let RecordedResponse { force_at, response_at, .. } = *measurement;
         let file = measurement.file.clone();
-        Ok(Self { notes, band: measurement.band, ..Self::new(file, [force_at, response_at], rate, hits) })
+        Ok(Self { notes, cuts, band: measurement.band, ..Self::new(file, [force_at, response_at], rate, hits) })
     }
 }
 

@@ -72,7 +72,17 @@ impl Heading {
                 })
             })
         };
-        let (separator, columns, first) = named.or_else(|| begins(2)).or_else(|| begins(1))?;
+        // Names alone, with nothing below them.
+        let last = lines.last().copied()?;
+        let nothing = Line { number: last.number + 1, start: text.len(), text: "" };
+        let empty = || {
+            Separator::ALL.into_iter().find_map(|separator| {
+                let fields = separator.fields(told.last()?.text);
+                let is_heading = fields.len() > 1 && fields.first().is_some_and(|name| is_abscissa(name));
+                is_heading.then_some((separator, fields.len(), nothing))
+            })
+        };
+        let (separator, columns, first) = named.or_else(|| begins(2)).or_else(|| begins(1)).or_else(empty)?;
         let above: Vec<Line> = lines.iter().take_while(|line| line.number < first.number).copied().collect();
         let (names, units, names_at) = names_above(&above, separator, columns);
         Some(Self {

@@ -78,6 +78,7 @@ impl Entry<'_> {
             measured.push(RecordedResponse {
                 force_at: places[0],
                 response_at: places[1],
+                places_file: Some(path.clone()),
                 force_channel: channel(force, &of_file.force_channel),
                 response_channel: channel(response, &of_file.response_channel),
                 ..of_file.clone()

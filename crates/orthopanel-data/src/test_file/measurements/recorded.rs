@@ -19,6 +19,8 @@ pub struct RecordedResponse {
     pub file: PathBuf,
     /// The file of the motion, where `file` holds the force alone.
     pub response_file: Option<PathBuf>,
+    /// The file that placed its nodes, where one did.
+    pub places_file: Option<PathBuf>,
     /// Which column of a text is what, where declared.
     pub columns: Option<DeclaredColumns>,
     /// Where the hammer hit.
@@ -59,6 +61,7 @@ impl RecordedResponse {
         Self {
             file: file.into(),
             response_file: None,
+            places_file: None,
             columns: None,
             force_at,
             response_at,
@@ -78,9 +81,10 @@ impl RecordedResponse {
         }
     }
 
-    /// The files, of the force first where there are two.
+    /// The files that it takes, that of the force first.
     pub fn files(&self) -> impl Iterator<Item = &Path> {
-        std::iter::once(self.file.as_path()).chain(self.response_file.as_deref())
+        let others = self.response_file.as_deref().into_iter().chain(self.places_file.as_deref());
+        std::iter::once(self.file.as_path()).chain(others)
     }
 }
 
