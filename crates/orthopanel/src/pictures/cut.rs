@@ -54,3 +54,17 @@ pub fn cut(piece: &str, cut: &Cut) -> Result<String, CommandError> {
         Ok(())
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_cut_is_drawn_with_its_hits() {
+        let force = (0..200).map(|at| [-0.1, if at % 50 == 5 { 80.0 } else { 0.1 }]).collect();
+        let drawn = Cut { duration: 8.0, force, level: 8.0, hits: vec![[0.1, 1.9], [2.1, 3.9]], left_out: vec![6.2] };
+        let picture = cut("1", &drawn).expect("a picture");
+        assert!(picture.contains("cut into 2 hits (blue), 1 left out (grey)"), "{picture}");
+        assert_eq!(picture.matches("<rect").count(), 1 + 2, "the ground and two hits");
+    }
+}
