@@ -17,6 +17,9 @@ const WRITTEN_OUT: usize = 3;
 /// read, and nothing is made up.
 pub fn draft(files: &[(&Path, &RecordFile)]) -> String {
     let mut text = String::from(HEAD);
+    if files.len() > 1 {
+        text += "\n# Hits of one place may share a [[measurement]]: file = [\"a.csv\", \"b.csv\"], or a pattern such as \"hit-*.csv\".\n";
+    }
     for (path, file) in files {
         text += &measurement(path, file);
     }
