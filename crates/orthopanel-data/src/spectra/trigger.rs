@@ -4,7 +4,7 @@ use orthopanel_model::Readable;
 
 use super::{
     extremes::{extremes, median, peak, sampled_median},
-    time_history::Hit,
+    hit::Hit,
 };
 use crate::{DataError, Location, Trigger};
 

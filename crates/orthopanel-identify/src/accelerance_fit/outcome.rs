@@ -12,7 +12,7 @@ use super::contradiction::contradiction;
 use super::misfit::{noise_percent, record_misfit_percent};
 use super::problem::AcceleranceProblem;
 use super::start::Start;
-use super::undeclared_window::{self, DampedMode};
+use super::undeclared_window;
 use super::whole_covariance::Weighed;
 use crate::free_constants::Rest;
 use crate::frequency_fit::identified_constants;
@@ -205,7 +205,7 @@ fn report(
     let (fits, accelerance_rms_percent) = accelerance_fits(problem, lines);
     let pieces = piece_fits(test, start, problem, &parameters, &log_std)?;
     notes.extend(pieces.iter().filter_map(without_resonance));
-    notes.extend(asked_about_window(start, problem, &parameters, &pieces)?);
+    notes.extend(undeclared_window::asked(start, problem, &parameters, &pieces)?);
     let errors = pieces.iter().flat_map(|piece| &piece.modes).map(|mode| mode.error_percent().powi(2));
     // The sum of nothing is minus zero.
     let errors = errors.fold(0.0, std::ops::Add::add);
@@ -224,25 +224,6 @@ fn report(
         notes,
         pieces,
     })
-}
-
-/// The question about an exponential window, where the damping looks like one's.
-fn asked_about_window(
-    start: &Start,
-    problem: &mut AcceleranceProblem,
-    parameters: &[f64],
-    fits: &[PieceFit],
-) -> Result<Option<String>, IdentifyError> {
-    let mut frequencies = Vec::new();
-    for (index, own) in start.recorded.poles.iter().enumerate() {
-        let modes = own.structure.modes_below(&problem.values(parameters, index), 1.4 * own.band, &[])?;
-        frequencies.push(modes.iter().map(|mode| mode.frequency).collect::<Vec<f64>>());
-    }
-    let modes = fits.iter().flat_map(|fit| &fit.modes);
-    let told: Vec<DampedMode> = modes
-        .filter_map(|mode| Some(DampedMode { frequency: mode.model, zeta: mode.damping.filter(is_told)?.value }))
-        .collect();
-    Ok(undeclared_window::asked(problem, parameters, &frequencies, &told)?)
 }
 
 /// Puts the constants of the poles' frequencies, and the poles' damping, in place of the fit's; the correlations of the

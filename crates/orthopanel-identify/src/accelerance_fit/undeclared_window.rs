@@ -10,7 +10,10 @@ use std::f64::consts::TAU;
 use orthopanel_model::{ModelError, Readable};
 
 use super::other_law::is_clearly_less;
+use super::outcome::is_told;
 use super::problem::AcceleranceProblem;
+use super::start::Start;
+use crate::{IdentifyError, PieceFit};
 
 /// Misfit per datum above which the window may be what the model lacks.
 const SUSPECT: f64 = 1.2;
@@ -27,11 +30,11 @@ const ALIKE_RANGE: f64 = 3.0;
 
 /// A mode whose damping the records tell.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct DampedMode {
+struct DampedMode {
     /// Natural frequency \[Hz\].
-    pub frequency: f64,
+    frequency: f64,
     /// Damping ratio.
-    pub zeta: f64,
+    zeta: f64,
 }
 
 impl DampedMode {
@@ -42,37 +45,44 @@ impl DampedMode {
 }
 
 /// The question whether the records were averaged under an exponential window; `None` where nothing looks like one.
-///
-/// `frequencies` are those of the modes with a damping ratio of their own, a list a piece; `told` the modes whose damping is told.
 pub(super) fn asked(
+    start: &Start,
     problem: &mut AcceleranceProblem,
     parameters: &[f64],
-    frequencies: &[Vec<f64>],
-    told: &[DampedMode],
-) -> Result<Option<String>, ModelError> {
-    let Some(slowest) = told.iter().copied().min_by(|a, b| a.decay().total_cmp(&b.decay())) else { return Ok(None) };
-    if problem.records().any(|record| record.decay_rate > 0.0) {
+    fits: &[PieceFit],
+) -> Result<Option<String>, IdentifyError> {
+    let modes = fits.iter().flat_map(|fit| &fit.modes);
+    let damped: Vec<DampedMode> = modes
+        .filter_map(|mode| Some(DampedMode { frequency: mode.model, zeta: mode.damping.filter(is_told)?.value }))
+        .collect();
+    let slowest = damped.iter().map(DampedMode::decay).fold(f64::INFINITY, f64::min);
+    if damped.is_empty() || problem.records().any(|record| record.decay_rate > 0.0) {
         return Ok(None);
     }
-    if let Some(rate) = common_rate(told) {
-        return Ok(Some(question(rate, told, "all modes die away at the same rate, as under it and no panel does")));
+    if let Some(rate) = common_rate(&damped) {
+        return Ok(Some(question(rate, &damped, "all modes die away at the same rate, as under it and no panel does")));
     }
     if !problem.noise_is_known() {
         return Ok(None);
     }
-    let cost = promised(problem, parameters, frequencies, 0.0)?;
+    let mut frequencies = Vec::new();
+    for (index, own) in start.recorded.poles.iter().enumerate() {
+        let modes = own.structure.modes_below(&problem.values(parameters, index), 1.4 * own.band, &[])?;
+        frequencies.push(modes.iter().map(|mode| mode.frequency).collect::<Vec<f64>>());
+    }
+    let cost = promised(problem, parameters, &frequencies, 0.0)?;
     let before = problem.chi_square(cost);
     if before < SUSPECT {
         return Ok(None);
     }
-    let most = MOST * slowest.decay();
-    let (rate, cost) = least_cost(most, |rate| promised(problem, parameters, frequencies, rate))?;
+    let most = MOST * slowest;
+    let (rate, cost) = least_cost(most, |rate| promised(problem, parameters, &frequencies, rate))?;
     let after = problem.chi_square(cost);
     if rate < LEAST * most || !is_clearly_less(after, before) {
         return Ok(None);
     }
     let why = format!("misfit per datum {:.1} with it, {:.1} without", Readable(after), Readable(before));
-    Ok(Some(question(rate, told, &why)))
+    Ok(Some(question(rate, &damped, &why)))
 }
 
 fn question(rate: f64, told: &[DampedMode], why: &str) -> String {

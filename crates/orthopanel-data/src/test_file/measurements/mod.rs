@@ -5,6 +5,7 @@ mod frequencies;
 mod places;
 mod record_files;
 mod recorded;
+mod recorded_response;
 
 use std::{collections::BTreeSet, ops::Range, path::Path};
 
@@ -14,7 +15,7 @@ use toml::Spanned;
 use super::{pieces::NamedPiece, source::Source, syntax};
 use crate::{DataError, Location, limits};
 pub use frequencies::NaturalFrequencies;
-pub use recorded::{ChannelName, Direction, RecordedResponse, Trigger};
+pub use recorded_response::{ChannelName, Direction, RecordedResponse, Trigger};
 
 /// One measurement on one piece.
 #[derive(Debug, Clone, PartialEq)]
