@@ -4,6 +4,13 @@ use crate::support::{Bench, changed, number, refused};
 
 const HITS: &str = "examples/made-hits/point-0.uff";
 
+/// What a refused line says.
+fn said(bench: &Bench, line: &str, code: i32) -> String {
+    let output = bench.run(line);
+    assert_eq!(output.status.code(), Some(code), "{line}");
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
 #[test]
 fn val_records_lists_what_a_file_holds() {
     let bench = Bench::new();
@@ -12,7 +19,7 @@ fn val_records_lists_what_a_file_holds() {
     let records = answer["files"][0]["records"].as_array().expect("records");
     assert_eq!(records.len(), 6);
     assert_eq!((&records[0]["quantity"], &records[0]["unit"]), (&"force".into(), &"N".into()));
-    assert_eq!((&records[1]["quantity"], &records[1]["unit"]), (&"acceleration".into(), &"m/s^2".into()));
+    assert_eq!((&records[1]["quantity"], &records[1]["unit"]), (&"acceleration".into(), &"m/s2".into()));
     assert_eq!((number(&records[0], "/sampling_rate_hz"), number(&records[0], "/points")), (10240.0, 16384.0));
     let table = bench.done(&format!("records {HITS}"));
     assert_eq!(table.lines().count(), 2 + 6, "{table}");
@@ -54,12 +61,41 @@ fn val_other_formats_are_named_with_the_lines_that_convert_them() {
     let bench = Bench::new();
     std::fs::write(bench.path("x.npy"), b"\x93NUMPY\x01\x00").expect("a file is written");
     for line in ["records x.npy", "init x.npy -o new.toml"] {
-        refused(&bench, line, 2, &["x.npy: a NPY or NPZ file of NumPy, which is not read", "numpy.load(\"x.npy\")"]);
-        let said = bench.run(line);
-        let said = String::from_utf8_lossy(&said.stderr);
-        assert_eq!(said.lines().filter(|line| line.starts_with("    ")).count(), 2, "{said}");
+        let said = said(&bench, line, 2);
+        assert!(said.contains("x.npy: a NPY or NPZ file of NumPy, which is not read"), "{said}");
+        let lines: Vec<&str> = said.lines().filter(|line| line.starts_with("    ")).collect();
+        assert!(lines.len() == 2 && lines[0].contains("numpy.load(\"x.npy\")"), "{said}");
     }
     assert!(!bench.path("new.toml").exists());
     refused(&bench, "records nowhere.uff", 2, &["nowhere.uff", "cannot be read"]);
     refused(&bench, "records examples", 2, &["examples", "a folder"]);
+}
+
+/// A unit that all records lack is named by `identify` and `trace` alike, before anything is searched.
+#[test]
+fn val_a_unit_that_all_records_lack_is_named_first() {
+    let bench = Bench::new();
+    bench.done("accelerance examples/made-hits/test.toml -o lines.csv");
+    let lines = std::fs::read_to_string(bench.path("lines.csv")).expect("lines");
+    let mut rows = lines.lines();
+    let names: Vec<&str> = rows.next().expect("names").split(',').collect();
+    let mut text = String::from("frequency_hz,real,imag\n");
+    for row in rows {
+        let numbers: Vec<f64> = row.split(',').filter_map(|number| number.parse().ok()).collect();
+        let of = |name: &str| numbers[names.iter().position(|of| *of == name).expect("a column")];
+        text += &format!("{},{},{}\n", of("frequency_hz"), of("real") / 9.80665, of("imag") / 9.80665);
+    }
+    bench.write("g.csv", &text);
+    let test = std::fs::read_to_string(bench.path("examples/made-hits/test.toml")).expect("a test");
+    let piece = test.split("[[measurement]]").next().expect("a piece");
+    bench.write("g.toml", &format!(
+        "{piece}[[measurement]]\nkind = \"accelerance\"\nfile = \"g.csv\"\nforce_at = [-0.3, 0]\nresponse_at = [0.3, 0]\n"
+    ));
+    for command in ["identify g.toml", "trace g.toml"] {
+        let said = said(&bench, command, 1);
+        assert!(
+            said.contains("all of them fit") && said.contains("response_unit = \"g\" in each [[measurement]]"),
+            "{said}"
+        );
+    }
 }

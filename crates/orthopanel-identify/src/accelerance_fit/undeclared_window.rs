@@ -12,6 +12,7 @@ use orthopanel_model::{ModelError, Readable};
 use super::other_law::is_clearly_less;
 use super::outcome::is_told;
 use super::problem::AcceleranceProblem;
+use super::records::PlaceRecord;
 use super::start::Start;
 use crate::{IdentifyError, PieceFit};
 
@@ -70,14 +71,30 @@ pub(super) fn asked(
         let modes = own.structure.modes_below(&problem.values(parameters, index), 1.4 * own.band, &[])?;
         frequencies.push(modes.iter().map(|mode| mode.frequency).collect::<Vec<f64>>());
     }
-    let cost = promised(problem, parameters, &frequencies, 0.0)?;
-    let before = problem.chi_square(cost);
+    let (cost, _) = promised(problem, parameters, &frequencies, 0.0)?;
+    let mut before = problem.chi_square(cost);
     if before < SUSPECT {
         return Ok(None);
     }
     let most = MOST * slowest;
-    let (rate, cost) = least_cost(most, |rate| promised(problem, parameters, &frequencies, rate))?;
-    let after = problem.chi_square(cost);
+    let rate = least_cost(most, |rate| Ok(promised(problem, parameters, &frequencies, rate)?.0))?;
+    let (cost, stepped) = promised(problem, parameters, &frequencies, rate)?;
+    let mut after = problem.chi_square(cost);
+    // Noise that was read off the misfit of a wrong model is too great.
+    if problem.noise_is_to_learn() {
+        let kept: Vec<Vec<PlaceRecord>> = problem.pieces.iter().map(|piece| piece.records.clone()).collect();
+        set_rate(problem, rate);
+        let learned = problem.learn_noise(&stepped);
+        set_rate(problem, 0.0);
+        let both = learned.and_then(|()| {
+            Ok([
+                promised(problem, parameters, &frequencies, 0.0)?.0,
+                promised(problem, parameters, &frequencies, rate)?.0,
+            ])
+        });
+        problem.pieces.iter_mut().zip(kept).for_each(|(piece, records)| piece.records = records);
+        [before, after] = both?.map(|cost| problem.chi_square(cost));
+    }
     if rate < LEAST * most || !is_clearly_less(after, before) {
         return Ok(None);
     }
@@ -116,13 +133,13 @@ fn common_rate(told: &[DampedMode]) -> Option<f64> {
 }
 
 /// The sum of squares that one step from these parameters promises, with all records at a decay rate \[1/s\] and each mode's own less
-/// by it.
+/// by it; and where the step ends.
 fn promised(
     problem: &mut AcceleranceProblem,
     parameters: &[f64],
     frequencies: &[Vec<f64>],
     rate: f64,
-) -> Result<f64, ModelError> {
+) -> Result<(f64, Vec<f64>), ModelError> {
     let mut moved = parameters.to_vec();
     for (piece, frequencies) in frequencies.iter().enumerate() {
         let (offset, count) = (problem.zeta_offset(piece), problem.pieces[piece].free_zetas);
@@ -135,13 +152,13 @@ fn promised(
     let at = problem.linearise(&moved);
     set_rate(problem, 0.0);
     let at = at?;
-    let Some(covariance) = at.covariance() else { return Ok(at.cost) };
+    let Some(covariance) = at.covariance() else { return Ok((at.cost, moved)) };
     let size = moved.len();
-    let promise: f64 = (0..size)
-        .flat_map(|i| (0..size).map(move |j| (i, j)))
-        .map(|(i, j)| at.gradient[i] * covariance[(i, j)] * at.gradient[j])
-        .sum();
-    Ok((at.cost - promise).max(0.0))
+    let step: Vec<f64> = (0..size).map(|i| (0..size).map(|j| covariance[(i, j)] * at.gradient[j]).sum()).collect();
+    let promise: f64 = step.iter().zip(&at.gradient).map(|(step, gradient)| step * gradient).sum();
+    let ends = moved.iter().zip(&step).zip(problem.bounds());
+    let stepped = ends.map(|((at, step), (low, high))| (at - step).clamp(low, high)).collect();
+    Ok(((at.cost - promise).max(0.0), stepped))
 }
 
 fn set_rate(problem: &mut AcceleranceProblem, rate: f64) {
@@ -149,8 +166,8 @@ fn set_rate(problem: &mut AcceleranceProblem, rate: f64) {
     records.for_each(|record| record.decay_rate = rate);
 }
 
-/// The least of a function between zero and `most`, by golden section.
-fn least_cost(most: f64, mut of: impl FnMut(f64) -> Result<f64, ModelError>) -> Result<(f64, f64), ModelError> {
+/// Where a function is least between zero and `most`, by golden section.
+fn least_cost(most: f64, mut of: impl FnMut(f64) -> Result<f64, ModelError>) -> Result<f64, ModelError> {
     const PART: f64 = 0.618_033_988_749_894_9;
     let (mut low, mut high) = (0.0, most);
     let mut inner = [high - PART * (high - low), low + PART * (high - low)];
@@ -166,6 +183,5 @@ fn least_cost(most: f64, mut of: impl FnMut(f64) -> Result<f64, ModelError>) -> 
             costs = [costs[1], of(inner[1])?];
         }
     }
-    let best = usize::from(costs[1] < costs[0]);
-    Ok((inner[best], costs[best]))
+    Ok(inner[usize::from(costs[1] < costs[0])])
 }

@@ -11,41 +11,49 @@ const NEAR: f64 = 0.05;
 
 /// What a factor that records lack comes from, and the line that mends it; of all records where `each`, else of one.
 pub(super) fn cause_of(factor: f64, each: bool) -> String {
+    known_cause(factor, each).unwrap_or_else(|| "a gain, a unit, or the mass of the piece".to_owned())
+}
+
+/// The same; `None` of a factor that is no unit's and no sign's.
+pub(super) fn known_cause(factor: f64, each: bool) -> Option<String> {
     let measurement = if each { "each [[measurement]]" } else { "its [[measurement]]" };
     let turned = if factor < 0.0 { "the sensor turned round, direction = -1" } else { "" };
-    let size = factor.abs();
-    let off = |known: f64| (size / known).ln().abs();
-    let mut known: Vec<(f64, usize, Vec<String>)> = Vec::new();
+    let off = |known: f64| (factor.abs() / known).ln().abs();
+    let mut known: Vec<(f64, usize, String)> = Vec::new();
     for (motion, over) in MOTIONS {
         for (force, under) in FORCES {
-            let mut lines = Vec::new();
-            if over != 1.0 {
-                lines.push(format!("response_unit = {motion:?}"));
-            }
-            if under != 1.0 {
-                lines.push(format!("force_unit = {force:?}"));
-            }
-            known.push((off(over / under), lines.len(), lines));
+            let declared = [
+                (over != 1.0).then(|| format!("response_unit = {motion:?}")),
+                (under != 1.0).then(|| format!("force_unit = {force:?}")),
+            ];
+            let lines: Vec<String> = declared.into_iter().flatten().collect();
+            known.push((off(over / under), lines.len(), format!("{} in {measurement}", lines.join(" and "))));
         }
     }
     // What is in SI, and was brought there once more by its label.
+    let wrong = |label: &str, si: &str| format!("the label {label:?} corrected to {si}");
     for (motion, over) in MOTIONS.iter().filter(|(_, over)| *over != 1.0) {
-        known.push((off(1.0 / over), 1, vec![format!("response_unit = \"m/s2\", the label {motion:?} being wrong")]));
+        known.push((off(1.0 / over), 1, wrong(motion, "m/s2")));
+    }
+    for (force, under) in FORCES.iter().filter(|(_, under)| *under != 1.0) {
+        known.push((off(*under), 1, wrong(force, "N")));
     }
     known.retain(|(off, ..)| *off < NEAR);
     // The fewest mistakes first.
     known.sort_by(|a, b| a.1.cmp(&b.1).then(a.0.total_cmp(&b.0)));
-    let least = known.first().map_or(0, |(_, count, _)| *count);
-    let alike: Vec<String> =
-        known.iter().filter(|(_, count, _)| *count == least).map(|(.., lines)| lines.join(" and ")).collect();
-    match (alike.as_slice(), turned) {
-        ([only], "") if only.is_empty() => "nothing is wrong with it".to_owned(),
-        ([only], turned) if only.is_empty() => format!("{turned} in {measurement}"),
-        ([], "") => "a gain, a unit, or the mass of the piece".to_owned(),
-        ([], turned) => format!("{turned} in {measurement}, beside a gain, a unit, or the mass of the piece"),
-        (alike, turned) => {
+    let least = known.first()?.1;
+    let alike: Vec<&str> =
+        known.iter().filter(|(_, count, _)| *count == least).map(|(.., lines)| lines.as_str()).collect();
+    match (least, turned) {
+        (0, "") => None,
+        (0, turned) => Some(format!("{turned} in {measurement}")),
+        (_, turned) => {
             let and = if turned.is_empty() { String::new() } else { format!(", and {turned}") };
-            format!("by its value other units than its labels say: {} in {measurement}{and}", alike.join(", or "))
+            let units = alike.join(", or ");
+            Some(format!(
+                "by its value a unit that was taken for another: {units}{and}; where a label says otherwise correct it in the \
+                 file, in CSV the column acceleration_g"
+            ))
         }
     }
 }
@@ -63,9 +71,10 @@ mod tests {
             (0.2248, "force_unit = \"lbf\""),
             (2.2046, "response_unit = \"g\" and force_unit = \"lbf\""),
             (0.102, "force_unit = \"kgf\" in each"),
-            (0.102, "response_unit = \"m/s2\", the label \"g\" being wrong"),
+            (0.102, "the label \"g\" corrected to m/s2"),
             (5.71e-3, "response_unit = \"in/s2\" and force_unit = \"lbf\""),
             (-9.8, "response_unit = \"g\" in each [[measurement]], and the sensor turned round"),
+            (4.448, "the label \"lbf\" corrected to N"),
             (1.7, "a gain, a unit, or the mass"),
         ] {
             let found = cause_of(factor, true);

@@ -400,6 +400,17 @@ impl IdentifyError {
         matches!(self, Self::RecordContradiction { fits_at: Some(_), .. })
     }
 
+    /// Whether one factor on all records explains the refusal, and is by its value that of a unit or a sign: nothing else need be
+    /// looked for then.
+    pub fn is_of_known_factor(&self) -> bool {
+        match self {
+            Self::Contradiction { factor, .. } | Self::PlateContradiction { factor, .. } => {
+                factor.is_some_and(|factor| known_factor::known_cause(factor, true).is_some())
+            }
+            _ => false,
+        }
+    }
+
     /// Whether another law of damping may explain what was refused.
     pub(crate) fn may_be_of_damping(&self) -> bool {
         match self {
