@@ -83,23 +83,35 @@ pub(super) fn asked(
     // Noise that was read off the misfit of a wrong model is too great.
     if problem.noise_is_to_learn() {
         let kept: Vec<Vec<PlaceRecord>> = problem.pieces.iter().map(|piece| piece.records.clone()).collect();
-        set_rate(problem, rate);
-        let learned = problem.learn_noise(&stepped);
-        set_rate(problem, 0.0);
-        let both = learned.and_then(|()| {
-            Ok([
-                promised(problem, parameters, &frequencies, 0.0)?.0,
-                promised(problem, parameters, &frequencies, rate)?.0,
-            ])
-        });
+        let both = beside_learned_noise(problem, (parameters, stepped), &frequencies, rate);
         problem.pieces.iter_mut().zip(kept).for_each(|(piece, records)| piece.records = records);
         [before, after] = both?.map(|cost| problem.chi_square(cost));
     }
-    if rate < LEAST * most || !is_clearly_less(after, before) {
+    let is_half = after < SUSPECT && after - 1.0 < 0.5 * (before - 1.0);
+    if rate < LEAST * most || before < SUSPECT || !(is_half || is_clearly_less(after, before)) {
         return Ok(None);
     }
     let why = format!("misfit per datum {:.1} with it, {:.1} without", Readable(after), Readable(before));
     Ok(Some(question(rate, &damped, &why)))
+}
+
+/// The sums of squares without the window and with it, over the noise that is read off the misfit with it.
+fn beside_learned_noise(
+    problem: &mut AcceleranceProblem,
+    (parameters, mut stepped): (&[f64], Vec<f64>),
+    frequencies: &[Vec<f64>],
+    rate: f64,
+) -> Result<[f64; 2], ModelError> {
+    let mut with = 0.0;
+    // The first step ends near the minimum, not at it.
+    for _ in 0..2 {
+        set_rate(problem, rate);
+        let learned = problem.learn_noise(&stepped);
+        set_rate(problem, 0.0);
+        learned?;
+        (with, stepped) = promised(problem, parameters, frequencies, rate)?;
+    }
+    Ok([promised(problem, parameters, frequencies, 0.0)?.0, with])
 }
 
 fn question(rate: f64, told: &[DampedMode], why: &str) -> String {
