@@ -173,7 +173,7 @@ pub enum DataError {
     TooLarge {
         /// The test file.
         at: Box<Location>,
-        /// Files, each as often as it is named.
+        /// Files, each once.
         files: usize,
         /// Their bytes.
         found: u64,
@@ -195,6 +195,19 @@ pub enum DataError {
         at: Box<Location>,
         /// The formats that are read.
         names: String,
+    },
+    /// A file of another format, which Python brings into columns.
+    #[error(
+        "{at}: {format}, which is not read; Python makes columns of it (t, force and acc are in s, N and m/s2; give its own names):\
+         \n    {}\n    {}", .python[0], .python[1]
+    )]
+    ForeignFormat {
+        /// The file.
+        at: Box<Location>,
+        /// What it is.
+        format: &'static str,
+        /// Two lines of Python that convert it.
+        python: [String; 2],
     },
     /// A header of a record that cannot be understood.
     #[error("{at}: {problem}")]

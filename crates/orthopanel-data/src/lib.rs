@@ -1,22 +1,26 @@
 #![doc = include_str!("../README.md")]
 
+mod draft;
 mod error;
 mod input;
 pub mod limits;
+mod listing;
 mod records;
 mod spectra;
 mod test_file;
 mod units;
 
+pub use draft::draft;
 pub use error::{DataError, Location, Position};
 pub use input::{InputKind, regular_file};
-pub use records::{Axis, Port, Record, RecordFile, RecordKind, Samples};
+pub use listing::ListedRecord;
+pub use records::{Axis, ColumnName, ColumnRole, DeclaredColumns, Port, Record, RecordFile, RecordKind, Samples};
 pub use spectra::{
-    Accelerance, Channel, ChannelNoise, Estimation, Estimator, ForceNoise, Hit, HitFault, HitVerdict, TimeHistory,
+    Accelerance, Channel, ChannelNoise, Cut, Estimation, Estimator, ForceNoise, Hit, HitFault, HitVerdict, TimeHistory,
     Window,
 };
 pub use test_file::{
-    ChannelName, DeclaredEffect, Direction, ImpactTest, Measurement, MeasurementData, NamedPiece, NaturalFrequencies,
-    RecordedResponse, Trigger,
+    ChannelName, DeclaredEffect, Direction, ImpactTest, KnownConstant, Measurement, MeasurementData, NamedPiece,
+    NaturalFrequencies, RecordedResponse, SizeDoubt, Trigger,
 };
 pub use units::{Motion, Unit};

@@ -301,7 +301,7 @@ fn val_a_measurement_names_several_files() {
         ("\"blow-*.uff\"", "measurement[1].file: cannot be read"),
         ("\"blow-*.uff\"", "no file matches: * stands for any characters"),
         ("[\"other.uff\", \"gone.uff\"]", "gone.uff"),
-        ("[]", "[] given, wanted is a file's name in quotes, or a list of names"),
+        ("[]", "[] given, wanted is a file's name in quotes, a list of names, or {force = .., response = ..}"),
         ("[3]", "3 given, wanted is a file's name"),
         ("true", "true given, wanted is a file's name"),
     ] {

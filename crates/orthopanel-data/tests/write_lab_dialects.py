@@ -65,14 +65,18 @@ FREQUENCY = np.arange(0, 1601) * 0.78125
 S = 2j * np.pi * FREQUENCY
 
 
-def dialect(name, kind, keys, files, frequency, value, error):
-    """Writes a folder; `files` maps a name to what writes it."""
+PLACES = "force_at = [-0.2, 0]\nresponse_at = [0.3, 0]"
+
+
+def dialect(name, kind, keys, files, frequency, value, error, named=None, places=PLACES):
+    """Writes a folder; `files` maps a name to what writes it. A measurement a file, or one alone with `file` as `named` has it."""
     home = folder / name
     home.mkdir(parents=True)
     text = "[piece]\nlength = 1\nwidth = 0.1\nthickness = 0.02\nmass_per_area = 5\n"
     for file, write in files.items():
         write(home / file)
-        text += f'[[measurement]]\nkind = "{kind}"\nfile = "{file}"\nforce_at = [-0.2, 0]\nresponse_at = [0.3, 0]\n{keys}\n'
+    for file in [named] if named else [f'"{file}"' for file in files]:
+        text += f'[[measurement]]\nkind = "{kind}"\nfile = {file}\n{places}\n{keys}\n'
     (home / "test.toml").write_text(text)
     rows = np.column_stack([frequency, value.real, value.imag, np.full(len(frequency), error)])
     np.savetxt(home / "expected.csv", rows, delimiter=",", fmt="%.12g")
@@ -264,3 +268,113 @@ history("CSV: times of 4 digits", table=csv(SI, "%.4g"))
 history("CSV: times of 5 digits (dlmwrite)", table=csv(SI, "%.5g"))
 history("CSV: times of single precision", table=lambda t, f, a: csv(SI)(t.astype(np.float32), f, a))
 history("CSV: times in ms, rate declared", table=lambda t, f, a: csv(SI)(1e3 * t, f, a), keys="sampling_rate = 12800")
+
+
+def text(of, encoding="utf-8"):
+    """A table of hits as a text of its own: `of` makes it from rows of time, force and motion."""
+    return lambda time, force, motion: lambda path: path.write_text(of(list(zip(time, force, motion))), encoding=encoding)
+
+
+def rows(format, comma=False):
+    """Rows of numbers in a format, their decimals behind a comma where wanted."""
+    line = lambda row: format % row
+    return lambda table: "".join((line(row).replace(".", ",") if comma else line(row)) + "\n" for row in table)
+
+
+history("text: semicolons, decimal commas, units in a row", scale=(1.0, 1 / GRAVITY),
+        table=text(lambda t: "Messung 3\n\nZeit;Hammer;Beschl. 1\n[s];[N];[g]\n" + rows("%.9g;%.9g;%.9g", True)(t)))
+history("text: tabs, units in the names", scale=(1 / POUND, 1.0),
+        table=text(lambda t: "Time (s)\tImpact hammer (lbf)\tAccelerometer [m/s^2]\n" + rows("%.9g\t%.9g\t%.9g")(t)))
+history("text: blanks, names in a comment",
+        table=text(lambda t: "# time_s force_n acceleration_m_s2\n" + rows("%.9e %.9e %.9e")(t)))
+history("text: UTF-16", table=text(lambda t: SI + "\n" + rows("%.9g,%.9g,%.9g")(t), "utf-16"))
+history("text: quoted names and numbers",
+        table=text(lambda t: '"Time, s","Force","Acceleration"\n"s","N","m/s²"\n' + rows('"%.9g"/"%.9g"/"%.9g"', True)(t).replace("/", ",")))
+history("text: columns by name", keys='columns = {time = "A", force = "C", response = "D"}',
+        table=text(lambda t: "A,B,C,D\n" + rows("%.9g,%.9g,%.9g,%.9g")([(a, 3 * c, b, c) for a, b, c in t])))
+history("text: columns by number, none named", keys="columns = {time = 1, force = 3, response = 2}",
+        table=text(lambda t: rows("%.9g %.9g %.9g")([(a, c, b) for a, b, c in t])))
+history("text: no times, rate declared", keys="columns = {force = 1, response = 2}\nsampling_rate = 12800",
+        table=text(lambda t: "Hammer;Sensor\n" + rows("%.9g;%.9g")([row[1:] for row in t])))
+history("text: one of several channels by its name", keys='response_channel = "Acc 2"',
+        table=text(lambda t: "Time (ms),Force (N),Acc 1 (m/s2),Acc 2 (m/s2)\n".replace("Acc 2 (m/s2)", "Acc 2")
+                   + rows("%.9g,%.9g,%.9g,%.9g")([(1e3 * a, b, 3 * c, c) for a, b, c in t])))
+
+
+def lvm(columns):
+    """A LabVIEW measurement file with two blows, each a stretch of its own."""
+    head = ("LabVIEW Measurement\t\nWriter_Version\t2\nReader_Version\t2\nSeparator\tTab\nDecimal_Separator\t.\nMulti_Headings\tYes\n"
+            f"X_Columns\t{columns}\nTime_Pref\tRelative\n***End_of_Header***\t\n\n")
+    def write(path):
+        parts = []
+        for force, motion in HITS:
+            a = noisy(motion[2]) / GRAVITY
+            f = noisy(force)
+            head_of = (f"Channels\t2\t\t\nSamples\t{len(f)}\t{len(f)}\t\nDate\t2026/11/27\t2026/11/27\t\nY_Unit_Label\tNewtons\tg\t\n"
+                       f"X_Dimension\tTime\tTime\t\nX0\t0\t0\t\nDelta_X\t{1 / RATE:.9g}\t{1 / RATE:.9g}\t\n***End_of_Header***\t\t\t\n"
+                       "X_Value\tHammer\tSensor\tComment\n")
+            x = (f"{n / RATE:.9g}" if columns == "One" else "" for n in range(len(f)))
+            parts.append(head_of + "".join(f"{t}\t{p:.9g}\t{q:.9g}\n" for t, p, q in zip(x, f, a)) + "\n")
+        path.write_text(head + "".join(parts))
+    return write
+
+
+BAND = (FREQUENCY > 20) & (FREQUENCY < 700)
+for columns, name in (("One", "LVM: a column of times"), ("No", "LVM: times in the header")):
+    dialect(name, "time-history", "", {"hits.lvm": lvm(columns)}, FREQUENCY[BAND], (S**2 * receptance(S))[BAND], 0.01)
+
+
+def channel_files():
+    """Hits whose channels have a file each."""
+    time = np.arange(SAMPLES) / RATE
+    def write(of):
+        def to(path):
+            sets = [dataset(time, noisy(force if of == 0 else motion[2]), kind=1, axis=(F, A)[of], nodes=(1, 1)) for force, motion in HITS]
+            universal(*sets)(path)
+        return to
+    return {"force.uff": write(0), "motion.uff": write(1)}
+
+
+dialect("channels: each in a file of its own", "time-history", "", channel_files(), FREQUENCY[BAND],
+        (S**2 * receptance(S))[BAND], 0.01, named='{force = "force.uff", response = "motion.uff"}')
+
+
+def roving(name, places, extra):
+    """All points of a roving test in one file, placed by a file of nodes; the one that is asked for is chosen by its node."""
+    time = np.arange(SAMPLES) / RATE
+    sets = []
+    for force, motion in HITS:
+        for data, axis, node in ((force, F, 1), (3 * motion[2], A, 4), (motion[2], A, 5)):
+            sets.append(dataset(time, noisy(data), kind=1, axis=axis, nodes=(node, 1)))
+    dialect(name, "time-history", 'response_channel = "5:+z"', {"all.uff": universal(*sets), **extra}, FREQUENCY[BAND],
+            (S**2 * receptance(S))[BAND], 0.01, named='"all.uff"', places=places)
+
+
+roving("places: rows node,x,y", 'places = "places.csv"',
+       {"places.csv": lambda path: path.write_text("node,x,y\n1,-0.2,0\n4,0,0\n5,0.3,0\n")})
+nodes15 = "".join(f"{n:10}{0:10}{0:10}{8:10}{x:13.5e}{0:13.5e}{0:13.5e}\n" for n, x in ((1, 0.3), (4, 0.5), (5, 0.8)))
+roving("places: dataset 15, counted from a corner", 'places = "nodes.uff"\norigin = [0.5, 0.0]',
+       {"nodes.uff": lambda path: path.write_text(f"    -1\n    15\n{nodes15}    -1\n")})
+
+
+def table(name, head, of, keys="", quantity="acceleration"):
+    """A frequency response as a text."""
+    used = slice(1, None)
+    value = (S ** MOTION[quantity] * receptance(S))[used]
+    lines = "".join(of(f, h) + "\n" for f, h in zip(FREQUENCY[used], value))
+    dialect(name, "accelerance", keys, {"frf.txt": lambda path: path.write_text(head + "\n" + lines)}, FREQUENCY[used],
+            (S**2 * receptance(S))[used], 1e-5)
+
+
+degrees = lambda h: np.degrees(np.angle(h))
+table("text: real and imaginary part", "Frequency (Hz)\tReal ((m/s^2)/N)\tImaginary ((m/s^2)/N)",
+      lambda f, h: f"{f:.9g}\t{h.real:.9g}\t{h.imag:.9g}")
+table("text: kHz", "f (kHz);Re;Im", lambda f, h: f"{f / 1e3:.9g};{h.real:.9g};{h.imag:.9g}", 'quantity = "acceleration"')
+table("text: magnitude and phase in degrees", "Freq,Magnitude,Phase (deg)\nHz,g/N,deg".replace(" (deg)", ""),
+      lambda f, h: f"{f:.9g},{abs(h) / GRAVITY:.9g},{degrees(h):.9g}")
+table("text: dB and radians", "Frequency [Hz],H [dB re 1 (m/s^2)/N],Phase [rad]",
+      lambda f, h: f"{f:.9g},{20 * np.log10(abs(h)):.12g},{np.angle(h):.9g}")
+table("text: mobility by its unit", "frequency_hz,Real (mm/s/N),Imag (mm/s/N)",
+      lambda f, h: f"{f:.9g},{1e3 * h.real:.9g},{1e3 * h.imag:.9g}", quantity="velocity")
+table("text: columns of a frequency response by number", "no names here",
+      lambda f, h: f"{h.imag:.9g} {h.real:.9g} {f:.9g}", "columns = {frequency = 3, real = 2, imag = 1}\nquantity = \"acceleration\"")

@@ -3,11 +3,12 @@
 use orthopanel_data::{ImpactTest, MeasurementData};
 use orthopanel_model::ModelError;
 
-use crate::{Identification, IdentifyError, Settings, accelerance_fit, frequency_fit, tracing};
+use crate::{Identification, IdentifyError, Settings, accelerance_fit, frequency_fit, known_beforehand, tracing};
 
 /// Finds the constants of a test, and its damping where there are records: eq. 22 for natural frequencies, the whole
 /// complex accelerance for records. Starting values are found here. Effects that the test file declares are part of the
-/// model; what it leaves out of their parameters is identified too.
+/// model; what it leaves out of their parameters is identified too. Priors of constants, and standard deviations of sizes and mass,
+/// are carried into constants and covariance.
 ///
 /// `settings` may be a [`crate::Search`] alone.
 ///
@@ -18,6 +19,11 @@ use crate::{Identification, IdentifyError, Settings, accelerance_fit, frequency_
 pub fn identify(test: &ImpactTest, settings: impl Into<Settings>) -> Result<Identification, IdentifyError> {
     let settings = settings.into();
     settings.paper_weights.check()?;
+    known_beforehand::carried(test, of_data(test, settings)?, |test| of_data(test, settings))
+}
+
+/// What the data alone say.
+fn of_data(test: &ImpactTest, settings: Settings) -> Result<Identification, IdentifyError> {
     let is_frequencies = |data: &MeasurementData| matches!(data, MeasurementData::NaturalFrequencies(_));
     let lists = test.measurements.iter().filter(|measurement| is_frequencies(&measurement.data)).count();
     if lists == test.measurements.len() {

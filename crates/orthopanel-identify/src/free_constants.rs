@@ -1,7 +1,7 @@
 //! Which constants a test holds, which it leaves free, and which each piece has of its own.
 
 use faer::Mat;
-use orthopanel_data::ImpactTest;
+use orthopanel_data::{ImpactTest, KnownConstant};
 use orthopanel_model::Constant;
 
 use crate::{Correlation, IdentifyError, NotIdentified};
@@ -41,6 +41,8 @@ pub(crate) struct FreeConstants {
     pub constants: Vec<Constant>,
     /// Values of the constants that are held; free ones are `None`.
     pub held: Vec<Option<f64>>,
+    /// Values near which the test file has constants that are not held: starts and priors.
+    pub starts: Vec<Option<f64>>,
     /// Constants that neither the test file holds nor a parameter moves, with what they do meanwhile.
     pub resting: Vec<(usize, Rest)>,
     /// One a parameter.
@@ -63,7 +65,7 @@ impl FreeConstants {
     /// [`IdentifyError::UnknownConstant`], [`IdentifyError::HeldAndOwn`], and a held value out of its bounds.
     pub fn of(test: &ImpactTest, constants: &[Constant]) -> Result<Self, IdentifyError> {
         let own_names = test.pieces.iter().flat_map(|piece| &piece.own_constants);
-        for name in test.constants.keys().chain(own_names) {
+        for name in test.constants.keys().chain(test.known_constants.keys()).chain(own_names) {
             if constants.iter().all(|constant| constant.name != name) {
                 let known = constants.iter().map(|constant| constant.name).collect::<Vec<_>>().join(", ");
                 return Err(IdentifyError::UnknownConstant { name: name.clone(), known });
@@ -88,13 +90,26 @@ impl FreeConstants {
             }
             free.extend(own.into_iter().map(|piece| FreeConstant { constant: index, piece: Some(piece) }));
         }
-        Ok(Self { constants: constants.to_vec(), held, resting: Vec::new(), free })
+        let start = |constant: &Constant| match test.known_constants.get(constant.name)? {
+            KnownConstant::Start(value) | KnownConstant::Prior { value, .. } => Some(*value),
+        };
+        let starts: Vec<Option<f64>> = constants.iter().map(start).collect();
+        for (constant, value) in constants.iter().zip(&starts) {
+            value.map_or(Ok(()), |value| constant.check(value))?;
+        }
+        Ok(Self { constants: constants.to_vec(), held, starts, resting: Vec::new(), free })
     }
 
     /// The value at which the test file holds a constant.
     pub fn held_at(&self, name: &str) -> Option<f64> {
         let index = self.constants.iter().position(|constant| constant.name == name)?;
         self.held[index]
+    }
+
+    /// The value at which the test file holds a constant, or near which it has it.
+    pub fn known_near(&self, name: &str) -> Option<f64> {
+        let index = self.constants.iter().position(|constant| constant.name == name)?;
+        self.held[index].or(self.starts[index])
     }
 
     /// The constants that are free, each once, in the structure's order.

@@ -16,6 +16,7 @@ mod hypothesis;
 mod identification;
 mod inference;
 mod judge;
+mod known_beforehand;
 mod least_squares;
 mod matching;
 mod measured;

@@ -11,10 +11,10 @@ const GUESS: f64 = 1e9;
 /// $E_x/(k'G_{zx})$ of honeycomb panels, within a factor of seven or so.
 pub(crate) const USUAL_SOFTNESS: f64 = 16.0;
 
-/// All constants at one ratio $E_x/(k'G_{zx})$ of bending to shear, around those that are held.
+/// All constants at one ratio $E_x/(k'G_{zx})$ of bending to shear, around those that are held, or near which the test file has them.
 pub(crate) fn guess(constants: &FreeConstants, softness: f64) -> Vec<f64> {
     let shear_ratio = softness * SHEAR_COEFFICIENT;
-    let held = |name: &str| constants.held_at(name);
+    let held = |name: &str| constants.known_near(name);
     // In the plane, then through the thickness.
     let faces = held("e_x").or(held("e_y")).or(held("g_xy").map(|g_xy| g_xy / USUAL_SHEAR));
     let core = held("g_zx").or(held("g_yz"));

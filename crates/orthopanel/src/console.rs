@@ -18,6 +18,13 @@ pub fn say(message: impl Display) {
     let _ = stderr().write_all(line.as_bytes());
 }
 
+/// Writes one message on standard error, with the lines to copy that it brings, each indented, below it.
+pub fn say_each(message: &str) {
+    let mut lines = message.split("\n    ");
+    say(lines.next().unwrap_or_default());
+    lines.for_each(|line| say(format_args!("    {line}")));
+}
+
 /// Writes a text of several lines on standard error.
 pub fn say_lines(text: &str) {
     let _ = stderr().write_all(harmless(text).as_bytes());

@@ -35,7 +35,7 @@ use error::{BAD_INPUT, CommandError};
 
 fn main() -> ExitCode {
     outcome().unwrap_or_else(|error| {
-        console::say(format_args!("orthopanel: {error}"));
+        console::say_each(&format!("orthopanel: {error}"));
         ExitCode::from(error.exit_code())
     })
 }

@@ -60,8 +60,11 @@ fn channels_swapped_or_missing() {
     let text = hit(4096, 16384.0);
     let swapped = changed(&text, "force_n,acceleration_m_s2", "acceleration_m_s2,force_n");
     hit_refused(&swapped, &["hit.csv", "swapped"]);
-    hit_refused(&changed(&text, ",acceleration_m_s2", ""), &["hit.csv:1", "acceleration_m_s2", "missing"]);
-    hit_refused(&changed(&text, "force_n", "voltage"), &["hit.csv:1", "force_n", "missing"]);
+    hit_refused(
+        &changed(&text, ",acceleration_m_s2", ""),
+        &["hit.csv:2", "3 values where the first line names 2 columns"],
+    );
+    hit_refused(&changed(&text, "force_n", "voltage"), &["hit.csv:1", "the force is in volts", "force_sensitivity"]);
 }
 
 #[test]

@@ -8,6 +8,7 @@ mod bad_input;
 mod bad_records;
 mod commands;
 mod declared_effects;
+mod first_steps;
 mod foreign_fmu;
 mod limits;
 mod outputs;

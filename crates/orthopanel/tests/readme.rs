@@ -75,6 +75,11 @@ fn every_command_runs_and_its_number_holds() {
 
 /// The commands on the made hits, against what their generator put in.
 fn records_hold(bench: &Bench, commands: &mut Vec<String>, text: &str) {
+    run(bench, commands, "init examples/made-hits");
+    let drafted = std::fs::read_to_string(bench.path("my-test.toml")).expect("a test file");
+    assert!(drafted.contains("file = \"examples/made-hits/point-0.uff\""), "{drafted}");
+    let listed = run(bench, commands, "records examples/made-hits");
+    assert!(listed.contains("1.6000 s at 10240 Hz"), "{listed}");
     let truth = bench.read_json("examples/made-hits/truth.json");
     let printed = run(bench, commands, "run examples/made-hits");
     for (name, percent) in [("e_x", 0.1), ("g_zx", 0.3)] {

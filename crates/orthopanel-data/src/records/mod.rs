@@ -1,28 +1,27 @@
 //! Files of records, of whatever format, as plain numbers with their axes.
 
-mod csv_accelerance;
-mod csv_columns;
-mod csv_time_history;
+mod abscissa;
+mod blows;
+mod declared_columns;
+mod foreign;
+mod nodes;
+mod quantity;
 mod record;
 mod step;
+mod text;
 mod uff;
 
 use std::path::Path;
 
 use crate::{DataError, Location, limits};
+pub(crate) use blows::{blows, is_force};
+pub use declared_columns::{ColumnName, ColumnRole, DeclaredColumns};
+use foreign::Foreign;
+pub(crate) use nodes::nodes_of;
+pub(crate) use quantity::{Quantity, quantity, type_name};
 pub use record::{Axis, Port, Record, RecordFile, RecordKind, Samples};
 pub(crate) use record::{Node, UnitSystem, data_type};
 pub(crate) use step::round_rate;
-
-/// One file format: how its bytes are known, and how they are read.
-struct Format {
-    name: &'static str,
-    recognises: fn(&[u8]) -> bool,
-    read: fn(&[u8], &Path) -> Result<RecordFile, DataError>,
-}
-
-/// The formats, one line each. The content decides, not the file's extension: extensions of measured files lie.
-const FORMATS: [Format; 3] = [uff::FORMAT, csv_time_history::FORMAT, csv_accelerance::FORMAT];
 
 /// No sensor reads as much, in whatever unit. A spoilt byte in an exponent makes such values, whose squares are no numbers any more.
 const NO_READING: f64 = 1e30;
@@ -38,26 +37,47 @@ impl RecordFile {
     /// # Errors
     /// [`DataError::Unreadable`] where the file cannot be read, or is too large, else as [`RecordFile::from_bytes`].
     pub fn read(path: impl AsRef<Path>) -> Result<Self, DataError> {
+        Self::read_columns(path, None)
+    }
+
+    /// As [`RecordFile::read`]; in a text the `columns` are those declared, where any are.
+    ///
+    /// # Errors
+    /// As [`RecordFile::read`].
+    pub fn read_columns(path: impl AsRef<Path>, columns: Option<&DeclaredColumns>) -> Result<Self, DataError> {
         let path = path.as_ref();
         let read = limits::RECORD_FILE.read(path);
         let bytes = read.map_err(|source| DataError::Unreadable { at: Location::whole(path), source })?;
-        Self::from_bytes(&bytes, path)
+        Self::columns_of_bytes(&bytes, path, columns)
     }
 
     /// Reads the bytes of a file of records; `path` names it in messages.
     ///
     /// # Errors
-    /// [`DataError::UnknownFormat`] where no reader knows the content; [`DataError::Header`],
+    /// [`DataError::ForeignFormat`] and [`DataError::UnknownFormat`] where no reader knows the content; [`DataError::Header`],
     /// [`DataError::BadNumber`], [`DataError::NotFinite`], [`DataError::Truncated`] and [`DataError::Surplus`] with
     /// byte or line where a reader does, and the content is broken; [`DataError::NoRecords`] where nothing is in it.
     pub fn from_bytes(bytes: &[u8], path: impl AsRef<Path>) -> Result<Self, DataError> {
-        let path = path.as_ref();
-        match FORMATS.iter().find(|format| (format.recognises)(bytes)) {
-            Some(format) => (format.read)(bytes, path),
-            None => {
-                let names = FORMATS.map(|format| format.name).join("; ");
-                Err(DataError::UnknownFormat { at: Location::whole(path), names })
+        Self::columns_of_bytes(bytes, path.as_ref(), None)
+    }
+
+    /// The content decides, not the file's extension: extensions of measured files lie.
+    fn columns_of_bytes(bytes: &[u8], path: &Path, columns: Option<&DeclaredColumns>) -> Result<Self, DataError> {
+        if uff::recognises(bytes) {
+            if columns.is_some() {
+                let problem = "a universal file has no columns: take columns out of its [[measurement]]".into();
+                return Err(DataError::Header { at: Location::whole(path), problem });
             }
+            return uff::read(bytes, path);
         }
+        if let Some(foreign) = Foreign::of(bytes) {
+            let file = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
+            let python = foreign.python(&file);
+            return Err(DataError::ForeignFormat { at: Location::whole(path), format: foreign.name, python });
+        }
+        text::read(bytes, path, columns).unwrap_or_else(|| {
+            let names = format!("{}; {}", uff::NAME, text::NAME);
+            Err(DataError::UnknownFormat { at: Location::whole(path), names })
+        })
     }
 }

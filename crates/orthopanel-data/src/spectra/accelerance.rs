@@ -3,6 +3,7 @@
 use num_complex::Complex64;
 use orthopanel_model::{Place, Readable};
 
+use super::beside_response::{decay_rate, matching_coherence, matching_variance};
 use super::channel_choice;
 use super::channels::{self, Calibration, Quantity};
 use super::coherence::{self, Pairing};
@@ -79,7 +80,7 @@ impl Accelerance {
     /// # Errors
     /// As [`RecordFile::read`], and as [`Accelerance::from_records`].
     pub fn read(measurement: &RecordedResponse) -> Result<Self, DataError> {
-        Self::from_records(RecordFile::read(&measurement.file)?, measurement)
+        Self::from_records(measurement.records()?, measurement)
     }
 
     /// Takes the frequency response of a file, the one that [`RecordedResponse::record`] names where there are several, with its coherence where that is there too, and puts unit and
@@ -94,11 +95,17 @@ impl Accelerance {
     /// [`DataError::NoRecords`] where no frequency response is in the file; [`DataError::Channels`] where there are
     /// several and none is named, where it is not complex or no motion over force, or where unit or coherence do not fit.
     pub fn from_records(file: RecordFile, measurement: &RecordedResponse) -> Result<Self, DataError> {
-        let named = channel_choice::response(&file, measurement)?;
-        let RecordFile { records, mut notes, .. } = file;
+        Self::of_file(&file, measurement)
+    }
+
+    /// As [`Accelerance::from_records`], of a file that others read too.
+    pub(super) fn of_file(file: &RecordFile, measurement: &RecordedResponse) -> Result<Self, DataError> {
+        let named = channel_choice::response(file, measurement)?;
+        let RecordFile { records, notes, .. } = file;
+        let mut notes = notes.clone();
         let of_kind = |kind| records.iter().filter(move |record| record.kind == kind);
         let responses: Vec<(usize, &Record)> =
-            (1..).zip(&records).filter(|(_, record)| record.kind == RecordKind::FrequencyResponse).collect();
+            (1..).zip(records).filter(|(_, record)| record.kind == RecordKind::FrequencyResponse).collect();
         let chosen = match named {
             Some(number) => responses.iter().find(|(of, _)| *of == number),
             None => responses.first(),
@@ -143,7 +150,7 @@ impl Accelerance {
             );
             return refused(record, problem);
         }
-        let coherence = match coherence::of_response(&records, number - 1) {
+        let coherence = match coherence::of_response(records, number - 1) {
             Pairing::None => None,
             Pairing::Own(coherence) => Some(matching_coherence(record, coherence)?),
             Pairing::Untold { coherences, responses } => {
@@ -200,6 +207,7 @@ impl Accelerance {
         }
         result.notes = notes;
         result.leave_out_zeros(record)?;
+        result.cut_to(measurement.band, || record.at.clone())?;
         Ok(result)
     }
 
@@ -236,87 +244,49 @@ impl Accelerance {
             record.at.key,
             Readable(first)
         ));
-        let kept = |values: &[f64]| told.iter().map(|&line| values[line]).collect::<Vec<f64>>();
-        self.value = told.iter().map(|&line| self.value[line]).collect();
+        self.keep(&told);
+        Ok(())
+    }
+
+    /// Leaves out all lines outside the declared band.
+    pub(super) fn cut_to(
+        &mut self,
+        band: Option<[f64; 2]>,
+        at: impl FnOnce() -> Box<Location>,
+    ) -> Result<(), DataError> {
+        let Some([from, to]) = band else { return Ok(()) };
+        let inside: Vec<usize> =
+            (0..self.frequency.len()).filter(|&line| (from..=to).contains(&self.frequency[line])).collect();
+        if inside.len() < LEAST_LINES {
+            let ends = self.frequency.first().zip(self.frequency.last());
+            let (first, last) = ends.map_or((0.0, 0.0), |(first, last)| (*first, *last));
+            let problem = format!(
+                "band = [{from}, {to}] leaves {} of its lines, which go from {} to {} Hz: widen it",
+                inside.len(),
+                Readable(first),
+                Readable(last)
+            );
+            return Err(DataError::Channels { at: at(), problem });
+        }
+        if inside.len() < self.frequency.len() {
+            self.keep(&inside);
+        }
+        Ok(())
+    }
+
+    /// Keeps these lines and no others.
+    fn keep(&mut self, lines: &[usize]) {
+        let kept = |values: &[f64]| lines.iter().map(|&line| values[line]).collect::<Vec<f64>>();
+        self.value = lines.iter().map(|&line| self.value[line]).collect();
         self.frequency = kept(&self.frequency);
         self.variance = self.variance.as_deref().map(kept);
         self.coherence = self.coherence.as_deref().map(kept);
-        Ok(())
+        self.bias = self.bias.as_deref().map(kept);
+        if let Some(noise) = &mut self.force_noise {
+            noise.keep(lines);
+        }
     }
 }
 
 /// Fewer lines than these show no resonance.
 const LEAST_LINES: usize = 3;
-
-/// The decay rate of the exponential window under which a frequency response was averaged, as the file and the test file tell it.
-fn decay_rate(recorded: Option<&Record>, declared: Option<f64>) -> Result<f64, DataError> {
-    match (recorded, declared) {
-        (None, None) => Ok(0.0),
-        (None, Some(tau)) => Ok(1.0 / tau),
-        (Some(record), None) => one_decay_rate(record),
-        (Some(record), Some(tau)) => {
-            let found = one_decay_rate(record)?;
-            if (found * tau - 1.0).abs() < 1e-3 {
-                return Ok(found);
-            }
-            let problem = format!(
-                "decay rate {} 1/s, and window_decay = {tau} s declares {} 1/s: drop window_decay, the column tells it",
-                Readable(found),
-                Readable(1.0 / tau)
-            );
-            Err(DataError::Channels { at: record.at.clone(), problem })
-        }
-    }
-}
-
-/// The decay rate of all lines, checked.
-fn one_decay_rate(of: &Record) -> Result<f64, DataError> {
-    let Samples::Real(values) = &of.ordinate else {
-        return Err(DataError::Channels { at: of.at.clone(), problem: "a decay rate must be real".into() });
-    };
-    let first = values.first().copied().unwrap_or_default();
-    match values.iter().position(|value| *value != first || *value < 0.0) {
-        None => Ok(first),
-        Some(line) => {
-            let value = values[line];
-            let problem = format!(
-                "decay rate {} at point {}: must be zero or more, the same in every row",
-                Readable(value),
-                line + 1
-            );
-            Err(DataError::Channels { at: of.at_point(line), problem })
-        }
-    }
-}
-
-/// The variance of each line, checked.
-fn matching_variance(response: &Record, variance: &Record) -> Result<Vec<f64>, DataError> {
-    let refused = |problem: String| Err(DataError::Channels { at: variance.at.clone(), problem });
-    let Samples::Real(values) = &variance.ordinate else { return refused("a variance must be real".into()) };
-    if variance.abscissa != response.abscissa {
-        return refused("the variance stands at other frequencies than the frequency response".into());
-    }
-    match values.iter().enumerate().find(|(_, value)| **value < 0.0) {
-        None => Ok(values.clone()),
-        Some((line, value)) => {
-            let problem = format!("variance {} at point {}: must be zero or more", Readable(*value), line + 1);
-            Err(DataError::Channels { at: variance.at_point(line), problem })
-        }
-    }
-}
-
-fn matching_coherence(response: &Record, coherence: &Record) -> Result<Vec<f64>, DataError> {
-    let refused = |problem: String| Err(DataError::Channels { at: coherence.at.clone(), problem });
-    if coherence.abscissa != response.abscissa {
-        return refused("the coherence stands at other frequencies than the frequency response".into());
-    }
-    let Samples::Real(values) = &coherence.ordinate else { return refused("a coherence must be real".into()) };
-    // A last digit above 1 is rounding; more is another quantity.
-    match values.iter().enumerate().find(|(_, value)| !(-1e-6..=1.0 + 1e-6).contains(*value)) {
-        None => Ok(values.iter().map(|value| value.clamp(0.0, 1.0)).collect()),
-        Some((line, value)) => {
-            let problem = format!("coherence {} at point {}: must lie between 0 and 1", Readable(*value), line + 1);
-            Err(DataError::Channels { at: coherence.at_point(line), problem })
-        }
-    }
-}

@@ -4,8 +4,8 @@ use std::ops::Range;
 
 use super::{
     extremes::{Levels, median, peak, peak_among, sampled_median},
+    hit::Hit,
     hit_faults::{HitFault, LEAST_SIGNAL_TO_NOISE},
-    time_history::Hit,
 };
 
 /// Force that counts as a touch, over the peak: less does not change the spectrum by more than this.

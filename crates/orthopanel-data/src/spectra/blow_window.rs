@@ -1,6 +1,6 @@
 //! How much of the force's record holds its blow, and whether the noise of the rest counts.
 
-use super::time_history::Hit;
+use super::hit::Hit;
 
 /// What a force window cuts off the blows.
 pub(super) struct CutBlow {

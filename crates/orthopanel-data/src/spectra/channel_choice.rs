@@ -3,13 +3,13 @@
 //! Chosen by `force_channel` and `response_channel`; without them by the places of the file's nodes (datasets 15 and 2411), and by the
 //! direction, where only one record is along z.
 
-use std::mem;
+use std::sync::Arc;
 
 use super::channels::{self, Quantity};
 use crate::{
     ChannelName, DataError, RecordedResponse,
     error::some_of,
-    records::{Node, Port, Record, RecordFile, RecordKind, data_type},
+    records::{Node, Port, Record, RecordFile, RecordKind, blows, data_type, is_force as tells_force},
 };
 
 /// A node and a place this far apart \[m\] are one: places are measured to millimetres.
@@ -77,20 +77,59 @@ impl ChannelName {
     }
 }
 
-/// The file with the records of one measurement of hits: force and response in turn, where a choice had to be made.
+/// The file with the records of one measurement of hits: force and response in turn, where a choice had to be made. Of a file that
+/// others read too what is chosen is copied.
 ///
 /// # Errors
 /// [`DataError::Channels`] where a declared channel is not in the file.
-pub(super) fn hits(mut file: RecordFile, measurement: &RecordedResponse) -> Result<RecordFile, DataError> {
+pub(super) fn hits(file: Arc<RecordFile>, measurement: &RecordedResponse) -> Result<RecordFile, DataError> {
+    let Some(pairs) = pairs(&file, measurement)? else { return Ok(Arc::unwrap_or_clone(file)) };
+    if pairs.is_empty() {
+        return Err(DataError::NoRecords {
+            at: crate::Location::whole(&measurement.file),
+            what: "blow with a record of both channels that its measurement names",
+        });
+    }
+    let chosen = |records: &mut dyn FnMut(usize) -> Option<Record>| {
+        let mut taken = Vec::with_capacity(2 * pairs.len());
+        for (force, response) in &pairs {
+            // What is chosen needs no type of its own.
+            if let (Some(mut force), Some(mut response)) = (records(*force), records(*response)) {
+                if !tells_force(&force) {
+                    force.numerator.data_type = data_type::FORCE;
+                }
+                if !matches!(channels::quantity(&response.numerator), Quantity::Motion(_)) {
+                    response.numerator.data_type = channels::data_type_of(measurement);
+                }
+                taken.extend([force, response]);
+            }
+        }
+        taken
+    };
+    Ok(match Arc::try_unwrap(file) {
+        Ok(RecordFile { records, notes, nodes }) => {
+            let mut records: Vec<Option<Record>> = records.into_iter().map(Some).collect();
+            RecordFile { records: chosen(&mut |at| records.get_mut(at).and_then(Option::take)), notes, nodes }
+        }
+        Err(shared) => RecordFile {
+            records: chosen(&mut |at| shared.records.get(at).cloned()),
+            notes: shared.notes.clone(),
+            nodes: shared.nodes.clone(),
+        },
+    })
+}
+
+/// Places of force and response of each blow among the records of a file; `None` where nothing has to be chosen.
+fn pairs(file: &RecordFile, measurement: &RecordedResponse) -> Result<Option<Vec<(usize, usize)>>, DataError> {
     let in_time = |record: &&Record| record.kind == RecordKind::Time;
-    let [force, response] = [Role::Force, Role::Response].map(|role| chosen(&file, measurement, role, in_time));
+    let [force, response] = [Role::Force, Role::Response].map(|role| chosen(file, measurement, role, in_time));
     let (force, response) = (force?, response?);
     if force.is_none() && response.is_none() {
-        return Ok(file);
+        return Ok(None);
     }
     let is_force = |record: &Record| match &force {
         Some(force) => force.contains(&record.number),
-        None => channels::quantity(&record.numerator) == Quantity::Force,
+        None => tells_force(record),
     };
     let is_response = |record: &Record| match &response {
         Some(response) => response.contains(&record.number),
@@ -98,51 +137,17 @@ pub(super) fn hits(mut file: RecordFile, measurement: &RecordedResponse) -> Resu
             !is_force(record) && !matches!(channels::quantity(&record.numerator), Quantity::Force | Quantity::Other(_))
         }
     };
-    // One blow is a force with the responses that stand beside it, behind it in most files.
-    let hammer = |record: &Record| is_force(record) || channels::quantity(&record.numerator) == Quantity::Force;
-    let times: Vec<Record> =
-        mem::take(&mut file.records).into_iter().filter(|record| record.kind == RecordKind::Time).collect();
-    let behind = times.first().is_some_and(hammer);
-    let (mut blows, mut blow): (Vec<Vec<Record>>, Vec<Record>) = (Vec::new(), Vec::new());
-    for record in times {
-        let is_hammer = hammer(&record);
-        if is_hammer && behind && !blow.is_empty() {
-            blows.push(mem::take(&mut blow));
-        }
-        blow.push(record);
-        if is_hammer && !behind {
-            blows.push(mem::take(&mut blow));
-        }
-    }
-    blows.push(blow);
-    for blow in blows {
-        let mut of_blow = (None, None);
-        for mut record in blow {
-            if is_force(&record) && of_blow.0.is_none() {
-                if channels::quantity(&record.numerator) != Quantity::Force {
-                    record.numerator.data_type = data_type::FORCE;
-                }
-                of_blow.0 = Some(record);
-            } else if is_response(&record) && of_blow.1.is_none() {
-                // What is chosen needs no type of its own.
-                if !matches!(channels::quantity(&record.numerator), Quantity::Motion(_)) {
-                    record.numerator.data_type = channels::data_type_of(measurement);
-                }
-                of_blow.1 = Some(record);
-            }
-        }
+    let mut pairs = Vec::new();
+    for blow in blows(&file.records, |record| is_force(record) || tells_force(record)) {
+        let of_blow =
+            |is: &dyn Fn(&Record) -> bool| blow.iter().copied().find(|&at| file.records.get(at).is_some_and(is));
+        let force = of_blow(&is_force);
         // A force or a response alone is of another measurement.
-        if let (Some(force), Some(response)) = of_blow {
-            file.records.extend([force, response]);
+        if let (Some(force), Some(response)) = (force, of_blow(&|record| is_response(record) && !is_force(record))) {
+            pairs.push((force, response));
         }
     }
-    if file.records.is_empty() {
-        return Err(DataError::NoRecords {
-            at: crate::Location::whole(&measurement.file),
-            what: "blow with a record of both channels that its measurement names",
-        });
-    }
-    Ok(file)
+    Ok(Some(pairs))
 }
 
 /// The number of the frequency response of a measurement, where one fits alone.

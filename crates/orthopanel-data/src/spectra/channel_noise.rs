@@ -1,6 +1,6 @@
 //! Noise of a hit's two channels, read where neither the hammer nor the piece moves: before the blow.
 
-use super::{blow::Blow, extremes::median, time_history::Hit};
+use super::{blow::Blow, extremes::median, hit::Hit};
 
 /// Standard deviations of the noise of a hit's channels, as if it were white.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -58,6 +58,14 @@ pub(super) fn of_response(records: &[Record], index: usize) -> Pairing<'_> {
     }
 }
 
+/// The same, where it is told.
+pub(crate) fn own_coherence(records: &[Record], index: usize) -> Option<&Record> {
+    match of_response(records, index) {
+        Pairing::Own(coherence) => Some(coherence),
+        Pairing::None | Pairing::Untold { .. } => None,
+    }
+}
+
 /// Whether two records are of one pair of places and directions, as far as both tell; of a coherence either place may be named first.
 fn same(record: &Record, response: &Record) -> bool {
     let fits = |a: Port, b: Port| {

@@ -7,9 +7,10 @@ use super::{
     blow_window::{CutBlow, WHOLE},
     extremes::median,
     force_noise::ForceNoise,
+    hit::Hit,
     hit_faults::HitFault,
     spectrum::{self, Sums},
-    time_history::{Hit, TimeHistory},
+    time_history::TimeHistory,
     window::{Window, milliseconds},
 };
 use crate::{DataError, Location, Position, error::some_of};

@@ -26,6 +26,13 @@ impl ForceNoise {
         Some(Self { half_width, variance: Vec::new(), independent: Vec::new() })
     }
 
+    /// Keeps these lines and no others.
+    pub(super) fn keep(&mut self, lines: &[usize]) {
+        for values in [&mut self.variance, &mut self.independent] {
+            *values = lines.iter().filter_map(|&line| values.get(line).copied()).collect();
+        }
+    }
+
     /// Adds the line of the spectra with this number, at which $|H|^2$ is `power`; a part `astray` of each hit's motion comes to
     /// its channels' noise.
     pub(super) fn push(&mut self, sums: &Sums, (line, power): (usize, f64), astray: f64) {

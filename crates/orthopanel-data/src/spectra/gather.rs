@@ -1,9 +1,10 @@
 //! All accelerances of a test, hits of the same places put together.
 
 use std::{
-    collections::HashMap,
+    collections::{HashMap, hash_map::Entry},
     hash::{DefaultHasher, Hash as _, Hasher as _},
     path::PathBuf,
+    sync::Arc,
 };
 
 use orthopanel_model::Place;
@@ -42,6 +43,7 @@ impl TimeHistory {
             self.further_files.push((joined, other.file));
             self.further_files.extend(other.further_files.into_iter().map(|(from, file)| (joined + from, file)));
             self.hits.extend(other.hits);
+            self.cuts.extend(other.cuts);
             self.notes.extend(other.notes);
             return Ok(());
         };
@@ -65,36 +67,66 @@ struct GatheredFile {
 }
 
 impl GatheredFile {
-    /// Reads the file of a measurement; `None` for one that has no file.
-    fn read(measurement: &Measurement) -> Option<Result<Self, DataError>> {
-        let (MeasurementData::Accelerance(recorded) | MeasurementData::TimeHistory(recorded)) = &measurement.data
-        else {
-            return None;
-        };
-        let read = || {
-            let file = RecordFile::read(&recorded.file)?;
-            let is_hits = matches!(measurement.data, MeasurementData::TimeHistory(_));
-            let (file, recorded) = if is_hits {
-                (channel_choice::hits(file, recorded)?, recorded.clone())
-            } else {
+    /// What a measurement takes of its file.
+    fn of(piece: usize, data: &MeasurementData, file: Arc<RecordFile>) -> Result<Option<Self>, DataError> {
+        let (recorded, numbered, content) = match data {
+            MeasurementData::NaturalFrequencies(_) => return Ok(None),
+            MeasurementData::TimeHistory(recorded) => {
+                let file = channel_choice::hits(file, recorded)?;
+                let numbered = NumberedPlace::of(&file, recorded)?;
+                (recorded.clone(), numbered, Gathered::Hits(TimeHistory::of_chosen(file, recorded)?))
+            }
+            MeasurementData::Accelerance(recorded) => {
                 let record = channel_choice::response(&file, recorded)?;
-                (file, RecordedResponse { record, ..recorded.clone() })
-            };
-            let recorded = &recorded;
-            let numbered = NumberedPlace::of(&file, recorded)?;
-            let content = match &measurement.data {
-                MeasurementData::Accelerance(_) => Gathered::Line(Accelerance::from_records(file, recorded)?),
-                _ => Gathered::Hits(TimeHistory::from_records(file, recorded)?),
-            };
-            Ok(Self {
-                piece: measurement.piece,
-                path: recorded.file.clone(),
-                record: recorded.record,
-                numbered,
-                content,
-            })
+                let recorded = RecordedResponse { record, ..recorded.clone() };
+                let numbered = NumberedPlace::of(&file, &recorded)?;
+                let line = Accelerance::of_file(&file, &recorded)?;
+                (recorded, numbered, Gathered::Line(line))
+            }
         };
-        Some(read())
+        Ok(Some(Self { piece, path: recorded.file, record: recorded.record, numbered, content }))
+    }
+
+    /// What all these measurements take of their files; a file of several is read once.
+    fn all(measurements: &[&Measurement]) -> Result<Vec<Self>, DataError> {
+        let mut files: Vec<(RecordedResponse, Vec<(usize, &Measurement)>)> = Vec::new();
+        let mut places = HashMap::new();
+        for (index, measurement) in measurements.iter().enumerate() {
+            let Some(own) = measurement.data.recorded().cloned() else { continue };
+            let key = (own.file.clone(), own.response_file.clone(), own.columns.clone());
+            match places.entry(key) {
+                Entry::Occupied(place) => {
+                    let place: usize = *place.get();
+                    if let Some((_, of_file)) = files.get_mut(place) {
+                        of_file.push((index, measurement));
+                    }
+                }
+                Entry::Vacant(place) => {
+                    place.insert(files.len());
+                    files.push((own, vec![(index, *measurement)]));
+                }
+            }
+        }
+        type Read = (usize, Result<Option<GatheredFile>, DataError>);
+        let read = |(recorded, of_file): (RecordedResponse, Vec<(usize, &Measurement)>)| -> Vec<Read> {
+            match (recorded.records(), of_file.as_slice()) {
+                (Err(error), [(first, _), ..]) => vec![(*first, Err(error))],
+                (Ok(file), [(index, only)]) => vec![(*index, Self::of(only.piece, &only.data, Arc::new(file)))],
+                (Ok(file), several) => {
+                    let file = Arc::new(file);
+                    let of = |(index, one): &(usize, &Measurement)| {
+                        (*index, Self::of(one.piece, &one.data, Arc::clone(&file)))
+                    };
+                    several.par_iter().map(of).collect()
+                }
+                (Err(_), []) => vec![],
+            }
+        };
+        let read: Vec<Vec<Read>> = files.into_par_iter().map(read).collect();
+        let mut read: Vec<Read> = read.into_iter().flatten().collect();
+        // The first error in the order of the test file: the same message whichever thread was quicker.
+        read.sort_by_key(|(index, _)| *index);
+        read.into_iter().filter_map(|(_, read)| read.transpose()).collect()
     }
 }
 
@@ -189,6 +221,19 @@ impl ImpactTest {
         Ok(hits.collect())
     }
 
+    /// Reads every accelerance that a file of the test tells, in the order of the file, each with its piece's index.
+    ///
+    /// # Errors
+    /// As [`ImpactTest::time_histories`], and [`Accelerance::read`].
+    pub fn recorded_accelerances(&self) -> Result<Vec<(usize, Accelerance)>, DataError> {
+        let lines = self.gathered(|data| matches!(data, MeasurementData::Accelerance(_)))?.into_iter();
+        let lines = lines.filter_map(|(piece, gathered)| match gathered {
+            Gathered::Line(line) => Some((piece, line)),
+            Gathered::Hits(_) => None,
+        });
+        Ok(lines.collect())
+    }
+
     /// Reads every time history and accelerance of the test, in the order of the file, each with its piece's index.
     ///
     /// Time histories of one piece with the same places are hits of one accelerance, which stands where the first of
@@ -198,7 +243,11 @@ impl ImpactTest {
     /// As [`ImpactTest::time_histories`], [`TimeHistory::accelerance`] and [`Accelerance::read`].
     pub fn accelerances(&self, estimation: Estimation) -> Result<Vec<(usize, Accelerance)>, DataError> {
         let estimated = self.gathered(|_| true)?.into_par_iter().map(|(piece, gathered)| match gathered {
-            Gathered::Hits(history) => Ok((piece, history.accelerance(estimation)?)),
+            Gathered::Hits(history) => {
+                let mut line = history.accelerance(estimation)?;
+                line.cut_to(history.band, || Location::whole(&history.file))?;
+                Ok((piece, line))
+            }
             Gathered::Line(accelerance) => Ok((piece, accelerance)),
         });
         // First all, then the first error in the order of the file: the same message whichever thread was quicker.
@@ -207,8 +256,7 @@ impl ImpactTest {
 
     fn gathered(&self, wanted: impl Fn(&MeasurementData) -> bool) -> Result<Vec<(usize, Gathered)>, DataError> {
         let measurements: Vec<_> = self.measurements.iter().filter(|measurement| wanted(&measurement.data)).collect();
-        let read: Vec<_> = measurements.into_par_iter().filter_map(GatheredFile::read).collect();
-        let mut read = read.into_iter().collect::<Result<Vec<_>, DataError>>()?;
+        let mut read = GatheredFile::all(&measurements)?;
         for piece in 0..self.pieces.len() {
             node_numbers::check(read.iter().filter(|file| file.piece == piece).flat_map(|file| &file.numbered))?;
         }

@@ -7,8 +7,8 @@ use orthopanel_model::Readable;
 use super::{
     blow::force_fault,
     extremes::Levels,
+    hit::Hit,
     overload::overload,
-    time_history::Hit,
     wrong_sample::{cut_crest, dropped_sample},
 };
 

@@ -1,10 +1,6 @@
 //! What became of each hit of a history.
 
-use super::{
-    hit_faults::HitFault,
-    overload::shared_extremes,
-    time_history::{Hit, TimeHistory},
-};
+use super::{hit::Hit, hit_faults::HitFault, overload::shared_extremes, time_history::TimeHistory};
 use crate::Estimation;
 
 /// The faults of one hit, found in itself or beside the other hits.

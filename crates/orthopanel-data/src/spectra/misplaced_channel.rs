@@ -2,7 +2,7 @@
 
 use orthopanel_model::Readable;
 
-use super::time_history::Hit;
+use super::hit::Hit;
 use crate::{DataError, Location};
 
 /// Part of a channel's greatest value within which two channels are the same: last digits of single precision.

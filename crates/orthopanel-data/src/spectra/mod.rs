@@ -1,6 +1,7 @@
 //! Records to accelerance: channels put right, hits judged, spectra averaged, each line with its variance.
 
 mod accelerance;
+mod beside_response;
 mod blow;
 mod blow_window;
 mod channel_choice;
@@ -12,6 +13,7 @@ mod estimate;
 mod extremes;
 mod force_noise;
 mod gather;
+mod hit;
 mod hit_agreement;
 mod hit_faults;
 mod hit_verdict;
@@ -19,6 +21,7 @@ mod likely_motion;
 mod misplaced_channel;
 mod node_numbers;
 mod overload;
+mod recorded_hit;
 mod scatter;
 mod spectrum;
 mod time_grid;
@@ -29,9 +32,12 @@ mod wrong_sample;
 
 pub use accelerance::Accelerance;
 pub use channel_noise::ChannelNoise;
+pub(crate) use coherence::own_coherence;
 pub use estimate::{Estimation, Estimator};
 pub use force_noise::ForceNoise;
+pub use hit::Hit;
 pub use hit_faults::{Channel, HitFault};
 pub use hit_verdict::HitVerdict;
-pub use time_history::{Hit, TimeHistory};
+pub use time_history::TimeHistory;
+pub use trigger::Cut;
 pub use window::Window;

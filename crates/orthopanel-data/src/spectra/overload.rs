@@ -4,8 +4,8 @@ use std::collections::HashMap;
 
 use super::{
     extremes::{Levels, extremes, sampled_median},
+    hit::Hit,
     hit_faults::{Channel, HitFault},
-    time_history::Hit,
 };
 
 /// Samples in a row at the extreme that are clipped, unless they hardly drop beside them.

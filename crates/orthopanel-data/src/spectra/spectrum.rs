@@ -3,7 +3,7 @@
 use num_complex::Complex64;
 use realfft::RealFftPlanner;
 
-use super::{blow::Blow, scatter::NoisePower, time_history::Hit, window::Window};
+use super::{blow::Blow, hit::Hit, scatter::NoisePower, window::Window};
 
 /// Sums over hits of $|F|^2$, $|A|^2$ and $\bar F A$, line by line from 0 to half the rate.
 pub(super) struct Sums {

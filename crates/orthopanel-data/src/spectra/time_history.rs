@@ -7,16 +7,16 @@ use orthopanel_model::Place;
 use super::{
     accelerance::Accelerance,
     channel_choice,
-    channels::{self, Calibration, Quantity},
-    derivative::derivative,
-    extremes::{LANES, extremes, sampled_median},
+    channels::{self, Quantity},
+    hit::Hit,
     misplaced_channel::{self, Ordered},
-    time_grid, trigger,
-    window::milliseconds,
+    recorded_hit::recorded_hit,
+    time_grid,
+    trigger::{self, Cut},
 };
 use crate::{
     DataError, Location, Motion, RecordedResponse, Unit, limits,
-    records::{Record, RecordFile, RecordKind, Samples},
+    records::{RecordFile, RecordKind},
 };
 
 /// The hits of one pair of places, sampled alike.
@@ -34,27 +34,29 @@ pub struct TimeHistory {
     pub hits: Vec<Hit>,
     /// Where hits of several files stand together: each further file, and the index of its first hit.
     pub further_files: Vec<(usize, PathBuf)>,
+    /// Lines \[Hz\] of an accelerance that count, from and to; all where nothing is declared.
+    pub band: Option<[f64; 2]>,
+    /// How continuous records were cut into these hits.
+    pub cuts: Vec<Cut>,
     /// What was mended or assumed, a sentence each.
     pub notes: Vec<String>,
 }
-
-/// One hit: sample $n$ stands at $t = n / \mathrm{rate}$ from the record's start.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Hit {
-    /// Force of the hammer \[N\].
-    pub force: Vec<f64>,
-    /// Acceleration along the force \[m/s²\], as long as `force`.
-    pub acceleration: Vec<f64>,
-}
-
-/// A blow on a panel may be as short as this \[s\].
-const SHORT_BLOW: f64 = 5e-4;
 
 impl TimeHistory {
     /// Hits of one length at the sampling rate \[Hz\], from a force at the first place to a response at the second; `file` is
     /// what messages call them.
     pub fn new(file: impl Into<PathBuf>, [force_at, response_at]: [Place; 2], rate: f64, hits: Vec<Hit>) -> Self {
-        Self { file: file.into(), force_at, response_at, rate, hits, further_files: Vec::new(), notes: Vec::new() }
+        Self {
+            file: file.into(),
+            force_at,
+            response_at,
+            rate,
+            hits,
+            further_files: Vec::new(),
+            band: None,
+            cuts: Vec::new(),
+            notes: Vec::new(),
+        }
     }
 
     /// A hit by its number from 1, and by its file where there are several.
@@ -84,7 +86,7 @@ impl TimeHistory {
     /// # Errors
     /// As [`RecordFile::read`], and as [`TimeHistory::from_records`].
     pub fn read(measurement: &RecordedResponse) -> Result<Self, DataError> {
-        Self::from_records(RecordFile::read(&measurement.file)?, measurement)
+        Self::from_records(measurement.records()?, measurement)
     }
 
     /// Pairs the force and acceleration records of a file, in the order of the file, and puts unit and direction right.
@@ -93,7 +95,12 @@ impl TimeHistory {
     /// [`DataError::Channels`] where a channel is missing or swapped, where lengths or rates differ, where samples are
     /// uneven in time, or where a unit is unknown or contradicts the declared one.
     pub fn from_records(file: RecordFile, measurement: &RecordedResponse) -> Result<Self, DataError> {
-        let RecordFile { records, mut notes, .. } = channel_choice::hits(file, measurement)?;
+        Self::of_chosen(channel_choice::hits(Arc::new(file), measurement)?, measurement)
+    }
+
+    /// As [`TimeHistory::from_records`], of the records that belong to the measurement.
+    pub(super) fn of_chosen(file: RecordFile, measurement: &RecordedResponse) -> Result<Self, DataError> {
+        let RecordFile { records, mut notes, .. } = file;
         let (mut forces, mut accelerations) = (Vec::new(), Vec::new());
         let mut untold = Vec::new();
         let mut order: Vec<Ordered> = Vec::new();
@@ -155,14 +162,16 @@ impl TimeHistory {
             let problem = if f > 0 && a > 0 {
                 format!("{problem}; of several to a blow name the channels by force_channel and response_channel")
             } else {
-                problem
+                format!(
+                    "{problem}; where they stand in two files, name both by file = {{force = \"..\", response = \"..\"}}"
+                )
             };
             let problem = others.first().map_or(problem.clone(), |other| format!("{problem} ({other})"));
             return Err(misplaced_channel::alone(&order, problem, first));
         }
         misplaced_channel::check_order(&order)?;
         check_hits(forces.len(), || first)?;
-        let mut hits = Vec::with_capacity(forces.len());
+        let (mut hits, mut cuts) = (Vec::with_capacity(forces.len()), Vec::new());
         let mut grid: Option<(usize, f64)> = None;
         let mut times: Option<(Arc<[f64]>, f64)> = None;
         for (force, acceleration) in forces.into_iter().zip(accelerations) {
@@ -188,8 +197,10 @@ impl TimeHistory {
                 _ => grid = Some((length, rate)),
             }
             let at = force.at.clone();
-            let of_record = hit((force, acceleration), rate, measurement, &mut notes)?;
-            hits.extend(trigger::cut(of_record, rate, measurement.trigger, &at, &mut notes)?);
+            let of_record = recorded_hit((force, acceleration), rate, measurement, &mut notes)?;
+            let blows = trigger::cut(of_record, rate, measurement.trigger, &at, &mut notes)?;
+            hits.extend(blows.hits);
+            cuts.extend(blows.cut);
         }
         let rate = grid.map_or(0.0, |(_, rate)| rate);
         check_hits(hits.len(), || Location::whole(&measurement.file))?;
@@ -201,7 +212,7 @@ impl TimeHistory {
         }
         let RecordedResponse { force_at, response_at, .. } = *measurement;
         let file = measurement.file.clone();
-        Ok(Self { notes, ..Self::new(file, [force_at, response_at], rate, hits) })
+        Ok(Self { notes, cuts, band: measurement.band, ..Self::new(file, [force_at, response_at], rate, hits) })
     }
 }
 
@@ -209,115 +220,4 @@ impl TimeHistory {
 pub(super) fn check_hits(found: usize, at: impl FnOnce() -> Box<Location>) -> Result<(), DataError> {
     let (what, most, remedy) = ("hits of one pair of places", limits::HITS, "leave some out: their mean needs no more");
     if found <= most { Ok(()) } else { Err(DataError::TooMany { at: at(), found, what, most, remedy }) }
-}
-
-/// The two channels of a hit at a sampling rate \[Hz\].
-fn hit(
-    (force, acceleration): (Record, Record),
-    rate: f64,
-    measurement: &RecordedResponse,
-    notes: &mut Vec<String>,
-) -> Result<Hit, DataError> {
-    let directions = [acceleration.response.direction, force.response.direction];
-    let to_newtons = channels::force(&force, measurement, notes)?;
-    let Calibration { factor, motion } = channels::motion(&acceleration, measurement, directions, notes)?;
-    let real = |record: Record| match record.ordinate {
-        Samples::Real(values) => Ok(values),
-        Samples::Complex(_) => {
-            let problem = "a record against time must be real".into();
-            Err(DataError::Channels { at: record.at, problem })
-        }
-    };
-    let (force_record, motion_record) = (force.at.clone(), acceleration.at.clone());
-    let mut hit = Hit { force: real(force)?, acceleration: real(acceleration)? };
-    misplaced_channel::check_apart(&hit, motion_record.clone())?;
-    for (channel, factor) in [(&mut hit.force, to_newtons), (&mut hit.acceleration, factor)] {
-        if factor != 1.0 {
-            channel.iter_mut().for_each(|value| *value *= factor);
-        }
-    }
-    if let Some(tau) = measurement.window_decay {
-        undo_window(&mut hit, rate, tau, &motion_record)?;
-        notes.push(format!("{}: the exponential window of {} undone", motion_record.key, milliseconds(tau)));
-    }
-    for _ in 0..motion.derivatives() {
-        hit.acceleration = derivative(&hit.acceleration, rate);
-    }
-    if motion != Motion::Acceleration {
-        notes.push(format!("{}: {motion} differentiated to an acceleration, with its noise", motion_record.key));
-    }
-    // A hammer's channel rests at its offset nearly all the time, and the motion swings about its own.
-    let [pulse, ringing] =
-        [&hit.force, &hit.acceleration].map(|channel| effective_samples(channel, sampled_median(channel)));
-    // A blow is over before the piece has rung, and pushes once or twice: a longer "force" that swings more often than
-    // the response is none. Noise alone makes a weak force long, too, but the response then swings more often.
-    if pulse > ringing && ringing > 0.0 {
-        let pushes = hit.pushes();
-        std::mem::swap(&mut hit.force, &mut hit.acceleration);
-        let swapped = hit.pushes();
-        std::mem::swap(&mut hit.force, &mut hit.acceleration);
-        if swapped < pushes {
-            let step = 1.0 / rate;
-            let missed = if step > SHORT_BLOW {
-                format!(
-                    ", or at {rate:.1} Hz the blow fell between two samples, which stand {} apart: the sampling rate is too low, or \
-                     the record was decimated without a low pass; record at some {:.0} Hz or more",
-                    milliseconds(step),
-                    2.0 / SHORT_BLOW
-                )
-            } else {
-                String::new()
-            };
-            let problem = format!(
-                "the force lasts longer ({pulse:.0} samples) than the response ({ringing:.0}) and swings more often: the \
-                 channels are swapped, or this was no hammer{missed}"
-            );
-            return Err(DataError::Channels { at: force_record, problem });
-        }
-    }
-    Ok(hit)
-}
-
-/// Takes an exponential window $e^{-t/\tau}$ over both channels out of them: what was multiplied is divided.
-///
-/// # Errors
-/// [`DataError::Channels`] where hardly a digit of the record's end outlived it.
-fn undo_window(hit: &mut Hit, rate: f64, tau: f64, at: &Location) -> Result<(), DataError> {
-    let length = hit.force.len() as f64 / rate;
-    if length > MOST_FALL * tau {
-        let problem = format!(
-            "window_decay = {tau} s leaves e^-{:.1} of the record's end, after {length:.4} s: no digit of it is left; is it the time constant, \
-             in s?",
-            length / tau
-        );
-        return Err(DataError::Channels { at: Box::new(at.clone()), problem });
-    }
-    for channel in [&mut hit.force, &mut hit.acceleration] {
-        channel.iter_mut().enumerate().for_each(|(n, value)| *value *= (n as f64 / (rate * tau)).exp());
-    }
-    Ok(())
-}
-
-/// Time constants that a record may last: a converter of 24 bits has no digit below $e^{-16}$.
-const MOST_FALL: f64 = 14.0;
-
-/// Number of samples over which the energy of a signal about its `offset` is spread, $(\sum x^2)^2 / \sum x^4$.
-fn effective_samples(values: &[f64], offset: f64) -> f64 {
-    let [least, greatest] = extremes(values);
-    let peak = (greatest - offset).max(offset - least);
-    if peak <= 0.0 {
-        return 0.0;
-    }
-    // Scaled, so that no fourth power overflows; several sums side by side, since one would wait for itself.
-    let scale = 1.0 / peak;
-    let (mut squares, mut fourths) = ([0.0; LANES], [0.0; LANES]);
-    for chunk in values.chunks(LANES) {
-        for ((two, four), value) in squares.iter_mut().zip(&mut fourths).zip(chunk) {
-            let square = ((value - offset) * scale).powi(2);
-            *two += square;
-            *four += square * square;
-        }
-    }
-    let (squares, fourths) = (squares.iter().sum::<f64>(), fourths.iter().sum::<f64>());
-    if fourths > 0.0 { squares * squares / fourths } else { 0.0 }
 }

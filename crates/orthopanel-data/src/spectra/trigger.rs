@@ -3,8 +3,8 @@
 use orthopanel_model::Readable;
 
 use super::{
-    extremes::{median, peak, sampled_median},
-    time_history::Hit,
+    extremes::{extremes, median, peak, sampled_median},
+    hit::Hit,
 };
 use crate::{DataError, Location, Trigger};
 
@@ -25,6 +25,49 @@ const SOON: f64 = 0.6;
 /// Response at the end of a hit over its own at the beginning, rms, up to which blows apart are hits of their own.
 const DECAYED: f64 = 0.2;
 
+/// How a continuous record was cut, to be drawn.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Cut {
+    /// Length of the record \[s\].
+    pub duration: f64,
+    /// Least and greatest force \[N\] of each of [`Cut::STRETCHES`] equal stretches of it, or fewer of a short one.
+    pub force: Vec<[f64; 2]>,
+    /// The force that a blow passes \[N\].
+    pub level: f64,
+    /// From and to \[s\] of each hit.
+    pub hits: Vec<[f64; 2]>,
+    /// Where the force of a blow that was left out passes the level \[s\].
+    pub left_out: Vec<f64>,
+}
+
+impl Cut {
+    /// More than a picture has columns.
+    pub const STRETCHES: usize = 1600;
+
+    fn of(force: &[f64], rate: f64, level: f64) -> Self {
+        let stretch = force.len().div_ceil(Self::STRETCHES).max(1);
+        Self {
+            duration: force.len() as f64 / rate,
+            force: force.chunks(stretch).map(extremes).collect(),
+            level,
+            hits: Vec::new(),
+            left_out: Vec::new(),
+        }
+    }
+}
+
+/// Hits of a record, and how it was cut where it was.
+pub(super) struct Blows {
+    pub(super) hits: Vec<Hit>,
+    pub(super) cut: Option<Cut>,
+}
+
+impl Blows {
+    fn whole(hit: Hit) -> Self {
+        Self { hits: vec![hit], cut: None }
+    }
+}
+
 /// The hits in a record, cut by the force; the record as it is, where it holds one blow.
 ///
 /// What is not declared in `trigger` is found: the level from the highest blow and the noise, the length from the gaps between blows.
@@ -38,7 +81,7 @@ pub(super) fn cut(
     trigger: Option<Trigger>,
     at: &Location,
     notes: &mut Vec<String>,
-) -> Result<Vec<Hit>, DataError> {
+) -> Result<Blows, DataError> {
     let declared = trigger.unwrap_or_default();
     let offset = sampled_median(&hit.force);
     let (_, height) = peak(&hit.force, offset);
@@ -66,7 +109,7 @@ pub(super) fn cut(
         ));
     }
     if trigger.is_none() && starts.len() < 2 {
-        return Ok(vec![hit]);
+        return Ok(Blows::whole(hit));
     }
     let ends = || starts.iter().skip(1).copied().chain([hit.force.len()]);
     let gaps: Vec<usize> = starts.iter().zip(ends()).map(|(start, end)| end - start).collect();
@@ -89,9 +132,10 @@ pub(super) fn cut(
             Readable(usual / rate),
             Readable(length as f64 / rate)
         );
-        return if trigger.is_some() { refused(problem) } else { Ok(vec![hit]) };
+        return if trigger.is_some() { refused(problem) } else { Ok(Blows::whole(hit)) };
     }
     let (mut hits, mut left_out) = (Vec::new(), Vec::new());
+    let mut cut = Cut::of(&hit.force, rate, offset + height.signum() * level);
     for (number, ((&start, gap), earlier)) in (1..).zip(starts.iter().zip(&gaps).zip([usize::MAX].iter().chain(&gaps)))
     {
         let from = start.saturating_sub(before);
@@ -101,8 +145,12 @@ pub(super) fn cut(
         match whole {
             Some((force, acceleration)) if !soon => {
                 hits.push(Hit { force: force.to_vec(), acceleration: acceleration.to_vec() });
+                cut.hits.push([from as f64 / rate, (from + length) as f64 / rate]);
             }
-            _ => left_out.push(number.to_string()),
+            _ => {
+                left_out.push(number.to_string());
+                cut.left_out.push(start as f64 / rate);
+            }
         }
     }
     if hits.is_empty() {
@@ -110,10 +158,10 @@ pub(super) fn cut(
             "no blow has {:.4} s of the record to itself: declare a shorter trigger.length",
             Readable(length as f64 / rate)
         );
-        return if trigger.is_some() { refused(problem) } else { Ok(vec![hit]) };
+        return if trigger.is_some() { refused(problem) } else { Ok(Blows::whole(hit)) };
     }
     if trigger.is_none() && !hits.iter().all(|hit| has_decayed(&hit.acceleration, before)) {
-        return Ok(vec![hit]);
+        return Ok(Blows::whole(hit));
     }
     let seconds = |samples: usize| Readable((samples as f64 / rate * 1e6).round() / 1e6);
     notes.push(format!(
@@ -132,7 +180,7 @@ pub(super) fn cut(
             at.key
         ));
     }
-    Ok(hits)
+    Ok(Blows { hits, cut: Some(cut) })
 }
 
 /// Whether a response has mostly died away at its end; `before` samples stand before the blow.

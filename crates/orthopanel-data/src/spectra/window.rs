@@ -1,6 +1,6 @@
 //! Windows over the records of a hit.
 
-use super::{blow::Blow, blow_window::BlowWindow, time_history::Hit};
+use super::{blow::Blow, blow_window::BlowWindow, hit::Hit};
 
 /// What the records are multiplied by before the transform.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

@@ -59,29 +59,75 @@ pub(super) fn suspension(
     Ok(places)
 }
 
+/// What is known of a constant that is not held.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum KnownConstant {
+    /// `{start = ..}`: the search begins there.
+    Start(f64),
+    /// `{value = .., std = ..}`: Gaussian.
+    Prior {
+        /// Its mean \[Pa; Poisson's ratio 1\].
+        value: f64,
+        /// Its standard deviation, in the same unit.
+        std: f64,
+    },
+}
+
+/// `[constants]`: those held, and what is known of others.
+pub(super) struct Constants {
+    pub(super) held: BTreeMap<String, f64>,
+    pub(super) known: BTreeMap<String, KnownConstant>,
+}
+
 pub(super) fn constants(
     source: &Source,
-    given: BTreeMap<String, Spanned<f64>>,
-) -> Result<BTreeMap<String, f64>, DataError> {
-    let mut constants = BTreeMap::new();
-    for (name, number) in given {
-        let at = source.at(number.span(), format!("constants.{name}"));
+    given: BTreeMap<String, Spanned<syntax::Constant>>,
+) -> Result<Constants, DataError> {
+    let mut constants = Constants { held: BTreeMap::new(), known: BTreeMap::new() };
+    for (name, given) in given {
+        let at = || source.at(given.span(), format!("constants.{name}"));
         if !CONSTANTS.contains(&name.as_str()) {
             let remedy = format!("the constants are {}", CONSTANTS.join(", "));
-            return Err(DataError::UnknownName { at, name, remedy });
+            return Err(DataError::UnknownName { at: at(), name, remedy });
         }
-        let value = *number.get_ref();
-        let (low, high, unit) = match name.as_str() {
-            "nu_xy" => (0.0, POISSON_LIMIT, ""),
-            _ => (MODULUS.0, MODULUS.1, " Pa"),
-        };
-        if !(low..=high).contains(&value) {
+        let in_range = |value: f64| {
+            let (low, high, unit) = match name.as_str() {
+                "nu_xy" => (0.0, POISSON_LIMIT, ""),
+                _ => (MODULUS.0, MODULUS.1, " Pa"),
+            };
+            if (low..=high).contains(&value) {
+                return Ok(value);
+            }
             let range = format!("must lie between {low:e} and {high:e}{unit}");
-            return Err(DataError::OutOfRange { at, value, range });
+            Err(DataError::OutOfRange { at: at(), value, range })
+        };
+        match given.get_ref() {
+            syntax::Constant::Held(value) => {
+                let value = in_range(*value)?;
+                constants.held.insert(name, value);
+            }
+            syntax::Constant::Known(known) => {
+                let known = match (known.start, known.value, known.std) {
+                    (Some(start), None, None) => KnownConstant::Start(in_range(start)?),
+                    (None, Some(value), Some(std)) if std > 0.0 && std.is_finite() => {
+                        KnownConstant::Prior { value: in_range(value)?, std }
+                    }
+                    (None, Some(_), Some(value)) => {
+                        let range =
+                            "std must be finite and greater than zero; a number alone holds the constant".into();
+                        return Err(DataError::OutOfRange { at: at(), value, range });
+                    }
+                    _ => {
+                        let message = "wanted is a number (held), {start = ..}, or {value = .., std = ..}".into();
+                        return Err(DataError::Syntax { at: at(), message });
+                    }
+                };
+                constants.known.insert(name, known);
+            }
         }
-        constants.insert(name, value);
     }
-    if let (Some(e_x), Some(e_y), Some(&nu_xy)) = (constants.get("e_x"), constants.get("e_y"), constants.get("nu_xy")) {
+    let held = |name: &str| constants.held.get(name).copied();
+    if let (Some(e_x), Some(e_y), Some(nu_xy)) = (held("e_x"), held("e_y"), held("nu_xy")) {
         let limit = (e_x / e_y).sqrt();
         if nu_xy >= limit {
             let range = format!("must lie below {limit:.4}, the root of e_x/e_y, or the stiffness is indefinite");

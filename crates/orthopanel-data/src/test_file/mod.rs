@@ -15,11 +15,11 @@ use std::{
 use orthopanel_model::{Boundary, Place, StructureKind};
 
 use crate::{DataError, Location, Position, limits};
-pub use declared::DeclaredEffect;
+pub use declared::{DeclaredEffect, KnownConstant};
 pub use measurements::{
     ChannelName, Direction, Measurement, MeasurementData, NaturalFrequencies, RecordedResponse, Trigger,
 };
-pub use pieces::NamedPiece;
+pub use pieces::{NamedPiece, SizeDoubt};
 use source::Source;
 
 /// One impact test, read and checked: every number in it is finite and in range, every place lies on its piece, and
@@ -37,6 +37,8 @@ pub struct ImpactTest {
     pub suspension: Vec<Place>,
     /// Constants held at these values, by name \[Pa; Poisson's ratio 1\].
     pub constants: BTreeMap<String, f64>,
+    /// What is known beforehand of constants that are not held, by name.
+    pub known_constants: BTreeMap<String, KnownConstant>,
     /// Effects known beforehand, in the order of the file.
     pub effects: Vec<DeclaredEffect>,
     /// The measurements, in the order of the file; at least one.
@@ -69,12 +71,7 @@ impl ImpactTest {
 
     /// Every file that the test names, as it is to be opened.
     pub fn files(&self) -> impl Iterator<Item = &Path> {
-        self.measurements.iter().filter_map(|measurement| match &measurement.data {
-            MeasurementData::NaturalFrequencies(_) => None,
-            MeasurementData::TimeHistory(recorded) | MeasurementData::Accelerance(recorded) => {
-                Some(recorded.file.as_path())
-            }
-        })
+        self.measurements.iter().filter_map(|measurement| measurement.data.recorded()).flat_map(RecordedResponse::files)
     }
 
     /// Reads the text of a test file; `path` names it in messages, and files that it names are looked for beside it.
@@ -88,12 +85,14 @@ impl ImpactTest {
         let source = Source::new(path.as_ref(), text);
         let file: syntax::TestFile = toml::from_str(text).map_err(|error| source.syntax(&error))?;
         let pieces = pieces::pieces(&source, file.piece)?;
+        let declared::Constants { held, known } = declared::constants(&source, file.constants)?;
         Ok(Self {
             structure: file.structure.map(|name| declared::structure(&source, &name)).transpose()?,
             suspension: declared::suspension(&source, file.suspension, &pieces)?,
-            constants: declared::constants(&source, file.constants)?,
+            constants: held,
+            known_constants: known,
             effects: declared::effects(&source, file.effect)?,
-            measurements: measurements::measurements(&source, file.measurement, &pieces)?,
+            measurements: measurements::measurements(&source, (file.measurement, file.band), &pieces)?,
             boundary: file.boundary,
             pieces,
         })

@@ -15,8 +15,30 @@ pub struct NamedPiece {
     pub name: String,
     /// Its sizes and mass per area.
     pub piece: Piece,
+    /// Standard deviations of its sizes and mass, where declared.
+    pub doubt: SizeDoubt,
     /// `own_constants`: names of the constants that this piece has of its own, each once; the pieces share all others.
     pub own_constants: Vec<String>,
+}
+
+/// Standard deviations of a piece's sizes and mass; zero where nothing is declared.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct SizeDoubt {
+    /// Of the length \[m\].
+    pub length: f64,
+    /// Of the width \[m\].
+    pub width: f64,
+    /// Of the thickness \[m\].
+    pub thickness: f64,
+    /// Of the mass per area \[kg/m²\].
+    pub mass_per_area: f64,
+}
+
+impl SizeDoubt {
+    /// Whether nothing is declared.
+    pub fn is_none(&self) -> bool {
+        *self == Self::default()
+    }
 }
 
 pub(super) fn pieces(source: &Source, pieces: Option<syntax::Pieces>) -> Result<Vec<NamedPiece>, DataError> {
@@ -77,8 +99,29 @@ fn one(source: &Source, piece: syntax::Piece, key: &str, default_name: Option<&s
         let at = || source.at(span, format!("{key}.name"));
         source.at_most((characters, "characters"), limits::NAME, at, "give a shorter name")?;
     }
+    let doubt = doubt(source, (&piece, &sizes), key)?;
     let own_constants = own_constants(source, piece.own_constants, key)?;
-    Ok(NamedPiece { name, piece: sizes, own_constants })
+    Ok(NamedPiece { name, piece: sizes, doubt, own_constants })
+}
+
+/// The standard deviations that are declared: above zero, and less than what they are of.
+fn doubt(source: &Source, (given, sizes): (&syntax::Piece, &Piece), key: &str) -> Result<SizeDoubt, DataError> {
+    let std = |number: &Option<Spanned<f64>>, size: f64, name: &str, unit: &str| {
+        let Some(number) = number else { return Ok(0.0) };
+        let key = format!("{key}.{name}_std");
+        let value = source.positive(number, &key, unit)?;
+        if value < size {
+            return Ok(value);
+        }
+        let range = format!("must be less than {name} itself, {size} {unit}: it is its standard deviation");
+        Err(DataError::OutOfRange { at: source.at(number.span(), key), value, range })
+    };
+    Ok(SizeDoubt {
+        length: std(&given.length_std, sizes.length, "length", "m")?,
+        width: std(&given.width_std, sizes.width, "width", "m")?,
+        thickness: std(&given.thickness_std, sizes.thickness, "thickness", "m")?,
+        mass_per_area: std(&given.mass_per_area_std, sizes.mass_per_area, "mass_per_area", "kg/m2")?,
+    })
 }
 
 /// Where the size stands that is refused.

@@ -68,6 +68,17 @@ impl<'a> Source<'a> {
         Err(DataError::OutOfRange { at: self.at(number.span(), key), value, range })
     }
 
+    /// Frequencies from and to \[Hz\].
+    pub(super) fn band(&self, band: &Spanned<[f64; 2]>, key: &str) -> Result<[f64; 2], DataError> {
+        let [from, to] = *band.get_ref();
+        if from >= 0.0 && from < to && to.is_finite() {
+            return Ok([from, to]);
+        }
+        let range = "a band is [from, to] in Hz, rising, from zero or above".into();
+        let value = if from >= 0.0 { to } else { from };
+        Err(DataError::OutOfRange { at: self.at(band.span(), key), value, range })
+    }
+
     /// A number that must be finite.
     pub(super) fn finite(&self, number: &Spanned<f64>, key: &str) -> Result<f64, DataError> {
         let value = *number.get_ref();

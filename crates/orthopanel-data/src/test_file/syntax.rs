@@ -16,12 +16,13 @@ use toml::Spanned;
 #[serde(deny_unknown_fields)]
 pub(super) struct TestFile {
     pub(super) structure: Option<Spanned<String>>,
+    pub(super) band: Option<Spanned<[f64; 2]>>,
     pub(super) piece: Option<Pieces>,
     #[serde(default)]
     pub(super) boundary: Boundary,
     pub(super) suspension: Option<Suspension>,
     #[serde(default)]
-    pub(super) constants: BTreeMap<String, Spanned<f64>>,
+    pub(super) constants: BTreeMap<String, Spanned<Constant>>,
     #[serde(default)]
     pub(super) effect: Vec<Spanned<BTreeMap<String, Spanned<toml::Value>>>>,
     #[serde(default)]
@@ -43,6 +44,10 @@ pub(super) struct Piece {
     pub(super) thickness: Option<Spanned<f64>>,
     pub(super) mass_per_area: Option<Spanned<f64>>,
     pub(super) weighings: Option<Spanned<Vec<[Spanned<f64>; 3]>>>,
+    pub(super) length_std: Option<Spanned<f64>>,
+    pub(super) width_std: Option<Spanned<f64>>,
+    pub(super) thickness_std: Option<Spanned<f64>>,
+    pub(super) mass_per_area_std: Option<Spanned<f64>>,
     #[serde(default)]
     pub(super) own_constants: Vec<Spanned<String>>,
 }
@@ -74,6 +79,10 @@ pub(super) struct Measurement {
     pub(super) force_channel: Option<Spanned<toml::Value>>,
     pub(super) response_channel: Option<Spanned<toml::Value>>,
     pub(super) trigger: Option<Trigger>,
+    pub(super) columns: Option<Spanned<BTreeMap<String, Spanned<toml::Value>>>>,
+    pub(super) places: Option<Spanned<String>>,
+    pub(super) origin: Option<Spanned<[f64; 2]>>,
+    pub(super) band: Option<Spanned<[f64; 2]>>,
     pub(super) sampling_rate: Option<Spanned<f64>>,
     pub(super) window_decay: Option<Spanned<f64>>,
     pub(super) direction: Option<Spanned<f64>>,
@@ -88,13 +97,27 @@ pub(super) struct Trigger {
     pub(super) length: Option<Spanned<f64>>,
 }
 
+/// A number at which a constant is held, or what is known of it beforehand.
+pub(super) enum Constant {
+    Held(f64),
+    Known(KnownConstant),
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct KnownConstant {
+    pub(super) start: Option<f64>,
+    pub(super) value: Option<f64>,
+    pub(super) std: Option<f64>,
+}
+
 /// One number for all modes, or one a mode.
 pub(super) enum OneOrEach {
     One(f64),
     Each(Vec<Spanned<f64>>),
 }
 
-// The two enums below are told apart by the shape of the value, through visitors: serde's `untagged` would buffer the
+// The enums below are told apart by the shape of the value, through visitors: serde's `untagged` would buffer the
 // value, lose its spans, and answer a wrong key with "data did not match any variant".
 
 impl<'de> Deserialize<'de> for Pieces {
@@ -116,6 +139,36 @@ impl<'de> Deserialize<'de> for Pieces {
             }
         }
         deserializer.deserialize_any(PiecesVisitor)
+    }
+}
+
+impl<'de> Deserialize<'de> for Constant {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct ConstantVisitor;
+        impl<'de> Visitor<'de> for ConstantVisitor {
+            type Value = Constant;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a number, {start = ..} or {value = .., std = ..}")
+            }
+
+            fn visit_f64<E>(self, value: f64) -> Result<Constant, E> {
+                Ok(Constant::Held(value))
+            }
+
+            fn visit_i64<E>(self, value: i64) -> Result<Constant, E> {
+                Ok(Constant::Held(value as f64))
+            }
+
+            fn visit_u64<E>(self, value: u64) -> Result<Constant, E> {
+                Ok(Constant::Held(value as f64))
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<Constant, A::Error> {
+                KnownConstant::deserialize(MapAccessDeserializer::new(map)).map(Constant::Known)
+            }
+        }
+        deserializer.deserialize_any(ConstantVisitor)
     }
 }
 

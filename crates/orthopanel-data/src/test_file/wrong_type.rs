@@ -3,12 +3,16 @@
 use std::collections::BTreeMap;
 
 /// What each key wants.
-const WANTED: [(&str, &str); 38] = [
+const WANTED: [(&str, &str); 48] = [
     ("length", "a number in m"),
     ("width", "a number in m"),
     ("thickness", "a number in m"),
     ("mass_per_area", "a number in kg/m2"),
     ("weighings", "a list of [length, width, mass] in m, m, kg"),
+    ("length_std", "a number in m, the standard deviation of length"),
+    ("width_std", "a number in m, the standard deviation of width"),
+    ("thickness_std", "a number in m, the standard deviation of thickness"),
+    ("mass_per_area_std", "a number in kg/m2, the standard deviation of mass_per_area"),
     ("own_constants", "a list of names, such as [\"g_zx\"]"),
     ("name", "text in quotes"),
     ("piece", "a table [piece], or in a measurement a piece's name in quotes"),
@@ -28,7 +32,7 @@ const WANTED: [(&str, &str); 38] = [
     ("resolution", "one number [Hz], or a list with one number a mode"),
     ("scatter", "one number [Hz], or a list with one number a mode"),
     ("shape", "a list with one [nodes_x, nodes_y] a mode, whole numbers from 0"),
-    ("file", "a file's name in quotes, or a list of names"),
+    ("file", "a file's name in quotes, a list of names, or {force = .., response = ..}"),
     ("unit", "a unit in quotes, such as \"m/s2\" or \"g\""),
     ("response_unit", "a unit in quotes, such as \"m/s2\", \"g\" or \"mm/s\""),
     ("force_unit", "a unit in quotes, such as \"N\" or \"lbf\""),
@@ -36,6 +40,12 @@ const WANTED: [(&str, &str); 38] = [
     ("response_sensitivity", "a number in V a response_unit"),
     ("force_sensitivity", "a number in V a force_unit"),
     ("trigger", "a table {level = .., before = .., length = ..} in N, s and s"),
+    ("columns", "a table such as {time = \"Time (s)\", force = 2, response = 3}"),
+    ("places", "a file's name in quotes, with the columns node,x,y in m"),
+    ("origin", "a place [x, y] in m: the piece's centre as the file of places has it"),
+    ("band", "two frequencies [from, to] in Hz"),
+    ("start", "a number (Pa; a Poisson's ratio has no unit)"),
+    ("std", "a number (Pa; a Poisson's ratio has no unit)"),
     ("level", "a number in N"),
     ("before", "a number in s"),
     ("sampling_rate", "a number in Hz"),
@@ -55,7 +65,9 @@ pub(super) fn in_plain_words(text: &str, start: usize, message: &str) -> Option<
     let name = name.split('[').next().unwrap_or_default();
     let wanted = match name {
         "force_at" | "response_at" => "a place [x, y] in m from the piece's centre",
-        _ if key.starts_with("constants.") => "a number (Pa; a Poisson's ratio has no unit)",
+        _ if key.starts_with("constants.") => {
+            "a number (Pa; a Poisson's ratio has no unit), {start = ..} or {value = .., std = ..}"
+        }
         _ => WANTED.iter().find(|(known, _)| *known == name).map_or(expected, |(_, wanted)| wanted),
     };
     let value = found.split_once('`').and_then(|(_, value)| value.strip_suffix('`'));

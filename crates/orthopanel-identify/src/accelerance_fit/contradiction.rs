@@ -37,7 +37,8 @@ pub(super) fn contradiction(
     let name = record_name(test, piece, record);
     let apart = record_apart(problem, parameters, lines)?;
     let fits_at = apart.as_ref().and_then(|apart| apart.fits_at());
-    let refused = IdentifyError::RecordContradiction { record: name.clone(), percent: worst_percent, fits_at };
+    let factor = apart.as_ref().and_then(|apart| apart.factor());
+    let refused = IdentifyError::RecordContradiction { record: name.clone(), percent: worst_percent, fits_at, factor };
     if apart.as_ref().is_some_and(|apart| apart.is_misplaced()) {
         return Err(refused);
     }

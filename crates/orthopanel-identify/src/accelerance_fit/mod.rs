@@ -28,6 +28,7 @@ mod smeared;
 mod smooth_part;
 mod start;
 mod synthesis;
+mod undeclared_window;
 mod weighted_rows;
 mod whole_covariance;
 mod wide_scan;
@@ -125,7 +126,7 @@ fn by_poles(test: &ImpactTest, settings: Settings, start: Start) -> Result<Ident
         }
     }
     // What cannot be fitted line by line is judged by its resonances, and refused there if need be.
-    outcome::from_poles(test, start, &problem, &fallback)
+    outcome::from_poles(test, start, &mut problem, &fallback)
 }
 
 /// Constants scanned over records made wide, sharpened from there.

@@ -55,7 +55,8 @@ pub(super) fn beside_other_law(
     }
 }
 
-fn is_clearly_less(other: f64, own: f64) -> bool {
+/// Whether one misfit per datum is so much less than another that it is another model's.
+pub(super) fn is_clearly_less(other: f64, own: f64) -> bool {
     let (near, part) = NEAR_NOISE;
     other < HALF * own || (other < near && other < part * own)
 }

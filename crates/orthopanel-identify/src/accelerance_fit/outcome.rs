@@ -12,6 +12,7 @@ use super::contradiction::contradiction;
 use super::misfit::{noise_percent, record_misfit_percent};
 use super::problem::AcceleranceProblem;
 use super::start::Start;
+use super::undeclared_window;
 use super::whole_covariance::Weighed;
 use crate::free_constants::Rest;
 use crate::frequency_fit::identified_constants;
@@ -139,7 +140,7 @@ struct Found {
 pub(super) fn from_poles(
     test: &ImpactTest,
     start: Start,
-    problem: &AcceleranceProblem,
+    problem: &mut AcceleranceProblem,
     parameters: &[f64],
 ) -> Result<Identification, IdentifyError> {
     let start = match start.recorded.structure.shown() {
@@ -184,7 +185,7 @@ fn why_from_poles(start: &Start, problem: &AcceleranceProblem, lines: &[Vec<Comp
 fn report(
     test: &ImpactTest,
     start: &Start,
-    problem: &AcceleranceProblem,
+    problem: &mut AcceleranceProblem,
     found: Found,
     mut notes: Vec<String>,
 ) -> Result<Identification, IdentifyError> {
@@ -204,6 +205,7 @@ fn report(
     let (fits, accelerance_rms_percent) = accelerance_fits(problem, lines);
     let pieces = piece_fits(test, start, problem, &parameters, &log_std)?;
     notes.extend(pieces.iter().filter_map(without_resonance));
+    notes.extend(undeclared_window::asked(start, problem, &parameters, &pieces)?);
     let errors = pieces.iter().flat_map(|piece| &piece.modes).map(|mode| mode.error_percent().powi(2));
     // The sum of nothing is minus zero.
     let errors = errors.fold(0.0, std::ops::Add::add);

@@ -6,6 +6,7 @@ use orthopanel_model::{ModelError, Place, Readable};
 use super::misfit::{median, record_misfit_percent, scaled_misfit_percent};
 use super::problem::{AcceleranceProblem, PieceProblem, model_lines};
 use super::records::PlaceRecord;
+use crate::error::one_times;
 
 /// So many records at least: of two that contradict each other neither is the odd one.
 const LEAST_RECORDS: usize = 3;
@@ -31,6 +32,8 @@ pub(super) struct Apart {
     /// The greatest of the others \[%\].
     others: f64,
     fits: Option<OtherPlace>,
+    /// The factor with which it fits as the others do.
+    factor: Option<f64>,
 }
 
 /// The place at which a record fits as the others do.
@@ -58,15 +61,21 @@ impl Apart {
         self.fits.filter(|place| !place.factor_as_good).map(|place| (place.key, place.x))
     }
 
+    /// The factor with which it fits, where that is no matter of its place.
+    pub fn factor(&self) -> Option<f64> {
+        self.factor.filter(|_| !self.is_misplaced())
+    }
+
     /// A sentence for a record that is kept.
     pub fn note(&self, record: &str) -> String {
         let Self { percent, others, .. } = self;
         let place = self.fits_at().map_or(String::new(), |(key, x)| format!(" (it fits with {key} x = {x:.3} m)"));
         format!(
             "{record}: half of its lines miss the model by more than {:.0} %, those of the other records by no more \
-             than {:.1} %: check its places{place}, the sensor's direction, unit and gain; orthopanel trace parts them",
+             than {:.1} %: check its places{place}, the sensor's direction, unit and gain{}; orthopanel trace parts them",
             Readable(*percent),
-            Readable(*others)
+            Readable(*others),
+            one_times(self.factor())
         )
     }
 }
@@ -94,8 +103,10 @@ pub(super) fn record_apart(
     }
     let (values, log_zetas) = problem.of_piece(*piece, parameters);
     let trial = Trial { piece: &problem.pieces[*piece], record: own.thinned(LINES), at: (&values, log_zetas), problem };
-    let fits = trial.best_place()?.filter(|place| place.percent < AGREEING * percent);
-    Ok(Some(Apart { percent, others, fits }))
+    let (factor, factor_leaves) = trial.factor()?;
+    let fits = trial.best_place(factor_leaves)?.filter(|place| place.percent < AGREEING * percent);
+    let factor = (factor_leaves < AGREEING * percent && factor != 0.0).then_some(1.0 / factor);
+    Ok(Some(Apart { percent, others, fits, factor }))
 }
 
 /// A record tried at other places, the constants as the others have them.
@@ -112,17 +123,23 @@ impl Trial<'_> {
         Ok(models.iter().map(|model| model_lines(&self.record, model)).collect())
     }
 
-    /// The best of places for the force or for the response; where both fit alike, the one nearer to what is written.
-    fn best_place(&self) -> Result<Option<OtherPlace>, ModelError> {
-        let half = 0.5 * self.piece.sizes.length;
+    /// The record over its model, and the median misfit that is left with that factor \[%\].
+    fn factor(&self) -> Result<(f64, f64), ModelError> {
         let (force, response) = (self.record.force_at, self.record.response_at);
-        let factor_leaves = match self.models(&[(force, response)])?.first() {
+        Ok(match self.models(&[(force, response)])?.first() {
             Some(model) => {
                 let factor = median(self.record.value.iter().zip(model).map(|(measured, model)| (measured / model).re));
-                scaled_misfit_percent(&self.record, model, factor)
+                (factor, scaled_misfit_percent(&self.record, model, factor))
             }
-            None => f64::INFINITY,
-        };
+            None => (0.0, f64::INFINITY),
+        })
+    }
+
+    /// The best of places for the force or for the response; where both fit alike, the one nearer to what is written. `factor_leaves`
+    /// is what a factor leaves in place of it \[%\].
+    fn best_place(&self, factor_leaves: f64) -> Result<Option<OtherPlace>, ModelError> {
+        let half = 0.5 * self.piece.sizes.length;
+        let (force, response) = (self.record.force_at, self.record.response_at);
         let mut best: Option<OtherPlace> = None;
         for (key, written) in [("force_at", force), ("response_at", response)] {
             let pair = |x: f64| {

@@ -4,10 +4,11 @@ use orthopanel_data::DataError;
 use orthopanel_model::{ModelError, Readable};
 use thiserror::Error;
 
-pub(crate) use self::wording::spaced;
 use self::wording::{all_times, known, much_noise, other_place, untaken};
+pub(crate) use self::wording::{one_times, spaced};
 use crate::least_squares::Stuck;
 
+mod known_factor;
 mod wording;
 
 /// Sampling rate over the band of an analyser, whose anti-alias filter needs the rest.
@@ -336,8 +337,8 @@ pub enum IdentifyError {
     /// One record that contradicts the others.
     #[error(
         "{record}: half of its lines miss the model of all records by more than {:.0} %: it contradicts the \
-         others{}; check its file, force_at and response_at, the sensor's direction, unit and gain",
-        Readable(*.percent), other_place(.fits_at)
+         others{}{}; check its file, force_at and response_at, the sensor's direction, unit and gain",
+        Readable(*.percent), other_place(.fits_at), one_times(*.factor)
     )]
     RecordContradiction {
         /// Its files, piece and places.
@@ -346,6 +347,8 @@ pub enum IdentifyError {
         percent: f64,
         /// Where it would fit as the others do: `force_at` or `response_at`, and x \[m\]; `None` where no place explains it.
         fits_at: Option<(&'static str, f64)>,
+        /// The factor with which it fits as the others do; `None` where there is none.
+        factor: Option<f64>,
     },
     /// Weights under which eq. 23 measures nothing.
     #[error(
@@ -395,6 +398,17 @@ impl IdentifyError {
     /// Whether the record that is to blame is known, so that no other constants need be looked for.
     pub(crate) fn knows_the_place(&self) -> bool {
         matches!(self, Self::RecordContradiction { fits_at: Some(_), .. })
+    }
+
+    /// Whether one factor on all records explains the refusal, and is by its value that of a unit or a sign: nothing else need be
+    /// looked for then.
+    pub fn is_of_known_factor(&self) -> bool {
+        match self {
+            Self::Contradiction { factor, .. } | Self::PlateContradiction { factor, .. } => {
+                factor.is_some_and(|factor| known_factor::known_cause(factor, true).is_some())
+            }
+            _ => false,
+        }
     }
 
     /// Whether another law of damping may explain what was refused.

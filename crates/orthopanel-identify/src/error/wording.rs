@@ -2,6 +2,8 @@
 
 use orthopanel_model::Readable;
 
+use super::known_factor::cause_of;
+
 /// Noise of the median line \[%\] beside which few resonances are no wonder.
 const MUCH_NOISE: f64 = 30.0;
 
@@ -16,14 +18,14 @@ pub(super) fn much_noise(percent: Option<f64>) -> String {
 
 pub(super) fn all_times(factor: Option<f64>) -> String {
     factor.map_or(String::new(), |factor| {
-        let cause = if (factor + 1.0).abs() < 0.1 {
-            "the sensor turned round: direction = -1 in each [[measurement]]"
-        } else if (factor / 9.806_65 - 1.0).abs() < 0.1 {
-            "an acceleration in g that the file calls m/s2: put its unit right there, in CSV the column acceleration_g"
-        } else {
-            "a gain, a unit, or the mass of the piece"
-        };
-        format!("times {:.3} all of them fit ({cause}); ", Readable(factor))
+        format!("times {:.3} all of them fit ({}); ", Readable(factor), cause_of(factor, true))
+    })
+}
+
+/// What is said of one record that a factor mends.
+pub(crate) fn one_times(factor: Option<f64>) -> String {
+    factor.map_or(String::new(), |factor| {
+        format!("; times {:.3} it fits ({})", Readable(factor), cause_of(factor, false))
     })
 }
 

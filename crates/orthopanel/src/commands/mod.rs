@@ -3,7 +3,9 @@
 pub mod accelerance;
 pub mod export;
 pub mod identify;
+pub mod init;
 pub mod modes;
+pub mod records;
 pub mod report;
 pub mod run;
 pub mod simulate;
@@ -26,6 +28,8 @@ pub struct Arguments {
 
 #[derive(Subcommand)]
 enum Command {
+    Records(records::Arguments),
+    Init(init::Arguments),
     Run(run::Arguments),
     Identify(identify::Arguments),
     Trace(trace::Arguments),
@@ -38,6 +42,8 @@ enum Command {
 
 pub fn execute(arguments: Arguments) -> Result<(), CommandError> {
     match arguments.command {
+        Command::Records(arguments) => records::execute(&arguments),
+        Command::Init(arguments) => init::execute(&arguments),
         Command::Run(arguments) => run::execute(&arguments),
         Command::Identify(arguments) => identify::execute(&arguments),
         Command::Trace(arguments) => trace::execute(&arguments),

@@ -173,7 +173,7 @@ fn names(test: &ImpactTest) -> Vec<String> {
         ];
         let pairs = test.files().count().max(1);
         let numbers = (0..pairs).map(|index| numbered(index, pairs)).chain([numbered(0, 1)]);
-        let of_pairs = ["accelerance", "time-history"];
+        let of_pairs = ["accelerance", "time-history", "cut"];
         let pictures: Vec<_> =
             numbers.flat_map(|number| of_pairs.map(|name| format!("{name}{suffix}{number}.svg"))).collect();
         named.into_iter().chain(pictures)
@@ -254,7 +254,9 @@ fn add_pictures(files: &mut Outputs, suffix: &str, shown: &PieceEvidence) {
             files.add_inside(&format!("{name}{suffix}.svg"), picture.as_str());
         }
     }
-    for (name, pictures) in [("accelerance", &shown.accelerances), ("time-history", &shown.time_histories)] {
+    let of_pairs =
+        [("accelerance", &shown.accelerances), ("time-history", &shown.time_histories), ("cut", &shown.cuts)];
+    for (name, pictures) in of_pairs {
         for (index, picture) in pictures.iter().enumerate() {
             files.add_inside(&format!("{name}{suffix}{}.svg", numbered(index, pictures.len())), picture.as_str());
         }

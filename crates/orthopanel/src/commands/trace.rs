@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use orthopanel_data::ImpactTest;
 
+use crate::contradicted::refuse_known_factor;
 use crate::error::CommandError;
 use crate::identified::suffixes;
 use crate::outputs::{Inputs, Outputs};
@@ -47,6 +48,7 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
     let Arguments { test: path, output, by, json } = arguments;
     let (inputs, test) = Inputs::reading_test(path)?;
     let outputs = model_file::planned_each(Outputs::of(inputs)?, output.as_deref(), &test)?;
+    refuse_known_factor(&test, path)?;
     let traced =
         Traced::from_test(&test, *by).map_err(|source| CommandError::Identify { path: path.clone(), source })?;
     let written = match output {

@@ -7,7 +7,7 @@ mod residual;
 
 use std::path::Path;
 
-use orthopanel_data::{Accelerance, Estimation, HitVerdict, ImpactTest, MeasurementData, TimeHistory};
+use orthopanel_data::{Accelerance, Estimation, HitVerdict, ImpactTest, TimeHistory};
 use orthopanel_identify::{AcceleranceFit, ForceBetweenSamples, PieceFit};
 use orthopanel_model::{PanelModel, Place};
 
@@ -38,6 +38,8 @@ pub struct PieceEvidence {
     pub frequencies: Option<String>,
     /// Measured and calculated, one a pair of places; without records that of the model alone.
     pub accelerances: Vec<String>,
+    /// How each continuous record was cut into hits.
+    pub cuts: Vec<String>,
     /// A hit of each pair with the accelerations measured and calculated under it.
     pub time_histories: Vec<String>,
     /// One a measured accelerance.
@@ -78,6 +80,7 @@ impl Evidence {
             };
             let accelerance = history.accelerance(estimation)?;
             evidence.records.push(RecordRow::of_hits(&history, &accelerance));
+            evidence.add_cuts(&test.pieces[piece].name, &history)?;
             let places = (history.force_at, history.response_at);
             let mut own = found.accelerances.iter().filter(|pair| pair.piece == piece);
             let pair = own.find(|pair| (pair.force_at, pair.response_at) == places);
@@ -116,6 +119,7 @@ impl Evidence {
             let Some(evidence) = pieces.get_mut(piece) else { continue };
             let accelerance = history.accelerance(estimation)?;
             evidence.records.push(RecordRow::of_hits(&history, &accelerance));
+            evidence.add_cuts(&test.pieces[piece].name, &history)?;
             let places = (history.force_at, history.response_at);
             let mut own = base.iter().filter(|pair| pair.piece == piece);
             if let Some(base) = own.find(|pair| (pair.force_at, pair.response_at) == places) {
@@ -138,13 +142,10 @@ impl Evidence {
         mut pieces: Vec<PieceEvidence>,
         mut accelerances: Vec<(usize, Accelerance)>,
     ) -> Result<Self, CommandError> {
-        for measurement in &test.measurements {
-            if let (MeasurementData::Accelerance(recorded), Some(evidence)) =
-                (&measurement.data, pieces.get_mut(measurement.piece))
-            {
-                let accelerance = Accelerance::read(recorded)?;
+        for (piece, accelerance) in test.recorded_accelerances()? {
+            if let Some(evidence) = pieces.get_mut(piece) {
                 evidence.records.push(RecordRow::of_accelerance(&accelerance));
-                accelerances.push((measurement.piece, accelerance));
+                accelerances.push((piece, accelerance));
             }
         }
         for (index, (evidence, named)) in pieces.iter_mut().zip(&test.pieces).enumerate() {
@@ -184,6 +185,13 @@ impl PieceEvidence {
             evidence.accelerances.push(calculated(fit, model, [force, response], path)?);
         }
         Ok(evidence)
+    }
+
+    fn add_cuts(&mut self, name: &str, history: &TimeHistory) -> Result<(), CommandError> {
+        for cut in &history.cuts {
+            self.cuts.push(pictures::cut(name, cut)?);
+        }
+        Ok(())
     }
 
     /// The picture and the residual of each pair of places.

@@ -147,7 +147,12 @@ mod tests {
     fn names_of_files_are_short_and_differ_by_more_than_capitals() {
         let piece = Piece { length: 0.8, width: 0.1, thickness: 0.03, mass_per_area: 6.88 };
         let pieces = |names: &[&str]| -> Vec<NamedPiece> {
-            let named = |name: &&str| NamedPiece { name: (*name).to_owned(), piece, own_constants: vec![] };
+            let named = |name: &&str| NamedPiece {
+                name: (*name).to_owned(),
+                piece,
+                doubt: Default::default(),
+                own_constants: vec![],
+            };
             names.iter().map(named).collect()
         };
         assert_eq!(suffix("a", &pieces(&["a"])), "");

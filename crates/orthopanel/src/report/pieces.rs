@@ -53,6 +53,7 @@ impl PieceSection {
             false => MEASURED_CAPTION,
         };
         let galleries = [
+            Gallery::new("Continuous records", CUT_CAPTION, &shown.cuts),
             Gallery::new("Accelerances", accelerance_caption, &shown.accelerances),
             Gallery::new("Time histories", HIT_CAPTION, &shown.time_histories),
         ];
@@ -82,7 +83,13 @@ impl PieceSection {
             coherence: shown.coherence.as_ref().map(|picture| Figure::new(picture, COHERENCE_CAPTION)),
             modes: None,
             frequencies: None,
-            galleries: Gallery::new("Accelerances", MEASURED_CAPTION, &shown.accelerances).into_iter().collect(),
+            galleries: [
+                Gallery::new("Continuous records", CUT_CAPTION, &shown.cuts),
+                Gallery::new("Accelerances", MEASURED_CAPTION, &shown.accelerances),
+            ]
+            .into_iter()
+            .flatten()
+            .collect(),
             residual: residual(&shown.residuals, &shown.levels)?,
         })
     }
@@ -90,6 +97,8 @@ impl PieceSection {
 
 const BASE: &str = ": the base model, before effects";
 const MEASURED_CAPTION: &str = "Measured in orange, calculated in blue.";
+const CUT_CAPTION: &str =
+    "The force of the whole record, the level that a blow passes, and the stretch that each hit was cut to.";
 const HIT_CAPTION: &str =
     "A measured hit, the accelerations measured and calculated under it, and their difference over the whole record.";
 const COHERENCE_CAPTION: &str = "How much of the acceleration answers the force: 1 where all of it does; it falls at valleys and where the hammer has no force.";

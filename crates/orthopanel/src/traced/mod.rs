@@ -7,7 +7,7 @@ mod tables;
 
 use std::path::Path;
 
-use orthopanel_data::ImpactTest;
+use orthopanel_data::{ImpactTest, KnownConstant};
 use orthopanel_identify::{
     AcceleranceFit, IdentifyError, Progress, Removed, Settings, Tracing, Verdict, trace_by_lines, trace_with,
 };
@@ -60,6 +60,11 @@ impl Traced {
             panel.provenance.insert("damping".into(), "assumed, not measured".into());
         }
         notes::say("", &tracing.notes);
+        let is_prior = |known: &KnownConstant| matches!(known, KnownConstant::Prior { .. });
+        if test.known_constants.values().any(is_prior) || test.pieces.iter().any(|piece| !piece.doubt.is_none()) {
+            let what = "priors of constants and standard deviations of sizes and mass count in `identify`; a trace goes by the data alone";
+            notes::say("", &[what.to_owned()]);
+        }
         Ok(Self { tracing })
     }
 

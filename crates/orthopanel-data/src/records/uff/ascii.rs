@@ -129,7 +129,7 @@ fn plain_number(text: &str) -> Option<f64> {
 }
 
 /// A number whose exponent may have lost its letter: Fortran prints 1e-100 as `0.10000-099` where columns are few.
-pub(super) fn number(text: &str) -> Option<f64> {
+pub(in crate::records) fn number(text: &str) -> Option<f64> {
     plain_number(text).or_else(|| {
         let sign = text.rfind(['+', '-']).filter(|&at| at > 0)?;
         let (mantissa, exponent) = text.split_at_checked(sign)?;

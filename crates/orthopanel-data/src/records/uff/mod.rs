@@ -16,22 +16,36 @@ use std::{collections::BTreeMap, path::Path, sync::Arc};
 
 use num_complex::Complex64;
 
-use super::{Axis, Format, Record, RecordFile, RecordKind, Samples, UnitSystem, may_be_read};
-use crate::{DataError, Location, Unit, limits, units::Measured};
+use super::{
+    Record, RecordFile, RecordKind, Samples, UnitSystem,
+    abscissa::{self, scaled},
+    may_be_read,
+};
+use crate::{DataError, Location, limits};
+pub(super) use ascii::number;
 use cursor::Cursor;
 use header::{Encoding, Header};
 
-pub(super) const FORMAT: Format = Format {
-    name: "universal file (-1, then 58 or 58b)",
-    recognises: |bytes| {
-        let bytes = bytes.strip_prefix(cursor::BYTE_ORDER_MARK).unwrap_or(bytes);
-        let first = bytes.split(|&byte| byte == b'\n').find(|line| !line.trim_ascii().is_empty());
-        first.is_some_and(cursor::is_mark)
-    },
-    read,
-};
+/// What is read, for messages.
+pub(super) const NAME: &str = "universal file (-1, then 58 or 58b)";
 
-fn read(bytes: &[u8], path: &Path) -> Result<RecordFile, DataError> {
+/// Whether the bytes begin as a universal file does.
+pub(super) fn recognises(bytes: &[u8]) -> bool {
+    let bytes = bytes.strip_prefix(cursor::BYTE_ORDER_MARK).unwrap_or(bytes);
+    let first = bytes.split(|&byte| byte == b'\n').find(|line| !line.trim_ascii().is_empty());
+    first.is_some_and(cursor::is_mark)
+}
+
+pub(super) fn read(bytes: &[u8], path: &Path) -> Result<RecordFile, DataError> {
+    let file = parts(bytes, path)?;
+    if file.records.is_empty() {
+        return Err(DataError::NoRecords { at: Location::whole(path), what: "dataset 58 or 58b" });
+    }
+    Ok(file)
+}
+
+/// All that is read of a universal file, which may hold no record.
+pub(super) fn parts(bytes: &[u8], path: &Path) -> Result<RecordFile, DataError> {
     let mut cursor = Cursor::new(bytes, path);
     let (mut records, mut notes) = (Vec::new(), Vec::new());
     let (mut system, mut nodes) = (None, Vec::new());
@@ -91,9 +105,6 @@ fn read(bytes: &[u8], path: &Path) -> Result<RecordFile, DataError> {
     if let Some(byte) = cursor::opens_at_end(bytes) {
         notes.push(format!("the mark at byte {byte} opens a dataset, and the file ends: it may be cut off"));
     }
-    if records.is_empty() {
-        return Err(DataError::NoRecords { at: Location::whole(path), what: "dataset 58 or 58b" });
-    }
     Ok(RecordFile { records, notes, nodes })
 }
 
@@ -128,7 +139,7 @@ fn record(
         ));
         header.step = restored;
     }
-    let scale = abscissa_scale(&header.abscissa, kind, &key, notes);
+    let scale = abscissa::scale(&header.abscissa.unit, kind, &key, notes);
     header.start = scaled(header.start, scale);
     header.step = scaled(header.step, scale);
     match (layout.even, layout.complex) {
@@ -180,29 +191,6 @@ enum Rise {
     Listed,
     /// Listed as it may.
     Any,
-}
-
-/// Seconds or hertz in one unit of the abscissa, by its label.
-fn abscissa_scale(axis: &Axis, kind: RecordKind, key: &str, notes: &mut Vec<String>) -> f64 {
-    let (wanted, si) = if kind == RecordKind::Time { (Measured::Time, "s") } else { (Measured::Frequency, "Hz") };
-    match Unit::parse(&axis.unit) {
-        _ if axis.unit.is_empty() => 1.0,
-        Some(unit) if unit.measured() == Some(wanted) => {
-            if unit.to_si() != 1.0 {
-                notes.push(format!("{key}: abscissa brought from {unit} to {si}"));
-            }
-            unit.to_si()
-        }
-        _ => {
-            notes.push(format!("{key}: unit {:?} of the abscissa is none of {wanted:?}, taken as {si}", axis.unit));
-            1.0
-        }
-    }
-}
-
-/// `value` times a factor; a small one divides, so that decimals stay decimals.
-fn scaled(value: f64, factor: f64) -> f64 {
-    if factor < 1.0 { value / (1.0 / factor).round() } else { value * factor }
 }
 
 /// Times or frequencies of an even record: those of the record before where they are the same.

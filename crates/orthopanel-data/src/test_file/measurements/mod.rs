@@ -2,9 +2,12 @@
 
 mod files;
 mod frequencies;
+mod places;
+mod record_files;
 mod recorded;
+mod recorded_response;
 
-use std::ops::Range;
+use std::{collections::BTreeSet, ops::Range, path::Path};
 
 use orthopanel_model::{Piece, Place};
 use toml::Spanned;
@@ -12,7 +15,7 @@ use toml::Spanned;
 use super::{pieces::NamedPiece, source::Source, syntax};
 use crate::{DataError, Location, limits};
 pub use frequencies::NaturalFrequencies;
-pub use recorded::{ChannelName, Direction, RecordedResponse, Trigger};
+pub use recorded_response::{ChannelName, Direction, RecordedResponse, Trigger};
 
 /// One measurement on one piece.
 #[derive(Debug, Clone, PartialEq)]
@@ -34,11 +37,21 @@ pub enum MeasurementData {
     Accelerance(RecordedResponse),
 }
 
+impl MeasurementData {
+    /// Where and how its records were taken; `None` of a list of frequencies.
+    pub fn recorded(&self) -> Option<&RecordedResponse> {
+        match self {
+            Self::NaturalFrequencies(_) => None,
+            Self::TimeHistory(recorded) | Self::Accelerance(recorded) => Some(recorded),
+        }
+    }
+}
+
 const KINDS: &str = "\"natural-frequencies\", \"time-history\" or \"accelerance\"";
 
 pub(super) fn measurements(
     source: &Source,
-    given: Vec<Spanned<syntax::Measurement>>,
+    (given, band): (Vec<Spanned<syntax::Measurement>>, Option<Spanned<[f64; 2]>>),
     pieces: &[NamedPiece],
 ) -> Result<Vec<Measurement>, DataError> {
     if given.is_empty() {
@@ -47,9 +60,13 @@ pub(super) fn measurements(
     }
     let at = || source.at(given.first().map_or(0..0, Spanned::span), "measurement");
     source.at_most((given.len(), "measurements"), limits::MEASUREMENTS, at, "put some into a test of their own")?;
+    let band = band.map(|band| source.band(&band, "band")).transpose()?;
     let read = |(index, entry): (usize, Spanned<syntax::Measurement>)| {
-        Entry { source, key: format!("measurement[{}]", index + 1), span: entry.span() }
-            .read(entry.into_inner(), pieces)
+        Entry { source, key: format!("measurement[{}]", index + 1), span: entry.span() }.read(
+            entry.into_inner(),
+            pieces,
+            band,
+        )
     };
     let read: Vec<Vec<Measurement>> = given.into_iter().enumerate().map(read).collect::<Result<_, _>>()?;
     let read: Vec<Measurement> = read.into_iter().flatten().collect();
@@ -73,14 +90,12 @@ pub(super) fn measurements(
 
 /// Refuses files of records that are too large together.
 fn files_at_most(source: &Source, measurements: &[Measurement]) -> Result<(), DataError> {
-    let bytes = |of: &Measurement| match &of.data {
-        MeasurementData::TimeHistory(recorded) | MeasurementData::Accelerance(recorded) => {
-            // A file that has gone since is missed where it is read.
-            Some(std::fs::metadata(&recorded.file).map_or(0, |file| file.len()))
-        }
-        MeasurementData::NaturalFrequencies(_) => None,
-    };
-    let sizes: Vec<u64> = measurements.iter().filter_map(bytes).collect();
+    // A file of several measurements is read once.
+    let files: BTreeSet<&Path> =
+        measurements.iter().filter_map(|of| of.data.recorded()).flat_map(RecordedResponse::files).collect();
+    // A file that has gone since is missed where it is read.
+    let sizes: Vec<u64> =
+        files.into_iter().map(|file| std::fs::metadata(file).map_or(0, |found| found.len())).collect();
     let (found, most) = (sizes.iter().fold(0, |sum: u64, size| sum.saturating_add(*size)), limits::RECORD_FILES);
     if found <= most {
         return Ok(());
@@ -96,7 +111,12 @@ struct Entry<'a> {
 }
 
 impl Entry<'_> {
-    fn read(&self, entry: syntax::Measurement, pieces: &[NamedPiece]) -> Result<Vec<Measurement>, DataError> {
+    fn read(
+        &self,
+        entry: syntax::Measurement,
+        pieces: &[NamedPiece],
+        band: Option<[f64; 2]>,
+    ) -> Result<Vec<Measurement>, DataError> {
         let kind = self.needed(entry.kind.as_ref(), "kind", "one of natural-frequencies, time-history, accelerance")?;
         let (piece, named) = self.piece(entry.piece.as_ref(), pieces)?;
         if let Some(trigger) = entry.trigger.as_ref().filter(|_| kind.get_ref() != "time-history") {
@@ -120,6 +140,10 @@ impl Entry<'_> {
                 self.unwanted(kind, entry.response_channel.as_ref(), "response_channel")?;
                 self.unwanted(kind, entry.sampling_rate.as_ref(), "sampling_rate")?;
                 self.unwanted(kind, entry.window_decay.as_ref(), "window_decay")?;
+                self.unwanted(kind, entry.columns.as_ref(), "columns")?;
+                self.unwanted(kind, entry.places.as_ref(), "places")?;
+                self.unwanted(kind, entry.origin.as_ref(), "origin")?;
+                self.unwanted(kind, entry.band.as_ref(), "band")?;
                 vec![MeasurementData::NaturalFrequencies(self.natural_frequencies(&entry, named)?)]
             }
             "time-history" | "accelerance" => {
@@ -137,7 +161,7 @@ impl Entry<'_> {
                 } else {
                     MeasurementData::TimeHistory
                 };
-                self.recorded(&entry, &named.piece)?.into_iter().map(of_kind).collect()
+                self.recorded(&entry, &named.piece, band)?.into_iter().map(of_kind).collect()
             }
             other => {
                 let (name, remedy) = (other.to_owned(), format!("must be {KINDS}"));
@@ -167,6 +191,10 @@ impl Entry<'_> {
                 })
             }
         }
+    }
+
+    fn band(&self, band: Option<&Spanned<[f64; 2]>>, key: &str) -> Result<Option<[f64; 2]>, DataError> {
+        band.map(|band| self.source.band(band, &self.name(key))).transpose()
     }
 
     fn place(&self, place: &Spanned<[f64; 2]>, key: &str, piece: &Piece) -> Result<Place, DataError> {

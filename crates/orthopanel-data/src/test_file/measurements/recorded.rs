@@ -1,140 +1,12 @@
 //! `kind = "time-history"` and `"accelerance"`: a file of records, the places, and what the file does not tell of its channels.
 
-use std::{fmt, path::PathBuf};
+use std::collections::BTreeMap;
 
 use orthopanel_model::{Piece, Place};
 use toml::Spanned;
 
-use super::{super::syntax, Entry};
-use crate::{DataError, Motion, Unit, limits};
-
-/// A file of records and where they were taken.
-#[derive(Debug, Clone, PartialEq)]
-pub struct RecordedResponse {
-    /// The file, beside the test file unless absolute.
-    pub file: PathBuf,
-    /// Where the hammer hit.
-    pub force_at: Place,
-    /// Where the sensor of the motion sat.
-    pub response_at: Place,
-    /// Unit of the force in the file, where declared; with a sensitivity the unit that it is a volt for.
-    pub force_unit: Option<Unit>,
-    /// Unit of the motion in the file, where declared; with a sensitivity the unit that it is a volt for.
-    pub response_unit: Option<Unit>,
-    /// What the sensor of the motion reads, where declared.
-    pub quantity: Option<Motion>,
-    /// Volts a unit of force, where the channel was recorded in volts.
-    pub force_sensitivity: Option<f64>,
-    /// Volts a unit of motion, where the channel was recorded in volts.
-    pub response_sensitivity: Option<f64>,
-    /// Direction of the sensor, where declared.
-    pub direction: Option<Direction>,
-    /// Number of the frequency response among the file's records, from 1; needed where the file holds several.
-    pub record: Option<usize>,
-    /// Which of the file's records hold the force, where declared.
-    pub force_channel: Option<ChannelName>,
-    /// Which of the file's records hold the motion, where declared.
-    pub response_channel: Option<ChannelName>,
-    /// How continuous records are cut into hits, where declared.
-    pub trigger: Option<Trigger>,
-    /// Sampling rate \[Hz\], where declared: it counts instead of the file's times.
-    pub sampling_rate: Option<f64>,
-    /// Time constant $\tau$ \[s\] of the exponential window $e^{-t/\tau}$ that lies over the records, where declared.
-    pub window_decay: Option<f64>,
-}
-
-impl RecordedResponse {
-    /// A file of records with nothing declared but the places of force and response.
-    pub fn new(file: impl Into<PathBuf>, [force_at, response_at]: [Place; 2]) -> Self {
-        Self {
-            file: file.into(),
-            force_at,
-            response_at,
-            force_unit: None,
-            response_unit: None,
-            quantity: None,
-            force_sensitivity: None,
-            response_sensitivity: None,
-            direction: None,
-            record: None,
-            force_channel: None,
-            response_channel: None,
-            trigger: None,
-            sampling_rate: None,
-            window_decay: None,
-        }
-    }
-}
-
-/// How a continuous record of several blows is cut into hits; what is left out is found from the record.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Trigger {
-    /// Force over its rest \[N\] that a blow passes.
-    pub level: Option<f64>,
-    /// Time of a hit before its blow passes the level \[s\].
-    pub before: Option<f64>,
-    /// Time of a hit in all \[s\].
-    pub length: Option<f64>,
-}
-
-/// A channel of a file with several.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub enum ChannelName {
-    /// That of a record, by its number in the file, from 1.
-    Number(usize),
-    /// `"12"` or `"12:+z"`: a node, and 1, 2, 3 along x, y, z, negative against them, 0 in any direction.
-    Port {
-        /// The node's number.
-        node: i64,
-        /// The direction.
-        direction: i64,
-    },
-    /// A line of the record's title.
-    Name(String),
-}
-
-impl ChannelName {
-    /// Of a text in a test file.
-    fn of(text: &str) -> Self {
-        let (node, along) = text.split_once(':').unwrap_or((text, ""));
-        let (sign, axis) = match along.trim().strip_prefix('-') {
-            Some(axis) => (-1, axis),
-            None => (1, along.trim().trim_start_matches('+')),
-        };
-        let direction = ["", "x", "y", "z"].iter().zip(0..).find(|(name, _)| axis.eq_ignore_ascii_case(name));
-        match (node.trim().parse(), direction) {
-            (Ok(node), Some((_, direction))) => Self::Port { node, direction: sign * direction },
-            _ => Self::Name(text.trim().to_owned()),
-        }
-    }
-}
-
-impl fmt::Display for ChannelName {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Number(number) => write!(f, "{number}"),
-            Self::Port { node, direction } => {
-                let sign = if *direction < 0 { "-" } else { "+" };
-                match direction.abs() {
-                    1 => write!(f, "\"{node}:{sign}x\""),
-                    2 => write!(f, "\"{node}:{sign}y\""),
-                    3 => write!(f, "\"{node}:{sign}z\""),
-                    _ => write!(f, "\"{node}\""),
-                }
-            }
-            Self::Name(name) => write!(f, "{name:?}"),
-        }
-    }
-}
-
-/// Which way a recorded acceleration counts positive.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Direction {
-    /// `direction = 1`: as the force.
-    AlongForce,
-    /// `direction = -1`: against the force, so the record is turned round.
-    AgainstForce,
-}
+use super::{super::syntax, ChannelName, Direction, Entry, RecordedResponse, Trigger, files::MeasuredFile};
+use crate::{ColumnName, ColumnRole, DataError, DeclaredColumns, Motion, Unit, limits};
 
 impl Entry<'_> {
     /// The records of each file of the measurement.
@@ -142,14 +14,13 @@ impl Entry<'_> {
         &self,
         entry: &syntax::Measurement,
         piece: &Piece,
+        band: Option<[f64; 2]>,
     ) -> Result<Vec<RecordedResponse>, DataError> {
         let name = self.needed(entry.file.as_ref(), "file", "name a .uff or .csv file beside the test file")?;
-        let places = [(&entry.force_at, "force_at"), (&entry.response_at, "response_at")].map(|(place, key)| {
-            let place = self.needed(place.as_ref(), key, "give the place [x, y] in m from the piece's centre")?;
-            self.place(place, key, piece)
-        });
-        let [force_at, response_at] = places;
-        let (force_at, response_at) = (force_at?, response_at?);
+        let given = |place: &Option<Spanned<[f64; 2]>>, key: &str| {
+            place.as_ref().map(|place| self.place(place, key, piece)).transpose()
+        };
+        let places = [given(&entry.force_at, "force_at")?, given(&entry.response_at, "response_at")?];
         let response_unit = self.response_unit(entry)?;
         let force_unit = self.unit(entry.force_unit.as_ref(), "force_unit", FORCE_UNITS)?;
         let quantity = self.quantity(entry, response_unit.as_ref())?;
@@ -202,10 +73,65 @@ impl Entry<'_> {
             trigger,
             sampling_rate,
             window_decay: positive(&entry.window_decay, "window_decay", "s")?,
-            ..RecordedResponse::new("", [force_at, response_at])
+            band: self.band(entry.band.as_ref(), "band")?.or(band),
+            columns: self.columns(entry.columns.as_ref())?,
+            ..RecordedResponse::new("", [Place { x: 0.0, y: 0.0 }; 2])
         };
-        let of_file = |file| RecordedResponse { file, ..one.clone() };
-        Ok(self.files(name)?.into_iter().map(of_file).collect())
+        let mut measured = Vec::new();
+        for MeasuredFile { file, response_file } in self.files(name)? {
+            let of_file = RecordedResponse { file, response_file, ..one.clone() };
+            match &entry.places {
+                Some(given) => measured.extend(self.at_places((entry, given), of_file, places, piece)?),
+                None => {
+                    let keys = [("force_at", &entry.force_at), ("response_at", &entry.response_at)];
+                    for (key, place) in keys {
+                        self.needed(place.as_ref(), key, "give the place [x, y] in m from the piece's centre")?;
+                    }
+                    if let Some(origin) = &entry.origin {
+                        let problem = "belongs to places: take it out, or name the file of places".into();
+                        return Err(DataError::Contradiction { at: self.at(origin.span(), "origin"), problem });
+                    }
+                    let [force_at, response_at] = places.map(|place| place.unwrap_or(Place { x: 0.0, y: 0.0 }));
+                    measured.push(RecordedResponse { force_at, response_at, ..of_file });
+                }
+            }
+        }
+        Ok(measured)
+    }
+
+    /// `columns = {time = "Time (s)", force = 2, response = 3}`.
+    fn columns(
+        &self,
+        given: Option<&Spanned<BTreeMap<String, Spanned<toml::Value>>>>,
+    ) -> Result<Option<DeclaredColumns>, DataError> {
+        let Some(given) = given else { return Ok(None) };
+        let mut columns = DeclaredColumns::default();
+        for (name, value) in given.get_ref() {
+            let key = format!("columns.{name}");
+            let Some(role) = ColumnRole::ALL.into_iter().find(|role| role.name() == name) else {
+                let names = ColumnRole::ALL.map(ColumnRole::name).join(", ");
+                let remedy = format!("columns are told for {names}");
+                return Err(DataError::UnknownName {
+                    at: self.at(value.span(), "columns"),
+                    name: name.clone(),
+                    remedy,
+                });
+            };
+            let column = match value.get_ref() {
+                toml::Value::Integer(number) if *number > 0 => usize::try_from(*number).ok().map(ColumnName::Number),
+                toml::Value::String(text) => Some(ColumnName::Name(text.clone())),
+                _ => None,
+            };
+            let Some(column) = column else {
+                let message = format!(
+                    "{} given, wanted is a column's number from 1, or its name in quotes",
+                    crate::error::short(&value.get_ref().to_string())
+                );
+                return Err(DataError::Syntax { at: self.at(value.span(), &key), message });
+            };
+            columns.0.insert(role, column);
+        }
+        Ok(Some(columns))
     }
 
     /// `response_unit`, or `unit`, as it was called before.

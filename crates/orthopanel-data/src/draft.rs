@@ -1,0 +1,231 @@
+//! A first test file, written from the records that there are: what they tell is filled in, what they do not is left to be.
+
+use std::{fmt::Write as _, path::Path};
+
+use crate::{
+    RecordFile, RecordKind,
+    listing::port_text,
+    records::{Node, Port, Quantity, Samples, quantity},
+};
+
+/// Pairs of nodes in one file up to which each has a measurement of its own; above, `places` has them all.
+const WRITTEN_OUT: usize = 3;
+
+/// A commented `test.toml` for files of records, each by the path that the test file shall have for it.
+///
+/// Sizes, mass and places that the files do not tell stand as comments: what is missing is then asked for by its name when the test is
+/// read, and nothing is made up.
+pub fn draft(files: &[(&Path, &RecordFile)]) -> String {
+    let mut text = String::from(HEAD);
+    if files.len() > 1 {
+        text += "\n# Hits of one place may share a [[measurement]]: file = [\"a.csv\", \"b.csv\"], or a pattern such as \"hit-*.csv\".\n";
+    }
+    for (path, file) in files {
+        text += &measurement(path, file);
+    }
+    text
+}
+
+/// What no record tells.
+const HEAD: &str = "\
+# A hammer test. Write what stands behind # without its #, with your numbers. Units are SI; x and y are in m from the piece's centre.
+# Then: orthopanel run TEST -o out
+
+[piece]
+# length = 0.8             # m, along x
+# width = 0.1              # m, along y
+# thickness = 0.03         # m
+# mass_per_area = 6.88     # kg/m2; or weighings = [[length, width, mass], ..] in m, m, kg
+# thickness_std = 0.1e-3   # m; standard deviations of sizes and mass, where they count
+
+# structure = \"mindlin-plate\"   # above the tables; a Timoshenko beam where nothing is said
+
+# [boundary]               # free where nothing is said; or \"pinned\", \"clamped\"
+# left = \"free\"
+# right = \"free\"
+
+# [suspension]             # the points that carry the piece
+# at = [-0.22, 0.22]
+
+# [[effect]]               # what is known beforehand, such as the sensor's mass in kg
+# id = \"sensor-mass\"
+# mass = 0.004
+";
+
+/// The measurements of one file.
+fn measurement(path: &Path, file: &RecordFile) -> String {
+    let count = |kind: RecordKind| file.records.iter().filter(|record| record.kind == kind).count();
+    let (responses, times) = (count(RecordKind::FrequencyResponse), count(RecordKind::Time));
+    let name = path.to_string_lossy().replace('\\', "/");
+    let mut text = format!("\n# {}\n", summary(file).replace(['\n', '\r'], " "));
+    let is_of_responses = responses > 0;
+    let kind = match (responses, times) {
+        (0, 0) => {
+            let _ = writeln!(
+                text,
+                "# {}: no record against time, and no frequency response: nothing to read in it",
+                comment(&name)
+            );
+            return text;
+        }
+        (0, _) => "time-history",
+        _ => "accelerance",
+    };
+    let pairs = file.pairs(is_of_responses);
+    let told = |pair: &&[Port; 2]| pair.iter().any(|port| port.node != 0);
+    let several = pairs.len() > 1;
+    if several && pairs.len() > WRITTEN_OUT && pairs.iter().all(|pair| told(&pair)) {
+        text += &header(kind, &name);
+        text += &places(&pairs, &file.nodes, &name);
+        text += &untold(file, is_of_responses);
+        return text;
+    }
+    let alone = [[Port::default(); 2]];
+    for (number, pair) in (1..).zip(if pairs.is_empty() { &alone[..] } else { &pairs[..] }) {
+        if number > 1 {
+            text.push('\n');
+        }
+        text += &header(kind, &name);
+        for (key, port) in [("force_at", pair[0]), ("response_at", pair[1])] {
+            text += &place(key, port, &file.nodes);
+        }
+        if several {
+            text += &channels(file, is_of_responses, pair, number);
+        }
+        text += &untold(file, is_of_responses);
+    }
+    text
+}
+
+fn header(kind: &str, name: &str) -> String {
+    format!("[[measurement]]\nkind = {}\nfile = {}\n", quoted(kind), quoted(name))
+}
+
+/// A text in the quotes of TOML.
+fn quoted(text: &str) -> String {
+    toml::Value::String(text.to_owned()).to_string()
+}
+
+/// A text that stays within a comment.
+fn comment(text: &str) -> String {
+    text.chars().map(|character| if character.is_control() { ' ' } else { character }).collect()
+}
+
+/// What the file holds, in a line.
+fn summary(file: &RecordFile) -> String {
+    let listed = file.listed();
+    let mut parts: Vec<(String, usize)> = Vec::new();
+    for record in &listed {
+        let unit = if record.unit.is_empty() { "unit not told".to_owned() } else { record.unit.clone() };
+        let part = format!("{} ({unit}), {}", record.quantity, record.extent());
+        match parts.iter_mut().find(|(known, _)| *known == part) {
+            Some((_, times)) => *times += 1,
+            None => parts.push((part, 1)),
+        }
+    }
+    let parts: Vec<String> = parts.into_iter().map(|(part, times)| format!("{times} x {part}")).collect();
+    comment(&crate::error::some_of(&parts, "; "))
+}
+
+/// The place of a channel where the file tells it, else the line to fill in.
+fn place(key: &str, port: Port, nodes: &[Node]) -> String {
+    let node = nodes.iter().find(|node| node.number == port.node && port.node != 0);
+    match (node, port.node) {
+        (Some(node), number) => format!(
+            "{key} = [{}, {}]   # node {number}, as the file places it: from the piece's centre?\n",
+            decimal(node.at[0]),
+            decimal(node.at[1])
+        ),
+        (None, 0) => format!("# {key} = [0.0, 0.0]   # x, y in m from the piece's centre\n"),
+        (None, number) => format!("# {key} = [0.0, 0.0]   # x, y of node {number}, in m from the piece's centre\n"),
+    }
+}
+
+/// A length to a micrometre, as TOML wants it.
+fn decimal(value: f64) -> String {
+    let rounded = (value * 1e6).round() / 1e6;
+    if rounded == rounded.trunc() { format!("{rounded:.1}") } else { rounded.to_string() }
+}
+
+/// One measurement for many nodes.
+fn places(pairs: &[[Port; 2]], nodes: &[Node], name: &str) -> String {
+    let mut numbers: Vec<i64> = pairs.iter().flatten().map(|port| port.node).filter(|node| *node != 0).collect();
+    numbers.sort_unstable();
+    numbers.dedup();
+    let listed = numbers.iter().map(i64::to_string).collect::<Vec<_>>();
+    let mut text = if numbers.iter().all(|number| nodes.iter().any(|node| node.number == *number)) {
+        format!(
+            "places = {}   # its nodes, datasets 15 or 2411\n# origin = [0.0, 0.0]   # the piece's centre, where the file counts from elsewhere\n",
+            quoted(name)
+        )
+    } else {
+        format!(
+            "places = \"places.csv\"   # to write: a line node,x,y, then a row a node, in m from the piece's centre: {}\n",
+            crate::error::some_of(&listed, ", ")
+        )
+    };
+    for (key, channel) in [("force_at", 0), ("response_at", 1)] {
+        if pairs.iter().any(|pair| pair[channel].node == 0) {
+            let _ = writeln!(text, "# {key} = [0.0, 0.0]   # the file tells no node of it");
+        }
+    }
+    text
+}
+
+/// The channels of one of several pairs.
+fn channels(file: &RecordFile, is_of_responses: bool, pair: &[Port; 2], number: usize) -> String {
+    if is_of_responses && pair.iter().all(|port| port.node == 0) {
+        let mut of_kind = file.records.iter().filter(|record| record.kind == RecordKind::FrequencyResponse);
+        return of_kind.nth(number - 1).map_or(String::new(), |record| format!("record = {}\n", record.number));
+    }
+    let mut text = String::new();
+    for (key, port) in [("force_channel", pair[0]), ("response_channel", pair[1])] {
+        if port.node != 0 {
+            let _ = writeln!(text, "{key} = {}", quoted(&port_text(port)));
+        }
+    }
+    text
+}
+
+/// Lines for what the records do not tell of their channels.
+fn untold(file: &RecordFile, is_of_responses: bool) -> String {
+    let kind = if is_of_responses { RecordKind::FrequencyResponse } else { RecordKind::Time };
+    let of_kind = || file.records.iter().filter(|record| record.kind == kind);
+    let mut text = String::new();
+    let is_untold = |axis: &crate::Axis| quantity(axis) == Quantity::Untold;
+    let volts = |axis: &crate::Axis| {
+        axis.unit.trim().to_lowercase().starts_with(['v', 'm']) && axis.unit.to_lowercase().contains('v')
+    };
+    let no_unit = |is_force: bool| {
+        of_kind().any(|record| {
+            let axis = if is_of_responses && is_force { &record.denominator } else { &record.numerator };
+            let is_it = is_of_responses || (quantity(axis) == Quantity::Force) == is_force;
+            is_it && axis.unit.is_empty() && axis.system.is_none()
+        })
+    };
+    if of_kind().any(|record| volts(&record.numerator) || volts(&record.denominator)) {
+        text += "# response_sensitivity = 0.0102   # V a unit of response_unit, and\n# force_sensitivity = 0.00224      # V a unit of force_unit: the record is in volts\n";
+    }
+    if no_unit(false) && !is_own(file) {
+        text += "# response_unit = \"m/s2\"   # the records tell no unit: m/s2 unless said; \"g\", \"mm/s\", ...\n";
+    }
+    if of_kind().any(|record| is_untold(&record.numerator)) {
+        text += if is_of_responses {
+            "# quantity = \"acceleration\"   # the records do not tell: or \"velocity\" (mobility), \"displacement\" (receptance)\n"
+        } else {
+            "# force_channel = 1        # the records do not tell which they are: a number, a node, or a line of the title\n# response_channel = 2\n"
+        };
+    }
+    if is_of_responses {
+        text += "# window_decay = 0.25   # s, where it was averaged under an exponential window e^(-t/0.25)\n";
+        if of_kind().any(|record| matches!(record.ordinate, Samples::Real(_))) {
+            text += "# the frequency response is real: export it complex, or with its phase\n";
+        }
+    }
+    text + "# band = [20.0, 4000.0]   # Hz, the lines that count\n"
+}
+
+/// This project's own columns are in m/s2 and N by their names.
+fn is_own(file: &RecordFile) -> bool {
+    file.records.first().is_some_and(|record| record.title == "accelerance" && !record.abscissa.is_empty())
+}
