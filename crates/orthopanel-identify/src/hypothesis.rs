@@ -242,19 +242,18 @@ fn choices(parameter: &EffectParameter, piece: &Piece, records: usize) -> Vec<Ve
     if parameter.scale == Scale::Index {
         return (1..=records.max(1)).map(|record| vec![Slot::Held(record as f64)]).collect();
     }
-    if let Some(value) = parameter.held_at {
-        return vec![vec![Slot::Held(value)]];
-    }
     let times = if parameter.each_record { records } else { 1 };
     let of = |map: Map| vec![Slot::Free(Coordinate { map, range }); times];
-    match parameter.prior {
+    let free = match parameter.prior {
         Prior::Even => vec![of(Map::Even { low: range.0, high: range.1 })],
         Prior::Gaussian { mean, std } => vec![of(Map::Gaussian { mean, std })],
         Prior::Size { median, factor, signed } => {
             let signs: &[f64] = if signed { &[1.0, -1.0] } else { &[1.0] };
             signs.iter().map(|&sign| of(Map::Size { median, log_factor: factor.ln(), sign })).collect()
         }
-    }
+    };
+    // As it is unless it pays to free it.
+    parameter.held_at.map(|value| vec![Slot::Held(value)]).into_iter().chain(free).collect()
 }
 
 /// Constants and effects, all that is free in one list of coordinates: the constants first.

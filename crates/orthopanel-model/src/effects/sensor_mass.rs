@@ -13,7 +13,7 @@ pub(super) struct SensorMass;
 
 const PARAMETERS: [EffectParameter; 2] = [
     EffectParameter::log("mass", "kg", [1e-5, 0.5], &[0.01, 0.002, 0.05]).sized(8e-3, 2.2).of(Reference::Mass),
-    EffectParameter::linear("inertia", "kg m2", [0.0, 1e-3], &[1e-7]).held_at(0.0),
+    EffectParameter::linear("inertia", "kg m2", [0.0, 1e-3], &[1e-7]).sized(5e-7, 3.0).held_at(0.0),
 ];
 
 impl Effect for SensorMass {
