@@ -53,5 +53,5 @@ pub use settings::{PaperWeights, Search, Settings};
 pub use time_history::{
     ComparedSignals, ForceBetweenSamples, HistorySettings, HitComparison, Misfit, Stepping, compare_time_history,
 };
-pub use trace::{trace, trace_by_lines, trace_with};
+pub use trace::{trace, trace_by_lines, trace_by_modes, trace_with};
 pub use trace_rows::TRACE_SCHEMA;

@@ -5,14 +5,55 @@ use orthopanel_model::StructureKind;
 
 use crate::IdentifyError;
 use crate::answer::answer;
-use crate::outcome::{Progress, Tracing};
+use crate::outcome::{EstimatedModelError, Progress, Tracing, Verdict};
 use crate::tracing::trace_by_fits;
 
 /// Names the effect that the base model of a test lacks, from its records or its natural frequencies. Effects that the test
 /// file declares are part of the base model.
 ///
-/// # Method
-/// Hits of one beam are brought to [`MeasuredModes`](crate::MeasuredModes) first, which know no physics. Every hypothesis, nothing missing, each effect of
+/// The lines of records and the numbers of lists are held against the model first ([`trace_by_lines`]). Where no hypothesis meets the lines of the hits
+/// of one beam within their noise, the panel is not its ideal model: its modes answer, with a model error that is estimated, if that is as real panels
+/// have it ([`trace_by_modes`]).
+///
+/// # Errors
+/// [`IdentifyError::PlateNotTraced`] for a declared plate; records that cannot be read or show too few resonances, and tests
+/// that this version cannot trace.
+pub fn trace(test: &ImpactTest) -> Result<Tracing, IdentifyError> {
+    trace_with(test, &|_| {})
+}
+
+/// [`trace`], telling how far it is. The callback is called from several threads.
+///
+/// # Errors
+/// As [`trace`].
+pub fn trace_with(test: &ImpactTest, progress: &(dyn Fn(Progress) + Sync)) -> Result<Tracing, IdentifyError> {
+    let by_lines = trace_by_lines(test, progress);
+    if !are_hits_of_one_beam(test) || by_lines.as_ref().is_ok_and(is_met) {
+        return by_lines;
+    }
+    match trace_by_modes(test, progress) {
+        Ok(by_modes) if by_modes.model_error.is_some_and(EstimatedModelError::is_usual) => Ok(by_modes),
+        _ => by_lines,
+    }
+}
+
+/// What was held out may be missed by this times the noise.
+const MET: f64 = 1.2;
+
+/// Whether an ideal panel meets the lines.
+fn is_met(tracing: &Tracing) -> bool {
+    let error = &tracing.error;
+    tracing.verdict != Verdict::Unexplained && error.after.held_out < MET * error.noise_floor
+}
+
+fn are_hits_of_one_beam(test: &ImpactTest) -> bool {
+    let hits = |data: &MeasurementData| matches!(data, MeasurementData::TimeHistory(_));
+    test.pieces.len() == 1 && test.measurements.iter().all(|measurement| hits(&measurement.data))
+}
+
+/// The effect that the base model of a beam lacks, from the modes that its hits show.
+///
+/// Hits are brought to [`MeasuredModes`](crate::MeasuredModes) first, which know no physics. Every hypothesis, nothing missing, each effect of
 /// the catalogue, and more of them while the evidence grows, predicts the same modes. What is measured less what is predicted has the covariance
 /// $$C = C_\text{noise} + \sum_k\tau_k^2F_kF_k^T$$
 /// of noise and of the model errors that every real panel has: of each frequency and residue, of places and gains, of core, faces and mass
@@ -39,21 +80,13 @@ use crate::tracing::trace_by_fits;
 /// # Errors
 /// [`IdentifyError::PlateNotTraced`] for a declared plate; records that cannot be read or show too few resonances, and tests
 /// that this version cannot trace.
-pub fn trace(test: &ImpactTest) -> Result<Tracing, IdentifyError> {
-    trace_with(test, &|_| {})
-}
-
-/// [`trace`], telling how far it is. The callback is called from several threads.
-///
-/// # Errors
-/// As [`trace`].
-pub fn trace_with(test: &ImpactTest, progress: &(dyn Fn(Progress) + Sync)) -> Result<Tracing, IdentifyError> {
+pub fn trace_by_modes(test: &ImpactTest, progress: &(dyn Fn(Progress) + Sync)) -> Result<Tracing, IdentifyError> {
     check_structure(test)?;
-    let hits = |data: &MeasurementData| matches!(data, MeasurementData::TimeHistory(_));
-    if test.pieces.len() == 1 && test.measurements.iter().all(|measurement| hits(&measurement.data)) {
-        return answer(test, progress)?.finite();
+    if !are_hits_of_one_beam(test) {
+        let message = "a trace by modes of anything but the hits of one piece: trace it by lines";
+        return Err(IdentifyError::Unsupported(message.into()));
     }
-    trace_by_lines(test, progress)
+    answer(test, progress)?.finite()
 }
 
 /// [`trace_with`] for a panel that is as its model but for an effect: records are fitted line by line, lists number by number, with each effect

@@ -2,8 +2,8 @@
 //!
 //! These need Python with numpy, scipy and pyuff, named by `ORTHOPANEL_PYTHON`; without it they say so and pass.
 
-use crate::support::{hammer_test, made, made_with, trace_by_lines as trace};
-use orthopanel_identify::{Tracing, Verdict};
+use crate::support::{hammer_test, made, made_with};
+use orthopanel_identify::{Tracing, Verdict, trace};
 
 fn value(found: &Tracing, parameter: &str) -> (f64, f64) {
     let estimate = found.effects[0].parameters.iter().find(|known| known.name == parameter).unwrap().values[0];

@@ -5,9 +5,9 @@
 
 use std::path::Path;
 
-use crate::support::{made, trace_by_lines as trace};
+use crate::support::made;
 use orthopanel_data::ImpactTest;
-use orthopanel_identify::{Tracing, Verdict};
+use orthopanel_identify::{Tracing, Verdict, trace};
 use serde_json::Value;
 
 /// The made test of a set and kind with its effect `id` declared as it was put in, and the truth.

@@ -4,8 +4,8 @@
 //! width-coupling. The records are made by `tests/blind_tracing`, which shares no code with the crates; they need Python with
 //! numpy, scipy and pyuff, named by `ORTHOPANEL_PYTHON`. Without it these tests say so and pass.
 
-use crate::support::{made_with, trace_by_lines as trace};
-use orthopanel_identify::{TracedParameter, Verdict};
+use crate::support::made_with;
+use orthopanel_identify::{TracedParameter, Verdict, trace};
 use serde_json::Value;
 
 /// Standard deviations within which every parameter lies: one in 370 would lie outside by chance.

@@ -6,9 +6,9 @@
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-use crate::support::{shared_data, trace_by_lines as trace};
+use crate::support::shared_data;
 use orthopanel_data::{Estimation, ImpactTest};
-use orthopanel_identify::{Identification, Settings, Tracing, Verdict, identify};
+use orthopanel_identify::{Identification, Settings, Tracing, Verdict, identify, trace};
 use rayon::prelude::*;
 
 const LENGTH: f64 = 0.38;

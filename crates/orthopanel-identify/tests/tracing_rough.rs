@@ -2,8 +2,8 @@
 //!
 //! These need Python with numpy, scipy and pyuff, named by `ORTHOPANEL_PYTHON`; without it they say so and pass.
 
-use crate::support::{made, made_with, trace_by_lines as trace};
-use orthopanel_identify::{Tracing, Verdict};
+use crate::support::{made, made_with};
+use orthopanel_identify::{Tracing, Verdict, trace};
 
 fn tells_that_it_is_rough(found: &Tracing) -> bool {
     found.notes.iter().any(|note| note.starts_with("this test is rough"))

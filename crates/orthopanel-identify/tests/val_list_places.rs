@@ -47,6 +47,7 @@ const MADE: [Made; 5] = [
 ];
 
 #[test]
+#[ignore = "a minute; all such run by `cargo test --release -- --ignored`"]
 fn val_an_effect_is_found_wherever_it_sits() {
     for Made { effect, value, x, frequencies } in MADE {
         let scatter = frequencies.map(|frequency| 1e-3 * frequency);
@@ -95,6 +96,7 @@ const RESONANT: [Resonant; 2] = [
 ];
 
 #[test]
+#[ignore = "a minute; all such run by `cargo test --release -- --ignored`"]
 fn val_a_resonators_intervals_hold_every_place_that_does_as_well() {
     for Resonant { piece: [length, width, thickness, mass_per_area], mass, frequency, x, frequencies } in RESONANT {
         let scatter = frequencies.map(|frequency| 1e-3 * frequency);

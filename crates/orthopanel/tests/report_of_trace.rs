@@ -19,7 +19,10 @@ fn records_that_contradict_the_beam_have_their_page() {
     for said in [
         "No base model was identified: half of all lines miss the model",
         "What the model lacks",
+        "goes into no model",
         "Error before and after",
+        "Hits before and with the effects",
+        "What the model with the effects leaves",
         "Ranking",
         "<h3>Records</h3>",
         "3 hits",

@@ -8,7 +8,7 @@ const MISPLACED: &str = "examples/misplaced-hit/test.toml";
 #[test]
 fn val_a_misplaced_hammer_is_named_and_its_way_found() {
     let bench = Bench::new();
-    let answer = bench.json(&format!("trace {MISPLACED} --by lines -o model.json"));
+    let answer = bench.json(&format!("trace {MISPLACED} -o model.json"));
     assert_eq!(answer["schema"], "orthopanel.trace/2");
     assert_eq!(answer["verdict"], "explained");
     assert_eq!(answer["effects"][0]["id"], "hammer-offset");
@@ -27,7 +27,7 @@ fn val_a_misplaced_hammer_is_named_and_its_way_found() {
     assert!(answer["next_experiment"].is_string());
     // People read ten of them, and are told of the others.
     let further = answer["candidates"].as_array().map_or(0, Vec::len) - 10;
-    let text = bench.done(&format!("trace {MISPLACED} --by lines"));
+    let text = bench.done(&format!("trace {MISPLACED}"));
     assert!(text.contains(&format!("and {further} further behind")), "{text}");
     // It belongs to the measuring chain, so the panel's model does not have it, and its constants are right again.
     let model = bench.read_json("model.json");
@@ -47,7 +47,7 @@ fn val_a_misplaced_hammer_is_named_and_its_way_found() {
 #[test]
 fn val_modes_name_a_misplaced_hammer_beside_a_model_error() {
     let bench = Bench::new();
-    let answer = bench.json(&format!("trace {MISPLACED} -o model.json"));
+    let answer = bench.json(&format!("trace {MISPLACED} --by modes -o model.json"));
     assert_eq!(answer["schema"], "orthopanel.trace/2");
     assert_eq!(answer["verdict"], "explained");
     assert_eq!(answer["effects"][0]["id"], "hammer-offset");
@@ -65,7 +65,11 @@ fn val_modes_name_a_misplaced_hammer_beside_a_model_error() {
         of.and_then(|candidate| candidate["log_evidence"].as_f64()).expect("an evidence")
     };
     assert!(evidence("hammer-offset") > evidence("base") + 10.0);
-    assert!(bench.done(&format!("trace {MISPLACED}")).contains("Beside noise the model misses frequencies by"));
+    assert!(
+        bench.done(&format!("trace {MISPLACED} --by modes")).contains("Beside noise the model misses frequencies by")
+    );
+    // Lists hold no hits.
+    refused(&bench, "trace examples/piece-1/test.toml --by modes", 2, &["trace it by lines"]);
 }
 
 #[test]
@@ -91,6 +95,8 @@ fn run_writes_the_panel_without_rig_and_channel_and_says_so() {
     for said in [
         "What the model lacks",
         "Hits before and with the effects",
+        "Held out is one hit after the other",
+        "peaks wide",
         "These are the constants of the base model, before effects",
         "Fit of the natural frequencies: the base model, before effects",
         "Time histories: the base model, before effects",
@@ -102,6 +108,7 @@ fn run_writes_the_panel_without_rig_and_channel_and_says_so() {
         "Accelerances with the effects",
         "What the model with the effects leaves",
         "The same by level",
+        "what is left is white where this is that of noise",
         "Ranking",
     ] {
         assert!(page.contains(said), "the page does not say {said:?}");

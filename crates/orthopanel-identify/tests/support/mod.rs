@@ -6,13 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use orthopanel_data::ImpactTest;
-use orthopanel_identify::{IdentifyError, Tracing};
 use serde_json::Value;
-
-/// A trace that allows for no error of the model.
-pub fn trace_by_lines(test: &ImpactTest) -> Result<Tracing, IdentifyError> {
-    orthopanel_identify::trace_by_lines(test, &|_| {})
-}
 
 /// A test made by `tests/blind_tracing`, which shares no code with the crates, with its truth; `None` where
 /// `ORTHOPANEL_PYTHON` names no Python for it.

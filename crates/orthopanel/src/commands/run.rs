@@ -55,7 +55,7 @@ pub struct Arguments {
     #[command(flatten)]
     options: IdentifyOptions,
     /// What the trace judges hypotheses by
-    #[arg(long, value_enum, default_value_t = By::Modes)]
+    #[arg(long, value_enum, default_value_t = By::Both)]
     trace_by: By,
     /// Print one JSON object (orthopanel.run/1) on standard output
     #[arg(long)]

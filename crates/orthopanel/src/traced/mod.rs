@@ -9,7 +9,8 @@ use std::path::Path;
 
 use orthopanel_data::{ImpactTest, KnownConstant};
 use orthopanel_identify::{
-    AcceleranceFit, IdentifyError, Progress, Removed, Settings, Tracing, Verdict, trace_by_lines, trace_with,
+    AcceleranceFit, IdentifyError, Progress, Removed, Settings, Tracing, Verdict, trace_by_lines, trace_by_modes,
+    trace_with,
 };
 use orthopanel_model::{Damping, PanelModel, Place};
 use serde_json::Value;
@@ -32,10 +33,12 @@ const DAMPING_OF_RECORDS: &str = "with the effects, the ratios with which the re
 /// What hypotheses are judged by.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub enum By {
-    /// The modes that the hits of one piece show, beside an error of the model that is estimated; lists and accelerances by what they tell
-    Modes,
+    /// Every line; where no hypothesis meets the lines of the hits of one piece within their noise, the modes
+    Both,
     /// Every line of the records, for a panel that is as its model but for an effect
     Lines,
+    /// The modes that the hits of one piece show, beside an error of the model that is estimated: for panels as real ones are
+    Modes,
 }
 
 /// A trace of a test.
@@ -50,8 +53,9 @@ impl Traced {
             let shown = progress::counted("tracing what the model lacks");
             let tell = |at: Progress| shown.at(at.done, at.of, at.effect);
             match by {
+                By::Both => trace_with(test, &tell)?,
                 By::Lines => trace_by_lines(test, &tell)?,
-                By::Modes => trace_with(test, &tell)?,
+                By::Modes => trace_by_modes(test, &tell)?,
             }
         };
         for panel in tracing.panels.iter_mut().filter(|panel| panel.damping == Damping::default()) {
