@@ -1,7 +1,5 @@
 //! What is said of a test: one threshold, in odds.
 
-use std::f64::consts::LN_2;
-
 use crate::model_error::Kind;
 use crate::outcome::Verdict;
 use crate::posterior::Judged;
@@ -21,15 +19,7 @@ pub(crate) fn judged(all: &[Judged]) -> Option<(&Judged, Verdict, Vec<&'static s
     let chosen = near().min_by_key(|judged| judged.names().len())?;
     let size = |kind: Kind| chosen.posterior.log_sizes[kind as usize].exp();
     if size(Kind::Frequency) > MOST_FREQUENCY || size(Kind::Residue) > MOST_RESIDUE {
-        // What removes little of the misfit is no cause.
-        let base = all.iter().find(|judged| judged.names().is_empty());
-        let removes_most = |base: &&Judged| {
-            let halved =
-                |kind: Kind| base.posterior.log_sizes[kind as usize] > LN_2 + chosen.posterior.log_sizes[kind as usize];
-            halved(Kind::Frequency) || halved(Kind::Residue)
-        };
-        let nearest = base.filter(|base| !removes_most(base)).unwrap_or(chosen);
-        return Some((nearest, Verdict::Unexplained, vec![]));
+        return Some((chosen, Verdict::Unexplained, vec![]));
     }
     let names = chosen.names();
     if names.is_empty() {
