@@ -198,11 +198,18 @@ impl Membrane {
             .map(move |(sigma, product)| (*sigma, product / (a_55 * sigma + a)))
     }
 
-    /// $G$ between two sides, and its derivatives by $A_{55}$ and $a$: where both grow alike, $G$ falls as they grow.
-    fn exact(&self, [a_55, a]: [f64; 2], first: Side, second: Side) -> (f64, [f64; 2]) {
-        let [low, here, high] = [-STEP, 0.0, STEP].map(|step| self.green([a_55, a * (1.0 + step)], first, second));
-        let by_a = (high - low) / (2.0 * STEP * a);
-        (here, [-(here + a * by_a) / a_55, by_a])
+    /// $G$ between two sides, and its derivatives by $A_{55}$ and $a$.
+    fn exact(&self, stiffness: [f64; 2], first: Side, second: Side) -> (f64, [f64; 2]) {
+        let by = |index: usize| {
+            let step = STEP * stiffness[index];
+            let [low, high] = [-step, step].map(|step| {
+                let mut moved = stiffness;
+                moved[index] += step;
+                self.green(moved, first, second)
+            });
+            (high - low) / (2.0 * step)
+        };
+        (self.green(stiffness, first, second), [by(0), by(1)])
     }
 
     /// $A_{55}G'' - aG = -\delta$: $e^{-\kappa|x-x'|}$ with what comes back from the ends.
