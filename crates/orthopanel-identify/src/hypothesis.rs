@@ -88,6 +88,16 @@ fn values(slots: &[Slot], z: &[f64]) -> Vec<f64> {
     slots.iter().map(value).collect()
 }
 
+/// Whether an effect sits at a place of its own: a piece may have several of it.
+pub(crate) fn has_place(effect: &dyn Effect) -> bool {
+    effect.parameters().iter().any(is_place)
+}
+
+/// Whether a parameter is the place of an effect along the piece.
+pub(crate) fn is_place(parameter: &EffectParameter) -> bool {
+    parameter.name == "x"
+}
+
 /// An effect in one of the ways in which it may act: a mass added or one that is missing, the gain of this record or of that.
 #[derive(Clone)]
 pub(crate) struct Part {
@@ -122,11 +132,6 @@ impl Part {
             }
         }
         Some(Self { declared: true, ..way })
-    }
-
-    /// Whether it sits at a place of its own: a piece may have several of it.
-    pub(crate) fn has_place(&self) -> bool {
-        self.effect.parameters().iter().any(|parameter| parameter.name == "x")
     }
 
     fn coordinates(&self) -> impl Iterator<Item = &Coordinate> {
@@ -199,7 +204,7 @@ impl Part {
         let unit = |number: usize| self.effect.parameters().get(number).map_or("", |parameter| parameter.unit);
         let free = || self.slots.iter().enumerate().filter_map(|(number, slot)| Some((number, slot.coordinate()?)));
         let units: Vec<&str> = free().map(|(number, _)| unit(number)).collect();
-        let has_place = self.has_place();
+        let has_place = has_place(self.effect);
         let net = |each_size: bool| {
             let mut starts: Vec<Vec<f64>> = vec![vec![]];
             for (index, (_, coordinate)) in free().enumerate() {

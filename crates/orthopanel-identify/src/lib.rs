@@ -22,6 +22,7 @@ mod matching;
 mod measured;
 mod model_error;
 mod outcome;
+mod plate_of_ratios;
 mod posterior;
 mod predicted;
 mod search;

@@ -91,6 +91,13 @@ pub(crate) struct Judged {
 }
 
 impl Judged {
+    /// Names of the undeclared effects in the order of letters.
+    pub(crate) fn set(&self) -> Vec<&'static str> {
+        let mut names = self.names();
+        names.sort_unstable();
+        names
+    }
+
     /// Names of the undeclared effects.
     pub(crate) fn names(&self) -> Vec<&'static str> {
         self.hypothesis.undeclared().map(|part| part.effect.id()).collect()

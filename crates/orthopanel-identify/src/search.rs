@@ -238,7 +238,8 @@ impl<'a> Inquiry<'a> {
         let of_base = self.problem(&base.hypothesis);
         let at_base = &base.posterior.point;
         let errors = of_base.errors(&at_base.at).with_every_partner();
-        let loose = of_base.whitening(&errors, &logs(LOOSE.map(|size| NET * size)))?;
+        let coarse = logs(LOOSE.map(|size| NET * size));
+        let loose = of_base.whitening(&errors, &coarse)?;
         let ways: Vec<Hypothesis> = self.ways(effect).into_iter().map(|part| base.hypothesis.with(part)).collect();
         let missed = self.most_missed(base);
         // What the base's own coordinates make good of a start, to first order.
@@ -258,7 +259,7 @@ impl<'a> Inquiry<'a> {
                 // Motions of the piece as a whole have errors of their own.
                 if point.at.hangs != at_base.at.hangs {
                     let errors = problem.errors(&point.at).with_every_partner();
-                    return problem.judged_by(point, &problem.whitening(&errors, &logs(LOOSE.map(|size| NET * size)))?);
+                    return problem.judged_by(point, &problem.whitening(&errors, &coarse)?);
                 }
                 if bases.len() > 1 {
                     return Some(point);
@@ -307,19 +308,18 @@ impl<'a> Inquiry<'a> {
             points.into_iter().filter_map(on).collect()
         };
         let points = best(ways.iter().enumerate().flat_map(starts).collect(), 4 * FOLLOWED);
-        let points = match self.promising(base, &ways, &points) {
-            Some(promising) if bases.len() == 1 && !promising.is_empty() => promising,
-            Some(_) if bases.len() == 1 && base.names().is_empty() => points.into_iter().take(1).collect(),
-            Some(_) if bases.len() == 1 => return None,
-            _ => points,
-        };
-        let cost = of_base.judged_by(at_base.clone(), &of_base.whitening(&errors, &logs(LOOSE))?)?.cost;
         let points = if bases.len() > 1 {
-            best(follow(points, &logs(LOOSE.map(|size| NET * size)), 5), 2 * FOLLOWED)
+            best(follow(points, &coarse, 5), 2 * FOLLOWED)
         } else {
-            points
+            match self.promising(base, &ways, &points) {
+                Some(promising) if !promising.is_empty() => promising,
+                Some(_) if base.names().is_empty() => points.into_iter().take(1).collect(),
+                Some(_) => return None,
+                None => points,
+            }
         };
         let points = best(follow(points, &logs(LOOSE), 5), FOLLOWED);
+        let cost = of_base.judged_by(at_base.clone(), &of_base.whitening(&errors, &logs(LOOSE))?)?.cost;
         if points.first().is_some_and(|(_, best)| best.cost > cost + behind) {
             let (way, point) = points.into_iter().next()?;
             return self.problem(&ways[way]).posterior(point, logs(LOOSE), 1).map(|posterior| judged((way, posterior)));
@@ -336,8 +336,7 @@ impl<'a> Inquiry<'a> {
         ends.max_by(|a, b| a.1.log_evidence.total_cmp(&b.1.log_evidence)).map(judged)
     }
 
-    /// The starts from which an effect that joins a base which has one already may come to the odds that count, the best few; none where no start
-    /// does. By a score test: what its coordinates and its starts make good of the base's misfit to first order, under sizes of model error that
+    /// The starts from which an effect may come to the odds that count, the best few; `None` where the base's curvature is singular. By a score test: what its coordinates and its starts make good of the base's misfit to first order, under sizes of model error that
     /// are no wider than small ones.
     fn promising(&self, base: &Judged, ways: &[Hypothesis], starts: &[(usize, Point)]) -> Option<Vec<(usize, Point)>> {
         let at_base = &base.posterior.point;
@@ -437,11 +436,7 @@ impl<'a> Inquiry<'a> {
         };
         let mut fewer: Vec<Judged> = parts.into_par_iter().filter_map(left_out).collect();
         fewer.retain(|judged| !judged.names().is_empty());
-        seen.extend(fewer.iter().map(|judged| {
-            let mut names = judged.names();
-            names.sort_unstable();
-            names
-        }));
+        seen.extend(fewer.iter().map(Judged::set));
         fewer
     }
 
@@ -511,11 +506,9 @@ impl<'a> Inquiry<'a> {
                 let fewer = self.each_left_out(&added[0].clone(), &mut seen);
                 // What was looked for beside a worse end of the same hypothesis is looked for again.
                 for found in &fewer {
-                    let names = found.names();
-                    let same = |other: &&Judged| {
-                        other.names().len() == names.len() && names.iter().all(|name| other.names().contains(name))
-                    };
-                    let known = all.iter().filter(same).map(|other| other.log_odds).fold(f64::NEG_INFINITY, f64::max);
+                    let names = found.set();
+                    let same = all.iter().filter(|other| other.set() == names);
+                    let known = same.map(|other| other.log_odds).fold(f64::NEG_INFINITY, f64::max);
                     if found.log_odds > known + ODDS.ln() {
                         seen.retain(|set| set.len() <= names.len() || names.iter().any(|name| !set.contains(name)));
                     }

@@ -1,9 +1,10 @@
 //! The records' lines beside what a hypothesis predicts of them.
 
-use orthopanel_data::{Accelerance, Estimation, ImpactTest};
+use orthopanel_data::{Accelerance, Estimation, ImpactTest, TimeHistory};
 use orthopanel_model::{
     BeamConstants, BeamMode, Damping, EffectState, ExactBeam, Place, ReceptanceSetup, RecordSetting, SuspensionMotion,
 };
+use rayon::prelude::*;
 
 use super::damping::TracedDamping;
 use crate::curves::curves;
@@ -12,14 +13,14 @@ use crate::{AcceleranceFit, IdentifyError};
 
 /// Lines sum the modes up to so many times the highest.
 const SUMMED: f64 = 2.5;
-/// Force lost over the band that a trace draws \[dB\].
-pub(super) const FORCE_DROP: f64 = 20.0;
+/// Force lost over the band that is drawn \[dB\].
+const FORCE_DROP: f64 = 20.0;
 /// Pairs of places from which one hit at each will do.
 const FEW: usize = 3;
 /// Modes of the beam that are looked through for those.
 const MOST_MODES: usize = 200;
 
-/// The accelerances of a test: of its hits as an analyser shows them.
+/// The accelerances of the hits, as an analyser shows them.
 pub(super) struct Lines {
     accelerances: Vec<Accelerance>,
     /// Whether neither hits nor places could tell by how much hits differ.
@@ -37,25 +38,19 @@ pub(super) struct Drawn {
 impl Lines {
     /// # Errors
     /// Records that cannot be read.
-    pub(super) fn of(test: &ImpactTest, estimation: Estimation) -> Result<Self, IdentifyError> {
-        let histories = test.time_histories()?;
-        let accelerances: Vec<Accelerance> = test.accelerances(estimation)?.into_iter().map(|(_, of)| of).collect();
+    pub(super) fn of(test: &ImpactTest) -> Result<Self, IdentifyError> {
+        let histories: Vec<TimeHistory> = test.time_histories()?.into_iter().map(|(_, history)| history).collect();
+        let estimation = Estimation { force_drop: FORCE_DROP, ..Estimation::default() };
+        let accelerances = histories.par_iter().map(|history| Ok(history.accelerance(estimation)?));
+        let accelerances = accelerances.collect::<Result<Vec<_>, IdentifyError>>()?;
         let mut notes = Vec::new();
-        let mut hits_are_few = !histories.is_empty() && histories.len() < FEW;
-        for accelerance in &accelerances {
-            let places = (accelerance.force_at, accelerance.response_at);
-            let history = histories.iter().find(|(_, history)| (history.force_at, history.response_at) == places);
-            let own = match history {
-                Some((_, history)) => {
-                    hits_are_few &= history.kept_in(accelerance).hits.len() < 2;
-                    history.left_out_of(&accelerance.verdicts)
-                }
-                None => accelerance.notes.clone(),
-            };
-            let [force, response] = [places.0, places.1].map(|place| place.x);
-            notes
-                .extend(own.iter().map(|note| format!("force at x = {force} m, response at x = {response} m: {note}")));
+        for (history, accelerance) in histories.iter().zip(&accelerances) {
+            let [force, response] = [history.force_at, history.response_at].map(|place| place.x);
+            let left_out = history.left_out_of(&accelerance.verdicts).into_iter();
+            notes.extend(left_out.map(|note| format!("force at x = {force} m, response at x = {response} m: {note}")));
         }
+        let single = |(history, accelerance): (&TimeHistory, &Accelerance)| history.kept_in(accelerance).hits.len() < 2;
+        let hits_are_few = histories.len() < FEW && histories.iter().zip(&accelerances).all(single);
         Ok(Self { accelerances, hits_are_few, notes })
     }
 

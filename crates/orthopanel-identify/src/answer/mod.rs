@@ -11,7 +11,7 @@ mod next_measurement;
 mod not_tested;
 mod panel;
 
-use orthopanel_data::{Estimation, ImpactTest};
+use orthopanel_data::ImpactTest;
 use orthopanel_model::Readable;
 
 use crate::IdentifyError;
@@ -26,7 +26,7 @@ use crate::to_check::GAIN_OR_MASS;
 use bounds::{notes_on_bound, notes_on_prior_alone};
 use doubt::{check_first, doubts};
 use estimates::{Estimates, id};
-use lines::{Drawn, FORCE_DROP, Lines};
+use lines::{Drawn, Lines};
 use misfit::Yardstick;
 use next_measurement::next_measurement;
 use not_tested::not_tested;
@@ -80,7 +80,7 @@ fn tracing_of(test: &ImpactTest, inquiry: &Inquiry, all: &[Judged]) -> Result<Tr
         effects: Estimates::of(judged).undeclared(),
         left_behind: None,
     };
-    let lines = Lines::of(test, Estimation { force_drop: FORCE_DROP, ..Estimation::default() })?;
+    let lines = Lines::of(test)?;
     let Drawn { curves, damping } = drawn(test, (inquiry, chosen), &lines)?;
     let base_curves =
         if std::ptr::eq(base, chosen) { curves.clone() } else { drawn(test, (inquiry, base), &lines)?.curves };

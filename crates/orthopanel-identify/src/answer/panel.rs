@@ -5,14 +5,14 @@ use std::f64::consts::TAU;
 
 use orthopanel_data::ImpactTest;
 use orthopanel_model::{
-    BEAM_CONSTANTS, Damping, Estimate, MODEL_SCHEMA, ModeRange, ModelError, Owner, PLATE_CONSTANTS, PanelModel, Place,
-    Ports, StructureKind,
+    BEAM_CONSTANTS, Damping, MODEL_SCHEMA, ModeRange, ModelError, Owner, PanelModel, Place, Ports, StructureKind,
 };
 
 use super::damping::TracedDamping;
 use super::estimates::Estimates;
 use crate::measured::MeasuredModes;
-use crate::outcome::{Removed, TracedEffect};
+use crate::outcome::Removed;
+use crate::plate_of_ratios::widen;
 use crate::predicted::distinct;
 
 /// Key of a model's provenance under which the standard deviations of its damping ratios stand.
@@ -50,7 +50,7 @@ pub(super) fn panel(
     };
     let damping = match plate.and_then(|number| estimates.effects.get(number)) {
         Some((ratios, _)) => {
-            widen(&mut panel, (&estimates.constants, ratios));
+            widen(&mut panel, ratios);
             damping_of_plate(&panel, (measured, of_effects))?
         }
         None => damping,
@@ -59,26 +59,6 @@ pub(super) fn panel(
     panel.provenance.insert(DAMPING_STD.to_owned(), damping.std.into());
     panel.effects = own.into_iter().map(|(effect, _)| effect.entry()).collect();
     Ok((panel, others.into_iter().map(|(effect, declared)| Removed::of(effect, *declared)).collect()))
-}
-
-/// Turns the beam into the plate whose ratios an effect holds, $E_y = (E_y/E_x)E_x$ and so on.
-///
-/// The standard deviations of the ratios and those of $E_x$, $G_{zx}$ are added as those of independent numbers.
-fn widen(panel: &mut PanelModel, (of_beam, ratios): (&[Estimate], &TracedEffect)) {
-    let unknown = Estimate { value: 0.0, std: None };
-    let [e_x, g_zx] = [0, 1].map(|at| of_beam.get(at).copied().unwrap_or(unknown));
-    let ratio = |at: usize| {
-        let parameter = ratios.parameters.get(at).and_then(|parameter| parameter.values.first());
-        parameter.copied().unwrap_or(unknown)
-    };
-    let times = |ratio: Estimate, of: Estimate| {
-        let part = |one: Estimate| one.std.map(|std| (std / one.value).powi(2));
-        let value = ratio.value * of.value;
-        Estimate { value, std: part(ratio).zip(part(of)).map(|(a, b)| value * (a + b).sqrt()) }
-    };
-    let all = [e_x, times(ratio(0), e_x), ratio(1), times(ratio(2), e_x), times(ratio(3), g_zx), g_zx];
-    panel.structure = StructureKind::MindlinPlate;
-    panel.constants = PLATE_CONSTANTS.iter().zip(all).map(|(of, value)| (of.name.to_owned(), value)).collect();
 }
 
 /// Of all modes of the plate, those too that no record shows.

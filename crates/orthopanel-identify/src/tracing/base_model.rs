@@ -2,7 +2,7 @@
 
 use orthopanel_data::{Accelerance, Estimation, ImpactTest, MeasurementData};
 use orthopanel_model::{
-    BEAM_CONSTANTS, EffectSetting, Estimate, ModelError, NaturalFrequencies, Place, ReceptanceSetup, RecordSetting,
+    BEAM_CONSTANTS, EffectSetting, Estimate, ModelError, NaturalFrequencies, ReceptanceSetup, RecordSetting,
     StructureKind,
 };
 
@@ -13,6 +13,7 @@ use super::record_problem::State;
 use super::records_of_test::base_of_histories;
 use super::report::effects_of;
 use crate::accelerance_fit::{ResonanceStart, is_told};
+use crate::declared_effects::pairs_of_places;
 use crate::free_constants::FreeConstants;
 use crate::frequency_fit::identified_constants;
 use crate::structures::bending_nodes;
@@ -68,20 +69,6 @@ pub(crate) fn identify_with_effects(test: &ImpactTest, settings: Settings) -> Re
         return base_of_histories(test)?.identification(test, settings.estimation);
     }
     refused("declared effects want measurements of one kind: put others into a test file of their own")
-}
-
-/// Records of a test: files of the same places are hits of one.
-fn pairs_of_places(test: &ImpactTest) -> usize {
-    let mut pairs: Vec<[Place; 2]> = Vec::new();
-    for measurement in &test.measurements {
-        if let MeasurementData::TimeHistory(record) | MeasurementData::Accelerance(record) = &measurement.data {
-            let pair = [record.force_at, record.response_at];
-            if !pairs.contains(&pair) {
-                pairs.push(pair);
-            }
-        }
-    }
-    pairs.len()
 }
 
 impl RecordsBase {

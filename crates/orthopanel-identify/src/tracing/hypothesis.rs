@@ -1,11 +1,13 @@
 //! Effects that are switched on, and which of their parameters a search moves.
 
-use orthopanel_data::{ImpactTest, Measurement, MeasurementData};
-use orthopanel_model::{
-    Effect, EffectParameter, EffectSetting, EffectState, ModelError, Piece, RecordSetting, Scale, effect,
-};
+use std::collections::BTreeMap;
+
+use orthopanel_data::ImpactTest;
+use orthopanel_model::{Effect, EffectState, ModelError, Piece, Scale};
 
 use crate::IdentifyError;
+use crate::declared_effects::{Declared, declared, first_setting};
+pub(super) use crate::hypothesis::{has_place, is_place};
 
 /// The plate in place of the beam.
 pub(super) const PLATE: &str = "width-coupling";
@@ -77,16 +79,6 @@ const MARGIN: f64 = 1e-3;
 pub(super) fn ends_of_range(scale: Scale, (low, high): (f64, f64), value: f64) -> [bool; 2] {
     let part = if scale == Scale::Log { (value / low).ln() / (high / low).ln() } else { (value - low) / (high - low) };
     [part < MARGIN, part > 1.0 - MARGIN]
-}
-
-/// Whether an effect sits at a place of its own: a piece may have several of it.
-pub(super) fn has_place(effect: &dyn Effect) -> bool {
-    effect.parameters().iter().any(is_place)
-}
-
-/// Whether a parameter is the place of an effect along the piece.
-pub(super) fn is_place(parameter: &EffectParameter) -> bool {
-    parameter.name == "x"
 }
 
 impl Switched {
@@ -221,50 +213,15 @@ impl Hypothesis {
     /// The effects that a test file declares: what it tells of them is held, the rest is free.
     ///
     /// # Errors
-    /// [`ModelError::UnknownEffect`] for an id that the catalogue does not have, [`ModelError::EffectParameter`] for a
-    /// parameter that the effect does not have or may not be.
+    /// As [`declared`].
     pub(super) fn declared(test: &ImpactTest, piece: &Piece, records: usize) -> Result<Self, IdentifyError> {
-        let mut hypothesis = Self::default();
-        // A list of frequencies has no records that could differ.
-        let is_list = |measurement: &Measurement| matches!(measurement.data, MeasurementData::NaturalFrequencies(_));
-        let lists = test.measurements.iter().all(is_list);
-        for told in &test.effects {
-            let effect = effect(&told.id)?;
-            let refused = |why: &str| Err(IdentifyError::Unsupported(format!("effect {:?}: {why}", told.id)));
-            if !has_place(effect) && hypothesis.effects.iter().any(|on: &Switched| on.effect.id() == effect.id()) {
-                return refused("declared twice, once is enough");
-            }
-            if effect.id() == PLATE {
-                return refused(
-                    "the plate in place of the beam is no effect to declare: say structure = \"mindlin-plate\"",
-                );
-            }
-            let known = |name: &String| effect.parameters().iter().any(|parameter| parameter.name == name);
-            if let Some(name) = told.parameters.keys().find(|name| !known(name)) {
-                let names: Vec<&str> = effect.parameters().iter().map(|parameter| parameter.name).collect();
-                let message = format!("effect {:?}: no parameter {name:?}, it has {}", told.id, names.join(", "));
-                return Err(IdentifyError::Unsupported(message));
-            }
-            let value = |name: &str| told.parameters.get(name).copied();
-            let switched = Switched::new(effect, piece, records, value, |name| value(name).is_some());
-            for (parameter, value) in effect.parameters().iter().filter_map(|p| Some((p, value(p.name)?))) {
-                let (low, high) = parameter.range(piece);
-                if !(low..=high).contains(&value) {
-                    let (effect, name, unit) = (effect.id(), parameter.name, parameter.unit);
-                    return Err(ModelError::EffectParameter { effect, name, value, unit, low, high }.into());
-                }
-                let is_in_test = value.round() >= 1.0 && value.round() <= records as f64;
-                if parameter.scale == Scale::Index && !lists && !is_in_test {
-                    let name = parameter.name;
-                    return refused(&format!(
-                        "{name} = {value}, and the test has {records} of them: give the number of one, from 1 to {records} in the \
-                         order of the file's measurements"
-                    ));
-                }
-            }
-            hypothesis.effects.push(switched);
-        }
-        Ok(hypothesis)
+        let switched = |Declared { effect, values }: Declared| {
+            let names = effect.parameters().iter().map(|parameter| parameter.name);
+            let told: BTreeMap<&str, f64> =
+                names.zip(values).filter_map(|(name, value)| Some((name, value?))).collect();
+            Switched::new(effect, piece, records, |name| told.get(name).copied(), |name| told.contains_key(name))
+        };
+        Ok(Self { effects: declared(test, piece, records)?.into_iter().map(switched).collect() })
     }
 
     /// Whether each effect can act in this test at all, as where its clamp is: a search would pass over starts that fail.
@@ -272,18 +229,7 @@ impl Hypothesis {
     /// # Errors
     /// [`ModelError::EffectNeeds`] with what the test lacks, and what an effect refuses of its numbers.
     pub(super) fn check_that_each_acts(&self, test: &ImpactTest, piece: &Piece) -> Result<(), IdentifyError> {
-        let history = test.measurements.iter().find_map(|measurement| match &measurement.data {
-            MeasurementData::TimeHistory(record) | MeasurementData::Accelerance(record) => Some(record),
-            MeasurementData::NaturalFrequencies(_) => None,
-        });
-        let record = RecordSetting {
-            number: 1,
-            force_at: history.map(|record| record.force_at),
-            response_at: history.map(|record| record.response_at),
-            ..RecordSetting::default()
-        };
-        let (boundary, suspension) = (test.boundary, test.suspension.clone());
-        let setting = EffectSetting { piece: *piece, boundary, suspension, record };
+        let setting = first_setting(test, piece);
         for on in &self.effects {
             // With a value in each record these are no values of one.
             if on.values.len() == on.effect.parameters().len() {

@@ -250,6 +250,11 @@ impl MindlinPlate {
         Some((value, vec![0.0, by_d_22, 0.0, 0.0, by_a_55, by_a_44]))
     }
 
+    /// The membrane of a plate without terms of its own, made once.
+    fn even_membrane(&self) -> Option<&Membrane> {
+        self.membrane.get_or_init(|| if self.is_even { self.membrane() } else { None }).as_ref()
+    }
+
     /// What the basis lacks of the static flexibility between any two motions of a list.
     pub(crate) fn kinks(&self, membrane: &Membrane, values: &[f64], motions: &[(Motion, Place)]) -> Option<Mat<f64>> {
         let [_, d_22, _, _, a_55, a_44] = plate_stiffnesses(self.piece.thickness, values).ok()?;
@@ -292,13 +297,11 @@ impl Structure for MindlinPlate {
 
     /// The kinks, of an even plate.
     fn static_remainder(&self, values: &[f64], motions: [(Motion, Place); 2]) -> Option<(f64, Vec<f64>)> {
-        let membrane = self.membrane.get_or_init(|| if self.is_even { self.membrane() } else { None });
-        self.kink(membrane.as_ref()?, values, motions)
+        self.kink(self.even_membrane()?, values, motions)
     }
 
     fn static_remainders(&self, values: &[f64], motions: &[(Motion, Place)]) -> Option<Mat<f64>> {
-        let membrane = self.membrane.get_or_init(|| if self.is_even { self.membrane() } else { None });
-        self.kinks(membrane.as_ref()?, values, motions)
+        self.kinks(self.even_membrane()?, values, motions)
     }
 
     fn resolved_modes(&self) -> usize {
