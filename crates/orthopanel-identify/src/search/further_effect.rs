@@ -1,0 +1,227 @@
+//! One effect more: from a net of starts to the posterior.
+
+use std::f64::consts::TAU;
+
+use faer::Mat;
+use orthopanel_model::Effect;
+
+use super::{FOLLOWED, Inquiry, LOOSE, NEAR, SMALL, log_prior, logs, starting_constants};
+use crate::hypothesis::Hypothesis;
+use crate::judge::{MOST_FREQUENCY, ODDS};
+use crate::measured::Pole;
+use crate::model_error::{KINDS, Kind};
+use crate::posterior::{Judged, Point, Posterior, Projection};
+
+/// So many times wider where no start is followed yet: a net is coarse.
+const NET: f64 = 4.0;
+/// Poles at which something that vibrates by itself is looked for,
+const MISSED: usize = 4;
+/// and how far beside them.
+const BESIDE_POLE: [f64; 2] = [0.985, 1.01];
+/// Furthest shift of the base's coordinates from which a start is followed.
+const SHIFT: f64 = 0.2;
+/// Numbers of the lowest poles that a plate shares with a beam: below the first that bends across.
+const LOWEST_POLES: [usize; 3] = [3, 4, 6];
+
+impl Inquiry<'_> {
+    /// The poles that the base misses most, those that are none of its modes first.
+    fn most_missed(&self, base: &Judged) -> Vec<Pole> {
+        let measured = self.predictor.comparison.measured;
+        let at = &base.posterior.point.at;
+        let missed = |pole: usize| {
+            if at.partners.iter().any(|record| record[pole].is_none()) {
+                return f64::INFINITY;
+            }
+            let places =
+                (0..measured.records.len()).map(|record| self.predictor.comparison.residue_place(record, pole));
+            let missed = |place: usize| (self.predictor.comparison.values[place] - at.values[place]).powi(2);
+            places.flat_map(|place| [place, place + 1]).map(missed).sum::<f64>()
+        };
+        let mut poles: Vec<(f64, Pole)> =
+            measured.poles.iter().enumerate().map(|(number, pole)| (missed(number), *pole)).collect();
+        poles.sort_by(|a, b| b.0.total_cmp(&a.0));
+        poles.into_iter().take(MISSED).map(|(_, pole)| pole).collect()
+    }
+
+    /// Frequencies \[Hz\] of a mass on a spring at $x$ with which the panel has a mode at each of these poles: with $\alpha$ the receptance
+    /// of the panel there, $\omega_r^2 = \omega^2/(1-\omega^2m\,\alpha(\omega))$; and frequencies beside each pole, for the panel is not known well.
+    fn tuned(&self, base: &Judged, poles: &[Pole], mass: f64, x: f64) -> Vec<f64> {
+        let at = &base.posterior.point.z;
+        let (constants, effects) = (base.hypothesis.constants(at), base.hypothesis.effects(at));
+        let Ok(seen) = effects.and_then(|effects| self.predictor.seen_at(x, &constants, &effects)) else {
+            return vec![];
+        };
+        let tuned = |pole: &Pole| {
+            let square = pole.angular_frequency.powi(2);
+            let share = |(deflection, omega): (&Vec<f64>, &f64)| deflection[0].powi(2) / (omega.powi(2) - square);
+            let receptance: f64 = seen.deflection.iter().zip(&seen.angular_frequency).map(share).sum();
+            let left = 1.0 - square * mass * receptance;
+            let exact = (left > 0.0).then(|| (square / left).sqrt());
+            let beside = BESIDE_POLE.map(|factor| Some(factor * pole.angular_frequency));
+            beside.into_iter().chain([exact]).flatten().map(|omega| omega / TAU).collect::<Vec<_>>()
+        };
+        poles.iter().flat_map(tuned).collect()
+    }
+
+    /// Where the coordinates of a base stand as an effect joins it: as they are, and where the base misses more than a real panel does, so that
+    /// it may have been led away, at constants that fit the frequencies alone, and declared effects where a search begins; at those of the lowest
+    /// poles, where another structure takes the place of the first.
+    fn bases(&self, base: &Judged, with: &Hypothesis) -> Vec<Vec<f64>> {
+        let own = base.hypothesis.of_parts(&base.posterior.point.z);
+        let at = |constants: [f64; 2]| {
+            let mut nets = vec![base.hypothesis.of_constants(&constants)];
+            for (part, own) in base.hypothesis.parts.iter().zip(&own) {
+                let starts = if part.declared { part.starts(|_, _| vec![]) } else { vec![own.to_vec()] };
+                nets = nets.iter().flat_map(|net| starts.iter().map(|start| [&net[..], start].concat())).collect();
+            }
+            nets
+        };
+        let mut bases = vec![base.posterior.point.z.clone()];
+        if base.posterior.log_sizes[Kind::Frequency as usize].exp() > MOST_FREQUENCY {
+            let replaces = with.parts.last().is_some_and(|part| part.replaces_structure(&self.predictor));
+            let lowest = if replaces { &LOWEST_POLES[..] } else { &[usize::MAX] };
+            let (comparison, setting) = (self.predictor.comparison, self.predictor.setting(0));
+            for &lowest in lowest {
+                let constants = starting_constants(comparison, &setting, lowest).unwrap_or_default();
+                bases.extend(constants.into_iter().take(2).flat_map(at));
+            }
+        }
+        bases
+    }
+
+    /// An effect more, in the way and from the start that serve best: a net of starts of all ways is ranked, the best are followed with
+    /// wide sizes of model error, the best of these to the posterior.
+    pub(super) fn with_effect(&self, base: &Judged, effect: &'static dyn Effect) -> Option<Judged> {
+        let of_base = self.problem(&base.hypothesis);
+        let at_base = &base.posterior.point;
+        let errors = of_base.errors(&at_base.at).with_every_partner();
+        let coarse = logs(LOOSE.map(|size| NET * size));
+        let loose = of_base.whitening(&errors, &coarse)?;
+        let ways: Vec<Hypothesis> = self.ways(effect).into_iter().map(|part| base.hypothesis.with(part)).collect();
+        let missed = self.most_missed(base);
+        // What the base's own coordinates make good of a start, to first order.
+        let projection = Projection::new(&at_base.derivatives, &of_base.hypothesis.precision(), &loose)?;
+        let bases = self.bases(base, &ways[0]);
+        // Another structure is too dear for more than one set of derivatives.
+        let replaces = ways[0].parts.last().is_some_and(|part| part.replaces_structure(&self.predictor));
+        let exact_from = if replaces { usize::MAX } else { at_base.z.len() };
+        let starts = |(way, hypothesis): (usize, &Hypothesis)| {
+            let problem = self.problem(hypothesis);
+            let starts = hypothesis
+                .parts
+                .last()
+                .map_or(vec![], |part| part.starts(|mass, x| self.tuned(base, &missed, mass, x)));
+            let point = |(of_base, start): (&Vec<f64>, &Vec<f64>)| {
+                let point = problem.point([&of_base[..], start].concat(), &loose)?;
+                // Motions of the piece as a whole have errors of their own.
+                if point.at.hangs != at_base.at.hangs {
+                    let errors = problem.errors(&point.at).with_every_partner();
+                    return problem.judged_by(point, &problem.whitening(&errors, &coarse)?);
+                }
+                if bases.len() > 1 {
+                    return Some(point);
+                }
+                let (shift, gain) = projection.of(&problem.missed(&point.at), &at_base.z);
+                let mut z = point.z.clone();
+                z.iter_mut().zip(&shift).for_each(|(z, shift)| *z += shift.clamp(-SHIFT, SHIFT));
+                hypothesis.clamp(&mut z);
+                Some(Point { z, cost: point.cost - gain, ..point })
+            };
+            let starts = bases.iter().flat_map(|of_base| starts.iter().map(move |start| (of_base, start)));
+            starts.filter_map(point).map(|point| (way, point)).collect::<Vec<_>>()
+        };
+        let judged = |(way, posterior): (usize, Posterior)| {
+            let log_odds = base.log_odds - base.posterior.log_evidence + posterior.log_evidence + log_prior(ways.len());
+            Judged { hypothesis: ways[way].clone(), posterior, log_odds }
+        };
+        // Under wide sizes no hypothesis is far behind that comes out ahead under narrow ones.
+        let behind = 2.0 * NEAR * ODDS.ln();
+        let best = |mut points: Vec<(usize, Point)>, most: usize| {
+            points.sort_by(|a, b| a.1.cost.total_cmp(&b.1.cost));
+            let mut apart: Vec<(usize, Point)> = Vec::new();
+            for (way, point) in points {
+                let near = |(other, of): &(usize, Point)| {
+                    *other == way && of.z.iter().zip(&point.z).all(|(a, b)| (a - b).abs() < 0.05)
+                };
+                let is_behind = apart.first().is_some_and(|(_, best)| point.cost > best.cost + behind);
+                if apart.len() < most && !is_behind && !apart.iter().any(near) {
+                    apart.push((way, point));
+                }
+            }
+            apart
+        };
+        let follow = |points: Vec<(usize, Point)>, sizes: &[f64; KINDS], most: usize| -> Vec<(usize, Point)> {
+            let on = |(way, mut point): (usize, Point)| {
+                let problem = self.problem(&ways[way]);
+                if point.derivatives.ncols() == 0 {
+                    // The shift is of first order about the base: where it leads nowhere, it is left out.
+                    let unshifted = [&at_base.z[..], &point.z[at_base.z.len()..]].concat();
+                    let both = [point.z, unshifted].into_iter().filter_map(|z| problem.point(z, &loose));
+                    point = both.min_by(|a, b| a.misfit.total_cmp(&b.misfit))?;
+                }
+                let by = problem.whitening(&problem.errors(&point.at).with_every_partner(), sizes)?;
+                problem.follow(point, &by, most, (1.0, exact_from)).map(|(point, _)| (way, point))
+            };
+            points.into_iter().filter_map(on).collect()
+        };
+        let points = best(ways.iter().enumerate().flat_map(starts).collect(), 4 * FOLLOWED);
+        let points = if bases.len() > 1 {
+            best(follow(points, &coarse, 5), 2 * FOLLOWED)
+        } else {
+            match self.promising(base, &ways, &points) {
+                Some(promising) if !promising.is_empty() => promising,
+                Some(_) if base.names().is_empty() => points.into_iter().take(1).collect(),
+                Some(_) => return None,
+                None => points,
+            }
+        };
+        let points = best(follow(points, &logs(LOOSE), 5), FOLLOWED);
+        let cost = of_base.judged_by(at_base.clone(), &of_base.whitening(&errors, &logs(LOOSE))?)?.cost;
+        if points.first().is_some_and(|(_, best)| best.cost > cost + behind) {
+            let (way, point) = points.into_iter().next()?;
+            return self.problem(&ways[way]).posterior(point, logs(LOOSE), 1).map(|posterior| judged((way, posterior)));
+        }
+        let points = best(follow(points, &std::array::from_fn(|k| 0.5 * (LOOSE[k] * SMALL[k]).ln()), 4), FOLLOWED);
+        // From small sizes, since an effect drowns in those of too poor a hypothesis; and from those, since it need not be all that lacks.
+        let from = [logs(SMALL), base.posterior.log_sizes];
+        let ends = from.into_iter().filter_map(|sizes| {
+            let all = best(follow(best(follow(points.clone(), &sizes, 4), 1), &sizes, 8), 1);
+            let (way, point) = all.into_iter().next()?;
+            let posterior = self.problem(&ways[way]).posterior(point, sizes, 2)?;
+            Some((way, posterior))
+        });
+        ends.max_by(|a, b| a.1.log_evidence.total_cmp(&b.1.log_evidence)).map(judged)
+    }
+
+    /// The starts from which an effect may come to the odds that count, the best few; `None` where the base's curvature is singular. By a score test: what its coordinates and its starts make good of the base's misfit to first order, under sizes of model error that
+    /// are no wider than small ones.
+    fn promising(&self, base: &Judged, ways: &[Hypothesis], starts: &[(usize, Point)]) -> Option<Vec<(usize, Point)>> {
+        let at_base = &base.posterior.point;
+        let of_base = self.problem(&base.hypothesis);
+        let sizes: [f64; KINDS] = std::array::from_fn(|kind| base.posterior.log_sizes[kind].min(SMALL[kind].ln()));
+        let by = of_base.whitening(&of_base.errors(&at_base.at).with_every_partner(), &sizes)?;
+        let precision = of_base.hypothesis.precision();
+        let missed = of_base.missed(&at_base.at);
+        let before = Projection::new(&at_base.derivatives, &precision, &by)?.of(&missed, &at_base.z).1;
+        let gain = |way: usize, start: &Point| {
+            let problem = self.problem(&ways[way]);
+            let z = [&at_base.z[..], &start.z[at_base.z.len()..]].concat();
+            let start = problem.point(z, &by)?;
+            if start.at.hangs != at_base.at.hangs {
+                return Some(f64::INFINITY);
+            }
+            let own = problem.derivatives(&start, at_base.z.len())?;
+            let towards = Mat::from_fn(own.nrows(), 1, |row, _| start.at.values[row] - at_base.at.values[row]);
+            let columns = faer::concat![[at_base.derivatives, own, towards]];
+            let free = vec![0.0; columns.ncols() - precision.len()];
+            let here = [&at_base.z[..], &free].concat();
+            let precision = [&precision[..], &free].concat();
+            Some(Projection::new(&columns, &precision, &by)?.of(&missed, &here).1 - before)
+        };
+        let gains = starts.iter().filter_map(|(way, start)| Some((gain(*way, start)?, (*way, start.clone()))));
+        let mut promising: Vec<_> = gains.filter(|(gain, _)| *gain > 2.0 * ODDS.ln()).collect();
+        promising.sort_by(|a, b| b.0.total_cmp(&a.0));
+        promising.truncate(FOLLOWED);
+        Some(promising.into_iter().map(|(_, start)| start).collect())
+    }
+}
