@@ -1,10 +1,16 @@
 //! A factor on records, known by its value: units that were mistaken for others, and sensors turned round.
 
-/// What a motion is taken to be in, metre by metre, and the unit of its own that a test file declares.
-const MOTIONS: [(&str, f64); 5] =
-    [("m/s2", 1.0), ("g", 9.806_65), ("mm/s2", 1e-3), ("in/s2", 0.0254), ("ft/s2", 0.3048)];
-/// The same of a force, in newtons.
-const FORCES: [(&str, f64); 4] = [("N", 1.0), ("lbf", 4.448_221_615_260_5), ("kN", 1e3), ("kgf", 9.806_65)];
+use orthopanel_data::Unit;
+
+/// What a motion is taken to be in, the SI unit first.
+const MOTIONS: [&str; 5] = ["m/s2", "g", "mm/s2", "in/s2", "ft/s2"];
+/// The same of a force.
+const FORCES: [&str; 4] = ["N", "lbf", "kN", "kgf"];
+
+/// Each unit with its factor to SI.
+fn with_factors(units: &'static [&'static str]) -> impl Iterator<Item = (&'static str, f64)> {
+    units.iter().filter_map(|unit| Some((*unit, Unit::parse(unit)?.to_si())))
+}
 
 /// A factor within this part of a known one is that one: constants and mass make up for the rest.
 const NEAR: f64 = 0.05;
@@ -20,8 +26,8 @@ pub(super) fn known_cause(factor: f64, each: bool) -> Option<String> {
     let turned = if factor < 0.0 { "the sensor turned round, direction = -1" } else { "" };
     let off = |known: f64| (factor.abs() / known).ln().abs();
     let mut known: Vec<(f64, usize, String)> = Vec::new();
-    for (motion, over) in MOTIONS {
-        for (force, under) in FORCES {
+    for (motion, over) in with_factors(&MOTIONS) {
+        for (force, under) in with_factors(&FORCES) {
             let declared = [
                 (over != 1.0).then(|| format!("response_unit = {motion:?}")),
                 (under != 1.0).then(|| format!("force_unit = {force:?}")),
@@ -32,11 +38,11 @@ pub(super) fn known_cause(factor: f64, each: bool) -> Option<String> {
     }
     // What is in SI, and was brought there once more by its label.
     let wrong = |label: &str, si: &str| format!("the label {label:?} corrected to {si}");
-    for (motion, over) in MOTIONS.iter().filter(|(_, over)| *over != 1.0) {
+    for (motion, over) in with_factors(&MOTIONS).skip(1) {
         known.push((off(1.0 / over), 1, wrong(motion, "m/s2")));
     }
-    for (force, under) in FORCES.iter().filter(|(_, under)| *under != 1.0) {
-        known.push((off(*under), 1, wrong(force, "N")));
+    for (force, under) in with_factors(&FORCES).skip(1) {
+        known.push((off(under), 1, wrong(force, "N")));
     }
     known.retain(|(off, ..)| *off < NEAR);
     // The fewest mistakes first.
