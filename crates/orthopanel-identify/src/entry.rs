@@ -1,8 +1,9 @@
 //! The entry: what the test holds decides which of the paper's two problems is solved.
 
 use orthopanel_data::{ImpactTest, MeasurementData};
-use orthopanel_model::ModelError;
+use orthopanel_model::{ModelError, StructureKind};
 
+use crate::answer::PlateByModes;
 use crate::{Identification, IdentifyError, Settings, accelerance_fit, frequency_fit, known_beforehand, tracing};
 
 /// Finds the constants of a test, and its damping where there are records: eq. 22 for natural frequencies, the whole
@@ -44,12 +45,24 @@ fn of_once(test: &ImpactTest, lists: usize, settings: Settings) -> Result<Identi
     if lists == test.measurements.len() {
         frequency_fit::identify_frequencies(test, settings.search).map_err(of_held)?.determined()
     } else if lists == 0 {
+        if let Some(plate) = real_plate(test)? {
+            return plate.identification(test, settings)?.determined();
+        }
         accelerance_fit::identify_records(test, settings).map_err(of_held)?.determined()
     } else {
         let message = "natural frequencies and records in one test: put them in two test files, since the frequencies \
                        are most likely read off the same records and would count twice";
         Err(IdentifyError::Unsupported(message.to_owned()))
     }
+}
+
+/// A declared plate of one piece whose modes lie beside those of any ideal plate.
+fn real_plate(test: &ImpactTest) -> Result<Option<PlateByModes>, IdentifyError> {
+    if test.structure != Some(StructureKind::MindlinPlate) || test.pieces.len() != 1 {
+        return Ok(None);
+    }
+    let plate = PlateByModes::of(test)?;
+    Ok(plate.filter(|plate| !plate.is_ideal()))
 }
 
 /// A law that is indefinite where the search began says nothing of the values it began with, where these are not the user's.

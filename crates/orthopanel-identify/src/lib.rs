@@ -23,6 +23,7 @@ mod measured;
 mod model_error;
 mod outcome;
 mod plate_of_ratios;
+mod plate_start;
 mod posterior;
 mod predicted;
 mod search;

@@ -24,6 +24,10 @@ pub struct ModeMatch {
 const APART: f64 = 0.06;
 /// Worth of a shape: one that is another mode's costs as much as two deviations of frequency.
 const SHAPE: f64 = 4.0;
+/// Standard deviation of the logarithm of a residue's size between partners of one record, the most that it costs, and what a wrong sign does.
+const SIZE: f64 = 0.7;
+const MOST_BY_SIZE: f64 = 9.0;
+const SIGN: f64 = 4.0;
 /// No partner costs so much: seven deviations.
 const ALONE: f64 = 50.0;
 /// The assignment works in whole numbers.
@@ -70,29 +74,53 @@ impl MeasuredModes {
         candidates: &[(f64, Vec<f64>)],
         apart: impl Fn(usize) -> f64,
     ) -> Vec<Option<(usize, Option<f64>)>> {
+        self.assigned(candidates, apart, |_| ALONE).0
+    }
+
+    /// The same with what each pole costs that stays alone, and the cost of all.
+    pub(crate) fn assigned(
+        &self,
+        candidates: &[(f64, Vec<f64>)],
+        apart: impl Fn(usize) -> f64,
+        alone: impl Fn(usize) -> f64,
+    ) -> (Vec<Option<(usize, Option<f64>)>>, f64) {
         let pairs = |pole: usize| {
             let of = |(index, (omega, shape)): (usize, &(f64, Vec<f64>))| {
                 let assurance = self.assurance(pole, shape);
                 let apart = (self.poles[pole].angular_frequency / omega).ln() / apart(index);
-                (apart * apart + SHAPE * (1.0 - assurance.unwrap_or(1.0)), assurance)
+                let of_shape = assurance.map_or_else(|| self.unlikeness(pole, shape), |mac| SHAPE * (1.0 - mac));
+                (apart * apart + of_shape, assurance)
             };
             candidates.iter().enumerate().map(of).collect::<Vec<_>>()
         };
         let pairs: Vec<Vec<(f64, Option<f64>)>> = (0..self.poles.len()).map(pairs).collect();
         if pairs.is_empty() {
-            return vec![];
+            return (vec![], 0.0);
         }
         // One column more a pole, in which it stays alone.
-        let cost = |(pole, column): (usize, usize)| {
-            let cost = pairs[pole].get(column).map_or(ALONE, |(cost, _)| cost.min(ALONE));
-            (UNIT * cost).round() as i64
-        };
+        let cost_of =
+            |pole: usize, column: usize| pairs[pole].get(column).map_or(alone(pole), |(cost, _)| cost.min(alone(pole)));
+        let cost = |(pole, column): (usize, usize)| (UNIT * cost_of(pole, column)).round() as i64;
         let (_, columns) = kuhn_munkres_min(&Matrix::from_fn(pairs.len(), candidates.len() + pairs.len(), cost));
+        let total = columns.iter().enumerate().map(|(pole, column)| cost_of(pole, *column)).sum();
         let partner = |(pole, column): (usize, usize)| {
             let (cost, assurance) = *pairs[pole].get(column)?;
-            (cost < ALONE).then_some((column, assurance))
+            (cost < alone(pole)).then_some((column, assurance))
         };
-        columns.into_iter().enumerate().map(partner).collect()
+        (columns.into_iter().enumerate().map(partner).collect(), total)
+    }
+
+    /// $W_r$ of a pole, about: a lightly damped mode has the residue $j\omega W/2$.
+    pub(crate) fn product(&self, record: usize, pole: usize) -> f64 {
+        2.0 * self.records[record].residues[pole].im / self.poles[pole].angular_frequency
+    }
+
+    /// How far a pole of one record is from a mode by size and sign, squared in standard deviations.
+    fn unlikeness(&self, pole: usize, shape: &[f64]) -> f64 {
+        let (Some(&predicted), 1) = (shape.first(), self.records.len()) else { return 0.0 };
+        let measured = self.product(0, pole);
+        let size = ((predicted / measured).abs().max(f64::MIN_POSITIVE).ln() / SIZE).powi(2).min(MOST_BY_SIZE);
+        size + if predicted * measured < 0.0 { SIGN } else { 0.0 }
     }
 
     fn assurance(&self, pole: usize, shape: &[f64]) -> Option<f64> {

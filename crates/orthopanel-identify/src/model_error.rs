@@ -118,6 +118,12 @@ impl EstimatedModelError {
     }
 }
 
+/// Median of $\tau_f$, and the factor within which two of three lie.
+pub(crate) fn frequency_prior() -> (f64, f64) {
+    let (_, median, factor) = PRIORS[Kind::Frequency as usize];
+    (median, factor)
+}
+
 /// Standard deviation of $\ln\tau_k$ of every kind.
 pub(crate) fn deviations() -> [f64; KINDS] {
     PRIORS.map(|(_, _, factor)| factor.ln())

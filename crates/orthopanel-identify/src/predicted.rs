@@ -48,6 +48,8 @@ pub(crate) struct Predictor<'a> {
     places: Vec<Place>,
     /// Highest pole \[rad/s\] that is a motion of the piece as a whole, zero without one, once a base tells: the same for all hypotheses.
     pub hanging: Option<f64>,
+    /// Deviation of the logarithm of the frequency of a mode of the piece itself that is to be matched.
+    pub apart: f64,
     /// Modes that were found last: what acts on the channel alone asks for the same ones again.
     found: Mutex<VecDeque<(Vec<f64>, Arc<SeenModes>)>>,
 }
@@ -102,7 +104,7 @@ impl<'a> Predictor<'a> {
         // What is not linear shows between hits, not in modes.
         let record = RecordSetting { suspension_motion: SuspensionMotion::InTime, ..setting.record.clone() };
         let setting = EffectSetting { record, ..setting.clone() };
-        Ok(Self { comparison, panel, setting, places, hanging: None, found: Mutex::default() })
+        Ok(Self { comparison, panel, setting, places, hanging: None, apart: APART[0], found: Mutex::default() })
     }
 
     /// The piece.
@@ -213,7 +215,7 @@ impl<'a> Predictor<'a> {
             self.modes(setting, ports, with_slopes, &self.panel.with_core_times(constants, *node), effects)
         };
         let found = nodes.iter().map(at).collect::<Result<Vec<_>, _>>()?;
-        let near = measured.poles.len() + SPARE + setting.boundary.rigid_modes();
+        let near = measured.poles.len() + SPARE + self.panel.rigid_modes(setting.boundary);
         let relaxing = Relaxing::new(RelaxingModes::new(core, &nodes, &found, near), measured);
         Ok(View { of: None, ports: ports.to_vec(), modes: Arc::new(relaxing.usual()), relaxing: Some(relaxing) })
     }
@@ -317,13 +319,14 @@ impl<'a> Predictor<'a> {
         };
         let shape = |&n: &usize| (omega[n], (0..measured.records.len()).map(|record| product(record, n)).collect());
         let shapes: Vec<(f64, Vec<f64>)> = candidates.iter().map(shape).collect();
-        let found = measured.partners(&shapes, |index| APART[usize::from(self.hangs(candidates[index]))]);
+        let found =
+            measured.partners(&shapes, |index| if self.hangs(candidates[index]) { APART[1] } else { self.apart });
         found.into_iter().map(|found| found.map(|(index, _)| candidates[index])).collect()
     }
 
     /// Whether a mode is a motion of the piece as a whole: those that would be at zero but for the suspension are the lowest.
     fn hangs(&self, mode: usize) -> bool {
-        mode < self.setting.boundary.rigid_modes()
+        mode < self.panel.rigid_modes(self.setting.boundary)
     }
 
     /// Damping ratio of a mode: that of the pole that is its partner, less what a window brings.
@@ -420,7 +423,7 @@ impl<'a> Predictor<'a> {
         unseen.sort_by(|a, b| b.total_cmp(a));
         comparison.unseen().zip(unseen.into_iter().take(UNSEEN)).for_each(|(place, value)| values[place] = value);
         // By the poles where they show it, so that all hypotheses leave out the same.
-        let flexible = omega.get(self.setting.boundary.rigid_modes()).copied().unwrap_or(0.0);
+        let flexible = omega.get(self.panel.rigid_modes(self.setting.boundary)).copied().unwrap_or(0.0);
         let poles = measured.poles.iter().map(|pole| pole.angular_frequency);
         let seen_hanging = self
             .hanging
@@ -433,7 +436,7 @@ impl<'a> Predictor<'a> {
         let decay = channels.first().map_or(0.0, |channel| channel.decay);
         let of_effects = |n: usize| first.modes.damping_ratio[n] + decay / omega[n];
         let damping_of_effects = partners.iter().map(|partner| partner.map_or(0.0, of_effects)).collect();
-        let is_free = self.setting.boundary.rigid_modes() > 0;
+        let is_free = self.panel.rigid_modes(self.setting.boundary) > 0;
         Prediction {
             values,
             by_force,

@@ -136,18 +136,21 @@ impl<'a> Inquiry<'a> {
         }
         let Some((_, hypothesis, point)) = best else { return Ok(None) };
         inquiry.waves = waves(&inquiry.predictor, &hypothesis.constants(&point.z))?;
-        inquiry.predictor.hanging = Some(point.at.hanging);
+        Ok(inquiry.with_base(hypothesis, point))
+    }
+
+    /// The base from which all begin, near a point.
+    fn with_base(mut self, hypothesis: Hypothesis, point: Point) -> Option<(Self, Judged)> {
+        self.predictor.hanging = Some(point.at.hanging);
         // Here sizes first: small ones would lead the constants away where an effect is large.
-        let problem = inquiry.problem(&hypothesis);
+        let problem = self.problem(&hypothesis);
         let errors = problem.errors(&point.at);
         let sizes = problem.sizes(&point.at, &errors, logs(SMALL), 12).map_or(logs(LOOSE), |(sizes, ..)| sizes);
         let from = [sizes, logs(SMALL), medians()];
         let posteriors = from.into_iter().filter_map(|sizes| problem.posterior(point.clone(), sizes, 4));
-        let judged = posteriors.max_by(|a, b| a.log_evidence.total_cmp(&b.log_evidence));
-        Ok(judged.map(|posterior| {
-            let log_odds = posterior.log_evidence;
-            (inquiry, Judged { hypothesis, posterior, log_odds })
-        }))
+        let posterior = posteriors.max_by(|a, b| a.log_evidence.total_cmp(&b.log_evidence))?;
+        let log_odds = posterior.log_evidence;
+        Some((self, Judged { hypothesis, posterior, log_odds }))
     }
 
     pub(crate) fn problem<'p>(&'p self, hypothesis: &'p Hypothesis) -> Problem<'p> {

@@ -20,6 +20,7 @@ mod plate_changed_names;
 mod plate_edges;
 mod plate_few_frequencies;
 mod plate_frequencies;
+mod plate_records;
 mod plate_shifted_names;
 mod support;
 mod time_history;

@@ -47,11 +47,12 @@ pub(super) fn suspension(
     let at = || source.at(given.first().map_or(0..0, Spanned::span), "suspension.at");
     source.at_most((given.len(), "points"), limits::SUSPENSION_POINTS, at, "name those that carry the piece")?;
     let mut places = Vec::new();
-    for (index, x) in given.into_iter().enumerate() {
+    for (index, point) in given.into_iter().enumerate() {
         let key = format!("suspension.at[{}]", index + 1);
-        let place = Place { x: source.finite(&x, &key)?, y: 0.0 };
+        let [x, y] = point.get_ref().0.map(|part| source.finite(&Spanned::new(point.span(), part), &key));
+        let place = Place { x: x?, y: y? };
         for NamedPiece { piece, .. } in pieces {
-            let at = |_| source.at(x.span(), &key);
+            let at = |_| source.at(point.span(), &key);
             piece.contains(place).map_err(|error| DataError::Model { at: at(()), source: error })?;
         }
         places.push(place);

@@ -55,7 +55,7 @@ pub(super) struct Piece {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Suspension {
-    pub(super) at: Vec<Spanned<f64>>,
+    pub(super) at: Vec<Spanned<SuspensionPoint>>,
 }
 
 #[derive(Deserialize)]
@@ -110,6 +110,9 @@ pub(super) struct KnownConstant {
     pub(super) value: Option<f64>,
     pub(super) std: Option<f64>,
 }
+
+/// A point that carries the piece: x alone, on the centre line, or x and y.
+pub(super) struct SuspensionPoint(pub(super) [f64; 2]);
 
 /// One number for all modes, or one a mode.
 pub(super) enum OneOrEach {
@@ -169,6 +172,36 @@ impl<'de> Deserialize<'de> for Constant {
             }
         }
         deserializer.deserialize_any(ConstantVisitor)
+    }
+}
+
+impl<'de> Deserialize<'de> for SuspensionPoint {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct PointVisitor;
+        impl<'de> Visitor<'de> for PointVisitor {
+            type Value = SuspensionPoint;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("x in m, or [x, y]")
+            }
+
+            fn visit_f64<E>(self, x: f64) -> Result<SuspensionPoint, E> {
+                Ok(SuspensionPoint([x, 0.0]))
+            }
+
+            fn visit_i64<E>(self, x: i64) -> Result<SuspensionPoint, E> {
+                Ok(SuspensionPoint([x as f64, 0.0]))
+            }
+
+            fn visit_u64<E>(self, x: u64) -> Result<SuspensionPoint, E> {
+                Ok(SuspensionPoint([x as f64, 0.0]))
+            }
+
+            fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<SuspensionPoint, A::Error> {
+                <[f64; 2]>::deserialize(SeqAccessDeserializer::new(seq)).map(SuspensionPoint)
+            }
+        }
+        deserializer.deserialize_any(PointVisitor)
     }
 }
 

@@ -16,7 +16,7 @@ const WANTED: [(&str, &str); 48] = [
     ("own_constants", "a list of names, such as [\"g_zx\"]"),
     ("name", "text in quotes"),
     ("piece", "a table [piece], or in a measurement a piece's name in quotes"),
-    ("at", "a list of x in m, such as [-0.22, 0.22]"),
+    ("at", "a list of x in m, such as [-0.22, 0.22], or of [x, y]"),
     ("left", "\"free\", \"pinned\" or \"clamped\""),
     ("right", "\"free\", \"pinned\" or \"clamped\""),
     ("front", "\"free\", \"pinned\" or \"clamped\""),

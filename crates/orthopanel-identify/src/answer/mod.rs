@@ -4,12 +4,15 @@ mod bounds;
 mod damping;
 mod doubt;
 mod estimates;
+mod identified;
 mod left_out;
 mod lines;
 mod misfit;
 mod next_measurement;
 mod not_tested;
 mod panel;
+
+pub(crate) use identified::PlateByModes;
 
 use orthopanel_data::ImpactTest;
 use orthopanel_model::Readable;

@@ -10,14 +10,26 @@ const FAINT: f64 = 0.02;
 impl MeasuredModes {
     /// Without poles whose peak is below two hundredths of what all others do there, rms over the records: hits that fall beside each other make
     /// twins of strong poles, which are no modes.
-    pub(crate) fn without_faint(mut self) -> Self {
+    pub(crate) fn without_faint(self) -> Self {
         let (poles, records) = (self.poles.len(), self.records.len());
         let kept: Vec<bool> = (0..poles).map(|pole| records == 0 || !self.is_faint(pole)).collect();
+        self.with_poles(&kept)
+    }
+
+    /// The lowest poles alone.
+    pub(crate) fn lowest(&self, count: usize) -> Self {
+        let kept: Vec<bool> = (0..self.poles.len()).map(|pole| pole < count).collect();
+        self.clone().with_poles(&kept)
+    }
+
+    /// Those poles alone that are `kept`.
+    fn with_poles(mut self, kept: &[bool]) -> Self {
+        let records = self.records.len();
         if kept.iter().all(|kept| *kept) {
             return self;
         }
         let damped = self.poles.iter().map(|pole| pole.damping_ratio.is_some());
-        let of_damping = damped.zip(&kept).filter(|(damped, _)| *damped).map(|(_, kept)| *kept);
+        let of_damping = damped.zip(kept).filter(|(damped, _)| *damped).map(|(_, kept)| *kept);
         let remainder = vec![true; 2 * self.remainder_frequencies.len()];
         let of_record = || kept.iter().flat_map(|kept| [*kept; 2]).chain(remainder.iter().copied());
         let all = kept.iter().copied().chain(of_damping).chain((0..records).flat_map(|_| of_record()));

@@ -1,5 +1,7 @@
 //! One record as weighted spectral lines, and how a pole shows in them.
 
+use std::f64::consts::TAU;
+
 use num_complex::Complex64;
 use orthopanel_model::Place;
 
@@ -74,6 +76,27 @@ impl TruncatedHit {
 }
 
 impl RecordLines {
+    /// The lines between two frequencies \[Hz\].
+    pub(super) fn between(&self, band: [f64; 2]) -> Self {
+        let [from, to] = band.map(|end| self.s.partition_point(|s| s.im < TAU * end));
+        let cut = |values: &[f64]| values.get(from..to).map(<[f64]>::to_vec).unwrap_or_default();
+        let of_hit = |hit: &TruncatedHit| TruncatedHit { share: hit.share[from..to].to_vec(), ..hit.clone() };
+        let truncations = self.truncations.as_ref().map(|all| Truncations {
+            step: all.step,
+            back: all.back[from..to].to_vec(),
+            hits: all.hits.iter().map(of_hit).collect(),
+        });
+        Self {
+            force_at: self.force_at,
+            response_at: self.response_at,
+            s: self.s[from..to].to_vec(),
+            value: self.value[from..to].to_vec(),
+            weight: cut(&self.weight),
+            truncations,
+            force_noise: cut(&self.force_noise),
+        }
+    }
+
     /// How a pole shows on these lines.
     ///
     /// With the record's end at $T$ a hit shows of $1/(s-\lambda)$ no more than

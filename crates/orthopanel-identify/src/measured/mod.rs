@@ -15,6 +15,7 @@ mod records;
 pub(crate) use hits::{HitSpectra, HitsOfRecord, transform};
 pub(crate) use records::SKIRT;
 mod scatter;
+mod stabilisation;
 #[cfg(test)]
 mod tests;
 

@@ -3,9 +3,11 @@
 use std::f64::consts::TAU;
 
 use num_complex::Complex64;
+use rayon::prelude::*;
 
 use super::lines::RecordLines;
 use super::modal_fit::{Fitted, ModalFit, PoleParameters, lambda};
+use super::stabilisation::stable_poles;
 
 /// Poles found, with the fit at them.
 pub(super) struct Found {
@@ -14,12 +16,13 @@ pub(super) struct Found {
     pub freedom: f64,
 }
 
-/// A peak stands out of the lines around it by this factor in power, ...
-const STANDS_OUT: f64 = 4.0;
-/// ... and the power falls by this factor on both sides of it before it rises higher.
-const PROMINENCE: f64 = 16.0;
-/// Lines on either side that are around it.
-const AROUND: usize = 150;
+impl Found {
+    /// Whether noise explains what the poles leave.
+    pub(super) fn by_noise(&self) -> bool {
+        per_datum(self) < SYSTEMATIC
+    }
+}
+
 /// Damping ratios at which a pole begins.
 const FIRST_ZETAS: [f64; 3] = [1e-3, 4e-3, 2e-2];
 /// Evaluations of a fit on the way, and of the last.
@@ -32,9 +35,42 @@ const PATIENCE: usize = 2;
 /// A pole closer than this to one that was tried is the same.
 const SAME: f64 = 5e-3;
 
-/// Poles at the peaks of the records, to begin with.
-pub(super) fn peaks(records: &[RecordLines]) -> Option<PoleParameters> {
-    Some(Spectrum::of(records)?.peaks())
+/// A part of the band ends so many times higher than it begins, and holds so many lines at least.
+const PART: f64 = 1.5;
+const LEAST_LINES: usize = 64;
+/// Lines beside a part that its fit sees, as a factor of frequency.
+const OVERLAP: f64 = 1.2;
+
+/// Poles from the data alone, part after part of a band \[Hz\], and up to where they explain the records: beyond, modes overlap so far that no pole
+/// stands by itself. The whole band where they do nowhere.
+pub(super) fn in_parts(records: &[RecordLines], band: [f64; 2]) -> (PoleParameters, f64) {
+    let step = records
+        .iter()
+        .filter_map(|record| Some((record.s.last()?.im - record.s.first()?.im) / TAU / record.s.len() as f64));
+    let step = step.fold(0.0, f64::max);
+    let mut ends = vec![band[0]];
+    while let Some(&from) = ends.last().filter(|from| **from < band[1]) {
+        let to = (PART * from).max(from + LEAST_LINES as f64 * step);
+        ends.push(if PART * to > band[1] { band[1] } else { to });
+    }
+    let of_part = |ends: &[f64]| {
+        let seen: Vec<RecordLines> =
+            records.iter().map(|record| record.between([ends[0] / OVERLAP, ends[1] * OVERLAP])).collect();
+        let found = poles(&seen, stable_poles(&seen))?;
+        let own = |pole: &[f64; 2]| (ends[0]..ends[1]).contains(&(pole[0].exp() / TAU));
+        let explained = found.by_noise();
+        Some((found.poles.into_iter().filter(own).collect::<PoleParameters>(), explained))
+    };
+    let parts: Vec<Option<(PoleParameters, bool)>> = ends.par_windows(2).map(of_part).collect();
+    let explained = parts.iter().position(|part| part.as_ref().is_some_and(|(_, explained)| !explained));
+    let count = explained.filter(|count| *count > 0).unwrap_or(parts.len());
+    (parts.into_iter().take(count).flatten().flat_map(|(poles, _)| poles).collect(), ends[count])
+}
+
+/// The poles of all parts of a band together, found one by one where these do not explain the records.
+pub(super) fn joined(records: &[RecordLines], start: PoleParameters) -> Option<Found> {
+    let found = fit(records, start, ON_THE_WAY)?;
+    if found.by_noise() { Some(found) } else { poles(records, found.poles) }
 }
 
 /// The poles of all records in common, from a start.
@@ -98,10 +134,8 @@ const PROMISING: f64 = 0.25;
 /// What one more pole takes up of the misfit that is left, as if it stood alone.
 fn taken_up(records: &[RecordLines], left: &[Vec<Complex64>], pole: [f64; 2]) -> f64 {
     let [lambda, ..] = lambda(pole);
-    let near = NEAR * pole[1].exp() * pole[0].exp();
     let of_record = |(record, left): (&RecordLines, &Vec<Complex64>)| {
-        let lines = |frequency: f64| record.s.partition_point(|s| s.im < frequency);
-        let [from, to] = [lines(lambda.im - near), lines(lambda.im + near)];
+        let [from, to] = around(record, pole);
         // Of $\mathrm{Re}$ and $\mathrm{Im}$ of the residue together: a complex least squares with the pole alone.
         let (mut cross, mut square) = (Complex64::ZERO, f64::MIN_POSITIVE);
         for ((s, weight), left) in record.s.iter().zip(&record.weight).zip(left).take(to).skip(from) {
@@ -117,28 +151,49 @@ fn taken_up(records: &[RecordLines], left: &[Vec<Complex64>], pole: [f64; 2]) ->
 /// Half-widths on either side that count.
 const NEAR: f64 = 10.0;
 
+/// The lines around a pole, from and to.
+fn around(record: &RecordLines, pole: [f64; 2]) -> [usize; 2] {
+    let near = NEAR * pole[1].exp() * pole[0].exp();
+    [-near, near].map(|aside| record.s.partition_point(|s| s.im < lambda(pole)[0].im + aside))
+}
+
 /// The misfit per datum, never below that of the noise alone.
 fn per_datum(found: &Found) -> f64 {
     (found.fitted.misfit / found.freedom).max(1.0)
 }
 
-/// By how much one pole has to lower the misfit: more than noise would let it, and by a part that counts of what is left.
+/// By how much one pole has to lower the misfit: more than noise would let it.
 fn price(records: &[RecordLines], data: f64, left: &Found) -> f64 {
-    let by_chance = (2 + 2 * records.len()) as f64 * data.ln() * per_datum(left);
-    if per_datum(left) > SYSTEMATIC { by_chance.max(LEAST_PART * left.fitted.misfit) } else { by_chance }
+    (2 + 2 * records.len()) as f64 * data.ln() * per_datum(left)
 }
 
-/// Misfit per datum from which no noise leaves it: the records hold what no pole is, a force that is not linear or a panel that changed,
-/// which many poles would mimic.
+/// Misfit per datum from which no noise leaves it: poles are missing, or the records hold what no pole is, a force that is not linear or a panel
+/// that changed, which many poles would mimic.
 const SYSTEMATIC: f64 = 2.0;
-/// Then a pole has to take up this part of the misfit.
-const LEAST_PART: f64 = 0.1;
+/// Then a pole has to take up this part of the misfit around it, as a resonance that was missing does.
+const LEAST_PART: f64 = 0.5;
 
 fn is_worth(records: &[RecordLines], without: &Found, with: &Found) -> bool {
     // Both on the same lines, those of the one with more poles.
     let fit = ModalFit::new(records, &with.poles);
-    let misfit = fit.at(&without.poles).map_or(f64::INFINITY, |fitted| fitted.misfit);
-    misfit - with.fitted.misfit > price(records, fit.data() as f64, with)
+    let Some(fitted) = fit.at(&without.poles) else { return true };
+    if fitted.misfit - with.fitted.misfit <= price(records, fit.data() as f64, with) {
+        return false;
+    }
+    if with.by_noise() {
+        return true;
+    }
+    let is_new = |pole: &&[f64; 2]| without.poles.iter().all(|other| (other[0] - pole[0]).abs() > pole[1].exp());
+    let Some(new) = with.poles.iter().find(is_new) else { return true };
+    let around = |left: &[Vec<Complex64>]| -> f64 {
+        let of_record = |(record, left): (&RecordLines, &Vec<Complex64>)| {
+            let [from, to] = around(record, *new);
+            left[from..to].iter().map(Complex64::norm_sqr).sum::<f64>()
+        };
+        records.iter().zip(left).map(of_record).sum()
+    };
+    let left = around(&fit.residuals(&with.poles, &with.fitted));
+    left < (1.0 - LEAST_PART) * around(&fit.residuals(&without.poles, &fitted))
 }
 
 /// Leaves out poles that pay no more, the least first.
@@ -167,7 +222,6 @@ fn pruned(records: &[RecordLines], mut found: Found) -> Option<Found> {
 struct Spectrum {
     /// \[Hz\], evenly spaced.
     frequency: Vec<f64>,
-    power: Vec<f64>,
     /// Number of each record's line on the grid.
     places: Vec<Vec<usize>>,
 }
@@ -182,17 +236,7 @@ impl Spectrum {
         }
         let on_grid = |s: &Complex64| frequency.partition_point(|f| *f < s.im / TAU).min(frequency.len() - 1);
         let places = records.iter().map(|record| record.s.iter().map(on_grid).collect()).collect();
-        let mut spectrum = Self { frequency, power: vec![], places };
-        // A resonance that wanders has more noise than its skirts: weighed line by line it would be no peak.
-        let weighted = |record: &RecordLines| {
-            let mut weights = record.weight.clone();
-            let middle = weights.len() / 2;
-            let usual =
-                if weights.is_empty() { 0.0 } else { *weights.select_nth_unstable_by(middle, f64::total_cmp).1 };
-            record.value.iter().map(|value| value * usual).collect()
-        };
-        spectrum.power = smooth(&spectrum.sum(&records.iter().map(weighted).collect::<Vec<_>>()), 3);
-        Some(spectrum)
+        Some(Self { frequency, places })
     }
 
     /// Sum of squares of all records on the grid.
@@ -202,36 +246,6 @@ impl Spectrum {
             values.iter().zip(places).for_each(|(value, place)| sum[*place] += value.norm_sqr());
         }
         sum
-    }
-
-    /// A pole at each peak that stands out, at its frequency and half-width.
-    fn peaks(&self) -> PoleParameters {
-        let power = &self.power;
-        let mut poles = vec![];
-        for k in 1..power.len() - 1 {
-            if !(power[k] > power[k - 1] && power[k] >= power[k + 1]) {
-                continue;
-            }
-            let mut around: Vec<f64> = power[k.saturating_sub(AROUND)..(k + AROUND).min(power.len())].to_vec();
-            let middle = around.len() / 2;
-            let floor = *around.select_nth_unstable_by(middle, f64::total_cmp).1;
-            // How far the power falls on either side before it rises above the peak.
-            let falls = |lines: &mut dyn Iterator<Item = usize>| {
-                lines.take_while(|line| power[*line] <= power[k]).fold(power[k], |least, line| least.min(power[line]))
-            };
-            let least = falls(&mut (0..k).rev()).max(falls(&mut (k + 1..power.len())));
-            if power[k] > STANDS_OUT * floor && power[k] > PROMINENCE * least {
-                let half = (k..power.len()).take_while(|line| power[*line] > 0.5 * power[k]).count();
-                let step = self.frequency[1] - self.frequency[0];
-                let zeta = (half as f64 * step / self.frequency[k]).clamp(1e-4, 0.1);
-                poles.push([(TAU * self.frequency[k]).ln(), zeta.ln()]);
-            }
-        }
-        if poles.is_empty() {
-            let strongest = (0..power.len()).max_by(|a, b| power[*a].total_cmp(&power[*b])).unwrap_or(0);
-            poles.push([(TAU * self.frequency[strongest]).ln(), FIRST_ZETAS[1].ln()]);
-        }
-        poles
     }
 
     /// The frequency \[Hz\] where the misfit rises furthest out of the noise of as many records, and was not tried.

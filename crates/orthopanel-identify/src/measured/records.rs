@@ -10,7 +10,7 @@ use rayon::prelude::*;
 
 use super::lines::RecordLines;
 use super::modal_fit::{ModalFit, lambda};
-use super::pole_search::{Found, peaks, poles};
+use super::pole_search::{Found, in_parts, joined};
 use super::scatter::Scatter;
 use super::{MeasuredModes, MeasuredRecord, Pole};
 
@@ -62,13 +62,17 @@ impl MeasuredModes {
 
     /// From lines, in a band \[Hz\].
     pub(super) fn of_lines(piece: usize, mut records: Vec<RecordLines>, band: [f64; 2]) -> Option<Self> {
-        let mut found = poles(&records, peaks(&records)?)?;
-        let mut scatter = Scatter::none(&records);
+        let mut scatter = Scatter::most(&mut records);
+        let (start, highest) = in_parts(&records, band);
+        let band = [band[0], highest.min(band[1])];
+        records.iter_mut().for_each(|record| *record = record.between(band));
+        scatter.cut(&records);
+        let mut found = joined(&records, start)?;
         for _ in 0..SCATTERS {
             if !scatter.follows(&mut records, &found) {
                 break;
             }
-            found = poles(&records, found.poles)?;
+            found = joined(&records, found.poles)?;
         }
         Some(told(piece, &records, &found, band))
     }

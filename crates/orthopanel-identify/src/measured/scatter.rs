@@ -29,23 +29,37 @@ pub(super) struct Scatter {
 }
 
 impl Scatter {
-    pub(super) fn none(records: &[RecordLines]) -> Self {
-        Self { noise: records.iter().map(|record| record.weight.clone()).collect(), kappa2: 0.0 }
+    /// The most that resonances leave, by which the records are weighed from then on: a search that begins so finds what stands out of every
+    /// real panel's scatter before any line is trusted to its noise.
+    pub(super) fn most(records: &mut [RecordLines]) -> Self {
+        let noise = records.iter().map(|record| record.weight.clone()).collect();
+        let scatter = Self { noise, kappa2: MOST * MOST };
+        scatter.weigh(records);
+        scatter
     }
 
     /// Whether what a fit leaves wants another scatter, with which the records are weighed from then on.
     pub(super) fn follows(&mut self, records: &mut [RecordLines], found: &Found) -> bool {
         let fit = ModalFit::new(records, &found.poles);
         let left = fit.residuals(&found.poles, &found.fitted);
-        let kappa2 = scatter(&strongest(records, &self.noise, &left));
+        let kappa2 = scatter(&telling(records, &self.noise, &left));
         let changes = kappa2.max(self.kappa2) > SETTLED * kappa2.min(self.kappa2);
         self.kappa2 = kappa2;
+        self.weigh(records);
+        changes
+    }
+
+    /// Of the lines that are left of the records.
+    pub(super) fn cut(&mut self, records: &[RecordLines]) {
+        self.noise.iter_mut().zip(records).for_each(|(noise, record)| noise.truncate(record.s.len()));
+    }
+
+    fn weigh(&self, records: &mut [RecordLines]) {
         for (record, noise) in records.iter_mut().zip(&self.noise) {
             for ((weight, noise), value) in record.weight.iter_mut().zip(noise).zip(&record.value) {
-                *weight = noise / (1.0 + kappa2 * size(*value, *noise)).sqrt();
+                *weight = noise / (1.0 + self.kappa2 * size(*value, *noise)).sqrt();
             }
         }
-        changes
     }
 }
 
@@ -60,22 +74,16 @@ fn size(value: Complex64, weight: f64) -> f64 {
     0.5 * (weight * value).norm_sqr()
 }
 
-/// The half of all lines that stand out of the noise most, with residuals in units of the noise alone.
-fn strongest(records: &[RecordLines], noise: &[Vec<f64>], left: &[Vec<Complex64>]) -> Vec<Line> {
+/// The lines whose noise is below the most that resonances leave, which alone can show it, with residuals in units of the noise alone.
+fn telling(records: &[RecordLines], noise: &[Vec<f64>], left: &[Vec<Complex64>]) -> Vec<Line> {
     let of_record = |((record, noise), left): ((&RecordLines, &Vec<f64>), &Vec<Complex64>)| {
         let line = |k: usize| Line {
             missed: 0.5 * (left[k] * (noise[k] / record.weight[k])).norm_sqr(),
             size: size(record.value[k], noise[k]),
         };
-        (0..noise.len()).map(line).collect::<Vec<_>>()
+        (0..noise.len()).map(line).filter(|line| MOST * MOST * line.size > 1.0).collect::<Vec<_>>()
     };
-    let mut lines: Vec<Line> = records.iter().zip(noise).zip(left).flat_map(of_record).collect();
-    let middle = lines.len() / 2;
-    if lines.len() > 1 {
-        lines.select_nth_unstable_by(middle, |a, b| b.size.total_cmp(&a.size));
-        lines.truncate(middle);
-    }
-    lines
+    records.iter().zip(noise).zip(left).flat_map(of_record).collect()
 }
 
 /// $\kappa^2$ at which the median line misses by as much as it should; modes that are not found yet, a few lines each, do not raise it.

@@ -202,3 +202,56 @@ fn val_scatter_beyond_the_noise_is_no_pole() {
         assert!(apart < 4.0 * deviation && deviation < 1e-4, "{found:?}: {apart:e} off, {deviation:e} stated");
     }
 }
+
+/// Eighteen modes of a plate over two octaves, two of them a thousandth apart, that six places tell: each is found, and none else.
+#[test]
+fn val_close_modes_of_a_plate_are_told_apart_by_the_places() {
+    let frequencies: Vec<f64> = (0..18).map(|k| 180.0 * 1.085f64.powi(k)).collect();
+    let mut modes: Vec<(f64, f64)> = frequencies.iter().map(|frequency| (*frequency, 0.004)).collect();
+    modes[9].0 = 1.001 * modes[8].0;
+    let mut noise = Noise(7);
+    let shapes: Vec<Vec<f64>> = (0..6).map(|_| modes.iter().map(|_| noise.normal()).collect()).collect();
+    let rows: Vec<&[f64]> = shapes.iter().map(Vec::as_slice).collect();
+    let made = Made::new(&modes, &rows);
+    let accelerance = |record: usize| {
+        let frequency: Vec<f64> = (0..3800).map(|line| 50.0 + 0.25 * f64::from(line)).collect();
+        let line = |frequency: &f64| {
+            let s = Complex64::new(0.0, TAU * frequency);
+            let sum: Complex64 = made
+                .poles
+                .iter()
+                .zip(&made.residues[record])
+                .map(|(pole, residue)| residue / (s - pole) + residue.conj() / (s - pole.conj()))
+                .sum();
+            made.direct + sum
+        };
+        let value: Vec<Complex64> = frequency.iter().map(line).collect();
+        let place = Place { x: 0.0, y: 0.0 };
+        RecordLines {
+            force_at: place,
+            response_at: place,
+            s: frequency.iter().map(|frequency| Complex64::new(0.0, TAU * frequency)).collect(),
+            weight: value.iter().map(|value| 1.0 / (1e-3 * value.norm() + 1e-3)).collect(),
+            force_noise: vec![0.0; value.len()],
+            truncations: None,
+            value,
+        }
+    };
+    let mut records: Vec<RecordLines> = (0..6).map(accelerance).collect();
+    for record in &mut records {
+        for (value, weight) in record.value.iter_mut().zip(&record.weight) {
+            *value += Complex64::new(noise.normal(), noise.normal()) / weight;
+        }
+    }
+    let found = MeasuredModes::of_lines(0, records, [50.0, 1000.0]).expect("modes");
+    let mut wanted: Vec<f64> = modes.iter().map(|(frequency, _)| *frequency).collect();
+    wanted.sort_by(f64::total_cmp);
+    // A mode whose skirt leaves the band stands beside.
+    wanted.retain(|frequency| *frequency < 980.0 / 1.016);
+    let own: Vec<f64> = found.poles.iter().map(|pole| pole.angular_frequency / TAU).collect();
+    for frequency in &wanted {
+        assert!(own.iter().any(|own| (own / frequency - 1.0).abs() < 1e-4), "{frequency} Hz is not among {own:?}");
+    }
+    assert!(own.len() <= wanted.len() + 1, "{own:?}");
+    assert!(found.chi_square.is_some_and(|chi_square| (0.8..1.2).contains(&chi_square)), "{:?}", found.chi_square);
+}

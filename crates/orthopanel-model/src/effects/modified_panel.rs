@@ -11,7 +11,8 @@ use super::spread_effects::SpreadEffects;
 use super::{Action, EffectSetting, EffectState, ElementLaw, PointElement, Seat};
 use crate::timoshenko_beam::Section;
 use crate::{
-    BEAM_CONSTANTS, Constant, Damping, End, ModelError, Motion, PLATE_CONSTANTS, Place, ShearLoss, StructureKind,
+    BEAM_CONSTANTS, Boundary, Constant, Damping, End, ModelError, Motion, PLATE_CONSTANTS, Place, ShearLoss,
+    StructureKind,
 };
 
 /// A beam with its exact modes, the spans that have lost shear stiffness, and what is joined to it.
@@ -59,11 +60,23 @@ impl ModifiedPanel {
         Ok(Self { count, even, damping: Damping::default(), wide: None })
     }
 
-    /// A beam that may turn out a plate: seen from about these places, with its modes up to a frequency \[Hz\].
+    /// A plate, or a beam that may turn out one: seen from about these places, with its modes up to a frequency \[Hz\].
     #[must_use]
     pub fn perhaps_wide(self, setting: &EffectSetting, places: &[Place], highest: f64) -> Self {
         let plates = WidePlates::new(setting.piece, setting.boundary, places.to_vec());
         Self { wide: Some(Arc::new((plates, highest))), ..self }
+    }
+
+    /// Number of motions of the whole panel that nothing but a suspension holds.
+    pub fn rigid_modes(&self, boundary: Boundary) -> usize {
+        let edges = [boundary.left, boundary.right, boundary.front, boundary.back];
+        let count = |end: End| edges.iter().filter(|edge| **edge == end).count();
+        match (&self.even, count(End::Pinned), count(End::Clamped)) {
+            (Even::Beam(_), ..) => boundary.rigid_modes(),
+            (Even::Plate, 0, 0) => 3,
+            (Even::Plate, 1, 0) => 1,
+            (Even::Plate, ..) => 0,
+        }
     }
 
     /// What vibrates with these effects.
@@ -77,9 +90,15 @@ impl ModifiedPanel {
                 _ => others.push(state.clone()),
             }
         }
+        let (beam, ratios) = match (&self.even, values) {
+            (Even::Plate, &[e_x, e_y, nu_xy, g_xy, g_yz, g_zx]) if !spread_over(setting, effects)? => {
+                (vec![e_x, g_zx], Some([e_y / e_x, nu_xy, g_xy / e_x, g_yz / g_zx]))
+            }
+            _ => (values.to_vec(), ratios),
+        };
         match (ratios, &self.wide) {
             (Some(ratios), Some(wide)) => {
-                ModifiedStructure::wide(&wide.0, wide.1, (setting, values, ratios), effects, &others)
+                ModifiedStructure::wide(&wide.0, wide.1, (setting, &beam, ratios), effects, &others)
             }
             _ => ModifiedStructure::for_modes(parts, self.count),
         }
@@ -219,6 +238,12 @@ impl ModifiedPanel {
     }
 }
 
+/// Whether effects change what is spread over the panel.
+fn spread_over(setting: &EffectSetting, effects: &[EffectState]) -> Result<bool, ModelError> {
+    let spread = SpreadEffects::of(effects, setting, 0)?;
+    Ok(spread.terms.is_some() || spread.core.is_some() || spread.plate.is_some())
+}
+
 impl SeenModes {
     /// Of modes with their deflections and slopes by coordinates.
     fn of(found: Vec<FoundMode>, seen: impl Fn(&[f64]) -> (Vec<f64>, Vec<f64>)) -> Self {
@@ -239,7 +264,7 @@ mod tests {
     use std::f64::consts::TAU;
 
     use super::*;
-    use crate::{Boundary, ModeRange, PanelModel, Piece, RecordSetting, effect};
+    use crate::{ModeRange, PanelModel, Piece, RecordSetting, effect};
 
     fn place(x: f64) -> Place {
         Place { x, y: 0.0 }

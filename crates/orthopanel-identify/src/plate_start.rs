@@ -1,0 +1,369 @@
+//! The constants of a plate from its measured modes, from sizes and mass alone.
+
+use faer::prelude::Solve;
+use faer::{Mat, Side};
+use orthopanel_model::{Boundary, MindlinPlate, ModelError, Piece, Place, Structure, ritz_modes};
+use rayon::prelude::*;
+
+use crate::measured::MeasuredModes;
+use crate::model_error::frequency_prior;
+
+/// Ratios $E_y/E_x$, $G_{xy}/E_x$ and $G_{zx}/E_x$ at which plates begin: from spruce to aluminium faces, from balsa to steel honeycomb.
+const ALONG: [f64; 6] = [0.05, 0.1, 0.25, 0.5, 0.8, 1.2];
+const SHEAR: [f64; 5] = [0.03, 0.07, 0.15, 0.3, 0.45];
+const CORE: [f64; 3] = [0.02, 0.06, 0.3];
+/// $G_{yz}/G_{zx}$ there, and Poisson's ratio of equal moduli.
+const ACROSS: f64 = 0.6;
+const POISSON: f64 = 0.3;
+/// Modes and poles that are held against each other for the scale of all moduli.
+const LOWEST_MODES: usize = 4;
+const LOWEST_POLES: usize = 3;
+/// Poles that rank the starts, how far their frequencies may lie from the modes', and starts that are followed.
+const RANKED: usize = 14;
+const FAR: f64 = 0.06;
+const FOLLOWED: usize = 4;
+/// What a start is followed with: how far modes may lie from their poles, the lowest poles so many, and by how much frequencies are missed.
+const STAGES: [(f64, usize, f64); 6] =
+    [(0.06, 10, 0.03), (0.05, 16, 0.02), (0.04, 24, 0.01), (0.025, 99, 0.005), (0.015, 99, 0.003), (0.015, 99, 0.003)];
+const STEPS: usize = 2;
+/// What a pole of median size costs that stays alone, and the least part of that of a weak one.
+const ALONE: f64 = 14.0;
+const WEAKEST: f64 = 0.3;
+/// What a mode costs that no pole shows, if it is stronger than this part of the poles.
+const LOST: f64 = 5.0;
+const STRONG: f64 = 0.35;
+/// Standard deviations of the logarithm of a modulus about its start, and of Poisson's ratio.
+const MODULI: f64 = 0.7;
+const RATIO: f64 = 0.15;
+/// The longest step of a coordinate.
+const LONGEST: f64 = 0.3;
+/// Number of Poisson's ratio among the constants, and its bounds.
+const NU: usize = 2;
+const NU_RANGE: [f64; 2] = [0.01, 0.6];
+
+/// Constants in the order of [`orthopanel_model::PLATE_CONSTANTS`].
+pub(crate) type Constants = [f64; 6];
+
+/// A plate's mode: $\omega$, $W_r$ of each record, and $\partial\ln\omega$ by the logarithm of each modulus and by Poisson's ratio.
+struct PlateMode {
+    seen: (f64, Vec<f64>),
+    by: Constants,
+}
+
+/// What is known of a plate before its constants are.
+pub(crate) struct PlateStart<'a> {
+    measured: &'a MeasuredModes,
+    piece: Piece,
+    boundary: Boundary,
+    held: [Option<f64>; 6],
+    pairs: Vec<(Place, Place)>,
+    /// Rms over the records of $|W_r|$ of each pole, and the median of these.
+    sizes: Vec<f64>,
+    typical: f64,
+}
+
+impl<'a> PlateStart<'a> {
+    pub(crate) fn new(
+        measured: &'a MeasuredModes,
+        (piece, boundary): (Piece, Boundary),
+        held: [Option<f64>; 6],
+    ) -> Self {
+        let pairs = measured.records.iter().map(|record| (record.force_at, record.response_at)).collect();
+        let records = 0..measured.records.len();
+        let size = |pole: usize| rms(&records.clone().map(|record| measured.product(record, pole)).collect::<Vec<_>>());
+        let sizes: Vec<f64> = (0..measured.poles.len()).map(size).collect();
+        let mut sorted = sizes.clone();
+        sorted.sort_by(f64::total_cmp);
+        let typical = sorted.get(sorted.len() / 2).copied().unwrap_or(1.0);
+        Self { measured, piece, boundary, held, pairs, sizes, typical }
+    }
+
+    /// The constants that put the modes where the poles are, with what they cost a pole, the best first.
+    ///
+    /// # Errors
+    /// What the plate refuses.
+    pub(crate) fn constants(&self) -> Result<Vec<(f64, Constants)>, ModelError> {
+        let starts = self.ranked()?;
+        let followed = starts.into_par_iter().map(|start| self.followed(start));
+        let mut found = followed.collect::<Result<Vec<_>, _>>()?;
+        found.sort_by(|a, b| a.0.total_cmp(&b.0));
+        Ok(found)
+    }
+
+    fn with_held(&self, values: Constants) -> Constants {
+        std::array::from_fn(|i| self.held[i].unwrap_or(values[i]))
+    }
+
+    /// The flexible modes, rising.
+    fn modes(&self, values: &Constants, count: usize) -> Result<Vec<PlateMode>, ModelError> {
+        let plate = match MindlinPlate::with_basis_for(&self.piece, self.boundary, values, count) {
+            Err(ModelError::BasisTooSmall { available, .. }) if available > 0 => {
+                MindlinPlate::with_basis_for(&self.piece, self.boundary, values, available)?
+            }
+            plate => plate?,
+        };
+        let modes = ritz_modes(&plate, values, count.min(plate.resolved_modes()))?;
+        let by_constants = plate.coefficient_derivatives(values)?;
+        let flexible = modes.iter().filter(|mode| mode.angular_frequency > 0.0);
+        let mode = |mode: &orthopanel_model::RitzMode| {
+            let by_coefficient = mode.coefficient_sensitivity(&plate);
+            let by = |constant: usize| -> f64 {
+                let sum: f64 = by_coefficient.iter().enumerate().map(|(i, by)| by * by_constants[(i, constant)]).sum();
+                sum / (2.0 * mode.angular_frequency.powi(2)) * if constant == NU { 1.0 } else { values[constant] }
+            };
+            let product = |&(force, response): &(Place, Place)| {
+                mode.deflection(&plate, force) * mode.deflection(&plate, response)
+            };
+            let seen = (mode.angular_frequency, self.pairs.iter().map(product).collect());
+            PlateMode { seen, by: std::array::from_fn(by) }
+        };
+        Ok(flexible.map(mode).collect())
+    }
+
+    /// What a pole costs that stays alone.
+    fn alone(&self, pole: usize) -> f64 {
+        ALONE * (self.sizes[pole] / self.typical).clamp(WEAKEST, 1.0)
+    }
+
+    /// Cost a pole of the lowest poles, where these may lie `apart` from the modes; strong modes without a pole cost as well.
+    fn cost(&self, lowest: &MeasuredModes, modes: &[(f64, Vec<f64>)], apart: f64) -> f64 {
+        let (partners, cost) = lowest.assigned(modes, |_| apart, |pole| self.alone(pole));
+        let ends = lowest.poles.first().zip(lowest.poles.last());
+        let Some((first, last)) = ends else { return f64::INFINITY };
+        let band = 1.03 * first.angular_frequency..0.97 * last.angular_frequency;
+        let taken = |mode: usize| partners.iter().flatten().any(|(partner, _)| *partner == mode);
+        let lost = modes.iter().enumerate().filter(|(number, (omega, shape))| {
+            band.contains(omega) && !taken(*number) && rms(shape) > STRONG * self.typical
+        });
+        (cost + LOST * lost.count() as f64) / lowest.poles.len() as f64
+    }
+
+    /// The best starts of a net of ratios, each scaled so that one of its lowest modes lies where one of the lowest poles is.
+    fn ranked(&self) -> Result<Vec<Constants>, ModelError> {
+        let lowest = self.measured.lowest(RANKED);
+        let net = ALONG.iter().flat_map(|a| SHEAR.iter().flat_map(move |b| CORE.iter().map(move |c| [*a, *b, *c])));
+        let of_ratios = |[along, shear, core]: [f64; 3]| -> Result<Vec<(f64, Constants)>, ModelError> {
+            let nu = POISSON * (0.9 / along.sqrt()).min(1.0);
+            let values = [1e10, along * 1e10, nu, shear * 1e10, ACROSS * core * 1e10, core * 1e10];
+            let modes = self.modes(&values, RANKED + RANKED / 2)?;
+            let mut found = Vec::new();
+            for mode in modes.iter().take(LOWEST_MODES) {
+                for pole in lowest.poles.iter().take(LOWEST_POLES) {
+                    let factor = pole.angular_frequency / mode.seen.0;
+                    let moved: Vec<(f64, Vec<f64>)> =
+                        modes.iter().map(|mode| (factor * mode.seen.0, mode.seen.1.clone())).collect();
+                    let scaled = std::array::from_fn(|i| if i == NU { values[i] } else { values[i] * factor * factor });
+                    found.push((self.cost(&lowest, &moved, FAR), scaled));
+                }
+            }
+            Ok(found)
+        };
+        let found: Vec<_> = net.collect::<Vec<_>>().into_par_iter().map(of_ratios).collect::<Result<_, _>>()?;
+        let mut found: Vec<(f64, Constants)> = found.into_iter().flatten().collect();
+        found.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let mut best: Vec<Constants> = Vec::new();
+        for (_, values) in found {
+            let is_new = |other: &Constants| [0, 1, 3].iter().any(|&i| (other[i] / values[i]).ln().abs() > 0.15);
+            if best.iter().all(is_new) {
+                best.push(values);
+            }
+            if best.len() == FOLLOWED {
+                break;
+            }
+        }
+        Ok(best)
+    }
+
+    /// A start led to the frequencies of more and more poles.
+    fn followed(&self, start: Constants) -> Result<(f64, Constants), ModelError> {
+        let start = self.with_held(start);
+        let mut values = start;
+        for (apart, count, missed) in STAGES {
+            let lowest = self.measured.lowest(count);
+            for _ in 0..STEPS {
+                values = self.step(&lowest, &start, &values, (apart, missed))?;
+            }
+        }
+        let (apart, ..) = STAGES[STAGES.len() - 1];
+        let modes: Vec<_> = self.modes(&values, self.count(self.measured))?.into_iter().map(|mode| mode.seen).collect();
+        Ok((self.cost(self.measured, &modes, apart), values))
+    }
+
+    fn count(&self, lowest: &MeasuredModes) -> usize {
+        lowest.poles.len() + lowest.poles.len() / 2 + 10
+    }
+
+    /// A step of Gauss and Newton on the logarithms of the frequencies, with what is thought of the constants about the start.
+    fn step(
+        &self,
+        lowest: &MeasuredModes,
+        start: &Constants,
+        values: &Constants,
+        (apart, missed): (f64, f64),
+    ) -> Result<Constants, ModelError> {
+        let modes = self.modes(values, self.count(lowest))?;
+        let seen: Vec<(f64, Vec<f64>)> = modes.iter().map(|mode| mode.seen.clone()).collect();
+        let (partners, _) = lowest.assigned(&seen, |_| apart, |pole| self.alone(pole));
+        let free: Vec<usize> = (0..6).filter(|&i| self.held[i].is_none()).collect();
+        let coordinate = |values: &Constants, i: usize| if i == NU { values[i] } else { values[i].ln() };
+        let mut curvature = Mat::<f64>::zeros(free.len(), free.len());
+        let mut slope = Mat::<f64>::zeros(free.len(), 1);
+        for (pole, partner) in lowest.poles.iter().zip(&partners) {
+            let Some((mode, _)) = partner else { continue };
+            let left = (pole.angular_frequency / modes[*mode].seen.0).ln();
+            for (row, &i) in free.iter().enumerate() {
+                let by = modes[*mode].by[i] / (missed * missed);
+                slope[(row, 0)] += by * left;
+                free.iter().enumerate().for_each(|(column, &j)| curvature[(row, column)] += by * modes[*mode].by[j]);
+            }
+        }
+        for (row, &i) in free.iter().enumerate() {
+            let std = if i == NU { RATIO } else { MODULI };
+            curvature[(row, row)] += std.powi(-2);
+            slope[(row, 0)] += (coordinate(start, i) - coordinate(values, i)) * std.powi(-2);
+        }
+        let Ok(factor) = curvature.llt(Side::Lower) else { return Ok(*values) };
+        let step = factor.solve(&slope);
+        let mut next = *values;
+        for (row, &i) in free.iter().enumerate() {
+            let moved = coordinate(values, i) + step[(row, 0)].clamp(-LONGEST, LONGEST);
+            next[i] = if i == NU { moved.clamp(NU_RANGE[0], NU_RANGE[1]) } else { moved.exp() };
+        }
+        // The law has to stay definite.
+        next[NU] = next[NU].min(0.95 * (next[0] / next[1]).sqrt());
+        Ok(next)
+    }
+}
+
+/// Constants with what the frequencies of the poles say of them, and of the error of the model.
+pub(crate) struct PlateFit {
+    pub values: Constants,
+    /// Numbers of the constants that are not held.
+    pub free: Vec<usize>,
+    /// Of the free ones: of the logarithm of each modulus, and of Poisson's ratio.
+    pub covariance: Mat<f64>,
+    /// Standard deviation of the logarithm of a frequency.
+    pub missed: f64,
+}
+
+impl PlateFit {
+    /// Standard deviation of a free constant's coordinate beforehand.
+    pub(crate) fn prior(constant: usize) -> f64 {
+        if Self::is_logarithmic(constant) { MODULI } else { RATIO }
+    }
+
+    /// Whether the coordinate of a constant is its logarithm.
+    pub(crate) fn is_logarithmic(constant: usize) -> bool {
+        constant != NU
+    }
+
+    /// Where a constant rests that the data do not show.
+    pub(crate) fn usual(constant: usize, values: &Constants) -> f64 {
+        if constant == NU { POISSON * (values[0] / values[1]).sqrt().min(1.0) } else { values[constant] }
+    }
+
+    /// Of the free constants the place of that of whose deviation beforehand the data leave most, if more than this part, or which may be zero
+    /// for all they say.
+    pub(crate) fn most_open(&self, part: f64) -> Option<usize> {
+        let left = |&place: &usize| {
+            let (constant, deviation) = (self.free[place], self.covariance[(place, place)].sqrt());
+            let unit = if Self::is_logarithmic(constant) { 1.0 } else { self.values[constant] };
+            (deviation / Self::prior(constant)).max(if deviation > unit { 1.0 } else { 0.0 })
+        };
+        let most = (0..self.free.len()).max_by(|a, b| left(a).total_cmp(&left(b)));
+        most.filter(|place| left(place) > part)
+    }
+}
+
+/// The frequencies of one plate less those of the poles: with the derivatives, and the variance by noise.
+struct Missed {
+    rows: Vec<(f64, f64, Vec<f64>)>,
+    precision: Vec<f64>,
+}
+
+impl Missed {
+    /// $J^TC^{-1}J + P$ with $C = \tau^2 + \sigma_m^2$.
+    fn curvature(&self, size: f64) -> Mat<f64> {
+        let count = self.precision.len();
+        let sum = |i: usize, j: usize| -> f64 {
+            let of_row = |(_, noise, by): &(f64, f64, Vec<f64>)| by[i] * by[j] / (size * size + noise);
+            self.rows.iter().map(of_row).sum()
+        };
+        Mat::from_fn(count, count, |i, j| sum(i, j) + if i == j { self.precision[i] } else { 0.0 })
+    }
+
+    /// Negative logarithm of the marginal likelihood of a size of model error, with its prior.
+    fn cost(&self, size: f64) -> f64 {
+        let variance = |noise: f64| size * size + noise;
+        let of_row = |(left, noise, _): &(f64, f64, Vec<f64>)| variance(*noise).ln() + left * left / variance(*noise);
+        let of_rows: f64 = self.rows.iter().map(of_row).sum();
+        let determinant = self
+            .curvature(size)
+            .llt(Side::Lower)
+            .map_or(f64::INFINITY, |factor| (0..self.precision.len()).map(|i| 2.0 * factor.L()[(i, i)].ln()).sum());
+        let (median, factor) = frequency_prior();
+        0.5 * (of_rows + determinant + ((size / median).ln() / factor.ln()).powi(2))
+    }
+}
+
+/// Sizes of model error that are looked at, evenly in the logarithm.
+const SIZES: [f64; 2] = [1e-6, 5e-2];
+const SIZES_COUNT: usize = 120;
+/// A pole and its mode lie no further apart than so many times the model error, and may lie this far at least.
+const TIMES: f64 = 2.0;
+const NEAREST: f64 = 2e-3;
+const ROUNDS: usize = 8;
+
+impl PlateStart<'_> {
+    /// The most probable constants near a start by the frequencies of all poles, with the size of the model error integrated over.
+    ///
+    /// # Errors
+    /// What the plate refuses.
+    pub(crate) fn fit(&self, start: Constants) -> Result<PlateFit, ModelError> {
+        let free: Vec<usize> = (0..6).filter(|&i| self.held[i].is_none()).collect();
+        let precision: Vec<f64> = free.iter().map(|&i| PlateFit::prior(i).powi(-2)).collect();
+        let (mut values, mut size) = (start, STAGES[STAGES.len() - 1].2);
+        for round in 0..=ROUNDS {
+            let modes = self.modes(&values, self.count(self.measured))?;
+            let seen: Vec<(f64, Vec<f64>)> = modes.iter().map(|mode| mode.seen.clone()).collect();
+            let apart = (TIMES * size).max(NEAREST);
+            let (partners, _) = self.measured.assigned(&seen, |_| apart, |pole| self.alone(pole));
+            let row = |(pole, partner): (usize, &Option<(usize, Option<f64>)>)| {
+                let mode = &modes[partner.as_ref()?.0];
+                let left = (self.measured.poles[pole].angular_frequency / mode.seen.0).ln();
+                let noise = self.measured.covariance[(pole, pole)] + BASIS * BASIS;
+                Some((left, noise, free.iter().map(|&i| mode.by[i]).collect()))
+            };
+            let missed =
+                Missed { rows: partners.iter().enumerate().filter_map(row).collect(), precision: precision.clone() };
+            let step = (SIZES[1] / SIZES[0]).ln() / (SIZES_COUNT - 1) as f64;
+            let sizes: Vec<(f64, f64)> = (0..SIZES_COUNT)
+                .map(|k| SIZES[0] * (step * k as f64).exp())
+                .map(|size| (size, missed.cost(size)))
+                .collect();
+            let Some(&(best, least)) = sizes.iter().min_by(|a, b| a.1.total_cmp(&b.1)) else { break };
+            size = best;
+            if round == ROUNDS {
+                let mut covariance = Mat::<f64>::zeros(free.len(), free.len());
+                let mut whole = 0.0;
+                for (size, cost) in sizes.iter().filter(|(_, cost)| cost - least < 20.0) {
+                    let weight = (least - cost).exp();
+                    let Ok(factor) = missed.curvature(*size).llt(Side::Lower) else { continue };
+                    covariance += factor.solve(Mat::<f64>::identity(free.len(), free.len())) * faer::Scale(weight);
+                    whole += weight;
+                }
+                covariance *= faer::Scale(1.0 / whole.max(f64::MIN_POSITIVE));
+                return Ok(PlateFit { values, free, covariance, missed: size });
+            }
+            values = self.step(self.measured, &start, &values, (apart, size))?;
+        }
+        Ok(PlateFit { values, covariance: Mat::zeros(free.len(), free.len()), free, missed: size })
+    }
+}
+
+/// Relative error of a frequency by the basis.
+const BASIS: f64 = 2e-5;
+
+fn rms(values: &[f64]) -> f64 {
+    (values.iter().map(|value| value * value).sum::<f64>() / values.len().max(1) as f64).sqrt()
+}

@@ -1,0 +1,24 @@
+//! Plates from the records of a hammer, from sizes and mass alone.
+
+use orthopanel_data::ImpactTest;
+use orthopanel_identify::{Settings, identify};
+
+use crate::support::shared_data;
+
+/// Two spruce plates, hit at one place each. The constants are those that lists of their named modes give; the tolerances are those of two
+/// readings of one piece of wood, whose frequencies no plate meets better than 0.7 %. The folder is not part of the repository.
+#[test]
+fn val_real_plates_have_the_constants_of_their_own_lists() {
+    for (name, wanted) in [("2L", [1.044e10, 9.647e8, 6.577e8]), ("5R", [1.104e10, 9.625e8, 7.965e8])] {
+        let Some(path) = shared_data(&format!("spruce_plates/{name}/test.toml")) else { return };
+        let test = ImpactTest::read(&path).expect("a test");
+        let found = identify(&test, Settings::default()).expect("constants");
+        for ((constant, wanted), within) in ["e_x", "e_y", "g_xy"].into_iter().zip(wanted).zip([0.03, 0.06, 0.08]) {
+            let own = found.constants.iter().find(|own| own.name == constant).expect("identified");
+            assert!((own.value / wanted - 1.0).abs() < within, "{name} {constant}: {} {wanted}", own.value);
+            assert!(own.std.is_some_and(|std| std < within * wanted), "{name} {constant}: {:?}", own.std);
+        }
+        assert!(found.notes[0].contains("no ideal plate has them"), "{:?}", found.notes);
+        assert!(found.pieces[0].modes.len() > 25, "{name}: {} modes", found.pieces[0].modes.len());
+    }
+}
