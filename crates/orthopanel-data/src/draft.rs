@@ -71,6 +71,9 @@ fn measurement(path: &Path, file: &RecordFile) -> String {
         (0, _) => "time-history",
         _ => "accelerance",
     };
+    if is_of_responses && has_runs(file) {
+        return text + &each_record(file, kind, &name);
+    }
     let pairs = file.pairs(is_of_responses);
     let told = |pair: &&[Port; 2]| pair.iter().any(|port| port.node != 0);
     let several = pairs.len() > 1;
@@ -90,11 +93,62 @@ fn measurement(path: &Path, file: &RecordFile) -> String {
             text += &place(key, port, &file.nodes);
         }
         if several {
-            text += &channels(file, is_of_responses, pair, number);
+            text += &channels(pair);
         }
         text += &untold(file, is_of_responses);
     }
     text
+}
+
+/// The frequency responses along z by their pairs of nodes, in the order of the file; what tells no node is alone.
+fn runs(file: &RecordFile) -> Vec<([Port; 2], Vec<usize>)> {
+    let along_z = file.pairs(true);
+    let mut runs: Vec<([Port; 2], Vec<usize>)> = Vec::new();
+    for record in file.records.iter().filter(|record| record.kind == RecordKind::FrequencyResponse) {
+        let pair = [record.reference, record.response];
+        let is_told = pair.iter().any(|port| port.node != 0);
+        match runs.iter_mut().find(|(known, _)| is_told && *known == pair) {
+            Some((_, numbers)) => numbers.push(record.number),
+            None if along_z.contains(&pair) => runs.push((pair, vec![record.number])),
+            None => {}
+        }
+    }
+    runs
+}
+
+/// Whether nodes do not tell the frequency responses of a file apart: they have none, or there are several runs.
+fn has_runs(file: &RecordFile) -> bool {
+    let runs = runs(file);
+    let is_untold = |(pair, _): &([Port; 2], Vec<usize>)| pair.iter().all(|port| port.node == 0);
+    runs.iter().any(|(_, numbers)| numbers.len() > 1) || (runs.len() > 1 && runs.iter().any(is_untold))
+}
+
+/// A measurement for each pair of nodes, with the number of its record: of several runs that with the best coherence.
+fn each_record(file: &RecordFile, kind: &str, name: &str) -> String {
+    let listed = file.listed();
+    let coherence = |number: usize| listed.iter().find(|of| of.record == number).and_then(|of| of.mean_coherence);
+    let of_run = |(pair, numbers): ([Port; 2], Vec<usize>)| {
+        let best = numbers.iter().copied().max_by(|a, b| {
+            // Of runs alike the first.
+            coherence(*a).unwrap_or(-1.0).total_cmp(&coherence(*b).unwrap_or(-1.0)).then(b.cmp(a))
+        });
+        let number = best.unwrap_or(1);
+        let title = file.records.iter().find(|record| record.number == number).map_or("", |record| &record.title);
+        let others: Vec<String> = numbers.iter().map(usize::to_string).collect();
+        let note = match (&numbers[..], coherence(number)) {
+            ([_], _) => comment(title),
+            (_, Some(mean)) => {
+                format!("of the runs {}, that with the best coherence, {mean:.3}", crate::error::some_of(&others, ", "))
+            }
+            (_, None) => format!("or another of the runs {}", crate::error::some_of(&others, ", ")),
+        };
+        let mut text = header(kind, name) + &format!("record = {number}   # {note}\n");
+        for (key, port) in [("force_at", pair[0]), ("response_at", pair[1])] {
+            text += &place(key, port, &file.nodes);
+        }
+        text + &untold(file, true)
+    };
+    runs(file).into_iter().map(of_run).collect::<Vec<_>>().join("\n")
 }
 
 fn header(kind: &str, name: &str) -> String {
@@ -173,11 +227,7 @@ fn places(pairs: &[[Port; 2]], nodes: &[Node], name: &str) -> String {
 }
 
 /// The channels of one of several pairs.
-fn channels(file: &RecordFile, is_of_responses: bool, pair: &[Port; 2], number: usize) -> String {
-    if is_of_responses && pair.iter().all(|port| port.node == 0) {
-        let mut of_kind = file.records.iter().filter(|record| record.kind == RecordKind::FrequencyResponse);
-        return of_kind.nth(number - 1).map_or(String::new(), |record| format!("record = {}\n", record.number));
-    }
+fn channels(pair: &[Port; 2]) -> String {
     let mut text = String::new();
     for (key, port) in [("force_channel", pair[0]), ("response_channel", pair[1])] {
         if port.node != 0 {

@@ -16,8 +16,8 @@ pub use input::{InputKind, regular_file};
 pub use listing::ListedRecord;
 pub use records::{Axis, ColumnName, ColumnRole, DeclaredColumns, Port, Record, RecordFile, RecordKind, Samples};
 pub use spectra::{
-    Accelerance, Channel, ChannelNoise, Cut, Estimation, Estimator, ForceNoise, Hit, HitFault, HitVerdict, TimeHistory,
-    Window,
+    Accelerance, Channel, ChannelNoise, Cut, Estimation, Estimator, ForceNoise, Hit, HitFault, HitVerdict, ReadAs,
+    TimeHistory, Window,
 };
 pub use test_file::{
     ChannelName, DeclaredEffect, Direction, ImpactTest, KnownConstant, Measurement, MeasurementData, NamedPiece,

@@ -6,7 +6,7 @@ use serde::Serialize;
 use crate::{
     records::{Port, Quantity, Record, RecordFile, RecordKind, Samples, quantity, type_name},
     spectra::own_coherence,
-    units::Measured,
+    units::{Measured, Unit},
 };
 
 /// One record of a file.
@@ -128,9 +128,7 @@ fn unit_of(record: &Record) -> String {
             Quantity::Motion(motion) => Measured::Motion(motion),
             _ => return String::new(),
         };
-        // The label of dataset 164 would fill the line.
-        axis.unit_by_system(measured)
-            .map_or(String::new(), |unit| format!("{} {} (164)", Readable(unit.to_si()), si_unit(measured)))
+        axis.unit_by_system(measured).map_or(String::new(), |unit| format!("{} (164)", usual_name(&unit, measured)))
     };
     let (over, under) = (of(&record.numerator), of(&record.denominator));
     match (record.kind, over.is_empty(), under.is_empty()) {
@@ -139,6 +137,20 @@ fn unit_of(record: &Record) -> String {
         (RecordKind::Time, ..) => over,
         _ => String::new(),
     }
+}
+
+/// The name of a unit that dataset 164 tells by its factor alone.
+fn usual_name(unit: &Unit, measured: Measured) -> String {
+    let names: Vec<String> = match measured {
+        Measured::Motion(motion) => {
+            let rate = ["/s2", "/s", ""][usize::from(motion.derivatives())];
+            ["m", "mm", "cm", "um", "in", "ft", "mil"].map(|length| format!("{length}{rate}")).to_vec()
+        }
+        _ => ["N", "mN", "kN", "lbf", "kgf", "gf", "dyn"].map(str::to_owned).to_vec(),
+    };
+    let is_it = |name: &&String| Unit::parse(name).is_some_and(|known| known.is_same(unit));
+    let known = names.iter().find(is_it).cloned();
+    known.unwrap_or_else(|| format!("{} {}", Readable(unit.to_si()), si_unit(measured)))
 }
 
 fn si_unit(measured: Measured) -> &'static str {

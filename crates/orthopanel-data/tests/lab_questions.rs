@@ -1,11 +1,13 @@
 //! What a record leaves open is asked about, with the line of the test file that answers it.
 
-use orthopanel_data::{Accelerance, ChannelName, ImpactTest, Motion, RecordFile, RecordedResponse, TimeHistory, Unit};
+use orthopanel_data::{
+    Accelerance, ChannelName, Hit, ImpactTest, Motion, RecordFile, RecordedResponse, TimeHistory, Trigger, Unit,
+};
 
 use crate::support::{
     Dataset,
-    hammer::RATE,
-    recorded::{good, history, measurement, pair, records},
+    hammer::{Noise, RATE},
+    recorded::{DAMPED, good, history, measurement, pair, records},
 };
 
 fn response(numerator: (i64, &str), denominator: (i64, &str)) -> Dataset {
@@ -340,4 +342,123 @@ fn val_a_response_that_tells_nothing_is_asked_about_by_its_slope() {
     let [due, found] =
         [of(2, &measurement()), of(0, &declared(Motion::Displacement))].map(|found| found.unwrap().value);
     assert!(due.iter().zip(&found).all(|(due, found)| (due - found).norm() < 1e-6 * due.norm()));
+}
+
+/// A title with its unit names a channel without it, too.
+#[test]
+fn val_a_channel_is_named_without_its_unit() {
+    let [force, motion] = pair();
+    let titled = |title: &str, dataset: &Dataset| Dataset { title: title.into(), ..dataset.clone() };
+    let named =
+        |name: &str| RecordedResponse { response_channel: Some(ChannelName::Name(name.into())), ..measurement() };
+    let datasets = [titled("Hammer (N)", &force), titled("Acc 1 (m/s2)", &motion), titled("Acc 2 (m/s2)", &motion)];
+    for name in ["Acc 2", "Acc 2 (m/s2)"] {
+        assert_eq!(history(&datasets, &named(name)).unwrap().hits.len(), 1, "{name}");
+    }
+    let refused = history(&datasets, &named("Acc")).unwrap_err();
+    assert!(refused.contains("response_channel = \"Acc\" is none of its channels"), "{refused}");
+}
+
+/// Swapped channels are told with the lines that swap them, and these lines do.
+#[test]
+fn val_swapped_channels_are_mended_by_the_lines_that_are_said() {
+    let untold = |of: Dataset| Dataset { numerator: (0, "NONE".into()), response_node: 0, ..of };
+    let [force, motion] = pair();
+    let swapped = [untold(motion.clone()), untold(force.clone())];
+    let refused = history(&swapped, &measurement()).unwrap_err();
+    assert!(
+        refused.contains("declare force_channel = 2 and response_channel = 1 in its [[measurement]])"),
+        "{refused}"
+    );
+    let declared = RecordedResponse {
+        force_channel: Some(ChannelName::Number(2)),
+        response_channel: Some(ChannelName::Number(1)),
+        ..measurement()
+    };
+    assert_eq!(history(&swapped, &declared).unwrap().hits, history(&[force, motion], &measurement()).unwrap().hits);
+}
+
+/// Two runs of one pair of nodes, chosen by their nodes: only their numbers part them.
+#[test]
+fn val_runs_of_one_pair_of_channels_are_told_by_their_numbers() {
+    let run = response((12, "m/s2"), (13, "N"));
+    let port = |node| Some(ChannelName::Port { node, direction: 3 });
+    let channels = |force, response| RecordedResponse {
+        force_channel: port(force),
+        response_channel: port(response),
+        ..measurement()
+    };
+    let refused = accelerance(records(&[run.clone(), run.clone()]), &channels(8, 7)).unwrap_err();
+    assert!(refused.contains("of this pair of channels as runs of one test are: say which by record = N in its [[measurement]], one of 1, 2"), "{refused}");
+    assert!(!refused.contains("or by response_channel"), "{refused}");
+    let other = Dataset { response_node: 5, reference_node: 6, ..run.clone() };
+    let refused = accelerance(records(&[run, other]), &channels(8, 5)).unwrap_err();
+    assert!(
+        refused.contains("no frequency response is of both the force_channel and the response_channel"),
+        "{refused}"
+    );
+}
+
+/// Dataset 164 tells its units by factors; people know them by name.
+#[test]
+fn val_units_of_dataset_164_are_listed_by_their_names() {
+    let units = "    -1\n   164\n         7IN: Inch (pound f)           2\n   3.9370078740157480D+01   2.2480894309971047D-01   1.0D+00\n   2.7315D+02\n    -1\n";
+    let listed = |numerator, denominator| {
+        let bytes = [units.as_bytes(), &response(numerator, denominator).text()].concat();
+        RecordFile::from_bytes(&bytes, "hits.uff").unwrap().listed()[0].unit.clone()
+    };
+    assert_eq!(listed((12, "NONE"), (13, "NONE")), "in/s2 (164) / lbf (164)");
+    assert_eq!(listed((8, "NONE"), (13, "N")), "in (164) / N");
+}
+
+/// Five blows with pauses, as one record with a little noise; what a trigger declares.
+fn blows(trigger: Option<Trigger>) -> Result<TimeHistory, String> {
+    let quiet = [0.0; 1500];
+    let noise = Noise(9).over(&Hit { force: vec![100.0; 12_500], acceleration: vec![1.0; 12_500] }, 1e-3, 1e-3);
+    let join = |channel: &dyn Fn(&Hit) -> Vec<f64>, noise: &[f64], mean: f64| {
+        let blow = [channel(&DAMPED.soft_hit(1000, 100.0)), quiet.to_vec()].concat();
+        let all: Vec<f64> = (0..5).flat_map(|_| blow.clone()).collect();
+        all.iter().zip(noise).map(|(value, noise)| value + (noise - mean)).collect::<Vec<f64>>()
+    };
+    let force = join(&|hit| hit.force.clone(), &noise.force, 100.0);
+    let motion = join(&|hit| hit.acceleration.clone(), &noise.acceleration, 1.0);
+    let datasets = [Dataset::time(&force, (13, "N")), Dataset::time(&motion, (12, "m/s^2"))];
+    history(&datasets, &RecordedResponse { trigger, ..measurement() })
+}
+
+/// A trigger that is wrong is refused with one that does, which then does.
+#[test]
+fn val_a_wrong_trigger_is_refused_with_one_that_does() {
+    let none = Trigger::default();
+    assert_eq!(blows(Some(none)).unwrap().hits.len(), 5);
+    for (wrong, said) in [
+        (Trigger { level: Some(0.002), ..none }, "trigger.level = 0.002 N lies in the noise of the force"),
+        (Trigger { level: Some(1e4), ..none }, "no blow passes trigger.level = 10000 N: the highest has"),
+        (Trigger { before: Some(3.0), ..none }, "trigger.before = 3 s reaches over a hit"),
+        (Trigger { before: Some(1.9), length: Some(2.3), ..none }, "back into the blow before"),
+        (Trigger { length: Some(0.1), ..none }, "hits of 0.1 s, 100 samples, are too short"),
+        (Trigger { length: Some(60.0), ..none }, "no blow has trigger.length = 60 s of the record to itself"),
+    ] {
+        let refused = blows(Some(wrong)).err().unwrap_or_else(|| panic!("{wrong:?} is taken"));
+        assert!(refused.contains(said), "{refused}");
+        if let Some(instead) = refused.split("trigger = {level = ").nth(1) {
+            let numbers: Vec<f64> = instead
+                .split('}')
+                .next()
+                .unwrap()
+                .split(", ")
+                .map(|part| part.rsplit(' ').next().unwrap().parse().unwrap())
+                .collect();
+            let [level, before, length] = numbers[..] else { panic!("{refused}") };
+            let mended = Trigger { level: Some(level), before: Some(before), length: Some(length) };
+            assert_eq!(blows(Some(mended)).unwrap().hits.len(), 5, "{refused}");
+        } else {
+            let number = refused.split("it to ").nth(1).unwrap().split(' ').next().unwrap();
+            let level: f64 = number.parse().unwrap();
+            assert_eq!(blows(Some(Trigger { level: Some(level), ..none })).unwrap().hits.len(), 5, "{refused}");
+        }
+    }
+    // A small level is said as it is.
+    let said = blows(Some(Trigger { level: Some(1.2345), ..none })).unwrap().notes.join("; ");
+    assert!(said.contains("trigger = {level = 1.234, ") || said.contains("trigger = {level = 1.235, "), "{said}");
 }

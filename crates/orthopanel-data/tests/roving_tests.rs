@@ -192,3 +192,64 @@ fn val_a_draft_is_a_test_once_it_is_filled_in() {
     assert_eq!(four.measurements.len(), 4);
     assert!(four.measurements.iter().all(|of| matches!(of.data, MeasurementData::TimeHistory(_))));
 }
+
+/// What nodes do not tell apart, records without nodes and runs of one pair, has a measurement each by its number; of runs that with the
+/// best coherence. As drafted, but for what only a person knows, it is read.
+#[test]
+fn val_a_draft_of_responses_without_nodes_and_of_runs_names_their_numbers() {
+    let home = tempfile::tempdir().unwrap();
+    let folder = home.path();
+    let response = |nodes: [i64; 2], size: f64| Dataset {
+        function: 4,
+        complex: true,
+        numerator: (12, "m/s2".into()),
+        denominator: (13, "N".into()),
+        points: (0..5).map(|line| vec![size, f64::from(line)]).collect(),
+        response_node: nodes[0],
+        reference_node: nodes[1],
+        ..Dataset::time(&[], (12, ""))
+    };
+    let coherence = |nodes: [i64; 2], of: f64| Dataset {
+        function: 6,
+        response_node: nodes[0],
+        reference_node: nodes[1],
+        ..Dataset::time(&[of; 5], (0, "NONE"))
+    };
+    let read = |datasets: &[Dataset]| {
+        let bytes: Vec<u8> = datasets.iter().flat_map(|dataset| dataset.binary(false)).collect();
+        fs::write(folder.join("all.uff"), bytes).unwrap();
+        let file = RecordFile::read(folder.join("all.uff")).unwrap();
+        let text = draft(&[(Path::new("all.uff"), &file)]);
+        let mut filled = text.clone();
+        for key in ["length", "width", "thickness", "mass_per_area", "force_at", "response_at"] {
+            filled = filled.replace(&format!("\n# {key} = "), &format!("\n{key} = "));
+        }
+        // Each pair of places has its own.
+        let parts: Vec<&str> = filled.split("response_at = [0.0, 0.0]").collect();
+        let last = parts.len() - 1;
+        let placed = parts.iter().enumerate().map(|(index, part)| match index {
+            of if of == last => (*part).to_owned(),
+            of => format!("{part}response_at = [0.{}, 0.0]", of + 1),
+        });
+        let test = ImpactTest::from_toml(&placed.collect::<String>(), folder.join("test.toml"));
+        let lines = test.unwrap().accelerances(Estimation::default()).unwrap_or_else(|error| panic!("{error}\n{text}"));
+        (text, lines.into_iter().map(|(_, line)| line.value[0].re).collect::<Vec<f64>>())
+    };
+    let none = [0, 0];
+    let (text, sizes) = read(&[
+        response(none, 1.0),
+        coherence(none, 0.9),
+        response(none, 2.0),
+        coherence(none, 0.9),
+        response(none, 3.0),
+        coherence(none, 0.9),
+    ]);
+    assert_eq!(sizes, [1.0, 2.0, 3.0], "{text}");
+    assert!(text.contains("record = 3   # a record\n# force_at"), "{text}");
+    let run = |nodes, size| {
+        [response(nodes, size), coherence(nodes, 0.3), response(nodes, 10.0 * size), coherence(nodes, 0.99)]
+    };
+    let (text, sizes) = read(&[run([2, 1], 1.0), run([3, 1], 2.0)].concat());
+    assert_eq!(sizes, [10.0, 20.0], "{text}");
+    assert!(text.contains("record = 7   # of the runs 5, 7, that with the best coherence, 0.990"), "{text}");
+}

@@ -130,8 +130,14 @@ response("accelerance: m/s2 over kgf", [frf(scale=GRAVITY, axis=(12, "M/SEC^2"),
 response("accelerance: Newtons", [frf(axis=(12, "m/s/s"), over=(13, "Newtons"))])
 response("accelerance: units declared", [frf(scale=POUND / GRAVITY, axis=(12, ""), over=(13, ""))],
          'response_unit = "g"\nforce_unit = "lbf"')
+response("accelerance: wrong label, quantity declared", [frf(scale=1 / GRAVITY, axis=(12, "m/s^2"))],
+         'quantity = "acceleration"\nresponse_unit = "g"')
+response("accelerance: wrong label of the quotient", [frf(scale=POUND / INCH, axis=(12, "m/s^2/N"), over=(13, "N"))],
+         'quantity = "acceleration"\nresponse_unit = "in/s2"\nforce_unit = "lbf"')
 response("accelerance: volts over volts", [frf(scale=0.0102 / 0.00224, axis=(12, "V"), over=(13, "V"))],
          "response_sensitivity = 0.0102\nforce_sensitivity = 0.00224")
+response("mobility: labelled m/s2, quantity declared", [frf("velocity", axis=(12, "m/s2"))],
+         'quantity = "velocity"\nresponse_unit = "m/s"')
 response("mobility: m/s over N", [frf("velocity", axis=(11, "m/s"))])
 response("mobility: mm/s over N, no types", [frf("velocity", 1e3, axis=(0, "mm/s"), over=(0, "N"))])
 response("mobility: quantity declared", [frf("velocity", axis=(0, ""), over=(0, ""))], 'quantity = "velocity"')
@@ -297,8 +303,7 @@ history("text: columns by number, none named", keys="columns = {time = 1, force 
 history("text: no times, rate declared", keys="columns = {force = 1, response = 2}\nsampling_rate = 12800",
         table=text(lambda t: "Hammer;Sensor\n" + rows("%.9g;%.9g")([row[1:] for row in t])))
 history("text: one of several channels by its name", keys='response_channel = "Acc 2"',
-        table=text(lambda t: "Time (ms),Force (N),Acc 1 (m/s2),Acc 2 (m/s2)\n".replace("Acc 2 (m/s2)", "Acc 2")
-                   + rows("%.9g,%.9g,%.9g,%.9g")([(1e3 * a, b, 3 * c, c) for a, b, c in t])))
+        table=text(lambda t: "Time (ms),Force (N),Acc 1 (m/s2),Acc 2 (m/s2)\n" + rows("%.9g,%.9g,%.9g,%.9g")([(1e3 * a, b, 3 * c, c) for a, b, c in t])))
 
 
 def lvm(columns):
@@ -376,5 +381,7 @@ table("text: dB and radians", "Frequency [Hz],H [dB re 1 (m/s^2)/N],Phase [rad]"
       lambda f, h: f"{f:.9g},{20 * np.log10(abs(h)):.12g},{np.angle(h):.9g}")
 table("text: mobility by its unit", "frequency_hz,Real (mm/s/N),Imag (mm/s/N)",
       lambda f, h: f"{f:.9g},{1e3 * h.real:.9g},{1e3 * h.imag:.9g}", quantity="velocity")
+table("text: magnitude between bars", "f / Hz;|Y| / (mm/s)/N;phase / rad",
+      lambda f, h: f"{f:.9g};{1e3 * abs(h):.9g};{np.angle(h):.9g}", quantity="velocity")
 table("text: columns of a frequency response by number", "no names here",
       lambda f, h: f"{h.imag:.9g} {h.real:.9g} {f:.9g}", "columns = {frequency = 3, real = 2, imag = 1}\nquantity = \"acceleration\"")

@@ -39,7 +39,15 @@ fn of_data(test: &ImpactTest, settings: Settings) -> Result<Identification, Iden
 /// The same where each list stands once; `lists` is their number.
 fn of_once(test: &ImpactTest, lists: usize, settings: Settings) -> Result<Identification, IdentifyError> {
     if !test.effects.is_empty() {
-        return tracing::identify_with_effects(test, settings)?.determined();
+        if lists == 0 {
+            accelerance_fit::refuse_other_units(test, &test.accelerances(settings.estimation)?)?;
+        }
+        let mut found = tracing::identify_with_effects(test, settings)?.determined()?;
+        if lists == 0 {
+            found.question = accelerance_fit::question_of_window(test);
+            found.notes.extend(found.question.clone());
+        }
+        return Ok(found);
     }
     let of_held = |error| of_held_constants(test, error);
     if lists == test.measurements.len() {

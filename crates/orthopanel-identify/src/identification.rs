@@ -37,6 +37,8 @@ pub struct Identification {
     pub accelerances: Vec<AcceleranceFit>,
     /// The effects that the test file declares, with what was identified of them.
     pub effects: Vec<TracedEffect>,
+    /// What is to be asked before these numbers count: a window that the test file does not declare. It stands in `notes` too.
+    pub question: Option<String>,
     /// What was left out, cut, assumed or found wanting, a sentence each.
     pub notes: Vec<String>,
 }

@@ -1,8 +1,11 @@
 //! What is known of a panel before its test: how well it was measured and weighed, and Gaussian priors of its constants.
 
-use orthopanel_data::{ImpactTest, KnownConstant, NamedPiece};
-use orthopanel_model::{ModeRange, Ports};
+use std::fmt;
 
+use orthopanel_data::{ImpactTest, KnownConstant, NamedPiece};
+use orthopanel_model::{ModeRange, Ports, Readable};
+
+use crate::error::spaced;
 use crate::{Correlation, Identification, IdentifiedConstant, IdentifyError};
 
 /// Priors and doubts of sizes carried into what was found; `again` identifies a test that holds further constants.
@@ -15,7 +18,7 @@ use crate::{Correlation, Identification, IdentifiedConstant, IdentifyError};
 /// constants with it by their covariance.
 ///
 /// # Errors
-/// As `again`, where a constant with a prior is one that the data do not show.
+/// [`IdentifyError::PriorContradicted`]; as `again`, where a constant with a prior is one that the data do not show.
 pub(crate) fn carried(
     test: &ImpactTest,
     mut found: Identification,
@@ -62,10 +65,15 @@ pub(crate) fn carried(
             known.add(&moved);
         }
     }
+    let mut contradictions = Vec::new();
     for (name, value, std) in shown {
-        known.meet(name, value, std);
+        contradictions.extend(known.meet(name, value, std));
     }
     known.write(test, &mut found);
+    if known.moved.iter().any(|moved| *moved != 0.0) {
+        at_moved_constants(test, &mut found, &again, &contradictions)?;
+    }
+    found.notes.extend(contradictions.iter().map(ToString::to_string));
     for (name, _, std) in unseen {
         for constant in found.constants.iter_mut().filter(|constant| constant.name == name) {
             (constant.std, constant.held) = (Some(std), false);
@@ -180,18 +188,26 @@ impl Known {
         self.constants.iter().map(of).collect()
     }
 
-    /// A Gaussian prior of one constant as a further datum.
-    fn meet(&mut self, name: &str, value: f64, std: f64) {
+    /// A Gaussian prior of one constant as a further datum; where the data contradict it, by how much.
+    fn meet(&mut self, name: &str, value: f64, std: f64) -> Vec<PriorContradiction> {
+        let mut contradictions = Vec::new();
         for k in (0..self.constants.len()).filter(|&k| self.constants[k].name == name).collect::<Vec<_>>() {
             let column: Vec<f64> = self.covariance.iter().map(|row| row[k]).collect();
             let at = self.constants[k].value * self.moved[k].exp();
             let all = column[k] + (std / value).powi(2);
+            let deviations = (value / at).ln().abs() / all.sqrt();
+            if deviations > CONTRADICTED {
+                let (name, unit) = (self.constants[k].name, self.constants[k].unit);
+                let found_std = column[k].max(0.0).sqrt() * at;
+                contradictions.push(PriorContradiction { name, unit, value, std, found: at, found_std, deviations });
+            }
             let gain: Vec<f64> = column.iter().map(|of| of / all).collect();
             self.moved.iter_mut().zip(&gain).for_each(|(moved, gain)| *moved += gain * (value / at).ln());
             for (row, gain) in self.covariance.iter_mut().zip(&gain) {
                 row.iter_mut().zip(&column).for_each(|(value, of)| *value -= gain * of);
             }
         }
+        contradictions
     }
 
     /// Writes values, standard deviations and correlations back, and the model's frequencies at the constants that moved.
@@ -221,6 +237,74 @@ impl Known {
         if self.moved.iter().any(|moved| *moved != 0.0) && test.effects.is_empty() {
             moved_modes(test, found);
         }
+    }
+}
+
+/// Standard deviations beyond which a prior and the data contradict each other.
+const CONTRADICTED: f64 = 3.0;
+
+/// A prior that lies far from what the data say.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PriorContradiction {
+    /// The constant.
+    pub name: &'static str,
+    /// Its unit.
+    pub unit: &'static str,
+    /// Of the prior.
+    pub value: f64,
+    /// Of the prior.
+    pub std: f64,
+    /// What the data say.
+    pub found: f64,
+    /// How well they say it.
+    pub found_std: f64,
+    /// Their difference over the standard deviation of both.
+    pub deviations: f64,
+}
+
+impl fmt::Display for PriorContradiction {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { name, unit, value, std, found, found_std, deviations } = self;
+        write!(
+            f,
+            "{name} = {{value = {value:e}, std = {std:e}}} under [constants] lies {:.1} standard deviations from what the data say, \
+             {found:.4e} +- {found_std:.1e}{}: one of the two is wrong; correct the value, widen its std, or leave the line out",
+            Readable(*deviations),
+            spaced(unit)
+        )
+    }
+}
+
+/// The model's errors at the constants as they are now, by an identification that holds them.
+///
+/// # Errors
+/// [`IdentifyError::PriorContradicted`] where the records contradict these constants.
+fn at_moved_constants(
+    test: &ImpactTest,
+    found: &mut Identification,
+    again: &impl Fn(&ImpactTest) -> Result<Identification, IdentifyError>,
+    contradictions: &[PriorContradiction],
+) -> Result<(), IdentifyError> {
+    if found.constants.iter().any(|constant| constant.piece.is_some()) {
+        return Ok(());
+    }
+    let mut held = test.clone();
+    held.known_constants.clear();
+    held.constants.extend(found.constants.iter().map(|constant| (constant.name.to_owned(), constant.value)));
+    match (again(&held), contradictions.first()) {
+        (Ok(at), _) => {
+            found.pieces = at.pieces;
+            found.frequency_rms_percent = at.frequency_rms_percent;
+            found.left_one_out_percent = at.left_one_out_percent;
+            found.accelerance_rms_percent = at.accelerance_rms_percent;
+            found.chi_square = at.chi_square;
+            found.accelerances = at.accelerances;
+            Ok(())
+        }
+        (Err(refused), Some(prior)) if !refused.is_of_model() => {
+            Err(IdentifyError::PriorContradicted { prior: *prior, refused: Box::new(refused) })
+        }
+        _ => Ok(()),
     }
 }
 

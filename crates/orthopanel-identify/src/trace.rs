@@ -3,10 +3,11 @@
 use orthopanel_data::{ImpactTest, MeasurementData};
 use orthopanel_model::StructureKind;
 
-use crate::IdentifyError;
+use crate::accelerance_fit::{WINDOW_EFFECT, question_of_window, refuse_other_units};
 use crate::answer::answer;
 use crate::outcome::{EstimatedModelError, Progress, Tracing, Verdict};
 use crate::tracing::trace_by_fits;
+use crate::{IdentifyError, Settings};
 
 /// Names the effect that the base model of a test lacks, from its records or its natural frequencies. Effects that the test
 /// file declares are part of the base model.
@@ -27,11 +28,12 @@ pub fn trace(test: &ImpactTest) -> Result<Tracing, IdentifyError> {
 /// # Errors
 /// As [`trace`].
 pub fn trace_with(test: &ImpactTest, progress: &(dyn Fn(Progress) + Sync)) -> Result<Tracing, IdentifyError> {
-    let by_lines = trace_by_lines(test, progress);
+    check(test)?;
+    let by_lines = by_lines(test, progress);
     if !are_hits_of_one_beam(test) || by_lines.as_ref().is_ok_and(is_met) {
         return by_lines;
     }
-    match trace_by_modes(test, progress) {
+    match by_modes(test, progress) {
         Ok(by_modes) if by_modes.model_error.is_some_and(EstimatedModelError::is_usual) => Ok(by_modes),
         _ => by_lines,
     }
@@ -81,7 +83,11 @@ fn are_hits_of_one_beam(test: &ImpactTest) -> bool {
 /// [`IdentifyError::PlateNotTraced`] for a declared plate; records that cannot be read or show too few resonances, and tests
 /// that this version cannot trace.
 pub fn trace_by_modes(test: &ImpactTest, progress: &(dyn Fn(Progress) + Sync)) -> Result<Tracing, IdentifyError> {
-    check_structure(test)?;
+    check(test)?;
+    by_modes(test, progress)
+}
+
+fn by_modes(test: &ImpactTest, progress: &(dyn Fn(Progress) + Sync)) -> Result<Tracing, IdentifyError> {
     if !are_hits_of_one_beam(test) {
         let message = "a trace by modes of anything but the hits of one piece: trace it by lines";
         return Err(IdentifyError::Unsupported(message.into()));
@@ -95,14 +101,44 @@ pub fn trace_by_modes(test: &ImpactTest, progress: &(dyn Fn(Progress) + Sync)) -
 /// # Errors
 /// As [`trace`].
 pub fn trace_by_lines(test: &ImpactTest, progress: &(dyn Fn(Progress) + Sync)) -> Result<Tracing, IdentifyError> {
-    check_structure(test)?;
-    trace_by_fits(test, progress)?.finite()
+    check(test)?;
+    by_lines(test, progress)
 }
 
-/// The base of every trace is a beam: of a plate it would judge another model than the one that the file declares.
-fn check_structure(test: &ImpactTest) -> Result<(), IdentifyError> {
-    match test.structure {
-        Some(StructureKind::MindlinPlate) => Err(IdentifyError::PlateNotTraced),
-        _ => Ok(()),
+fn by_lines(test: &ImpactTest, progress: &(dyn Fn(Progress) + Sync)) -> Result<Tracing, IdentifyError> {
+    let question = question_of_window(test);
+    let found = trace_by_fits(test, progress)?.finite()?;
+    Ok(match question {
+        Some(question) => asked_of_window(found, question),
+        None => found,
+    })
+}
+
+/// Before lines say what lacks, the window is asked about that they may have been averaged under: free damping takes up most of it.
+fn asked_of_window(mut found: Tracing, question: String) -> Tracing {
+    if found.effects.iter().all(|effect| effect.id != WINDOW_EFFECT) {
+        // What explained nothing stands beside a window that may explain it.
+        if found.verdict == Verdict::Unexplained {
+            found.effects.clear();
+        }
+        found.verdict = Verdict::Ambiguous;
+        found.alternatives.retain(|id| id != WINDOW_EFFECT);
+        found.alternatives.insert(0, WINDOW_EFFECT.to_owned());
+        found.next_experiment = question.clone();
     }
+    found.notes.insert(0, question);
+    found
+}
+
+/// What every trace refuses. Its base is a beam: of a plate it would judge another model than the one that the file declares. And
+/// records in other units than they were read in have no effect, but a line of the test file.
+fn check(test: &ImpactTest) -> Result<(), IdentifyError> {
+    if test.structure == Some(StructureKind::MindlinPlate) {
+        return Err(IdentifyError::PlateNotTraced);
+    }
+    if test.measurements.iter().all(|measurement| measurement.data.recorded().is_some()) {
+        // As `identify` reads them, so that both say the same.
+        refuse_other_units(test, &test.accelerances(Settings::default().estimation)?)?;
+    }
+    Ok(())
 }

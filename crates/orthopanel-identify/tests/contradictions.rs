@@ -108,7 +108,7 @@ fn a_rate_too_low_for_the_modes_is_refused_with_the_one_needed() {
 /// One fault in all records alike: the sensor turned round and not declared, and g taken for m/s2.
 #[test]
 fn a_factor_on_all_records_is_named() {
-    for (factor, said) in [(-1.0, "direction = -1"), (9.80665, "acceleration_g")] {
+    for (factor, said) in [(-1.0, "direction = -1"), (9.80665, "response_unit = \"g\"")] {
         let folder = tempfile::tempdir().unwrap();
         let Some(_) = hammer_test(&folder.path().join("one"), &["--hits", "3", "--seed", "16"]) else { return };
         for hit in 1..=3 {
@@ -124,7 +124,7 @@ fn a_factor_on_all_records_is_named() {
         let refused = identify(&test, Settings::default()).unwrap_err();
         assert!(refused.to_string().contains(said), "{refused}");
         match refused {
-            IdentifyError::Contradiction { factor: Some(found), .. } => {
+            IdentifyError::OtherUnits { factor: found, derivatives: 0, records: None, .. } => {
                 assert!((found / factor - 1.0).abs() < 0.01, "{found}");
             }
             other => panic!("{other}"),

@@ -94,3 +94,52 @@ fn val_an_unseen_constant_is_its_prior() {
     assert_eq!((nu.value, nu.std, nu.held), (0.25, Some(0.05), false));
     assert!(found.not_identified.iter().all(|unseen| unseen.name != "nu_xy"));
 }
+
+/// A prior far from what the data say is told with its line, and the errors are those with it: the same as of constants that are held
+/// where it leads.
+#[test]
+fn val_a_prior_that_contradicts_the_data_is_told_with_its_error() {
+    let alone = found("", "");
+    assert!(alone.notes.iter().all(|note| !note.contains("standard deviations from what the data say")));
+    let told = |of: &Identification| {
+        let said = of.notes.iter().find(|note| note.contains("standard deviations from what the data say"));
+        said.map(|note| note.split(" lies ").nth(1).unwrap().split(' ').next().unwrap().parse::<f64>().unwrap())
+    };
+    let (value, std) = (alone.constants[0].value, alone.constants[0].std.unwrap());
+    let with = |centre: f64, of: f64| found("", &format!("e_x = {{value = {centre}, std = {of}}}"));
+    assert_eq!(told(&with(value + 2.0 * std, std)), None);
+    let far = with(1.2 * value, 0.001 * value);
+    let due = 1.2_f64.ln() / (std / value).hypot(0.001 / 1.2);
+    assert!((told(&far).unwrap() / due - 1.0).abs() < 0.01, "{:?}", far.notes);
+    assert!(far.notes.iter().any(|note| note.starts_with("e_x = {value = ") && note.contains("under [constants]")));
+    let [e_x, g_zx] = [0, 1].map(|index| far.constants[index].value);
+    let held = found("", &format!("e_x = {e_x}\ng_zx = {g_zx}"));
+    assert!((far.frequency_rms_percent / held.frequency_rms_percent - 1.0).abs() < 1e-9);
+    assert_eq!(far.pieces[0].modes.len(), 6);
+    assert!(far.frequency_rms_percent > 2.0 * alone.frequency_rms_percent, "{}", far.frequency_rms_percent);
+}
+
+/// With records the error of the lines is that with the prior, too; where no line is met with it, the prior is refused.
+#[test]
+fn val_a_prior_counts_in_the_error_of_records() {
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/made-hits/test.toml");
+    let text = std::fs::read_to_string(&path).unwrap();
+    let with = |constants: &str| {
+        let text = text.replace("[[measurement]]", &format!("[constants]\n{constants}\n[[measurement]]"));
+        identify(&ImpactTest::from_toml(&text, &path).unwrap(), Settings::default())
+    };
+    let alone = with("").unwrap();
+    let near = with("e_x = {value = 1.072e10, std = 1e5}").unwrap();
+    let error = |of: &Identification| of.accelerance_rms_percent.unwrap();
+    assert!(error(&near) > 1.05 * error(&alone) && near.chi_square > alone.chi_square, "{}", error(&near));
+    let [e_x, g_zx] = [0, 1].map(|index| near.constants[index].value);
+    let held = with(&format!("e_x = {e_x}\ng_zx = {g_zx}")).unwrap();
+    assert!((error(&near) / error(&held) - 1.0).abs() < 1e-9, "{} {}", error(&near), error(&held));
+    assert!(
+        near.notes.iter().any(|note| note.contains("standard deviations from what the data say")),
+        "{:?}",
+        near.notes
+    );
+    let refused = with("e_x = {value = 4e10, std = 1e5}").unwrap_err().to_string();
+    assert!(refused.starts_with("e_x = {value = 4e10, std = 1e5} under [constants] lies "), "{refused}");
+}

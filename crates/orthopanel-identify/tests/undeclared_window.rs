@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use orthopanel_data::{Estimation, ImpactTest, MeasurementData, TimeHistory, Window};
-use orthopanel_identify::{Identification, Settings, identify};
+use orthopanel_identify::{Identification, Settings, Verdict, identify, trace};
 
 /// The example's hits under $e^{-t/\tau}$ over both channels, averaged, as a file of lines in a test of its own.
 fn averaged_under(tau: Option<f64>, declared: Option<f64>, folder: &Path) -> Identification {
@@ -67,4 +67,28 @@ fn val_a_measured_folder_is_asked_about() {
     for (constant, truth) in found.constants.iter().zip([1.067e10, 5.304e8]) {
         assert!((constant.value / truth - 1.0).abs() < 5e-3, "{}: {:e}", constant.name, constant.value);
     }
+}
+
+/// `trace` asks the same, and calls nothing explained before the answer; declared, it is no more asked.
+#[test]
+fn val_a_trace_asks_too() {
+    let folder = tempfile::tempdir().unwrap();
+    averaged_under(Some(0.25), None, folder.path());
+    let piece = "[piece]\nlength = 0.8\nwidth = 0.1\nthickness = 0.03\nmass_per_area = 6.88\n";
+    let lines =
+        "[[measurement]]\nkind = \"accelerance\"\nfile = \"lines.csv\"\nforce_at = [-0.3, 0]\nresponse_at = [0.3, 0]\n";
+    let sensor = "[[effect]]\nid = \"sensor-mass\"\nmass = 1e-5\n";
+    let path = folder.path().join("test.toml");
+    let read = |text: String| ImpactTest::from_toml(&text, &path).unwrap();
+    // With an effect declared too, by both.
+    let test = read(format!("{piece}{sensor}{lines}"));
+    let found = identify(&test, Settings::default()).unwrap();
+    assert_eq!(found.question.as_deref(), question(&found));
+    let asked = found.question.unwrap();
+    let traced = trace(&read(format!("{piece}{lines}"))).unwrap();
+    assert_eq!((traced.verdict, traced.alternatives[0].as_str()), (Verdict::Ambiguous, "exponential-window"));
+    assert_eq!((&traced.next_experiment, &traced.notes[0]), (&asked, &asked));
+    let traced = trace(&read(format!("{piece}{lines}window_decay = 0.25\n"))).unwrap();
+    assert_eq!(traced.verdict, Verdict::NothingMissing, "{:?}", traced.notes);
+    assert!(!traced.next_experiment.contains("window_decay"), "{}", traced.next_experiment);
 }

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use orthopanel_data::ImpactTest;
-use orthopanel_identify::{IdentifyError, Settings, identify};
+use orthopanel_identify::IdentifyError;
 use orthopanel_model::StructureKind;
 
 use crate::error::CommandError;
@@ -11,18 +11,6 @@ use crate::evidence::Evidence;
 use crate::record_options::IdentifyOptions;
 use crate::traced::{By, Traced};
 use crate::{console, report};
-
-/// Refuses a test of records all of which want one factor that is a unit's or a sign's: a trace would search for minutes and find none.
-///
-/// # Errors
-/// What identifying refuses, which names the line that mends it.
-pub fn refuse_known_factor(test: &ImpactTest, path: &Path) -> Result<(), CommandError> {
-    if test.effects.is_empty() && test.measurements.iter().all(|measurement| measurement.data.recorded().is_some()) {
-        let refused = identify(test, Settings::default()).err().filter(IdentifyError::is_of_known_factor);
-        return refused.map_or(Ok(()), |source| Err(CommandError::Identify { path: path.into(), source }));
-    }
-    Ok(())
-}
 
 /// A test whose base model was refused, and its trace.
 pub struct Contradicted {
@@ -35,14 +23,12 @@ impl Contradicted {
     /// Traces a test, read at `path`, of which identifying was `refused`.
     ///
     /// # Errors
-    /// The refusal itself where it is another than that records contradict a beam, or where one line of the test file mends it; what the
-    /// trace refuses.
+    /// The refusal itself where it is another than that records contradict a beam; what the trace refuses.
     pub fn of(test: ImpactTest, (path, by): (&Path, By), refused: CommandError) -> Result<Self, CommandError> {
         if !matches!(refused, CommandError::Identify { source: IdentifyError::Contradiction { .. }, .. }) {
             return Err(refused);
         }
-        let is_mended = matches!(&refused, CommandError::Identify { source, .. } if source.is_of_known_factor());
-        if test.structure == Some(StructureKind::MindlinPlate) || is_mended {
+        if test.structure == Some(StructureKind::MindlinPlate) {
             return Err(refused);
         }
         console::say(format_args!("not identified: {refused}"));

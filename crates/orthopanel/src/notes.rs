@@ -26,17 +26,29 @@ fn folded(notes: &[String]) -> Vec<(&str, usize)> {
     let mut places: HashMap<&str, usize> = HashMap::new();
     for note in notes {
         let numbered = note.split_once("record ").and_then(|(_, rest)| rest.split_once(": "));
-        let text = match numbered {
-            Some((number, text)) if number.bytes().all(|byte| byte.is_ascii_digit()) => text,
+        let placed = note.split_once(": ").filter(|(before, _)| is_pair_of_places(before));
+        let text = match (numbered, placed) {
+            (Some((number, text)), _) if number.bytes().all(|byte| byte.is_ascii_digit()) => text,
+            (_, Some((_, text))) => text,
             _ => note,
         };
         let place = *places.entry(text).or_insert(folded.len());
         match folded.get_mut(place) {
-            Some((_, times)) => *times += 1,
-            None => folded.push((text, 1)),
+            Some((said, times)) => (*said, *times) = (text, *times + 1),
+            // What is said once keeps its place.
+            None => folded.push((note, 1)),
         }
     }
     folded
+}
+
+/// `force at (-0.3, 0), response at (0.3, 0)`, or `-0.3 to 0.3`.
+fn is_pair_of_places(text: &str) -> bool {
+    let is_place = |text: &str| text.trim_matches(['(', ')']).split(", ").all(|number| number.parse::<f64>().is_ok());
+    match text.strip_prefix("force at ").and_then(|rest| rest.split_once(", response at ")) {
+        Some((force, response)) => is_place(force) && is_place(response),
+        None => text.split_once(" to ").is_some_and(|(force, response)| is_place(force) && is_place(response)),
+    }
 }
 
 #[cfg(test)]
@@ -48,5 +60,9 @@ mod tests {
         let notes =
             ["force at (0, 0): record 1: rounded", "hit 2 left out: double hit", "record 2: rounded"].map(String::from);
         assert_eq!(folded(&notes), [("rounded", 2), ("hit 2 left out: double hit", 1)]);
+        let pair = |x: &str, note: &str| format!("force at (-0.3, 0), response at ({x}, 0): {note}");
+        let notes =
+            [pair("0.3", "columns"), pair("0.3", "odd"), pair("0.1", "columns"), "0.2 to 0.3: columns".to_owned()];
+        assert_eq!(folded(&notes), [("columns", 3), (&*notes[1], 1)]);
     }
 }

@@ -71,7 +71,7 @@ fn val_other_formats_are_named_with_the_lines_that_convert_them() {
     refused(&bench, "records examples", 2, &["examples", "a folder"]);
 }
 
-/// A unit that all records lack is named by `identify` and `trace` alike, before anything is searched.
+/// A unit that all records lack is named by `identify`, `trace` and `run` alike, before anything is searched.
 #[test]
 fn val_a_unit_that_all_records_lack_is_named_first() {
     let bench = Bench::new();
@@ -91,11 +91,10 @@ fn val_a_unit_that_all_records_lack_is_named_first() {
     bench.write("g.toml", &format!(
         "{piece}[[measurement]]\nkind = \"accelerance\"\nfile = \"g.csv\"\nforce_at = [-0.3, 0]\nresponse_at = [0.3, 0]\n"
     ));
-    for command in ["identify g.toml", "trace g.toml"] {
+    for command in ["identify g.toml", "trace g.toml", "run g.toml -o out"] {
         let said = said(&bench, command, 1);
-        assert!(
-            said.contains("all of them fit") && said.contains("response_unit = \"g\" in each [[measurement]]"),
-            "{said}"
-        );
+        let first =
+            "g.toml: write quantity = \"acceleration\" and response_unit = \"g\" in each [[measurement]]: all records";
+        assert!(said.contains(first), "{command}: {said}");
     }
 }

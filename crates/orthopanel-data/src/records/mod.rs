@@ -22,6 +22,7 @@ pub(crate) use quantity::{Quantity, quantity, type_name};
 pub use record::{Axis, Port, Record, RecordFile, RecordKind, Samples};
 pub(crate) use record::{Node, UnitSystem, data_type};
 pub(crate) use step::round_rate;
+pub(crate) use text::without_unit;
 
 /// No sensor reads as much, in whatever unit. A spoilt byte in an exponent makes such values, whose squares are no numbers any more.
 const NO_READING: f64 = 1e30;

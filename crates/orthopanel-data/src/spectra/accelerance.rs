@@ -10,6 +10,7 @@ use super::coherence::{self, Pairing};
 use super::force_noise::ForceNoise;
 use super::hit_verdict::HitVerdict;
 use super::likely_motion::likely_motion;
+use super::read_as::ReadAs;
 use crate::{
     DataError, Location, Motion, RecordedResponse,
     error::some_of,
@@ -52,6 +53,8 @@ pub struct Accelerance {
     /// The part of its size by which each line is too low for the force's noise in $S_{ff}$, equally long; not taken out of
     /// `value`. `None` where the records show no quiet stretch before the blow to read the noise from.
     pub bias: Option<Vec<f64>>,
+    /// As what the records were read.
+    pub read_as: ReadAs,
     /// What was left out, cut, mended or assumed, a sentence each.
     pub notes: Vec<String>,
 }
@@ -71,6 +74,7 @@ impl Accelerance {
             decay_rate_in_doubt: 0.0,
             force_noise: None,
             bias: None,
+            read_as: ReadAs::SI,
             notes: Vec::new(),
         }
     }
@@ -106,35 +110,54 @@ impl Accelerance {
         let of_kind = |kind| records.iter().filter(move |record| record.kind == kind);
         let responses: Vec<(usize, &Record)> =
             (1..).zip(records).filter(|(_, record)| record.kind == RecordKind::FrequencyResponse).collect();
-        let chosen = match named {
-            Some(number) => responses.iter().find(|(of, _)| *of == number),
-            None => responses.first(),
-        };
-        let numbers = || some_of(&responses.iter().map(|(number, _)| number.to_string()).collect::<Vec<_>>(), ", ");
+        let numbers = |of: &[usize]| some_of(&of.iter().map(usize::to_string).collect::<Vec<_>>(), ", ");
+        let all: Vec<usize> = responses.iter().map(|(number, _)| *number).collect();
         let refused = |record: &Record, problem: String| Err(DataError::Channels { at: record.at.clone(), problem });
-        if let (None, Some(number), Some((_, first))) = (chosen, named, responses.first()) {
-            let problem = format!("record = {number} is no frequency response: those of the file are {}", numbers());
-            return refused(first, problem);
-        }
-        let Some(&(number, record)) = chosen else {
+        let Some((_, first)) = responses.first() else {
             let at = Location::whole(&measurement.file);
             return Err(DataError::NoRecords { at, what: "frequency response (function type 4)" });
         };
-        if let (None, Some((_, second))) = (named, responses.get(1)) {
-            let problem = format!(
-                "a second frequency response: say which by record = N in its [[measurement]], one of {}, or by \
-                 response_channel and force_channel, or give each pair of places a file of its own",
-                numbers()
-            );
-            return refused(second, problem);
-        }
+        let is_chosen = measurement.force_channel.is_some() || measurement.response_channel.is_some();
+        let number = match named[..] {
+            [number] => number,
+            [_, second, ..] => {
+                let another =
+                    responses.iter().find(|(number, _)| *number == second).map_or(*first, |(_, record)| *record);
+                let which = numbers(&named);
+                let problem = if is_chosen {
+                    format!(
+                        "several frequency responses, of this pair of channels as runs of one test are: say which by record = N in its \
+                         [[measurement]], one of {which}"
+                    )
+                } else {
+                    format!(
+                        "a second frequency response: say which by record = N in its [[measurement]], one of {which}, or by \
+                         response_channel and force_channel, or give each pair of places a file of its own"
+                    )
+                };
+                return refused(another, problem);
+            }
+            [] => {
+                let problem = format!(
+                    "no frequency response is of both the force_channel and the response_channel of its [[measurement]]: correct one of \
+                     them, or say which by record = N, one of {}",
+                    numbers(&all)
+                );
+                return refused(first, problem);
+            }
+        };
+        let Some(&(_, record)) = responses.iter().find(|(of, _)| *of == number) else {
+            let problem =
+                format!("record = {number} is no frequency response: those of the file are {}", numbers(&all));
+            return refused(first, problem);
+        };
         match (channels::quantity(&record.numerator), channels::quantity(&record.denominator)) {
             (Quantity::Motion(_) | Quantity::Untold, Quantity::Force | Quantity::Untold) => {}
             (numerator, denominator) => {
                 return refused(record, format!("{numerator:?} over {denominator:?}: motion over force is needed"));
             }
         }
-        let Calibration { factor, motion } = channels::response(record, measurement, &mut notes)?;
+        let (Calibration { factor, motion, .. }, read_as) = channels::response(record, measurement, &mut notes)?;
         let Samples::Complex(values) = &record.ordinate else {
             return refused(record, "a frequency response must be complex: magnitude alone is not enough".into());
         };
@@ -169,6 +192,7 @@ impl Accelerance {
         if positive > 0 {
             notes.push(format!("{}: {positive} lines at or below 0 Hz left out", record.at.key));
         }
+        result.read_as = read_as;
         result.frequency = record.abscissa.iter().skip(positive).copied().collect();
         if result.frequency.is_empty() {
             return refused(record, "no line above 0 Hz".into());

@@ -9,7 +9,7 @@ use super::channels::{self, Quantity};
 use crate::{
     ChannelName, DataError, RecordedResponse,
     error::some_of,
-    records::{Node, Port, Record, RecordFile, RecordKind, blows, data_type, is_force as tells_force},
+    records::{Node, Port, Record, RecordFile, RecordKind, blows, data_type, is_force as tells_force, without_unit},
 };
 
 /// A node and a place this far apart \[m\] are one: places are measured to millimetres.
@@ -72,7 +72,8 @@ impl ChannelName {
                     && own == port
             }),
             Self::Port { node, direction } => port.node == *node && (*direction == 0 || port.direction == *direction),
-            Self::Name(name) => record.title.split(" | ").any(|line| line == name),
+            // With its unit or without.
+            Self::Name(name) => record.title.split(" | ").any(|line| line == name || without_unit(line) == name),
         }
     }
 }
@@ -150,13 +151,13 @@ fn pairs(file: &RecordFile, measurement: &RecordedResponse) -> Result<Option<Vec
     Ok(Some(pairs))
 }
 
-/// The number of the frequency response of a measurement, where one fits alone.
+/// The numbers of the frequency responses that a measurement may mean: one where one fits alone.
 ///
 /// # Errors
 /// [`DataError::Channels`] where a declared channel is not in the file.
-pub(super) fn response(file: &RecordFile, measurement: &RecordedResponse) -> Result<Option<usize>, DataError> {
-    if measurement.record.is_some() {
-        return Ok(measurement.record);
+pub(super) fn response(file: &RecordFile, measurement: &RecordedResponse) -> Result<Vec<usize>, DataError> {
+    if let Some(record) = measurement.record {
+        return Ok(vec![record]);
     }
     let of_kind = |record: &&Record| record.kind == RecordKind::FrequencyResponse;
     let [force, response] = [Role::Force, Role::Response].map(|role| chosen(file, measurement, role, of_kind));
@@ -165,9 +166,7 @@ pub(super) fn response(file: &RecordFile, measurement: &RecordedResponse) -> Res
         let is_in = |chosen: &Option<Vec<usize>>| chosen.as_ref().is_none_or(|chosen| chosen.contains(&record.number));
         is_in(&force) && is_in(&response)
     };
-    let mut left = file.records.iter().filter(of_kind).filter(fits);
-    let first = left.next().map(|record| record.number);
-    Ok(first.filter(|_| (force.is_some() || response.is_some()) && left.next().is_none()))
+    Ok(file.records.iter().filter(of_kind).filter(fits).map(|record| record.number).collect())
 }
 
 /// Numbers of the records of one channel; `None` where nothing has to be chosen, or nothing tells it.

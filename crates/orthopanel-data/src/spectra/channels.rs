@@ -1,5 +1,6 @@
 //! Which record is which channel, in which unit and direction.
 
+use super::read_as::ReadAs;
 pub(super) use crate::records::{Quantity, quantity, type_name};
 use crate::{
     DataError, Direction, Motion, RecordedResponse, Unit,
@@ -27,6 +28,8 @@ pub(super) fn data_type_of(declared: &RecordedResponse) -> i64 {
 pub(super) struct Calibration {
     pub(super) factor: f64,
     pub(super) motion: Motion,
+    /// Of the unit alone, without direction and sensitivity.
+    pub(super) unit: f64,
 }
 
 /// Calibration of a record of motion against time.
@@ -41,15 +44,21 @@ pub(super) fn motion(
 ) -> Result<Calibration, DataError> {
     let motion = motion_of(record, declared, notes)?;
     let unit = resolved(record, &record.numerator, Measured::Motion(motion), declared, notes)?;
-    Ok(Calibration { factor: sign(record, directions, declared, notes)? * unit.to_si(), motion })
+    let factor = sign(record, directions, declared, notes)? * unit.to_si();
+    Ok(Calibration { factor, motion, unit: declared.unit_read(Measured::Motion(motion), &unit) })
 }
 
-/// Factor of a record of force against time, to newtons.
+/// Factor of a record of force against time, to newtons, and that of its unit alone.
 ///
 /// # Errors
 /// [`DataError::Channels`] as [`resolved`].
-pub(super) fn force(record: &Record, declared: &RecordedResponse, notes: &mut Vec<String>) -> Result<f64, DataError> {
-    Ok(resolved(record, &record.numerator, Measured::Force, declared, notes)?.to_si())
+pub(super) fn force(
+    record: &Record,
+    declared: &RecordedResponse,
+    notes: &mut Vec<String>,
+) -> Result<(f64, f64), DataError> {
+    let unit = resolved(record, &record.numerator, Measured::Force, declared, notes)?;
+    Ok((unit.to_si(), declared.unit_read(Measured::Force, &unit)))
 }
 
 /// Calibration of a frequency response, motion over force.
@@ -60,37 +69,63 @@ pub(super) fn response(
     record: &Record,
     declared: &RecordedResponse,
     notes: &mut Vec<String>,
-) -> Result<Calibration, DataError> {
+) -> Result<(Calibration, ReadAs), DataError> {
     let motion = motion_of(record, declared, notes)?;
     let directions = [record.response.direction, record.reference.direction];
     // Some writers put the whole quotient into the numerator's unit: then the denominator's says nothing more.
     let whole =
         Unit::parse(&record.numerator.unit).filter(|unit| unit.measured() == Some(Measured::MotionOverForce(motion)));
-    let to_si = match whole {
+    let (to_si, [of_response, of_force]) = match whole {
         Some(unit) => {
             let [over, under] =
                 [&declared.response_unit, &declared.force_unit].map(|unit| unit.as_ref().map(Unit::to_si));
             let due = over.unwrap_or(1.0) / under.unwrap_or(1.0);
-            if (over.is_some() || under.is_some()) && (due / unit.to_si() - 1.0).abs() > 1e-4 {
+            let is_other = (over.is_some() || under.is_some()) && (due / unit.to_si() - 1.0).abs() > 1e-4;
+            if is_other && declared.quantity.is_none() {
                 return Err(refused(
                     record,
                     format!(
-                        "the record is in {:?}, the test file declares another unit: correct or drop it",
+                        "the record is in {:?}, the test file declares another unit: correct or drop it, or where the label is \
+                         wrong declare quantity = \"{motion}\" too",
                         unit.to_string()
                     ),
                 ));
             }
-            if (unit.to_si() - 1.0).abs() > 1e-12 {
-                notes.push(format!("{}: brought from {unit} to ({})/N", record.at.key, motion.si_unit()));
+            if is_other {
+                notes.push(format!(
+                    "{}: unit {:?} of the frequency response passed over, as the test file declares another and a quantity",
+                    record.at.key,
+                    unit.to_string()
+                ));
+                (due, [over.unwrap_or(1.0), under.unwrap_or(1.0)])
+            } else {
+                if (unit.to_si() - 1.0).abs() > 1e-12 {
+                    notes.push(format!("{}: brought from {unit} to ({})/N", record.at.key, motion.si_unit()));
+                }
+                (unit.to_si(), [unit.to_si(), 1.0])
             }
-            unit.to_si()
         }
         None => {
             let over = resolved(record, &record.numerator, Measured::Motion(motion), declared, notes)?;
-            over.to_si() / resolved(record, &record.denominator, Measured::Force, declared, notes)?.to_si()
+            let under = resolved(record, &record.denominator, Measured::Force, declared, notes)?;
+            let read = [(Measured::Motion(motion), &over), (Measured::Force, &under)];
+            (over.to_si() / under.to_si(), read.map(|(measured, unit)| declared.unit_read(measured, unit)))
         }
     };
-    Ok(Calibration { factor: sign(record, directions, declared, notes)? * to_si, motion })
+    let factor = sign(record, directions, declared, notes)? * to_si;
+    let calibration = Calibration { factor, motion, unit: of_response };
+    Ok((calibration, ReadAs { motion, response: of_response, force: of_force, turned: factor < 0.0 }))
+}
+
+impl RecordedResponse {
+    /// SI units in one unit of a channel as it was read: where volts have a sensitivity, of what they stand for.
+    fn unit_read(&self, measured: Measured, unit: &Unit) -> f64 {
+        let (sensitivity, given) = match measured {
+            Measured::Force => (self.force_sensitivity, &self.force_unit),
+            _ => (self.response_sensitivity, &self.response_unit),
+        };
+        if sensitivity.is_some() { given.as_ref().map_or(1.0, Unit::to_si) } else { unit.to_si() }
+    }
 }
 
 fn refused(record: &Record, problem: String) -> DataError {
@@ -106,10 +141,8 @@ fn motion_of(record: &Record, declared: &RecordedResponse, notes: &mut Vec<Strin
     let by_unit = declared.response_unit.as_ref().and_then(Unit::motion);
     match (declared.quantity, by_unit, told) {
         (Some(declared), _, Some(told)) if declared != told => {
-            notes.push(format!(
-                "{}: a {told} by its type, taken as {declared}, as the test file declares",
-                record.at.key
-            ));
+            notes
+                .push(format!("{}: {told} by its type, taken as {declared}, as the test file declares", record.at.key));
             Ok(declared)
         }
         (Some(declared), ..) => Ok(declared),
@@ -197,13 +230,16 @@ fn resolved(
         });
     }
     let unit = match (given, recorded, of_file) {
-        (Some(given), Some(recorded), _) if !given.is_same(recorded) => {
+        (Some(given), Some(recorded), _) if !given.is_same(recorded) && declared.quantity.is_none() => {
             let problem = format!(
-                "the record's {name} is in {label:?}, the test file declares another unit, {given}: correct or drop `{unit_key}`"
+                "the record's {name} is in {label:?}, the test file declares another unit, {given}: correct or drop `{unit_key}`, or where \
+                 the label is wrong declare quantity = \"acceleration\" too (or \"velocity\", \"displacement\")"
             );
             return Err(refused(record, problem));
         }
-        (Some(given), None, _) if !label.is_empty() => {
+        (Some(given), recorded, _)
+            if !label.is_empty() && !recorded.is_some_and(|recorded| given.is_same(recorded)) =>
+        {
             notes.push(format!("{key}: unit {label:?} of the {name} read as {given}, as the test file declares"));
             given.clone()
         }

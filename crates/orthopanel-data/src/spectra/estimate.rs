@@ -113,6 +113,7 @@ impl TimeHistory {
         notes.extend(cut);
         let noise = (kept.len() == 1).then(|| noise_above(&sums, end)).flatten();
         let mut result = Accelerance::empty(self.force_at, self.response_at);
+        result.read_as = self.read_as;
         let (mut variance, mut coherence) = (Vec::new(), Vec::new());
         let mut force_noise = ForceNoise::beneath(window, &sums, samples as f64 / self.rate);
         let mut bias = sums.noise.is_some().then(Vec::new);

@@ -77,7 +77,10 @@ impl GatheredFile {
                 (recorded.clone(), numbered, Gathered::Hits(TimeHistory::of_chosen(file, recorded)?))
             }
             MeasurementData::Accelerance(recorded) => {
-                let record = channel_choice::response(&file, recorded)?;
+                let record = match channel_choice::response(&file, recorded)?[..] {
+                    [number] => Some(number),
+                    _ => None,
+                };
                 let recorded = RecordedResponse { record, ..recorded.clone() };
                 let numbered = NumberedPlace::of(&file, &recorded)?;
                 let line = Accelerance::of_file(&file, &recorded)?;

@@ -1,11 +1,12 @@
 //! One hit of two records: units and direction put right, windows undone, motions differentiated, channels told apart.
 
 use super::{
-    channels::{self, Calibration},
+    channels::{self, Calibration, Quantity},
     derivative::derivative,
     extremes::{LANES, extremes, sampled_median},
     hit::Hit,
     misplaced_channel,
+    read_as::ReadAs,
     window::milliseconds,
 };
 use crate::{
@@ -22,10 +23,13 @@ pub(super) fn recorded_hit(
     rate: f64,
     measurement: &RecordedResponse,
     notes: &mut Vec<String>,
-) -> Result<Hit, DataError> {
+) -> Result<(Hit, ReadAs), DataError> {
     let directions = [acceleration.response.direction, force.response.direction];
-    let to_newtons = channels::force(&force, measurement, notes)?;
-    let Calibration { factor, motion } = channels::motion(&acceleration, measurement, directions, notes)?;
+    let (to_newtons, of_force) = channels::force(&force, measurement, notes)?;
+    let Calibration { factor, motion, unit } = channels::motion(&acceleration, measurement, directions, notes)?;
+    let numbers = [force.number, acceleration.number];
+    let are_told =
+        [&force, &acceleration].iter().any(|record| channels::quantity(&record.numerator) != Quantity::Untold);
     let real = |record: Record| match record.ordinate {
         Samples::Real(values) => Ok(values),
         Samples::Complex(_) => {
@@ -75,12 +79,20 @@ pub(super) fn recorded_hit(
             };
             let problem = format!(
                 "the force lasts longer ({pulse:.0} samples) than the response ({ringing:.0}) and swings more often: the \
-                 channels are swapped, or this was no hammer{missed}"
+                 channels are swapped ({}), or this was no hammer{missed}",
+                swapping_lines(numbers, are_told)
             );
             return Err(DataError::Channels { at: force_record, problem });
         }
     }
-    Ok(hit)
+    Ok((hit, ReadAs { motion, response: unit, force: of_force, turned: factor < 0.0 }))
+}
+
+/// The lines that swap the records with the numbers of force and motion.
+fn swapping_lines([force, motion]: [usize; 2], are_told: bool) -> String {
+    // What the records tell of themselves is as wrong as what they are called.
+    let units = if are_told { ", with quantity, response_unit and force_unit as the channels are" } else { "" };
+    format!("declare force_channel = {motion} and response_channel = {force} in its [[measurement]]{units}")
 }
 
 /// Takes an exponential window $e^{-t/\tau}$ over both channels out of them: what was multiplied is divided.

@@ -10,6 +10,7 @@ use super::{
     channels::{self, Quantity},
     hit::Hit,
     misplaced_channel::{self, Ordered},
+    read_as::ReadAs,
     recorded_hit::recorded_hit,
     time_grid,
     trigger::{self, Cut},
@@ -38,6 +39,8 @@ pub struct TimeHistory {
     pub band: Option<[f64; 2]>,
     /// How continuous records were cut into these hits.
     pub cuts: Vec<Cut>,
+    /// As what the records were read; of several files the first.
+    pub read_as: ReadAs,
     /// What was mended or assumed, a sentence each.
     pub notes: Vec<String>,
 }
@@ -55,6 +58,7 @@ impl TimeHistory {
             further_files: Vec::new(),
             band: None,
             cuts: Vec::new(),
+            read_as: ReadAs::SI,
             notes: Vec::new(),
         }
     }
@@ -173,6 +177,7 @@ impl TimeHistory {
         check_hits(forces.len(), || first)?;
         let (mut hits, mut cuts) = (Vec::with_capacity(forces.len()), Vec::new());
         let mut grid: Option<(usize, f64)> = None;
+        let mut read_as: Option<ReadAs> = None;
         let mut times: Option<(Arc<[f64]>, f64)> = None;
         for (force, acceleration) in forces.into_iter().zip(accelerations) {
             // Records of one file mostly share their times: what was found even stays even.
@@ -197,7 +202,8 @@ impl TimeHistory {
                 _ => grid = Some((length, rate)),
             }
             let at = force.at.clone();
-            let of_record = recorded_hit((force, acceleration), rate, measurement, &mut notes)?;
+            let (of_record, as_read) = recorded_hit((force, acceleration), rate, measurement, &mut notes)?;
+            read_as = read_as.or(Some(as_read));
             let blows = trigger::cut(of_record, rate, measurement.trigger, &at, &mut notes)?;
             hits.extend(blows.hits);
             cuts.extend(blows.cut);
@@ -212,7 +218,9 @@ impl TimeHistory {
         }
         let RecordedResponse { force_at, response_at, .. } = *measurement;
         let file = measurement.file.clone();
-        Ok(Self { notes, cuts, band: measurement.band, ..Self::new(file, [force_at, response_at], rate, hits) })
+        let read_as = read_as.unwrap_or(ReadAs::SI);
+        let band = measurement.band;
+        Ok(Self { notes, cuts, read_as, band, ..Self::new(file, [force_at, response_at], rate, hits) })
     }
 }
 

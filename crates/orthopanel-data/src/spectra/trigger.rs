@@ -15,6 +15,9 @@ const APART: f64 = 0.5;
 const LEVEL: f64 = 0.1;
 const ABOVE_NOISE: f64 = 10.0;
 
+/// A declared level within so many standard deviations of that noise is passed by noise, in a record of a million samples.
+const AMONG_NOISE: f64 = 5.0;
+
 /// Time before the level is passed \[s\], and samples, where none is declared: enough to read the noise of the channels.
 const BEFORE: f64 = 0.02;
 const LEAST_BEFORE: usize = 128;
@@ -91,6 +94,15 @@ pub(super) fn cut(
         median(hit.force.iter().step_by(stride).map(|value| (value - offset).abs()).collect()) / 0.674_49
     };
     let level = declared.level.unwrap_or((LEVEL * height.abs()).max(ABOVE_NOISE * noise));
+    let refused = |problem: String| Err(DataError::Channels { at: Box::new(at.clone()), problem });
+    if level < AMONG_NOISE * noise && declared.level.is_some() {
+        return refused(format!(
+            "trigger.level = {} N lies in the noise of the force, {} N: noise would pass for blows; raise it to {} N, or leave it out",
+            Readable(level),
+            digits(noise),
+            digits((LEVEL * height.abs()).max(ABOVE_NOISE * noise))
+        ));
+    }
     let apart = (APART * rate) as usize;
     let mut starts: Vec<usize> = Vec::new();
     let mut last_touch: Option<usize> = None;
@@ -100,12 +112,12 @@ pub(super) fn cut(
         }
         last_touch = Some(n);
     }
-    let refused = |problem: String| Err(DataError::Channels { at: Box::new(at.clone()), problem });
     if trigger.is_some() && starts.is_empty() {
         return refused(format!(
-            "no blow passes trigger.level = {} N: the highest has {:.4} N",
+            "no blow passes trigger.level = {} N: the highest has {:.4} N; lower it to {} N, or leave it out",
             Readable(level),
-            Readable(height.abs())
+            Readable(height.abs()),
+            digits((LEVEL * height.abs()).max(ABOVE_NOISE * noise))
         ));
     }
     if trigger.is_none() && starts.len() < 2 {
@@ -117,21 +129,35 @@ pub(super) fn cut(
         gaps.get(..gaps.len().saturating_sub(1).max(1)).unwrap_or_default().iter().map(|gap| *gap as f64).collect(),
     );
     let full = gaps.iter().copied().filter(|gap| *gap as f64 >= SOON * usual).min().unwrap_or(0);
-    let before = declared.before.map_or_else(
-        || ((BEFORE * rate) as usize).max(LEAST_BEFORE).min(full / 10),
-        |seconds| (seconds * rate).round() as usize,
+    let found_before = ((BEFORE * rate) as usize).max(LEAST_BEFORE).min(full / 10);
+    // The next blow begins before its level is passed.
+    let found_length = |before: usize| full.saturating_sub(before.min(full / 20));
+    let before = declared.before.map_or(found_before, |seconds| (seconds * rate).round() as usize);
+    let length = declared.length.map_or(found_length(before), |seconds| (seconds * rate).round() as usize);
+    let seconds = |samples: usize| Readable((samples as f64 / rate * 1e6).round() / 1e6);
+    // What would do, in place of what was declared.
+    let instead = format!(
+        "blows stand {} s apart: trigger = {{level = {}, before = {}, length = {}}} (N, s, s) takes each whole",
+        seconds(usual as usize),
+        digits(level),
+        seconds(found_before),
+        seconds(found_length(found_before))
     );
-    let length = match declared.length {
-        Some(seconds) => (seconds * rate).round() as usize,
-        // The next blow begins before its level is passed.
-        None => full.saturating_sub(before.min(full / 20)),
-    };
-    if length < 2 * LEAST_BEFORE || before >= length {
-        let problem = format!(
-            "blows {:.4} s apart leave hits of {:.4} s: give trigger = {{level = ..., before = ..., length = ...}} (N, s, s)",
-            Readable(usual / rate),
-            Readable(length as f64 / rate)
-        );
+    let too_short = length < 2 * LEAST_BEFORE;
+    let too_early = before >= length || (starts.len() > 1 && before as f64 > SOON * usual);
+    if too_short || too_early {
+        let problem = match (too_early, declared.before.is_some()) {
+            (true, true) => format!(
+                "trigger.before = {} s reaches over a hit of {} s, or back into the blow before; {instead}",
+                seconds(before),
+                seconds(length)
+            ),
+            _ => format!(
+                "hits of {} s, {length} samples, are too short for a hammer test, {} samples at least; {instead}",
+                seconds(length),
+                2 * LEAST_BEFORE
+            ),
+        };
         return if trigger.is_some() { refused(problem) } else { Ok(Blows::whole(hit)) };
     }
     let (mut hits, mut left_out) = (Vec::new(), Vec::new());
@@ -154,22 +180,18 @@ pub(super) fn cut(
         }
     }
     if hits.is_empty() {
-        let problem = format!(
-            "no blow has {:.4} s of the record to itself: declare a shorter trigger.length",
-            Readable(length as f64 / rate)
-        );
+        let problem = format!("no blow has trigger.length = {} s of the record to itself; {instead}", seconds(length));
         return if trigger.is_some() { refused(problem) } else { Ok(Blows::whole(hit)) };
     }
     if trigger.is_none() && !hits.iter().all(|hit| has_decayed(&hit.acceleration, before)) {
         return Ok(Blows::whole(hit));
     }
-    let seconds = |samples: usize| Readable((samples as f64 / rate * 1e6).round() / 1e6);
     notes.push(format!(
         "{}: {} blows in one record of {:.2} s, cut into hits by trigger = {{level = {}, before = {}, length = {}}}",
         at.key,
         starts.len(),
         hit.force.len() as f64 / rate,
-        Readable((level * 100.0).round() / 100.0),
+        digits(level),
         seconds(before),
         seconds(length)
     ));
@@ -181,6 +203,11 @@ pub(super) fn cut(
         ));
     }
     Ok(Blows { hits, cut: Some(cut) })
+}
+
+/// A number to four digits, as a test file takes it.
+fn digits(value: f64) -> Readable {
+    Readable(format!("{value:.3e}").parse().unwrap_or(value))
 }
 
 /// Whether a response has mostly died away at its end; `before` samples stand before the blow.

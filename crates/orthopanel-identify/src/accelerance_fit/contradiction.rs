@@ -2,6 +2,7 @@
 
 use num_complex::Complex64;
 use orthopanel_data::{ImpactTest, MeasurementData};
+use orthopanel_model::Place;
 
 use super::misfit::{median, misfit_percent, record_misfit_percent, scaled_misfit_percent};
 use super::problem::AcceleranceProblem;
@@ -34,7 +35,7 @@ pub(super) fn contradiction(
     let misfits = records.iter().zip(lines).map(|((_, record), model)| record_misfit_percent(record, model));
     let worst = misfits.zip(&records).max_by(|a, b| a.0.total_cmp(&b.0));
     let Some((worst_percent, &(piece, record))) = worst else { return Ok(None) };
-    let name = record_name(test, piece, record);
+    let name = record_name(test, piece, (record.force_at, record.response_at));
     let apart = record_apart(problem, parameters, lines)?;
     let fits_at = apart.as_ref().and_then(|apart| apart.fits_at());
     let factor = apart.as_ref().and_then(|apart| apart.factor());
@@ -66,11 +67,11 @@ fn common_factor(records: &[(usize, &PlaceRecord)], lines: &[Vec<Complex64>]) ->
     (left.fold(0.0, f64::max) < MENDED && factor != 0.0).then_some(1.0 / factor)
 }
 
-/// A record by its files and places, and by its piece where there are several.
-fn record_name(test: &ImpactTest, piece: usize, record: &PlaceRecord) -> String {
+/// A record by its files and places of force and response, and by its piece where there are several.
+pub(super) fn record_name(test: &ImpactTest, piece: usize, places: (Place, Place)) -> String {
     let files = test.measurements.iter().filter_map(|measurement| match &measurement.data {
         MeasurementData::TimeHistory(of) | MeasurementData::Accelerance(of) => (measurement.piece == piece
-            && (of.force_at, of.response_at) == (record.force_at, record.response_at))
+            && (of.force_at, of.response_at) == places)
             .then(|| of.file.display().to_string()),
         MeasurementData::NaturalFrequencies(_) => None,
     });
@@ -85,5 +86,5 @@ fn record_name(test: &ImpactTest, piece: usize, record: &PlaceRecord) -> String 
         Some(piece) if test.pieces.len() > 1 => format!("piece {}, ", piece.name),
         _ => String::new(),
     };
-    file + &of_piece + &pair_name(record.force_at, record.response_at)
+    file + &of_piece + &pair_name(places.0, places.1)
 }

@@ -11,6 +11,7 @@ mod matching;
 mod misfit;
 mod mode_group;
 mod other_law;
+mod other_units;
 mod outcome;
 mod paper_deviations;
 mod paper_error;
@@ -33,7 +34,7 @@ mod weighted_rows;
 mod whole_covariance;
 mod wide_scan;
 
-use orthopanel_data::ImpactTest;
+use orthopanel_data::{ImpactTest, MeasurementData};
 use orthopanel_model::Readable;
 
 use crate::least_squares::Minimum;
@@ -46,11 +47,27 @@ use start::{Recorded, Start, start, usual_log_zeta};
 use wide_scan::rough_starts;
 
 pub(crate) use line_noise::told_variance;
+pub(crate) use other_units::refuse_other_units;
 pub(crate) use outcome::is_told;
 pub(crate) use pole_charge::{nearest_modes, own_modes, pole_charge};
 pub(crate) use record_poles::{RecordPole, record_poles};
 pub(crate) use resonance_start::{ResonanceStart, resonance_starts};
 pub use synthesis::DampingLaw;
+pub(crate) use undeclared_window::EFFECT as WINDOW_EFFECT;
+
+/// The question whether frequency responses were averaged under an exponential window that the test file does not declare, as
+/// [`identify_records`] asks it of the panel without any effect; `None` where nothing looks like one, and of hits, which say themselves
+/// how they were windowed.
+pub(crate) fn question_of_window(test: &ImpactTest) -> Option<String> {
+    let are_lines = |data: &MeasurementData| matches!(data, MeasurementData::Accelerance(_));
+    let is_asked = test.measurements.iter().all(|measurement| are_lines(&measurement.data))
+        && test.effects.iter().all(|on| on.id != undeclared_window::EFFECT);
+    if !is_asked {
+        return None;
+    }
+    let bare = ImpactTest { effects: Vec::new(), ..test.clone() };
+    identify_records(&bare, Settings::default()).ok()?.question
+}
 
 /// Finds constants and damping from the records of a test.
 ///

@@ -205,7 +205,8 @@ fn report(
     let (fits, accelerance_rms_percent) = accelerance_fits(problem, lines);
     let pieces = piece_fits(test, start, problem, &parameters, &log_std)?;
     notes.extend(pieces.iter().filter_map(without_resonance));
-    notes.extend(undeclared_window::asked(start, problem, &parameters, &pieces)?);
+    let question = undeclared_window::asked(start, problem, &parameters, &pieces)?;
+    notes.extend(question.clone());
     let errors = pieces.iter().flat_map(|piece| &piece.modes).map(|mode| mode.error_percent().powi(2));
     // The sum of nothing is minus zero.
     let errors = errors.fold(0.0, std::ops::Add::add);
@@ -221,6 +222,7 @@ fn report(
         chi_square,
         accelerances: fits,
         effects: Vec::new(),
+        question,
         notes,
         pieces,
     })

@@ -1,6 +1,6 @@
 //! Before the fit: poles of the records, which modes they are, and the constants that meet them.
 
-use orthopanel_data::ImpactTest;
+use orthopanel_data::{Accelerance, ImpactTest};
 use orthopanel_model::{Boundary, Piece, Place};
 use rayon::prelude::*;
 
@@ -9,6 +9,7 @@ use super::followed_modes::follow;
 use super::matching::{Matching, PiecePoles, candidates, match_at};
 use super::misfit::noise_percent;
 use super::mode_group::{NearMode, Overlap, group_pole};
+use super::other_units::refuse_read_in_other_units;
 use super::poles::{NoisePower, Pole, alike, poles};
 use super::records::PlaceRecord;
 use crate::free_constants::FreeConstants;
@@ -166,14 +167,22 @@ pub(super) struct StartPiece {
 
 /// Reads the records of a test, and their poles off them.
 pub(super) fn recorded(test: &ImpactTest, settings: Settings) -> Result<Recorded, IdentifyError> {
+    let accelerances = test.accelerances(settings.estimation)?;
+    let recorded = recorded_of(test, &accelerances)?;
+    refuse_read_in_other_units(test, &accelerances, &recorded)?;
+    Ok(recorded)
+}
+
+/// The same of records that are read.
+pub(super) fn recorded_of(test: &ImpactTest, accelerances: &[(usize, Accelerance)]) -> Result<Recorded, IdentifyError> {
     let structure = structures::of_test(test);
     let constants = FreeConstants::of(test, structure.kind().constants())?;
     let mut pieces: Vec<StartPiece> = Vec::new();
     let mut notes = Vec::new();
-    let accelerances = test.accelerances(settings.estimation)?;
     let records: Vec<PlaceRecord> =
         accelerances.par_iter().map(|(_, accelerance)| PlaceRecord::of(accelerance)).collect();
-    for ((index, accelerance), record) in accelerances.into_iter().zip(records) {
+    for ((index, accelerance), record) in accelerances.iter().zip(records) {
+        let index = *index;
         let pair = pair_name(accelerance.force_at, accelerance.response_at);
         notes.extend(accelerance.notes.iter().map(|note| format!("{pair}: {note}")));
         match pieces.iter_mut().find(|piece| piece.index == index) {

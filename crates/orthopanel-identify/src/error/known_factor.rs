@@ -1,11 +1,21 @@
-//! A factor on records, known by its value: units that were mistaken for others, and sensors turned round.
+//! A factor on records, known by its value and its slope over frequency: units and quantities that were mistaken for others, and
+//! sensors turned round.
 
-use orthopanel_data::Unit;
+use orthopanel_data::{Motion, ReadAs, Unit};
 
-/// What a motion is taken to be in, the SI unit first.
-const MOTIONS: [&str; 5] = ["m/s2", "g", "mm/s2", "in/s2", "ft/s2"];
-/// The same of a force.
+use super::wording::in_which;
+
+/// What a force is taken to be in, the SI unit first.
 const FORCES: [&str; 4] = ["N", "lbf", "kN", "kgf"];
+
+/// The same of a motion.
+fn motions(motion: Motion) -> &'static [&'static str] {
+    match motion {
+        Motion::Acceleration => &["m/s2", "g", "mm/s2", "in/s2", "ft/s2", "mg"],
+        Motion::Velocity => &["m/s", "mm/s", "in/s", "ft/s"],
+        Motion::Displacement => &["m", "mm", "um", "in", "mil"],
+    }
+}
 
 /// Each unit with its factor to SI.
 fn with_factors(units: &'static [&'static str]) -> impl Iterator<Item = (&'static str, f64)> {
@@ -15,52 +25,143 @@ fn with_factors(units: &'static [&'static str]) -> impl Iterator<Item = (&'stati
 /// A factor within this part of a known one is that one: constants and mass make up for the rest.
 const NEAR: f64 = 0.05;
 
-/// What a factor that records lack comes from, and the line that mends it; of all records where `each`, else of one.
-pub(super) fn cause_of(factor: f64, each: bool) -> String {
-    known_cause(factor, each).unwrap_or_else(|| "a gain, a unit, or the mass of the piece".to_owned())
+/// Whether two factors are one.
+fn is_same(one: f64, other: f64) -> bool {
+    (one / other).ln().abs() < 1e-4
 }
 
-/// The same; `None` of a factor that is no unit's and no sign's.
-pub(super) fn known_cause(factor: f64, each: bool) -> Option<String> {
+/// The line of the test file that mends records.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Mend {
+    /// In their `[[measurement]]`.
+    Measurement(String),
+    /// There if need be, and for a factor that no unit is, a gain beside.
+    Gain {
+        /// In their `[[measurement]]`, if anything.
+        measurement: Option<String>,
+        /// What they are times the truth.
+        gain: f64,
+        /// Where the factor comes from.
+        cause: String,
+    },
+}
+
+impl Mend {
+    /// Whether two records are mended by the same.
+    pub(crate) fn is_same(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Gain { measurement, gain, .. }, Self::Gain { measurement: beside, gain: second, .. }) => {
+                measurement == beside && (gain / second).ln().abs() < NEAR
+            }
+            _ => self == other,
+        }
+    }
+
+    /// What to write, and where; of all records, or of those with these names and numbers.
+    pub(crate) fn lines(&self, records: &Option<Vec<String>>, numbers: Option<&[usize]>) -> String {
+        let there = |lines: &str| format!("{lines} in {}", in_which(records));
+        match self {
+            Self::Measurement(lines) => there(lines),
+            Self::Gain { measurement, gain, cause } => {
+                let gain = format!("gain = {gain:.4e}");
+                let effects = match numbers {
+                    None => format!("an [[effect]] with id = \"gain\" and {gain}"),
+                    Some(numbers) => {
+                        let each = |number: &usize| {
+                            format!("an [[effect]] with id = \"record-gain\" and {gain} and record = {number}")
+                        };
+                        numbers.iter().map(each).collect::<Vec<_>>().join(" and ")
+                    }
+                };
+                let measurement = measurement.as_ref().map_or(String::new(), |lines| there(lines) + ", and ");
+                format!("{measurement}{effects} ({cause})")
+            }
+        }
+    }
+}
+
+/// What mends records which were read as `read` and are right times `factor` and $s^n$, with $n$ = `derivatives`; `None` where nothing
+/// is wrong, or no unit, quantity or sign makes it so.
+pub(crate) fn mend(factor: f64, derivatives: i8, read: ReadAs) -> Option<Mend> {
+    let due = i8::try_from(read.motion.derivatives()).ok()?.checked_add(derivatives)?;
+    let motion = Motion::ALL.into_iter().find(|motion| i8::try_from(motion.derivatives()) == Ok(due))?;
+    let turned = (factor < 0.0).then(|| format!("direction = {}", if read.turned { 1 } else { -1 }));
+    let both = |lines: Option<String>| match (turned.clone(), lines) {
+        (Some(turned), Some(lines)) => Some(format!("{turned} and {lines}")),
+        (turned, lines) => turned.or(lines),
+    };
+    match units(factor, derivatives, (motion, read)) {
+        Some(lines) => both(Some(lines).filter(|lines| !lines.is_empty())).map(Mend::Measurement),
+        None => {
+            let cause = conversion(factor.abs() * read.response / read.force)?;
+            let si = |()| format!("quantity = \"{motion}\" and response_unit = \"{}\"", motions(motion)[0]);
+            let is_read = derivatives == 0 && is_same(read.response, 1.0) && is_same(read.force, 1.0);
+            let force = if is_same(read.force, 1.0) { "" } else { " and force_unit = \"N\"" };
+            let measurement = both((!is_read).then_some(()).map(si).map(|lines| lines + force));
+            Some(Mend::Gain { measurement, gain: read.force / (factor.abs() * read.response), cause })
+        }
+    }
+}
+
+/// The units and the quantity that are due, as lines; empty where those that were read are, `None` where none fit.
+fn units(factor: f64, derivatives: i8, (motion, read): (Motion, ReadAs)) -> Option<String> {
+    // What one unit of the record's own numbers is worth.
+    let worth = factor.abs() * read.response / read.force;
+    let mut known: Vec<((usize, bool, f64), String)> = Vec::new();
+    for (over, to_si) in with_factors(motions(motion)) {
+        for (under, newtons) in with_factors(&FORCES) {
+            let off = (worth / (to_si / newtons)).ln().abs();
+            let is_response_right = is_same(to_si, read.response) || (derivatives != 0 && to_si == 1.0);
+            let is_force_right = is_same(newtons, read.force);
+            let mut lines = String::new();
+            if !(is_response_right && is_force_right && derivatives == 0) {
+                // With a quantity the test file decides, whatever labels say.
+                lines = format!("quantity = \"{motion}\" and response_unit = {over:?}");
+                if !is_force_right || newtons != 1.0 {
+                    lines += &format!(" and force_unit = {under:?}");
+                }
+            }
+            if off < NEAR {
+                let mistakes = usize::from(!is_response_right) + usize::from(!is_force_right);
+                known.push(((mistakes, !is_force_right, off), lines));
+            }
+        }
+    }
+    // The fewest mistakes first; a sensor's unit is mistaken more often than a hammer's.
+    known.sort_by(|(a, _), (b, _)| (a.0, a.1).cmp(&(b.0, b.1)).then(a.2.total_cmp(&b.2)));
+    let least = known.first()?.0.0;
+    let alike: Vec<&str> = known.iter().filter(|(of, _)| of.0 == least).map(|(_, lines)| lines.as_str()).collect();
+    Some(alike.join(", or "))
+}
+
+/// Units that programs convert from and to, with what one is worth in SI: of motions, and of forces.
+const CONVERTED: [&[&str]; 2] = [&["m/s2", "g", "mm/s2", "in/s2", "ft/s2"], &["N", "lbf", "kN", "kgf"]];
+
+/// The conversion between two units that a factor is, done once too often or not at all before the file was written; `None` where it is
+/// none.
+fn conversion(factor: f64) -> Option<String> {
+    let pairs = |units: &'static [&'static str]| {
+        with_factors(units).flat_map(move |(from, own)| {
+            with_factors(units).filter(move |(to, _)| *to != from).map(move |(to, other)| (own / other, from, to))
+        })
+    };
+    let [motions, forces] = CONVERTED.map(|units| pairs(units).collect::<Vec<_>>());
+    let is_near = |of: f64| (factor / of).ln().abs() < NEAR;
+    let said = |(_, from, to): &(f64, &str, &str)| format!("{from} converted as {to}");
+    let one = motions.iter().chain(&forces).find(|(of, ..)| is_near(*of));
+    // Both at once from SI: any two of all pairs would come near to any number.
+    let from_si = |(_, from, _): &&(f64, &str, &str)| ["m/s2", "N"].contains(from);
+    let both = || motions.iter().filter(from_si).flat_map(|a| forces.iter().filter(from_si).map(move |b| (a, b)));
+    let two = || both().find(|(a, b)| is_near(a.0 / b.0));
+    one.map(said).or_else(|| two().map(|(a, b)| format!("{} and {}", said(a), said(b))))
+}
+
+/// What a factor that records lack comes from, where it is no unit's that is known: of all records where `each`, else of one.
+pub(super) fn cause_of(factor: f64, each: bool) -> String {
     let measurement = if each { "each [[measurement]]" } else { "its [[measurement]]" };
-    let turned = if factor < 0.0 { "the sensor turned round, direction = -1" } else { "" };
-    let off = |known: f64| (factor.abs() / known).ln().abs();
-    let mut known: Vec<(f64, usize, String)> = Vec::new();
-    for (motion, over) in with_factors(&MOTIONS) {
-        for (force, under) in with_factors(&FORCES) {
-            let declared = [
-                (over != 1.0).then(|| format!("response_unit = {motion:?}")),
-                (under != 1.0).then(|| format!("force_unit = {force:?}")),
-            ];
-            let lines: Vec<String> = declared.into_iter().flatten().collect();
-            known.push((off(over / under), lines.len(), format!("{} in {measurement}", lines.join(" and "))));
-        }
-    }
-    // What is in SI, and was brought there once more by its label.
-    let wrong = |label: &str, si: &str| format!("the label {label:?} corrected to {si}");
-    for (motion, over) in with_factors(&MOTIONS).skip(1) {
-        known.push((off(1.0 / over), 1, wrong(motion, "m/s2")));
-    }
-    for (force, under) in with_factors(&FORCES).skip(1) {
-        known.push((off(under), 1, wrong(force, "N")));
-    }
-    known.retain(|(off, ..)| *off < NEAR);
-    // The fewest mistakes first.
-    known.sort_by(|a, b| a.1.cmp(&b.1).then(a.0.total_cmp(&b.0)));
-    let least = known.first()?.1;
-    let alike: Vec<&str> =
-        known.iter().filter(|(_, count, _)| *count == least).map(|(.., lines)| lines.as_str()).collect();
-    match (least, turned) {
-        (0, "") => None,
-        (0, turned) => Some(format!("{turned} in {measurement}")),
-        (_, turned) => {
-            let and = if turned.is_empty() { String::new() } else { format!(", and {turned}") };
-            let units = alike.join(", or ");
-            Some(format!(
-                "by its value a unit that was taken for another: {units}{and}; where a label says otherwise correct it in the \
-                 file, in CSV the column acceleration_g"
-            ))
-        }
+    match mend(factor, 0, ReadAs::SI) {
+        Some(Mend::Measurement(lines)) => format!("write {lines} in {measurement}"),
+        _ => "a gain, a unit, or the mass of the piece".to_owned(),
     }
 }
 
@@ -68,24 +169,90 @@ pub(super) fn known_cause(factor: f64, each: bool) -> Option<String> {
 mod tests {
     use super::*;
 
+    /// The lines of the measurement alone.
+    fn mending_lines(factor: f64, derivatives: i8, read: ReadAs) -> Option<String> {
+        match mend(factor, derivatives, read)? {
+            Mend::Measurement(lines) => Some(lines),
+            Mend::Gain { measurement, gain, cause } => Some(format!("{measurement:?} gain = {gain}: {cause}")),
+        }
+    }
+
+    /// What no unit is, a conversion too many or too few.
+    #[test]
+    fn val_conversions_are_gains() {
+        for (factor, derivatives, gain, said) in [
+            (25.4, 0, 1.0 / 25.4, "in/s2 converted as mm/s2"),
+            (1000.0, 0, 1e-3, "m/s2 converted as mm/s2"),
+            (4.448, 0, 1.0 / 4.448, "lbf converted as N"),
+            (39.37, 1, 0.0254, "m/s2 converted as in/s2"),
+        ] {
+            match mend(factor, derivatives, ReadAs::SI) {
+                Some(Mend::Gain { measurement, gain: found, cause }) => {
+                    assert!((found / gain - 1.0).abs() < 1e-3 && cause.contains(said), "{factor}: {found} {cause}");
+                    assert_eq!(measurement.is_some(), derivatives != 0, "{measurement:?}");
+                }
+                other => panic!("{factor}: {other:?}"),
+            }
+        }
+    }
+
     #[test]
     fn val_factors_are_known_by_their_value() {
         for (factor, said) in [
-            (9.81, "response_unit = \"g\" in each"),
-            (-1.0, "the sensor turned round, direction = -1 in each"),
+            (9.81, "response_unit = \"g\""),
+            (-1.0, "direction = -1"),
             (0.0254, "response_unit = \"in/s2\""),
             (0.2248, "force_unit = \"lbf\""),
             (2.2046, "response_unit = \"g\" and force_unit = \"lbf\""),
-            (0.102, "force_unit = \"kgf\" in each"),
-            (0.102, "the label \"g\" corrected to m/s2"),
+            (0.102, "force_unit = \"kgf\""),
             (5.71e-3, "response_unit = \"in/s2\" and force_unit = \"lbf\""),
-            (-9.8, "response_unit = \"g\" in each [[measurement]], and the sensor turned round"),
-            (4.448, "the label \"lbf\" corrected to N"),
-            (1.7, "a gain, a unit, or the mass"),
+            (-9.8, "direction = -1 and quantity = \"acceleration\" and response_unit = \"g\""),
+            (1e-6, "response_unit = \"mm/s2\" and force_unit = \"kN\""),
+            (2.2e-3, "response_unit = \"mg\" and force_unit = \"lbf\""),
         ] {
-            let found = cause_of(factor, true);
-            let [first, ..] = said.split(" in each").collect::<Vec<_>>()[..] else { continue };
-            assert!(found.contains(first), "{factor}: {found}");
+            let found = mending_lines(factor, 0, ReadAs::SI).unwrap_or_default();
+            assert!(found.contains(said), "{factor}: {found}");
         }
+        for none in [1.7, 1.0, 1.03, 137.0] {
+            assert_eq!(mending_lines(none, 0, ReadAs::SI), None, "{none}");
+        }
+        assert!(cause_of(1.7, true).contains("a gain, a unit, or the mass"));
+    }
+
+    /// A label or a declared unit that is wrong is told from what was read: the same factor means another line.
+    #[test]
+    fn val_what_was_read_counts() {
+        let g = ReadAs { response: 9.80665, ..ReadAs::SI };
+        let lbf = ReadAs { force: 4.448_222, ..ReadAs::SI };
+        let turned = ReadAs { turned: true, ..ReadAs::SI };
+        for (factor, read, said) in [
+            (0.102, g, "quantity = \"acceleration\" and response_unit = \"m/s2\""),
+            (4.448, lbf, "quantity = \"acceleration\" and response_unit = \"m/s2\" and force_unit = \"N\""),
+            (-1.0, turned, "direction = 1"),
+            (1e-3 / 9.80665, g, "response_unit = \"mm/s2\""),
+        ] {
+            let found = mending_lines(factor, 0, read).unwrap_or_default();
+            assert!(found.contains(said), "{factor}: {found}");
+        }
+    }
+
+    /// Products with $j\omega$ and $-\omega^2$.
+    #[test]
+    fn val_slopes_are_quantities() {
+        let velocity = ReadAs { motion: Motion::Velocity, ..ReadAs::SI };
+        for (factor, derivatives, read, said) in [
+            (1.0, 1, ReadAs::SI, "quantity = \"velocity\" and response_unit = \"m/s\""),
+            (1e-3, 1, ReadAs::SI, "quantity = \"velocity\" and response_unit = \"mm/s\""),
+            (1.0, 2, ReadAs::SI, "quantity = \"displacement\" and response_unit = \"m\""),
+            (0.0254 / 4.448_222, 2, ReadAs::SI, "response_unit = \"in\" and force_unit = \"lbf\""),
+            (-0.0254, 1, ReadAs::SI, "direction = -1 and quantity = \"velocity\" and response_unit = \"in/s\""),
+            (9.80665, -1, velocity, "quantity = \"acceleration\" and response_unit = \"g\""),
+            (1.0, 1, velocity, "quantity = \"displacement\" and response_unit = \"m\""),
+        ] {
+            let found = mending_lines(factor, derivatives, read).unwrap_or_default();
+            assert!(found.contains(said), "{factor} {derivatives}: {found}");
+        }
+        assert_eq!(mending_lines(1.0, -1, ReadAs::SI), None);
+        assert_eq!(mending_lines(1.0, 2, velocity), None);
     }
 }

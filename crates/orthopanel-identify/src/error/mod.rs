@@ -4,8 +4,10 @@ use orthopanel_data::DataError;
 use orthopanel_model::{ModelError, Readable};
 use thiserror::Error;
 
-use self::wording::{all_times, known, much_noise, other_place, untaken};
+pub(crate) use self::known_factor::{Mend, mend};
+use self::wording::{all_times, by_factor, known, much_noise, other_place, untaken, which};
 pub(crate) use self::wording::{one_times, spaced};
+use crate::known_beforehand::PriorContradiction;
 use crate::least_squares::Stuck;
 
 mod known_factor;
@@ -273,6 +275,24 @@ pub enum IdentifyError {
         /// The factor on all records with which they fit; `None` where there is none.
         factor: Option<f64>,
     },
+    /// Records in other units than they were read in, of another quantity, or turned round.
+    #[error(
+        "write {lines}: {} miss the model by {:.0} % in the median line, and times {} meet it within {:.1} %, as records do that are read \
+         in a wrong unit, as a wrong quantity, or of a sensor turned round; where that is not it, look at gain and mass",
+        which(.records), Readable(.percent[0]), by_factor(*.factor, *.derivatives), Readable(.percent[1])
+    )]
+    OtherUnits {
+        /// What to write, and where.
+        lines: String,
+        /// Files and places of the records that are meant; `None` where all are.
+        records: Option<Vec<String>>,
+        /// The factor with which they meet the model, ...
+        factor: f64,
+        /// ... and the power of $j\omega$ beside it.
+        derivatives: i8,
+        /// Median misfit of their lines without factor and power, and with \[%\].
+        percent: [f64; 2],
+    },
     /// Records that miss the plate that was found.
     #[error(
         "half of all lines miss the plate found by more than {:.0} %, most of all in {record}{}: {}either the test file \
@@ -350,6 +370,14 @@ pub enum IdentifyError {
         /// The factor with which it fits as the others do; `None` where there is none.
         factor: Option<f64>,
     },
+    /// A prior of a constant that the records contradict.
+    #[error("{prior} (with it: {refused})")]
+    PriorContradicted {
+        /// The prior, and what the data say.
+        prior: PriorContradiction,
+        /// What is refused at the constants that it leads to.
+        refused: Box<IdentifyError>,
+    },
     /// Weights under which eq. 23 measures nothing.
     #[error(
         "weights of eq. 23: W_f = {frequency}, W_G = {magnitude}: both must be finite, zero or above, and one above zero"
@@ -400,17 +428,6 @@ impl IdentifyError {
         matches!(self, Self::RecordContradiction { fits_at: Some(_), .. })
     }
 
-    /// Whether one factor on all records explains the refusal, and is by its value that of a unit or a sign: nothing else need be
-    /// looked for then.
-    pub fn is_of_known_factor(&self) -> bool {
-        match self {
-            Self::Contradiction { factor, .. } | Self::PlateContradiction { factor, .. } => {
-                factor.is_some_and(|factor| known_factor::known_cause(factor, true).is_some())
-            }
-            _ => false,
-        }
-    }
-
     /// Whether another law of damping may explain what was refused.
     pub(crate) fn may_be_of_damping(&self) -> bool {
         match self {
@@ -445,6 +462,8 @@ impl IdentifyError {
                 | Self::OnBound { .. }
                 | Self::NotDetermined { .. }
                 | Self::Contradiction { .. }
+                | Self::OtherUnits { .. }
+                | Self::PriorContradicted { .. }
                 | Self::PlateContradiction { .. }
                 | Self::UntakenResonances { .. }
                 | Self::OtherDamping { .. }

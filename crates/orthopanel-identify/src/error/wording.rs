@@ -22,6 +22,37 @@ pub(super) fn all_times(factor: Option<f64>) -> String {
     })
 }
 
+/// Where to write what mends records.
+pub(super) fn in_which(records: &Option<Vec<String>>) -> String {
+    match records.as_deref() {
+        None => "each [[measurement]]".to_owned(),
+        Some([one]) => format!("the [[measurement]] of {one}"),
+        Some(several) => format!("each [[measurement]] of {}", several.join("; ")),
+    }
+}
+
+/// The records that are meant.
+pub(super) fn which(records: &Option<Vec<String>>) -> &'static str {
+    match records.as_deref() {
+        None => "all records",
+        Some([_]) => "its lines",
+        Some(_) => "these records",
+    }
+}
+
+/// A factor and a power of $j\omega$.
+pub(super) fn by_factor(factor: f64, derivatives: i8) -> String {
+    let slope = match derivatives {
+        0 => "",
+        1 => " j omega",
+        2 => " (j omega)^2",
+        -1 => " / (j omega)",
+        _ => " / (j omega)^2",
+    };
+    let size = if (1e-3..1e4).contains(&factor.abs()) { format!("{factor:.4}") } else { format!("{factor:.3e}") };
+    size + slope
+}
+
 /// What is said of one record that a factor mends.
 pub(crate) fn one_times(factor: Option<f64>) -> String {
     factor.map_or(String::new(), |factor| {

@@ -30,6 +30,7 @@ pub(super) fn report(
         notes = lone_lines(test, problem, &at);
     }
     Ok(Identification {
+        question: None,
         structure: problem.structure.kind(),
         constants: identified_constants(
             test,

@@ -99,6 +99,7 @@ impl RecordsBase {
         let missed: f64 = lines().map(|(model, measured)| (model - measured).norm_sqr()).sum();
         let total: f64 = lines().map(|(_, measured)| measured.norm_sqr()).sum();
         Ok(Identification {
+            question: None,
             structure: StructureKind::TimoshenkoBeam,
             constants: identified_constants(test, &constants, &free, of_constants),
             not_identified: vec![],

@@ -9,8 +9,11 @@ use crate::ModelError;
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Gain;
 
+/// A sensitivity in a wrong unit may be any power of ten off.
+pub(super) const ANY_FACTOR: [f64; 2] = [1e-9, 1e9];
+
 const PARAMETERS: [EffectParameter; 1] =
-    [EffectParameter::log("gain", "1", [0.05, 20.0], &[1.0, 0.9, 1.1]).sized(1.0, 1.12)];
+    [EffectParameter::log("gain", "1", ANY_FACTOR, &[1.0, 0.9, 1.1]).sized(1.0, 1.12)];
 
 impl Effect for Gain {
     fn id(&self) -> &'static str {

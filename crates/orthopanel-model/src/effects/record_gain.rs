@@ -1,5 +1,6 @@
 //! `record-gain`.
 
+use super::gain::ANY_FACTOR;
 use super::{Action, ChannelFactor, Effect, EffectParameter, EffectSetting, Owner};
 use crate::ModelError;
 
@@ -10,7 +11,7 @@ use crate::ModelError;
 pub(super) struct RecordGain;
 
 const PARAMETERS: [EffectParameter; 2] =
-    [EffectParameter::log("gain", "1", [0.05, 20.0], &[0.9, 1.1]).sized(1.0, 1.14), EffectParameter::record()];
+    [EffectParameter::log("gain", "1", ANY_FACTOR, &[0.9, 1.1]).sized(1.0, 1.14), EffectParameter::record()];
 
 impl Effect for RecordGain {
     fn id(&self) -> &'static str {

@@ -4,7 +4,6 @@ use std::path::{Path, PathBuf};
 
 use orthopanel_data::ImpactTest;
 
-use crate::contradicted::refuse_known_factor;
 use crate::error::CommandError;
 use crate::identified::suffixes;
 use crate::outputs::{Inputs, Outputs};
@@ -17,6 +16,9 @@ use crate::{console, model_file};
 /// effect of the catalogue with it, alone and together. Each is judged by what was held out. The verdict is one of
 /// nothing-missing, explained, ambiguous (with the effects that fit alike, and the measurement that would part them) and
 /// unexplained.
+///
+/// Records in another unit or quantity than they are read in, or of a sensor turned round, are refused first, with the line of the test
+/// file that mends them; an exponential window over frequency responses that is not declared is asked about.
 ///
 /// -o writes the panel's model: effects of the panel stay in it, those of the rig and of the measuring chain are taken out.
 /// Where the verdict is unexplained, it is the base model; where no base model meets the data either, none is written.
@@ -49,7 +51,6 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
     let Arguments { test: path, output, by, json } = arguments;
     let (inputs, test) = Inputs::reading_test(path)?;
     let outputs = model_file::planned_each(Outputs::of(inputs)?, output.as_deref(), &test)?;
-    refuse_known_factor(&test, path)?;
     let traced =
         Traced::from_test(&test, *by).map_err(|source| CommandError::Identify { path: path.clone(), source })?;
     let written = match output {

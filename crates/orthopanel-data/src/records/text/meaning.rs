@@ -126,7 +126,7 @@ fn name_and_unit(name: &str) -> (&str, Option<String>) {
 }
 
 /// A name without the unit in it.
-pub(super) fn stem(name: &str) -> &str {
+pub(crate) fn stem(name: &str) -> &str {
     name_and_unit(name).0
 }
 
@@ -144,6 +144,8 @@ fn meaning(stem: &str, unit: &str) -> Meaning {
     let begins = |starts: &[&str]| words.iter().any(|word| starts.iter().any(|start| word.starts_with(start)));
     let measured = Unit::parse(unit).and_then(|unit| unit.measured());
     let is_level = unit.get(..2).is_some_and(|start| start.eq_ignore_ascii_case("db"));
+    // |Y|
+    let is_size = stem.len() > 2 && stem.starts_with('|') && stem.ends_with('|');
     if begins(&["coher"]) || is(&["coh", "gamma2"]) {
         Meaning::Coherence
     } else if begins(&["imag"]) || is(&["im"]) {
@@ -152,7 +154,7 @@ fn meaning(stem: &str, unit: &str) -> Meaning {
         Meaning::Real
     } else if begins(&["phase", "angle"]) || is(&["arg", "ph"]) {
         Meaning::Phase
-    } else if begins(&["magn", "ampl", "betrag"]) || is(&["mag", "abs", "modulus", "level"]) || is_level {
+    } else if begins(&["magn", "ampl", "betrag"]) || is(&["mag", "abs", "modulus", "level"]) || is_level || is_size {
         Meaning::Magnitude
     } else if is(&["variance", "var"]) {
         Meaning::Variance
@@ -204,6 +206,8 @@ mod tests {
             ("FRF real ((m/s^2)/N)", "", Meaning::Real, "(m/s^2)/N"),
             ("Im(H)", "", Meaning::Imaginary, ""),
             ("Magnitude", "dB", Meaning::Magnitude, "dB"),
+            ("|Y| / (mm/s)/N", "", Meaning::Magnitude, "(mm/s)/N"),
+            ("|H| [dB]", "", Meaning::Magnitude, "dB"),
             ("Phase (deg)", "", Meaning::Phase, "deg"),
             ("X_Value", "", Meaning::Time, ""),
             ("Voltage_0", "", Meaning::Untold, "V"),

@@ -9,6 +9,8 @@ mod separator;
 mod table;
 mod time_history;
 
+pub(crate) use meaning::stem as without_unit;
+
 use std::path::Path;
 
 use super::RecordFile;

@@ -211,6 +211,7 @@ mod tests {
             decay_rate_in_doubt: 0.0,
             force_noise: None,
             bias: None,
+            read_as: orthopanel_data::ReadAs::SI,
             notes: vec![],
         }
     }

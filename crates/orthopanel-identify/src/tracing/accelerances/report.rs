@@ -15,6 +15,8 @@ use crate::tracing::report::{effects_of, take_out};
 
 /// An effect that leaves more than this of either error explains little.
 const LEFT: f64 = 0.6;
+/// A factor on all records that is further from one is named as an effect.
+const CALIBRATED: f64 = 1.3;
 /// Resonances missed by more than so many of their standard deviations, rms, lack something.
 const MISSED: f64 = 3.0;
 /// Of the motion between the resonances so much may be missed \[1\] where nothing is missing, or effects explain the rest: 9 % of it a real free beam's gains and
@@ -59,20 +61,26 @@ pub(super) fn report(
         Readable(100.0 * with)
     ));
     let scale = effects.get(search.declared.saturating_sub(1)).filter(|_| free_scale);
+    // No sensor is off by so much: what `identify` refuses for it is told by its name.
+    let mut is_told = false;
     if let Some(scale) = scale {
         let value = scale.parameters.first().and_then(|parameter| parameter.values.first());
         notes.push(format!(
             "all records together are {:.3} times what mass and constants make of them: their calibration, or the mass",
             value.map_or(1.0, |value| value.value)
         ));
-        if let Some(at) = removed.iter().position(|removed| removed.id == scale.id) {
+        is_told = value.is_some_and(|value| value.value.ln().abs() > CALIBRATED.ln());
+        if let Some(at) = removed.iter().position(|removed| removed.id == scale.id && !is_told) {
             removed.remove(at);
         }
     }
     let floor = problem.between.noise_floor();
     let on_bound = bounds::on_bound(&chosen.state.hypothesis, search.declared, &test.pieces[0].piece, &[]);
     notes.extend(on_bound.as_deref().map(bounds::note));
-    let verdict = verdict(search, found, on_bound.is_some());
+    let verdict = match verdict(search, found, on_bound.is_some()) {
+        Verdict::NothingMissing if is_told => Verdict::Explained,
+        other => other,
+    };
     let next_experiment = match verdict {
         Verdict::Unexplained => format!(
             "before another measurement check the places of hammer and sensor, the unit of the acceleration, the sizes, the \
@@ -83,7 +91,7 @@ pub(super) fn report(
     };
     Ok(Tracing {
         verdict,
-        effects: effects.split_off(search.declared),
+        effects: effects.split_off(search.declared - usize::from(is_told)),
         alternatives: found.rivals.iter().map(|&index| name(search, &found.fits[index])).collect(),
         error: TracedError {
             measure: "misfit between the resonances, % rms of the motion of all places there".to_owned(),
