@@ -53,8 +53,8 @@ fn of_once(test: &ImpactTest, lists: usize, settings: Settings) -> Result<Identi
     if lists == test.measurements.len() {
         frequency_fit::identify_frequencies(test, settings.search).map_err(of_held)?.determined()
     } else if lists == 0 {
-        if let Some(plate) = real_plate(test)? {
-            return plate.identification(test, settings)?.determined();
+        if let Some(found) = real_plate(test, settings) {
+            return found.determined();
         }
         accelerance_fit::identify_records(test, settings).map_err(of_held)?.determined()
     } else {
@@ -64,13 +64,14 @@ fn of_once(test: &ImpactTest, lists: usize, settings: Settings) -> Result<Identi
     }
 }
 
-/// A declared plate of one piece whose modes lie beside those of any ideal plate.
-fn real_plate(test: &ImpactTest) -> Result<Option<PlateByModes>, IdentifyError> {
+/// A declared plate of one piece whose modes lie beside those of any ideal plate; `None` too where its modes cannot be had, or contradict the test: the
+/// fit of the lines says what is wrong.
+fn real_plate(test: &ImpactTest, settings: Settings) -> Option<Identification> {
     if test.structure != Some(StructureKind::MindlinPlate) || test.pieces.len() != 1 {
-        return Ok(None);
+        return None;
     }
-    let plate = PlateByModes::of(test)?;
-    Ok(plate.filter(|plate| !plate.is_ideal()))
+    let plate = PlateByModes::of(test).ok()??;
+    if plate.is_ideal() { None } else { plate.identification(test, settings).ok() }
 }
 
 /// A law that is indefinite where the search began says nothing of the values it began with, where these are not the user's.

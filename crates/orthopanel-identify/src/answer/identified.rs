@@ -31,6 +31,10 @@ const SUMMED: f64 = 1.6;
 /// Poles that stay alone, of those that stand out, beyond which the records are not those of this plate.
 const MOST_ALONE: f64 = 0.4;
 
+/// Residues all this many times as large as the plate's, or as small, are those of another unit: two units differ by more, and residues of
+/// real panels by less.
+const MOST_FACTOR: f64 = 2.0;
+
 /// A plate with the modes that its records show.
 pub(crate) struct PlateByModes {
     measured: MeasuredModes,
@@ -93,6 +97,16 @@ impl PlateByModes {
         let candidates: Vec<(f64, Vec<f64>)> =
             modes.iter().map(|mode| (TAU * mode.frequency, mode.products.clone())).collect();
         let partners = measured.partners(&candidates, |_| APART);
+        let shapes = partners.iter().enumerate().filter_map(|(pole, partner)| {
+            Some(modes[partner.as_ref()?.0].products.iter().enumerate().map(move |(record, of)| (record, pole, *of)))
+        });
+        let mut ratios: Vec<f64> =
+            shapes.flatten().map(|(record, pole, predicted)| measured.product(record, pole) / predicted).collect();
+        ratios.sort_by(f64::total_cmp);
+        let usual = ratios.get(ratios.len() / 2).copied().unwrap_or(0.0);
+        if !(1.0 / MOST_FACTOR..MOST_FACTOR).contains(&usual) {
+            return Err(IdentifyError::Unsupported(format!("records {usual:.3} times as large as those of a plate")));
+        }
         let mut fit = PieceFit::of(&test.pieces[measured.piece]);
         let mut ratios: Vec<Option<Estimate>> = vec![None; modes.iter().filter(|mode| mode.frequency < band).count()];
         for (pole, partner) in partners.iter().enumerate() {
@@ -173,6 +187,7 @@ impl PlateByModes {
             chi_square: None,
             accelerances,
             effects: Vec::new(),
+            question: None,
             notes,
         })
     }
