@@ -9,7 +9,7 @@ from . import attachments
 from .bench import GRID
 from .contour import Sampling
 from .draw import Draw
-from .whole_plate import CONSTANTS, FLEXIBLE, RIGID, SHEAR_COEFFICIENT, Foot, WholePanel, frequencies, solve
+from .whole_plate import FLEXIBLE, RIGID, SHEAR_COEFFICIENT, Foot, WholePanel, frequencies, solve
 
 SETS = ("whole", "whole-real")
 # A set's round: the last ones are of one kind each, as the places and the core are what a panel's maker asks about.
@@ -120,8 +120,9 @@ class WholeBench:
         if self.own is not None:
             shares, factors = self.own
             share, factor = np.zeros(len(modes)), np.ones((len(modes), modes.points))
-            share[RIGID : RIGID + FLEXIBLE] = shares
-            factor[RIGID : RIGID + FLEXIBLE, : len(spots)] = factors[:, spots[:, 0].astype(int)]
+            own = slice(RIGID, min(RIGID + len(shares), len(modes)))
+            share[own] = shares[: own.stop - RIGID]
+            factor[own, : len(spots)] = factors[: own.stop - RIGID, spots[:, 0].astype(int)]
             modes = modes.of_its_own(share, factor)
         index = lambda foot: len(spots) + feet.index(foot)  # noqa: E731
         bare = lambda rows, columns: modes.receptance(s, rows, columns)  # noqa: E731

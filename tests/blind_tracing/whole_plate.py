@@ -8,7 +8,7 @@ $$ U = \tfrac12 \int D_{11}\psi_{x,x}^2 + 2 D_{12}\psi_{x,x}\psi_{y,y} + D_{22}\
 D_11 = E_x t^3/12/(1 - nu_xy nu_yx), D_22 and D_12 = nu_xy E_y t^3/12/(1 - nu_xy nu_yx) alike, D_66 = G_xy t^3/12, A_55 = k' G_zx t,
 A_44 = k' G_yz t, k' = 2/3, nu_yx = nu_xy E_y/E_x; g(x, y) is the core's share of its mean. Kinetic energy rho t w^2 + rho t^3/12
 (psi_x^2 + psi_y^2). Rectangles of degree DEGREE on Lobatto's nodes, full Gauss quadrature; lines stand where g jumps, and close to
-what is small: edges (the rotations have a layer there of about t/3) and feet.
+what is small: feet, and edges and jumps, where the rotations have a layer of about t/3.
 
 What is fixed to a panel stands on a foot of finite size: a point load sinks without limit into a Mindlin plate, logarithmically, so a mass on
 a point is a different mass on each basis. SI units.
@@ -29,9 +29,10 @@ from .modes import BEYOND, Modes
 SHEAR_COEFFICIENT = 2.0 / 3.0
 CONSTANTS = ("e_x", "e_y", "nu_xy", "g_xy", "g_yz", "g_zx")
 RIGID = 3
-DEGREE = 6
-ELEMENT = 0.16  # m, the longest; of the panel's longer side at most a sixth
-LAYER = 1.0  # of the thickness: the first element at an edge
+DEGREE = 7
+ELEMENT, FEWEST = 0.16, 6.0  # m, the longest; at least so many over the longer side
+LAYER = 0.5  # of the thickness: the first element at an edge and beside a jump of the core
+SECOND = 3.0  # of the thickness: where the second one at an edge ends if that is less than a third of the longest
 GROWTH = 3.0  # of elements away from a foot
 FLEXIBLE = 120  # modes that stay as they are; at most a third of them lie inside a band
 ORDERS = 4  # of the other modes' answer to a force, in omega^2
@@ -80,13 +81,13 @@ class Foot:
 class Mesh:
     """Stiffness and mass over the unknowns w, psi_x, psi_y of each node."""
 
-    def __init__(self, panel, feet=(), degree=DEGREE, element=ELEMENT):
-        self.panel, self.degree = panel, degree
-        longest = min(element, max(panel.length, panel.width) / 6.0)
+    def __init__(self, panel, feet=(), degree=None, element=None):
+        self.panel, self.degree = panel, degree or DEGREE
+        longest = element or min(ELEMENT, max(panel.length, panel.width) / FEWEST)
         self.x = _lines(panel.length, panel.thickness, panel.lines_x, [(f.x, f.side) for f in feet if f.side], longest)
         self.y = _lines(panel.width, panel.thickness, panel.lines_y, [(f.y, f.side) for f in feet if f.side], longest)
-        self.nodes_x, self.nodes_y = ((len(line) - 1) * degree + 1 for line in (self.x, self.y))
-        self.reference = _lobatto(degree)
+        self.nodes_x, self.nodes_y = ((len(line) - 1) * self.degree + 1 for line in (self.x, self.y))
+        self.reference = _lobatto(self.degree)
         self.stiffness, self.mass = self._assembled()
 
     def _assembled(self):
@@ -160,10 +161,10 @@ class Mesh:
         return np.stack([np.full(len(seen), panel.mass**-0.5), seen[:, 0] * turning[0] ** -0.5, seen[:, 1] * turning[1] ** -0.5])
 
 
-def solve(panel, struck, fixed, zeta, flexible=FLEXIBLE, **mesh):
+def solve(panel, struck, fixed, zeta, flexible=None, **mesh):
     """Modes seen from the points `struck` (n, 2) [m], then from the feet `fixed`, of which each pair's compliance is complete: what
     the other modes answer to a force on a foot, to ORDERS orders in omega^2, is a few pseudo-modes."""
-    mesh = Mesh(panel, fixed, **mesh)
+    mesh, flexible = Mesh(panel, fixed, **mesh), flexible or FLEXIBLE
     square, vectors, factor, shift = _lowest(mesh, flexible)
     feet = [*(Foot(x, y) for x, y in struck), *fixed]
     seen = np.array([mesh.deflection(foot) for foot in feet])
@@ -227,7 +228,9 @@ def _lines(side, thickness, jumps, feet, longest):
     """Element boundaries over a side, from its middle: at edges, jumps and feet, with elements that grow away from what is small."""
     half = side / 2.0
     wanted = [-half, half, *(at for at in jumps if abs(at) < half - 1e-9)]
-    near = [sign * (half - LAYER * thickness) for sign in (-1.0, 1.0)]
+    near = [at + sign * LAYER * thickness for at in wanted for sign in (-1.0, 1.0)]
+    if SECOND * thickness < longest / 3.0:
+        near += [SECOND * thickness - half, half - SECOND * thickness]
     for at, size in feet:
         near += [at - size / 2.0, at + size / 2.0]
         reach = size * (0.5 + GROWTH)
