@@ -46,6 +46,8 @@ def answer_of(folder, command, timeout, schemas):
     except json.JSONDecodeError:
         said = done.stderr.strip().splitlines()
         return {"reason": f"exit {done.returncode}: {said[-1] if said else 'nothing printed'}"}
+    if isinstance(answer, dict) and "error" in answer and "schema" not in answer:
+        return {"reason": f"exit {done.returncode}: {answer['error']}", "seconds": time.monotonic() - started}
     if not isinstance(answer, dict) or answer.get("schema") not in schemas:
         return {"reason": f"printed JSON that is none of {', '.join(schemas)}"}
     return answer | {"seconds": time.monotonic() - started}

@@ -77,7 +77,8 @@ def test_the_command_runs_a_set(tmp_path, capsys):
     program = tmp_path / "identify.py"
     program.write_text(
         "import sys\nassert sys.argv[2:] == ['--json'], sys.argv\n"
-        f"if 'case-001' in sys.argv[1]: sys.exit('no modes')\nprint({json.dumps(answer())!r})\n"
+        "if 'case-001' in sys.argv[1]: print('{\"error\": \"no modes\"}'), sys.exit(1)\n"
+        f"print({json.dumps(answer())!r})\n"
     )
     with pytest.raises(SystemExit) as ended:
         cli.main(["constants", str(tmp_path), "--command", f"{sys.executable} {program}", "--json", str(tmp_path / "out.json")])

@@ -1,5 +1,6 @@
-"""Whole panels: a plate on a table or on cords, hit at a dozen places and more, with what its test file does not tell."""
+"""Whole panels: a free plate, hit at a dozen places and more, with what its test file does not tell."""
 
+from copy import copy
 from dataclasses import dataclass, field, replace
 from typing import ClassVar
 
@@ -10,6 +11,7 @@ from .bench import GRID
 from .contour import Sampling
 from .draw import Draw
 from .whole_plate import FLEXIBLE, RIGID, SHEAR_COEFFICIENT, Foot, WholePanel, frequencies, solve
+from .whole_visible import Seen
 
 SETS = ("whole", "whole-real")
 # A set's round: the last ones are of one kind each, as the places and the core are what a panel's maker asks about.
@@ -40,6 +42,10 @@ MARK, HIT = 1.2e-3, 0.9e-3  # m, along x and along y: a record's place beside it
 SENSOR = 0.3e-3  # m, along x and along y
 GAIN = 3e-3  # of each record
 TRIES = 200
+# What moves frequencies, and is drawn until it shows in a real panel; the others of these ranges all do.
+BY_FREQUENCIES = ("local-mass", "sensor-mass", "stiffness-loss")
+PLAIN, HARD = 8.0, 0.15  # standard deviations that it moves them by; the part of the tests where it moves them by less
+DRAWS = 40
 
 
 @dataclass(frozen=True)
@@ -144,9 +150,15 @@ def build(case, random):
     hung = case.kind == "suspension" or random.random() < 0.5
     bench.suspension = _strings(bench.panel, random) if hung else ()
     told = {"group": "one" if case.effects else "none", "modes_in_band": modes_in_band, "places": case.places}
+    even = bench.panel
     if case.real:
         told |= _real(bench, random)
-    effects = [{"id": name, "parameters": EFFECTS[name](bench, Draw(random))} for name in case.effects]
+    if case.real and case.kind in BY_FREQUENCIES:
+        bench, parameters, told["amplitude"] = _shown(bench, even, case.kind, told, random)
+        told["hard"] = told["amplitude"] < PLAIN
+        effects = [{"id": case.kind, "parameters": parameters}]
+    else:
+        effects = [{"id": name, "parameters": EFFECTS[name](bench, Draw(random))} for name in case.effects]
     panel = bench.panel
     told["piece"] = {name: getattr(panel, name) for name in ("length", "width", "thickness", "mass_per_area")}
     told |= {"force_at": bench.forces.tolist(), "response_at": bench.response.tolist(), "sensed_at": bench.sensed().tolist()}
@@ -228,6 +240,23 @@ def _real(bench, random):
     shares = share * normal(FLEXIBLE)
     bench.own = shares, 1.0 + RESIDUE * normal((FLEXIBLE, len(bench.forces)))
     return {"wander": WANDER, "alike_over_m": reach, "share": share, "shares": shares.tolist()}
+
+
+def _shown(bench, even, name, told, random):
+    """The bench with an effect, its parameters and how plainly it shows: PLAIN or more, below that in HARD of the tests and where none of
+    DRAWS is that plain, of which it is then the plainest."""
+    hard, seen, best = random.random() < HARD, Seen(even, bench.panel, told["share"], told["modes_in_band"]), None
+    for _ in range(DRAWS):
+        tried = copy(bench)
+        tried.attachments = []
+        parameters = EFFECTS[name](tried, Draw(random))
+        masses = [(foot, parameters["mass"]) for foot, _ in tried.attachments]
+        amplitude = seen.amplitude(tried.panel, masses)
+        if best is None or (amplitude > best[2]) != hard:
+            best = tried, parameters, amplitude
+        if (best[2] < PLAIN) == hard:
+            break
+    return best
 
 
 def wandering(panel, size, reach, random):

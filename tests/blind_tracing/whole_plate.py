@@ -165,7 +165,7 @@ def solve(panel, struck, fixed, zeta, flexible=None, **mesh):
     """Modes seen from the points `struck` (n, 2) [m], then from the feet `fixed`, of which each pair's compliance is complete: what
     the other modes answer to a force on a foot, to ORDERS orders in omega^2, is a few pseudo-modes."""
     mesh, flexible = Mesh(panel, fixed, **mesh), flexible or FLEXIBLE
-    square, vectors, factor, shift = _lowest(mesh, flexible)
+    square, vectors, factor, shift = lowest(mesh, flexible)
     feet = [*(Foot(x, y) for x, y in struck), *fixed]
     seen = np.array([mesh.deflection(foot) for foot in feet])
     upper = _answers(seen[len(struck) :], vectors, mesh.mass, factor)
@@ -181,10 +181,10 @@ def solve(panel, struck, fixed, zeta, flexible=None, **mesh):
 
 def frequencies(panel, flexible, **mesh):
     """Of the flexible modes, Hz."""
-    return np.sqrt(_lowest(Mesh(panel, **mesh), flexible)[0][RIGID:]) / 2.0 / np.pi
+    return np.sqrt(lowest(Mesh(panel, **mesh), flexible)[0][RIGID:]) / 2.0 / np.pi
 
 
-def _lowest(mesh, flexible):
+def lowest(mesh, flexible):
     """omega^2 and vectors (phi' M phi = 1) of the rigid and the first flexible modes, and the factor that found them."""
     panel = mesh.panel
     stiff = np.sqrt(panel.e_x * panel.thickness**3 / 12.0 / panel.mass_per_area) * np.pi**2 / (panel.length * panel.width)
