@@ -139,7 +139,8 @@ def text(result):
     for one in result["judged"]:
         seconds = "" if one["seconds"] is None else f", {one['seconds']:.1f} s"
         places = "" if one["places"] is None else f", {one['places']} places"
-        lines.append(f"  {one['case']} ({one['kind']}{places}{seconds}): " + (one["refused"] or ", ".join(_shown(*pair) for pair in one["constants"].items())))
+        told = one["refused"] or ", ".join(_shown(*pair) for pair in one["constants"].items())
+        lines.append(f"  {one['case']} ({one['kind']}{places}{seconds}): {told}")
     return "\n".join(lines)
 
 
