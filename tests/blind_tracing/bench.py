@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from typing import ClassVar
 
 import numpy as np
 
@@ -14,6 +15,7 @@ GRID = 1e-3  # m: places are measured to a millimetre
 # the eigensolution's rounding.
 SPOT = 0.25e-3
 SPANS_UP_TO = 12e3  # Hz
+CONTACT = (1.3e-4, 2.2e-4)  # s: a metal or hard plastic tip on an aluminium face
 
 
 @dataclass
@@ -56,6 +58,8 @@ class Bench:
     declared: tuple = ()
     own: tuple | None = None
     unit: str = "m/s2"
+    contact: tuple = CONTACT
+    structure: ClassVar[None] = None  # what a test file names none for
 
     def __post_init__(self):
         self.record_gain = np.ones(len(self.forces))
@@ -75,6 +79,10 @@ class Bench:
         """Where the sensor truly sits, m."""
         half = self.panel.length / 2.0
         return float(np.clip(self.response + self.response_off, -half, half))
+
+    def constants(self):
+        """What an identification should find."""
+        return {"e_x": self.panel.e_x, "g_zx": self.panel.g_zx, "shear_coefficient": beam.SHEAR_COEFFICIENT}
 
     def modes(self, points):
         """Modes of the panel seen from `points`, and after those as the mean shear strain of `restoring_spans`."""

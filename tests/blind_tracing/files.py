@@ -5,9 +5,8 @@ The truth lies in one file beside the case folders, and in none of them.
 
 import json
 
+import numpy as np
 import pyuff
-
-from .beam import SHEAR_COEFFICIENT
 
 TRUTH = "truth.json"
 SCHEMA = "orthopanel.blind-truth/1"
@@ -31,13 +30,12 @@ def write_case(folder, bench, played):
 
 def truth_of(name, case, bench, truth, played):
     """What was put into one case."""
-    panel = bench.panel
     return {
         "case": name,
         "kind": case.kind,
         "effects": truth,
         "rough": case.rough,
-        "constants": {"e_x": panel.e_x, "g_zx": panel.g_zx, "shear_coefficient": SHEAR_COEFFICIENT},
+        "constants": bench.constants(),
         "across": vars(bench.across) if bench.across else None,
         "zeta": list(bench.zeta),
         "noise": {"part": bench.noise, "force_n": played.force_noise, "acceleration_m_s2": played.acceleration_noise},
@@ -63,14 +61,15 @@ def read_truth(out):
 def piece_text(bench):
     """Everything of test.toml but the measurements."""
     panel = bench.panel
-    text = (
+    text = f'structure = "{bench.structure}"\n\n' if bench.structure else ""
+    text += (
         f"[piece]\nlength = {panel.length}\nwidth = {panel.width}\n"
         f"thickness = {panel.thickness}\nmass_per_area = {panel.mass_per_area}\n"
     )
     if panel.left != "free":
         text += '\n[boundary]\nleft = "clamped"\nright = "free"\n'
     if bench.suspension:
-        text += f"\n[suspension]\nat = [{', '.join(f'{x:.4g}' for x in bench.suspension)}]\n"
+        text += f"\n[suspension]\nat = [{', '.join(_number(at) if np.isscalar(at) else _place(at) for at in bench.suspension)}]\n"
     return text + "".join(f'\n[[effect]]\nid = "{name}"\n' for name in bench.declared)
 
 
@@ -78,8 +77,19 @@ def measurement_text(kind, name, force, response):
     """One place."""
     return (
         f'[[measurement]]\nkind = "{kind}"\nfile = "{name}"\n'
-        f"force_at = [{force:.4g}, 0.0]\nresponse_at = [{response:.4g}, 0.0]\n"
+        f"force_at = {_place(force)}\nresponse_at = {_place(response)}\n"
     )
+
+
+def _place(at):
+    """A place (x, y), or one on the centre line by its x."""
+    x, y = (at, None) if np.isscalar(at) else at
+    return f"[{_number(x)}, {'0.0' if y is None else _number(y)}]"
+
+
+def _number(value):
+    """To a tenth of a millimetre and better, no zero with a sign."""
+    return f"{value + 0.0:.4g}"
 
 
 def _write_records(path, place, bench, played):

@@ -20,6 +20,12 @@ RIGHT = ("right effect named first", "right_first")
 INSIDE = ("parameters inside their 95 % interval", "inside", 0.90, "least")
 ANSWERED = ("an answer at all", "answered", 1.0, "least")
 FLOOR = ("held-out error after within 1.2 of the noise floor", "at_floor", 0.90, "least")
+# On a plate, of those named; a patch that barely shows is nowhere in particular.
+NEAR = {"local-mass": 10.0, "stiffness-loss": 25.0}  # mm
+PLACED = [
+    ("a mass named within 10 mm of its place", "placed_local-mass", 0.90, "least"),
+    ("a loss named within 25 mm of its place", "placed_stiffness-loss", 0.90, "least"),
+]
 ASKED = {
     "clean": [(*RIGHT, 0.98, "least"), INSIDE, FLOOR],
     "rough": [(*RIGHT, 0.90, "least"), INSIDE, FLOOR],
@@ -40,6 +46,22 @@ ASKED = {
         FLOOR,
     ],
     "further": [(*RIGHT, 0.98, "least"), INSIDE, FLOOR],
+    "whole": [
+        ("right effect named first", "right", 0.97, "least"),
+        ("an effect named where nothing is missing", "raised", 0.01, "most"),
+        ("a false effect explained", "false", None, "most"),
+        *PLACED,
+        INSIDE,
+    ],
+    "whole-real": [
+        ("right effect named first", "right", 0.90, "least"),
+        ("the same, or among the alternatives", "found", None, "least"),
+        ("right effect first, where it barely shows", "right_hard", None, "least"),
+        ("an effect named where nothing is missing", "raised", 0.05, "most"),
+        ("a false effect explained", "false", None, "most"),
+        *PLACED,
+        INSIDE,
+    ],
     "outside": [("explained by a wrong name", "explained", 0.10, "most")],
     "real": [
         ("right effect named first", "right", 0.92, "least"),
@@ -86,6 +108,10 @@ def case(truth, answer):
                 judged["inside"].append(ok)
                 if not ok:
                     faults.append(f"{effect['id']} {name} {why}")
+    judged["place_mm"] = _places(known, named)
+    for name, near in NEAR.items():
+        found = judged["place_mm"].get(name) if not truth.get("hard", False) else None
+        judged[f"placed_{name}"] = None if found is None else found <= near
     ratio = _ratio(answer)
     judged["held_out_over_floor"] = ratio
     if ratio is not None:
@@ -141,6 +167,7 @@ def summary(name, judged):
             "worst": float(np.max(ratios)) if ratios else None,
             "of": len(ratios),
         },
+        "place_mm": _by_name(case["place_mm"] for case in judged),
         "seconds": {"median": float(np.median(seconds)), "most": max(seconds)} if seconds else None,
         "calibration": calibration.table([case["stated"] for case in judged if case["stated"]]),
         "confusion": {kind: dict(count) for kind, count in sorted(confusion.items())},
@@ -183,6 +210,25 @@ def _parameters(known, found, mirrored=False):
         inside = std is not None and abs(value - true) <= INTERVAL * std
         judged.append((name, inside, f"{value:.4g} +- {'?' if std is None else f'{std:.1g}'}, truth {true:.4g}"))
     return judged
+
+
+def _places(known, named):
+    """How far each effect of the truth that has x and y is named from its place, mm."""
+    far = {}
+    for effect in named:
+        true, found = known.get(effect.get("id"), {}), {name: value for name, value, _ in _flat(effect.get("parameters", {}))}
+        if {"x", "y"} <= set(true) and {"x", "y"} <= set(found):
+            far[effect["id"]] = 1e3 * math.hypot(*(found[axis] - true[axis] for axis in "xy"))
+    return far
+
+
+def _by_name(entries):
+    """The values of all entries, each name's in a list."""
+    gathered = {}
+    for entry in entries:
+        for name, value in entry.items():
+            gathered.setdefault(name, []).append(value)
+    return gathered
 
 
 def _flat(parameters):

@@ -42,7 +42,7 @@ def make_case(folder, case, random):
         "effects": effects,
         "rough": False,
         "mirrored": panel.left == "free",  # a piece turned round has the same frequencies
-        "constants": {"e_x": panel.e_x, "g_zx": panel.g_zx, "shear_coefficient": files.SHEAR_COEFFICIENT},
+        "constants": bench.constants(),
         "frequencies": true.tolist(),
         "left_over_scatter": left / SCATTER,
     }

@@ -6,10 +6,10 @@ import numpy as np
 
 from . import attachments, nonlinear
 from .contour import half_sine
+from .whole import WholeBench
 
 PRE_TRIGGER = 256  # samples before the hit
 PEAKS = (40.0, 160.0)  # N
-CONTACT = (1.3e-4, 2.2e-4)  # s: a metal or hard plastic tip on an aluminium face
 FINER = 2  # samples of the restoring force per sample of the record
 OVERSAMPLED = 4  # for the amplifier: the third harmonic of the band stays below half of it
 
@@ -29,7 +29,7 @@ def play(bench, random):
     frequency, s = bench.sampling.lines()
     pulse = _pulses(bench, random)
     blows = np.stack([half_sine(s, *hit) for hit in pulse])
-    motion = _motion(bench, s, blows, pulse)
+    motion = bench.motion(s, blows) if isinstance(bench, WholeBench) else _motion(bench, s, blows, pulse)
     for factor in bench.chain:
         motion = motion * factor(s)
     motion *= bench.gain * np.repeat(bench.record_gain, bench.hits)[:, None]
@@ -53,9 +53,9 @@ def play(bench, random):
 
 def _pulses(bench, random):
     """Peak, duration and start of every hit, place by place. A harder hit is a shorter one (Hertz: peak^(-1/6))."""
-    middle = np.exp(random.uniform(*np.log(CONTACT)))
+    middle = np.exp(random.uniform(*np.log(bench.contact)))
     pulses = []
-    for _ in range(bench.off.size):
+    for _ in range(len(bench.forces) * bench.hits):
         peak = np.exp(random.uniform(*np.log(PEAKS)))
         duration = middle * (peak / np.sqrt(PEAKS[0] * PEAKS[1])) ** (-1.0 / 6.0) * random.uniform(0.95, 1.05)
         pulses.append((peak, duration, (PRE_TRIGGER + random.random()) / bench.sampling.rate))

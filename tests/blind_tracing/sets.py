@@ -5,12 +5,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from . import bench as benches
-from . import real
+from . import real, whole
 from .catalogue import CANTILEVER, EFFECTS, FURTHER, LISTED, NOT_ANALYSED, NOT_SINGLE, PAIRS
 from .draw import Draw
 from .outside import OUTSIDE
 
-SETS = ("clean", "rough", "rough-none", "single-place", "none", "pairs", "outside", "lists", "accelerances", "further", "real")
+SETS = ("clean", "rough", "rough-none", "single-place", "none", "pairs", "outside", "lists", "accelerances", "further", "real", *whole.SETS)
 HIT_SPREAD = 0.7e-3  # m, of each hit about its place (rough)
 GAIN_SPREAD = 3e-3  # of each record's gain (rough)
 CORE_SPREAD = 5e-3  # rms of the core's shear stiffness along the piece (rough)
@@ -33,6 +33,8 @@ def cases(name, count, seed=0):
     """The cases of a set, `count` of each kind; of the set `real`, whose kinds are drawn by `seed`, `count` in all."""
     if name == "real":
         return real.cases(count, seed)
+    if name in whole.SETS:
+        return whole.cases(name, count)
     if name in ("clean", "rough"):
         kinds = [Case(e, (e,), rough=name == "rough", cantilever=e in CANTILEVER) for e in EFFECTS]
     elif name == "single-place":
@@ -62,6 +64,8 @@ def build(case, random, sampling=None):
     """The bench of a case and its truth: a list of effects with their parameters, and what else is true of it."""
     if isinstance(case, real.Case):
         return real.build(case, random, sampling)
+    if isinstance(case, whole.Case):
+        return whole.build(case, random)
     bench = benches.draw(random, case.places, sampling, case.cantilever)
     truth = []
     for name in case.effects:
