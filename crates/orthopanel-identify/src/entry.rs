@@ -53,10 +53,15 @@ fn of_once(test: &ImpactTest, lists: usize, settings: Settings) -> Result<Identi
     if lists == test.measurements.len() {
         frequency_fit::identify_frequencies(test, settings.search).map_err(of_held)?.determined()
     } else if lists == 0 {
-        if let Some(found) = real_plate(test, settings) {
-            return found.determined();
+        let plate = plate_by_modes(test);
+        let by_modes = || plate.as_ref()?.identification(test, settings).ok()?.determined().ok();
+        if plate.as_ref().is_some_and(|plate| !plate.is_ideal() || plate.is_seen_all_over())
+            && let Some(found) = by_modes()
+        {
+            return Ok(found);
         }
-        accelerance_fit::identify_records(test, settings).map_err(of_held)?.determined()
+        let by_lines = accelerance_fit::identify_records(test, settings).map_err(of_held);
+        by_lines.and_then(Identification::determined).or_else(|refused| by_modes().ok_or(refused))
     } else {
         let message = "natural frequencies and records in one test: put them in two test files, since the frequencies \
                        are most likely read off the same records and would count twice";
@@ -64,14 +69,10 @@ fn of_once(test: &ImpactTest, lists: usize, settings: Settings) -> Result<Identi
     }
 }
 
-/// A declared plate of one piece whose modes lie beside those of any ideal plate; `None` too where its modes cannot be had, or contradict the test: the
-/// fit of the lines says what is wrong.
-fn real_plate(test: &ImpactTest, settings: Settings) -> Option<Identification> {
-    if test.structure != Some(StructureKind::MindlinPlate) || test.pieces.len() != 1 {
-        return None;
-    }
-    let plate = PlateByModes::of(test).ok()??;
-    if plate.is_ideal() { None } else { plate.identification(test, settings).ok() }
+/// A declared plate of one piece by the modes that its records show; `None` where these cannot be had: the fit of the lines says what is wrong.
+fn plate_by_modes(test: &ImpactTest) -> Option<PlateByModes> {
+    let is_one_plate = test.structure == Some(StructureKind::MindlinPlate) && test.pieces.len() == 1;
+    if is_one_plate { PlateByModes::of(test).ok().flatten() } else { None }
 }
 
 /// A law that is indefinite where the search began says nothing of the values it began with, where these are not the user's.

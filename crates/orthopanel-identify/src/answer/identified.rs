@@ -23,6 +23,8 @@ const APART: f64 = 0.015;
 const OPEN: f64 = 0.7;
 /// Components of a direction below this are not told.
 const SMALL: f64 = 0.1;
+/// Pairs of places from which no mode of a few that overlap is hidden.
+const ALL_OVER: usize = 10;
 /// Frequencies that a plate misses by less are those of an ideal one.
 const IDEAL: f64 = 1e-4;
 const HALF_95: f64 = 1.96;
@@ -76,6 +78,11 @@ impl PlateByModes {
     /// Whether the modes lie where those of an ideal plate do.
     pub(crate) fn is_ideal(&self) -> bool {
         self.fit.missed < IDEAL
+    }
+
+    /// Whether the places tell modes apart that overlap: lines then say no more than modes do.
+    pub(crate) fn is_seen_all_over(&self) -> bool {
+        self.measured.records.len() >= ALL_OVER
     }
 
     /// What is said of the test.
@@ -168,8 +175,8 @@ impl PlateByModes {
         let frequency_rms_percent =
             (fit.modes.iter().map(|mode| mode.error_percent().powi(2)).sum::<f64>() / count).sqrt();
         let mut notes = vec![format!(
-            "constants are from the frequencies of the modes that the records show: no ideal plate has them, the nearest misses them by \
-             {:.2} % (standard deviation, estimated with the constants and part of theirs)",
+            "constants are from the frequencies of the modes that the records show, which the nearest plate misses by {:.3} % (standard \
+             deviation, estimated with the constants and part of theirs)",
             100.0 * self.fit.missed
         )];
         if !alone.is_empty() {
