@@ -19,6 +19,9 @@ use super::lines::{PoleColumns, RecordLines, Truncations};
 const LOWEST_POWER: i32 = -4;
 const REMAINDER_TERMS: usize = 9;
 
+/// Evaluations at most, times the parameters.
+const PATIENCE: usize = 2;
+
 /// $\ln\omega$ and $\ln\zeta$ of each pole.
 pub(super) type PoleParameters = Vec<[f64; 2]>;
 
@@ -229,17 +232,16 @@ impl<'a> ModalFit<'a> {
         Some((misfit, record))
     }
 
-    /// The poles that meet the records best, from a start; at most so many evaluations.
-    pub(super) fn minimise(&self, start: PoleParameters, evaluations: usize) -> Option<(PoleParameters, Fitted)> {
+    /// The poles that meet the records best, from a start, until the misfit falls by less than this part.
+    pub(super) fn minimise(&self, start: PoleParameters, tolerance: f64) -> Option<(PoleParameters, Fitted)> {
         let fitted = self.at(&start)?;
         let size = 2 * start.len();
         if size == 0 {
             return Some((start, fitted));
         }
         let problem = Projected { fit: self, poles: start, fitted: Some(fitted) };
-        let patience = (evaluations / (size + 1)).max(1);
         let solver =
-            LevenbergMarquardt::new().with_patience(patience).with_ftol(1e-10).with_xtol(1e-10).with_stepbound(0.1);
+            LevenbergMarquardt::new().with_patience(PATIENCE).with_ftol(tolerance).with_xtol(1e-10).with_stepbound(0.1);
         let (Projected { poles, fitted, .. }, _) = solver.minimize(problem);
         Some((poles, fitted?))
     }

@@ -25,9 +25,10 @@ impl Found {
 
 /// Damping ratios at which a pole begins.
 const FIRST_ZETAS: [f64; 3] = [1e-3, 4e-3, 2e-2];
-/// Evaluations of a fit on the way, and of the last.
-const ON_THE_WAY: usize = 8;
-const LAST: usize = 40;
+/// Part of the misfit by less than which it falls where a fit ends on the way, and the last: of tens of thousands of data the logarithm of the
+/// likelihood is then told to 0.2 and to 1e-4.
+const ON_THE_WAY: f64 = 1e-5;
+const LAST: f64 = 1e-8;
 /// Widths in lines over which the misfit is gathered for the next pole: a sharp one and a damped one.
 const WIDTHS: [usize; 3] = [5, 21, 81];
 /// Places without success after which the search ends.
@@ -69,7 +70,7 @@ pub(super) fn in_parts(records: &[RecordLines], band: [f64; 2]) -> (PoleParamete
 
 /// The poles of all parts of a band together, found one by one where these do not explain the records.
 pub(super) fn joined(records: &[RecordLines], start: PoleParameters) -> Option<Found> {
-    let found = fit(records, start, ON_THE_WAY)?;
+    let found = fit(records, start, LAST)?;
     if found.by_noise() { Some(found) } else { poles(records, found.poles) }
 }
 
@@ -102,9 +103,9 @@ pub(super) fn poles(records: &[RecordLines], start: PoleParameters) -> Option<Fo
 }
 
 /// Refined poles, with lines that count by themselves near where they began; sorted.
-fn fit(records: &[RecordLines], poles: PoleParameters, evaluations: usize) -> Option<Found> {
+fn fit(records: &[RecordLines], poles: PoleParameters, tolerance: f64) -> Option<Found> {
     let fit = ModalFit::new(records, &poles);
-    let (mut poles, _) = fit.minimise(poles, evaluations)?;
+    let (mut poles, _) = fit.minimise(poles, tolerance)?;
     poles.sort_by(|a, b| a[0].total_cmp(&b[0]));
     let fitted = fit.at(&poles)?;
     let freedom = fit.freedom(poles.len());
