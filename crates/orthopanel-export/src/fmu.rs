@@ -3,7 +3,7 @@
 use std::io::Write;
 use std::path::Path;
 
-use orthopanel_fmu::{FmuError, RESOURCE_FILE, Resource, content_token};
+use orthopanel_fmu::{FmuError, RESOURCE_FILE, Residual, Resource, content_token};
 use orthopanel_model::{ModalModel, ModeRange, PanelModel, Ports};
 
 use crate::acceleration_band::AccelerationBands;
@@ -33,6 +33,8 @@ pub struct FmuOptions {
     pub version: FmiVersion,
     /// All forces as one array and each kind of output as another, not a variable each; FMI 3.0 alone has arrays.
     pub arrays: bool,
+    /// What stands for the modes left out.
+    pub residual: Residual,
     /// Libraries of other platforms, or one in place of this platform's own.
     pub libraries: Vec<Library>,
 }
@@ -44,6 +46,7 @@ impl Default for FmuOptions {
             description: "Panel: force in, acceleration, velocity and displacement out".into(),
             version: FmiVersion::Fmi2,
             arrays: false,
+            residual: Residual::default(),
             libraries: Vec::new(),
         }
     }
@@ -96,7 +99,7 @@ impl Fmu {
 
     /// Puts together the FMU of a panel with the modes of `range`: their number is fixed, all else (sizes, mass,
     /// constants, damping ratios, places of the ports) can be set in the FMU, which then solves its modes anew.
-    /// The static part of the modes left out is added to displacements. Effects of the panel are in the modes, a viscoelastic
+    /// For the modes left out stand the residual modes of the forces, unless the options leave them out. Effects of the panel are in the modes, a viscoelastic
     /// core by internal variables, with the error of its fit in the documentation; those of rig and measuring chain are left
     /// out.
     ///
@@ -110,7 +113,7 @@ impl Fmu {
     ) -> Result<Self, ExportError> {
         check(&ports, options)?;
         let (alone, _) = panel.panel_alone().map_err(FmuError::from)?;
-        let (resource, core) = Resource::of_panel(&alone, range, ports)?;
+        let (resource, core) = Resource::of_panel(&alone, range, ports, options.residual)?;
         let bands = AccelerationBands::of(&alone, &resource).map_err(FmuError::from)?;
         Self::of_resource(resource, Some(Origin { panel, core, bands }), options)
     }

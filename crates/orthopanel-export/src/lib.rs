@@ -13,3 +13,4 @@ mod terminals;
 pub use error::ExportError;
 pub use fmu::{FmiVersion, Fmu, FmuOptions};
 pub use library::{Library, Platform, is_carried_library};
+pub use orthopanel_fmu::Residual;

@@ -19,5 +19,5 @@ pub use capabilities::{
     FMI2_CO_SIMULATION, FMI2_MODEL_EXCHANGE, FMI3_CO_SIMULATION, FMI3_MODEL_EXCHANGE, LOG_CATEGORIES, MODEL_IDENTIFIER,
 };
 pub use error::FmuError;
-pub use resource::{GENERATOR, RESOURCE_FILE, RESOURCE_SCHEMA, Resource, content_token};
+pub use resource::{GENERATOR, RESOURCE_FILE, RESOURCE_SCHEMA, Residual, Resource, content_token};
 pub use variables::{Array, Dependency, Factor, Quantity, UNITS, Unit, Variable, VariableTable};

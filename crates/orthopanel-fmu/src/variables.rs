@@ -157,7 +157,7 @@ impl VariableTable {
         table.push_outputs("acceleration", Quantity::Acceleration, ports);
         table.push_outputs("velocity", Quantity::Velocity, ports);
         table.push_outputs("displacement", Quantity::Displacement, ports);
-        table.push_modes(model);
+        table.push_modes(model, resource.residual_modes());
         for (index, parameter) in resource.panel().into_iter().flat_map(Panel::parameters).enumerate() {
             table.push(Quantity::Parameter(index), parameter.name, parameter.description);
             if let Some(variable) = table.variables.last_mut() {
@@ -242,10 +242,12 @@ impl VariableTable {
         }
     }
 
-    fn push_modes(&mut self, model: &ModalModel) {
+    fn push_modes(&mut self, model: &ModalModel, residual: usize) {
+        let kept = model.modes().len() - residual;
         for (index, (mode, [position, velocity])) in model.modes().iter().zip(nominals::of(model)).enumerate() {
             let number = index + 1;
-            let of = format!("of mode {number} ({:.2} Hz), mass-normalised", mode.angular_frequency / TAU);
+            let kind = if index < kept { "mode" } else { "residual mode" };
+            let of = format!("of {kind} {number} ({:.2} Hz), mass-normalised", mode.angular_frequency / TAU);
             let (state, rate) = (Quantity::ModalPosition(index), Quantity::ModalPositionRate(index));
             self.push_state(state, rate, &format!("modal_position_{number}"), format!("Coordinate {of}"), position);
             let (state, rate) = (Quantity::ModalVelocity(index), Quantity::ModalVelocityRate(index));

@@ -2,7 +2,7 @@
 
 use orthopanel_model::{Estimate, PanelModel};
 
-use super::Panel;
+use super::{Panel, ResidualModes};
 
 /// What a parameter of the FMU is of the panel; ports and modes are counted from 0.
 #[derive(Debug, Clone, PartialEq)]
@@ -13,10 +13,15 @@ pub(crate) enum Part {
     MassPerArea,
     Constant(String),
     Damping(usize),
+    /// Of all residual modes.
+    ResidualDamping,
     ForceX(usize),
     ForceY(usize),
     ResponseX(usize),
     ResponseY(usize),
+    /// Place of a force that residual modes answer: no parameter, but what follows the port until initialization has ended.
+    AttachmentX(usize),
+    AttachmentY(usize),
 }
 
 impl Part {
@@ -27,7 +32,15 @@ impl Part {
     }
 
     pub(crate) fn is_damping(&self) -> bool {
-        matches!(self, Self::Damping(_))
+        matches!(self, Self::Damping(_) | Self::ResidualDamping)
+    }
+
+    pub(crate) fn is_of_attachment(&self) -> bool {
+        matches!(self, Self::AttachmentX(_) | Self::AttachmentY(_))
+    }
+
+    pub(crate) fn is_place(&self) -> bool {
+        self.is_of_force() || self.is_of_response() || self.is_of_attachment()
     }
 
     /// Whether it is the place of a force.
@@ -62,14 +75,19 @@ impl Panel {
         let mut parts = vec![Part::Length, Part::Width, Part::Thickness, Part::MassPerArea];
         parts.extend(self.model.constants.keys().cloned().map(Part::Constant));
         parts.extend((0..self.flexible_modes).map(Part::Damping));
+        parts.extend(self.residual.is_some().then_some(Part::ResidualDamping));
         parts.extend((0..self.model.ports.forces.len()).flat_map(|port| [Part::ForceX(port), Part::ForceY(port)]));
         let responses = 0..self.model.ports.responses.len();
         parts.extend(responses.flat_map(|port| [Part::ResponseX(port), Part::ResponseY(port)]));
+        let places = 0..self.residual.as_ref().map_or(0, |residual| residual.places.len());
+        parts.extend(places.flat_map(|place| [Part::AttachmentX(place), Part::AttachmentY(place)]));
         parts
     }
 
     pub(super) fn value(&self, part: &Part) -> f64 {
         let (piece, ports) = (&self.model.piece, &self.model.ports);
+        let residual = self.residual.as_ref();
+        let place = |place: &usize| residual.and_then(|residual| residual.places.get(*place));
         let value = match part {
             Part::Length => Some(piece.length),
             Part::Width => Some(piece.width),
@@ -77,6 +95,9 @@ impl Panel {
             Part::MassPerArea => Some(piece.mass_per_area),
             Part::Constant(name) => self.model.constants.get(name).map(|estimate| estimate.value),
             Part::Damping(mode) => Some(self.model.damping.ratio(mode + 1)),
+            Part::ResidualDamping => residual.map(|residual| residual.damping_ratio),
+            Part::AttachmentX(at) => place(at).map(|place| place.x),
+            Part::AttachmentY(at) => place(at).map(|place| place.y),
             Part::ForceX(port) => ports.forces.get(*port).map(|place| place.x),
             Part::ForceY(port) => ports.forces.get(*port).map(|place| place.y),
             Part::ResponseX(port) => ports.responses.get(*port).map(|place| place.x),
@@ -87,7 +108,7 @@ impl Panel {
     }
 }
 
-pub(super) fn set(model: &mut PanelModel, part: &Part, value: f64) {
+pub(super) fn set((model, residual): (&mut PanelModel, Option<&mut ResidualModes>), part: &Part, value: f64) {
     let (piece, ports) = (&mut model.piece, &mut model.ports);
     let place = match part {
         Part::Length => Some(&mut piece.length),
@@ -99,6 +120,9 @@ pub(super) fn set(model: &mut PanelModel, part: &Part, value: f64) {
             None
         }
         Part::Damping(mode) => model.damping.ratios.get_mut(*mode),
+        Part::ResidualDamping => residual.map(|residual| &mut residual.damping_ratio),
+        Part::AttachmentX(at) => residual.and_then(|residual| residual.places.get_mut(*at)).map(|place| &mut place.x),
+        Part::AttachmentY(at) => residual.and_then(|residual| residual.places.get_mut(*at)).map(|place| &mut place.y),
         Part::ForceX(port) => ports.forces.get_mut(*port).map(|place| &mut place.x),
         Part::ForceY(port) => ports.forces.get_mut(*port).map(|place| &mut place.y),
         Part::ResponseX(port) => ports.responses.get_mut(*port).map(|place| &mut place.x),
@@ -127,6 +151,13 @@ pub(super) fn describe(part: &Part) -> (String, &'static str, String) {
             let text = format!("Modal damping ratio of flexible mode {}", mode + 1);
             (format!("damping_ratio_{}", mode + 1), "1", text)
         }
+        Part::ResidualDamping => {
+            let text = "Damping ratio of the residual modes, which stand for the modes left out".into();
+            ("residual_damping_ratio".into(), "1", text)
+        }
+        // No importer sees these.
+        Part::AttachmentX(port) => place("attachment", port, "x"),
+        Part::AttachmentY(port) => place("attachment", port, "y"),
         Part::ForceX(port) => place("force", port, "x"),
         Part::ForceY(port) => place("force", port, "y"),
         Part::ResponseX(port) => place("response", port, "x"),

@@ -3,14 +3,14 @@
 use std::path::PathBuf;
 
 use orthopanel_data::limits;
-use orthopanel_export::{FmiVersion, Fmu, FmuOptions, Library, Platform};
+use orthopanel_export::{FmiVersion, Fmu, FmuOptions, Library, Platform, Residual};
 use orthopanel_model::Ports;
 use serde::Serialize;
 
 use crate::arguments::{ModeArguments, PortArguments};
 use crate::error::{CommandError, InFile as _};
 use crate::outputs::{Inputs, Outputs};
-use crate::{console, model_file, progress};
+use crate::{console, model_file, progress, time_response};
 
 /// Write a model as an FMU for co-simulation and model exchange: force in; acceleration, velocity and displacement out
 ///
@@ -38,6 +38,10 @@ pub struct Arguments {
     modes: ModeArguments,
     #[command(flatten)]
     ports: PortArguments,
+    /// What stands for the modes left out: residual modes of each force, or nothing, for an integrator of model exchange that is not to
+    /// follow their frequencies
+    #[arg(long, value_name = "attachment|none", default_value = "attachment", value_parser = residual)]
+    residual: Residual,
     /// One array for all forces and one for each kind of output (FMI 3 alone) in place of a variable each
     #[arg(long)]
     arrays: bool,
@@ -57,6 +61,7 @@ struct Answer<'a> {
     rigid_modes: usize,
     flexible_modes: usize,
     highest_hz: f64,
+    residual_hz: Vec<f64>,
     ports: &'a Ports,
     /// Effects of rig and measuring chain.
     left_out: Vec<&'static str>,
@@ -73,9 +78,10 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
     let ports = arguments.ports.needed(&model, path)?;
     let shown = progress::spinner("finding modes and making the FMU");
     let (alone, left_out) = model.panel_alone().in_file(path)?;
-    let seen = alone.time_model(arguments.modes.range(), &ports.forces, &ports.responses).in_file(path)?;
-    let frequencies: Vec<f64> =
+    let seen = time_response::seen(&alone, arguments.modes.range(), &ports, arguments.residual).in_file(path)?;
+    let mut frequencies: Vec<f64> =
         seen.modes.modes().iter().map(|mode| mode.angular_frequency / std::f64::consts::TAU).collect();
+    let residual_hz = frequencies.split_off(frequencies.len() - seen.residual);
     let rigid_modes = frequencies.iter().filter(|frequency| **frequency == 0.0).count();
     let highest_hz = match &seen.core {
         // Beyond are the internal variables' own.
@@ -94,6 +100,7 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
         rigid_modes,
         flexible_modes: seen.flexible,
         highest_hz,
+        residual_hz,
         ports: &ports,
         left_out,
     };
@@ -104,6 +111,12 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
         answer.flexible_modes,
         answer.highest_hz
     ));
+    if let [first, .., last] = answer.residual_hz[..] {
+        let count = answer.residual_hz.len();
+        console::say(format_args!(
+            "{count} residual modes from {first:.0} to {last:.0} Hz stand for the modes left out"
+        ));
+    }
     if let Some(fit) = &seen.core {
         let [from, to] = fit.band;
         let percent = 100.0 * fit.error;
@@ -112,7 +125,11 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
         ));
     }
     if answer.flexible_modes == 0 {
-        let does = if rigid_modes == 0 { "yields at once, without inertia" } else { "only moves as a whole" };
+        let does = if rigid_modes > 0 {
+            "moves as a whole, and yields by its residual modes alone"
+        } else {
+            "yields by its residual modes alone"
+        };
         console::say(format_args!("no flexible mode is kept: this panel {does}; ask for more by --modes or --up-to"));
     }
     if !answer.left_out.is_empty() {
@@ -131,12 +148,26 @@ fn options(arguments: &Arguments) -> Result<FmuOptions, CommandError> {
         Ok(Library::new(*platform, content)?)
     };
     let libraries = arguments.libraries.iter().map(library).collect::<Result<_, CommandError>>()?;
-    Ok(FmuOptions { version: arguments.fmi, arrays: arguments.arrays, libraries, ..FmuOptions::default() })
+    Ok(FmuOptions {
+        version: arguments.fmi,
+        arrays: arguments.arrays,
+        residual: arguments.residual,
+        libraries,
+        ..FmuOptions::default()
+    })
 }
 
 fn platform_and_file(text: &str) -> Result<(Platform, PathBuf), String> {
     let (platform, file) = text.split_once('=').ok_or("must be PLATFORM=FILE, as x86_64-windows=orthopanel_fmu.dll")?;
     Ok((platform.parse().map_err(|error: orthopanel_export::ExportError| error.to_string())?, file.into()))
+}
+
+fn residual(text: &str) -> Result<Residual, String> {
+    match text {
+        "attachment" => Ok(Residual::Attachment),
+        "none" => Ok(Residual::None),
+        _ => Err("must be attachment or none".into()),
+    }
 }
 
 fn version(text: &str) -> Result<FmiVersion, String> {

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use orthopanel_data::ImpactTest;
-use orthopanel_export::{FmiVersion, Fmu, FmuOptions};
+use orthopanel_export::{FmiVersion, Fmu, FmuOptions, Residual};
 use orthopanel_identify::Tracing;
 use orthopanel_model::{ModelError, PanelModel};
 use serde::Serialize;
@@ -224,7 +224,7 @@ fn written(files: Outputs) -> Result<Vec<PathBuf>, CommandError> {
 fn add_model(files: &mut Outputs, test: &Path, suffix: &str, model: &PanelModel) -> Result<(), CommandError> {
     files.add_inside(&format!("model{suffix}.json"), model.to_json());
     let ports = &model.ports;
-    let seen = match model.time_model(USUAL_MODES, &ports.forces, &ports.responses) {
+    let seen = match time_response::seen(model, USUAL_MODES, ports, Residual::Attachment) {
         // The trace may find what has no modes; the model file holds it all the same.
         Err(ModelError::Unsupported(what)) if !model.effects.is_empty() => {
             console::say(format_args!(
@@ -241,7 +241,7 @@ fn add_model(files: &mut Outputs, test: &Path, suffix: &str, model: &PanelModel)
         files.add_inside(&format!("panel{suffix}{ending}.fmu"), fmu.to_bytes()?);
     }
     let hit = DrivingForce::new(ForceHistory::half_sine(ports.forces.len()), Hold::Linear, test)?;
-    let motions = time_response::simulate(&seen.modes, &seen.static_remainder, &hit).in_file(test)?;
+    let motions = time_response::simulate(&seen.modes, &hit).in_file(test)?;
     let hit = hit.samples;
     files.add_inside(&format!("response{suffix}.csv"), time_response::csv(&hit, &motions));
     files.add_inside(&format!("response{suffix}.svg"), pictures::response(&hit, &motions)?);
