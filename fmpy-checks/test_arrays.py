@@ -76,7 +76,12 @@ def test_wrong_numbers_of_values_and_single_elements_are_refused(arrays):
         for values in ([1.0], [1.0] * (len(FORCES) + 1)):
             with pytest.raises(REFUSED):
                 whole.fmu.setFloat64([reference], values)
+        # References count on over the arrays: the next is that of the outputs, and none is left for an element.
         with pytest.raises(REFUSED):
-            whole.fmu.setFloat64([reference + 1], [1.0])
-        assert "no such variable" in whole.messages[-1]
+            whole.fmu.setFloat64([reference + 1], [1.0] * len(RESPONSES))
+        assert "acceleration_1" in whole.messages[-1] and "output" in whole.messages[-1]
+        last = max(whole.references.values())
+        with pytest.raises(REFUSED):
+            whole.fmu.getFloat64([last + 1], nValues=1)
+        assert f"no such variable; references run from 1 to {last}" in whole.messages[-1]
         assert not np.any(get(whole, "force", len(FORCES)))

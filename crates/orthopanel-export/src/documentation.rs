@@ -50,6 +50,8 @@ pub(crate) fn write(resource: &Resource, from: Option<&Origin<'_>>, options: &Fm
     }
     page += "</table>\n";
     page += &residual(resource);
+    page += &mounting(resource);
+    page += REFERENCE;
     if let Some(from) = from {
         page += &left_out(resource, from);
         page += &from.section();
@@ -69,6 +71,18 @@ fn residual(resource: &Resource) -> String {
         residual.len(),
         first.damping_ratio
     )
+}
+
+/// How a mount is joined to a force, and the step at which it is stable.
+fn mounting(resource: &Resource) -> String {
+    let mut text = format!("{MOUNTING}<table>\n<tr><th>force</th><th>m [kg]</th></tr>\n");
+    let modes = resource.model().modes();
+    for port in 0..resource.ports().forces.len() {
+        let yielding: f64 = modes.iter().filter_map(|mode| mode.at_forces.get(port)).map(|shape| shape * shape).sum();
+        let mass = if yielding > 0.0 { format!("{:.3e}", yielding.recip()) } else { "does not move".into() };
+        let _ = writeln!(text, "<tr><td>force_{}</td><td>{mass}</td></tr>", resource.names().force(port));
+    }
+    text + "</table>\n"
 }
 
 /// A table of variables.
@@ -104,6 +118,17 @@ th, td { padding: 0.1em 0.3em }
 td:first-child { overflow-wrap: anywhere; min-width: 7em } }
 </style>\n";
 
+const MOUNTING: &str = "<h2>How to mount it</h2>\n<p>Forces, displacements, velocities and accelerations are positive along +z. A spring of \
+     stiffness k and a damper c between the panel and a base that moves by u_b and v_b put the force k (u_b - u) + c (v_b - v) on the panel, \
+     with u and v the displacement and velocity at the same place; the base gets the opposite. A master that hands motions and forces over \
+     once a step h, the force held over it, is stable at steps up to half the least of sqrt(m/k), m/c and c/k, with m the mass that the place \
+     shows a sudden force, below: a held force lags by h/2 on the mean, which takes k h/2 from the damper. Then the error falls with the \
+     step; with forces predicted to the end of the next step, and force_linear, with its square. A blow of a hammer is no mount: any \
+     step that follows the blow will do.</p>\n";
+const REFERENCE: &str = "<h2>Does an importer run it right?</h2>\n<p><a href=\"Reference.csv\">Reference.csv</a> has a half-sine hit of 100 N on the \
+     first force, of the panel as exported, in co-simulation by the steps in <a href=\"Reference.opt\">Reference.opt</a>. A row has the force that is \
+     set at that time and held over the step that follows, and the outputs before it is set. A run by the same steps gives these numbers to \
+     1e-9 of each output's peak; an importer that sets its inputs late, or reads outputs early, is a step beside them.</p>\n";
 const LICENSES: &str = "Licences of the libraries in it: <a href=\"licenses/license.txt\">licenses/license.txt</a>.";
 const PARAMETERS: &str = "All parameters may be set before or in initialization mode. The tunable ones, which are the damping \
      ratios and the places of forces and responses, may also be set while the simulation runs: in co-simulation between two steps, \
@@ -148,7 +173,7 @@ fn left_out(resource: &Resource, Origin { bands, .. }: &Origin<'_>) -> String {
             let Band { of_octave, of_each_line } = bands.within_one_percent(r, f);
             let up_to = |band: Option<f64>| band.map_or("nowhere".into(), |band| format!("up to {band:.0} Hz"));
             let (octave, line) = (up_to(of_octave), up_to(of_each_line));
-            let (response, force) = (r + 1, f + 1);
+            let (response, force) = (resource.names().response(r), resource.names().force(f));
             let added = format!("{remainder:.3e} m/N");
             let _ = writeln!(
                 text,

@@ -7,11 +7,11 @@ use orthopanel_model::{
 };
 use serde::{Deserialize, Serialize};
 
-use crate::{FmuError, Residual};
+use crate::{FmuError, PortNames, Residual};
 
 pub(crate) use parts::{PanelParameter, Part};
 
-use parts::{describe, set};
+use parts::set;
 
 /// A panel as identified, with the number of modes that its FMU keeps.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -129,9 +129,9 @@ impl Panel {
     }
 
     /// Everything that may be set, with the values it was exported with; its parts come first.
-    pub(crate) fn parameters(&self) -> Vec<PanelParameter> {
+    pub(crate) fn parameters(&self, names: &PortNames) -> Vec<PanelParameter> {
         let named = self.parts().into_iter().filter(|part| !part.is_of_attachment()).map(|part| {
-            let (name, unit, mut description) = describe(&part);
+            let (name, unit, mut description) = self.describe(&part, names);
             if matches!(part, Part::Damping(_)) && self.has_effects() {
                 description += " of the panel without its effects";
             }
@@ -209,14 +209,16 @@ impl Panel {
         self.model.structure == StructureKind::TimoshenkoBeam
     }
 
-    /// Sizes by which the parameters are differenced: their own values, and for places the length. What may be zero has one of
-    /// its kind.
+    /// Sizes by which the parameters are differenced: their own values, and for places a quarter of the length, for the shapes of
+    /// residual modes are short. What may be zero has one of its kind.
     pub(crate) fn sizes(&self, values: &[f64]) -> Vec<f64> {
         let length = values.first().copied().unwrap_or(1.0);
         let size = |(part, &value): (Part, &f64)| match part {
-            part if part.is_place() => length,
+            part if part.is_place() => 0.25 * length,
             part if part.is_damping() => value.max(0.01),
-            Part::Constant(_) if value == 0.0 => 1.0,
+            Part::Constant(_) | Part::Effect(..) if value == 0.0 => 1.0,
+            // A place, or what is alike in either sense.
+            Part::Effect(..) => value.abs(),
             _ => value,
         };
         self.parts().into_iter().zip(values).map(size).collect()

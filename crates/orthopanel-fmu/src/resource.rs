@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 use crate::panel::{Panel, Solution};
-use crate::{FmuError, VariableTable};
+use crate::{FmuError, PortNames, VariableTable};
 
 /// The file's name in `resources/`.
 pub const RESOURCE_FILE: &str = "panel.json";
@@ -41,6 +41,7 @@ pub struct Resource {
     /// Program and version that wrote it: part of the token, since another version may order variables otherwise.
     generator: String,
     ports: Ports,
+    names: PortNames,
     model: ModalModel,
     /// The panel itself, where modes may be solved again.
     panel: Option<Panel>,
@@ -55,7 +56,8 @@ impl Resource {
     /// [`FmuError::ResourceText`] where the numbers of places and ports differ, and for more than 10,000 modes.
     pub fn new(model: ModalModel, ports: Ports) -> Result<Self, FmuError> {
         let (schema, generator) = (RESOURCE_SCHEMA.into(), GENERATOR.into());
-        Self { schema, generator, ports, model, panel: None, arrays: false }.checked()
+        let names = PortNames::default();
+        Self { schema, generator, ports, names, model, panel: None, arrays: false }.checked()
     }
 
     /// The modes of `range` of a panel, and unless `residual` is none the residual modes of its force ports, which stand for all others. Sizes,
@@ -73,8 +75,29 @@ impl Resource {
         let (panel, solution) = Panel::new(panel, range, ports.clone(), residual)?;
         let Solution { modes: model, core, .. } = solution;
         let (schema, generator) = (RESOURCE_SCHEMA.into(), GENERATOR.into());
-        let resource = Self { schema, generator, ports, model, panel: Some(panel), arrays: false };
+        let names = PortNames::default();
+        let resource = Self { schema, generator, ports, names, model, panel: Some(panel), arrays: false };
         Ok((resource.checked()?, core))
+    }
+
+    /// The same with ports that have names.
+    ///
+    /// # Errors
+    /// [`FmuError::PortName`] for what is no identifier, [`FmuError::SameName`] where two variables would have one name.
+    pub fn with_names(self, names: PortNames) -> Result<Self, FmuError> {
+        let named = Self { names, ..self }.checked()?;
+        let table = VariableTable::new(&named);
+        let mut all: Vec<&str> = table.variables().iter().map(|variable| variable.name.as_str()).collect();
+        all.sort_unstable();
+        match all.windows(2).find(|pair| pair[0] == pair[1]) {
+            Some(pair) => Err(FmuError::SameName { name: pair[0].into() }),
+            None => Ok(named),
+        }
+    }
+
+    /// Names of the ports.
+    pub fn names(&self) -> &PortNames {
+        &self.names
     }
 
     /// The same with all forces as one array and each kind of output as another, which FMI 3.0 alone has.
@@ -147,6 +170,7 @@ impl Resource {
             let message = format!("schema = {:?}: this library reads {RESOURCE_SCHEMA:?}", self.schema);
             return Err(FmuError::ResourceText(message));
         }
+        self.names.check()?;
         let modes = self.model.modes().len();
         if modes > MOST_MODES {
             let message = format!("{modes} modes: a panel has {MOST_MODES} at most");

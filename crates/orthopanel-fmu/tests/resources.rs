@@ -39,7 +39,7 @@ fn regress_a_panel_that_does_not_fit_its_modes_is_refused() {
         (asked, "\"flexible_modes\":1000000000000", "panel.flexible_modes = 1000000000000: the model has 5"),
         (asked, "\"flexible_modes\":4", "panel.flexible_modes = 4: the model has 5"),
         (damping, "\"damping\":{\"ratios\":[0.1,", "6 ratios for 5 flexible modes"),
-        ("\"count\":2", "\"count\":3", "panel.residual: 3 modes of 1 places for 1 forces"),
+        ("\"count\":2", "\"count\":3", "panel.flexible_modes = 5: the model has 4 flexible modes"),
         ("\"places\":[[-0.3,0.02]]", "\"places\":[]", "panel.residual: 2 modes of 0 places for 1 forces"),
         ("\"places\":[[-0.3,0.02]]", "\"places\":[[-0.5,0.02]]", "place (-0.5, 0.02) m lies off the piece"),
         (ports, "\"ports\":{\"forces\":[[-0.2,0.02]]", "1 forces and 2 responses, not the same places"),

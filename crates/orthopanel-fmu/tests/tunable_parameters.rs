@@ -151,7 +151,7 @@ fn co_simulation_takes_tunable_parameters_between_steps() {
     for three in [false, true] {
         let (one, other) = (Instance::new(folder.path(), three, false), Instance::new(folder.path(), three, false));
         let step = |instance: &Instance, start| {
-            let force = 2_u32;
+            let force = 3_u32;
             let (mut flags, mut time) = ([0_u8; 3], 0.0);
             let [event, end, early] = &mut flags;
             // SAFETY: a live instance, and places for the answers.

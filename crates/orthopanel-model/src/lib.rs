@@ -9,6 +9,7 @@ mod core_in_frequency;
 mod dense;
 mod effects;
 mod error;
+mod identifier;
 mod legendre;
 pub mod limits;
 mod mindlin_plate;
@@ -46,6 +47,7 @@ pub use effects::{
     SuspensionMotion, catalogue, effect, natural_frequencies, roughness,
 };
 pub use error::{ModelError, Readable};
+pub use identifier::is_identifier;
 pub use mindlin_plate::{MindlinPlate, ModeKind, ModeName, PLATE_CONSTANTS};
 pub use modal_model::{ModalModel, Mode};
 pub use modal_sensitivity::{ModeSensitivity, SensitiveModes, sensitive_modes};

@@ -2,13 +2,16 @@
 
 use std::f64::consts::TAU;
 
-use orthopanel_model::{Attachments, ModeRange, PanelModel, Place, TimeModel};
+use orthopanel_model::{Attachments, Mode, ModeRange, PanelModel, Place, TimeModel};
 
 const BEAM: &str = r#""structure":"timoshenko-beam","constants":{"e_x":1.067e10,"g_zx":5.304e8},
     "piece":{"length":0.8,"width":0.1,"thickness":0.03,"mass_per_area":6.88}"#;
 const FLOOR: &str = r#""structure":"mindlin-plate",
     "constants":{"e_x":1.07e10,"e_y":9.6e9,"nu_xy":0.31,"g_xy":3.7e9,"g_yz":2.9e8,"g_zx":5.363e8},
     "piece":{"length":2.4,"width":0.9,"thickness":0.03,"mass_per_area":6.88}"#;
+const PLATE: &str = r#""structure":"mindlin-plate",
+    "constants":{"e_x":1.07e10,"e_y":9.6e9,"nu_xy":0.31,"g_xy":3.7e9,"g_yz":2.9e8,"g_zx":5.363e8},
+    "piece":{"length":0.8,"width":0.4,"thickness":0.03,"mass_per_area":6.88}"#;
 const CLAMPED: &str = r#""structure":"timoshenko-beam","constants":{"e_x":1.067e10,"g_zx":5.304e8},
     "boundary":{"left":"clamped","right":"pinned"},
     "piece":{"length":0.8,"width":0.1,"thickness":0.03,"mass_per_area":6.88}"#;
@@ -103,6 +106,27 @@ fn val_static_answers_are_whole() {
         let last = panel.modes(ModeRange::Count(6)).unwrap().last().unwrap().angular_frequency();
         assert!(residual.iter().all(|mode| mode.angular_frequency > last && mode.damping_ratio == 0.01));
         assert!(residual.windows(2).all(|pair| pair[0].angular_frequency <= pair[1].angular_frequency));
+    }
+}
+
+/// However many modes a plate keeps, a force brings its two, and all together yield alike at rest: to some per cent, for each basis cuts
+/// the logarithm under a point force elsewhere.
+#[test]
+fn val_plates_of_many_modes_have_two_residual_modes_of_a_force() {
+    let (panel, at) = (panel(PLATE, ""), places(&[[0.1, 0.0], [0.31, 0.12]]));
+    let whole = |modes: usize| {
+        let found = with_residual(&panel, modes, (&at, &at), None);
+        assert_eq!(found.residual, 4, "{modes} modes");
+        [0, 1].map(|p| {
+            let part = |mode: &Mode| mode.at_forces[p] * mode.at_responses[p] / mode.angular_frequency.powi(2);
+            found.modes.flexible().map(part).sum::<f64>()
+        })
+    };
+    let few = whole(10);
+    for modes in [20, 40, 70, 100, 150] {
+        for (many, few) in whole(modes).iter().zip(few) {
+            assert!((many / few - 1.0).abs() < 0.08, "{modes} modes: {many:e}, {few:e} of 10");
+        }
     }
 }
 

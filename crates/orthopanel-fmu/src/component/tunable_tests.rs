@@ -193,7 +193,7 @@ fn val_derivatives_by_tunable_parameters_are_those_of_differences() {
                 let scale = expected.abs().max(1e-3 * whole / 0.1);
                 let name = &variable.name;
                 assert!((found[0] - expected).abs() < 5e-3 * scale, "{text} {output} {name}: {found:?} {expected}");
-                let is_listed = listed.iter().any(|on| on.reference as usize == index);
+                let is_listed = listed.iter().any(|on| on.reference as usize == index + 1);
                 assert!(is_listed || expected.abs() <= 1e-9 * whole / 0.1, "{output} by {name}: {expected} of {whole}");
             }
         }

@@ -209,7 +209,8 @@ impl Component {
     }
 
     pub(super) fn unknown_reference(&self, reference: u32) -> FmuError {
-        let last = u32::try_from(self.variables.variables().len()).unwrap_or(u32::MAX).saturating_sub(1);
+        let last = u32::try_from(self.variables.variables().len()).unwrap_or(u32::MAX);
+        let [reference, last] = [reference, last].map(|reference| self.variables.seen(reference));
         FmuError::UnknownReference { reference, last }
     }
 

@@ -1,8 +1,9 @@
 //! The parts of a panel that are parameters of its FMU.
 
-use orthopanel_model::{Estimate, PanelModel};
+use orthopanel_model::{EffectParameter, Estimate, PanelModel, effect};
 
 use super::{Panel, ResidualModes};
+use crate::PortNames;
 
 /// What a parameter of the FMU is of the panel; ports and modes are counted from 0.
 #[derive(Debug, Clone, PartialEq)]
@@ -12,6 +13,8 @@ pub(crate) enum Part {
     Thickness,
     MassPerArea,
     Constant(String),
+    /// Number of the effect among those of the panel, and its parameter.
+    Effect(usize, &'static EffectParameter),
     Damping(usize),
     /// Of all residual modes.
     ResidualDamping,
@@ -74,6 +77,10 @@ impl Panel {
     pub(crate) fn parts(&self) -> Vec<Part> {
         let mut parts = vec![Part::Length, Part::Width, Part::Thickness, Part::MassPerArea];
         parts.extend(self.model.constants.keys().cloned().map(Part::Constant));
+        for (number, entry) in self.model.effects.iter().enumerate() {
+            let known = effect(&entry.id).map(|effect| effect.parameters()).unwrap_or_default();
+            parts.extend(known.iter().map(|parameter| Part::Effect(number, parameter)));
+        }
         parts.extend((0..self.flexible_modes).map(Part::Damping));
         parts.extend(self.residual.is_some().then_some(Part::ResidualDamping));
         parts.extend((0..self.model.ports.forces.len()).flat_map(|port| [Part::ForceX(port), Part::ForceY(port)]));
@@ -94,6 +101,10 @@ impl Panel {
             Part::Thickness => Some(piece.thickness),
             Part::MassPerArea => Some(piece.mass_per_area),
             Part::Constant(name) => self.model.constants.get(name).map(|estimate| estimate.value),
+            Part::Effect(number, parameter) => {
+                let given = self.model.effects.get(*number).and_then(|entry| entry.parameters.get(parameter.name));
+                given.map(|estimate| estimate.value).or(parameter.held_at)
+            }
             Part::Damping(mode) => Some(self.model.damping.ratio(mode + 1)),
             Part::ResidualDamping => residual.map(|residual| residual.damping_ratio),
             Part::AttachmentX(at) => place(at).map(|place| place.x),
@@ -119,6 +130,12 @@ pub(super) fn set((model, residual): (&mut PanelModel, Option<&mut ResidualModes
             model.constants.insert(name.clone(), Estimate { value, std: None });
             None
         }
+        Part::Effect(number, parameter) => {
+            if let Some(entry) = model.effects.get_mut(*number) {
+                entry.parameters.insert(parameter.name.into(), Estimate { value, std: None });
+            }
+            None
+        }
         Part::Damping(mode) => model.damping.ratios.get_mut(*mode),
         Part::ResidualDamping => residual.map(|residual| &mut residual.damping_ratio),
         Part::AttachmentX(at) => residual.and_then(|residual| residual.places.get_mut(*at)).map(|place| &mut place.x),
@@ -133,34 +150,42 @@ pub(super) fn set((model, residual): (&mut PanelModel, Option<&mut ResidualModes
     }
 }
 
-pub(super) fn describe(part: &Part) -> (String, &'static str, String) {
-    let place = |what: &str, port: &usize, axis: &str| {
-        let text = format!("Place of {what} {} along {axis}, from the centre", port + 1);
-        (format!("{what}_{}_{axis}", port + 1), "m", text)
-    };
-    match part {
-        Part::Length => ("length".into(), "m", "Length of the piece, along x".into()),
-        Part::Width => ("width".into(), "m", "Width of the piece, along y".into()),
-        Part::Thickness => ("thickness".into(), "m", "Thickness of the piece".into()),
-        Part::MassPerArea => ("mass_per_area".into(), "kg/m2", "Mass per area of the piece".into()),
-        Part::Constant(name) => {
-            let unit = if name.starts_with("nu") { "1" } else { "Pa" };
-            (name.clone(), unit, format!("Elastic constant {name}"))
+impl Panel {
+    pub(super) fn describe(&self, part: &Part, names: &PortNames) -> (String, &'static str, String) {
+        let place = |what: &str, label: String, axis: &str| {
+            let text = format!("Place of {what} {label} along {axis}, from the centre");
+            (format!("{what}_{label}_{axis}"), "m", text)
+        };
+        match part {
+            Part::Length => ("length".into(), "m", "Length of the piece, along x".into()),
+            Part::Width => ("width".into(), "m", "Width of the piece, along y".into()),
+            Part::Thickness => ("thickness".into(), "m", "Thickness of the piece".into()),
+            Part::MassPerArea => ("mass_per_area".into(), "kg/m2", "Mass per area of the piece".into()),
+            Part::Constant(name) => {
+                let unit = if name.starts_with("nu") { "1" } else { "Pa" };
+                (name.clone(), unit, format!("Elastic constant {name}"))
+            }
+            Part::Effect(number, parameter) => {
+                let id = |at: usize| self.model.effects.get(at).map_or("", |entry| &entry.id);
+                let before = (0..*number).filter(|&other| id(other) == id(*number)).count();
+                let of = if before == 0 { id(*number).into() } else { format!("{} {}", id(*number), before + 1) };
+                let name = format!("{of}_{}", parameter.name).replace(['-', ' '], "_");
+                (name, parameter.unit, format!("Parameter {} of the effect {of}", parameter.name))
+            }
+            Part::Damping(mode) => {
+                let text = format!("Modal damping ratio of flexible mode {}", mode + 1);
+                (format!("damping_ratio_{}", mode + 1), "1", text)
+            }
+            Part::ResidualDamping => {
+                let text = "Damping ratio of the residual modes, which stand for the modes left out".into();
+                ("residual_damping_ratio".into(), "1", text)
+            }
+            // No importer sees these.
+            Part::AttachmentX(port) | Part::AttachmentY(port) => place("attachment", port.to_string(), ""),
+            Part::ForceX(port) => place("force", names.force(*port), "x"),
+            Part::ForceY(port) => place("force", names.force(*port), "y"),
+            Part::ResponseX(port) => place("response", names.response(*port), "x"),
+            Part::ResponseY(port) => place("response", names.response(*port), "y"),
         }
-        Part::Damping(mode) => {
-            let text = format!("Modal damping ratio of flexible mode {}", mode + 1);
-            (format!("damping_ratio_{}", mode + 1), "1", text)
-        }
-        Part::ResidualDamping => {
-            let text = "Damping ratio of the residual modes, which stand for the modes left out".into();
-            ("residual_damping_ratio".into(), "1", text)
-        }
-        // No importer sees these.
-        Part::AttachmentX(port) => place("attachment", port, "x"),
-        Part::AttachmentY(port) => place("attachment", port, "y"),
-        Part::ForceX(port) => place("force", port, "x"),
-        Part::ForceY(port) => place("force", port, "y"),
-        Part::ResponseX(port) => place("response", port, "x"),
-        Part::ResponseY(port) => place("response", port, "y"),
     }
 }

@@ -236,7 +236,7 @@ fn add_model(files: &mut Outputs, test: &Path, suffix: &str, model: &PanelModel)
     };
     let _shown = progress::spinner("making the FMUs");
     for (version, ending) in [(FmiVersion::Fmi2, ""), (FmiVersion::Fmi3, "-fmi3")] {
-        let options = FmuOptions { version, ..FmuOptions::default() };
+        let options = FmuOptions { name: fmu_name(model, suffix), version, ..FmuOptions::default() };
         let fmu = Fmu::of_panel(model, USUAL_MODES, ports.clone(), &options)?;
         files.add_inside(&format!("panel{suffix}{ending}.fmu"), fmu.to_bytes()?);
     }
@@ -246,6 +246,12 @@ fn add_model(files: &mut Outputs, test: &Path, suffix: &str, model: &PanelModel)
     files.add_inside(&format!("response{suffix}.csv"), time_response::csv(&hit, &motions));
     files.add_inside(&format!("response{suffix}.svg"), pictures::response(&hit, &motions)?);
     Ok(())
+}
+
+/// The model's own, or what the file is called, with `_` for what no name has: each piece's FMU has another.
+fn fmu_name(model: &PanelModel, suffix: &str) -> String {
+    let of_file = || format!("panel{suffix}").replace(|other: char| !other.is_ascii_alphanumeric(), "_");
+    model.name.clone().unwrap_or_else(of_file)
 }
 
 fn add_pictures(files: &mut Outputs, suffix: &str, shown: &PieceEvidence) {
