@@ -19,7 +19,7 @@ MODES = modes_at(BEAM, ZETAS, FORCES[0], RESPONSES[0])
 MOTION = [f"{output}_1" for output in OUTPUTS]
 TRUE, FALSE = "true", "false"
 ERROR, PENDING = 3, 5
-# Velocity and acceleration: displacements also hold the static part of the modes left out, which test_motion looks at.
+# Velocity and acceleration.
 EXPECTED = staircase(MODES, FORCE, STEP)[1:]
 
 

@@ -70,10 +70,14 @@ class Panel:
         getter = self.fmu.getReal if self.version == 2 else self.fmu.getFloat64
         return list(getter([self.references[name] for name in names]))
 
-    def flexibility(self, response, force):
-        """Displacement per force without any motion of the modes [m/N]: what the modes left out add at rest."""
-        unknown, known = self.references[f"displacement_{response}"], self.references[f"force_{force}"]
-        return self.fmu.getDirectionalDerivative([unknown], [known], [1.0])[0]
+    def shapes(self, kind, port, first, last):
+        """Shape values of modes, counted from 1, at a force or a response port: directional derivatives."""
+        unknowns, knowns = {
+            "force": (lambda n: f"der(modal_velocity_{n})", lambda n: f"force_{port}"),
+            "response": (lambda n: f"displacement_{port}", lambda n: f"modal_position_{n}"),
+        }[kind]
+        pairs = [(self.references[unknowns(n)], self.references[knowns(n)]) for n in range(first, last + 1)]
+        return np.array([self.fmu.getDirectionalDerivative([one], [other], [1.0])[0] for one, other in pairs])
 
     def call(self, names, *arguments):
         """Status of a C function, called past FMPy's checks; `names` are those of FMI 2.0 and 3.0."""

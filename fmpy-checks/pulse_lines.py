@@ -5,21 +5,25 @@ is exact.
 """
 
 import numpy as np
-from masters import panel
+from masters import OUTPUTS, panel
 
 STEP, COUNT = 1e-5, 20_000
 SIGMA = 16.0 / (STEP * COUNT)
 UP_TO = 3500.0  # Hz
 
 
-def accelerance(fmu, parameters=(), up_to=UP_TO):
-    """Lines s on the contour, and acceleration over force there."""
+def accelerance(fmu, parameters=(), up_to=UP_TO, by="acceleration"):
+    """Lines s on the contour, and acceleration over force there, by the motion that is read.
+
+    What lies above half the sampling rate is folded into an acceleration's samples, at a driving point by percents; not so into a
+    displacement's.
+    """
     times = STEP * np.arange(COUNT + 1)
     pulse = np.where(times < 4e-4, np.sin(np.pi * times / 4e-4) ** 2, 0.0)
     with panel(fmu) as instance:
         for name, value in parameters:
             instance.set(name, value)
-        motion = instance.initialize(force_linear=True).run(pulse[1:], STEP)[2]
+        motion = instance.initialize(force_linear=True).run(pulse[1:], STEP)[OUTPUTS.index(by)]
     motion = np.concatenate([[0.0], motion])[:-1]
     lines = np.arange(1, int(up_to * STEP * COUNT))
     s = SIGMA + 2.0j * np.pi * lines / (STEP * COUNT)
@@ -27,7 +31,7 @@ def accelerance(fmu, parameters=(), up_to=UP_TO):
     transform = lambda signal: STEP * np.fft.rfft(signal * window)[lines]  # noqa: E731
     # Straight lines between samples are triangles, one a sample.
     half = s * STEP / 2.0
-    return s, transform(motion) / (transform(pulse[:-1]) * (np.sinh(half) / half) ** 2)
+    return s, s ** (2 - OUTPUTS.index(by)) * transform(motion) / (transform(pulse[:-1]) * (np.sinh(half) / half) ** 2)
 
 
 def worst(found, expected):

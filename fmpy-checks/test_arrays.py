@@ -37,7 +37,7 @@ def test_fmpy_finds_no_problem_and_the_sizes(arrays):
 def test_dependencies_are_those_of_all_elements(arrays):
     outputs = {u.variable.name: u for u in read_model_description(str(arrays)).outputs}
     assert set(outputs) == set(OUTPUTS)
-    for name, direct in (("acceleration", True), ("velocity", False), ("displacement", True)):
+    for name, direct in (("acceleration", True), ("velocity", False), ("displacement", False)):
         assert ("force" in {v.name for v in outputs[name].dependencies}) == direct
 
 
@@ -76,7 +76,12 @@ def test_wrong_numbers_of_values_and_single_elements_are_refused(arrays):
         for values in ([1.0], [1.0] * (len(FORCES) + 1)):
             with pytest.raises(REFUSED):
                 whole.fmu.setFloat64([reference], values)
+        # References count on over the arrays: the next is that of the outputs, and none is left for an element.
         with pytest.raises(REFUSED):
-            whole.fmu.setFloat64([reference + 1], [1.0])
-        assert "no such variable" in whole.messages[-1]
+            whole.fmu.setFloat64([reference + 1], [1.0] * len(RESPONSES))
+        assert "acceleration_1" in whole.messages[-1] and "output" in whole.messages[-1]
+        last = max(whole.references.values())
+        with pytest.raises(REFUSED):
+            whole.fmu.getFloat64([last + 1], nValues=1)
+        assert f"no such variable; references run from 1 to {last}" in whole.messages[-1]
         assert not np.any(get(whole, "force", len(FORCES)))

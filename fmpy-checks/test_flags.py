@@ -36,7 +36,7 @@ def fmus(export, tmp_path_factory):
 
 def written(fmu, interface):
     attributes = dict(ElementTree.parse(fmu / "modelDescription.xml").find(interface).attrib)
-    assert attributes.pop("modelIdentifier") == "orthopanel"
+    assert attributes.pop("modelIdentifier") == "panel"
     return attributes
 
 

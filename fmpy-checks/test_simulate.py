@@ -45,15 +45,12 @@ def test_simulate_moves_as_the_fmu_does(content, force, response, tmp_path):
     expected = np.empty_like(found)
     with panel(fmu) as instance:
         instance.initialize()
-        static = instance.flexibility(1, 1)
         for n, value in enumerate(FORCE):
             instance.set("force_1", value)
             expected[:, n] = instance.get("displacement_1", "velocity_1", "acceleration_1")
             instance.step(n * STEP, STEP)
     size = np.max(np.abs(expected), axis=1, keepdims=True)
     assert np.all(np.abs(found - expected) < 1e-9 * size)
-    # Without the modes left out this would not be the same motion.
-    assert abs(static) * np.max(np.abs(FORCE)) > 1e-4 * size[0, 0]
 
 
 def test_an_fmu_of_arrays_is_stepped_as_one_of_scalars(tmp_path):

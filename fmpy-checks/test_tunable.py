@@ -69,7 +69,7 @@ def test_a_free_decay_goes_on_at_its_new_rates(fmu, interface):
     assert np.max(np.abs(held - after)[1]) > 0.1 * np.max(np.abs(after[1]))
 
 
-def test_a_force_and_a_response_move_under_way(fmu, export):
+def test_a_force_and_a_response_move_under_way(fmu):
     """Modal coordinates under a force held over each step; the second half with other places and one other damping ratio."""
     places = [(FORCES[0], RESPONSES[0]), (-0.13, 0.05)]
     loads = 2.0 * np.cos(0.2 * np.arange(2 * HALF))
@@ -86,9 +86,7 @@ def test_a_force_and_a_response_move_under_way(fmu, export):
         expected.append([sum(s * q for (*_, s), (q, _) in zip(modes, states)),
                          sum(s * v for (*_, s), (_, v) in zip(modes, states)),
                          sum(s * a for (*_, s), a in zip(modes, accelerations))])
-    with panel(export(f"moved{fmu.stem}.fmu", "--fmi", fmu.stem[-1], forces=[-0.13, *FORCES[1:]], responses=[0.05])) as other:
-        moved = other.initialize().flexibility(1, 1)
-    found, rest = [], []
+    found = []
     with panel(fmu) as instance:
         instance.initialize()
         for n, load in enumerate(loads):
@@ -98,8 +96,6 @@ def test_a_force_and_a_response_move_under_way(fmu, export):
             instance.set("force_1", load)
             instance.step(n * STEP, STEP)
             found.append(instance.get(*NAMES))
-            rest.append(instance.flexibility(1, 1))
-        assert rest[-1] == pytest.approx(moved, rel=1e-9) and rest[0] != rest[-1]
         # The state from before brings all of it back, and the same again gives the same.
         again = []
         instance.fmu.setFMUState(state)
@@ -111,8 +107,6 @@ def test_a_force_and_a_response_move_under_way(fmu, export):
             again.append(instance.get(*NAMES))
         assert again == found[HALF:]
     found, expected = np.array(found).T, np.array(expected).T
-    # What the modes left out do at rest is the FMU's to add: read from it, and held against an export above.
-    expected[0] += np.array(rest) * loads
     error = np.max(np.abs(found - expected), axis=1) / np.max(np.abs(expected), axis=1)
     assert np.all(error < 1e-9), error
 

@@ -48,7 +48,47 @@ fn main() -> Result<(), Box<dyn Error>> {
         None => build(&runtime.join("Cargo.toml"))?,
     };
     println!("cargo:rustc-env=ORTHOPANEL_FMU_LIBRARY={}", library.display());
+    ready_for_others(&crates.join("../target/fmu-libraries"), &crates)
+}
+
+/// Names the libraries that `build-linux` and `build-windows` left in a folder, so that they are embedded beside this platform's own. One
+/// that is older than a source is left out: an FMU whose platforms differ would be worse than one of fewer.
+fn ready_for_others(folder: &Path, crates: &Path) -> Result<(), Box<dyn Error>> {
+    println!("cargo:rerun-if-changed={}", folder.display());
+    let newest = ["orthopanel-fmu/src", "orthopanel-model/src"].map(|source| newest(&crates.join(source)));
+    let newest = newest.into_iter().collect::<Result<Vec<_>, _>>()?.into_iter().max();
+    let mut list = String::from("&[");
+    for file in std::fs::read_dir(folder).into_iter().flatten() {
+        let file = file?;
+        println!("cargo:rerun-if-changed={}", file.path().display());
+        if Some(file.metadata()?.modified()?) < newest {
+            println!(
+                "cargo:warning={}: older than its sources, so FMUs go without it: build it again",
+                file.path().display()
+            );
+            continue;
+        }
+        let (name, path) = (file.file_name(), file.path().canonicalize()?);
+        let name = name.to_str().ok_or("a file in target/fmu-libraries has no name in UTF-8")?;
+        list += &format!(
+            "({name:?}, include_bytes!({:?})),",
+            path.to_str().ok_or("the target folder has no name in UTF-8")?
+        );
+    }
+    std::fs::write(PathBuf::from(env::var("OUT_DIR")?).join("ready.rs"), list + "]")?;
     Ok(())
+}
+
+/// When the youngest file below a folder was changed.
+fn newest(folder: &Path) -> Result<std::time::SystemTime, Box<dyn Error>> {
+    let mut newest = std::time::SystemTime::UNIX_EPOCH;
+    for entry in std::fs::read_dir(folder)? {
+        let entry = entry?;
+        let of_entry =
+            if entry.file_type()?.is_dir() { self::newest(&entry.path())? } else { entry.metadata()?.modified()? };
+        newest = newest.max(of_entry);
+    }
+    Ok(newest)
 }
 
 /// The whole path of a library that was built before.
@@ -99,7 +139,8 @@ fn build(manifest: &Path) -> Result<PathBuf, Box<dyn Error>> {
             cargo.env_remove(&name);
         }
     }
-    cargo.args(["build", "--quiet", "--lib", "--profile", "fmu", "--features", "compact"]);
+    // The cdylib alone: of this and the rlib together none is optimised across crates.
+    cargo.args(["rustc", "--quiet", "--lib", "--profile", "fmu", "--features", "compact", "--crate-type", "cdylib"]);
     cargo.arg("--manifest-path").arg(manifest).arg("--target-dir").arg(&target_folder);
     cargo.env("CARGO_ENCODED_RUSTFLAGS", without_paths(manifest, &target_folder)?.join("\u{1f}"));
     let mut folder = target_folder;

@@ -2,10 +2,9 @@
 
     x' = A x + Re(sum_k e_k exp(j omega_k t)),   x(0) = 0
 
-x holds displacements and velocities of the car, of the bracket and of the panel's modes. The panel's frequencies,
-damping, shapes and static remainder are read from its FMU's resources; nothing of the FMU runs.
-The forces at the ports solve F = k (rows z - shapes q - R F) + c (rows z' - shapes q'): what the modes left out add, R,
-follows the forces at once.
+x holds displacements and velocities of the car, of the bracket and of the panel's modes, residual ones too. The panel's
+frequencies, damping and shapes are read from its FMU's resources; nothing of the FMU runs.
+The forces at the ports are F = k (rows z - shapes q) + c (rows z' - shapes q').
 """
 
 import json
@@ -18,7 +17,7 @@ from track import Track
 
 
 class PanelModes:
-    """The panel's modes at the ports, mass-normalised, and the static remainder R [m/N] at response, force."""
+    """The panel's modes at the ports, mass-normalised."""
 
     def __init__(self, fmu):
         with zipfile.ZipFile(fmu) as archive:
@@ -28,8 +27,6 @@ class PanelModes:
         self.zeta = np.array([mode["damping_ratio"] for mode in modes])
         self.at_forces = np.array([mode["at_forces"] for mode in modes]).T
         self.at_responses = np.array([mode["at_responses"] for mode in modes]).T
-        shape = len(self.at_responses), len(self.at_forces)
-        self.remainder = np.array(content["static_remainder"], dtype=float).reshape(shape)
 
 
 class Monolith:
@@ -59,11 +56,10 @@ class Monolith:
         free_stiffness[car + more :, car + more :] = np.diag(panel.omega**2)
         free_damping[car + more :, car + more :] = np.diag(2.0 * panel.zeta * panel.omega)
         springs, dashpots = np.diag(springs), np.diag(dashpots)
-        softer = np.linalg.inv(np.eye(ports) + springs @ panel.remainder[:ports, :ports])
         inverse = np.linalg.inv(masses)
         lower = [
-            -inverse @ (free_stiffness + joint.T @ softer @ springs @ joint),
-            -inverse @ (free_damping + joint.T @ softer @ dashpots @ joint),
+            -inverse @ (free_stiffness + joint.T @ springs @ joint),
+            -inverse @ (free_damping + joint.T @ dashpots @ joint),
         ]
         self.matrix = np.block([[np.zeros((size, size)), np.eye(size)], lower])
         self.track = track

@@ -17,9 +17,12 @@ FOOT = len(MOUNTS) + 2  # the response port where a passenger's foot stands; the
 OUTPUT = f"acceleration_{FOOT}"
 SHARED = ["port_slave.py", "suspended_system.py"]
 NAMESPACES = {
+    "ssc": "http://ssp-standard.org/SSP1/SystemStructureCommon",
     "ssd": "http://ssp-standard.org/SSP1/SystemStructureDescription",
     "ssv": "http://ssp-standard.org/SSP1/SystemStructureParameterValues",
+    "oms": "https://raw.githubusercontent.com/OpenModelica/OMSimulator/master/schema/oms.xsd",
 }
+STEP = 5e-4  # s, of OMSimulator's master, which takes it from an annotation; FMPy and ecospy are told theirs
 
 
 def resonator(model):
@@ -37,7 +40,9 @@ def build_fmus(folder, model=MODEL):
     bare["effects"] = []
     (folder / "bare-floor.json").write_text(json.dumps(bare))
     command = os.environ.get("ORTHOPANEL", str(HERE.parent.parent / "target/release/orthopanel"))
-    words = [command, "export", str(folder / "bare-floor.json"), "-o", str(folder / "floor.fmu"), "--up-to", str(MODES_UP_TO)]
+    words = [command, "export", str(folder / "bare-floor.json"), "-o", str(folder / "floor.fmu"), "--name", "floor", "--up-to", str(MODES_UP_TO)]
+    # Residual modes weigh some hundred grams at a mount, which its dashpot, a step of 1 ms late, would drive: soft mounts want none.
+    words += ["--residual", "none"]
     subprocess.run(words, check=True, capture_output=True)
     for script, name, more in (("rail_car.py", "car", ["car_body.py", "track.py"]), ("loose_bracket.py", "bracket", [])):
         FmuBuilder.build_FMU(HERE / script, folder / f"{name}.fmu", [HERE / file for file in SHARED + more])
@@ -91,8 +96,9 @@ def _text(root):
 
 def _structure(components, wires):
     ssd = lambda name: f"{{{NAMESPACES['ssd']}}}{name}"  # noqa: E731
-    ssc = "{http://ssp-standard.org/SSP1/SystemStructureCommon}Real"
-    root = ElementTree.Element(ssd("SystemStructureDescription"), version="1.0", name="rail-car")
+    ssc = lambda name: f"{{{NAMESPACES['ssc']}}}{name}"  # noqa: E731
+    oms = lambda name: f"{{{NAMESPACES['oms']}}}{name}"  # noqa: E731
+    root = ElementTree.Element(ssd("SystemStructureDescription"), version="1.0", name="rail_car")
     system = ElementTree.SubElement(root, ssd("System"), name="vehicle")
     bindings = ElementTree.SubElement(system, ssd("ParameterBindings"))
     ElementTree.SubElement(bindings, ssd("ParameterBinding"), source="resources/parameters.ssv")
@@ -106,11 +112,15 @@ def _structure(components, wires):
         for kind, variables in (("output", outputs), ("input", inputs)):
             for variable in variables:
                 connector = ElementTree.SubElement(connectors, ssd("Connector"), name=variable, kind=kind)
-                ElementTree.SubElement(connector, ssc)
+                ElementTree.SubElement(connector, ssc("Real"))
     joined = ElementTree.SubElement(system, ssd("Connections"))
     for wire in wires:
         names = ("startElement", "startConnector", "endElement", "endConnector")
         ElementTree.SubElement(joined, ssd("Connection"), dict(zip(names, wire)))
+    noted = ElementTree.SubElement(ElementTree.SubElement(system, ssd("Annotations")), ssc("Annotation"), type="org.openmodelica")
+    information = ElementTree.SubElement(ElementTree.SubElement(noted, oms("Annotations")), oms("SimulationInformation"))
+    step = {"description": "oms-ma", "stepSize": str(STEP), "absoluteTolerance": "1e-6", "relativeTolerance": "1e-6"}
+    ElementTree.SubElement(information, oms("FixedStepMaster"), step)
     return _text(root)
 
 

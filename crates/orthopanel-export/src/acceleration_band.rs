@@ -1,10 +1,10 @@
-//! Up to where the accelerations of an FMU can do without the modes that it leaves out.
+//! Up to where the motions of an FMU can do without the modes that it leaves out.
 
 use std::f64::consts::TAU;
 
 use num_complex::Complex64;
 use orthopanel_fmu::Resource;
-use orthopanel_model::{ModalModel, ModeRange, ModelError, PanelModel};
+use orthopanel_model::{ModalModel, Mode, ModeRange, ModelError, PanelModel};
 
 /// So many times the modes of the FMU are summed; what lies above counts as at rest.
 const FURTHER: usize = 3;
@@ -18,6 +18,8 @@ const ALLOWED: f64 = 0.01;
 pub(crate) struct AccelerationBands {
     /// Up to where each holds: a row a response, a column a force.
     bands: Vec<Vec<Band>>,
+    /// What the modes left out add at rest \[m/N\], alike.
+    at_rest: Vec<Vec<f64>>,
     /// See [`AccelerationBands::frequency_change`].
     frequency_change: Option<f64>,
 }
@@ -48,6 +50,11 @@ impl AccelerationBands {
         self.bands.get(response).and_then(|row| row.get(force)).copied().unwrap_or_default()
     }
 
+    /// What the modes that are left out add to a displacement at rest, before residual modes stand for them \[m/N\].
+    pub(crate) fn at_rest(&self, response: usize, force: usize) -> f64 {
+        self.at_rest.get(response).and_then(|row| row.get(force)).copied().unwrap_or_default()
+    }
+
     /// By how much of itself the frequency of a mode of the FMU differs at most on the larger basis of three times as many modes;
     /// not told beside a core.
     pub(crate) fn frequency_change(&self) -> Option<f64> {
@@ -55,7 +62,8 @@ impl AccelerationBands {
     }
 
     fn of_modes(panel: &PanelModel, resource: &Resource) -> Result<Self, ModelError> {
-        let (kept, ports) = (resource.model(), resource.ports());
+        let ports = resource.ports();
+        let (kept, residual) = parts(resource)?;
         let all = |count: usize| panel.modal_model(ModeRange::Count(count), &ports.forces, &ports.responses);
         let all = match all(FURTHER * kept.flexible().count()) {
             Err(ModelError::BasisTooSmall { available, .. }) => all(available)?,
@@ -63,11 +71,13 @@ impl AccelerationBands {
         };
         let further: Vec<_> = all.modes().iter().skip(kept.modes().len()).cloned().collect();
         let left_out = ModalModel::new(ports.forces.len(), ports.responses.len(), further)?;
-        let beyond = left_out.left_of_flexibility(resource.static_remainder().to_vec());
+        let lacking = panel.static_remainder(&kept, &ports.forces, &ports.responses)?;
+        let beyond = left_out.left_of_flexibility(lacking.clone());
         let line = |response: usize, force: usize, frequency: f64| {
             let at_rest = (TAU * frequency).powi(2) * beyond[response][force];
-            let missing = left_out.accelerance(force, response, frequency) - at_rest;
-            (frequency, missing, kept.accelerance(force, response, frequency) + missing)
+            let all = left_out.accelerance(force, response, frequency) - at_rest;
+            let missing = all - residual.accelerance(force, response, frequency);
+            (frequency, missing, kept.accelerance(force, response, frequency) + all)
         };
         let grid = grid(kept.modes().last().map_or(0.0, |mode| mode.angular_frequency / TAU));
         let band = |response: usize, force: usize| {
@@ -78,6 +88,7 @@ impl AccelerationBands {
         let changes = changes.map(|(own, finer)| (own.angular_frequency / finer.angular_frequency - 1.0).abs());
         Ok(Self {
             bands: (0..ports.responses.len()).map(row).collect(),
+            at_rest: lacking,
             frequency_change: Some(changes.fold(0.0, f64::max)),
         })
     }
@@ -93,9 +104,11 @@ impl AccelerationBands {
             found => found?,
         };
         let own = panel.relaxing_lines_of_modes(ModeRange::Count(count), &ports.forces, &ports.responses)?;
+        let (kept, residual) = parts(resource)?;
+        let at_rest = kept.left_of_flexibility(panel.static_flexibility(count, &ports.forces, &ports.responses)?);
         let Some((whole, own)) = whole.zip(own) else {
             let never = vec![vec![Band::default(); ports.forces.len()]; ports.responses.len()];
-            return Ok(Self { bands: never, frequency_change: None });
+            return Ok(Self { bands: never, at_rest, frequency_change: None });
         };
         let lines = grid.iter().map(|&frequency| {
             let s = Complex64::new(0.0, TAU * frequency);
@@ -105,14 +118,23 @@ impl AccelerationBands {
         let one = |response: usize, force: usize| {
             let line = |(frequency, whole, own): &(f64, Rows, Rows)| {
                 let whole = whole[response][force];
-                (*frequency, whole - own[response][force], whole)
+                let beside = residual.accelerance(force, response, *frequency);
+                (*frequency, whole - own[response][force] - beside, whole)
             };
             band(&lines.iter().map(line).collect::<Vec<Line>>())
         };
         let row = |response: usize| (0..ports.forces.len()).map(|force| one(response, force)).collect();
         let bands = (0..ports.responses.len()).map(row).collect();
-        Ok(Self { bands, frequency_change: None })
+        Ok(Self { bands, at_rest, frequency_change: None })
     }
+}
+
+/// The modes that are kept, and the residual ones.
+fn parts(resource: &Resource) -> Result<(ModalModel, ModalModel), ModelError> {
+    let model = resource.model();
+    let (kept, residual) = model.modes().split_at(model.modes().len() - resource.residual_modes());
+    let of = |modes: &[Mode]| ModalModel::new(model.force_count(), model.response_count(), modes.to_vec());
+    Ok((of(kept)?, of(residual)?))
 }
 
 /// The frequencies \[Hz\] that are looked at, up to half an octave above the highest mode that is kept.
@@ -139,6 +161,7 @@ fn band(lines: &[Line]) -> Band {
 
 #[cfg(test)]
 mod tests {
+    use orthopanel_fmu::Residual;
     use orthopanel_model::{Place, Ports};
 
     use super::*;
@@ -154,7 +177,7 @@ mod tests {
         let panel = PanelModel::from_json(text).unwrap();
         let at = |x| Place { x, y: 0.0 };
         let ports = Ports { forces: vec![at(-0.3)], responses: vec![at(-0.3)] };
-        let (resource, fit) = Resource::of_panel(&panel, ModeRange::Count(5), ports).unwrap();
+        let (resource, fit) = Resource::of_panel(&panel, ModeRange::Count(5), ports, Residual::None).unwrap();
         assert!(fit.unwrap().error < 1e-3, "small beside a hundredth");
         let told = AccelerationBands::of(&panel, &resource).unwrap().within_one_percent(0, 0).of_octave.unwrap();
         let whole = panel.relaxing_lines(ModeRange::Count(30), &[at(-0.3)], &[at(-0.3)]).unwrap().unwrap();

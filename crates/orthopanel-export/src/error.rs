@@ -15,8 +15,11 @@ pub enum ExportError {
         /// `force` or `response`.
         ports: &'static str,
     },
-    /// A name that XML or an importer cannot carry.
-    #[error("FMU name {name:?}: must have a visible character and no control characters")]
+    /// A name that is no identifier.
+    #[error(
+        "name {name:?}: must be of letters, digits and _ (128 at most, no digit first), as floor_left: the model's identifier and its \
+         library are called so"
+    )]
     Name {
         /// The name.
         name: String,
@@ -24,6 +27,19 @@ pub enum ExportError {
     /// Arrays in a version that has none.
     #[error("arrays: FMI 2.0 has none: export for FMI 3.0, or leave them out")]
     Arrays,
+    /// Names of ports that stand in arrays.
+    #[error("arrays: the places in one have no names of their own: leave out --arrays or the names")]
+    NamesInArrays,
+    /// More names than ports.
+    #[error("{found} names for {places} {ports} ports: give one at most for each")]
+    NamedPorts {
+        /// `force` or `response`.
+        ports: &'static str,
+        /// Names given.
+        found: usize,
+        /// Places.
+        places: usize,
+    },
     /// A platform that FMI has no name for.
     #[error("platform {given:?}: must be one of {known}")]
     Platform {

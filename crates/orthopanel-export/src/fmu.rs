@@ -3,13 +3,14 @@
 use std::io::Write;
 use std::path::Path;
 
-use orthopanel_fmu::{FmuError, RESOURCE_FILE, Resource, content_token};
-use orthopanel_model::{ModalModel, ModeRange, PanelModel, Ports};
+use orthopanel_fmu::{FmuError, PortNames, RESOURCE_FILE, Residual, Resource, VariableTable, content_token};
+use orthopanel_model::{ModalModel, ModeRange, PanelModel, Ports, is_identifier};
 
 use crate::acceleration_band::AccelerationBands;
 use crate::archive::{Entry, pack};
 use crate::documentation;
 use crate::origin::Origin;
+use crate::reference::Reference;
 use crate::{ExportError, Library, library, model_description, terminals};
 
 /// Version of the FMI standard.
@@ -25,7 +26,8 @@ pub enum FmiVersion {
 /// How an FMU is made.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FmuOptions {
-    /// Name shown by importers.
+    /// Model name, model identifier and file name of the library: importers tell FMUs apart by it, so two in one vehicle have two. A name
+    /// as in C.
     pub name: String,
     /// One line on what it is.
     pub description: String,
@@ -33,6 +35,10 @@ pub struct FmuOptions {
     pub version: FmiVersion,
     /// All forces as one array and each kind of output as another, not a variable each; FMI 3.0 alone has arrays.
     pub arrays: bool,
+    /// Names of the ports, which stand in those of variables.
+    pub names: PortNames,
+    /// What stands for the modes left out.
+    pub residual: Residual,
     /// Libraries of other platforms, or one in place of this platform's own.
     pub libraries: Vec<Library>,
 }
@@ -44,6 +50,8 @@ impl Default for FmuOptions {
             description: "Panel: force in, acceleration, velocity and displacement out".into(),
             version: FmiVersion::Fmi2,
             arrays: false,
+            names: PortNames::default(),
+            residual: Residual::default(),
             libraries: Vec::new(),
         }
     }
@@ -75,10 +83,15 @@ const LICENSES: [(&str, &str); 2] = [
 /// ```
 #[derive(Debug, Clone)]
 pub struct Fmu {
+    pub(crate) name: String,
+    pub(crate) table: VariableTable,
+    /// Step and stop time \[s\].
+    pub(crate) experiment: (f64, f64),
     version: FmiVersion,
     model_description: String,
     resource: String,
     documentation: String,
+    reference: Reference,
     terminals: String,
     libraries: Vec<(String, Vec<u8>)>,
 }
@@ -96,7 +109,7 @@ impl Fmu {
 
     /// Puts together the FMU of a panel with the modes of `range`: their number is fixed, all else (sizes, mass,
     /// constants, damping ratios, places of the ports) can be set in the FMU, which then solves its modes anew.
-    /// The static part of the modes left out is added to displacements. Effects of the panel are in the modes, a viscoelastic
+    /// For the modes left out stand the residual modes of the forces, unless the options leave them out. Effects of the panel are in the modes, a viscoelastic
     /// core by internal variables, with the error of its fit in the documentation; those of rig and measuring chain are left
     /// out.
     ///
@@ -110,21 +123,27 @@ impl Fmu {
     ) -> Result<Self, ExportError> {
         check(&ports, options)?;
         let (alone, _) = panel.panel_alone().map_err(FmuError::from)?;
-        let (resource, core) = Resource::of_panel(&alone, range, ports)?;
+        let (resource, core) = Resource::of_panel(&alone, range, ports, options.residual)?;
         let bands = AccelerationBands::of(&alone, &resource).map_err(FmuError::from)?;
         Self::of_resource(resource, Some(Origin { panel, core, bands }), options)
     }
 
     fn of_resource(resource: Resource, origin: Option<Origin<'_>>, options: &FmuOptions) -> Result<Self, ExportError> {
+        let resource = resource.with_names(options.names.clone())?;
         let resource = &if options.arrays { resource.in_arrays() } else { resource };
         let text = resource.to_json();
         let token = content_token(text.as_bytes());
+        let experiment = model_description::experiment(resource);
         Ok(Self {
+            name: options.name.clone(),
+            table: resource.variables(),
+            experiment,
             version: options.version,
             model_description: model_description::write(resource, options, &token)?,
             documentation: documentation::write(resource, origin.as_ref(), options),
+            reference: Reference::of(resource, experiment.0).map_err(FmuError::from)?,
             terminals: terminals::write(resource)?,
-            libraries: library::all(options.version, &options.libraries)?,
+            libraries: library::all(options, &options.libraries)?,
             resource: text,
         })
     }
@@ -144,6 +163,8 @@ impl Fmu {
             text("modelDescription.xml", self.model_description.as_bytes()),
             text(&format!("resources/{RESOURCE_FILE}"), self.resource.as_bytes()),
             text("documentation/index.html", self.documentation.as_bytes()),
+            text("documentation/Reference.csv", self.reference.table.as_bytes()),
+            text("documentation/Reference.opt", self.reference.settings.as_bytes()),
         ];
         entries.extend(LICENSES.iter().map(|(path, content)| text(path, content.as_bytes())));
         entries.extend(match self.version {
@@ -196,7 +217,19 @@ fn check(ports: &Ports, options: &FmuOptions) -> Result<(), ExportError> {
     if options.arrays && options.version == FmiVersion::Fmi2 {
         return Err(ExportError::Arrays);
     }
-    if options.name.trim().is_empty() || options.name.chars().any(char::is_control) {
+    if options.arrays && options.names != PortNames::default() {
+        return Err(ExportError::NamesInArrays);
+    }
+    for (kind, named, places) in [
+        ("force", &options.names.forces, ports.forces.len()),
+        ("response", &options.names.responses, ports.responses.len()),
+    ] {
+        let found = named.len();
+        if found > places {
+            return Err(ExportError::NamedPorts { ports: kind, found, places });
+        }
+    }
+    if !is_identifier(&options.name) {
         return Err(ExportError::Name { name: options.name.clone() });
     }
     Ok(())

@@ -8,8 +8,14 @@ mod fmu;
 mod library;
 mod model_description;
 mod origin;
+mod reference;
+mod samples;
+mod ssp;
 mod terminals;
 
 pub use error::ExportError;
 pub use fmu::{FmiVersion, Fmu, FmuOptions};
 pub use library::{Library, Platform, is_carried_library};
+pub use orthopanel_fmu::{PortNames, Residual};
+pub use samples::parameter_samples;
+pub use ssp::ParameterValues;

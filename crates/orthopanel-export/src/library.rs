@@ -3,16 +3,27 @@
 use std::fmt;
 use std::str::FromStr;
 
-use orthopanel_fmu::{MODEL_IDENTIFIER, RESOURCE_SCHEMA};
+use orthopanel_fmu::RESOURCE_SCHEMA;
 
-use crate::{ExportError, FmiVersion};
+use crate::{ExportError, FmiVersion, FmuOptions};
 
 /// The library, built with this crate.
 pub(crate) const EMBEDDED: &[u8] = include_bytes!(env!("ORTHOPANEL_FMU_LIBRARY"));
 
-/// Whether `content` is, byte for byte, the library that this version puts into FMUs of this platform: no stranger's code.
+/// Those of other platforms that the builder had made before, by their platform; one of this platform stands in place of its own, for
+/// it runs on older systems.
+const READY: &[(&str, &[u8])] = include!(concat!(env!("OUT_DIR"), "/ready.rs"));
+
+/// Whether `content` is, byte for byte, a library that this version puts into FMUs: no stranger's code.
 pub fn is_carried_library(content: &[u8]) -> bool {
-    content == EMBEDDED
+    carried().any(|(_, carried)| carried == content)
+}
+
+/// The libraries that every FMU has unless others are given for their platforms.
+fn carried() -> impl Iterator<Item = (Platform, &'static [u8])> {
+    let ready = || READY.iter().filter_map(|(name, content)| Some((name.parse::<Platform>().ok()?, *content)));
+    let own = Platform::here().filter(move |here| ready().all(|(platform, _)| platform != *here));
+    own.into_iter().map(|here| (here, EMBEDDED)).chain(ready())
 }
 
 /// Operating system and processor that a library is for; as text FMI 3.0's `x86_64-linux`, or FMI 2.0's `linux64`,
@@ -64,15 +75,15 @@ impl Platform {
     }
 
     /// Place of its library inside the archive.
-    pub(crate) fn path(self, version: FmiVersion) -> String {
+    pub(crate) fn path(self, FmuOptions { version, name, .. }: &FmuOptions) -> String {
         let own = self.known().and_then(|known| known.fmi2);
-        let folder = own.filter(|_| version == FmiVersion::Fmi2).map_or_else(|| self.to_string(), String::from);
+        let folder = own.filter(|_| *version == FmiVersion::Fmi2).map_or_else(|| self.to_string(), String::from);
         let extension = match self.system {
             System::Linux => "so",
             System::Windows => "dll",
             System::Darwin => "dylib",
         };
-        format!("binaries/{folder}/{MODEL_IDENTIFIER}.{extension}")
+        format!("binaries/{folder}/{name}.{extension}")
     }
 }
 
@@ -151,19 +162,19 @@ impl Library {
     }
 }
 
-/// Path and content of every library of an FMU: those given, and the one of this platform where none is given for it.
+/// Path and content of every library of an FMU: those given, and those carried for platforms that none is given for.
 ///
 /// # Errors
 /// [`ExportError::Library`] where two are for one platform.
-pub(crate) fn all(version: FmiVersion, given: &[Library]) -> Result<Vec<(String, Vec<u8>)>, ExportError> {
+pub(crate) fn all(options: &FmuOptions, given: &[Library]) -> Result<Vec<(String, Vec<u8>)>, ExportError> {
     for (index, library) in given.iter().enumerate() {
         if given.iter().take(index).any(|before| before.platform == library.platform) {
             let reason = "it is given twice".into();
             return Err(ExportError::Library { platform: library.platform.to_string(), reason });
         }
     }
-    let here = Platform::here().filter(|here| given.iter().all(|library| library.platform != *here));
-    let embedded = here.map(|here| (here.path(version), EMBEDDED.to_vec()));
-    let given = given.iter().map(|library| (library.platform.path(version), library.content.clone()));
-    Ok(embedded.into_iter().chain(given).collect())
+    let own = carried().filter(|(platform, _)| given.iter().all(|library| library.platform != *platform));
+    let own = own.map(|(platform, content)| (platform.path(options), content.to_vec()));
+    let given = given.iter().map(|library| (library.platform.path(options), library.content.clone()));
+    Ok(own.chain(given).collect())
 }

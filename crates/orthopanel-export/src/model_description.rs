@@ -5,9 +5,7 @@ mod fmi3;
 
 use std::io;
 
-use orthopanel_fmu::{
-    Dependency, Factor, GENERATOR, LOG_CATEGORIES, MODEL_IDENTIFIER, Resource, UNITS, Variable, VariableTable,
-};
+use orthopanel_fmu::{Dependency, Factor, GENERATOR, LOG_CATEGORIES, Resource, UNITS, Variable, VariableTable};
 use orthopanel_model::printable;
 use quick_xml::Writer;
 use quick_xml::events::{BytesDecl, Event};
@@ -76,7 +74,7 @@ fn root(xml: &mut Xml, description: &Description) -> io::Result<()> {
     xml.create_element("fmiModelDescription").with_attributes(attributes.into_iter().chain(last)).write_inner_content(
         |xml| {
             for (element, flags) in interfaces {
-                let attributes = [("modelIdentifier", MODEL_IDENTIFIER)].into_iter().chain(flags.iter().copied());
+                let attributes = [("modelIdentifier", &*name)].into_iter().chain(flags.iter().copied());
                 xml.create_element(element).with_attributes(attributes).write_empty()?;
             }
             units(xml)?;
@@ -103,12 +101,12 @@ fn root(xml: &mut Xml, description: &Description) -> io::Result<()> {
     Ok(())
 }
 
-/// What both versions say of a variable in the same words.
-fn common_attributes(variable: &Variable) -> Vec<(&'static str, String)> {
+/// What both versions say of a variable in the same words; `reference` is by which importers know it.
+fn common_attributes(variable: &Variable, reference: u32) -> Vec<(&'static str, String)> {
     let quantity = variable.quantity;
     let mut attributes = vec![
         ("name", variable.name.clone()),
-        ("valueReference", variable.reference.to_string()),
+        ("valueReference", reference.to_string()),
         ("description", variable.description.clone()),
         ("causality", quantity.causality().into()),
         ("variability", variable.variability().into()),
@@ -158,7 +156,7 @@ fn dependencies(variable: &Variable, initial: bool) -> Vec<Dependency> {
 }
 
 /// A step of at most a twentieth of the shortest period (1, 2 or 5 times a power of ten), and a thousand steps.
-fn experiment(resource: &Resource) -> (f64, f64) {
+pub(crate) fn experiment(resource: &Resource) -> (f64, f64) {
     let highest = resource.model().modes().iter().map(|mode| mode.angular_frequency).fold(0.0, f64::max);
     let period = if highest > 0.0 { std::f64::consts::TAU / highest } else { 1.0 };
     // Kept to sizes that print as numbers, should a frequency be next to zero or beyond all sense.
@@ -205,9 +203,13 @@ fn log_categories(xml: &mut Xml) -> io::Result<()> {
     Ok(())
 }
 
+/// Of an integrator in model exchange, beside the nominals of the states.
+const TOLERANCE: &str = "1e-6";
+
 fn default_experiment(xml: &mut Xml, (step, stop): (f64, f64)) -> io::Result<()> {
     let (step, stop) = (step.to_string(), stop.to_string());
-    let attributes = [("startTime", "0"), ("stopTime", stop.as_str()), ("stepSize", step.as_str())];
+    let attributes =
+        [("startTime", "0"), ("stopTime", stop.as_str()), ("tolerance", TOLERANCE), ("stepSize", step.as_str())];
     xml.create_element("DefaultExperiment").with_attributes(attributes).write_empty()?;
     Ok(())
 }

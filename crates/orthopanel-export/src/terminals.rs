@@ -20,14 +20,14 @@ struct Terminal {
 }
 
 impl Terminal {
-    /// Of a place: numbers of the force and of the response there, from 1.
-    fn at(place: &Place, force: Option<usize>, response: Option<usize>) -> Self {
-        let motions = response.into_iter().flat_map(|number| MOTIONS.map(|motion| (motion, number)));
-        let members = force.map(|number| ("force", number)).into_iter().chain(motions);
+    /// Of a place: names of the force and of the response there.
+    fn at(place: &Place, force: Option<String>, response: Option<String>) -> Self {
+        let motions = response.into_iter().flat_map(|label| MOTIONS.map(|motion| (motion, label.clone())));
+        let members = force.map(|label| ("force", label)).into_iter().chain(motions);
         Self {
             name: String::new(),
             description: format!("At x = {} m, y = {} m from the centre", place.x, place.y),
-            members: members.map(|(member, number)| (member, format!("{member}_{number}"))).collect(),
+            members: members.map(|(member, label)| (member, format!("{member}_{label}"))).collect(),
         }
     }
 }
@@ -54,7 +54,7 @@ pub(crate) fn write(resource: &Resource) -> Result<String, ExportError> {
 /// Each force with the first response at its place that no other force has, then the responses left over. Of arrays, in which
 /// no member can be named by itself, one terminal with all.
 fn terminals(resource: &Resource) -> Vec<Terminal> {
-    let ports = resource.ports();
+    let (ports, names) = (resource.ports(), resource.names());
     let table = resource.variables();
     if !table.arrays().is_empty() {
         let members = table.arrays().iter().map(|array| (array.name, array.name.to_owned())).collect();
@@ -66,11 +66,11 @@ fn terminals(resource: &Resource) -> Vec<Terminal> {
     for (force, place) in ports.forces.iter().enumerate() {
         let same = left.iter().position(|&response| ports.responses.get(response) == Some(place));
         let response = same.map(|position| left.remove(position));
-        list.push(Terminal::at(place, Some(force + 1), response.map(|number| number + 1)));
+        list.push(Terminal::at(place, Some(names.force(force)), response.map(|response| names.response(response))));
     }
     for response in left {
         let Some(place) = ports.responses.get(response) else { continue };
-        list.push(Terminal::at(place, None, Some(response + 1)));
+        list.push(Terminal::at(place, None, Some(names.response(response))));
     }
     list.iter_mut().zip(1..).for_each(|(terminal, number)| terminal.name = format!("place_{number}"));
     list

@@ -2,7 +2,7 @@
 
 use std::io::Read as _;
 
-use orthopanel_export::{ExportError, FmiVersion, Fmu, FmuOptions, Library, Platform};
+use orthopanel_export::{ExportError, FmiVersion, Fmu, FmuOptions, Library, Platform, PortNames};
 use orthopanel_fmu::RESOURCE_SCHEMA;
 use orthopanel_model::{ModalModel, Mode, Place, Ports};
 
@@ -48,7 +48,7 @@ fn the_archive_holds_each_part_where_the_standard_wants_it() {
         archive.by_name(icon).expect("icon").read_exact(&mut start).expect("bytes");
         assert_eq!(&start, b"\x89PNG\r\n\x1a\n");
         if cfg!(all(target_os = "linux", target_arch = "x86_64")) {
-            let mut library = archive.by_name(&format!("binaries/{folder}/orthopanel.so")).expect("library");
+            let mut library = archive.by_name(&format!("binaries/{folder}/panel.so")).expect("library");
             assert_eq!(library.unix_mode().map(|mode| mode & 0o111), Some(0o111), "executable");
             let mut start = [0; 4];
             library.read_exact(&mut start).expect("bytes");
@@ -75,7 +75,7 @@ fn models_without_ports_or_name_are_refused() {
     }
     let refused = Fmu::new(model(1, 1), ports(1, 2), &FmuOptions::default());
     assert!(matches!(refused, Err(ExportError::Resource(_))));
-    for name in ["", "  ", "a\u{1}b"] {
+    for name in ["", "  ", "a\u{1}b", "a b", "2a", "ä", "../x"] {
         let options = FmuOptions { name: name.into(), ..FmuOptions::default() };
         assert!(matches!(Fmu::new(model(1, 1), ports(1, 1), &options), Err(ExportError::Name { .. })), "{name:?}");
     }
@@ -107,11 +107,8 @@ fn libraries_of_several_platforms_lie_side_by_side() {
         given.iter().map(|name| Library::new(platform(name), made_library(name))).collect();
     let options = FmuOptions { libraries: libraries.expect("sound libraries"), ..FmuOptions::default() };
     for (version, paths) in [
-        (FmiVersion::Fmi2, ["win64/orthopanel.dll", "aarch64-darwin/orthopanel.dylib", "linux64/orthopanel.so"]),
-        (
-            FmiVersion::Fmi3,
-            ["x86_64-windows/orthopanel.dll", "aarch64-darwin/orthopanel.dylib", "x86_64-linux/orthopanel.so"],
-        ),
+        (FmiVersion::Fmi2, ["win64/panel.dll", "aarch64-darwin/panel.dylib", "linux64/panel.so"]),
+        (FmiVersion::Fmi3, ["x86_64-windows/panel.dll", "aarch64-darwin/panel.dylib", "x86_64-linux/panel.so"]),
     ] {
         let options = FmuOptions { version, ..options.clone() };
         let bytes = Fmu::new(model(1, 1), ports(1, 1), &options).and_then(|fmu| fmu.to_bytes()).expect("an archive");
@@ -161,7 +158,7 @@ fn the_runtime_is_below_its_limit() {
     let bytes = Fmu::new(model(1, 1), ports(1, 1), &FmuOptions::default()).and_then(|fmu| fmu.to_bytes());
     let mut archive = zip::ZipArchive::new(std::io::Cursor::new(bytes.expect("an archive"))).expect("a zip");
     let mut content = Vec::new();
-    archive.by_name("binaries/linux64/orthopanel.so").expect("library").read_to_end(&mut content).expect("bytes");
+    archive.by_name("binaries/linux64/panel.so").expect("library").read_to_end(&mut content).expect("bytes");
     assert!(content.len() < 1_500_000, "{} bytes", content.len());
     Library::new(platform("linux64"), content).expect("what is embedded may be given too");
 }
@@ -175,7 +172,7 @@ fn the_runtime_holds_no_path_of_the_builder() {
     let bytes = Fmu::new(model(1, 1), ports(1, 1), &FmuOptions::default()).and_then(|fmu| fmu.to_bytes());
     let mut archive = zip::ZipArchive::new(std::io::Cursor::new(bytes.expect("an archive"))).expect("a zip");
     let mut content = Vec::new();
-    archive.by_name("binaries/linux64/orthopanel.so").expect("library").read_to_end(&mut content).expect("bytes");
+    archive.by_name("binaries/linux64/panel.so").expect("library").read_to_end(&mut content).expect("bytes");
     let holds = |text: &str| content.windows(text.len()).any(|window| window == text.as_bytes());
     // Such as panics name: else nothing is searched.
     assert!(holds(".rs"), "no file of source is named at all");
@@ -187,15 +184,62 @@ fn the_runtime_holds_no_path_of_the_builder() {
     }
 }
 
+/// Two panels in one vehicle have two names; so have their libraries, or importers that load both overwrite one by the other.
 #[test]
-fn names_are_escaped_in_the_xml() {
-    let options = FmuOptions { name: "a<b & \"c\"".into(), ..FmuOptions::default() };
-    let fmu = Fmu::new(model(1, 1), ports(1, 1), &options).expect("a sound FMU");
-    assert!(
-        fmu.model_description().contains("modelName=\"a&lt;b &amp; &quot;c&quot;\""),
-        "{}",
-        fmu.model_description()
-    );
+fn the_name_is_that_of_model_identifier_and_library() {
+    for version in [FmiVersion::Fmi2, FmiVersion::Fmi3] {
+        let options = FmuOptions { name: "floor_left".into(), version, ..FmuOptions::default() };
+        let fmu = Fmu::new(model(1, 1), ports(1, 1), &options).expect("a sound FMU");
+        let text = fmu.model_description();
+        assert!(text.contains("modelName=\"floor_left\""), "{text}");
+        assert_eq!(text.matches("modelIdentifier=\"floor_left\"").count(), 2);
+        let bytes = fmu.to_bytes().expect("an archive");
+        let archive = zip::ZipArchive::new(std::io::Cursor::new(bytes)).expect("a zip");
+        let mut names = archive.file_names().map(|name| name.expect("a name").into_owned());
+        assert!(names.all(|name| !name.starts_with("binaries/") || name.contains("/floor_left.")));
+    }
+}
+
+#[test]
+fn ports_with_names_name_their_variables() {
+    let named = |forces: &[Option<&str>], responses: &[Option<&str>]| {
+        let list = |names: &[Option<&str>]| names.iter().map(|name| name.map(String::from)).collect();
+        let names = PortNames { forces: list(forces), responses: list(responses) };
+        let options = FmuOptions { names, version: FmiVersion::Fmi3, ..FmuOptions::default() };
+        Fmu::new(model(2, 2), ports(2, 2), &options).map(|fmu| fmu.model_description().to_owned())
+    };
+    let text = named(&[Some("seat_left")], &[None, Some("seat_left")]).expect("a sound FMU");
+    for name in ["force_seat_left", "force_2", "acceleration_1", "velocity_seat_left", "displacement_seat_left"] {
+        assert!(text.contains(&format!("name=\"{name}\"")), "{name}: {text}");
+    }
+    assert!(!text.contains("\"force_1\"") && !text.contains("\"velocity_2\""));
+    for (forces, said) in [
+        (&[Some("seat left")][..], "port \"seat left\": must be a name of letters"),
+        (&[Some("2")][..], "port \"2\": must be a name of letters"),
+        (&[Some("a"), Some("a")][..], "two variables are called \"force_a\""),
+        (&[Some("linear")][..], "two variables are called \"force_linear\""),
+        (&[None, None, Some("a")][..], "3 names for 2 force ports"),
+    ] {
+        let refused = named(forces, &[]).expect_err(said).to_string();
+        assert!(refused.starts_with(said), "{refused}");
+    }
+}
+
+/// OMSimulator reaches into its list of values by the reference.
+#[test]
+fn references_count_from_one_without_gaps() {
+    let references = |text: &str| -> Vec<usize> {
+        let (_, variables) = text.split_once("<ModelVariables>").expect("variables");
+        let (variables, _) = variables.split_once("</ModelVariables>").expect("an end");
+        let parts = variables.split("valueReference=\"").skip(1);
+        parts.map(|part| part.split('"').next().and_then(|number| number.parse().ok()).expect("a number")).collect()
+    };
+    for (version, arrays) in [(FmiVersion::Fmi2, false), (FmiVersion::Fmi3, false), (FmiVersion::Fmi3, true)] {
+        let options = FmuOptions { version, arrays, ..FmuOptions::default() };
+        let fmu = Fmu::new(model(2, 3), ports(2, 3), &options).expect("a sound FMU");
+        let found = references(fmu.model_description());
+        assert_eq!(found, (1..=found.len()).collect::<Vec<_>>(), "{version:?}, arrays {arrays}");
+    }
 }
 
 #[test]

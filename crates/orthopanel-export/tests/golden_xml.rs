@@ -26,7 +26,7 @@ fn fmu(version: FmiVersion) -> Fmu {
     let model = ModalModel::new(2, 2, modes).expect("a sound model");
     let place = |x| Place { x, y: 0.0 };
     let ports = Ports { forces: vec![place(-0.3), place(0.1)], responses: vec![place(0.3), place(0.2)] };
-    let options = FmuOptions { name: "small panel".into(), version, ..FmuOptions::default() };
+    let options = FmuOptions { name: "small_panel".into(), version, ..FmuOptions::default() };
     Fmu::new(model, ports, &options).expect("a sound FMU")
 }
 

@@ -58,6 +58,3 @@ pub const LOG_CATEGORIES: [(&str, &str); 3] = [
     ("logStatusError", "Calls that were refused, and why; always logged"),
     ("logAll", "Both of these"),
 ];
-
-/// Name of the library, and with it the FMI model identifier.
-pub const MODEL_IDENTIFIER: &str = "orthopanel";

@@ -131,28 +131,16 @@ impl Component {
         Ok(())
     }
 
-    /// Value of a quantity of the panel, given its modes, their static remainder and forces; `None` for what is none of the panel's.
+    /// Value of a quantity of the panel, given its modes and forces; `None` for what is none of the panel's.
     #[inline(always)]
-    fn panel_value(
-        &self,
-        quantity: Quantity,
-        stepper: &WideStepper,
-        static_remainder: &[Vec<f64>],
-        forces: &[f64],
-    ) -> Option<f64> {
+    fn panel_value(&self, quantity: Quantity, stepper: &WideStepper, forces: &[f64]) -> Option<f64> {
         match quantity {
             Quantity::Time | Quantity::ForceLinear => None,
             Quantity::Parameter(index) => self.now.parameters.get(index).copied(),
             Quantity::Force(port) => forces.get(port).copied(),
             Quantity::Acceleration(port) => stepper.acceleration(port),
             Quantity::Velocity(port) => stepper.velocity(port),
-            Quantity::Displacement(port) => {
-                let mut displacement = stepper.displacement(port)?;
-                for (remainder, force) in static_remainder.get(port)?.iter().zip(forces) {
-                    displacement += remainder * force;
-                }
-                Some(displacement)
-            }
+            Quantity::Displacement(port) => stepper.displacement(port),
             Quantity::ModalPosition(mode) => stepper.mode_state(mode).map(|[position, _]| position),
             Quantity::ModalVelocity(mode) => stepper.mode_state(mode).map(|[_, velocity]| velocity),
             Quantity::ModalPositionRate(mode) => stepper.mode_rate(mode).map(|[velocity, _]| velocity),

@@ -41,8 +41,22 @@ pub enum FmuError {
         /// What is wrong with it.
         reason: &'static str,
     },
+    /// A port's name that cannot stand in those of variables.
+    #[error("port {name:?}: must be a name of letters, digits and _ (128 at most, no digit first), as seat_left")]
+    PortName {
+        /// The name.
+        name: String,
+    },
+    /// Two variables of one name.
+    #[error(
+        "two variables are called {name:?}: give the ports names that are no other's, and not linear or such as end in _x or _y"
+    )]
+    SameName {
+        /// The name.
+        name: String,
+    },
     /// A value reference that no variable has.
-    #[error("value reference {reference}: no such variable; references run from 0 to {last}")]
+    #[error("value reference {reference}: no such variable; references run from 1 to {last}")]
     UnknownReference {
         /// The reference.
         reference: u32,

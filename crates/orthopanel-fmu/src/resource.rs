@@ -8,13 +8,13 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 use crate::panel::{Panel, Solution};
-use crate::{FmuError, VariableTable};
+use crate::{FmuError, PortNames, VariableTable};
 
 /// The file's name in `resources/`.
 pub const RESOURCE_FILE: &str = "panel.json";
 
 /// What the file says it is; a library reads one schema alone.
-pub const RESOURCE_SCHEMA: &str = "orthopanel.fmu/4";
+pub const RESOURCE_SCHEMA: &str = "orthopanel.fmu/5";
 
 /// Program and version, as FMUs name the tool that made them.
 pub const GENERATOR: &str = concat!("orthopanel ", env!("CARGO_PKG_VERSION"));
@@ -22,6 +22,16 @@ pub const GENERATOR: &str = concat!("orthopanel ", env!("CARGO_PKG_VERSION"));
 /// Modes of a resource at most, internal variables of a core counted: a panel has a thousand and a few ([`ModeRange::MOST`]). Whoever
 /// writes a file may claim any number, and each takes memory and a part of every step.
 const MOST_MODES: usize = 10_000;
+
+/// What stands for the modes that an FMU leaves out.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Residual {
+    /// The residual attachment modes of the force ports: what forces there bend beyond the modes kept, with its own inertia.
+    #[default]
+    Attachment,
+    /// Nothing: displacements lack the static part of the modes left out, and no frequency is higher than that of the last mode.
+    None,
+}
 
 /// What an FMU holds: the modes, and the places of its ports.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -31,9 +41,8 @@ pub struct Resource {
     /// Program and version that wrote it: part of the token, since another version may order variables otherwise.
     generator: String,
     ports: Ports,
+    names: PortNames,
     model: ModalModel,
-    /// Static part of the modes left out \[m/N\]: a row a response, a column a force.
-    static_remainder: Vec<Vec<f64>>,
     /// The panel itself, where modes may be solved again.
     panel: Option<Panel>,
     /// Whether importers see all forces as one array, and likewise each kind of output (FMI 3.0).
@@ -41,27 +50,54 @@ pub struct Resource {
 }
 
 impl Resource {
-    /// Joins modes with the places of their ports. Nothing of the panel can be set, and no static part is added.
+    /// Joins modes with the places of their ports. Nothing of the panel can be set.
     ///
     /// # Errors
     /// [`FmuError::ResourceText`] where the numbers of places and ports differ, and for more than 10,000 modes.
     pub fn new(model: ModalModel, ports: Ports) -> Result<Self, FmuError> {
-        let static_remainder = vec![vec![0.0; ports.forces.len()]; ports.responses.len()];
         let (schema, generator) = (RESOURCE_SCHEMA.into(), GENERATOR.into());
-        Self { schema, generator, ports, model, static_remainder, panel: None, arrays: false }.checked()
+        let names = PortNames::default();
+        Self { schema, generator, ports, names, model, panel: None, arrays: false }.checked()
     }
 
-    /// The modes of `range` of a panel, with the static part of all others in displacement. Sizes, mass, constants,
-    /// damping ratios and places can be set in the FMU. With it, how a viscoelastic core's modulus is fitted, where there is one.
+    /// The modes of `range` of a panel, and unless `residual` is none the residual modes of its force ports, which stand for all others. Sizes,
+    /// mass, constants, damping ratios and places can be set in the FMU. With it, how a viscoelastic core's modulus is fitted, where there
+    /// is one.
     ///
     /// # Errors
     /// [`FmuError::Model`] where the panel has no physical meaning or cannot be solved.
-    pub fn of_panel(panel: &PanelModel, range: ModeRange, ports: Ports) -> Result<(Self, Option<CoreFit>), FmuError> {
-        let (panel, solution) = Panel::new(panel, range, ports.clone())?;
-        let Solution { modes: model, static_remainder, core, .. } = solution;
+    pub fn of_panel(
+        panel: &PanelModel,
+        range: ModeRange,
+        ports: Ports,
+        residual: Residual,
+    ) -> Result<(Self, Option<CoreFit>), FmuError> {
+        let (panel, solution) = Panel::new(panel, range, ports.clone(), residual)?;
+        let Solution { modes: model, core, .. } = solution;
         let (schema, generator) = (RESOURCE_SCHEMA.into(), GENERATOR.into());
-        let resource = Self { schema, generator, ports, model, static_remainder, panel: Some(panel), arrays: false };
+        let names = PortNames::default();
+        let resource = Self { schema, generator, ports, names, model, panel: Some(panel), arrays: false };
         Ok((resource.checked()?, core))
+    }
+
+    /// The same with ports that have names.
+    ///
+    /// # Errors
+    /// [`FmuError::PortName`] for what is no identifier, [`FmuError::SameName`] where two variables would have one name.
+    pub fn with_names(self, names: PortNames) -> Result<Self, FmuError> {
+        let named = Self { names, ..self }.checked()?;
+        let table = VariableTable::new(&named);
+        let mut all: Vec<&str> = table.variables().iter().map(|variable| variable.name.as_str()).collect();
+        all.sort_unstable();
+        match all.windows(2).find(|pair| pair[0] == pair[1]) {
+            Some(pair) => Err(FmuError::SameName { name: pair[0].into() }),
+            None => Ok(named),
+        }
+    }
+
+    /// Names of the ports.
+    pub fn names(&self) -> &PortNames {
+        &self.names
     }
 
     /// The same with all forces as one array and each kind of output as another, which FMI 3.0 alone has.
@@ -89,9 +125,9 @@ impl Resource {
         &self.ports
     }
 
-    /// Static part of the modes left out $\sum W_rW_f/\omega^2$ \[m/N\]: a row a response, a column a force.
-    pub fn static_remainder(&self) -> &[Vec<f64>] {
-        &self.static_remainder
+    /// Residual modes of the force ports, behind all others.
+    pub fn residual_modes(&self) -> usize {
+        self.panel.as_ref().map_or(0, Panel::residual_modes)
     }
 
     /// The panel, where its modes may be solved again.
@@ -134,6 +170,7 @@ impl Resource {
             let message = format!("schema = {:?}: this library reads {RESOURCE_SCHEMA:?}", self.schema);
             return Err(FmuError::ResourceText(message));
         }
+        self.names.check()?;
         let modes = self.model.modes().len();
         if modes > MOST_MODES {
             let message = format!("{modes} modes: a panel has {MOST_MODES} at most");
@@ -147,14 +184,6 @@ impl Resource {
                 "places of {} forces and {} responses for a model of {} and {}",
                 places.0, places.1, counts.0, counts.1
             )));
-        }
-        let fits = self.static_remainder.len() == counts.1
-            && self
-                .static_remainder
-                .iter()
-                .all(|row| row.len() == counts.0 && row.iter().all(|value| value.is_finite()));
-        if !fits {
-            return Err(FmuError::ResourceText("static_remainder: needs a number for each response and force".into()));
         }
         if let Some(panel) = &self.panel {
             panel.check_resource(&model, &self.ports)?;

@@ -7,21 +7,38 @@ use percent_encoding::percent_decode_str;
 use crate::FmuError;
 
 /// The folder behind an FMI 2 `fmuResourceLocation`: `file:///path`, `file://localhost/path` or `file:/path`,
-/// percent-encoded UTF-8. A plain absolute path is taken as it stands, for importers that pass one.
+/// percent-encoded UTF-8; on Windows also `file:///C:/path`, and of a share `file:////server/share/path` or `file://server/share/path`.
+/// A plain absolute path is taken as it stands, for importers that pass one.
 ///
 /// # Errors
-/// [`FmuError::Location`] for another scheme or host, or where the decoded path is not UTF-8.
+/// [`FmuError::Location`] for another scheme, on other systems for another host, or where the decoded path is not UTF-8.
 pub(crate) fn from_uri(location: &str) -> Result<PathBuf, FmuError> {
+    if scheme_and_rest(location).is_none() {
+        let (path, reason) = (PathBuf::from(location), "must be a file: URI, as file:///path/resources");
+        let location = location.into();
+        return if path.is_absolute() { Ok(path) } else { Err(FmuError::Location { location, reason }) };
+    }
+    path_of(location, cfg!(windows)).map(PathBuf::from)
+}
+
+/// The scheme `file` and what follows it.
+fn scheme_and_rest(location: &str) -> Option<(&str, &str)> {
+    location.split_once(':').filter(|(scheme, _)| scheme.eq_ignore_ascii_case("file"))
+}
+
+/// The path of a `file` URI, as Windows or other systems write it.
+fn path_of(location: &str, windows: bool) -> Result<String, FmuError> {
     let fail = |reason| FmuError::Location { location: location.into(), reason };
-    let Some((_, rest)) = location.split_once(':').filter(|(scheme, _)| scheme.eq_ignore_ascii_case("file")) else {
-        let path = PathBuf::from(location);
-        return if path.is_absolute() { Ok(path) } else { Err(fail("must be a file: URI, as file:///path/resources")) };
-    };
+    let (_, rest) = scheme_and_rest(location).unwrap_or_default();
+    let mut server = "";
     let path = match rest.strip_prefix("//") {
         Some(authority) => {
             let start = authority.find('/').ok_or_else(|| fail("has no path behind file://"))?;
             let (host, path) = authority.split_at(start);
-            if !(host.is_empty() || host.eq_ignore_ascii_case("localhost")) {
+            if !host.eq_ignore_ascii_case("localhost") {
+                server = host;
+            }
+            if !(windows || server.is_empty()) {
                 return Err(fail("names another machine: resources must lie on this one"));
             }
             path
@@ -32,9 +49,16 @@ pub(crate) fn from_uri(location: &str) -> Result<PathBuf, FmuError> {
     if path.contains('\0') {
         return Err(fail("holds a NUL character"));
     }
-    // file:///C:/folder: the slash before a drive letter is not part of a Windows path.
-    let path = if cfg!(windows) { path.trim_start_matches('/') } else { &path };
-    Ok(PathBuf::from(path))
+    if !windows {
+        return Ok(path.into_owned());
+    }
+    if !server.is_empty() {
+        return Ok(format!("//{server}{path}"));
+    }
+    let bare = path.trim_start_matches('/');
+    let of_drive = matches!(bare.as_bytes(), [letter, b':', ..] if letter.is_ascii_alphabetic());
+    // file:///C:/folder: the slash before a drive letter is not part of a Windows path; two before a server are.
+    Ok(if of_drive || !path.starts_with("//") { bare.into() } else { format!("//{bare}") })
 }
 
 /// The folder behind an FMI 3 `resourcePath`: a native absolute path, with or without a separator at its end.
@@ -64,6 +88,20 @@ mod tests {
         let path = from_uri("file:///a%20b/50%25/%C3%BC%E6%9D%BF/r").expect("a sound URI");
         assert_eq!(path, PathBuf::from("/a b/50%/ü板/r"));
         assert_eq!(from_uri("file:///a b/ü").expect("not encoded"), PathBuf::from("/a b/ü"));
+    }
+
+    #[test]
+    fn val_windows_has_drives_and_shares() {
+        for (uri, path) in [
+            ("file:///C:/a%20b/%C3%BC/resources", "C:/a b/ü/resources"),
+            ("file:/C:/a", "C:/a"),
+            ("file://localhost/d:/a", "d:/a"),
+            ("file:////server/share/%C3%A4/resources", "//server/share/ä/resources"),
+            ("file://///server/share/a", "//server/share/a"),
+            ("file://server/share/a", "//server/share/a"),
+        ] {
+            assert_eq!(path_of(uri, true).expect(uri), path, "{uri}");
+        }
     }
 
     #[test]

@@ -5,11 +5,11 @@ mod dependencies;
 mod units;
 
 use std::f64::consts::TAU;
+use std::ops::Range;
 
 use orthopanel_model::{ModalModel, Place, Ports};
 
-use crate::panel::Panel;
-use crate::{Resource, nominals};
+use crate::{PortNames, Resource, nominals};
 
 pub use arrays::Array;
 pub use dependencies::{Dependency, Factor};
@@ -94,7 +94,7 @@ impl Quantity {
 /// One variable, as the importer sees it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Variable {
-    /// Value reference: its place in the table.
+    /// Value reference: its place in the table, from 1.
     pub reference: u32,
     /// Name, without dots or brackets: some importers refuse these.
     pub name: String,
@@ -130,11 +130,11 @@ impl Variable {
     }
 }
 
-/// The variables of a panel; a variable's reference is its index.
+/// The variables of a panel; references count from 1.
 ///
 /// Order: `time`, `force_linear`, then `force_1`.., `acceleration_1`.., `velocity_1`.., `displacement_1`.., then of each
 /// mode `modal_position_1`, `modal_velocity_1` and the derivatives of both, then the parameters of the panel; ports and
-/// modes are counted from 1 in names. Where the resource asks for arrays, an importer sees [`VariableTable::arrays`] in the
+/// modes are counted from 1 in names, but for ports that have one. Where the resource asks for arrays, an importer sees [`VariableTable::arrays`] in the
 /// place of the variables that these hold.
 #[derive(Debug, Clone, PartialEq)]
 pub struct VariableTable {
@@ -147,18 +147,19 @@ pub struct VariableTable {
 impl VariableTable {
     /// The table of an FMU with this resource.
     pub(crate) fn new(resource: &Resource) -> Self {
-        let (model, ports) = (resource.model(), resource.ports());
+        let (model, ports, names) = (resource.model(), resource.ports(), resource.names());
         let mut table = Self { variables: Vec::new(), quantities: Vec::new(), arrays: Vec::new() };
         table.push(Quantity::Time, "time".into(), "Time".into());
         table.push(Quantity::ForceLinear, "force_linear".into(), FORCE_LINEAR.into());
         for (port, place) in ports.forces.iter().enumerate() {
-            table.push(Quantity::Force(port), format!("force_{}", port + 1), format!("Force {}. {HOLD}", at(place)));
+            let name = format!("force_{}", names.force(port));
+            table.push(Quantity::Force(port), name, format!("Force {}. {HOLD}", at(place)));
         }
-        table.push_outputs("acceleration", Quantity::Acceleration, ports);
-        table.push_outputs("velocity", Quantity::Velocity, ports);
-        table.push_outputs("displacement", Quantity::Displacement, ports);
-        table.push_modes(model);
-        for (index, parameter) in resource.panel().into_iter().flat_map(Panel::parameters).enumerate() {
+        table.push_outputs("acceleration", Quantity::Acceleration, (ports, names));
+        table.push_outputs("velocity", Quantity::Velocity, (ports, names));
+        table.push_outputs("displacement", Quantity::Displacement, (ports, names));
+        table.push_modes(model, resource.residual_modes());
+        for (index, parameter) in resource.panel().into_iter().flat_map(|panel| panel.parameters(names)).enumerate() {
             table.push(Quantity::Parameter(index), parameter.name, parameter.description);
             if let Some(variable) = table.variables.last_mut() {
                 (variable.unit, variable.start) = (Some(parameter.unit), Some(parameter.start.to_string()));
@@ -186,7 +187,7 @@ impl VariableTable {
 
     /// The variable of a reference.
     pub fn get(&self, reference: u32) -> Option<&Variable> {
-        self.variables.get(usize::try_from(reference).ok()?)
+        self.variables.get(place(reference)?)
     }
 
     /// Arrays in place of the variables that they hold; none unless asked for.
@@ -199,16 +200,44 @@ impl VariableTable {
         self.arrays.iter().find(|array| array.references.contains(&reference))
     }
 
+    /// By which reference importers know a variable: they count arrays in place of what these hold, without gaps.
+    pub fn seen(&self, reference: u32) -> u32 {
+        let Some([first, end]) = self.in_arrays() else { return reference };
+        let arrays = || self.arrays.iter().zip(first..);
+        match arrays().find(|(array, _)| array.references.contains(&reference)) {
+            Some((_, seen)) => seen,
+            None if reference < end => reference,
+            None => arrays().count() as u32 + first + (reference - end),
+        }
+    }
+
+    /// The variables that importers know by a reference: one, or the elements of an array.
+    pub(crate) fn seen_as(&self, seen: u32) -> Range<u32> {
+        let alone = |reference: u32| reference..reference.saturating_add(1);
+        let Some([first, end]) = self.in_arrays() else { return alone(seen) };
+        let place = seen.checked_sub(first).and_then(|place| usize::try_from(place).ok());
+        match place.map(|place| (self.arrays.get(place), place)) {
+            None => alone(seen),
+            Some((Some(array), _)) => array.references.clone(),
+            Some((None, place)) => alone(end.saturating_add((place - self.arrays.len()) as u32)),
+        }
+    }
+
+    /// The references of all elements of arrays, which stand behind each other: the first and the one behind the last.
+    fn in_arrays(&self) -> Option<[u32; 2]> {
+        Some([self.arrays.first()?.references.start, self.arrays.last()?.references.end])
+    }
+
     /// What the variable of a reference stands for.
     #[inline]
     pub fn quantity(&self, reference: u32) -> Option<Quantity> {
-        self.quantities.get(usize::try_from(reference).ok()?).copied()
+        self.quantities.get(place(reference)?).copied()
     }
 
     /// Adds a variable that so far depends on nothing; returns its reference.
     fn push(&mut self, quantity: Quantity, name: String, description: String) -> u32 {
         // A table of 2^32 variables cannot be built in memory, so the index always fits.
-        let reference = u32::try_from(self.variables.len()).unwrap_or(u32::MAX);
+        let reference = u32::try_from(self.variables.len() + 1).unwrap_or(u32::MAX);
         self.quantities.push(quantity);
         self.variables.push(Variable {
             reference,
@@ -235,23 +264,29 @@ impl VariableTable {
         }
     }
 
-    fn push_outputs(&mut self, word: &str, quantity: fn(usize) -> Quantity, ports: &Ports) {
+    fn push_outputs(&mut self, word: &str, quantity: fn(usize) -> Quantity, (ports, names): (&Ports, &PortNames)) {
         for (port, place) in ports.responses.iter().enumerate() {
-            let number = port + 1;
-            self.push(quantity(port), format!("{word}_{number}"), format!("The panel's {word} {}", at(place)));
+            let name = format!("{word}_{}", names.response(port));
+            self.push(quantity(port), name, format!("The panel's {word} {}", at(place)));
         }
     }
 
-    fn push_modes(&mut self, model: &ModalModel) {
+    fn push_modes(&mut self, model: &ModalModel, residual: usize) {
+        let kept = model.modes().len() - residual;
         for (index, (mode, [position, velocity])) in model.modes().iter().zip(nominals::of(model)).enumerate() {
             let number = index + 1;
-            let of = format!("of mode {number} ({:.2} Hz), mass-normalised", mode.angular_frequency / TAU);
+            let kind = if index < kept { "mode" } else { "residual mode" };
+            let of = format!("of {kind} {number} ({:.2} Hz), mass-normalised", mode.angular_frequency / TAU);
             let (state, rate) = (Quantity::ModalPosition(index), Quantity::ModalPositionRate(index));
             self.push_state(state, rate, &format!("modal_position_{number}"), format!("Coordinate {of}"), position);
             let (state, rate) = (Quantity::ModalVelocity(index), Quantity::ModalVelocityRate(index));
             self.push_state(state, rate, &format!("modal_velocity_{number}"), format!("Velocity {of}"), velocity);
         }
     }
+}
+
+fn place(reference: u32) -> Option<usize> {
+    usize::try_from(reference).ok()?.checked_sub(1)
 }
 
 fn at(place: &Place) -> String {

@@ -5,7 +5,7 @@ use std::ffi::{CString, c_int};
 use std::path::Path;
 use std::ptr::null_mut;
 
-use orthopanel_fmu::{Quantity, RESOURCE_FILE, Resource, content_token};
+use orthopanel_fmu::{Quantity, RESOURCE_FILE, Residual, Resource, content_token};
 use orthopanel_model::{ModeRange, PanelModel, Place, Ports};
 
 use crate::c_functions::*;
@@ -48,7 +48,8 @@ impl Instance {
         let place = |x| vec![Place { x, y: 0.0 }];
         let ports = Ports { forces: place(-0.3), responses: place(0.1) };
         let panel = PanelModel::from_json(panel).expect("a sound model");
-        let (resource, _) = Resource::of_panel(&panel, ModeRange::Count(3), ports).expect("a sound panel");
+        let (resource, _) =
+            Resource::of_panel(&panel, ModeRange::Count(3), ports, Residual::Attachment).expect("a sound panel");
         let text = resource.to_json();
         std::fs::write(folder.join(RESOURCE_FILE), &text).expect("written");
         let path = folder.to_str().expect("UTF-8");
@@ -150,7 +151,7 @@ fn co_simulation_takes_tunable_parameters_between_steps() {
     for three in [false, true] {
         let (one, other) = (Instance::new(folder.path(), three, false), Instance::new(folder.path(), three, false));
         let step = |instance: &Instance, start| {
-            let force = 2_u32;
+            let force = 3_u32;
             let (mut flags, mut time) = ([0_u8; 3], 0.0);
             let [event, end, early] = &mut flags;
             // SAFETY: a live instance, and places for the answers.

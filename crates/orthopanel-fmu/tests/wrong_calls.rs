@@ -100,7 +100,7 @@ fn of_fmi3([token, path, _]: &[CString; 3], last: &Mutex<String>) -> Pointer {
 }
 
 /// Reference of `force_1` in every panel of one force: behind `time` and `force_linear`.
-static FORCE: u32 = 2;
+static FORCE: u32 = 3;
 
 #[test]
 fn regress_null_lists_of_variables_and_values_are_errors() {

@@ -228,6 +228,7 @@ impl Identification {
         let of_piece = |constant: &&IdentifiedConstant| constant.piece.as_ref().is_none_or(|name| *name == fit.name);
         let ratios = fit.damping.iter().map(|ratio| ratio.value).collect();
         PanelModel {
+            name: None,
             schema: MODEL_SCHEMA.to_owned(),
             piece: fit.piece,
             boundary,

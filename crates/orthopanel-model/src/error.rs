@@ -228,6 +228,14 @@ pub enum ModelError {
         /// The schema read.
         expected: &'static str,
     },
+    /// A model's name that is no identifier.
+    #[error(
+        "name = {name:?}: must be of letters, digits and _ (128 at most, no digit first), as floor_left: its FMU is called so"
+    )]
+    Name {
+        /// Name in the file.
+        name: String,
+    },
     /// A constant that the structure does not have.
     #[error("constants.{name} is unknown: the structure has {known}")]
     UnknownConstant {

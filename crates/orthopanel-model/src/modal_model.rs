@@ -114,6 +114,16 @@ impl ModalModel {
         self
     }
 
+    /// Adds modes behind these, which nothing couples to them.
+    pub(crate) fn join(&mut self, further: Vec<Mode>) {
+        let size = self.modes.len() + further.len();
+        self.modes.extend(further);
+        if !self.damping_coupling.is_empty() {
+            self.damping_coupling.resize(size, vec![]);
+            self.damping_coupling.iter_mut().for_each(|row| row.resize(size, 0.0));
+        }
+    }
+
     /// The same modes with some of the force ports alone.
     ///
     /// # Errors

@@ -5,7 +5,9 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use crate::limits;
-use crate::{BEAM_CONSTANTS, Boundary, Constant, EffectState, ModelError, Owner, PLATE_CONSTANTS, Piece, Place};
+use crate::{
+    BEAM_CONSTANTS, Boundary, Constant, EffectState, ModelError, Owner, PLATE_CONSTANTS, Piece, Place, is_identifier,
+};
 
 /// The schema that this version reads and writes.
 pub const MODEL_SCHEMA: &str = "orthopanel.model/1";
@@ -16,6 +18,9 @@ pub const MODEL_SCHEMA: &str = "orthopanel.model/1";
 pub struct PanelModel {
     /// [`MODEL_SCHEMA`].
     pub schema: String,
+    /// What its FMU is called, as in C.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub name: Option<String>,
     /// The piece.
     pub piece: Piece,
     /// What holds its ends; free unless said.
@@ -170,10 +175,13 @@ impl PanelModel {
     /// checked by the structure they belong to.
     ///
     /// # Errors
-    /// The first of [`ModelError::Size`], [`ModelError::SizeRange`], [`ModelError::Density`], [`ModelError::Damping`],
+    /// The first of [`ModelError::Name`], [`ModelError::Size`], [`ModelError::SizeRange`], [`ModelError::Density`], [`ModelError::Damping`],
     /// [`ModelError::TooMany`], [`ModelError::UnknownConstant`],
     /// [`ModelError::OffPiece`] that holds.
     pub fn check(&self) -> Result<(), ModelError> {
+        if let Some(name) = self.name.as_ref().filter(|name| !is_identifier(name)) {
+            return Err(ModelError::Name { name: name.clone() });
+        }
         self.piece.checked()?.solid()?;
         self.damping.check()?;
         for (found, what, most, remedy) in [

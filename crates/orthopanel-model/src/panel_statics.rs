@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::effects::{CoupledPanel, Flexibilities, MOST_SUMMED, SPARE_MODES};
+use crate::effects::{CoupledPanel, FarModes, Flexibilities, MOST_SUMMED, SPARE_MODES};
 use crate::mindlin_plate::FixedPlate;
 use crate::time_model::CORE;
 use crate::{
@@ -30,9 +30,7 @@ impl PanelModel {
         responses: &[Place],
     ) -> Result<Vec<Vec<f64>>, ModelError> {
         if self.relaxes() {
-            let mut relaxed = self.clone();
-            relaxed.effects.retain(|entry| entry.id != CORE);
-            return relaxed.static_flexibility(count, forces, responses);
+            return self.relaxed().static_flexibility(count, forces, responses);
         }
         let flexibility = if self.effects.is_empty() {
             self.bare_flexibility(count, forces, responses)?
@@ -45,6 +43,35 @@ impl PanelModel {
             self.on_large_basis(modified, None, (&values, count.min(MOST_SUMMED)), forces, responses)?
         };
         finite(flexibility)
+    }
+
+    /// The flexible modes but the first `count`, as seen from `places` and then from `ports`, with what they lack of the static
+    /// flexibility from the places to all of these, a row each. A core that relaxes is at its low modulus.
+    pub(crate) fn far_modes(
+        &self,
+        count: usize,
+        places: &[Place],
+        ports: &[Place],
+    ) -> Result<(FarModes, Flexibilities), ModelError> {
+        if self.relaxes() {
+            return self.relaxed().far_modes(count, places, ports);
+        }
+        let (values, effects) = self.with_effects()?;
+        let setting = EffectSetting::of_panel(&self.piece, self.boundary);
+        let even = self.even(&setting, count)?;
+        let parts = self.on_even(&setting, &even, &values, &effects);
+        let (modes, plate) = CoupledPanel::far_modes(parts, count, [places, ports])?;
+        let all: Vec<Place> = places.iter().chain(ports).copied().collect();
+        let none = vec![vec![0.0; places.len()]; all.len()];
+        let lacking = self.on_large_basis(none, plate, (&values, count), places, &all)?;
+        Ok((modes, finite(lacking)?))
+    }
+
+    /// Without the core, which at rest has its low modulus.
+    fn relaxed(&self) -> Self {
+        let mut relaxed = self.clone();
+        relaxed.effects.retain(|entry| entry.id != CORE);
+        relaxed
     }
 
     /// The modes of a range, as seen from these ports, and [`PanelModel::static_flexibility`] between these, in one.

@@ -10,6 +10,8 @@ pub struct TimeModel {
     pub modes: ModalModel,
     /// Flexible modes of the panel itself that these hold.
     pub flexible: usize,
+    /// Residual modes behind all others: see [`TimeModel::with_residual_modes`].
+    pub residual: usize,
     /// How the core's modulus is fitted, where there is one.
     pub core: Option<CoreFit>,
     /// What the flexible modes that these leave out add to displacements at rest, $\sum W_rW_f/\omega^2$ \[m/N\]: a row a
@@ -35,7 +37,7 @@ impl PanelModel {
         let (modes, all) = self.modes_and_flexibility(range, forces, responses)?;
         let flexible = modes.flexible().count();
         let static_remainder = modes.left_of_flexibility(all);
-        Ok(TimeModel { modes, flexible, core: None, static_remainder })
+        Ok(TimeModel { modes, flexible, residual: 0, core: None, static_remainder })
     }
 
     /// What the flexible modes that these leave out add to displacements at rest, $\sum W_rW_f/\omega^2$ \[m/N\]: a row a response,
@@ -85,7 +87,7 @@ impl PanelModel {
         let modes: Vec<_> = modes.into_iter().map(crate::PanelMode::of_coupled).collect();
         let modes = self.as_seen(&modes, forces, responses)?;
         let static_remainder = modes.left_of_flexibility(self.static_flexibility(flexible, forces, responses)?);
-        Ok(Some(TimeModel { modes, flexible, core: Some(fit), static_remainder }))
+        Ok(Some(TimeModel { modes, flexible, residual: 0, core: Some(fit), static_remainder }))
     }
 
     /// Flexible modes without effects up to a frequency \[Hz\]; of a plate at most as many as its largest basis resolves.

@@ -20,5 +20,6 @@ mod mindlin_plate_statics;
 mod mindlin_plate_tables;
 mod modal_sums;
 mod reduced_structure;
+mod residual_modes;
 mod section_3_5;
 mod width_coupling;

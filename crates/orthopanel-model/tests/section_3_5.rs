@@ -27,6 +27,7 @@ fn exact() -> ModalModel {
     let constant = |value| Estimate { value, std: None };
     let constants = [("e_x".into(), constant(CONSTANTS.e_x)), ("g_zx".into(), constant(CONSTANTS.g_zx))];
     let panel = PanelModel {
+        name: None,
         schema: MODEL_SCHEMA.into(),
         piece: PIECE,
         boundary: Boundary::FREE,

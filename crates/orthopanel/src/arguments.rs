@@ -3,8 +3,9 @@
 use std::path::Path;
 
 use clap::Args;
+use orthopanel_export::PortNames;
 use orthopanel_model::limits;
-use orthopanel_model::{ModeRange, PanelModel, Place, Ports};
+use orthopanel_model::{ModeRange, PanelModel, Place, Ports, is_identifier};
 
 use crate::error::CommandError;
 
@@ -45,6 +46,42 @@ pub struct PortArguments {
     /// Where motion comes out, in m from the centre; may be repeated [default: the model's own response ports]
     #[arg(long = "response", value_name = "X[,Y]", value_parser = place, allow_hyphen_values = true)]
     responses: Vec<Place>,
+}
+
+/// A place with the name of what is joined to it, which then stands in the names of variables.
+#[derive(Debug, Clone, PartialEq)]
+struct NamedPlace {
+    name: Option<String>,
+    place: Place,
+}
+
+/// As [`PortArguments`], and names.
+#[derive(Args)]
+pub struct NamedPortArguments {
+    /// Where force goes in, in m from the centre, and what its variables are called; may be repeated [default: the model's own force
+    /// ports, numbered]
+    #[arg(long = "force", value_name = "[NAME=]X[,Y]", value_parser = named_place, allow_hyphen_values = true)]
+    forces: Vec<NamedPlace>,
+    /// Where motion comes out, in m from the centre, and what its variables are called; may be repeated [default: the model's own response
+    /// ports, numbered]
+    #[arg(long = "response", value_name = "[NAME=]X[,Y]", value_parser = named_place, allow_hyphen_values = true)]
+    responses: Vec<NamedPlace>,
+}
+
+impl NamedPortArguments {
+    /// As [`PortArguments::needed`].
+    pub fn needed(&self, model: &PanelModel, path: &Path) -> Result<Ports, CommandError> {
+        let places = |named: &[NamedPlace]| named.iter().map(|named| named.place).collect();
+        PortArguments { forces: places(&self.forces), responses: places(&self.responses) }.needed(model, path)
+    }
+
+    pub fn names(&self) -> PortNames {
+        let names = |named: &[NamedPlace]| match named.iter().all(|named| named.name.is_none()) {
+            true => vec![],
+            false => named.iter().map(|named| named.name.clone()).collect(),
+        };
+        PortNames { forces: names(&self.forces), responses: names(&self.responses) }
+    }
 }
 
 impl PortArguments {
@@ -95,6 +132,25 @@ pub fn place(text: &str) -> Result<Place, String> {
     Ok(Place { x: coordinate(x)?, y: coordinate(y)? })
 }
 
+/// Reads `X`, `X,Y` or either behind `NAME=`.
+fn named_place(text: &str) -> Result<NamedPlace, String> {
+    let Some((name, rest)) = text.split_once('=') else { return Ok(NamedPlace { name: None, place: place(text)? }) };
+    if !is_identifier(name) {
+        return Err(format!(
+            "{name:?} is no name of letters, digits and _ (no digit first): give a place as seat_left=-0.3,0.02"
+        ));
+    }
+    Ok(NamedPlace { name: Some(name.into()), place: place(rest)? })
+}
+
+/// Reads the name of an FMU.
+pub fn identifier(text: &str) -> Result<String, String> {
+    match is_identifier(text) {
+        true => Ok(text.into()),
+        false => Err("must be of letters, digits and _ (128 at most, no digit first), as floor_left".into()),
+    }
+}
+
 /// Reads a number of modes.
 pub fn count(text: &str) -> Result<usize, String> {
     text.trim().parse().map_err(|_| "a number of modes must be a whole number, not below zero".into())
@@ -111,6 +167,16 @@ pub fn frequency(text: &str) -> Result<f64, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_place_may_have_a_name() {
+        let named = named_place("seat_left=-0.3,0.02").unwrap();
+        assert_eq!(named, NamedPlace { name: Some("seat_left".into()), place: Place { x: -0.3, y: 0.02 } });
+        assert_eq!(named_place("-0.3").unwrap().name, None);
+        for text in ["seat left=0.1", "2=0.1", "=0.1", "a=", "a=b", "a=0.1=0.2", "ä=0"] {
+            assert!(named_place(text).is_err(), "{text:?} was read as a place with a name");
+        }
+    }
 
     #[test]
     fn a_place_is_one_or_two_finite_numbers() {

@@ -1,6 +1,7 @@
 //! Response of a model to a force history, and the table it is written as.
 
-use orthopanel_model::{ModalModel, ModalStepper, ModelError};
+use orthopanel_export::Residual;
+use orthopanel_model::{Attachments, ModalModel, ModalStepper, ModeRange, ModelError, PanelModel, Ports, TimeModel};
 
 use crate::csv_text;
 use crate::driving_force::DrivingForce;
@@ -51,29 +52,34 @@ pub fn steps(time: &[f64]) -> Vec<f64> {
     }
 }
 
+/// The modes of a range as seen from these ports, and residual modes of the forces, as an FMU has them.
+pub fn seen(panel: &PanelModel, range: ModeRange, ports: &Ports, residual: Residual) -> Result<TimeModel, ModelError> {
+    let Ports { forces, responses } = ports;
+    let seen = panel.time_model(range, forces, responses)?;
+    match residual {
+        Residual::None => Ok(seen),
+        Residual::Attachment => {
+            let attachments = Attachments::new(panel, seen.flexible, forces);
+            seen.with_residual_modes(panel, &attachments, forces, responses)
+        }
+    }
+}
+
 /// Steps the model, at rest before the first sample, through the force history; one [`Motion`] a response port,
-/// at the samples. Displacements follow the force by the static part of the modes left out \[m/N\], a row a response, as an
-/// FMU's do.
-pub fn simulate(
-    model: &ModalModel,
-    static_remainder: &[Vec<f64>],
-    driving: &DrivingForce,
-) -> Result<Vec<Motion>, ModelError> {
+/// at the samples.
+pub fn simulate(model: &ModalModel, driving: &DrivingForce) -> Result<Vec<Motion>, ModelError> {
     let force = driving.stepped();
     let mut stepper = ModalStepper::new(model);
     let mut motions = vec![Motion::default(); model.response_count()];
-    let record = |stepper: &ModalStepper, forces: &[f64], motions: &mut [Motion]| {
+    let record = |stepper: &ModalStepper, motions: &mut [Motion]| {
         for (port, motion) in motions.iter_mut().enumerate() {
-            let follows =
-                static_remainder.get(port).into_iter().flatten().zip(forces).map(|(part, force)| part * force);
-            let follows: f64 = follows.sum();
             motion.acceleration.extend(stepper.acceleration(port));
             motion.velocity.extend(stepper.velocity(port));
-            motion.displacement.extend(stepper.displacement(port).map(|modal| modal + follows));
+            motion.displacement.extend(stepper.displacement(port));
         }
     };
     stepper.set_forces(&force.at(0))?;
-    record(&stepper, &force.at(0), &mut motions);
+    record(&stepper, &mut motions);
     for (index, step) in steps(&force.time).into_iter().enumerate() {
         let forces = force.at(index + 1);
         if driving.is_held() {
@@ -82,7 +88,7 @@ pub fn simulate(
         } else {
             stepper.advance_linear(step, &forces)?;
         }
-        record(&stepper, &forces, &mut motions);
+        record(&stepper, &mut motions);
     }
     Ok(driving.at_samples(motions))
 }

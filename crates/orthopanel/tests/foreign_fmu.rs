@@ -183,7 +183,7 @@ fn regress_a_model_identifier_names_no_file_elsewhere() {
             for name in ["../../../elsewhere", "/elsewhere", "a.b", ""] {
                 let description = String::from_utf8(files.clone().content(DESCRIPTION).clone()).expect("UTF-8");
                 let start = description.find(&format!("<{kind} ")).expect("the kind");
-                let from = "modelIdentifier=\"orthopanel\"";
+                let from = "modelIdentifier=\"panel\"";
                 let mut files = files.clone();
                 let tail = changed(&description[start..], from, &format!("modelIdentifier=\"{name}\""));
                 *files.content(DESCRIPTION) = (description[..start].to_owned() + &tail).into_bytes();
@@ -198,8 +198,8 @@ fn what_is_not_there_is_named() {
     let bench = Bench::new();
     let files = Files::exported(&bench, "");
     let mut elsewhere = files.clone();
-    elsewhere.library().0 = "binaries/another/orthopanel.so".into();
-    let said = ["no library for this platform", "binaries/", "only binaries/another/orthopanel.so"];
+    elsewhere.library().0 = "binaries/another/panel.so".into();
+    let said = ["no library for this platform", "binaries/", "only binaries/another/panel.so"];
     refused(&bench, &elsewhere.deflated(), "", &said);
     let without = |start: &str| Files(files.0.iter().filter(|(name, _)| !name.starts_with(start)).cloned().collect());
     refused(&bench, &without("binaries/").deflated(), "", &["no library for this platform", "none for another"]);
@@ -209,7 +209,7 @@ fn what_is_not_there_is_named() {
     let mut changed = files.clone();
     changed.content("resources/panel.json").push(b' ');
     refused(&bench, &changed.deflated(), "", &["refuses to start: ", "panel.json", "export the FMU again"]);
-    let unknown = files.described("valueReference=\"3\"", "valueReference=\"9999\"").deflated();
+    let unknown = files.described("valueReference=\"4\"", "valueReference=\"9999\"").deflated();
     let output = simulated(&bench, &unknown, "");
     let message = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.code() == Some(1) && message.contains("fails at fmi2GetReal: "), "{message}");

@@ -10,7 +10,7 @@ pub(super) const INTERFACES: [(&str, &[(&str, &str)]); 2] =
     [("ModelExchange", FMI2_MODEL_EXCHANGE), ("CoSimulation", FMI2_CO_SIMULATION)];
 
 pub(super) fn variable(xml: &mut Xml, variable: &Variable) -> io::Result<()> {
-    let attributes = common_attributes(variable);
+    let attributes = common_attributes(variable, variable.reference);
     let attributes = attributes.iter().map(|(name, value)| (*name, value.as_str()));
     xml.create_element("ScalarVariable").with_attributes(attributes).write_inner_content(|xml| {
         let kind = if variable.unit.is_some() { "Real" } else { "Boolean" };
@@ -47,7 +47,7 @@ pub(super) fn structure(xml: &mut Xml, description: &Description) -> io::Result<
     Ok(())
 }
 
-/// Place in the list of variables, from 1.
+/// Place in the list of variables, from 1: as references are.
 fn index(reference: u32) -> String {
-    (u64::from(reference) + 1).to_string()
+    reference.to_string()
 }

@@ -9,15 +9,16 @@ use super::{Description, Unknown, Xml, common_attributes, dependencies, empty, u
 pub(super) const INTERFACES: [(&str, &[(&str, &str)]); 2] =
     [("ModelExchange", FMI3_MODEL_EXCHANGE), ("CoSimulation", FMI3_CO_SIMULATION)];
 
-fn variable(xml: &mut Xml, variable: &Variable) -> io::Result<()> {
-    let mut attributes = common_attributes(variable);
-    attributes.extend(value_attributes(variable, variable.derivative_of.map(|state| state.to_string())));
+fn variable(xml: &mut Xml, variable: &Variable, table: &VariableTable) -> io::Result<()> {
+    let seen = |reference: u32| table.seen(reference);
+    let mut attributes = common_attributes(variable, seen(variable.reference));
+    attributes.extend(value_attributes(variable, variable.derivative_of.map(|state| seen(state).to_string())));
     empty(xml, if variable.unit.is_some() { "Float64" } else { "Boolean" }, &attributes)
 }
 
 /// An array in place of the variables that it holds, which are alike but for their place.
-fn array(xml: &mut Xml, array: &Array, first: &Variable) -> io::Result<()> {
-    let mut attributes = common_attributes(first);
+fn array(xml: &mut Xml, array: &Array, first: &Variable, table: &VariableTable) -> io::Result<()> {
+    let mut attributes = common_attributes(first, table.seen(first.reference));
     attributes.extend(value_attributes(first, None));
     let size = array.references.len();
     for (name, value) in &mut attributes {
@@ -37,29 +38,29 @@ fn array(xml: &mut Xml, array: &Array, first: &Variable) -> io::Result<()> {
 
 pub(super) fn variables(xml: &mut Xml, table: &VariableTable) -> io::Result<()> {
     table.variables().iter().try_for_each(|one| match table.array_of(one.reference) {
-        None => variable(xml, one),
-        Some(whole) if whole.references.start == one.reference => array(xml, whole, one),
+        None => variable(xml, one, table),
+        Some(whole) if whole.references.start == one.reference => array(xml, whole, one, table),
         Some(_) => Ok(()),
     })
 }
 
 pub(super) fn structure(xml: &mut Xml, description: &Description) -> io::Result<()> {
     let table = &description.variables;
-    // An array depends on what any of its elements does, and is named by the reference of the first.
-    let seen_as = |reference: u32| table.array_of(reference).map_or(reference, |array| array.references.start);
+    // An array depends on what any of its elements does.
     let mut element = |element: &str, variable: &Variable, initial| {
         let elements = table
             .array_of(variable.reference)
             .map_or(variable.reference..variable.reference + 1, |array| array.references.clone());
         let all = elements.filter_map(|reference| table.get(reference));
         let mut on: Vec<_> =
-            all.flat_map(|one| dependencies(one, initial)).map(|on| (seen_as(on.reference), on.factor)).collect();
+            all.flat_map(|one| dependencies(one, initial)).map(|on| (table.seen(on.reference), on.factor)).collect();
         on.sort_unstable();
         on.dedup();
         let on: Vec<_> = on.into_iter().map(|(reference, factor)| (reference.to_string(), factor)).collect();
-        unknown(xml, element, ("valueReference", variable.reference.to_string()), &on)
+        unknown(xml, element, ("valueReference", table.seen(variable.reference).to_string()), &on)
     };
-    let unknowns: Vec<_> = description.unknowns().filter(|(_, one)| seen_as(one.reference) == one.reference).collect();
+    let stands = |reference: u32| table.array_of(reference).is_none_or(|array| array.references.start == reference);
+    let unknowns: Vec<_> = description.unknowns().filter(|(_, one)| stands(one.reference)).collect();
     for &(kind, variable) in &unknowns {
         match kind {
             Unknown::Output => element("Output", variable, false)?,

@@ -24,7 +24,7 @@ fn nearly_sound(written: &[u8], random: &mut Random) -> Vec<u8> {
 
 /// A value for a variable: any number, or as often one near its start, for a constant of 1e10 stands no other.
 fn value_for(reference: u32, fmu: &Fmu, random: &mut Random) -> f64 {
-    let start = fmu.starts.get(reference as usize).copied().unwrap_or(0.0);
+    let start = fmu.starts.get((reference as usize).wrapping_sub(1)).copied().unwrap_or(0.0);
     if start != 0.0 && random.one_in(2) {
         start * (0.8 + 0.4e-6 * random.below(1_000_000) as f64)
     } else {

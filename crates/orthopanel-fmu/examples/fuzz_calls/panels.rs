@@ -3,7 +3,7 @@
 use std::ffi::CString;
 use std::path::Path;
 
-use orthopanel_fmu::{Quantity, RESOURCE_FILE, Resource, content_token};
+use orthopanel_fmu::{Quantity, RESOURCE_FILE, Residual, Resource, content_token};
 use orthopanel_model::{ModeRange, PanelModel, Place, Ports};
 
 /// A panel on disk, and what an importer knows of it.
@@ -58,7 +58,8 @@ fn written(folder: &Path, panel: &str, effects: &str, modes: usize) -> Result<Fm
     );
     let place = |x| Place { x, y: 0.0 };
     let ports = Ports { forces: vec![place(-0.3), place(0.1)], responses: vec![place(0.3)] };
-    let (resource, _) = Resource::of_panel(&PanelModel::from_json(&text)?, ModeRange::Count(modes), ports)?;
+    let (resource, _) =
+        Resource::of_panel(&PanelModel::from_json(&text)?, ModeRange::Count(modes), ports, Residual::Attachment)?;
     let text = resource.to_json();
     std::fs::write(folder.join(RESOURCE_FILE), &text)?;
     let path = folder.to_str().ok_or("the temporary folder's name is not UTF-8")?;

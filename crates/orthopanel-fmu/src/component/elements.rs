@@ -7,22 +7,11 @@ use crate::FmuError;
 
 impl Component {
     /// The references of all elements, in their order; without arrays the references themselves.
-    ///
-    /// # Errors
-    /// [`FmuError::UnknownReference`] for that of an element which is not the first: importers know none.
     pub(crate) fn elements<'a>(&self, references: &'a [u32]) -> Result<Cow<'a, [u32]>, FmuError> {
         if self.variables.arrays().is_empty() {
             return Ok(Cow::Borrowed(references));
         }
-        let mut elements = Vec::with_capacity(references.len());
-        for &reference in references {
-            match self.variables.array_of(reference) {
-                None => elements.push(reference),
-                Some(array) if array.references.start == reference => elements.extend(array.references.clone()),
-                Some(_) => return Err(self.unknown_reference(reference)),
-            }
-        }
-        Ok(Cow::Owned(elements))
+        Ok(Cow::Owned(references.iter().flat_map(|&reference| self.variables.seen_as(reference)).collect()))
     }
 
     /// `values`, one a reference, repeated for each element.

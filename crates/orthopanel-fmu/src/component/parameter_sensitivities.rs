@@ -4,8 +4,8 @@
 //! beam, and to about 1e-5 for a plate, whose solver's rounding is divided by the step. Where two modes lie so close that they
 //! change their order within the step, the derivatives by the one and by the other are mixed.
 
-use super::Component;
 use super::parameters::Settable;
+use super::{Component, Phase};
 use crate::wide_stepper::WideStepper;
 use crate::{FmuError, Quantity};
 
@@ -35,10 +35,12 @@ impl Component {
         }
         let mut direction = vec![0.0; self.in_use.values.len()];
         for (&known, &value) in knowns.iter().zip(seed) {
-            if let Quantity::Parameter(index) = self.quantity(known)?
-                && let Some(place) = direction.get_mut(index)
-            {
-                *place += value;
+            let Quantity::Parameter(index) = self.quantity(known)? else { continue };
+            let attached = Phase::BEFORE_START.contain(self.now.phase).then(|| panel.attachment_of(index)).flatten();
+            for index in [Some(index), attached].into_iter().flatten() {
+                if let Some(place) = direction.get_mut(index) {
+                    *place += value;
+                }
             }
         }
         let sizes = panel.sizes(&self.in_use.values);
@@ -76,7 +78,7 @@ impl Component {
         let forces = self.now.forces_in_effect();
         stepper.set_forces(forces)?;
         let value = |&unknown: &u32| {
-            let found = self.panel_value(self.quantity(unknown)?, &stepper, &seen.static_remainder, forces);
+            let found = self.panel_value(self.quantity(unknown)?, &stepper, forces);
             Ok(found.unwrap_or(f64::NAN))
         };
         unknowns.iter().map(value).collect()

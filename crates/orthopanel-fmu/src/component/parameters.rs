@@ -17,8 +17,6 @@ pub(super) struct Seen {
     /// Of the parameters; none where nothing of the panel can be set.
     pub(super) values: Vec<f64>,
     pub(super) modes: ModalModel,
-    /// Static part of the modes left out \[m/N\]: a row a response.
-    pub(super) static_remainder: Vec<Vec<f64>>,
     /// Sizes of the states to be expected.
     pub(super) nominals: Vec<[f64; 2]>,
 }
@@ -26,11 +24,9 @@ pub(super) struct Seen {
 impl Seen {
     /// As it was exported.
     pub(super) fn exported(resource: &Resource) -> Self {
-        let parameters = resource.panel().into_iter().flat_map(Panel::parameters);
         Self {
-            values: parameters.map(|parameter| parameter.start).collect(),
+            values: resource.panel().map(Panel::values).unwrap_or_default(),
             modes: resource.model().clone(),
-            static_remainder: resource.static_remainder().to_vec(),
             nominals: nominals::of(resource.model()),
         }
     }
@@ -94,15 +90,15 @@ impl Component {
         }
         for known in [exported, &self.in_use] {
             if let Some(modes) = panel.redamped(&known.modes, &known.values, values) {
-                let (static_remainder, nominals) = (known.static_remainder.clone(), known.nominals.clone());
-                return Ok(Arc::new(Seen { values: values.to_vec(), modes, static_remainder, nominals }));
+                let nominals = known.nominals.clone();
+                return Ok(Arc::new(Seen { values: values.to_vec(), modes, nominals }));
             }
         }
-        let Solution { modes, static_remainder, .. } = panel.solve(values)?;
+        let Solution { modes, .. } = panel.solve(values)?;
         if modes.modes().len() != self.mode_count() {
             return Err(FmuError::ModeCount { found: modes.modes().len(), expected: self.mode_count() });
         }
         let nominals = nominals::of(&modes);
-        Ok(Arc::new(Seen { values: values.to_vec(), modes, static_remainder, nominals }))
+        Ok(Arc::new(Seen { values: values.to_vec(), modes, nominals }))
     }
 }

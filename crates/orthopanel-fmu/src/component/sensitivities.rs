@@ -168,7 +168,7 @@ impl Component {
 
     fn probe_output(&self, reference: u32) -> Result<f64, FmuError> {
         let (quantity, probe) = (self.quantity(reference)?, &self.probe);
-        let value = self.panel_value(quantity, &probe.stepper, &self.in_use.static_remainder, &probe.forces);
+        let value = self.panel_value(quantity, &probe.stepper, &probe.forces);
         let value = value.unwrap_or(f64::NAN);
         if value.is_finite() { Ok(value) } else { Err(self.overflow(reference, value)) }
     }

@@ -5,11 +5,11 @@ use proptest::prelude::*;
 
 use super::*;
 
-const FORCE: u32 = 2;
-const ACCELERATION: u32 = 3;
-const VELOCITY: u32 = 4;
-const DISPLACEMENT: u32 = 5;
-const FORCE_LINEAR: u32 = 1;
+const FORCE_LINEAR: u32 = 2;
+const FORCE: u32 = 3;
+const ACCELERATION: u32 = 4;
+const VELOCITY: u32 = 5;
+const DISPLACEMENT: u32 = 6;
 
 fn resource() -> Resource {
     let mode = |angular_frequency, damping_ratio| Mode {
@@ -106,7 +106,7 @@ fn refused_calls_change_nothing() {
     component.set_reals(&[FORCE], &[3.0]).expect("set");
     component.do_step(0.0, 1e-3).expect("step");
     let before = outputs(&mut component);
-    assert!(matches!(component.set_reals(&[FORCE, 99], &[8.0, 8.0]), Err(FmuError::UnknownReference { last: 13, .. })));
+    assert!(matches!(component.set_reals(&[FORCE, 99], &[8.0, 8.0]), Err(FmuError::UnknownReference { last: 14, .. })));
     assert!(matches!(component.set_reals(&[FORCE], &[f64::NAN]), Err(FmuError::NotFinite { .. })));
     assert!(matches!(component.set_reals(&[ACCELERATION], &[1.0]), Err(FmuError::NotSettable { .. })));
     assert!(matches!(component.set_reals(&[FORCE_LINEAR], &[1.0]), Err(FmuError::VariableType { .. })));
@@ -323,9 +323,9 @@ fn any_call() -> impl Strategy<Value = Call> {
         2 => Just(Call::Exit),
         1 => Just(Call::Terminate),
         1 => Just(Call::Reset),
-        4 => (0..8_u32, any_number()).prop_map(|(reference, value)| Call::Set(reference, value)),
-        2 => (0..8_u32, 0..3_i32, any_number()).prop_map(|(reference, order, rate)| Call::Rate(reference, order, rate)),
-        1 => (0..8_u32, any::<bool>()).prop_map(|(reference, on)| Call::Linear(reference, on)),
+        4 => (0..9_u32, any_number()).prop_map(|(reference, value)| Call::Set(reference, value)),
+        2 => (0..9_u32, 0..3_i32, any_number()).prop_map(|(reference, order, rate)| Call::Rate(reference, order, rate)),
+        1 => (0..9_u32, any::<bool>()).prop_map(|(reference, on)| Call::Linear(reference, on)),
         6 => (any_number(), any_number()).prop_map(|(offset, step)| Call::Step(offset, step)),
     ]
 }

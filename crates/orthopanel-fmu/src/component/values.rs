@@ -55,8 +55,8 @@ impl Component {
             // The table has the ports and modes of the stepper: none of these is ever missing.
             Some(Quantity::Force(port)) => Ok(self.now.forces.get(port).copied().unwrap_or(f64::NAN)),
             Some(quantity) => {
-                let (remainder, forces) = (&self.in_use.static_remainder, self.now.forces_in_effect());
-                Ok(self.panel_value(quantity, &self.stepper, remainder, forces).unwrap_or(f64::NAN))
+                let forces = self.now.forces_in_effect();
+                Ok(self.panel_value(quantity, &self.stepper, forces).unwrap_or(f64::NAN))
             }
         }
     }
@@ -104,9 +104,13 @@ impl Component {
     #[cold]
     fn set_initial(&mut self, quantity: Option<Quantity>, value: f64) -> Result<(), FmuError> {
         if let Some(Quantity::Parameter(index)) = quantity {
-            if let Some(parameter) = self.now.parameters.get_mut(index) {
-                *parameter = value;
-                self.parameters_changed = true;
+            let attached = self.settable.as_ref().filter(|_| Phase::BEFORE_START.contain(self.now.phase));
+            let attached = attached.and_then(|settable| settable.panel.attachment_of(index));
+            for index in [Some(index), attached].into_iter().flatten() {
+                if let Some(parameter) = self.now.parameters.get_mut(index) {
+                    *parameter = value;
+                    self.parameters_changed = true;
+                }
             }
             return Ok(());
         }
@@ -205,7 +209,8 @@ impl Component {
     }
 
     pub(super) fn unknown_reference(&self, reference: u32) -> FmuError {
-        let last = u32::try_from(self.variables.variables().len()).unwrap_or(u32::MAX).saturating_sub(1);
+        let last = u32::try_from(self.variables.variables().len()).unwrap_or(u32::MAX);
+        let [reference, last] = [reference, last].map(|reference| self.variables.seen(reference));
         FmuError::UnknownReference { reference, last }
     }
 

@@ -1,8 +1,9 @@
 //! The parts of a panel that are parameters of its FMU.
 
-use orthopanel_model::{Estimate, PanelModel};
+use orthopanel_model::{EffectParameter, Estimate, PanelModel, effect};
 
-use super::Panel;
+use super::{Panel, ResidualModes};
+use crate::PortNames;
 
 /// What a parameter of the FMU is of the panel; ports and modes are counted from 0.
 #[derive(Debug, Clone, PartialEq)]
@@ -12,11 +13,18 @@ pub(crate) enum Part {
     Thickness,
     MassPerArea,
     Constant(String),
+    /// Number of the effect among those of the panel, and its parameter.
+    Effect(usize, &'static EffectParameter),
     Damping(usize),
+    /// Of all residual modes.
+    ResidualDamping,
     ForceX(usize),
     ForceY(usize),
     ResponseX(usize),
     ResponseY(usize),
+    /// Place of a force that residual modes answer: no parameter, but what follows the port until initialization has ended.
+    AttachmentX(usize),
+    AttachmentY(usize),
 }
 
 impl Part {
@@ -27,7 +35,15 @@ impl Part {
     }
 
     pub(crate) fn is_damping(&self) -> bool {
-        matches!(self, Self::Damping(_))
+        matches!(self, Self::Damping(_) | Self::ResidualDamping)
+    }
+
+    pub(crate) fn is_of_attachment(&self) -> bool {
+        matches!(self, Self::AttachmentX(_) | Self::AttachmentY(_))
+    }
+
+    pub(crate) fn is_place(&self) -> bool {
+        self.is_of_force() || self.is_of_response() || self.is_of_attachment()
     }
 
     /// Whether it is the place of a force.
@@ -61,22 +77,38 @@ impl Panel {
     pub(crate) fn parts(&self) -> Vec<Part> {
         let mut parts = vec![Part::Length, Part::Width, Part::Thickness, Part::MassPerArea];
         parts.extend(self.model.constants.keys().cloned().map(Part::Constant));
+        for (number, entry) in self.model.effects.iter().enumerate() {
+            let known = effect(&entry.id).map(|effect| effect.parameters()).unwrap_or_default();
+            parts.extend(known.iter().map(|parameter| Part::Effect(number, parameter)));
+        }
         parts.extend((0..self.flexible_modes).map(Part::Damping));
+        parts.extend(self.residual.is_some().then_some(Part::ResidualDamping));
         parts.extend((0..self.model.ports.forces.len()).flat_map(|port| [Part::ForceX(port), Part::ForceY(port)]));
         let responses = 0..self.model.ports.responses.len();
         parts.extend(responses.flat_map(|port| [Part::ResponseX(port), Part::ResponseY(port)]));
+        let places = 0..self.residual.as_ref().map_or(0, |residual| residual.places.len());
+        parts.extend(places.flat_map(|place| [Part::AttachmentX(place), Part::AttachmentY(place)]));
         parts
     }
 
     pub(super) fn value(&self, part: &Part) -> f64 {
         let (piece, ports) = (&self.model.piece, &self.model.ports);
+        let residual = self.residual.as_ref();
+        let place = |place: &usize| residual.and_then(|residual| residual.places.get(*place));
         let value = match part {
             Part::Length => Some(piece.length),
             Part::Width => Some(piece.width),
             Part::Thickness => Some(piece.thickness),
             Part::MassPerArea => Some(piece.mass_per_area),
             Part::Constant(name) => self.model.constants.get(name).map(|estimate| estimate.value),
+            Part::Effect(number, parameter) => {
+                let given = self.model.effects.get(*number).and_then(|entry| entry.parameters.get(parameter.name));
+                given.map(|estimate| estimate.value).or(parameter.held_at)
+            }
             Part::Damping(mode) => Some(self.model.damping.ratio(mode + 1)),
+            Part::ResidualDamping => residual.map(|residual| residual.damping_ratio),
+            Part::AttachmentX(at) => place(at).map(|place| place.x),
+            Part::AttachmentY(at) => place(at).map(|place| place.y),
             Part::ForceX(port) => ports.forces.get(*port).map(|place| place.x),
             Part::ForceY(port) => ports.forces.get(*port).map(|place| place.y),
             Part::ResponseX(port) => ports.responses.get(*port).map(|place| place.x),
@@ -87,7 +119,7 @@ impl Panel {
     }
 }
 
-pub(super) fn set(model: &mut PanelModel, part: &Part, value: f64) {
+pub(super) fn set((model, residual): (&mut PanelModel, Option<&mut ResidualModes>), part: &Part, value: f64) {
     let (piece, ports) = (&mut model.piece, &mut model.ports);
     let place = match part {
         Part::Length => Some(&mut piece.length),
@@ -98,7 +130,16 @@ pub(super) fn set(model: &mut PanelModel, part: &Part, value: f64) {
             model.constants.insert(name.clone(), Estimate { value, std: None });
             None
         }
+        Part::Effect(number, parameter) => {
+            if let Some(entry) = model.effects.get_mut(*number) {
+                entry.parameters.insert(parameter.name.into(), Estimate { value, std: None });
+            }
+            None
+        }
         Part::Damping(mode) => model.damping.ratios.get_mut(*mode),
+        Part::ResidualDamping => residual.map(|residual| &mut residual.damping_ratio),
+        Part::AttachmentX(at) => residual.and_then(|residual| residual.places.get_mut(*at)).map(|place| &mut place.x),
+        Part::AttachmentY(at) => residual.and_then(|residual| residual.places.get_mut(*at)).map(|place| &mut place.y),
         Part::ForceX(port) => ports.forces.get_mut(*port).map(|place| &mut place.x),
         Part::ForceY(port) => ports.forces.get_mut(*port).map(|place| &mut place.y),
         Part::ResponseX(port) => ports.responses.get_mut(*port).map(|place| &mut place.x),
@@ -109,27 +150,42 @@ pub(super) fn set(model: &mut PanelModel, part: &Part, value: f64) {
     }
 }
 
-pub(super) fn describe(part: &Part) -> (String, &'static str, String) {
-    let place = |what: &str, port: &usize, axis: &str| {
-        let text = format!("Place of {what} {} along {axis}, from the centre", port + 1);
-        (format!("{what}_{}_{axis}", port + 1), "m", text)
-    };
-    match part {
-        Part::Length => ("length".into(), "m", "Length of the piece, along x".into()),
-        Part::Width => ("width".into(), "m", "Width of the piece, along y".into()),
-        Part::Thickness => ("thickness".into(), "m", "Thickness of the piece".into()),
-        Part::MassPerArea => ("mass_per_area".into(), "kg/m2", "Mass per area of the piece".into()),
-        Part::Constant(name) => {
-            let unit = if name.starts_with("nu") { "1" } else { "Pa" };
-            (name.clone(), unit, format!("Elastic constant {name}"))
+impl Panel {
+    pub(super) fn describe(&self, part: &Part, names: &PortNames) -> (String, &'static str, String) {
+        let place = |what: &str, label: String, axis: &str| {
+            let text = format!("Place of {what} {label} along {axis}, from the centre");
+            (format!("{what}_{label}_{axis}"), "m", text)
+        };
+        match part {
+            Part::Length => ("length".into(), "m", "Length of the piece, along x".into()),
+            Part::Width => ("width".into(), "m", "Width of the piece, along y".into()),
+            Part::Thickness => ("thickness".into(), "m", "Thickness of the piece".into()),
+            Part::MassPerArea => ("mass_per_area".into(), "kg/m2", "Mass per area of the piece".into()),
+            Part::Constant(name) => {
+                let unit = if name.starts_with("nu") { "1" } else { "Pa" };
+                (name.clone(), unit, format!("Elastic constant {name}"))
+            }
+            Part::Effect(number, parameter) => {
+                let id = |at: usize| self.model.effects.get(at).map_or("", |entry| &entry.id);
+                let before = (0..*number).filter(|&other| id(other) == id(*number)).count();
+                let of = if before == 0 { id(*number).into() } else { format!("{} {}", id(*number), before + 1) };
+                let name = format!("{of}_{}", parameter.name).replace(['-', ' '], "_");
+                (name, parameter.unit, format!("Parameter {} of the effect {of}", parameter.name))
+            }
+            Part::Damping(mode) => {
+                let text = format!("Modal damping ratio of flexible mode {}", mode + 1);
+                (format!("damping_ratio_{}", mode + 1), "1", text)
+            }
+            Part::ResidualDamping => {
+                let text = "Damping ratio of the residual modes, which stand for the modes left out".into();
+                ("residual_damping_ratio".into(), "1", text)
+            }
+            // No importer sees these.
+            Part::AttachmentX(port) | Part::AttachmentY(port) => place("attachment", port.to_string(), ""),
+            Part::ForceX(port) => place("force", names.force(*port), "x"),
+            Part::ForceY(port) => place("force", names.force(*port), "y"),
+            Part::ResponseX(port) => place("response", names.response(*port), "x"),
+            Part::ResponseY(port) => place("response", names.response(*port), "y"),
         }
-        Part::Damping(mode) => {
-            let text = format!("Modal damping ratio of flexible mode {}", mode + 1);
-            (format!("damping_ratio_{}", mode + 1), "1", text)
-        }
-        Part::ForceX(port) => place("force", port, "x"),
-        Part::ForceY(port) => place("force", port, "y"),
-        Part::ResponseX(port) => place("response", port, "x"),
-        Part::ResponseY(port) => place("response", port, "y"),
     }
 }

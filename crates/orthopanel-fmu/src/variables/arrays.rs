@@ -6,7 +6,7 @@ use orthopanel_model::{Place, Ports};
 
 use super::HOLD;
 
-/// Variables of one kind as one array; its reference is that of the first.
+/// Variables of one kind as one array.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Array {
     /// Name, without a number.
@@ -20,7 +20,7 @@ pub struct Array {
 /// The arrays of a panel with these ports, in the order of the table.
 pub(super) fn of(ports: &Ports) -> Vec<Array> {
     // `time` and `force_linear` come first.
-    let mut next = 2;
+    let mut next = 3;
     let kinds: [(&str, &str, &[Place], Option<&str>); 4] = [
         ("force", "Forces", &ports.forces, Some(HOLD)),
         ("acceleration", "The panel's accelerations", &ports.responses, None),

@@ -77,11 +77,7 @@ fn knowns(quantity: Quantity, resource: &Resource) -> Vec<(Quantity, Factor)> {
     let seen = |response: usize| modes.filter(move |(_, mode)| any || is_set(&mode.at_responses, response));
     let all = |quantities: Vec<Quantity>| quantities.into_iter().map(|known| (known, moving)).collect();
     match quantity {
-        Quantity::Displacement(port) => {
-            let direct = resource.static_remainder().get(port).into_iter().flatten().enumerate();
-            let direct = direct.filter(|&(_, &value)| any || value != 0.0).map(|(force, _)| Quantity::Force(force));
-            all(seen(port).map(|(mode, _)| Quantity::ModalPosition(mode)).chain(direct).collect())
-        }
+        Quantity::Displacement(port) => all(seen(port).map(|(mode, _)| Quantity::ModalPosition(mode)).collect()),
         Quantity::Velocity(port) => all(seen(port).map(|(mode, _)| Quantity::ModalVelocity(mode)).collect()),
         Quantity::Acceleration(port) => {
             let of_modes = seen(port).flat_map(|(index, mode)| {
@@ -113,9 +109,12 @@ fn of_acceleration(index: usize, mode: &Mode, any: bool) -> Vec<Quantity> {
 /// Modal velocities that dampers of an effect hand on to a mode, or may where damping ratios are set: each mode with effects holds
 /// several bare ones.
 fn coupled(index: usize, model: &ModalModel, panel: Option<&Panel>) -> impl Iterator<Item = Quantity> {
-    let flexible = model.modes().get(index).is_some_and(|mode| mode.angular_frequency > 0.0);
+    // Residual modes are by themselves.
+    let count = model.modes().len() - panel.map_or(0, Panel::residual_modes);
+    let flexible = model.modes().get(index).is_some_and(|mode| index < count && mode.angular_frequency > 0.0);
     let any = flexible && (!model.damping_coupling().is_empty() || panel.is_some_and(Panel::has_effects));
-    let others = model.modes().iter().enumerate().filter(move |(_, mode)| any && mode.angular_frequency > 0.0);
+    let others = model.modes().iter().take(count).enumerate();
+    let others = others.filter(move |(_, mode)| any && mode.angular_frequency > 0.0);
     others.map(|(other, _)| Quantity::ModalVelocity(other))
 }
 
@@ -124,14 +123,15 @@ fn moves(part: &Part, quantity: Quantity, resource: &Resource) -> bool {
     let Some(panel) = resource.panel().filter(|panel| !(panel.is_beam() && part.is_along_y())) else { return false };
     let of_response = |port: usize| [Part::ResponseX(port), Part::ResponseY(port)].contains(part);
     match quantity {
-        Quantity::Displacement(port) => of_response(port) || part.is_of_force(),
-        Quantity::Velocity(port) => of_response(port),
+        Quantity::Displacement(port) | Quantity::Velocity(port) => of_response(port),
         Quantity::Acceleration(port) => of_response(port) || part.is_of_force() || part.is_damping(),
         Quantity::ModalVelocityRate(index) => {
             let modes = resource.model().modes();
             let rigid = modes.iter().take_while(|mode| mode.angular_frequency == 0.0).count();
+            let residual = index + panel.residual_modes() >= modes.len();
+            let own = if residual { Part::ResidualDamping } else { Part::Damping(index.saturating_sub(rigid)) };
             let damps = part.is_damping() && index >= rigid;
-            part.is_of_force() || damps && (panel.has_effects() || *part == Part::Damping(index - rigid))
+            part.is_of_force() || damps && (panel.has_effects() && !residual || *part == own)
         }
         _ => false,
     }

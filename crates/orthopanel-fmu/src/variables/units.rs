@@ -27,7 +27,7 @@ pub(super) const MODAL_VELOCITY: &str = "m.kg^(1/2)/s";
 pub(super) const MODAL_ACCELERATION: &str = "m.kg^(1/2)/s2";
 
 /// Every unit in use.
-pub const UNITS: [Unit; 11] = [
+pub const UNITS: [Unit; 13] = [
     Unit::of("s", &[("s", 1)]),
     Unit::of("N", &[("kg", 1), ("m", 1), ("s", -2)]),
     Unit::of("m/s2", &[("m", 1), ("s", -2)]),
@@ -35,6 +35,8 @@ pub const UNITS: [Unit; 11] = [
     Unit::of("m", &[("m", 1)]).shown_in("mm", 1e3),
     Unit::of("kg/m2", &[("kg", 1), ("m", -2)]),
     Unit::of("Pa", &[("kg", 1), ("m", -1), ("s", -2)]).shown_in("GPa", 1e-9),
+    Unit::of("kg", &[("kg", 1)]),
+    Unit::of("Hz", &[("s", -1)]),
     Unit::of("1", &[]),
     Unit::of(MODAL_POSITION, &[]),
     Unit::of(MODAL_VELOCITY, &[]),

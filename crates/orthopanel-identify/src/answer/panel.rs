@@ -38,6 +38,7 @@ pub(super) fn panel(
     let (own, others): (Vec<_>, Vec<_>) =
         parts.map(|(_, part)| part).partition(|(effect, _)| effect.owner == Owner::Panel);
     let mut panel = PanelModel {
+        name: None,
         schema: MODEL_SCHEMA.to_owned(),
         piece: test.pieces[measured.piece].piece,
         boundary: test.boundary,

@@ -44,6 +44,7 @@ pub(super) fn bare_panel(
         ratios.truncate(in_band);
     }
     let mut panel = PanelModel {
+        name: None,
         schema: MODEL_SCHEMA.to_owned(),
         piece,
         boundary: test.boundary,

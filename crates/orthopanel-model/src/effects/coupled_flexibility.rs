@@ -54,6 +54,46 @@ impl CoupledPanel {
     }
 }
 
+/// Modes beyond those that a model keeps, in the coordinates of a [`CoupledPanel`] with a residual shape for each of some places: so a
+/// force there has its whole static answer in them.
+pub(crate) struct FarModes {
+    /// $\omega_N$ \[rad/s\] of the last mode kept; zero where none is.
+    pub last_kept: f64,
+    pub modes: Vec<FarMode>,
+}
+
+/// $\omega_m$ and the deflections \[kg^-1/2\] at the places and then at others.
+pub(crate) type FarMode = (f64, Vec<f64>);
+
+impl CoupledPanel {
+    /// All modes of the panel with its effects but the first `count` flexible ones, as seen from `places` and `others`. With the plate on
+    /// whose basis they are, where nothing is spread over it.
+    ///
+    /// # Errors
+    /// As [`CoupledPanel::modes`].
+    pub(crate) fn far_modes(
+        parts: PanelWithEffects,
+        count: usize,
+        [places, others]: [&[Place]; 2],
+    ) -> Result<(FarModes, Option<Arc<MindlinPlate>>), ModelError> {
+        let modified = match ModifiedStructure::for_modes(parts, count) {
+            // At the end of its basis a panel has no modes to spare.
+            Err(ModelError::BasisTooSmall { .. }) => ModifiedStructure::new(parts, count)?,
+            found => found?,
+        };
+        let (panel, system) = modified.with_residuals(&modified.far_answers(places)?, places, parts.damping);
+        let rows: Vec<Vec<f64>> = places.iter().chain(others).map(|&place| panel.deflections(place)).collect();
+        let mut modes = system.solve()?;
+        let far = modes.split_off(modes.len().min(panel.rigid() + count));
+        let seen = |shares: &[f64]| -> Vec<f64> {
+            rows.iter().map(|row| row.iter().zip(shares).map(|(value, share)| value * share).sum()).collect()
+        };
+        let last_kept = modes.last().map_or(0.0, |(omega, ..)| *omega);
+        let modes = far.iter().filter(|(omega, ..)| *omega > 0.0).map(|(omega, _, shares)| (*omega, seen(shares)));
+        Ok((FarModes { last_kept, modes: modes.collect() }, modified.even_plate()))
+    }
+}
+
 impl ModifiedStructure {
     /// In the coordinates of [`CoupledPanel`], with a residual shape for each port as for each element, a force at a port has its
     /// static answer: the sum over the few modes of these coordinates is that over all. For a free panel it is the answer beside the

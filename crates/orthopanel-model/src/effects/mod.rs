@@ -52,7 +52,7 @@ pub use catalogue::{catalogue, effect};
 pub use channel_factor::{ChannelFactor, FactorLine};
 pub use core_fit::CoreFit;
 pub use core_modulus::{CoreLine, CoreModulus};
-pub(crate) use coupled_flexibility::{Flexibilities, MOST_SUMMED};
+pub(crate) use coupled_flexibility::{FarMode, FarModes, Flexibilities, MOST_SUMMED};
 pub(crate) use coupled_modes::CoupledMode;
 pub use coupled_modes::{NaturalFrequencies, natural_frequencies};
 pub(crate) use coupled_panel::{CoupledPanel, Even, PanelWithEffects, SPARE_MODES};

@@ -3,26 +3,26 @@
 use std::path::PathBuf;
 
 use orthopanel_data::limits;
-use orthopanel_export::{FmiVersion, Fmu, FmuOptions, Library, Platform};
-use orthopanel_model::Ports;
+use orthopanel_export::{FmiVersion, Fmu, FmuOptions, Library, Platform, Residual, parameter_samples};
+use orthopanel_model::{PanelModel, Ports};
 use serde::Serialize;
 
-use crate::arguments::{ModeArguments, PortArguments};
+use crate::arguments::{ModeArguments, NamedPortArguments, identifier};
 use crate::error::{CommandError, InFile as _};
 use crate::outputs::{Inputs, Outputs};
-use crate::{console, model_file, progress};
+use crate::{console, model_file, progress, time_response};
 
 /// Write a model as an FMU for co-simulation and model exchange: force in; acceleration, velocity and displacement out
 ///
 /// No compiler is needed. Inputs are force_1, force_2, ... in N, outputs acceleration_1, velocity_1,
-/// displacement_1, ... in SI units, numbered in the order of the places given. Sizes, mass, constants, damping ratios
-/// and places are parameters of the FMU, which solves its modes anew where one is set;
-/// damping ratios and places may be set while it runs, too.
+/// displacement_1, ... in SI units, numbered in the order of the places given; a place with a name has force_NAME,
+/// acceleration_NAME, ... Sizes, mass, constants, effects' numbers, damping ratios and places are parameters of the FMU,
+/// which solves its modes anew where one is set; damping ratios and places may be set while it runs, too.
 ///
 /// The edges are held as the model file's "boundary" says (see `orthopanel modes --help`): left and right, of a plate front and
 /// back too.
 ///
-/// Example: orthopanel export out/model.json -o panel.fmu --fmi 3 --modes 6 --force -0.3 --response 0.3 --response 0,0.02
+/// Example: orthopanel export out/model.json -o panel.fmu --fmi 3 --modes 6 --name floor --force seat=-0.3 --response seat=0.3 --response 0,0.02
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
 pub struct Arguments {
@@ -37,13 +37,27 @@ pub struct Arguments {
     #[command(flatten)]
     modes: ModeArguments,
     #[command(flatten)]
-    ports: PortArguments,
+    ports: NamedPortArguments,
+    /// What the FMU is called: model name, model identifier and file of the library. Two panels in one vehicle have two names
+    /// [default: the model file's "name", else panel]
+    #[arg(long, value_parser = identifier)]
+    name: Option<String>,
+    /// What stands for the modes left out: residual modes of each force, or nothing, for an integrator of model exchange that is not to
+    /// follow their frequencies
+    #[arg(long, value_name = "attachment|none", default_value = "attachment", value_parser = residual)]
+    residual: Residual,
     /// One array for all forces and one for each kind of output (FMI 3 alone) in place of a variable each
     #[arg(long)]
     arrays: bool,
     /// The runtime of another platform, to lie beside this one's; may be repeated. Built there from the crate orthopanel-fmu
     #[arg(long = "library", value_name = "PLATFORM=FILE", value_parser = platform_and_file)]
     libraries: Vec<(Platform, PathBuf)>,
+    /// Write an SSP (1.0) beside the FMU, too: the FMU with its connectors and a set of its parameters
+    #[arg(long)]
+    ssp: bool,
+    /// Sets of parameters in the SSP beside those of the model, drawn by the standard deviations of its constants
+    #[arg(long, value_name = "N", requires = "ssp", default_value_t = 0, value_parser = samples, allow_negative_numbers = true)]
+    samples: usize,
     /// Print one JSON object (orthopanel.export/1) on standard output
     #[arg(long)]
     json: bool,
@@ -53,10 +67,14 @@ pub struct Arguments {
 struct Answer<'a> {
     schema: &'static str,
     file: &'a PathBuf,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    ssp: Option<&'a PathBuf>,
+    name: String,
     fmi: &'static str,
     rigid_modes: usize,
     flexible_modes: usize,
     highest_hz: f64,
+    residual_hz: Vec<f64>,
     ports: &'a Ports,
     /// Effects of rig and measuring chain.
     left_out: Vec<&'static str>,
@@ -68,32 +86,51 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
     }
     let path = &arguments.model;
     let inputs = arguments.libraries.iter().fold(Inputs::of(path), |inputs, (_, library)| inputs.and(library));
-    let mut outputs = Outputs::of(inputs)?.planned(&arguments.output)?;
+    let ssp = arguments.ssp.then(|| arguments.output.with_extension("ssp"));
+    let planned = [Some(&arguments.output), ssp.as_ref()].into_iter().flatten().cloned();
+    let mut outputs = Outputs::of(inputs)?.all_planned(planned)?;
     let model = model_file::read(path)?;
     let ports = arguments.ports.needed(&model, path)?;
     let shown = progress::spinner("finding modes and making the FMU");
     let (alone, left_out) = model.panel_alone().in_file(path)?;
-    let seen = alone.time_model(arguments.modes.range(), &ports.forces, &ports.responses).in_file(path)?;
-    let frequencies: Vec<f64> =
+    let seen = time_response::seen(&alone, arguments.modes.range(), &ports, arguments.residual).in_file(path)?;
+    let mut frequencies: Vec<f64> =
         seen.modes.modes().iter().map(|mode| mode.angular_frequency / std::f64::consts::TAU).collect();
+    let residual_hz = frequencies.split_off(frequencies.len() - seen.residual);
     let rigid_modes = frequencies.iter().filter(|frequency| **frequency == 0.0).count();
     let highest_hz = match &seen.core {
         // Beyond are the internal variables' own.
         Some(fit) => fit.band[1],
         None => frequencies.last().copied().unwrap_or(0.0),
     };
-    let fmu = Fmu::of_panel(&model, arguments.modes.range(), ports.clone(), &options(arguments)?)?;
+    let options = options(arguments, &model)?;
+    let name = options.name.clone();
+    let fmu = Fmu::of_panel(&model, arguments.modes.range(), ports.clone(), &options)?;
     let bytes = fmu.to_bytes()?;
     drop(shown);
     outputs.add(&arguments.output, bytes);
+    if let Some(path) = &ssp {
+        let samples = parameter_samples(&alone, arguments.samples).in_file(&arguments.model)?;
+        if samples.first().is_some_and(Vec::is_empty) {
+            return Err(CommandError::Option {
+                option: "samples",
+                value: arguments.samples.to_string(),
+                remedy: "no constant of this model has a standard deviation: leave it out, or write {\"value\": .., \"std\": ..}".into(),
+            });
+        }
+        outputs.add(path, fmu.to_ssp(&samples)?);
+    }
     outputs.write()?;
     let answer = Answer {
         schema: "orthopanel.export/1",
         file: &arguments.output,
+        ssp: ssp.as_ref(),
+        name,
         fmi: if arguments.fmi == FmiVersion::Fmi2 { "2.0" } else { "3.0" },
         rigid_modes,
         flexible_modes: seen.flexible,
         highest_hz,
+        residual_hz,
         ports: &ports,
         left_out,
     };
@@ -104,6 +141,13 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
         answer.flexible_modes,
         answer.highest_hz
     ));
+    if let [first, .., last] = answer.residual_hz[..] {
+        let count = answer.residual_hz.len();
+        console::say(format_args!("{count} residual modes from {first:.0} to {last:.0} Hz stand for all others"));
+    }
+    if let Some(path) = &ssp {
+        console::say(format_args!("wrote {} ({} samples)", path.display(), arguments.samples));
+    }
     if let Some(fit) = &seen.core {
         let [from, to] = fit.band;
         let percent = 100.0 * fit.error;
@@ -112,7 +156,11 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
         ));
     }
     if answer.flexible_modes == 0 {
-        let does = if rigid_modes == 0 { "yields at once, without inertia" } else { "only moves as a whole" };
+        let does = if rigid_modes > 0 {
+            "moves as a whole, and yields by its residual modes alone"
+        } else {
+            "yields by its residual modes alone"
+        };
         console::say(format_args!("no flexible mode is kept: this panel {does}; ask for more by --modes or --up-to"));
     }
     if !answer.left_out.is_empty() {
@@ -124,19 +172,45 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
     Ok(())
 }
 
-fn options(arguments: &Arguments) -> Result<FmuOptions, CommandError> {
+fn options(arguments: &Arguments, model: &PanelModel) -> Result<FmuOptions, CommandError> {
     let library = |(platform, path): &(Platform, PathBuf)| {
         let content =
             limits::LIBRARY_FILE.read(path).map_err(|source| CommandError::Unreadable { path: path.into(), source })?;
         Ok(Library::new(*platform, content)?)
     };
     let libraries = arguments.libraries.iter().map(library).collect::<Result<_, CommandError>>()?;
-    Ok(FmuOptions { version: arguments.fmi, arrays: arguments.arrays, libraries, ..FmuOptions::default() })
+    let usual = FmuOptions::default();
+    Ok(FmuOptions {
+        name: arguments.name.as_ref().or(model.name.as_ref()).cloned().unwrap_or(usual.name),
+        version: arguments.fmi,
+        names: arguments.ports.names(),
+        arrays: arguments.arrays,
+        residual: arguments.residual,
+        libraries,
+        ..usual
+    })
 }
 
 fn platform_and_file(text: &str) -> Result<(Platform, PathBuf), String> {
     let (platform, file) = text.split_once('=').ok_or("must be PLATFORM=FILE, as x86_64-windows=orthopanel_fmu.dll")?;
     Ok((platform.parse().map_err(|error: orthopanel_export::ExportError| error.to_string())?, file.into()))
+}
+
+fn residual(text: &str) -> Result<Residual, String> {
+    match text {
+        "attachment" => Ok(Residual::Attachment),
+        "none" => Ok(Residual::None),
+        _ => Err("must be attachment or none".into()),
+    }
+}
+
+/// Reads how many sets of parameters there shall be.
+fn samples(text: &str) -> Result<usize, String> {
+    const MOST: usize = 10_000;
+    match text.trim().parse() {
+        Ok(count) if count <= MOST => Ok(count),
+        _ => Err(format!("must be a whole number up to {MOST}")),
+    }
 }
 
 fn version(text: &str) -> Result<FmiVersion, String> {

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use orthopanel_data::ImpactTest;
-use orthopanel_export::{FmiVersion, Fmu, FmuOptions};
+use orthopanel_export::{FmiVersion, Fmu, FmuOptions, Residual};
 use orthopanel_identify::Tracing;
 use orthopanel_model::{ModelError, PanelModel};
 use serde::Serialize;
@@ -224,7 +224,7 @@ fn written(files: Outputs) -> Result<Vec<PathBuf>, CommandError> {
 fn add_model(files: &mut Outputs, test: &Path, suffix: &str, model: &PanelModel) -> Result<(), CommandError> {
     files.add_inside(&format!("model{suffix}.json"), model.to_json());
     let ports = &model.ports;
-    let seen = match model.time_model(USUAL_MODES, &ports.forces, &ports.responses) {
+    let seen = match time_response::seen(model, USUAL_MODES, ports, Residual::Attachment) {
         // The trace may find what has no modes; the model file holds it all the same.
         Err(ModelError::Unsupported(what)) if !model.effects.is_empty() => {
             console::say(format_args!(
@@ -236,16 +236,22 @@ fn add_model(files: &mut Outputs, test: &Path, suffix: &str, model: &PanelModel)
     };
     let _shown = progress::spinner("making the FMUs");
     for (version, ending) in [(FmiVersion::Fmi2, ""), (FmiVersion::Fmi3, "-fmi3")] {
-        let options = FmuOptions { version, ..FmuOptions::default() };
+        let options = FmuOptions { name: fmu_name(model, suffix), version, ..FmuOptions::default() };
         let fmu = Fmu::of_panel(model, USUAL_MODES, ports.clone(), &options)?;
         files.add_inside(&format!("panel{suffix}{ending}.fmu"), fmu.to_bytes()?);
     }
     let hit = DrivingForce::new(ForceHistory::half_sine(ports.forces.len()), Hold::Linear, test)?;
-    let motions = time_response::simulate(&seen.modes, &seen.static_remainder, &hit).in_file(test)?;
+    let motions = time_response::simulate(&seen.modes, &hit).in_file(test)?;
     let hit = hit.samples;
     files.add_inside(&format!("response{suffix}.csv"), time_response::csv(&hit, &motions));
     files.add_inside(&format!("response{suffix}.svg"), pictures::response(&hit, &motions)?);
     Ok(())
+}
+
+/// The model's own, or what the file is called, with `_` for what no name has: each piece's FMU has another.
+fn fmu_name(model: &PanelModel, suffix: &str) -> String {
+    let of_file = || format!("panel{suffix}").replace(|other: char| !other.is_ascii_alphanumeric(), "_");
+    model.name.clone().unwrap_or_else(of_file)
 }
 
 fn add_pictures(files: &mut Outputs, suffix: &str, shown: &PieceEvidence) {

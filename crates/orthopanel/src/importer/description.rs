@@ -4,11 +4,12 @@ use std::collections::HashMap;
 
 use fmi_rs::SHARED_LIBRARY_EXTENSION;
 use fmi_rs::model_description::{fmi2 as description2, fmi3 as description3};
+use orthopanel_model::is_identifier;
 use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
 use roxmltree::{Document, ParsingOptions};
 
-use super::instance::References;
+use super::instance::{References, Variable};
 use super::{fmi2, fmi3};
 use crate::fmu_refusal::{FmuRefusal, limited, shown};
 
@@ -21,8 +22,6 @@ const MOST_PARTS: usize = 1_000_000;
 const MOST_ATTRIBUTES: usize = 64;
 const DEEPEST: usize = 32;
 const MOST_VARIABLES: usize = 50_000;
-/// Characters of a library's name.
-const LONGEST_IDENTIFIER: usize = 128;
 
 /// The description of an FMU of a version that can be run.
 pub(super) enum Description {
@@ -71,7 +70,7 @@ impl Description {
                 description.modelExchange.as_ref().map(|kind| &kind.modelIdentifier),
             ),
         };
-        if let Some(wrong) = co_simulation.into_iter().chain(model_exchange).find(|name| !is_c_identifier(name)) {
+        if let Some(wrong) = co_simulation.into_iter().chain(model_exchange).find(|name| !is_identifier(name)) {
             return Err(FmuRefusal::Identifier(format!("{:?}", shown(wrong))));
         }
         let identifier = co_simulation.ok_or_else(|| FmuRefusal::Foreign("it has no co-simulation".into()))?;
@@ -79,17 +78,12 @@ impl Description {
     }
 
     pub(super) fn references(&self) -> Result<References, FmuRefusal> {
-        let variables: HashMap<&str, (u32, usize)> = match self {
+        let variables: HashMap<&str, Variable> = match self {
             Self::Fmi2(description) => fmi2::variables(description),
             Self::Fmi3(description) => fmi3::variables(description),
         };
         References::find(&variables)
     }
-}
-
-fn is_c_identifier(text: &str) -> bool {
-    let word = text.bytes().all(|byte| byte.is_ascii_alphanumeric() || byte == b'_');
-    word && text.len() <= LONGEST_IDENTIFIER && text.bytes().next().is_some_and(|first| !first.is_ascii_digit())
 }
 
 /// Whether a parser that keeps the whole tree, and compares the attributes of an element with each other, may read the text.
@@ -121,19 +115,4 @@ fn within_limits(text: &str) -> Result<(), FmuRefusal> {
 
 fn broken(error: impl std::fmt::Display) -> FmuRefusal {
     FmuRefusal::Description(shown(&error.to_string()))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_c_identifier_has_letters_digits_and_underscores() {
-        for name in ["orthopanel", "_2", "A_b9"] {
-            assert!(is_c_identifier(name), "{name}");
-        }
-        for name in ["", "2a", "../../x", "a-b", "a.b", "ä", "a b", "a\0", &"a".repeat(129)] {
-            assert!(!is_c_identifier(name), "{name:?}");
-        }
-    }
 }

@@ -6,16 +6,20 @@ use std::sync::Arc;
 
 use fmi_rs::fmi2::types::{fmi2False, fmi2Status, fmi2True};
 use fmi_rs::fmi2::{CS, FMU2};
-use fmi_rs::model_description::fmi2::ModelDescription;
+use fmi_rs::model_description::fmi2::{Causality, ModelDescription, ScalarVariable};
 use fmi_rs::sim::SimulationError;
 
-use super::instance::{Instance, References};
+use super::instance::{Instance, References, Variable};
 use super::log::Log;
 
-/// Value reference of each variable by its name; each is one number.
-pub(super) fn variables(description: &ModelDescription) -> HashMap<&str, (u32, usize)> {
-    let variables = description.modelVariables.iter();
-    variables.map(|variable| (variable.name.as_str(), (variable.valueReference, 1))).collect()
+/// What is known of each variable by its name; each is one number.
+pub(super) fn variables(description: &ModelDescription) -> HashMap<&str, Variable> {
+    let known = |variable: &ScalarVariable| Variable {
+        reference: variable.valueReference,
+        numbers: 1,
+        is_signal: matches!(variable.causality, Causality::Input | Causality::Output),
+    };
+    description.modelVariables.iter().map(|variable| (variable.name.as_str(), known(variable))).collect()
 }
 
 pub(super) struct Fmi2<'a> {

@@ -7,15 +7,15 @@ use std::sync::Arc;
 use fmi_rs::fmi3::FMU3;
 use fmi_rs::fmi3::native::NativeLibrary;
 use fmi_rs::fmi3::types::fmi3Status;
-use fmi_rs::model_description::fmi3::{Dimension, ModelDescription, VariableType};
+use fmi_rs::model_description::fmi3::{Causality, Dimension, ModelDescription, VariableType};
 use fmi_rs::sim::SimulationError;
 
-use super::instance::{Instance, References};
+use super::instance::{Instance, References, Variable};
 use super::log::Log;
 
-/// Value reference of each variable by its name, and how many numbers it holds at the start: the most there can be where a
+/// What is known of each variable by its name, with how many numbers it holds at the start: the most there can be where a
 /// size is not told.
-pub(super) fn variables(description: &ModelDescription) -> HashMap<&str, (u32, usize)> {
+pub(super) fn variables(description: &ModelDescription) -> HashMap<&str, Variable> {
     let told = description.modelVariables.iter().filter_map(|variable| match &variable.variableType {
         VariableType::UInt64 { start: Some(start), .. } => Some((variable.valueReference, start.parse().ok()?)),
         _ => None,
@@ -27,7 +27,8 @@ pub(super) fn variables(description: &ModelDescription) -> HashMap<&str, (u32, u
     };
     let variables = description.modelVariables.iter().map(|variable| {
         let numbers = variable.dimensions.iter().map(size).fold(1, usize::saturating_mul);
-        (variable.name.as_str(), (variable.valueReference, numbers))
+        let is_signal = matches!(variable.causality, Causality::Input | Causality::Output);
+        (variable.name.as_str(), Variable { reference: variable.valueReference, numbers, is_signal })
     });
     variables.collect()
 }

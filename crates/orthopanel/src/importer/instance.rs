@@ -30,13 +30,33 @@ pub(super) struct References {
     pub(super) output_count: usize,
 }
 
+/// What is known of a variable.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Variable {
+    pub(super) reference: u32,
+    /// Numbers that it holds.
+    pub(super) numbers: usize,
+    /// Whether it is an input or an output.
+    pub(super) is_signal: bool,
+}
+
 impl References {
-    /// Finds the variables by name, each with how many numbers it holds: one a port, or one array for all ports of a kind.
-    pub(super) fn find(variables: &HashMap<&str, (u32, usize)>) -> Result<Self, FmuRefusal> {
-        let variable = |name: &str| variables.get(name).copied();
+    /// Finds the variables by name: one a port, in the order of their numbers or, where ports have names, of their references; or one
+    /// array for all ports of a kind.
+    pub(super) fn find(variables: &HashMap<&str, Variable>) -> Result<Self, FmuRefusal> {
         let needed = |kind: &str| -> Result<(Vec<u32>, usize), FmuRefusal> {
-            let numbered: Vec<_> = (1..).map_while(|port| variable(&format!("{kind}_{port}"))).collect();
-            let found = if numbered.is_empty() { Vec::from_iter(variable(kind)) } else { numbered };
+            let of_kind =
+                |name: &str| name == kind || name.strip_prefix(kind).is_some_and(|rest| rest.starts_with('_'));
+            let signals = variables.iter().filter(|(name, variable)| variable.is_signal && of_kind(name));
+            let numbered = |(name, variable): (&&str, &Variable)| {
+                let number = name.get(kind.len() + 1..).and_then(|rest| rest.parse::<u32>().ok());
+                (number.unwrap_or(variable.reference), number.is_some(), *variable)
+            };
+            let mut found: Vec<_> = signals.map(numbered).collect();
+            let all_numbered = found.iter().all(|(_, has_number, _)| *has_number);
+            found.sort_by_key(|(number, _, variable)| if all_numbered { *number } else { variable.reference });
+            let found: Vec<_> =
+                found.into_iter().map(|(.., variable)| (variable.reference, variable.numbers)).collect();
             let numbers = found.iter().map(|(_, size)| *size).fold(0, usize::saturating_add);
             if numbers == 0 {
                 return Err(FmuRefusal::Foreign(format!("it has neither a variable {kind}_1 nor an array {kind}")));
@@ -54,7 +74,7 @@ impl References {
         }
         outputs.extend(velocities.into_iter().chain(displacements));
         let missing = || FmuRefusal::Foreign("it has no variable force_linear".into());
-        let (force_linear, _) = variable("force_linear").ok_or_else(missing)?;
+        let force_linear = variables.get("force_linear").ok_or_else(missing)?.reference;
         let (forces, force_count) = needed("force")?;
         Ok(Self { force_linear, forces, force_count, outputs, output_count: 3 * responses })
     }

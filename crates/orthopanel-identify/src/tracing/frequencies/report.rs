@@ -190,6 +190,7 @@ fn panels(test: &ImpactTest, problem: &ListProblem, fit: &ListFit) -> Vec<PanelM
             constants.insert(constant.name.to_owned(), Estimate { value: values[at], std });
         }
         PanelModel {
+            name: None,
             schema: MODEL_SCHEMA.to_owned(),
             piece: named.piece,
             boundary: test.boundary,

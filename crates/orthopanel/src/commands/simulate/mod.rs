@@ -5,6 +5,7 @@ mod on_records;
 use std::path::PathBuf;
 
 use orthopanel_data::limits;
+use orthopanel_export::Residual;
 use serde::Serialize;
 
 use crate::arguments::{ModeArguments, PortArguments};
@@ -153,8 +154,8 @@ fn run_model(arguments: &Arguments) -> Result<(ForceHistory, Vec<Motion>), Comma
     let ports = arguments.ports.needed(&model, path)?;
     let force = driving_force(arguments, ports.forces.len())?;
     let _shown = progress::spinner("driving the model");
-    let seen = model.time_model(arguments.modes.range(), &ports.forces, &ports.responses).in_file(path)?;
-    let motions = time_response::simulate(&seen.modes, &seen.static_remainder, &force).in_file(path)?;
+    let seen = time_response::seen(&model, arguments.modes.range(), &ports, Residual::Attachment).in_file(path)?;
+    let motions = time_response::simulate(&seen.modes, &force).in_file(path)?;
     Ok((force.samples, motions))
 }
 
