@@ -249,6 +249,7 @@ impl PlateByModes {
         let beyond = ratios.last().copied().unwrap_or_default();
         let model = PanelModel {
             schema: MODEL_SCHEMA.to_owned(),
+            name: None,
             piece: self.piece,
             boundary: test.boundary,
             structure: StructureKind::MindlinPlate,
