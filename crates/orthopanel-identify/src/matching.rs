@@ -33,6 +33,9 @@ const ALONE: f64 = 50.0;
 /// The assignment works in whole numbers.
 const UNIT: f64 = 1e4;
 
+/// The number of a pole's partner among predicted modes, if it has one, and their modal assurance criterion.
+pub(crate) type Partner = Option<(usize, Option<f64>)>;
+
 impl MeasuredModes {
     /// Of each pole the flexible mode of a model that it is, if any.
     ///
@@ -69,11 +72,7 @@ impl MeasuredModes {
 
     /// Of each pole the number of its partner among predicted modes, given by $\omega$ and $W_r$ of each record, and their modal
     /// assurance criterion; `apart` is the standard deviation of the logarithm of the frequency of such a mode.
-    pub(crate) fn partners(
-        &self,
-        candidates: &[(f64, Vec<f64>)],
-        apart: impl Fn(usize) -> f64,
-    ) -> Vec<Option<(usize, Option<f64>)>> {
+    pub(crate) fn partners(&self, candidates: &[(f64, Vec<f64>)], apart: impl Fn(usize) -> f64) -> Vec<Partner> {
         self.assigned(candidates, apart, |_| ALONE).0
     }
 
@@ -83,7 +82,7 @@ impl MeasuredModes {
         candidates: &[(f64, Vec<f64>)],
         apart: impl Fn(usize) -> f64,
         alone: impl Fn(usize) -> f64,
-    ) -> (Vec<Option<(usize, Option<f64>)>>, f64) {
+    ) -> (Vec<Partner>, f64) {
         let pairs = |pole: usize| {
             let of = |(index, (omega, shape)): (usize, &(f64, Vec<f64>))| {
                 let assurance = self.assurance(pole, shape);

@@ -5,6 +5,7 @@ use faer::{Mat, Side};
 use orthopanel_model::{Boundary, MindlinPlate, ModelError, Piece, Place, Structure, ritz_modes};
 use rayon::prelude::*;
 
+use crate::matching::Partner;
 use crate::measured::MeasuredModes;
 use crate::model_error::frequency_prior;
 
@@ -328,7 +329,7 @@ impl PlateStart<'_> {
             let seen: Vec<(f64, Vec<f64>)> = modes.iter().map(|mode| mode.seen.clone()).collect();
             let apart = (TIMES * size).max(NEAREST);
             let (partners, _) = self.measured.assigned(&seen, |_| apart, |pole| self.alone(pole));
-            let row = |(pole, partner): (usize, &Option<(usize, Option<f64>)>)| {
+            let row = |(pole, partner): (usize, &Partner)| {
                 let mode = &modes[partner.as_ref()?.0];
                 let left = (self.measured.poles[pole].angular_frequency / mode.seen.0).ln();
                 let noise = self.measured.covariance[(pole, pole)] + BASIS * BASIS;

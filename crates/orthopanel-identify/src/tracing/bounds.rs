@@ -62,7 +62,7 @@ fn of_effect(on: &Switched, piece: &Piece, untold: &[&str]) -> Option<String> {
             return None;
         }
         // A parameter that ended on its bound was left there, and is no longer free: so all values are looked at.
-        let [low, high] = ends_of_range(parameter.scale, parameter.range(piece), value);
+        let [low, high] = ends_of_range(parameter.scale, parameter.range_looked_for(piece), value);
         let ends = low || high && !is_rigid;
         ends.then(|| format!("{} of {}", parameter.name, on.effect.id()))
     })

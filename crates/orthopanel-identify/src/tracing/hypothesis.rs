@@ -93,7 +93,7 @@ impl Switched {
     ) -> Self {
         let mut switched = Self { effect, values: vec![], free: vec![] };
         for (index, parameter) in effect.parameters().iter().enumerate() {
-            let range = parameter.range(piece);
+            let range = parameter.range_looked_for(piece);
             let usual = || parameter.held_at.or_else(|| parameter.starts(piece).first().copied()).unwrap_or(0.0);
             let value = start(parameter.name).unwrap_or_else(usual).clamp(range.0, range.1);
             let held = fixed(parameter.name) || parameter.held_at.is_some() || parameter.scale == Scale::Index;
@@ -109,6 +109,19 @@ impl Switched {
             }
         }
         switched
+    }
+
+    /// The same as declared: at any value that the effect may have.
+    fn wherever(mut self, piece: &Piece, told: impl Fn(&str) -> Option<f64>) -> Self {
+        let parameters = self.effect.parameters();
+        for free in &mut self.free {
+            free.range = parameters[free.parameter].range(piece);
+        }
+        if self.values.len() == parameters.len() {
+            let told = parameters.iter().map(|parameter| told(parameter.name));
+            self.values.iter_mut().zip(told).for_each(|(value, told)| *value = told.unwrap_or(*value));
+        }
+        self
     }
 
     /// Frees, from where they start, the parameters that the catalogue keeps at zero unless they pay; whether there are any.
@@ -219,7 +232,8 @@ impl Hypothesis {
             let names = effect.parameters().iter().map(|parameter| parameter.name);
             let told: BTreeMap<&str, f64> =
                 names.zip(values).filter_map(|(name, value)| Some((name, value?))).collect();
-            Switched::new(effect, piece, records, |name| told.get(name).copied(), |name| told.contains_key(name))
+            let value = |name: &str| told.get(name).copied();
+            Switched::new(effect, piece, records, value, |name| told.contains_key(name)).wherever(piece, value)
         };
         Ok(Self { effects: declared(test, piece, records)?.into_iter().map(switched).collect() })
     }

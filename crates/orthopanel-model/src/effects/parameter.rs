@@ -11,6 +11,8 @@ pub struct EffectParameter {
     pub unit: &'static str,
     low: f64,
     high: f64,
+    /// Where it is looked for in an effect that nobody declared, where that is narrower.
+    looked_for: Option<(f64, f64)>,
     starts: &'static [f64],
     relative_to: Reference,
     /// How a search should step.
@@ -81,6 +83,7 @@ impl EffectParameter {
             unit,
             low,
             high,
+            looked_for: None,
             starts,
             relative_to,
             scale,
@@ -92,6 +95,11 @@ impl EffectParameter {
 
     pub(super) const fn log(name: &'static str, unit: &'static str, range: [f64; 2], starts: &'static [f64]) -> Self {
         Self { scale: Scale::Log, ..Self::linear(name, unit, range, starts) }
+    }
+
+    /// Looked for between these where the effect is not declared.
+    pub(super) const fn looked_for_in(self, [low, high]: [f64; 2]) -> Self {
+        Self { looked_for: Some((low, high)), ..self }
     }
 
     /// Held at a value unless it is asked for.
@@ -138,6 +146,12 @@ impl EffectParameter {
     pub fn range(&self, piece: &Piece) -> (f64, f64) {
         let scale = self.relative_to.of(piece);
         (self.low * scale, self.high * scale)
+    }
+
+    /// The same for an effect that is not declared.
+    pub fn range_looked_for(&self, piece: &Piece) -> (f64, f64) {
+        let scale = self.relative_to.of(piece);
+        self.looked_for.map_or_else(|| self.range(piece), |(low, high)| (low * scale, high * scale))
     }
 
     /// Where a search should start, the likeliest first.

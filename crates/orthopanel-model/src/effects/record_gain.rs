@@ -1,6 +1,6 @@
 //! `record-gain`.
 
-use super::gain::ANY_FACTOR;
+use super::gain::{ANY_FACTOR, NO_UNIT};
 use super::{Action, ChannelFactor, Effect, EffectParameter, EffectSetting, Owner};
 use crate::ModelError;
 
@@ -10,8 +10,10 @@ use crate::ModelError;
 #[derive(Debug, Clone, Copy)]
 pub(super) struct RecordGain;
 
-const PARAMETERS: [EffectParameter; 2] =
-    [EffectParameter::log("gain", "1", ANY_FACTOR, &[0.9, 1.1]).sized(1.0, 1.14), EffectParameter::record()];
+const PARAMETERS: [EffectParameter; 2] = [
+    EffectParameter::log("gain", "1", ANY_FACTOR, &[0.9, 1.1]).looked_for_in(NO_UNIT).sized(1.0, 1.14),
+    EffectParameter::record(),
+];
 
 impl Effect for RecordGain {
     fn id(&self) -> &'static str {
