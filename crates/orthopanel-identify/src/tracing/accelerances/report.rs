@@ -61,7 +61,9 @@ pub(super) fn report(
         Readable(100.0 * with)
     ));
     let scale = effects.get(search.declared.saturating_sub(1)).filter(|_| free_scale);
-    // No sensor is off by so much: what `identify` refuses for it is told by its name.
+    let on_bound = bounds::on_bound(&chosen.state.hypothesis, search.declared, &test.pieces[0].piece, &[]);
+    let verdict = verdict(search, found, on_bound.is_some());
+    // No sensor is off by so much: what `identify` refuses for it is told by its name, where it explains the records.
     let mut is_told = false;
     if let Some(scale) = scale {
         let value = scale.parameters.first().and_then(|parameter| parameter.values.first());
@@ -69,15 +71,15 @@ pub(super) fn report(
             "all records together are {:.3} times what mass and constants make of them: their calibration, or the mass",
             value.map_or(1.0, |value| value.value)
         ));
-        is_told = value.is_some_and(|value| value.value.ln().abs() > CALIBRATED.ln());
+        let is_far = value.is_some_and(|value| value.value.ln().abs() > CALIBRATED.ln());
+        is_told = is_far && verdict != Verdict::Unexplained;
         if let Some(at) = removed.iter().position(|removed| removed.id == scale.id && !is_told) {
             removed.remove(at);
         }
     }
     let floor = problem.between.noise_floor();
-    let on_bound = bounds::on_bound(&chosen.state.hypothesis, search.declared, &test.pieces[0].piece, &[]);
     notes.extend(on_bound.as_deref().map(bounds::note));
-    let verdict = match verdict(search, found, on_bound.is_some()) {
+    let verdict = match verdict {
         Verdict::NothingMissing if is_told => Verdict::Explained,
         other => other,
     };
