@@ -69,9 +69,11 @@ fn of_once(test: &ImpactTest, lists: usize, settings: Settings) -> Result<Identi
     }
 }
 
-/// A declared plate of one piece by the modes that its records show; `None` where these cannot be had: the fit of the lines says what is wrong.
+/// A declared plate of one piece by the modes that its records show; `None` where these cannot be had, or where constants are held, which may be
+/// wrong: the fit of the lines says what contradicts them.
 fn plate_by_modes(test: &ImpactTest) -> Option<PlateByModes> {
-    let is_one_plate = test.structure == Some(StructureKind::MindlinPlate) && test.pieces.len() == 1;
+    let is_one_plate =
+        test.structure == Some(StructureKind::MindlinPlate) && test.pieces.len() == 1 && test.constants.is_empty();
     if is_one_plate { PlateByModes::of(test).ok().flatten() } else { None }
 }
 
