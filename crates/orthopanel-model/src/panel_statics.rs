@@ -6,8 +6,8 @@ use crate::effects::{CoupledPanel, FarModes, Flexibilities, MOST_SUMMED, SPARE_M
 use crate::mindlin_plate::FixedPlate;
 use crate::time_model::CORE;
 use crate::{
-    EffectSetting, MindlinPlate, ModalModel, ModeRange, ModelError, Motion, PanelModel, Place, StaticFlexibility,
-    Structure, StructureKind, static_deflections,
+    EffectSetting, MindlinPlate, ModelError, Motion, PanelModel, Place, StaticFlexibility, Structure, StructureKind,
+    static_deflections,
 };
 
 /// Modes for which the basis of a plate's static part is chosen: it holds some four times as many.
@@ -72,32 +72,6 @@ impl PanelModel {
         let mut relaxed = self.clone();
         relaxed.effects.retain(|entry| entry.id != CORE);
         relaxed
-    }
-
-    /// The modes of a range, as seen from these ports, and [`PanelModel::static_flexibility`] between these, in one.
-    pub(crate) fn modes_and_flexibility(
-        &self,
-        range: ModeRange,
-        forces: &[Place],
-        responses: &[Place],
-    ) -> Result<(ModalModel, Flexibilities), ModelError> {
-        let count = match range.checked(self.structure)? {
-            ModeRange::Count(count) if !self.effects.is_empty() && count <= MOST_SUMMED => count,
-            _ => {
-                let modes = self.modal_model(range, forces, responses)?;
-                let all = self.static_flexibility(modes.flexible().count(), forces, responses)?;
-                return Ok((modes, all));
-            }
-        };
-        let (values, effects) = self.with_effects()?;
-        let setting = EffectSetting::of_panel(&self.piece, self.boundary);
-        let even = self.even(&setting, count)?;
-        let parts = self.on_even(&setting, &even, &values, &effects);
-        let (modes, modified, plate) = CoupledPanel::modes_and_flexibility(parts, count, forces, responses)?;
-        let modes: Vec<_> = modes.into_iter().map(crate::PanelMode::of_coupled).collect();
-        let modes = self.as_seen(&modes, forces, responses)?;
-        let all = self.on_large_basis(modified, plate, (&values, count), forces, responses)?;
-        Ok((modes, finite(all)?))
     }
 
     /// Of a plate, whose effects are seen on the small basis of its few modes: what they change there, beside all modes of

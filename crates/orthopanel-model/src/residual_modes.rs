@@ -17,7 +17,6 @@ use faer::Mat;
 
 use crate::dense::{product, symmetric_eigen};
 use crate::effects::{FarMode, FarModes, Flexibilities};
-use crate::modal_model::add_flexibility;
 use crate::{Mode, ModelError, PanelModel, Place, TimeModel};
 
 /// Residual modes to be joined to the modes of a [`TimeModel`].
@@ -51,7 +50,7 @@ const UNMOVED: f64 = 1e-16;
 
 impl TimeModel {
     /// With the residual modes of some places behind the others, as seen from these ports: two of each place, less those that others
-    /// make. The static remainder is what they leave: nothing, under forces at the places.
+    /// make. A force at one of the places has its whole static answer in what is returned.
     ///
     /// # Errors
     /// As [`PanelModel::static_flexibility`], and [`ModelError::OffPiece`] for a place off the piece.
@@ -88,14 +87,9 @@ impl TimeModel {
             at_responses: at_forces.split_off(forces.len()),
             at_forces,
         });
-        let residual: Vec<Mode> = residual.collect();
-        let mut static_remainder = self.static_remainder;
-        for mode in &residual {
-            add_flexibility(&mut static_remainder, -1.0, mode.angular_frequency, (&mode.at_responses, &mode.at_forces));
-        }
         let mut modes = self.modes;
-        modes.join(residual);
-        Ok(Self { modes: modes.checked()?, residual: self.residual + count, static_remainder, ..self })
+        modes.join(residual.collect());
+        Ok(Self { modes: modes.checked()?, residual: self.residual + count, ..self })
     }
 }
 

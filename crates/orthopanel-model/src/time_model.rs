@@ -14,9 +14,6 @@ pub struct TimeModel {
     pub residual: usize,
     /// How the core's modulus is fitted, where there is one.
     pub core: Option<CoreFit>,
-    /// What the flexible modes that these leave out add to displacements at rest, $\sum W_rW_f/\omega^2$ \[m/N\]: a row a
-    /// response, a column a force. Beside a core that relaxes what its internal variables and modes together lack there.
-    pub static_remainder: Vec<Vec<f64>>,
 }
 
 impl PanelModel {
@@ -34,10 +31,9 @@ impl PanelModel {
         if let Some(model) = self.relaxing_model(range, forces, responses)? {
             return Ok(model);
         }
-        let (modes, all) = self.modes_and_flexibility(range, forces, responses)?;
+        let modes = self.modal_model(range, forces, responses)?;
         let flexible = modes.flexible().count();
-        let static_remainder = modes.left_of_flexibility(all);
-        Ok(TimeModel { modes, flexible, residual: 0, core: None, static_remainder })
+        Ok(TimeModel { modes, flexible, residual: 0, core: None })
     }
 
     /// What the flexible modes that these leave out add to displacements at rest, $\sum W_rW_f/\omega^2$ \[m/N\]: a row a response,
@@ -86,8 +82,7 @@ impl PanelModel {
         let Some((modes, fit)) = found else { return Ok(None) };
         let modes: Vec<_> = modes.into_iter().map(crate::PanelMode::of_coupled).collect();
         let modes = self.as_seen(&modes, forces, responses)?;
-        let static_remainder = modes.left_of_flexibility(self.static_flexibility(flexible, forces, responses)?);
-        Ok(Some(TimeModel { modes, flexible, residual: 0, core: Some(fit), static_remainder }))
+        Ok(Some(TimeModel { modes, flexible, residual: 0, core: Some(fit) }))
     }
 
     /// Flexible modes without effects up to a frequency \[Hz\]; of a plate at most as many as its largest basis resolves.

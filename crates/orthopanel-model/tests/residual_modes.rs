@@ -96,8 +96,10 @@ fn val_static_answers_are_whole() {
         let responses = places(&[[0.2, 0.03], at[0]]);
         let before = panel.time_model(ModeRange::Count(6), &forces, &responses).unwrap();
         let after = with_residual(&panel, 6, (&forces, &responses), None);
-        let size = before.static_remainder.iter().flatten().fold(0.0, |most: f64, value| most.max(value.abs()));
-        for left in after.static_remainder.iter().flatten() {
+        let all = panel.static_flexibility(6, &forces, &responses).unwrap();
+        let [lacking, left] = [&before, &after].map(|model| model.modes.left_of_flexibility(all.clone()));
+        let size = lacking.iter().flatten().fold(0.0, |most: f64, value| most.max(value.abs()));
+        for left in left.iter().flatten() {
             assert!(left.abs() < tolerance * size, "{of} {effects}: {left:e} of {size:e}");
         }
         assert_eq!(after.residual, 2 * forces.len());

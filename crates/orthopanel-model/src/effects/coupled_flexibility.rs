@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use super::coupled_modes::CoupledMode;
 use super::coupled_panel::{CoupledPanel, ModifiedStructure, PanelWithEffects};
 use super::low_modes::FarAnswers;
 use crate::modal_model::add_flexibility;
@@ -14,9 +13,6 @@ pub(crate) const MOST_SUMMED: usize = 60;
 
 /// A row a response, a column a force \[m/N\].
 pub(crate) type Flexibilities = Vec<Vec<f64>>;
-
-/// Modes, what all together leave at rest, and the plate that they stand on, where nothing is spread over it.
-pub(crate) type ModesAndFlexibility = (Vec<CoupledMode>, Flexibilities, Option<Arc<MindlinPlate>>);
 
 impl CoupledPanel {
     /// $\sum_m W_m(r)W_m(f)/\omega_m^2$ \[m/N\] over all flexible modes of the panel with its effects.
@@ -32,25 +28,6 @@ impl CoupledPanel {
         let modified = ModifiedStructure::for_modes(parts, count.min(MOST_SUMMED))?;
         let ports: Vec<Place> = forces.iter().chain(responses).copied().collect();
         modified.static_flexibility(&modified.far_answers(&ports)?, parts.damping, [forces, responses])
-    }
-
-    /// [`CoupledPanel::modes`] and [`CoupledPanel::static_flexibility`] in one, and the plate on whose basis they are found, where
-    /// nothing is spread over it.
-    ///
-    /// # Errors
-    /// As [`CoupledPanel::modes`].
-    pub(crate) fn modes_and_flexibility(
-        parts: PanelWithEffects,
-        count: usize,
-        forces: &[Place],
-        responses: &[Place],
-    ) -> Result<ModesAndFlexibility, ModelError> {
-        let modified = ModifiedStructure::for_modes(parts, count)?;
-        let ports: Vec<Place> = forces.iter().chain(responses).copied().collect();
-        let answers = modified.far_answers(&ports)?;
-        let flexibility = modified.static_flexibility(&answers, parts.damping, [forces, responses])?;
-        let (panel, system, found) = modified.solve(&answers, parts.damping, count)?;
-        Ok((panel.modified(&system, found, count), flexibility, modified.even_plate()))
     }
 }
 
