@@ -131,7 +131,7 @@ impl AccelerationBands {
 
 /// The modes that are kept, and the residual ones.
 fn parts(resource: &Resource) -> Result<(ModalModel, ModalModel), ModelError> {
-    let model = resource.model();
+    let model = resource.panel_alone()?;
     let (kept, residual) = model.modes().split_at(model.modes().len() - resource.residual_modes());
     let of = |modes: &[Mode]| ModalModel::new(model.force_count(), model.response_count(), modes.to_vec());
     Ok((of(kept)?, of(residual)?))
@@ -161,7 +161,7 @@ fn band(lines: &[Line]) -> Band {
 
 #[cfg(test)]
 mod tests {
-    use orthopanel_fmu::Residual;
+    use orthopanel_fmu::{Connections, Residual};
     use orthopanel_model::{Place, Ports};
 
     use super::*;
@@ -177,7 +177,8 @@ mod tests {
         let panel = PanelModel::from_json(text).unwrap();
         let at = |x| Place { x, y: 0.0 };
         let ports = Ports { forces: vec![at(-0.3)], responses: vec![at(-0.3)] };
-        let (resource, fit) = Resource::of_panel(&panel, ModeRange::Count(5), ports, Residual::None).unwrap();
+        let (resource, fit) =
+            Resource::of_panel(&panel, ModeRange::Count(5), ports, Residual::None, Connections::default()).unwrap();
         assert!(fit.unwrap().error < 1e-3, "small beside a hundredth");
         let told = AccelerationBands::of(&panel, &resource).unwrap().within_one_percent(0, 0).of_octave.unwrap();
         let whole = panel.relaxing_lines(ModeRange::Count(30), &[at(-0.3)], &[at(-0.3)]).unwrap().unwrap();

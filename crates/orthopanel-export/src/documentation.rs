@@ -3,14 +3,19 @@
 use std::fmt::Write as _;
 
 use orthopanel_fmu::{GENERATOR, Resource, Variable};
-use orthopanel_model::printable;
+use orthopanel_model::{ModalModel, printable};
 
 use crate::acceleration_band::Band;
 use crate::origin::Origin;
 use crate::{FmiVersion, FmuOptions};
 
 /// The page: variables with their places, modes, how the force is held, and where the panel comes from.
-pub(crate) fn write(resource: &Resource, from: Option<&Origin<'_>>, options: &FmuOptions) -> String {
+pub(crate) fn write(
+    resource: &Resource,
+    alone: &ModalModel,
+    from: Option<&Origin<'_>>,
+    options: &FmuOptions,
+) -> String {
     let mut page = String::from("<!DOCTYPE html>\n<html lang=\"en\">\n<head><meta charset=\"utf-8\">\n");
     page += STYLE;
     page += "<title>";
@@ -40,7 +45,7 @@ pub(crate) fn write(resource: &Resource, from: Option<&Origin<'_>>, options: &Fm
     page += MODES;
     page += INITIAL_STATE;
     page += "</p>\n<table>\n<tr><th>mode</th><th>frequency [Hz]</th><th>damping ratio</th></tr>\n";
-    let modes = resource.model().modes();
+    let modes = alone.modes();
     for (index, mode) in modes.iter().enumerate() {
         let (number, frequency) = (index + 1, mode.angular_frequency / std::f64::consts::TAU);
         let kind = if index + resource.residual_modes() < modes.len() { "" } else { ", residual" };
@@ -49,8 +54,8 @@ pub(crate) fn write(resource: &Resource, from: Option<&Origin<'_>>, options: &Fm
         let _ = writeln!(page, "<tr><td>{number}{kind}</td><td>{frequency:.3}</td><td>{zeta}</td></tr>");
     }
     page += "</table>\n";
-    page += &residual(resource);
-    page += &mounting(resource);
+    page += &residual(resource, alone);
+    page += &mounting(resource, alone);
     page += REFERENCE;
     if let Some(from) = from {
         page += &left_out(resource, from);
@@ -61,8 +66,8 @@ pub(crate) fn write(resource: &Resource, from: Option<&Origin<'_>>, options: &Fm
 }
 
 /// What stands for the modes left out.
-fn residual(resource: &Resource) -> String {
-    let modes = resource.model().modes();
+fn residual(resource: &Resource, alone: &ModalModel) -> String {
+    let modes = alone.modes();
     let residual = modes.get(modes.len() - resource.residual_modes()..).unwrap_or_default();
     let (Some(first), Some(last)) = (residual.first(), residual.last()) else { return NO_RESIDUAL.into() };
     let [low, high] = [first, last].map(|mode| mode.angular_frequency / std::f64::consts::TAU);
@@ -74,9 +79,9 @@ fn residual(resource: &Resource) -> String {
 }
 
 /// How a mount is joined to a force, and the step at which it is stable.
-fn mounting(resource: &Resource) -> String {
+fn mounting(resource: &Resource, alone: &ModalModel) -> String {
     let mut text = format!("{MOUNTING}<table>\n<tr><th>force</th><th>m [kg]</th></tr>\n");
-    let modes = resource.model().modes();
+    let modes = alone.modes();
     for port in 0..resource.ports().forces.len() {
         let yielding: f64 = modes.iter().filter_map(|mode| mode.at_forces.get(port)).map(|shape| shape * shape).sum();
         let mass = if yielding > 0.0 { format!("{:.3e}", yielding.recip()) } else { "does not move".into() };

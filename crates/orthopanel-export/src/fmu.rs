@@ -3,8 +3,10 @@
 use std::io::Write;
 use std::path::Path;
 
-use orthopanel_fmu::{FmuError, PortNames, RESOURCE_FILE, Residual, Resource, VariableTable, content_token};
-use orthopanel_model::{ModalModel, ModeRange, PanelModel, Ports, is_identifier};
+use orthopanel_fmu::{
+    Connections, FmuError, PortNames, RESOURCE_FILE, Residual, Resource, VariableTable, content_token,
+};
+use orthopanel_model::{CoreFit, ModalModel, ModeRange, PanelModel, Ports, is_identifier};
 
 use crate::acceleration_band::AccelerationBands;
 use crate::archive::{Entry, pack};
@@ -24,7 +26,7 @@ pub enum FmiVersion {
 }
 
 /// How an FMU is made.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct FmuOptions {
     /// Model name, model identifier and file name of the library: importers tell FMUs apart by it, so two in one vehicle have two. A name
     /// as in C.
@@ -39,6 +41,8 @@ pub struct FmuOptions {
     pub names: PortNames,
     /// What stands for the modes left out.
     pub residual: Residual,
+    /// Mounts, and inputs and outputs beside those of the ports.
+    pub connections: Connections,
     /// Libraries of other platforms, or one in place of this platform's own.
     pub libraries: Vec<Library>,
 }
@@ -52,6 +56,7 @@ impl Default for FmuOptions {
             arrays: false,
             names: PortNames::default(),
             residual: Residual::default(),
+            connections: Connections::default(),
             libraries: Vec::new(),
         }
     }
@@ -65,6 +70,33 @@ const LICENSES: [(&str, &str); 2] = [
     ("documentation/licenses/license.txt", include_str!("../licenses/license.txt")),
     ("documentation/licenses/rust-standard-library.html", include_str!("../licenses/rust-standard-library.html")),
 ];
+
+/// What modes an FMU has.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FmuModes {
+    /// Without strain, by themselves, before mounts hold them.
+    pub rigid: usize,
+    /// Flexible ones of the panel that are kept.
+    pub flexible: usize,
+    /// The highest frequency kept \[Hz\]; beside a core the end of the band in which it is fitted.
+    pub highest_hz: f64,
+    /// Frequencies of the residual modes \[Hz\].
+    pub residual_hz: Vec<f64>,
+    /// How a core's modulus is fitted, where one relaxes.
+    pub core: Option<CoreFit>,
+}
+
+impl FmuModes {
+    fn of(resource: &Resource, alone: &ModalModel, core: Option<CoreFit>) -> Self {
+        let mut hz: Vec<f64> =
+            alone.modes().iter().map(|mode| mode.angular_frequency / std::f64::consts::TAU).collect();
+        let residual_hz = hz.split_off(hz.len() - resource.residual_modes());
+        let rigid = hz.iter().filter(|frequency| **frequency == 0.0).count();
+        // Beyond a core's band are its internal variables' own.
+        let highest_hz = core.as_ref().map_or_else(|| hz.last().copied().unwrap_or(0.0), |fit| fit.band[1]);
+        Self { rigid, flexible: resource.flexible_modes(), highest_hz, residual_hz, core }
+    }
+}
 
 /// An FMU of a modal model, for co-simulation and model exchange.
 ///
@@ -87,17 +119,21 @@ pub struct Fmu {
     pub(crate) table: VariableTable,
     /// Step and stop time \[s\].
     pub(crate) experiment: (f64, f64),
-    version: FmiVersion,
+    modes: FmuModes,
+    /// As scalars, and how it is written.
+    pub(crate) resource_in_scalars: Resource,
+    pub(crate) options: FmuOptions,
     model_description: String,
     resource: String,
     documentation: String,
-    reference: Reference,
+    pub(crate) reference: Reference,
     terminals: String,
     libraries: Vec<(String, Vec<u8>)>,
 }
 
 impl Fmu {
-    /// Puts the parts together; nothing is written yet. In the FMU nothing of the panel can be set.
+    /// Puts the parts together; nothing is written yet. In the FMU nothing of the panel can be set, and of the options' connections there
+    /// are none.
     ///
     /// # Errors
     /// [`ExportError::NoPort`], [`ExportError::Name`], and [`ExportError::Resource`] where `ports` has other numbers
@@ -123,29 +159,38 @@ impl Fmu {
     ) -> Result<Self, ExportError> {
         check(&ports, options)?;
         let (alone, _) = panel.panel_alone().map_err(FmuError::from)?;
-        let (resource, core) = Resource::of_panel(&alone, range, ports, options.residual)?;
+        let (resource, core) = Resource::of_panel(&alone, range, ports, options.residual, options.connections.clone())?;
         let bands = AccelerationBands::of(&alone, &resource).map_err(FmuError::from)?;
         Self::of_resource(resource, Some(Origin { panel, core, bands }), options)
     }
 
     fn of_resource(resource: Resource, origin: Option<Origin<'_>>, options: &FmuOptions) -> Result<Self, ExportError> {
-        let resource = resource.with_names(options.names.clone())?;
+        let resource_in_scalars = resource.with_names(options.names.clone())?;
+        let resource = resource_in_scalars.clone();
         let resource = &if options.arrays { resource.in_arrays() } else { resource };
         let text = resource.to_json();
         let token = content_token(text.as_bytes());
         let experiment = model_description::experiment(resource);
+        let alone = resource.panel_alone().map_err(FmuError::from)?;
         Ok(Self {
             name: options.name.clone(),
             table: resource.variables(),
             experiment,
-            version: options.version,
+            modes: FmuModes::of(resource, &alone, origin.as_ref().and_then(|origin| origin.core.clone())),
             model_description: model_description::write(resource, options, &token)?,
-            documentation: documentation::write(resource, origin.as_ref(), options),
+            documentation: documentation::write(resource, &alone, origin.as_ref(), options),
             reference: Reference::of(resource, experiment.0).map_err(FmuError::from)?,
             terminals: terminals::write(resource)?,
             libraries: library::all(options, &options.libraries)?,
             resource: text,
+            resource_in_scalars,
+            options: options.clone(),
         })
+    }
+
+    /// What modes it has.
+    pub fn modes(&self) -> &FmuModes {
+        &self.modes
     }
 
     /// Text of `modelDescription.xml`.
@@ -167,13 +212,13 @@ impl Fmu {
             text("documentation/Reference.opt", self.reference.settings.as_bytes()),
         ];
         entries.extend(LICENSES.iter().map(|(path, content)| text(path, content.as_bytes())));
-        entries.extend(match self.version {
+        entries.extend(match self.options.version {
             FmiVersion::Fmi2 => vec![text("model.png", ICON_PNG)],
             FmiVersion::Fmi3 => {
                 vec![text("terminalsAndIcons/icon.png", ICON_PNG), text("terminalsAndIcons/icon.svg", ICON_SVG)]
             }
         });
-        if self.version == FmiVersion::Fmi3 {
+        if self.options.version == FmiVersion::Fmi3 {
             entries.push(text("terminalsAndIcons/terminalsAndIcons.xml", self.terminals.as_bytes()));
         }
         entries.extend(self.libraries.iter().map(|(path, content)| Entry {

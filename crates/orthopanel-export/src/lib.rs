@@ -14,8 +14,8 @@ mod ssp;
 mod terminals;
 
 pub use error::ExportError;
-pub use fmu::{FmiVersion, Fmu, FmuOptions};
+pub use fmu::{FmiVersion, Fmu, FmuModes, FmuOptions};
 pub use library::{Library, Platform, is_carried_library};
-pub use orthopanel_fmu::{PortNames, Residual};
+pub use orthopanel_fmu::{Connections, FmuError, Mount, PortNames, Residual};
 pub use samples::parameter_samples;
 pub use ssp::ParameterValues;

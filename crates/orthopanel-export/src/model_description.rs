@@ -5,7 +5,7 @@ mod fmi3;
 
 use std::io;
 
-use orthopanel_fmu::{Dependency, Factor, GENERATOR, LOG_CATEGORIES, Resource, UNITS, Variable, VariableTable};
+use orthopanel_fmu::{Dependency, Factor, GENERATOR, LOG_CATEGORIES, Resource, UNITS, Unit, Variable, VariableTable};
 use orthopanel_model::printable;
 use quick_xml::Writer;
 use quick_xml::events::{BytesDecl, Event};
@@ -19,6 +19,7 @@ struct Description<'a> {
     options: &'a FmuOptions,
     token: &'a str,
     variables: VariableTable,
+    interfaces: Interfaces,
     /// Step size and stop time that suit the model \[s\].
     experiment: (f64, f64),
 }
@@ -44,23 +45,39 @@ enum Unknown {
     Derivative,
 }
 
+/// What the FMU offers, with the attributes of each.
+pub(crate) type Interfaces = Vec<(&'static str, &'static [(&'static str, &'static str)])>;
+
 /// The text of the file.
 pub(crate) fn write(resource: &Resource, options: &FmuOptions, token: &str) -> Result<String, ExportError> {
-    let description = Description { options, token, variables: resource.variables(), experiment: experiment(resource) };
+    let interfaces = match options.version {
+        FmiVersion::Fmi2 => fmi2::INTERFACES.to_vec(),
+        FmiVersion::Fmi3 => fmi3::INTERFACES.to_vec(),
+    };
+    write_with(resource.variables(), (interfaces, &[]), (options, token, experiment(resource)))
+}
+
+/// The same of these variables and interfaces; `files` are the sources of the co-simulation, which FMI 2.0 lists here.
+pub(crate) fn write_with(
+    variables: VariableTable,
+    (interfaces, files): (Interfaces, &[&str]),
+    (options, token, experiment): (&FmuOptions, &str, (f64, f64)),
+) -> Result<String, ExportError> {
+    let description = Description { options, token, variables, interfaces, experiment };
     let mut xml = Writer::new_with_indent(Vec::new(), b' ', 2);
     let written = xml
         .write_event(Event::Decl(BytesDecl::new("1.0", Some("UTF-8"), None)))
-        .and_then(|()| root(&mut xml, &description));
+        .and_then(|()| root(&mut xml, &description, files));
     written.map_err(|error| ExportError::Assemble(error.to_string()))?;
     let text = String::from_utf8(xml.into_inner()).map_err(|error| ExportError::Assemble(error.to_string()))?;
     Ok(text + "\n")
 }
 
 /// All elements; the versions differ in attributes, in how a variable is written and in the model structure.
-fn root(xml: &mut Xml, description: &Description) -> io::Result<()> {
-    let (version, token, interfaces, last) = match description.options.version {
-        FmiVersion::Fmi2 => ("2.0", "guid", fmi2::INTERFACES, Some(("numberOfEventIndicators", "0"))),
-        FmiVersion::Fmi3 => ("3.0", "instantiationToken", fmi3::INTERFACES, None),
+fn root(xml: &mut Xml, description: &Description, files: &[&str]) -> io::Result<()> {
+    let (version, token, last) = match description.options.version {
+        FmiVersion::Fmi2 => ("2.0", "guid", Some(("numberOfEventIndicators", "0"))),
+        FmiVersion::Fmi3 => ("3.0", "instantiationToken", None),
     };
     let (name, told) = (printable(&description.options.name), printable(&description.options.description));
     let attributes = [
@@ -73,11 +90,16 @@ fn root(xml: &mut Xml, description: &Description) -> io::Result<()> {
     ];
     xml.create_element("fmiModelDescription").with_attributes(attributes.into_iter().chain(last)).write_inner_content(
         |xml| {
-            for (element, flags) in interfaces {
+            for (element, flags) in &description.interfaces {
                 let attributes = [("modelIdentifier", &*name)].into_iter().chain(flags.iter().copied());
-                xml.create_element(element).with_attributes(attributes).write_empty()?;
+                let element = xml.create_element(*element).with_attributes(attributes);
+                if files.is_empty() {
+                    element.write_empty()?;
+                } else {
+                    element.write_inner_content(|xml| sources(xml, files))?;
+                }
             }
-            units(xml)?;
+            units(xml, &description.variables)?;
             log_categories(xml)?;
             default_experiment(xml, description.experiment)?;
             match description.options.version {
@@ -98,6 +120,15 @@ fn root(xml: &mut Xml, description: &Description) -> io::Result<()> {
             Ok(())
         },
     )?;
+    Ok(())
+}
+
+fn sources(xml: &mut Xml, files: &[&str]) -> io::Result<()> {
+    xml.create_element("SourceFiles").write_inner_content(|xml| {
+        files
+            .iter()
+            .try_for_each(|file| xml.create_element("File").with_attribute(("name", *file)).write_empty().map(drop))
+    })?;
     Ok(())
 }
 
@@ -171,9 +202,14 @@ fn decimal(digit: u8, exponent: i32) -> f64 {
     format!("{digit}e{exponent}").parse().unwrap_or(f64::from(digit))
 }
 
-fn units(xml: &mut Xml) -> io::Result<()> {
+/// Units that only an FMU with a variable in them defines; all others stand in each.
+const OF_CONNECTIONS: [&str; 6] = ["N/m", "N.s/m", "N.m", "rad", "rad/s", "rad/s2"];
+
+fn units(xml: &mut Xml, variables: &VariableTable) -> io::Result<()> {
+    let used = |unit: &Unit| variables.variables().iter().any(|variable| variable.unit == Some(unit.name));
+    let defined = UNITS.into_iter().filter(|unit| !OF_CONNECTIONS.contains(&unit.name) || used(unit));
     xml.create_element("UnitDefinitions").write_inner_content(|xml| {
-        for unit in UNITS {
+        for unit in defined {
             let element = xml.create_element("Unit").with_attribute(("name", unit.name));
             if unit.exponents.is_empty() {
                 element.write_empty()?;

@@ -20,7 +20,7 @@ pub(crate) struct Reference {
 }
 
 impl Reference {
-    /// Co-simulation by this step \[s\]: `force_1` is set at the start of each step and held over it, all other forces are zero. A row has the
+    /// Co-simulation by this step \[s\]: `force_1` is set at the start of each step and held over it, all other inputs are zero. A row has the
     /// force of the step that begins there and the outputs at its start, before that force is set.
     ///
     /// # Errors
@@ -29,7 +29,7 @@ impl Reference {
         let table = resource.variables();
         let is_output = |variable: &&Variable| variable.quantity.causality() == "output";
         let outputs: Vec<&Variable> = table.variables().iter().filter(is_output).collect();
-        let force = table.variables().iter().find(|variable| variable.quantity == Quantity::Force(0));
+        let force = table.variables().iter().find(|variable| variable.quantity == Quantity::Input(0));
         let mut text = String::from("time");
         for variable in force.into_iter().chain(outputs.iter().copied()) {
             text += ",";
@@ -37,7 +37,7 @@ impl Reference {
         }
         text += "\n";
         let mut stepper = ModalStepper::new(resource.model());
-        let mut forces = vec![0.0; resource.ports().forces.len()];
+        let mut forces = vec![0.0; resource.model().force_count()];
         for n in 0..=STEPS {
             let force = if n < OF_HIT { PEAK * (PI * n as f64 / OF_HIT as f64).sin() } else { 0.0 };
             // Writing to a String has nothing to fail on.
@@ -47,6 +47,7 @@ impl Reference {
                     Quantity::Acceleration(port) => stepper.acceleration(port),
                     Quantity::Velocity(port) => stepper.velocity(port),
                     Quantity::Displacement(port) => stepper.displacement(port),
+                    Quantity::Connected(output) => resource.connected(output, &stepper, &forces),
                     _ => None,
                 };
                 let _ = write!(text, ",{:e}", value.unwrap_or(f64::NAN));

@@ -7,7 +7,7 @@
 use std::io::Read as _;
 use std::path::Path;
 
-use orthopanel_export::{FmiVersion, Fmu, FmuOptions};
+use orthopanel_export::{Connections, FmiVersion, Fmu, FmuOptions, Mount};
 use orthopanel_model::{ModalModel, Mode, ModeRange, PanelModel, Place, Ports};
 
 /// A rigid and two flexible modes; force 2 sits on a node of all modes that response 2 sees.
@@ -111,6 +111,23 @@ fn regress_each_effect() {
     }
 }
 
+#[test]
+fn regress_connections() {
+    for (version, attribute, file) in FLAVOURS {
+        compare(&format!("{file}-connections.xml"), &tokenless(&connected(version), attribute));
+    }
+}
+
+/// A cantilever on a mount, with every other connection.
+fn connected(version: FmiVersion) -> Fmu {
+    let mount = Mount { name: "tip".into(), at: Place { x: 0.35, y: 0.0 }, stiffness: 1e5, damping: 10.0 };
+    let connections =
+        Connections { mounts: vec![mount], rotations: true, gravity: true, pressure: true, base_acceleration: true };
+    let options = FmuOptions { version, connections, ..FmuOptions::default() };
+    let held = beam("").replace("\"damping\"", "\"boundary\": {\"left\": \"clamped\"}, \"damping\"");
+    exported(&held, 2, [&[-0.3], &[0.1]], &options)
+}
+
 const FLAVOURS: [(FmiVersion, &str, &str); 2] =
     [(FmiVersion::Fmi2, "guid", "fmi2"), (FmiVersion::Fmi3, "instantiationToken", "fmi3")];
 
@@ -149,13 +166,14 @@ fn val_fmi_rs_finds_no_problem() {
         let panels = EFFECTS.into_iter().map(beam).chain([PLATE.into()]);
         panels.map(move |text| exported(&text, 2, [&[-0.3], &[0.1]], &options)).collect::<Vec<_>>()
     };
-    for two in [fmu(FmiVersion::Fmi2), settable(FmiVersion::Fmi2)].into_iter().chain(also(FmiVersion::Fmi2)) {
+    let two = [fmu(FmiVersion::Fmi2), settable(FmiVersion::Fmi2), connected(FmiVersion::Fmi2)];
+    for two in two.into_iter().chain(also(FmiVersion::Fmi2)) {
         let two = two.model_description();
         let two = fmi_rs::model_description::fmi2::ModelDescription::from_string(two).expect("FMI 2.0");
         let problems = two.validate();
         assert!(problems.is_empty(), "{problems:?}");
     }
-    let three = [fmu(FmiVersion::Fmi3), settable(FmiVersion::Fmi3), of_arrays()];
+    let three = [fmu(FmiVersion::Fmi3), settable(FmiVersion::Fmi3), connected(FmiVersion::Fmi3), of_arrays()];
     for three in three.into_iter().chain(also(FmiVersion::Fmi3)) {
         let three = three.model_description();
         let three = fmi_rs::model_description::fmi3::ModelDescription::from_string(three).expect("FMI 3.0");

@@ -13,6 +13,7 @@ mod values;
 
 use std::sync::Arc;
 
+use crate::connections;
 use crate::panel::Panel;
 use crate::wide_stepper::WideStepper;
 use crate::{FmuError, Quantity, Resource, VariableTable};
@@ -38,6 +39,8 @@ pub(crate) struct Component {
     forces_changed: bool,
     /// Were parameters set for which the modes have yet to be found?
     parameters_changed: bool,
+    /// Of each mount, where its base's displacement and velocity stand among the inputs.
+    bases: Vec<[usize; 2]>,
     /// Force at the end of a step at given rates, while it is computed.
     forces_after: Vec<f64>,
     /// A panel of the same modes that derivatives are asked of.
@@ -72,6 +75,7 @@ impl Component {
             in_use,
             forces_changed: false,
             parameters_changed: false,
+            bases: resource.bases(),
             forces_after: forces,
             nominals_changed: false,
             states: FmuStates::new(token),
@@ -133,14 +137,15 @@ impl Component {
 
     /// Value of a quantity of the panel, given its modes and forces; `None` for what is none of the panel's.
     #[inline(always)]
-    fn panel_value(&self, quantity: Quantity, stepper: &WideStepper, forces: &[f64]) -> Option<f64> {
+    fn panel_value(&self, quantity: Quantity, seen: &Seen, stepper: &WideStepper, forces: &[f64]) -> Option<f64> {
         match quantity {
             Quantity::Time | Quantity::ForceLinear => None,
             Quantity::Parameter(index) => self.now.parameters.get(index).copied(),
-            Quantity::Force(port) => forces.get(port).copied(),
+            Quantity::Input(port) => forces.get(port).copied(),
             Quantity::Acceleration(port) => stepper.acceleration(port),
             Quantity::Velocity(port) => stepper.velocity(port),
             Quantity::Displacement(port) => stepper.displacement(port),
+            Quantity::Connected(output) => connections::value(seen.outputs.get(output)?, stepper, forces),
             Quantity::ModalPosition(mode) => stepper.mode_state(mode).map(|[position, _]| position),
             Quantity::ModalVelocity(mode) => stepper.mode_state(mode).map(|[_, velocity]| velocity),
             Quantity::ModalPositionRate(mode) => stepper.mode_rate(mode).map(|[velocity, _]| velocity),

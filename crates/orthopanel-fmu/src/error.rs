@@ -47,6 +47,26 @@ pub enum FmuError {
         /// The name.
         name: String,
     },
+    /// A mount whose law is none.
+    #[error("mount {name}: {what} = {value} {unit}: must lie between 0 and {largest:e} {unit}")]
+    Mount {
+        /// Its name.
+        name: String,
+        /// `stiffness` or `damping`.
+        what: &'static str,
+        /// The value.
+        value: f64,
+        /// Its unit.
+        unit: &'static str,
+        /// Largest value allowed.
+        largest: f64,
+    },
+    /// A frame where no edge is held.
+    #[error(
+        "base acceleration: all edges of the panel are free, so no frame moves it: give mounts, or say in the model's \"boundary\" which \
+         edges are clamped or pinned"
+    )]
+    NoFrame,
     /// Two variables of one name.
     #[error(
         "two variables are called {name:?}: give the ports names that are no other's, and not linear or such as end in _x or _y"

@@ -3,10 +3,11 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use orthopanel_model::{CoreFit, ModalModel, ModeRange, PanelModel, Ports};
+use orthopanel_model::{CoreFit, ModalModel, ModalStepper, Mode, ModeRange, ModelError, PanelModel, Ports};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
+use crate::connections::{Connections, Input, Layout, Output, Signal, value};
 use crate::panel::{Panel, Solution};
 use crate::{FmuError, PortNames, VariableTable};
 
@@ -14,7 +15,7 @@ use crate::{FmuError, PortNames, VariableTable};
 pub const RESOURCE_FILE: &str = "panel.json";
 
 /// What the file says it is; a library reads one schema alone.
-pub const RESOURCE_SCHEMA: &str = "orthopanel.fmu/5";
+pub const RESOURCE_SCHEMA: &str = "orthopanel.fmu/6";
 
 /// Program and version, as FMUs name the tool that made them.
 pub const GENERATOR: &str = concat!("orthopanel ", env!("CARGO_PKG_VERSION"));
@@ -42,11 +43,18 @@ pub struct Resource {
     generator: String,
     ports: Ports,
     names: PortNames,
+    /// Without the mounts.
     model: ModalModel,
     /// The panel itself, where modes may be solved again.
     panel: Option<Panel>,
     /// Whether importers see all forces as one array, and likewise each kind of output (FMI 3.0).
     arrays: bool,
+    /// What joins the panel to its surroundings, as exported.
+    #[serde(skip)]
+    layout: Option<Layout>,
+    /// The modes on the mounts, where there are some.
+    #[serde(skip)]
+    mounted: Option<ModalModel>,
 }
 
 impl Resource {
@@ -57,7 +65,8 @@ impl Resource {
     pub fn new(model: ModalModel, ports: Ports) -> Result<Self, FmuError> {
         let (schema, generator) = (RESOURCE_SCHEMA.into(), GENERATOR.into());
         let names = PortNames::default();
-        Self { schema, generator, ports, names, model, panel: None, arrays: false }.checked()
+        let (layout, mounted) = (None, None);
+        Self { schema, generator, ports, names, model, panel: None, arrays: false, layout, mounted }.checked()
     }
 
     /// The modes of `range` of a panel, and unless `residual` is none the residual modes of its force ports, which stand for all others. Sizes,
@@ -71,12 +80,15 @@ impl Resource {
         range: ModeRange,
         ports: Ports,
         residual: Residual,
+        connections: Connections,
     ) -> Result<(Self, Option<CoreFit>), FmuError> {
-        let (panel, solution) = Panel::new(panel, range, ports.clone(), residual)?;
-        let Solution { modes: model, core, .. } = solution;
+        let (panel, solution) = Panel::new(panel, range, ports.clone(), residual, connections)?;
+        let Solution { free: model, core, .. } = solution;
         let (schema, generator) = (RESOURCE_SCHEMA.into(), GENERATOR.into());
         let names = PortNames::default();
-        let resource = Self { schema, generator, ports, names, model, panel: Some(panel), arrays: false };
+        let (layout, mounted) = (None, None);
+        let panel = Some(panel);
+        let resource = Self { schema, generator, ports, names, model, panel, arrays: false, layout, mounted };
         Ok((resource.checked()?, core))
     }
 
@@ -110,9 +122,79 @@ impl Resource {
         self.arrays
     }
 
-    /// The modes.
+    /// The modes, on the mounts.
     pub fn model(&self) -> &ModalModel {
+        self.mounted.as_ref().unwrap_or(&self.model)
+    }
+
+    /// The modes by themselves: without the mounts.
+    pub(crate) fn free(&self) -> &ModalModel {
         &self.model
+    }
+
+    /// The modes as the ports alone see them, without the mounts, the other connections and the frame's motion.
+    ///
+    /// # Errors
+    /// None, unless the resource is none.
+    pub fn panel_alone(&self) -> Result<ModalModel, ModelError> {
+        let (forces, responses) = (self.ports.forces.len(), self.ports.responses.len());
+        let frame = self.frame_motions();
+        let some = |values: &[f64], count: usize| values.iter().take(count).copied().collect();
+        let modes = self.model.modes().iter().skip(frame).map(|mode| Mode {
+            at_forces: some(&mode.at_forces, forces),
+            at_responses: some(&mode.at_responses, responses),
+            ..*mode
+        });
+        let model = ModalModel::new(forces, responses, modes.collect())?;
+        if self.model.damping_coupling().is_empty() {
+            return Ok(model);
+        }
+        let coupling = self.model.damping_coupling().iter().skip(frame);
+        model.with_damping_coupling(coupling.map(|row| row.iter().skip(frame).copied().collect()).collect())
+    }
+
+    /// Inputs of connections, behind the forces.
+    pub(crate) fn inputs(&self) -> &[Input] {
+        self.layout.as_ref().map_or(&[], |layout| &layout.inputs)
+    }
+
+    /// Outputs of connections.
+    pub(crate) fn outputs(&self) -> &[Output] {
+        self.layout.as_ref().map_or(&[], |layout| &layout.outputs)
+    }
+
+    /// The value of an output of a connection, as exported, of modes under these inputs.
+    pub fn connected(&self, output: usize, stepper: &ModalStepper, inputs: &[f64]) -> Option<f64> {
+        value(&self.outputs().get(output)?.terms, stepper, inputs)
+    }
+
+    /// Of each mount, where its base's displacement and velocity stand among the inputs.
+    pub fn bases(&self) -> Vec<[usize; 2]> {
+        let springs = self.layout.iter().flat_map(|layout| &layout.springs);
+        springs.map(|spring| [spring.displacement, spring.velocity]).collect()
+    }
+
+    /// What an output of a connection is made of: kind (0 acceleration, 1 velocity, 2 displacement of a response, 3 an input), which of these, and
+    /// its weight.
+    pub fn connected_terms(&self, output: usize) -> Vec<(u8, usize, f64)> {
+        let terms = self.outputs().get(output).map_or(&[][..], |output| &output.terms);
+        let kind = |&(signal, weight): &(Signal, f64)| match signal {
+            Signal::Acceleration(of) => (0, of, weight),
+            Signal::Velocity(of) => (1, of, weight),
+            Signal::Displacement(of) => (2, of, weight),
+            Signal::Input(of) => (3, of, weight),
+        };
+        terms.iter().map(kind).collect()
+    }
+
+    /// Coordinates of the frame's own motion, before all modes.
+    pub fn frame_motions(&self) -> usize {
+        self.layout.as_ref().map_or(0, |layout| layout.frame.len())
+    }
+
+    /// What joins the panel to its surroundings.
+    pub fn connections(&self) -> Option<&Connections> {
+        self.panel.as_ref().map(Panel::connections)
     }
 
     /// Flexible modes that are kept; of a panel with a core its own, without the internal variables.
@@ -177,18 +259,22 @@ impl Resource {
             return Err(FmuError::ResourceText(message));
         }
         let model = self.model.checked()?;
-        let places = (self.ports.forces.len(), self.ports.responses.len());
-        let counts = (model.force_count(), model.response_count());
-        if places != counts {
-            return Err(FmuError::ResourceText(format!(
-                "places of {} forces and {} responses for a model of {} and {}",
-                places.0, places.1, counts.0, counts.1
-            )));
-        }
         if let Some(panel) = &self.panel {
             panel.check_resource(&model, &self.ports)?;
         }
-        Ok(Self { model, ..self })
+        let layout = self.panel.as_ref().map(|panel| panel.layout(&self.names)).transpose()?;
+        let of_ports = (self.ports.forces.len(), self.ports.responses.len());
+        let places = layout.as_ref().map_or(of_ports, Layout::counts);
+        let counts = (model.force_count(), model.response_count());
+        if places != counts {
+            return Err(FmuError::ResourceText(format!(
+                "places of {} inputs and {} responses for a model of {} and {}",
+                places.0, places.1, counts.0, counts.1
+            )));
+        }
+        let springs = layout.as_ref().filter(|layout| !layout.springs.is_empty());
+        let mounted = springs.map(|layout| layout.mounted(&model)).transpose()?;
+        Ok(Self { model, layout, mounted, ..self })
     }
 }
 

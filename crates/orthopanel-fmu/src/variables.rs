@@ -22,14 +22,16 @@ pub enum Quantity {
     Time,
     /// Parameter: does the force run linearly between the values set?
     ForceLinear,
-    /// Input: force \[N\] at a force port.
-    Force(usize),
+    /// Input: force \[N\] at a force port; behind the last port what connections bring, in their own units.
+    Input(usize),
     /// Output: acceleration \[m/s²\] at a response port.
     Acceleration(usize),
     /// Output: velocity \[m/s\] at a response port.
     Velocity(usize),
     /// Output: displacement \[m\] at a response port.
     Displacement(usize),
+    /// Output of a connection, in its own unit.
+    Connected(usize),
     /// Continuous state: coordinate $a$ of a mode \[m kg^1/2\]; modes are counted from 0, rigid ones first.
     ModalPosition(usize),
     /// Continuous state: $\dot a$ of a mode \[m kg^1/2/s\].
@@ -43,12 +45,12 @@ pub enum Quantity {
 }
 
 impl Quantity {
-    /// Name of the unit; `None` for a Boolean, and for a parameter, whose unit is its own.
+    /// Name of the unit; `None` for a Boolean, and for what has one of its own.
     fn unit(self) -> Option<&'static str> {
         match self {
             Self::Time => Some("s"),
-            Self::ForceLinear | Self::Parameter(_) => None,
-            Self::Force(_) => Some("N"),
+            Self::ForceLinear | Self::Parameter(_) | Self::Connected(_) => None,
+            Self::Input(_) => Some("N"),
             Self::Acceleration(_) => Some("m/s2"),
             Self::Velocity(_) => Some("m/s"),
             Self::Displacement(_) => Some("m"),
@@ -63,8 +65,8 @@ impl Quantity {
         match self {
             Self::Time => "independent",
             Self::ForceLinear | Self::Parameter(_) => "parameter",
-            Self::Force(_) => "input",
-            Self::Acceleration(_) | Self::Velocity(_) | Self::Displacement(_) => "output",
+            Self::Input(_) => "input",
+            Self::Acceleration(_) | Self::Velocity(_) | Self::Displacement(_) | Self::Connected(_) => "output",
             Self::ModalPosition(_)
             | Self::ModalVelocity(_)
             | Self::ModalPositionRate(_)
@@ -75,7 +77,7 @@ impl Quantity {
     /// FMI attribute `initial`; `None` where the standard has none.
     pub fn initial(self) -> Option<&'static str> {
         match self {
-            Self::Time | Self::Force(_) => None,
+            Self::Time | Self::Input(_) => None,
             Self::ForceLinear | Self::Parameter(_) | Self::ModalPosition(_) | Self::ModalVelocity(_) => Some("exact"),
             _ => Some("calculated"),
         }
@@ -85,7 +87,7 @@ impl Quantity {
     fn start(self) -> Option<&'static str> {
         match self {
             Self::ForceLinear => Some("false"),
-            Self::Force(_) | Self::ModalPosition(_) | Self::ModalVelocity(_) => Some("0"),
+            Self::Input(_) | Self::ModalPosition(_) | Self::ModalVelocity(_) => Some("0"),
             _ => None,
         }
     }
@@ -132,8 +134,8 @@ impl Variable {
 
 /// The variables of a panel; references count from 1.
 ///
-/// Order: `time`, `force_linear`, then `force_1`.., `acceleration_1`.., `velocity_1`.., `displacement_1`.., then of each
-/// mode `modal_position_1`, `modal_velocity_1` and the derivatives of both, then the parameters of the panel; ports and
+/// Order: `time`, `force_linear`, then `force_1`.., `acceleration_1`.., `velocity_1`.., `displacement_1`.., then the inputs and the outputs of
+/// connections, then of each mode `modal_position_1`, `modal_velocity_1` and the derivatives of both, then the parameters of the panel; ports and
 /// modes are counted from 1 in names, but for ports that have one. Where the resource asks for arrays, an importer sees [`VariableTable::arrays`] in the
 /// place of the variables that these hold.
 #[derive(Debug, Clone, PartialEq)]
@@ -150,15 +152,22 @@ impl VariableTable {
         let (model, ports, names) = (resource.model(), resource.ports(), resource.names());
         let mut table = Self { variables: Vec::new(), quantities: Vec::new(), arrays: Vec::new() };
         table.push(Quantity::Time, "time".into(), "Time".into());
-        table.push(Quantity::ForceLinear, "force_linear".into(), FORCE_LINEAR.into());
+        table.push(Quantity::ForceLinear, "force_linear".into(), described!("{FORCE_LINEAR}"));
         for (port, place) in ports.forces.iter().enumerate() {
             let name = format!("force_{}", names.force(port));
-            table.push(Quantity::Force(port), name, format!("Force {}. {HOLD}", at(place)));
+            table.push(Quantity::Input(port), name, described!("Force {}. {HOLD}", at(place)));
         }
         table.push_outputs("acceleration", Quantity::Acceleration, (ports, names));
         table.push_outputs("velocity", Quantity::Velocity, (ports, names));
         table.push_outputs("displacement", Quantity::Displacement, (ports, names));
-        table.push_modes(model, resource.residual_modes());
+        let forces = ports.forces.len();
+        for (index, input) in resource.inputs().iter().enumerate() {
+            table.push_own(Quantity::Input(forces + index), &input.name, &input.description, input.unit);
+        }
+        for (index, output) in resource.outputs().iter().enumerate() {
+            table.push_own(Quantity::Connected(index), &output.name, &output.description, output.unit);
+        }
+        table.push_modes(model, resource);
         for (index, parameter) in resource.panel().into_iter().flat_map(|panel| panel.parameters(names)).enumerate() {
             table.push(Quantity::Parameter(index), parameter.name, parameter.description);
             if let Some(variable) = table.variables.last_mut() {
@@ -178,6 +187,23 @@ impl VariableTable {
         let mut table = Self::new(resource);
         dependencies::fill(&mut table.variables, resource);
         table
+    }
+
+    /// The same without states and parameters, as of a panel that nothing but its inputs changes.
+    #[must_use]
+    pub fn without_states(mut self) -> Self {
+        let inner =
+            |variable: &Variable| variable.nominal.is_some() || matches!(variable.quantity, Quantity::Parameter(_));
+        let end = self.variables.iter().position(inner).unwrap_or(self.variables.len());
+        self.variables.truncate(end);
+        self.quantities.truncate(end);
+        let stays = |reference: u32| place(reference).is_some_and(|place| place < end);
+        for variable in &mut self.variables {
+            variable.dependencies.retain(|on| stays(on.reference));
+            variable.dependencies.iter_mut().for_each(|on| on.factor = Factor::Fixed);
+            variable.initial_dependencies.retain(|&reference| stays(reference));
+        }
+        self
     }
 
     /// All variables, in the order of their references.
@@ -255,10 +281,18 @@ impl VariableTable {
         reference
     }
 
+    /// Adds a variable with a unit of its own.
+    fn push_own(&mut self, quantity: Quantity, name: &str, description: &str, unit: &'static str) {
+        self.push(quantity, name.into(), description.into());
+        if let Some(variable) = self.variables.last_mut() {
+            variable.unit = Some(unit);
+        }
+    }
+
     /// Adds a continuous state and its derivative.
     fn push_state(&mut self, state: Quantity, rate: Quantity, name: &str, description: String, nominal: f64) {
         let of = self.push(state, name.into(), description);
-        self.push(rate, format!("der({name})"), format!("Time derivative of {name}"));
+        self.push(rate, format!("der({name})"), described!("Time derivative of {name}"));
         if let [.., state, rate] = self.variables.as_mut_slice() {
             (state.nominal, rate.derivative_of) = (Some(nominal), Some(of));
         }
@@ -267,20 +301,25 @@ impl VariableTable {
     fn push_outputs(&mut self, word: &str, quantity: fn(usize) -> Quantity, (ports, names): (&Ports, &PortNames)) {
         for (port, place) in ports.responses.iter().enumerate() {
             let name = format!("{word}_{}", names.response(port));
-            self.push(quantity(port), name, format!("The panel's {word} {}", at(place)));
+            self.push(quantity(port), name, described!("The panel's {word} {}", at(place)));
         }
     }
 
-    fn push_modes(&mut self, model: &ModalModel, residual: usize) {
-        let kept = model.modes().len() - residual;
-        for (index, (mode, [position, velocity])) in model.modes().iter().zip(nominals::of(model)).enumerate() {
+    fn push_modes(&mut self, model: &ModalModel, resource: &Resource) {
+        let (frame, kept) = (resource.frame_motions(), model.modes().len() - resource.residual_modes());
+        let nominals = nominals::of(model, resource.ports().forces.len());
+        for (index, (mode, [position, velocity])) in model.modes().iter().zip(nominals).enumerate() {
             let number = index + 1;
-            let kind = if index < kept { "mode" } else { "residual mode" };
-            let of = format!("of {kind} {number} ({:.2} Hz), mass-normalised", mode.angular_frequency / TAU);
+            let kind = match index {
+                index if index < frame => "the frame's motion",
+                index if index < kept => "mode",
+                _ => "residual mode",
+            };
+            let of = described!("of {kind} {number} ({:.2} Hz), mass-normalised", mode.angular_frequency / TAU);
             let (state, rate) = (Quantity::ModalPosition(index), Quantity::ModalPositionRate(index));
-            self.push_state(state, rate, &format!("modal_position_{number}"), format!("Coordinate {of}"), position);
+            self.push_state(state, rate, &format!("modal_position_{number}"), described!("Coordinate {of}"), position);
             let (state, rate) = (Quantity::ModalVelocity(index), Quantity::ModalVelocityRate(index));
-            self.push_state(state, rate, &format!("modal_velocity_{number}"), format!("Velocity {of}"), velocity);
+            self.push_state(state, rate, &format!("modal_velocity_{number}"), described!("Velocity {of}"), velocity);
         }
     }
 }

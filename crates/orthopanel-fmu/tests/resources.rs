@@ -1,6 +1,6 @@
 //! Resources that were tampered with, their token made anew: each is refused with its numbers before anything is made by them.
 
-use orthopanel_fmu::{RESOURCE_FILE, Residual, Resource, content_token};
+use orthopanel_fmu::{Connections, RESOURCE_FILE, Residual, Resource, content_token};
 use orthopanel_model::{ModeRange, PanelModel, Place, Ports};
 
 fn resource() -> String {
@@ -11,7 +11,8 @@ fn resource() -> String {
         "constants": {"e_x": 1.067e10, "g_zx": 5.304e8}, "damping": {"beyond": 0.003}}"#;
     let panel = PanelModel::from_json(text).expect("a sound model");
     let (resource, _) =
-        Resource::of_panel(&panel, ModeRange::Count(5), ports, Residual::Attachment).expect("a sound panel");
+        Resource::of_panel(&panel, ModeRange::Count(5), ports, Residual::Attachment, Connections::default())
+            .expect("a sound panel");
     resource.to_json()
 }
 

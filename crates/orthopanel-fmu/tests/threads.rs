@@ -6,7 +6,7 @@ use std::path::Path;
 use std::ptr::null_mut;
 use std::sync::Barrier;
 
-use orthopanel_fmu::{RESOURCE_FILE, Residual, Resource, content_token};
+use orthopanel_fmu::{Connections, RESOURCE_FILE, Residual, Resource, content_token};
 use orthopanel_model::{ModeRange, PanelModel, Place, Ports};
 
 use crate::c_functions::*;
@@ -27,7 +27,8 @@ impl Fmu {
         let ports = Ports { forces: vec![place(-0.3)], responses: vec![place(0.1)] };
         let panel = PanelModel::from_json(text).expect("a sound model");
         let (resource, _) =
-            Resource::of_panel(&panel, ModeRange::Count(5), ports, Residual::Attachment).expect("a sound panel");
+            Resource::of_panel(&panel, ModeRange::Count(5), ports, Residual::Attachment, Connections::default())
+                .expect("a sound panel");
         let text = resource.to_json();
         std::fs::write(folder.join(RESOURCE_FILE), &text).expect("written");
         let path = folder.to_str().expect("UTF-8");

@@ -5,7 +5,7 @@ use std::ffi::{CString, c_int};
 use std::path::Path;
 use std::ptr::null_mut;
 
-use orthopanel_fmu::{Quantity, RESOURCE_FILE, Residual, Resource, content_token};
+use orthopanel_fmu::{Connections, Quantity, RESOURCE_FILE, Residual, Resource, content_token};
 use orthopanel_model::{ModeRange, PanelModel, Place, Ports};
 
 use crate::c_functions::*;
@@ -49,7 +49,8 @@ impl Instance {
         let ports = Ports { forces: place(-0.3), responses: place(0.1) };
         let panel = PanelModel::from_json(panel).expect("a sound model");
         let (resource, _) =
-            Resource::of_panel(&panel, ModeRange::Count(3), ports, Residual::Attachment).expect("a sound panel");
+            Resource::of_panel(&panel, ModeRange::Count(3), ports, Residual::Attachment, Connections::default())
+                .expect("a sound panel");
         let text = resource.to_json();
         std::fs::write(folder.join(RESOURCE_FILE), &text).expect("written");
         let path = folder.to_str().expect("UTF-8");

@@ -13,7 +13,7 @@ impl ModalModel {
     /// model lacks contributes nothing.
     pub fn accelerance(&self, force: usize, response: usize, frequency: f64) -> Complex64 {
         let omega = frequency * std::f64::consts::TAU;
-        if !self.damping_coupling().is_empty() {
+        if !(self.damping_coupling().is_empty() && self.stiffness_coupling().is_empty()) {
             return self.coupled_accelerance(force, response, omega);
         }
         let part = |mode: &Mode| -> Option<Complex64> {
@@ -23,17 +23,21 @@ impl ModalModel {
         self.modes().iter().filter_map(part).sum()
     }
 
-    /// $-\omega^2W_r^T(\Omega - \omega^2 + j\omega(\Lambda + C))^{-1}W_f$, with the rigid modes, which nothing couples,
-    /// beside it.
+    /// $-\omega^2W_r^T(\Omega + K - \omega^2 + j\omega(\Lambda + C))^{-1}W_f$, with the rigid modes, unless springs couple them, beside
+    /// it.
     fn coupled_accelerance(&self, force: usize, response: usize, omega: f64) -> Complex64 {
         let seen = |mode: &Mode| Some((mode.at_forces.get(force).copied()?, mode.at_responses.get(response).copied()?));
         let Some(ports) = self.modes().iter().map(seen).collect::<Option<Vec<_>>>() else { return Complex64::ZERO };
         let all = || self.modes().iter().enumerate().zip(&ports);
-        let rigid: f64 = all().filter(|((_, mode), _)| mode.angular_frequency == 0.0).map(|(_, (f, r))| f * r).sum();
-        let flexible: Vec<_> = all().filter(|((_, mode), _)| mode.angular_frequency > 0.0).collect();
+        let alone = |mode: &Mode| mode.angular_frequency == 0.0 && self.stiffness_coupling().is_empty();
+        let rigid: f64 = all().filter(|((_, mode), _)| alone(mode)).map(|(_, (f, r))| f * r).sum();
+        let flexible: Vec<_> = all().filter(|((_, mode), _)| !alone(mode)).collect();
+        let at = |coupling: &[Vec<f64>], m: usize, n: usize| coupling.get(m).map_or(0.0, |row| row[n]);
         let dynamic = Mat::from_fn(flexible.len(), flexible.len(), |i, j| {
             let ((m, mode), (n, _)) = (flexible[i].0, flexible[j].0);
-            let coupling = Complex64::new(0.0, omega * self.damping_coupling()[m][n]);
+            let [stiffness, damping] =
+                [self.stiffness_coupling(), self.damping_coupling()].map(|coupling| at(coupling, m, n));
+            let coupling = Complex64::new(stiffness, omega * damping);
             if i == j { mode.dynamic_stiffness(omega) + coupling } else { coupling }
         });
         let pushed = Mat::from_fn(flexible.len(), 1, |i, _| Complex64::from(flexible[i].1.0));

@@ -6,6 +6,7 @@ mod block_pencil;
 mod boundary;
 mod constant;
 mod core_in_frequency;
+mod deflection_row;
 mod dense;
 mod effects;
 mod error;
@@ -35,10 +36,12 @@ mod structure;
 mod structure_modes;
 mod time_model;
 mod timoshenko_beam;
+mod uniform_loads;
 mod wide;
 
 pub use boundary::{Boundary, End};
 pub use constant::Constant;
+pub use deflection_row::{DeflectionRow, RigidMotion};
 pub use effects::{
     Action, CORE_WAVES, ChannelFactor, CoreFit, CoreLine, CoreModulus, Effect, EffectParameter, EffectSetting,
     EffectState, ElementLaw, ElementLine, FactorLine, Field, FieldTerm, LineBlock, LineDerivatives, LineEvaluator,

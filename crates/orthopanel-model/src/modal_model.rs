@@ -37,6 +37,9 @@ pub struct ModalModel {
     /// Empty where nothing couples the modes.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     damping_coupling: Vec<Vec<f64>>,
+    /// Alike.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    stiffness_coupling: Vec<Vec<f64>>,
 }
 
 impl ModalModel {
@@ -46,16 +49,29 @@ impl ModalModel {
     /// [`ModelError::PortCount`] where a mode's lists have another length, [`ModelError::Frequency`],
     /// [`ModelError::NotFinite`] and [`ModelError::Damping`] where a number has no physical meaning.
     pub fn new(force_count: usize, response_count: usize, modes: Vec<Mode>) -> Result<Self, ModelError> {
-        Self { force_count, response_count, modes, damping_coupling: vec![] }.checked()
+        Self { force_count, response_count, modes, damping_coupling: vec![], stiffness_coupling: vec![] }.checked()
     }
 
-    /// The same modes with dampers that couple them: $c_{mn}$ \[1/s\], symmetric, a row a mode, in
-    /// $$\ddot a_m + 2\zeta_m\omega_m\dot a_m + \sum_nc_{mn}\dot a_n + \omega_m^2a_m = \sum_kW_m(x_k)f_k.$$
+    /// The same modes with dampers that couple them: $c_{mn}$ \[1/s\], a row a mode, in
+    /// $$\ddot a_m + 2\zeta_m\omega_m\dot a_m + \sum_nc_{mn}\dot a_n + \omega_m^2a_m + \sum_nk_{mn}a_n = \sum_kW_m(x_k)f_k.$$
     ///
     /// # Errors
     /// [`ModelError::StateCount`] for another number of rows or columns than modes, [`ModelError::NotFinite`].
     pub fn with_damping_coupling(self, damping_coupling: Vec<Vec<f64>>) -> Result<Self, ModelError> {
         Self { damping_coupling, ..self }.checked()
+    }
+
+    /// The same modes with springs that couple them, $k_{mn}$ \[1/s²\] in the equation of [`ModalModel::with_damping_coupling`].
+    ///
+    /// # Errors
+    /// As there.
+    pub fn with_stiffness_coupling(self, stiffness_coupling: Vec<Vec<f64>>) -> Result<Self, ModelError> {
+        Self { stiffness_coupling, ..self }.checked()
+    }
+
+    /// $k_{mn}$ \[1/s²\] of [`ModalModel::with_stiffness_coupling`]; empty where none couples the modes.
+    pub fn stiffness_coupling(&self) -> &[Vec<f64>] {
+        &self.stiffness_coupling
     }
 
     /// $c_{mn}$ \[1/s\] of [`ModalModel::with_damping_coupling`]; empty where nothing couples the modes.
@@ -91,15 +107,18 @@ impl ModalModel {
             }
         }
         let expected = self.modes.len();
-        for list in self.damping_coupling.iter().map(Vec::len).chain([self.damping_coupling.len()]) {
-            if !self.damping_coupling.is_empty() && list != expected {
-                return Err(ModelError::StateCount { found: list, expected });
+        for (what, coupling) in
+            [("coupling of damping", &self.damping_coupling), ("coupling of stiffness", &self.stiffness_coupling)]
+        {
+            let lists = coupling.iter().map(Vec::len).chain([coupling.len()]);
+            if let Some(found) = lists.filter(|_| !coupling.is_empty()).find(|&list| list != expected) {
+                return Err(ModelError::StateCount { found, expected });
+            }
+            if let Some(&value) = coupling.iter().flatten().find(|value| !value.is_finite()) {
+                return Err(ModelError::NotFinite { what, value });
             }
         }
-        match self.damping_coupling.iter().flatten().find(|value| !value.is_finite()) {
-            Some(&value) => Err(ModelError::NotFinite { what: "coupling of damping", value }),
-            None => Ok(self),
-        }
+        Ok(self)
     }
 
     /// The same modes, those whose entry of `turn` is true in the other sense: what they are to stays the same motion.
@@ -108,8 +127,10 @@ impl ModalModel {
         for (mode, _) in self.modes.iter_mut().zip(turn).filter(|(_, turn)| **turn) {
             mode.at_forces.iter_mut().chain(&mut mode.at_responses).for_each(flip);
         }
-        for (row, one) in self.damping_coupling.iter_mut().zip(turn) {
-            row.iter_mut().zip(turn).filter(|(_, other)| *other != one).for_each(|(value, _)| flip(value));
+        for coupling in [&mut self.damping_coupling, &mut self.stiffness_coupling] {
+            for (row, one) in coupling.iter_mut().zip(turn) {
+                row.iter_mut().zip(turn).filter(|(_, other)| *other != one).for_each(|(value, _)| flip(value));
+            }
         }
         self
     }
@@ -118,9 +139,11 @@ impl ModalModel {
     pub(crate) fn join(&mut self, further: Vec<Mode>) {
         let size = self.modes.len() + further.len();
         self.modes.extend(further);
-        if !self.damping_coupling.is_empty() {
-            self.damping_coupling.resize(size, vec![]);
-            self.damping_coupling.iter_mut().for_each(|row| row.resize(size, 0.0));
+        for coupling in [&mut self.damping_coupling, &mut self.stiffness_coupling] {
+            if !coupling.is_empty() {
+                coupling.resize(size, vec![]);
+                coupling.iter_mut().for_each(|row| row.resize(size, 0.0));
+            }
         }
     }
 

@@ -48,27 +48,27 @@ const DEPENDENT: f64 = 1e-6;
 /// move, as a clamped end.
 const UNMOVED: f64 = 1e-16;
 
-impl TimeModel {
-    /// With the residual modes of some places behind the others, as seen from these ports: two of each place, less those that others
-    /// make. A force at one of the places has its whole static answer in what is returned.
+impl PanelModel {
+    /// The residual modes of some places beside `flexible` modes that are kept, as seen from these ports: two of each place, less those
+    /// that others make. A force at one of the places has its whole static answer in them and the modes kept.
     ///
     /// # Errors
     /// As [`PanelModel::static_flexibility`], and [`ModelError::OffPiece`] for a place off the piece.
-    pub fn with_residual_modes(
-        self,
-        panel: &PanelModel,
+    pub fn residual_modes(
+        &self,
+        flexible: usize,
         attachments: &Attachments,
         forces: &[Place],
         responses: &[Place],
-    ) -> Result<Self, ModelError> {
+    ) -> Result<Vec<Mode>, ModelError> {
         let Attachments { places, count, damping_ratio } = attachments;
         for &place in places {
-            panel.piece.contains(place)?;
+            self.piece.contains(place)?;
         }
         let ports: Vec<Place> = forces.iter().chain(responses).copied().collect();
-        let (far, lacking) = panel.far_modes(self.flexible, places, &ports)?;
+        let (far, lacking) = self.far_modes(flexible, places, &ports)?;
         let first = far.modes.first().map_or(1.0, |(omega, _)| *omega);
-        let unmoved = UNMOVED / (panel.piece.mass() * first.powi(4));
+        let unmoved = UNMOVED / (self.piece.mass() * first.powi(4));
         let mut shapes = Answers::of(&far, &lacking, places.len()).modes(places.len(), unmoved)?;
         if shapes.iter().any(|(omega, _)| *omega <= far.last_kept) {
             // Of many modes a plate's own basis, with the kink under a force, has more than the wide one without: then it lacks nothing.
@@ -87,9 +87,26 @@ impl TimeModel {
             at_responses: at_forces.split_off(forces.len()),
             at_forces,
         });
-        let mut modes = self.modes;
-        modes.join(residual.collect());
-        Ok(Self { modes: modes.checked()?, residual: self.residual + count, ..self })
+        Ok(residual.collect())
+    }
+}
+
+impl TimeModel {
+    /// With [`PanelModel::residual_modes`] behind the others.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn with_residual_modes(
+        self,
+        panel: &PanelModel,
+        attachments: &Attachments,
+        forces: &[Place],
+        responses: &[Place],
+    ) -> Result<Self, ModelError> {
+        let further = panel.residual_modes(self.flexible, attachments, forces, responses)?;
+        let (mut modes, residual) = (self.modes, self.residual + further.len());
+        modes.join(further);
+        Ok(Self { modes: modes.checked()?, residual, ..self })
     }
 }
 

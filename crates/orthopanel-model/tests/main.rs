@@ -22,4 +22,5 @@ mod modal_sums;
 mod reduced_structure;
 mod residual_modes;
 mod section_3_5;
+mod uniform_loads;
 mod width_coupling;

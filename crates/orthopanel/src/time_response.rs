@@ -1,6 +1,5 @@
 //! Response of a model to a force history, and the table it is written as.
 
-use orthopanel_export::Residual;
 use orthopanel_model::{Attachments, ModalModel, ModalStepper, ModeRange, ModelError, PanelModel, Ports, TimeModel};
 
 use crate::csv_text;
@@ -53,16 +52,11 @@ pub fn steps(time: &[f64]) -> Vec<f64> {
 }
 
 /// The modes of a range as seen from these ports, and residual modes of the forces, as an FMU has them.
-pub fn seen(panel: &PanelModel, range: ModeRange, ports: &Ports, residual: Residual) -> Result<TimeModel, ModelError> {
+pub fn seen(panel: &PanelModel, range: ModeRange, ports: &Ports) -> Result<TimeModel, ModelError> {
     let Ports { forces, responses } = ports;
     let seen = panel.time_model(range, forces, responses)?;
-    match residual {
-        Residual::None => Ok(seen),
-        Residual::Attachment => {
-            let attachments = Attachments::new(panel, seen.flexible, forces);
-            seen.with_residual_modes(panel, &attachments, forces, responses)
-        }
-    }
+    let attachments = Attachments::new(panel, seen.flexible, forces);
+    seen.with_residual_modes(panel, &attachments, forces, responses)
 }
 
 /// Steps the model, at rest before the first sample, through the force history; one [`Motion`] a response port,

@@ -3,7 +3,7 @@
 use std::ffi::CString;
 use std::path::Path;
 
-use orthopanel_fmu::{Quantity, RESOURCE_FILE, Residual, Resource, content_token};
+use orthopanel_fmu::{Connections, Mount, Quantity, RESOURCE_FILE, Residual, Resource, content_token};
 use orthopanel_model::{ModeRange, PanelModel, Place, Ports};
 
 /// A panel on disk, and what an importer knows of it.
@@ -33,6 +33,9 @@ pub struct Fmu {
 const BEAM: &str = r#""structure": "timoshenko-beam", "constants": {"e_x": 1.067e10, "g_zx": 5.304e8}"#;
 const PLATE: &str = r#""structure": "mindlin-plate",
     "constants": {"e_x": 1.07e10, "e_y": 9e9, "nu_xy": 0.3, "g_xy": 3e9, "g_yz": 3e8, "g_zx": 5.363e8}"#;
+/// With all connections.
+const HELD: &str = r#""structure": "timoshenko-beam", "constants": {"e_x": 1.067e10, "g_zx": 5.304e8},
+    "boundary": {"left": "clamped", "right": "free"}"#;
 /// Modes that dampers couple, and a span that has lost stiffness.
 const WITH_EFFECTS: &str = r#"
     {"id": "resonator", "owner": "panel", "mass": 0.02, "frequency": 400, "zeta": 0.05, "x": 0.1},
@@ -42,7 +45,7 @@ const CORE: &str = r#"{"id": "viscoelastic-core", "owner": "panel", "strength": 
 /// Writes each into a folder of its own. Half of all are the plain beam, whose parameters cost the least to set.
 pub fn prepare(folder: &Path) -> Result<Vec<Fmu>, Box<dyn std::error::Error>> {
     let panels =
-        [(BEAM, "", 5), (BEAM, "", 3), (BEAM, "", 2), (BEAM, WITH_EFFECTS, 3), (BEAM, CORE, 2), (PLATE, "", 3)];
+        [(BEAM, "", 5), (BEAM, "", 3), (HELD, "", 2), (BEAM, WITH_EFFECTS, 3), (BEAM, CORE, 2), (PLATE, "", 3)];
     let write = |(number, (panel, effects, modes)): (usize, (&str, &str, usize))| {
         let folder = folder.join(number.to_string());
         std::fs::create_dir(&folder)?;
@@ -58,8 +61,17 @@ fn written(folder: &Path, panel: &str, effects: &str, modes: usize) -> Result<Fm
     );
     let place = |x| Place { x, y: 0.0 };
     let ports = Ports { forces: vec![place(-0.3), place(0.1)], responses: vec![place(0.3)] };
-    let (resource, _) =
-        Resource::of_panel(&PanelModel::from_json(&text)?, ModeRange::Count(modes), ports, Residual::Attachment)?;
+    let held = panel == HELD;
+    let mount = Mount { name: "tip".into(), at: place(0.35), stiffness: 1e5, damping: 10.0 };
+    let connections = Connections {
+        mounts: held.then_some(mount).into_iter().collect(),
+        rotations: held,
+        gravity: held,
+        pressure: held,
+        base_acceleration: held,
+    };
+    let (model, range) = (PanelModel::from_json(&text)?, ModeRange::Count(modes));
+    let (resource, _) = Resource::of_panel(&model, range, ports, Residual::Attachment, connections)?;
     let text = resource.to_json();
     std::fs::write(folder.join(RESOURCE_FILE), &text)?;
     let path = folder.to_str().ok_or("the temporary folder's name is not UTF-8")?;

@@ -3,7 +3,7 @@
 use orthopanel_model::{ModeRange, PanelModel, Place, Ports};
 
 use super::*;
-use crate::Residual;
+use crate::{Connections, Residual};
 
 pub(super) const PLATE: &str = r#"{"schema": "orthopanel.model/1", "structure": "mindlin-plate",
     "piece": {"length": 0.8, "width": 0.5, "thickness": 0.03, "mass_per_area": 6.88},
@@ -18,7 +18,9 @@ fn resource(text: &str) -> Resource {
     let place = |x| Place { x, y: 0.02 };
     let ports = Ports { forces: vec![place(-0.3)], responses: vec![place(0.1)] };
     let panel = PanelModel::from_json(text).expect("a sound model");
-    Resource::of_panel(&panel, ModeRange::Count(4), ports, Residual::Attachment).expect("a sound panel").0
+    Resource::of_panel(&panel, ModeRange::Count(4), ports, Residual::Attachment, Connections::default())
+        .expect("a sound panel")
+        .0
 }
 
 fn instance(text: &str, interface: Interface) -> Component {

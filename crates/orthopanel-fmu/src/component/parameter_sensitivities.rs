@@ -78,7 +78,7 @@ impl Component {
         let forces = self.now.forces_in_effect();
         stepper.set_forces(forces)?;
         let value = |&unknown: &u32| {
-            let found = self.panel_value(self.quantity(unknown)?, &stepper, forces);
+            let found = self.panel_value(self.quantity(unknown)?, &seen, &stepper, forces);
             Ok(found.unwrap_or(f64::NAN))
         };
         unknowns.iter().map(value).collect()

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use orthopanel_model::ModalModel;
 
 use super::{Component, Phase, Probe, finite, values};
+use crate::connections::Terms;
 use crate::floating_point::StandardEnvironment;
 use crate::panel::{Panel, Solution};
 use crate::wide_stepper::WideStepper;
@@ -16,7 +17,12 @@ use crate::{FmuError, Resource, Variable, nominals};
 pub(super) struct Seen {
     /// Of the parameters; none where nothing of the panel can be set.
     pub(super) values: Vec<f64>,
+    /// Without the mounts.
+    free: ModalModel,
+    /// On the mounts.
     pub(super) modes: ModalModel,
+    /// What outputs of connections are made of.
+    pub(super) outputs: Vec<Terms>,
     /// Sizes of the states to be expected.
     pub(super) nominals: Vec<[f64; 2]>,
 }
@@ -26,8 +32,10 @@ impl Seen {
     pub(super) fn exported(resource: &Resource) -> Self {
         Self {
             values: resource.panel().map(Panel::values).unwrap_or_default(),
+            free: resource.free().clone(),
             modes: resource.model().clone(),
-            nominals: nominals::of(resource.model()),
+            outputs: resource.outputs().iter().map(|output| output.terms.clone()).collect(),
+            nominals: nominals::of(resource.model(), resource.ports().forces.len()),
         }
     }
 }
@@ -89,16 +97,16 @@ impl Component {
             return Ok(Arc::clone(exported));
         }
         for known in [exported, &self.in_use] {
-            if let Some(modes) = panel.redamped(&known.modes, &known.values, values) {
+            if let Some(Solution { free, modes, outputs, .. }) = panel.quickly(&known.free, &known.values, values) {
                 let nominals = known.nominals.clone();
-                return Ok(Arc::new(Seen { values: values.to_vec(), modes, nominals }));
+                return Ok(Arc::new(Seen { values: values.to_vec(), free, modes, outputs, nominals }));
             }
         }
-        let Solution { modes, .. } = panel.solve(values)?;
+        let Solution { free, modes, outputs, .. } = panel.solve(values)?;
         if modes.modes().len() != self.mode_count() {
             return Err(FmuError::ModeCount { found: modes.modes().len(), expected: self.mode_count() });
         }
-        let nominals = nominals::of(&modes);
-        Ok(Arc::new(Seen { values: values.to_vec(), modes, nominals }))
+        let nominals = nominals::of(&modes, panel.force_ports());
+        Ok(Arc::new(Seen { values: values.to_vec(), free, modes, outputs, nominals }))
     }
 }

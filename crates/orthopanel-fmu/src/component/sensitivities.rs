@@ -88,7 +88,10 @@ impl Component {
         super::values::same_count(values.len(), references.len())?;
         for (&reference, &order) in references.iter().zip(orders) {
             match self.quantity(reference)? {
-                Quantity::Acceleration(_) | Quantity::Velocity(_) | Quantity::Displacement(_) => {}
+                Quantity::Acceleration(_)
+                | Quantity::Velocity(_)
+                | Quantity::Displacement(_)
+                | Quantity::Connected(_) => {}
                 _ => return Err(self.not_differentiable(reference, "give outputs only")),
             }
             if order != 1 {
@@ -117,6 +120,7 @@ impl Component {
                 Quantity::Acceleration(_)
                 | Quantity::Velocity(_)
                 | Quantity::Displacement(_)
+                | Quantity::Connected(_)
                 | Quantity::ModalPositionRate(_)
                 | Quantity::ModalVelocityRate(_) => {}
                 _ => return Err(self.not_differentiable(unknown, "unknowns are outputs and derivatives of states")),
@@ -127,7 +131,7 @@ impl Component {
 
     fn check_known(&self, known: u32) -> Result<(), FmuError> {
         match self.quantity(known)? {
-            Quantity::Force(_) | Quantity::ModalPosition(_) | Quantity::ModalVelocity(_) | Quantity::Time => Ok(()),
+            Quantity::Input(_) | Quantity::ModalPosition(_) | Quantity::ModalVelocity(_) | Quantity::Time => Ok(()),
             Quantity::Parameter(_) if Phase::INITIALIZATION.contain(self.now.phase) => Ok(()),
             Quantity::Parameter(_) if self.variable(known)?.tunable => Ok(()),
             _ => Err(self.not_differentiable(
@@ -150,8 +154,8 @@ impl Component {
         let probe = &mut self.probe;
         match quantity {
             // What the outputs do when it is set: nothing, until its step is done.
-            Quantity::Force(_) if self.now.forces_wait() => {}
-            Quantity::Force(port) => {
+            Quantity::Input(_) if self.now.forces_wait() => {}
+            Quantity::Input(port) => {
                 if let Some(force) = probe.forces.get_mut(port) {
                     *force += value;
                 }
@@ -168,7 +172,7 @@ impl Component {
 
     fn probe_output(&self, reference: u32) -> Result<f64, FmuError> {
         let (quantity, probe) = (self.quantity(reference)?, &self.probe);
-        let value = self.panel_value(quantity, &probe.stepper, &probe.forces);
+        let value = self.panel_value(quantity, &self.in_use, &probe.stepper, &probe.forces);
         let value = value.unwrap_or(f64::NAN);
         if value.is_finite() { Ok(value) } else { Err(self.overflow(reference, value)) }
     }

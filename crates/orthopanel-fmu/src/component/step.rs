@@ -19,8 +19,8 @@ impl Component {
     /// Advances from `start` by `step` \[s\].
     ///
     /// The force over the step: with `force_linear` from its value at the end of the last step to the value set;
-    /// with input derivatives from the value set at that rate; else held at the value set. Where the step is
-    /// refused, everything stays as it was.
+    /// with input derivatives from the value set at that rate; else held at the value set, but for a base under a mount,
+    /// which goes on from its displacement at its velocity. Where the step is refused, everything stays as it was.
     #[inline(always)]
     pub(crate) fn do_step(&mut self, start: f64, step: f64) -> Result<(), FmuError> {
         self.require(Phase::STEP)?;
@@ -36,7 +36,7 @@ impl Component {
         }
         if self.now.force_linear {
             self.step_between_values(step)?;
-        } else if self.now.rates_given {
+        } else if self.now.rates_given || !self.bases.is_empty() {
             self.step_at_rates(step)?;
         } else {
             if self.parameters_changed {
@@ -103,9 +103,19 @@ impl Component {
         for ((end, force), rate) in self.forces_after.iter_mut().zip(&self.now.forces).zip(&self.now.force_rates) {
             *end = force + rate * step;
         }
+        // A rate that the importer gives counts; else the velocity is that of the displacement.
+        for &[displacement, velocity] in &self.bases {
+            let (given, speed) = (self.now.force_rates.get(displacement), self.now.forces.get(velocity));
+            if let (Some(0.0), Some(speed), Some(end)) = (given, speed, self.forces_after.get_mut(displacement)) {
+                *end += speed * step;
+            }
+        }
         self.stepper.advance_linear(step, &self.forces_after)?;
+        let ends = self.now.forces.iter().zip(&self.forces_after);
+        for ((slope, rate), (from, to)) in self.now.slopes.iter_mut().zip(&self.now.force_rates).zip(ends) {
+            *slope = if *rate == 0.0 { ((to - from) / step).clamp(f64::MIN, f64::MAX) } else { *rate };
+        }
         self.now.forces.copy_from_slice(&self.forces_after);
-        self.now.slopes.copy_from_slice(&self.now.force_rates);
         self.now.slopes_given = true;
         self.forget_rates();
         Ok(())

@@ -4,7 +4,7 @@ use orthopanel_model::{Attachments, ModalModel, ModalStepper, ModeRange, PanelMo
 
 use super::panel_tests::{BEAM, PLATE, reference, set};
 use super::*;
-use crate::Residual;
+use crate::{Connections, Residual};
 
 /// Panels whose modes are found in all ways that there are.
 pub(super) fn panels() -> Vec<String> {
@@ -23,7 +23,9 @@ const MODES: usize = 4;
 fn resource(text: &str) -> Resource {
     let ports = Ports { forces: FORCES.into(), responses: RESPONSES.into() };
     let panel = PanelModel::from_json(text).expect("a sound model");
-    Resource::of_panel(&panel, ModeRange::Count(MODES), ports, Residual::Attachment).expect("a sound panel").0
+    Resource::of_panel(&panel, ModeRange::Count(MODES), ports, Residual::Attachment, Connections::default())
+        .expect("a sound panel")
+        .0
 }
 
 pub(super) fn instance(text: &str, interface: Interface) -> Component {

@@ -53,10 +53,10 @@ impl Component {
             Some(Quantity::Time) => Ok(self.now.time),
             None | Some(Quantity::ForceLinear) => Err(self.no_real(reference)),
             // The table has the ports and modes of the stepper: none of these is ever missing.
-            Some(Quantity::Force(port)) => Ok(self.now.forces.get(port).copied().unwrap_or(f64::NAN)),
+            Some(Quantity::Input(port)) => Ok(self.now.forces.get(port).copied().unwrap_or(f64::NAN)),
             Some(quantity) => {
                 let forces = self.now.forces_in_effect();
-                Ok(self.panel_value(quantity, &self.stepper, forces).unwrap_or(f64::NAN))
+                Ok(self.panel_value(quantity, &self.in_use, &self.stepper, forces).unwrap_or(f64::NAN))
             }
         }
     }
@@ -67,7 +67,7 @@ impl Component {
         same_count(values.len(), references.len())?;
         // One force, which is what is set at every step, needs no second look.
         if let ([reference], [value]) = (references, values)
-            && let Some(Quantity::Force(port)) = self.variables.quantity(*reference)
+            && let Some(Quantity::Input(port)) = self.variables.quantity(*reference)
             && fits(*value)
             && let Some(force) = self.now.forces.get_mut(port)
         {
@@ -82,13 +82,13 @@ impl Component {
     fn set_several(&mut self, references: &[u32], values: &[f64]) -> Result<(), FmuError> {
         for (&reference, &value) in references.iter().zip(values) {
             // A force is asked for nothing more.
-            if !(matches!(self.variables.quantity(reference), Some(Quantity::Force(_))) && fits(value)) {
+            if !(matches!(self.variables.quantity(reference), Some(Quantity::Input(_))) && fits(value)) {
                 self.check_settable(reference, value)?;
             }
         }
         for (&reference, &value) in references.iter().zip(values) {
             match self.variables.quantity(reference) {
-                Some(Quantity::Force(port)) => {
+                Some(Quantity::Input(port)) => {
                     if let Some(force) = self.now.forces.get_mut(port) {
                         *force = value;
                     }
@@ -244,15 +244,15 @@ impl Component {
 
     fn force_port(&self, reference: u32) -> Result<usize, FmuError> {
         match self.real(reference)? {
-            Quantity::Force(port) => Ok(port),
-            _ => Err(not_settable(self.variable(reference)?, "input derivatives are of forces only")),
+            Quantity::Input(port) => Ok(port),
+            _ => Err(not_settable(self.variable(reference)?, "input derivatives are of inputs only")),
         }
     }
 
     #[cold]
     fn check_settable(&self, reference: u32, value: f64) -> Result<(), FmuError> {
         let reason = match self.real(reference)? {
-            Quantity::Force(_) => return fitting(&self.variable(reference)?.name, value),
+            Quantity::Input(_) => return fitting(&self.variable(reference)?.name, value),
             Quantity::ModalPosition(_) | Quantity::ModalVelocity(_) => {
                 if Phase::BEFORE_START.contain(self.now.phase) {
                     return fitting(&self.variable(reference)?.name, value);

@@ -1,8 +1,8 @@
 //! The parts of a panel that are parameters of its FMU.
 
-use orthopanel_model::{EffectParameter, Estimate, PanelModel, effect};
+use orthopanel_model::{EffectParameter, Estimate, effect};
 
-use super::{Panel, ResidualModes};
+use super::Panel;
 use crate::PortNames;
 
 /// What a parameter of the FMU is of the panel; ports and modes are counted from 0.
@@ -22,7 +22,11 @@ pub(crate) enum Part {
     ForceY(usize),
     ResponseX(usize),
     ResponseY(usize),
-    /// Place of a force that residual modes answer: no parameter, but what follows the port until initialization has ended.
+    MountStiffness(usize),
+    MountDamping(usize),
+    MountX(usize),
+    MountY(usize),
+    /// Place of a force or a mount that residual modes answer: no parameter, but what follows the port or mount until initialization has ended.
     AttachmentX(usize),
     AttachmentY(usize),
 }
@@ -31,7 +35,7 @@ impl Part {
     /// Whether it may be set while the simulation runs: modal coordinates go on meaning the same motion. Modes are those of the
     /// undamped panel, so that neither damping nor a port moves them; with sizes, mass or constants they would be other shapes.
     pub(crate) fn is_tunable(&self) -> bool {
-        self.is_damping() || self.is_of_force() || self.is_of_response()
+        self.is_damping() || self.is_of_force() || self.is_of_response() || self.mount().is_some()
     }
 
     pub(crate) fn is_damping(&self) -> bool {
@@ -43,7 +47,23 @@ impl Part {
     }
 
     pub(crate) fn is_place(&self) -> bool {
-        self.is_of_force() || self.is_of_response() || self.is_of_attachment()
+        let of_mount = matches!(self, Self::MountX(_) | Self::MountY(_));
+        of_mount || self.is_of_force() || self.is_of_response() || self.is_of_attachment()
+    }
+
+    /// Of which mount it is.
+    pub(crate) fn mount(&self) -> Option<usize> {
+        match *self {
+            Self::MountStiffness(mount) | Self::MountDamping(mount) | Self::MountX(mount) | Self::MountY(mount) => {
+                Some(mount)
+            }
+            _ => None,
+        }
+    }
+
+    /// Whether it is a mount's stiffness or damping.
+    pub(crate) fn is_of_mount_law(&self) -> bool {
+        matches!(self, Self::MountStiffness(_) | Self::MountDamping(_))
     }
 
     /// Whether it is the place of a force.
@@ -58,7 +78,7 @@ impl Part {
 
     /// Whether it is the place of a port across the panel.
     pub(crate) fn is_along_y(&self) -> bool {
-        matches!(self, Self::ForceY(_) | Self::ResponseY(_))
+        matches!(self, Self::ForceY(_) | Self::ResponseY(_) | Self::MountY(_))
     }
 }
 
@@ -86,6 +106,9 @@ impl Panel {
         parts.extend((0..self.model.ports.forces.len()).flat_map(|port| [Part::ForceX(port), Part::ForceY(port)]));
         let responses = 0..self.model.ports.responses.len();
         parts.extend(responses.flat_map(|port| [Part::ResponseX(port), Part::ResponseY(port)]));
+        let of_mount =
+            |mount| [Part::MountStiffness(mount), Part::MountDamping(mount), Part::MountX(mount), Part::MountY(mount)];
+        parts.extend((0..self.connections.mounts.len()).flat_map(of_mount));
         let places = 0..self.residual.as_ref().map_or(0, |residual| residual.places.len());
         parts.extend(places.flat_map(|place| [Part::AttachmentX(place), Part::AttachmentY(place)]));
         parts
@@ -95,6 +118,7 @@ impl Panel {
         let (piece, ports) = (&self.model.piece, &self.model.ports);
         let residual = self.residual.as_ref();
         let place = |place: &usize| residual.and_then(|residual| residual.places.get(*place));
+        let mount = |mount: &usize| self.connections.mounts.get(*mount);
         let value = match part {
             Part::Length => Some(piece.length),
             Part::Width => Some(piece.width),
@@ -107,6 +131,10 @@ impl Panel {
             }
             Part::Damping(mode) => Some(self.model.damping.ratio(mode + 1)),
             Part::ResidualDamping => residual.map(|residual| residual.damping_ratio),
+            Part::MountStiffness(at) => mount(at).map(|mount| mount.stiffness),
+            Part::MountDamping(at) => mount(at).map(|mount| mount.damping),
+            Part::MountX(at) => mount(at).map(|mount| mount.at.x),
+            Part::MountY(at) => mount(at).map(|mount| mount.at.y),
             Part::AttachmentX(at) => place(at).map(|place| place.x),
             Part::AttachmentY(at) => place(at).map(|place| place.y),
             Part::ForceX(port) => ports.forces.get(*port).map(|place| place.x),
@@ -119,7 +147,9 @@ impl Panel {
     }
 }
 
-pub(super) fn set((model, residual): (&mut PanelModel, Option<&mut ResidualModes>), part: &Part, value: f64) {
+pub(super) fn set(panel: &mut Panel, part: &Part, value: f64) {
+    let Panel { model, residual, connections, .. } = panel;
+    let (residual, mounts) = (residual.as_mut(), &mut connections.mounts);
     let (piece, ports) = (&mut model.piece, &mut model.ports);
     let place = match part {
         Part::Length => Some(&mut piece.length),
@@ -138,6 +168,10 @@ pub(super) fn set((model, residual): (&mut PanelModel, Option<&mut ResidualModes
         }
         Part::Damping(mode) => model.damping.ratios.get_mut(*mode),
         Part::ResidualDamping => residual.map(|residual| &mut residual.damping_ratio),
+        Part::MountStiffness(at) => mounts.get_mut(*at).map(|mount| &mut mount.stiffness),
+        Part::MountDamping(at) => mounts.get_mut(*at).map(|mount| &mut mount.damping),
+        Part::MountX(at) => mounts.get_mut(*at).map(|mount| &mut mount.at.x),
+        Part::MountY(at) => mounts.get_mut(*at).map(|mount| &mut mount.at.y),
         Part::AttachmentX(at) => residual.and_then(|residual| residual.places.get_mut(*at)).map(|place| &mut place.x),
         Part::AttachmentY(at) => residual.and_then(|residual| residual.places.get_mut(*at)).map(|place| &mut place.y),
         Part::ForceX(port) => ports.forces.get_mut(*port).map(|place| &mut place.x),
@@ -151,35 +185,49 @@ pub(super) fn set((model, residual): (&mut PanelModel, Option<&mut ResidualModes
 }
 
 impl Panel {
+    fn mount_name(&self, mount: usize) -> String {
+        self.connections.mounts.get(mount).map(|mount| mount.name.clone()).unwrap_or_default()
+    }
+
     pub(super) fn describe(&self, part: &Part, names: &PortNames) -> (String, &'static str, String) {
         let place = |what: &str, label: String, axis: &str| {
-            let text = format!("Place of {what} {label} along {axis}, from the centre");
+            let text = described!("Place of {what} {label} along {axis}, from the centre");
             (format!("{what}_{label}_{axis}"), "m", text)
         };
         match part {
-            Part::Length => ("length".into(), "m", "Length of the piece, along x".into()),
-            Part::Width => ("width".into(), "m", "Width of the piece, along y".into()),
-            Part::Thickness => ("thickness".into(), "m", "Thickness of the piece".into()),
-            Part::MassPerArea => ("mass_per_area".into(), "kg/m2", "Mass per area of the piece".into()),
+            Part::Length => ("length".into(), "m", described!("Length of the piece, along x")),
+            Part::Width => ("width".into(), "m", described!("Width of the piece, along y")),
+            Part::Thickness => ("thickness".into(), "m", described!("Thickness of the piece")),
+            Part::MassPerArea => ("mass_per_area".into(), "kg/m2", described!("Mass per area of the piece")),
             Part::Constant(name) => {
                 let unit = if name.starts_with("nu") { "1" } else { "Pa" };
-                (name.clone(), unit, format!("Elastic constant {name}"))
+                (name.clone(), unit, described!("Elastic constant {name}"))
             }
             Part::Effect(number, parameter) => {
                 let id = |at: usize| self.model.effects.get(at).map_or("", |entry| &entry.id);
                 let before = (0..*number).filter(|&other| id(other) == id(*number)).count();
                 let of = if before == 0 { id(*number).into() } else { format!("{} {}", id(*number), before + 1) };
                 let name = format!("{of}_{}", parameter.name).replace(['-', ' '], "_");
-                (name, parameter.unit, format!("Parameter {} of the effect {of}", parameter.name))
+                (name, parameter.unit, described!("Parameter {} of the effect {of}", parameter.name))
             }
             Part::Damping(mode) => {
-                let text = format!("Modal damping ratio of flexible mode {}", mode + 1);
+                let text = described!("Modal damping ratio of flexible mode {}", mode + 1);
                 (format!("damping_ratio_{}", mode + 1), "1", text)
             }
             Part::ResidualDamping => {
-                let text = "Damping ratio of the residual modes, which stand for the modes left out".into();
+                let text = described!("Damping ratio of the residual modes, which stand for the modes left out");
                 ("residual_damping_ratio".into(), "1", text)
             }
+            Part::MountStiffness(mount) => {
+                let name = self.mount_name(*mount);
+                (format!("mount_{name}_stiffness"), "N/m", described!("Stiffness of mount {name}"))
+            }
+            Part::MountDamping(mount) => {
+                let name = self.mount_name(*mount);
+                (format!("mount_{name}_damping"), "N.s/m", described!("Damping of mount {name}"))
+            }
+            Part::MountX(mount) => place("mount", self.mount_name(*mount), "x"),
+            Part::MountY(mount) => place("mount", self.mount_name(*mount), "y"),
             // No importer sees these.
             Part::AttachmentX(port) | Part::AttachmentY(port) => place("attachment", port.to_string(), ""),
             Part::ForceX(port) => place("force", names.force(*port), "x"),

@@ -28,14 +28,12 @@ pub(super) fn of(ports: &Ports) -> Vec<Array> {
         ("displacement", "The panel's displacements", &ports.responses, None),
     ];
     let array = |(name, words, places, also): (&'static str, &str, &[Place], Option<&str>)| {
-        let at: Vec<String> = places.iter().map(|place| format!("({}, {})", place.x, place.y)).collect();
+        let at = || places.iter().map(|place| format!("({}, {})", place.x, place.y)).collect::<Vec<_>>().join(", ");
         let first = next;
         // As many places fit into memory: the number never reaches 2^32.
         next += u32::try_from(places.len()).unwrap_or(u32::MAX);
-        let mut description = format!("{words} at (x, y) = {} m from the centre, positive along +z", at.join(", "));
-        if let Some(also) = also {
-            description += &format!(". {also}");
-        }
+        let also = also.map(|also| described!(". {also}")).unwrap_or_default();
+        let description = described!("{words} at (x, y) = {} m from the centre, positive along +z{also}", at());
         Array { name, description, references: first..next }
     };
     kinds.into_iter().map(array).collect()

@@ -7,6 +7,7 @@ use orthopanel_model::{ModalModel, Mode};
 
 use super::{Quantity, Variable};
 use crate::Resource;
+use crate::connections::{MovedBy, Signal, Terms};
 use crate::panel::{Panel, Part};
 
 /// One variable on which another depends.
@@ -72,25 +73,46 @@ pub(super) fn fill(variables: &mut [Variable], resource: &Resource) {
 fn knowns(quantity: Quantity, resource: &Resource) -> Vec<(Quantity, Factor)> {
     let any = resource.panel().is_some();
     let moving = if any { Factor::Tunable } else { Factor::Fixed };
+    // Nothing but its own acceleration moves the frame.
+    let frame = resource.frame_motions();
     let model = resource.model();
-    let modes = model.modes().iter().enumerate();
-    let seen = |response: usize| modes.filter(move |(_, mode)| any || is_set(&mode.at_responses, response));
+    let modes = || model.modes().iter().enumerate();
+    let seen = |response: usize| modes().filter(move |(_, mode)| any || is_set(&mode.at_responses, response));
+    let accelerated = |response: usize| {
+        seen(response).flat_map(|(index, mode)| {
+            of_acceleration(index, mode, any && index >= frame).into_iter().chain(coupled(index, model, resource))
+        })
+    };
     let all = |quantities: Vec<Quantity>| quantities.into_iter().map(|known| (known, moving)).collect();
     match quantity {
         Quantity::Displacement(port) => all(seen(port).map(|(mode, _)| Quantity::ModalPosition(mode)).collect()),
         Quantity::Velocity(port) => all(seen(port).map(|(mode, _)| Quantity::ModalVelocity(mode)).collect()),
-        Quantity::Acceleration(port) => {
-            let of_modes = seen(port).flat_map(|(index, mode)| {
-                of_acceleration(index, mode, any).into_iter().chain(coupled(index, model, resource.panel()))
-            });
-            all(of_modes.collect())
+        Quantity::Acceleration(port) => all(accelerated(port).collect()),
+        Quantity::Connected(output) => {
+            let none = Terms::new();
+            let terms = resource.outputs().get(output).map_or(&none, |output| &output.terms);
+            let of = |signal: Signal| -> Vec<Quantity> {
+                match signal {
+                    Signal::Displacement(at) => seen(at).map(|(mode, _)| Quantity::ModalPosition(mode)).collect(),
+                    Signal::Velocity(at) => seen(at).map(|(mode, _)| Quantity::ModalVelocity(mode)).collect(),
+                    Signal::Acceleration(at) => accelerated(at).collect(),
+                    Signal::Input(input) => vec![Quantity::Input(input)],
+                }
+            };
+            all(terms.iter().flat_map(|(signal, _)| of(*signal)).collect())
         }
         Quantity::ModalPositionRate(mode) => vec![(Quantity::ModalVelocity(mode), Factor::Fixed)],
         Quantity::ModalVelocityRate(index) => {
-            let own = model.modes().get(index).map(|mode| of_acceleration(index, mode, any)).unwrap_or_default();
-            let all = own.into_iter().chain(coupled(index, model, resource.panel()));
-            // The stiffness of a mode is neither its damping's matter nor a port's.
-            let factor = |known| if known == Quantity::ModalPosition(index) { Factor::Fixed } else { moving };
+            let own = model
+                .modes()
+                .get(index)
+                .map(|mode| of_acceleration(index, mode, any && index >= frame))
+                .unwrap_or_default();
+            let all = own.into_iter().chain(coupled(index, model, resource));
+            // The stiffness of a mode is neither its damping's matter nor a port's; a mount adds to it.
+            let mounted = !model.stiffness_coupling().is_empty();
+            let fixed = |known| known == Quantity::ModalPosition(index) && !mounted;
+            let factor = |known| if fixed(known) { Factor::Fixed } else { moving };
             all.map(|known| (known, factor(known))).collect()
         }
         _ => Vec::new(),
@@ -99,23 +121,30 @@ fn knowns(quantity: Quantity, resource: &Resource) -> Vec<(Quantity, Factor)> {
 
 /// $\ddot a = \sum_k W(x_k)f_k - 2\zeta\omega\dot a - \omega^2a$: the terms that are there, or may come to be.
 fn of_acceleration(index: usize, mode: &Mode, any: bool) -> Vec<Quantity> {
-    let forces = (0..mode.at_forces.len()).filter(|&port| any || is_set(&mode.at_forces, port)).map(Quantity::Force);
+    let forces = (0..mode.at_forces.len()).filter(|&port| any || is_set(&mode.at_forces, port)).map(Quantity::Input);
     let flexible = mode.angular_frequency > 0.0;
     let elastic = flexible.then_some(Quantity::ModalPosition(index));
     let damping = (flexible && (any || mode.damping_ratio > 0.0)).then_some(Quantity::ModalVelocity(index));
     forces.chain(elastic).chain(damping).collect()
 }
 
-/// Modal velocities that dampers of an effect hand on to a mode, or may where damping ratios are set: each mode with effects holds
-/// several bare ones.
-fn coupled(index: usize, model: &ModalModel, panel: Option<&Panel>) -> impl Iterator<Item = Quantity> {
+/// All modes, where mounts join them; else modal velocities that dampers of an effect hand on to a mode, or may where damping ratios are
+/// set: each mode with effects holds several bare ones.
+fn coupled(index: usize, model: &ModalModel, resource: &Resource) -> impl Iterator<Item = Quantity> {
+    let panel = resource.panel();
+    let size = model.modes().len();
+    // Nothing but its acceleration moves the frame.
+    let joined = !model.stiffness_coupling().is_empty() && index >= resource.frame_motions();
+    let mounted = (0..size).filter(move |_| joined);
+    let mounted = mounted.flat_map(|other| [Quantity::ModalPosition(other), Quantity::ModalVelocity(other)]);
     // Residual modes are by themselves.
-    let count = model.modes().len() - panel.map_or(0, Panel::residual_modes);
+    let count = size - panel.map_or(0, Panel::residual_modes);
     let flexible = model.modes().get(index).is_some_and(|mode| index < count && mode.angular_frequency > 0.0);
-    let any = flexible && (!model.damping_coupling().is_empty() || panel.is_some_and(Panel::has_effects));
+    let damped = !resource.free().damping_coupling().is_empty();
+    let any = flexible && (damped || panel.is_some_and(Panel::has_effects));
     let others = model.modes().iter().take(count).enumerate();
     let others = others.filter(move |(_, mode)| any && mode.angular_frequency > 0.0);
-    others.map(|(other, _)| Quantity::ModalVelocity(other))
+    mounted.chain(others.map(|(other, _)| Quantity::ModalVelocity(other)))
 }
 
 /// Whether a quantity changes at once where this part of the panel is set while the simulation runs.
@@ -124,14 +153,27 @@ fn moves(part: &Part, quantity: Quantity, resource: &Resource) -> bool {
     let of_response = |port: usize| [Part::ResponseX(port), Part::ResponseY(port)].contains(part);
     match quantity {
         Quantity::Displacement(port) | Quantity::Velocity(port) => of_response(port),
-        Quantity::Acceleration(port) => of_response(port) || part.is_of_force() || part.is_damping(),
+        Quantity::Acceleration(port) => {
+            of_response(port) || part.is_of_force() || part.is_damping() || part.mount().is_some()
+        }
+        Quantity::Connected(output) => {
+            let loads = || part.is_of_force() || part.is_damping() || part.mount().is_some();
+            resource.outputs().get(output).is_some_and(|output| match output.moved_by {
+                MovedBy::Response(port) => of_response(port),
+                MovedBy::Mount(mount) => part.mount() == Some(mount),
+                MovedBy::Loads => loads(),
+            })
+        }
         Quantity::ModalVelocityRate(index) => {
             let modes = resource.model().modes();
+            if index < resource.frame_motions() {
+                return false;
+            }
             let rigid = modes.iter().take_while(|mode| mode.angular_frequency == 0.0).count();
             let residual = index + panel.residual_modes() >= modes.len();
             let own = if residual { Part::ResidualDamping } else { Part::Damping(index.saturating_sub(rigid)) };
             let damps = part.is_damping() && index >= rigid;
-            part.is_of_force() || damps && (panel.has_effects() && !residual || *part == own)
+            part.is_of_force() || part.mount().is_some() || damps && (panel.has_effects() && !residual || *part == own)
         }
         _ => false,
     }

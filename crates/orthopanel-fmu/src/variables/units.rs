@@ -27,7 +27,7 @@ pub(super) const MODAL_VELOCITY: &str = "m.kg^(1/2)/s";
 pub(super) const MODAL_ACCELERATION: &str = "m.kg^(1/2)/s2";
 
 /// Every unit in use.
-pub const UNITS: [Unit; 13] = [
+pub const UNITS: [Unit; 19] = [
     Unit::of("s", &[("s", 1)]),
     Unit::of("N", &[("kg", 1), ("m", 1), ("s", -2)]),
     Unit::of("m/s2", &[("m", 1), ("s", -2)]),
@@ -38,6 +38,12 @@ pub const UNITS: [Unit; 13] = [
     Unit::of("kg", &[("kg", 1)]),
     Unit::of("Hz", &[("s", -1)]),
     Unit::of("1", &[]),
+    Unit::of("N/m", &[("kg", 1), ("s", -2)]),
+    Unit::of("N.s/m", &[("kg", 1), ("s", -1)]),
+    Unit::of("N.m", &[("kg", 1), ("m", 2), ("s", -2)]),
+    Unit::of("rad", &[("rad", 1)]),
+    Unit::of("rad/s", &[("rad", 1), ("s", -1)]),
+    Unit::of("rad/s2", &[("rad", 1), ("s", -2)]),
     Unit::of(MODAL_POSITION, &[]),
     Unit::of(MODAL_VELOCITY, &[]),
     Unit::of(MODAL_ACCELERATION, &[]),

@@ -381,7 +381,7 @@ pub(super) fn row(element: &PointElement) -> Option<Row> {
 }
 
 /// The elements of all effects, each at a place of its own.
-pub(super) fn elements(effects: &[EffectState], setting: &EffectSetting) -> Result<Vec<PointElement>, ModelError> {
+pub(crate) fn elements(effects: &[EffectState], setting: &EffectSetting) -> Result<Vec<PointElement>, ModelError> {
     let mut elements = Vec::new();
     for state in effects {
         for action in state.effect.act(&state.values_in(1)?, setting)? {

@@ -55,7 +55,7 @@ pub use core_modulus::{CoreLine, CoreModulus};
 pub(crate) use coupled_flexibility::{FarMode, FarModes, Flexibilities, MOST_SUMMED};
 pub(crate) use coupled_modes::CoupledMode;
 pub use coupled_modes::{NaturalFrequencies, natural_frequencies};
-pub(crate) use coupled_panel::{CoupledPanel, Even, PanelWithEffects, SPARE_MODES};
+pub(crate) use coupled_panel::{CoupledPanel, Even, PanelWithEffects, SPARE_MODES, elements as point_elements};
 pub use modified_panel::{ModifiedPanel, SeenModes};
 pub use parameter::{EffectParameter, Prior, Reference, Scale};
 pub use point_element::{ElementLaw, ElementLine, PointElement, Seat, Share};
@@ -64,6 +64,7 @@ pub use relaxing_lines::RelaxingLines;
 pub use relaxing_modes::{ModesAtLine, RelaxingMode, RelaxingModes};
 pub use roughness::{CORE_WAVES, roughness};
 pub use setting::{EffectSetting, RecordSetting, SuspensionMotion};
+pub(crate) use spread_effects::SpreadEffects;
 pub use state::EffectState;
 pub use uneven_beam::Field;
 

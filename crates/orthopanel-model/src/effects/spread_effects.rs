@@ -5,7 +5,7 @@ use crate::{BeamTerms, ModelError};
 
 /// Terms spread over the beam, and a core that depends on frequency.
 #[derive(Default)]
-pub(super) struct SpreadEffects {
+pub(crate) struct SpreadEffects {
     /// None where the beam is even.
     pub terms: Option<BeamTerms>,
     /// Position among [`crate::Structure::term_derivatives`], and column.
@@ -18,7 +18,7 @@ pub(super) struct SpreadEffects {
 
 impl SpreadEffects {
     /// Of these effects; `first` is the column of the first effect's first value.
-    pub(super) fn of(effects: &[EffectState], setting: &EffectSetting, first: usize) -> Result<Self, ModelError> {
+    pub(crate) fn of(effects: &[EffectState], setting: &EffectSetting, first: usize) -> Result<Self, ModelError> {
         let mut spread = Self::default();
         let mut terms = BeamTerms::default();
         let (mut rotary, mut losses, mut support, mut waves) = (vec![], vec![], vec![], vec![]);

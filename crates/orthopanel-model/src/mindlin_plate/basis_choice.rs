@@ -57,7 +57,7 @@ impl MindlinPlate {
     ///
     /// # Errors
     /// As there.
-    pub(super) fn terms_for_basis(
+    pub(crate) fn terms_for_basis(
         piece: &Piece,
         boundary: Boundary,
         values: &[f64],

@@ -1,4 +1,4 @@
-//! The exact step of modes that damping couples: all of them together.
+//! The exact step of modes that dampers or springs couple: all of them together.
 
 use faer::Mat;
 
@@ -10,9 +10,9 @@ const SERIES_UP_TO: f64 = 0.5;
 const TERMS: u32 = 15;
 
 /// Modes with
-/// $$\ddot a_m + 2\zeta_m\omega_m\dot a_m + \sum_n c_{mn}\dot a_n + \omega_m^2a_m = p_m.$$
+/// $$\ddot a_m + 2\zeta_m\omega_m\dot a_m + \sum_n c_{mn}\dot a_n + \omega_m^2a_m + \sum_nk_{mn}a_n = p_m.$$
 ///
-/// In $x = (\omega_ma_m, \dot a_m)$ this is $\dot x = Ax + Bp$, and for a $p$ that runs from $p_0$ by $\Delta p$ over $h$
+/// In $x = (s_ma_m, \dot a_m)$ this is $\dot x = Ax + Bp$, and for a $p$ that runs from $p_0$ by $\Delta p$ over $h$
 /// $$x_1 - x = Ah\varphi_1x + h\varphi_1Bp_0 + h\varphi_2B\Delta p,\quad \varphi_k = \sum_{n\ge0}\frac{(Ah)^n}{(n+k)!}.$$
 /// The series is summed for a fraction of the step, which is then doubled; increments are doubled, not states, so that a
 /// short step loses nothing. Reference: N. J. Higham, Functions of Matrices (SIAM 2008), 10.7.4.
@@ -21,6 +21,7 @@ pub(super) struct Coupled {
     /// $\omega$ and $2\zeta\omega$.
     modes: Vec<[f64; 2]>,
     damping: Vec<Vec<f64>>,
+    stiffness: Vec<Vec<f64>>,
     /// Matrices of the last step sizes, the present one first.
     steps: Vec<StepMatrix>,
     /// How many matrices were made.
@@ -50,13 +51,14 @@ struct StepMatrix {
 impl Coupled {
     /// `None` where nothing couples the modes.
     pub(super) fn new(model: &ModalModel) -> Option<Self> {
-        let damping = model.damping_coupling().to_vec();
+        let (damping, stiffness) = (model.damping_coupling().to_vec(), model.stiffness_coupling().to_vec());
         let of_mode = |mode: &crate::Mode| [mode.angular_frequency, 2.0 * mode.damping_ratio * mode.angular_frequency];
         let modes: Vec<_> = model.modes().iter().map(of_mode).collect();
         let (before, after) = (vec![0.0; 4 * modes.len()], vec![[0.0; 2]; modes.len()]);
-        (!damping.is_empty()).then(|| Self {
+        (!(damping.is_empty() && stiffness.is_empty())).then(|| Self {
             modes,
             damping,
+            stiffness,
             steps: vec![],
             #[cfg(test)]
             made: 0,
@@ -65,10 +67,23 @@ impl Coupled {
         })
     }
 
-    /// $\sum_nc_{mn}\dot a_n$ of mode `mode`.
-    pub(super) fn damping_force(&self, mode: usize, velocity: impl Fn(usize) -> f64) -> f64 {
-        let row = self.damping.get(mode).into_iter().flatten();
-        row.enumerate().map(|(other, damping)| damping * velocity(other)).sum()
+    /// $\sum_nc_{mn}\dot a_n + k_{mn}a_n$ of mode `mode`; `state` gives $a_n$ and $\dot a_n$.
+    pub(super) fn force(&self, mode: usize, state: impl Fn(usize) -> [f64; 2]) -> f64 {
+        let sum = |coupling: &[Vec<f64>], of: usize| -> f64 {
+            let row = coupling.get(mode).into_iter().flatten().enumerate();
+            row.map(|(other, value)| value * state(other)[of]).sum()
+        };
+        sum(&self.damping, 1) + sum(&self.stiffness, 0)
+    }
+
+    /// $s_m$: of what the whole stiffness holds of a mode, so that strong springs between slow modes make no large numbers.
+    fn scale(&self) -> Vec<f64> {
+        let mut scale: Vec<f64> = self.modes.iter().map(|&[omega, _]| omega).collect();
+        for row in &self.stiffness {
+            scale.iter_mut().zip(row).for_each(|(own, coupling)| *own = own.max(coupling.abs().sqrt()));
+        }
+        // A rigid mode that nothing holds is not scaled: it has no frequency.
+        scale.into_iter().map(|own| if own > 0.0 { own } else { 1.0 }).collect()
     }
 
     /// Makes the step's matrix, unless it is among those kept.
@@ -91,14 +106,16 @@ impl Coupled {
 
     fn matrix(&self, step: f64) -> Result<Vec<Vec<f64>>, ModelError> {
         let count = self.modes.len();
-        // A rigid mode is not scaled: it has no frequency.
-        let scale: Vec<f64> = self.modes.iter().map(|&[omega, _]| if omega > 0.0 { omega } else { 1.0 }).collect();
+        let scale = self.scale();
         let mut generator = Mat::<f64>::zeros(2 * count, 2 * count);
         for (m, &[omega, loss]) in self.modes.iter().enumerate() {
             generator[(m, count + m)] = scale[m];
             generator[(count + m, m)] = -omega * omega / scale[m];
             for (n, coupling) in self.damping.get(m).into_iter().flatten().enumerate() {
                 generator[(count + m, count + n)] = -coupling;
+            }
+            for (n, coupling) in self.stiffness.get(m).into_iter().flatten().enumerate() {
+                generator[(count + m, n)] -= coupling / scale[n];
             }
             generator[(count + m, count + m)] -= loss;
         }
@@ -214,6 +231,31 @@ mod tests {
         // Phases from 1e-6 to 40; each doubling of the step may double the rounding.
         for (step, tolerance) in [(1e-9, 1e-13), (1e-6, 1e-13), (1e-4, 1e-12), (1e-3, 1e-11)] {
             assert_alike(&motion(&coupled, step), &motion(&with(&more), step), tolerance);
+        }
+    }
+
+    /// A spring on the diagonal alone is a higher frequency, and moves a rigid mode to one: the modes' own exact step is the authority.
+    #[test]
+    fn val_a_diagonal_spring_is_a_frequency() {
+        let omegas = [0.0, 900.0, 2500.0, 7000.0];
+        for stiffness in [1e3, 1e6, 1e9] {
+            let spring = |m: usize| stiffness / (1.0 + m as f64);
+            let list = |held: bool| {
+                let of = |(m, &omega): (usize, &f64)| {
+                    let whole = if held { (omega * omega + spring(m)).sqrt() } else { omega };
+                    mode(whole, if omega > 0.0 { 0.01 * omega / whole } else { 0.0 }, 1.0 / (1.0 + m as f64))
+                };
+                ModalModel::new(1, 1, omegas.iter().enumerate().map(of).collect()).unwrap()
+            };
+            let rows = (0..4).map(|m| (0..4).map(|n| if m == n { spring(m) } else { 0.0 }).collect()).collect();
+            let (held, coupled) = (list(true), list(false).with_stiffness_coupling(rows).unwrap());
+            for (step, tolerance) in [(1e-7, 1e-12), (1e-5, 1e-11), (1e-4, 1e-10)] {
+                assert_alike(&motion(&coupled, step), &motion(&held, step), tolerance);
+            }
+            for frequency in [40.0, 470.0, 2000.0] {
+                let (found, expected) = (coupled.accelerance(0, 0, frequency), held.accelerance(0, 0, frequency));
+                assert!((found - expected).norm() < 1e-10 * expected.norm(), "{frequency}: {found} {expected}");
+            }
         }
     }
 

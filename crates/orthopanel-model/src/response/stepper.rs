@@ -29,7 +29,7 @@ pub struct ModalStepper {
     largest_at_forces: Vec<f64>,
     now: Turn,
     pub(super) step: f64,
-    /// Where damping couples the modes: their step together, in place of each mode's own.
+    /// Where dampers or springs couple the modes: their step together, in place of each mode's own.
     pub(super) coupled: Option<Box<Coupled>>,
 }
 
@@ -198,20 +198,19 @@ impl ModalStepper {
         let [position, velocity] = self.mode_state(mode)?;
         let (group, i) = (self.groups.get(mode / LANES)?, mode % LANES);
         let by_itself = group.force.0[i] - group.damping.0[i] * velocity - group.stiffness.0[i] * position;
-        let coupling =
-            self.coupled.as_ref().map_or(0.0, |coupled| coupled.damping_force(mode, |n| self.velocity_of(n)));
+        let coupling = self.coupled.as_ref().map_or(0.0, |coupled| coupled.force(mode, |n| self.state_of(n)));
         Some([velocity, by_itself - coupling])
     }
 
-    fn velocity_of(&self, mode: usize) -> f64 {
-        self.groups.get(mode / LANES).map_or(0.0, |group| group.state(self.now).velocity.0[mode % LANES])
+    fn state_of(&self, mode: usize) -> [f64; 2] {
+        self.mode_state(mode).unwrap_or_default()
     }
 
     #[cold]
     fn coupling_acceleration(&self, coupled: &Coupled, shape: &[Lane]) -> f64 {
         let of_mode = |mode: usize| {
             let at = shape.get(mode / LANES).map_or(0.0, |lane| lane.0[mode % LANES]);
-            at * coupled.damping_force(mode, |n| self.velocity_of(n))
+            at * coupled.force(mode, |n| self.state_of(n))
         };
         (0..self.mode_count).map(of_mode).sum()
     }
@@ -296,7 +295,7 @@ impl ModalStepper {
         Ok(())
     }
 
-    /// The step of modes that damping couples.
+    /// The step of modes that are coupled.
     #[cold]
     fn advance_coupled(&mut self, linear: bool) -> Result<(), ModelError> {
         let Some(coupled) = &mut self.coupled else { return Ok(()) };

@@ -3,14 +3,17 @@
 use std::path::PathBuf;
 
 use orthopanel_data::limits;
-use orthopanel_export::{FmiVersion, Fmu, FmuOptions, Library, Platform, Residual, parameter_samples};
-use orthopanel_model::{PanelModel, Ports};
+use orthopanel_export::{
+    Connections, ExportError, FmiVersion, Fmu, FmuError, FmuModes, FmuOptions, Library, Mount, Platform, Residual,
+    parameter_samples,
+};
+use orthopanel_model::{PanelModel, Ports, is_identifier};
 use serde::Serialize;
 
-use crate::arguments::{ModeArguments, NamedPortArguments, identifier};
+use crate::arguments::{ModeArguments, NamedPortArguments, identifier, on_piece, place};
 use crate::error::{CommandError, InFile as _};
 use crate::outputs::{Inputs, Outputs};
-use crate::{console, model_file, progress, time_response};
+use crate::{console, model_file, progress};
 
 /// Write a model as an FMU for co-simulation and model exchange: force in; acceleration, velocity and displacement out
 ///
@@ -46,6 +49,23 @@ pub struct Arguments {
     /// follow their frequencies
     #[arg(long, value_name = "attachment|none", default_value = "attachment", value_parser = residual)]
     residual: Residual,
+    /// A spring [N/m] and a damper [N s/m] between the panel and a base, inside the FMU: inputs base_displacement_NAME and
+    /// base_velocity_NAME, output base_force_NAME, parameters mount_NAME_stiffness and mount_NAME_damping; may be repeated
+    #[arg(long = "mount", value_name = "NAME=X,Y,STIFFNESS,DAMPING", value_parser = mount, allow_hyphen_values = true)]
+    mounts: Vec<Mount>,
+    /// Couples in at each place of force (moment_x_.., moment_y_..), rotations and their rates out at each place of response
+    #[arg(long)]
+    rotations: bool,
+    /// An input gravity [m/s2]: a uniform field of acceleration, -9.81 where +z points up
+    #[arg(long)]
+    gravity: bool,
+    /// An input pressure [Pa]: uniform on the face
+    #[arg(long)]
+    pressure: bool,
+    /// Inputs base_acceleration [m/s2] and base_angular_acceleration_x, _y [rad/s2] of the frame that holds the edges; motions are then absolute,
+    /// and frame_force, frame_moment_x and _y come out
+    #[arg(long)]
+    base_acceleration: bool,
     /// One array for all forces and one for each kind of output (FMI 3 alone) in place of a variable each
     #[arg(long)]
     arrays: bool,
@@ -93,19 +113,14 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
     let ports = arguments.ports.needed(&model, path)?;
     let shown = progress::spinner("finding modes and making the FMU");
     let (alone, left_out) = model.panel_alone().in_file(path)?;
-    let seen = time_response::seen(&alone, arguments.modes.range(), &ports, arguments.residual).in_file(path)?;
-    let mut frequencies: Vec<f64> =
-        seen.modes.modes().iter().map(|mode| mode.angular_frequency / std::f64::consts::TAU).collect();
-    let residual_hz = frequencies.split_off(frequencies.len() - seen.residual);
-    let rigid_modes = frequencies.iter().filter(|frequency| **frequency == 0.0).count();
-    let highest_hz = match &seen.core {
-        // Beyond are the internal variables' own.
-        Some(fit) => fit.band[1],
-        None => frequencies.last().copied().unwrap_or(0.0),
-    };
+    on_piece(&model, "mount", &arguments.mounts.iter().map(|mount| mount.at).collect::<Vec<_>>())?;
     let options = options(arguments, &model)?;
     let name = options.name.clone();
-    let fmu = Fmu::of_panel(&model, arguments.modes.range(), ports.clone(), &options)?;
+    let fmu = match Fmu::of_panel(&model, arguments.modes.range(), ports.clone(), &options) {
+        Err(ExportError::Resource(FmuError::Model(error))) => return Err(error).in_file(path),
+        made => made?,
+    };
+    let FmuModes { rigid: rigid_modes, flexible: flexible_modes, highest_hz, residual_hz, core } = fmu.modes().clone();
     let bytes = fmu.to_bytes()?;
     drop(shown);
     outputs.add(&arguments.output, bytes);
@@ -128,7 +143,7 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
         name,
         fmi: if arguments.fmi == FmiVersion::Fmi2 { "2.0" } else { "3.0" },
         rigid_modes,
-        flexible_modes: seen.flexible,
+        flexible_modes,
         highest_hz,
         residual_hz,
         ports: &ports,
@@ -148,7 +163,7 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
     if let Some(path) = &ssp {
         console::say(format_args!("wrote {} ({} samples)", path.display(), arguments.samples));
     }
-    if let Some(fit) = &seen.core {
+    if let Some(fit) = &core {
         let [from, to] = fit.band;
         let percent = 100.0 * fit.error;
         console::say(format_args!(
@@ -186,6 +201,13 @@ fn options(arguments: &Arguments, model: &PanelModel) -> Result<FmuOptions, Comm
         names: arguments.ports.names(),
         arrays: arguments.arrays,
         residual: arguments.residual,
+        connections: Connections {
+            mounts: arguments.mounts.clone(),
+            rotations: arguments.rotations,
+            gravity: arguments.gravity,
+            pressure: arguments.pressure,
+            base_acceleration: arguments.base_acceleration,
+        },
         libraries,
         ..usual
     })
@@ -202,6 +224,25 @@ fn residual(text: &str) -> Result<Residual, String> {
         "none" => Ok(Residual::None),
         _ => Err("must be attachment or none".into()),
     }
+}
+
+/// Reads `NAME=X,Y,STIFFNESS,DAMPING`.
+fn mount(text: &str) -> Result<Mount, String> {
+    let example = "give a mount as NAME=X,Y,STIFFNESS,DAMPING in m, N/m and N s/m, as seat=-0.3,0.1,2e5,40";
+    let (name, rest) = text.split_once('=').ok_or_else(|| format!("{text:?} has no name: {example}"))?;
+    if !is_identifier(name) {
+        return Err(format!("{name:?} is no name of letters, digits and _ (no digit first): {example}"));
+    }
+    let numbers: Vec<&str> = rest.split(',').collect();
+    let [x, y, stiffness, damping] = numbers[..] else {
+        return Err(format!("{} numbers behind {name}=, not 4: {example}", numbers.len()));
+    };
+    let law = |what: &str, text: &str| match text.trim().parse::<f64>() {
+        Ok(value) if value.is_finite() && value >= 0.0 => Ok(value),
+        _ => Err(format!("{what} {text:?} is no finite number that is not below zero: {example}")),
+    };
+    let (stiffness, damping) = (law("stiffness", stiffness)?, law("damping", damping)?);
+    Ok(Mount { name: name.into(), at: place(&format!("{x},{y}"))?, stiffness, damping })
 }
 
 /// Reads how many sets of parameters there shall be.

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use orthopanel_data::ImpactTest;
-use orthopanel_export::{FmiVersion, Fmu, FmuOptions, Residual};
+use orthopanel_export::{FmiVersion, Fmu, FmuOptions};
 use orthopanel_identify::Tracing;
 use orthopanel_model::{ModelError, PanelModel};
 use serde::Serialize;
@@ -224,7 +224,7 @@ fn written(files: Outputs) -> Result<Vec<PathBuf>, CommandError> {
 fn add_model(files: &mut Outputs, test: &Path, suffix: &str, model: &PanelModel) -> Result<(), CommandError> {
     files.add_inside(&format!("model{suffix}.json"), model.to_json());
     let ports = &model.ports;
-    let seen = match time_response::seen(model, USUAL_MODES, ports, Residual::Attachment) {
+    let seen = match time_response::seen(model, USUAL_MODES, ports) {
         // The trace may find what has no modes; the model file holds it all the same.
         Err(ModelError::Unsupported(what)) if !model.effects.is_empty() => {
             console::say(format_args!(

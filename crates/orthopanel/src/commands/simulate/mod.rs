@@ -5,7 +5,6 @@ mod on_records;
 use std::path::PathBuf;
 
 use orthopanel_data::limits;
-use orthopanel_export::Residual;
 use serde::Serialize;
 
 use crate::arguments::{ModeArguments, PortArguments};
@@ -154,7 +153,7 @@ fn run_model(arguments: &Arguments) -> Result<(ForceHistory, Vec<Motion>), Comma
     let ports = arguments.ports.needed(&model, path)?;
     let force = driving_force(arguments, ports.forces.len())?;
     let _shown = progress::spinner("driving the model");
-    let seen = time_response::seen(&model, arguments.modes.range(), &ports, Residual::Attachment).in_file(path)?;
+    let seen = time_response::seen(&model, arguments.modes.range(), &ports).in_file(path)?;
     let motions = time_response::simulate(&seen.modes, &force).in_file(path)?;
     Ok((force.samples, motions))
 }
