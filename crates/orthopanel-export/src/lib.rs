@@ -10,6 +10,7 @@ mod model_description;
 mod origin;
 mod reference;
 mod samples;
+mod source_fmu;
 mod ssp;
 mod terminals;
 

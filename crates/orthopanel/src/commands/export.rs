@@ -78,6 +78,10 @@ pub struct Arguments {
     /// Sets of parameters in the SSP beside those of the model, drawn by the standard deviations of its constants
     #[arg(long, value_name = "N", requires = "ssp", default_value_t = 0, value_parser = samples, allow_negative_numbers = true)]
     samples: usize,
+    /// Write an FMU of C99 sources beside the FMU, too, as X-sources.fmu: co-simulation with fixed parameters, no library but libm, for
+    /// targets that no library is built for
+    #[arg(long)]
+    sources: bool,
     /// Print one JSON object (orthopanel.export/1) on standard output
     #[arg(long)]
     json: bool,
@@ -89,6 +93,8 @@ struct Answer<'a> {
     file: &'a PathBuf,
     #[serde(skip_serializing_if = "Option::is_none")]
     ssp: Option<&'a PathBuf>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    sources: Option<&'a PathBuf>,
     name: String,
     fmi: &'static str,
     rigid_modes: usize,
@@ -107,7 +113,11 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
     let path = &arguments.model;
     let inputs = arguments.libraries.iter().fold(Inputs::of(path), |inputs, (_, library)| inputs.and(library));
     let ssp = arguments.ssp.then(|| arguments.output.with_extension("ssp"));
-    let planned = [Some(&arguments.output), ssp.as_ref()].into_iter().flatten().cloned();
+    let sources = arguments.sources.then(|| {
+        let stem = arguments.output.file_stem().unwrap_or_default().to_string_lossy();
+        arguments.output.with_file_name(format!("{stem}-sources.fmu"))
+    });
+    let planned = [Some(&arguments.output), ssp.as_ref(), sources.as_ref()].into_iter().flatten().cloned();
     let mut outputs = Outputs::of(inputs)?.all_planned(planned)?;
     let model = model_file::read(path)?;
     let ports = arguments.ports.needed(&model, path)?;
@@ -135,11 +145,15 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
         }
         outputs.add(path, fmu.to_ssp(&samples)?);
     }
+    if let Some(path) = &sources {
+        outputs.add(path, fmu.to_source_bytes()?);
+    }
     outputs.write()?;
     let answer = Answer {
         schema: "orthopanel.export/1",
         file: &arguments.output,
         ssp: ssp.as_ref(),
+        sources: sources.as_ref(),
         name,
         fmi: if arguments.fmi == FmiVersion::Fmi2 { "2.0" } else { "3.0" },
         rigid_modes,
@@ -162,6 +176,9 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
     }
     if let Some(path) = &ssp {
         console::say(format_args!("wrote {} ({} samples)", path.display(), arguments.samples));
+    }
+    if let Some(path) = &sources {
+        console::say(format_args!("wrote {} (C99)", path.display()));
     }
     if let Some(fit) = &core {
         let [from, to] = fit.band;
