@@ -7,7 +7,7 @@ use orthopanel_model::{ModalModel, printable};
 
 use crate::acceleration_band::Band;
 use crate::origin::Origin;
-use crate::{FmiVersion, FmuOptions};
+use crate::{FmiVersion, FmuOptions, drawing};
 
 /// The page: variables with their places, modes, how the force is held, and where the panel comes from.
 pub(crate) fn write(
@@ -24,7 +24,11 @@ pub(crate) fn write(
     page += &escaped(&options.name);
     page += "</h1>\n<p>";
     page += &escaped(&options.description);
-    page += "</p>\n<h2>Variables</h2>\n";
+    page += "</p>\n";
+    if let Some(from) = from {
+        page += &drawing::draw(resource, &from.panel.piece, from.panel.boundary);
+    }
+    page += "<h2>Variables</h2>\n";
     let table = resource.variables();
     // There are four of each mode, which few come here for.
     let (of_modes, others): (Vec<_>, Vec<_>) =
@@ -44,14 +48,22 @@ pub(crate) fn write(
     page += "</p>\n<h2>Modes</h2>\n<p>";
     page += MODES;
     page += INITIAL_STATE;
+    let doubt = from.map(|from| from.doubt.as_slice()).unwrap_or_default();
+    if !doubt.is_empty() {
+        page += DOUBT;
+    }
     page += "</p>\n<table>\n<tr><th>mode</th><th>frequency [Hz]</th><th>damping ratio</th></tr>\n";
     let modes = alone.modes();
+    let rigid = modes.iter().take_while(|mode| mode.angular_frequency == 0.0).count();
     for (index, mode) in modes.iter().enumerate() {
-        let (number, frequency) = (index + 1, mode.angular_frequency / std::f64::consts::TAU);
+        let (number, frequency) =
+            (index + 1 + resource.frame_motions(), mode.angular_frequency / std::f64::consts::TAU);
         let kind = if index + resource.residual_modes() < modes.len() { "" } else { ", residual" };
+        let own = index.checked_sub(rigid).and_then(|flexible| doubt.get(flexible)).filter(|_| kind.is_empty());
+        let known = own.map_or(String::new(), |share| format!(" &plusmn; {:.2}", share * frequency));
         // Digits enough to tell the FMU's from another's, none that are an accident of binary numbers.
         let zeta = if mode.damping_ratio == 0.0 { "0".into() } else { format!("{:.4e}", mode.damping_ratio) };
-        let _ = writeln!(page, "<tr><td>{number}{kind}</td><td>{frequency:.3}</td><td>{zeta}</td></tr>");
+        let _ = writeln!(page, "<tr><td>{number}{kind}</td><td>{frequency:.3}{known}</td><td>{zeta}</td></tr>");
     }
     page += "</table>\n";
     page += &residual(resource, alone);
@@ -78,17 +90,48 @@ fn residual(resource: &Resource, alone: &ModalModel) -> String {
     )
 }
 
-/// How a mount is joined to a force, and the step at which it is stable.
+/// How a mount is joined to a force, and the steps at which it is stable; what is inside already.
 fn mounting(resource: &Resource, alone: &ModalModel) -> String {
-    let mut text = format!("{MOUNTING}<table>\n<tr><th>force</th><th>m [kg]</th></tr>\n");
-    let modes = alone.modes();
-    for port in 0..resource.ports().forces.len() {
-        let yielding: f64 = modes.iter().filter_map(|mode| mode.at_forces.get(port)).map(|shape| shape * shape).sum();
-        let mass = if yielding > 0.0 { format!("{:.3e}", yielding.recip()) } else { "does not move".into() };
-        let _ = writeln!(text, "<tr><td>force_{}</td><td>{mass}</td></tr>", resource.names().force(port));
+    let mut text = format!("{MOUNTING}<table>\n<tr><th>force</th><th>m [kg]</th>");
+    for step in STEPS {
+        let _ = write!(text, "<th>{step:e} s</th>");
     }
-    text + "</table>\n"
+    text += "</tr>\n";
+    for port in 0..resource.ports().forces.len() {
+        let shapes = alone.modes().iter().filter_map(|mode| mode.at_forces.get(port));
+        let yielding: f64 = shapes.map(|shape| shape * shape).sum();
+        let _ = write!(text, "<tr><td>force_{}</td>", resource.names().force(port));
+        if yielding > 0.0 {
+            let mass = yielding.recip();
+            let _ = write!(text, "<td>{mass:.3e}</td>");
+            for step in STEPS {
+                let (stiffness, damping) = (mass / (4.0 * step * step), mass / (2.0 * step));
+                let _ = write!(text, "<td>k to {stiffness:.1e}, c to {damping:.1e}</td>");
+            }
+            text += "</tr>\n";
+        } else {
+            let _ = writeln!(text, "<td colspan=\"{}\">does not move</td></tr>", STEPS.len() + 1);
+        }
+    }
+    text += "</table>\n";
+    let connections = resource.connections().cloned().unwrap_or_default();
+    if !connections.mounts.is_empty() {
+        text += INSIDE;
+    }
+    if connections.gravity || connections.pressure || connections.base_acceleration {
+        text += UNIFORM;
+    }
+    if connections.base_acceleration {
+        text += FRAME;
+    }
+    if connections.rotations {
+        text += ROTATIONS;
+    }
+    text
 }
+
+/// Steps of a master \[s\].
+const STEPS: [f64; 4] = [1e-6, 1e-5, 1e-4, 1e-3];
 
 /// A table of variables.
 fn listed(variables: &[&Variable]) -> String {
@@ -127,9 +170,24 @@ const MOUNTING: &str = "<h2>How to mount it</h2>\n<p>Forces, displacements, velo
      stiffness k and a damper c between the panel and a base that moves by u_b and v_b put the force k (u_b - u) + c (v_b - v) on the panel, \
      with u and v the displacement and velocity at the same place; the base gets the opposite. A master that hands motions and forces over \
      once a step h, the force held over it, is stable at steps up to half the least of sqrt(m/k), m/c and c/k, with m the mass that the place \
-     shows a sudden force, below: a held force lags by h/2 on the mean, which takes k h/2 from the damper. Then the error falls with the \
+     shows a sudden force, below: a held force lags by h/2 on the mean, which takes k h/2 from the damper. So at a step h the damper must be from 2 h k up, \
+     and k and c at most what stands under h. Then the error falls with the \
      step; with forces predicted to the end of the next step, and force_linear, with its square. A blow of a hammer is no mount: any \
      step that follows the blow will do.</p>\n";
+const INSIDE: &str = "<p>Mounts inside the FMU need none of this: the spring and the damper on the panel's side are part of its equations and are stepped \
+     exactly with it, whatever their stiffness, damping and the step. Over a step the base goes on from base_displacement_ at base_velocity_, or with \
+     force_linear both run linearly to the values set; base_force_ = k (u - u_b) + c (v - v_b) is what the base gets. What errs is how the base's motion \
+     is handed over: the spring's share of the force by the square of the step, the damper's by the step, with force_linear both by its square. A base that is light beside m above is coupled to the mount as to any stiff element: give it its mass, or \
+     iterate. mount_.._stiffness and mount_.._damping may be set while the simulation runs. The modes above are those of the panel without its \
+     mounts.</p>\n";
+const UNIFORM: &str = "<p>Pressure, a field of acceleration and a moving frame work on the modes that are kept, by the integrals over their shapes; residual modes \
+     are left alone.</p>\n";
+const FRAME: &str = "<p>The frame that holds the edges is moved by base_acceleration and its angular accelerations: displacements, velocities and accelerations are \
+     absolute, with the frame's own motion as the first states, which start at rest. frame_force and its moments are what the frame feels: all loads less \
+     the rate of the panel's momentum; at rest they are exact, above the modes kept the panel left out counts as moving with the frame.</p>\n";
+const ROTATIONS: &str = "<p>A couple acts by two forces a thickness of the panel apart, as a bracket brings it in, and a rotation is the slope between the same \
+     two places. Residual modes are those of forces: a couple's own static answer is held as far as the modes reach.</p>\n";
+const DOUBT: &str = " Behind a frequency stands the standard deviation that those of the constants make of it, as if they were independent.";
 const REFERENCE: &str = "<h2>Does an importer run it right?</h2>\n<p><a href=\"Reference.csv\">Reference.csv</a> has a half-sine hit of 100 N on the \
      first force, of the panel as exported, in co-simulation by the steps in <a href=\"Reference.opt\">Reference.opt</a>. A row has the force that is \
      set at that time and held over the step that follows, and the outputs before it is set. A run by the same steps gives these numbers to \

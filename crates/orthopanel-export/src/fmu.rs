@@ -13,7 +13,7 @@ use crate::archive::{Entry, pack};
 use crate::documentation;
 use crate::origin::Origin;
 use crate::reference::Reference;
-use crate::{ExportError, Library, library, model_description, terminals};
+use crate::{ExportError, Library, frequency_doubt, library, model_description, terminals};
 
 /// Version of the FMI standard.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -161,7 +161,8 @@ impl Fmu {
         let (alone, _) = panel.panel_alone().map_err(FmuError::from)?;
         let (resource, core) = Resource::of_panel(&alone, range, ports, options.residual, options.connections.clone())?;
         let bands = AccelerationBands::of(&alone, &resource).map_err(FmuError::from)?;
-        Self::of_resource(resource, Some(Origin { panel, core, bands }), options)
+        let doubt = frequency_doubt::of(&alone, resource.flexible_modes()).map_err(FmuError::from)?;
+        Self::of_resource(resource, Some(Origin { panel, core, bands, doubt }), options)
     }
 
     fn of_resource(resource: Resource, origin: Option<Origin<'_>>, options: &FmuOptions) -> Result<Self, ExportError> {

@@ -3,8 +3,10 @@
 mod acceleration_band;
 mod archive;
 mod documentation;
+mod drawing;
 mod error;
 mod fmu;
+mod frequency_doubt;
 mod library;
 mod model_description;
 mod origin;

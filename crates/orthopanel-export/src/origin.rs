@@ -14,6 +14,8 @@ pub(crate) struct Origin<'a> {
     /// How the core's modulus is fitted, where one relaxes.
     pub core: Option<CoreFit>,
     pub bands: AccelerationBands,
+    /// Of the flexible modes kept; see `frequency_doubt`.
+    pub doubt: Vec<f64>,
 }
 
 impl Origin<'_> {
