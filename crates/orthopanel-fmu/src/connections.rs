@@ -59,6 +59,7 @@ impl Connections {
     ///
     /// # Errors
     /// [`FmuError::PortName`], [`FmuError::Mount`], [`FmuError::NoFrame`], and [`ModelError::OffPiece`] for a mount off the panel.
+    #[cold]
     pub(crate) fn check(&self, model: &PanelModel) -> Result<(), FmuError> {
         for mount in &self.mounts {
             if !is_identifier(&mount.name) {

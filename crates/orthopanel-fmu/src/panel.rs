@@ -56,6 +56,7 @@ pub(crate) struct Solution {
 
 impl Panel {
     /// A panel of which the modes of `range` are kept, and these modes.
+    #[cold]
     pub(crate) fn new(
         model: &PanelModel,
         range: ModeRange,
@@ -116,6 +117,7 @@ impl Panel {
     ///
     /// # Errors
     /// [`FmuError::ResourceText`] with the numbers, [`FmuError::Model`] for a panel without physical meaning.
+    #[cold]
     pub(crate) fn check_resource(&self, modes: &ModalModel, ports: &Ports) -> Result<(), FmuError> {
         let refused = |message: String| Err(FmuError::ResourceText(message));
         let flexible = modes.flexible().count().saturating_sub(self.residual_modes());
@@ -235,6 +237,7 @@ impl Panel {
 
     /// What is known with the damping ratios, and the stiffness and damping of mounts, of `values`, where they are known for all the others:
     /// without any solution. `None` where something else differs, or where effects mix the damping of the bare modes.
+    #[cold]
     pub(crate) fn quickly(&self, free: &ModalModel, known: &[f64], values: &[f64]) -> Option<Solution> {
         let parts = self.parts();
         let differs = |(part, (known, value)): (&Part, (&f64, &f64))| (known != value).then(|| part.clone());
@@ -269,6 +272,7 @@ impl Panel {
     }
 
     /// The same with these values of the parameters.
+    #[cold]
     fn with(&self, values: &[f64]) -> Self {
         let mut panel = self.clone();
         for (part, &value) in self.parts().into_iter().zip(values) {
@@ -308,6 +312,7 @@ impl Panel {
     ///
     /// # Errors
     /// [`FmuError::OutOfRange`] for a piece that is no panel: its modes could take any time to find.
+    #[cold]
     pub(crate) fn solve(&self, values: &[f64]) -> Result<Solution, FmuError> {
         let panel = self.with(values);
         panel.model.check()?;
@@ -327,6 +332,7 @@ impl Panel {
     }
 
     /// The modes as they now are, with these residual modes.
+    #[cold]
     fn solution(&self, attachments: Option<&Attachments>) -> Result<Solution, ModelError> {
         let layout = self.layout(&PortNames::default())?;
         let kept = self.model.time_model(ModeRange::Count(self.flexible_modes), &layout.places(), &[])?;

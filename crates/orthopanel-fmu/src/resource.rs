@@ -232,6 +232,7 @@ impl Resource {
     ///
     /// # Errors
     /// [`FmuError::ResourceMissing`], [`FmuError::Token`], [`FmuError::ResourceText`].
+    #[cold]
     pub fn read(resources: &Path, token: &str) -> Result<Self, FmuError> {
         let path = resources.join(RESOURCE_FILE);
         let bytes = match std::fs::read(&path) {
@@ -247,6 +248,7 @@ impl Resource {
         resource.checked()
     }
 
+    #[cold]
     fn checked(self) -> Result<Self, FmuError> {
         if self.schema != RESOURCE_SCHEMA {
             let message = format!("schema = {:?}: this library reads {RESOURCE_SCHEMA:?}", self.schema);

@@ -5,6 +5,7 @@ use orthopanel_model::{ModelError, RigidMotion};
 
 use super::{Layout, Load, Setting};
 
+#[cold]
 pub(super) fn join(setting: &Setting, layout: &mut Layout) -> Result<(), ModelError> {
     if setting.connections.gravity {
         let row = setting.model.inertia_row(RigidMotion::AlongZ, setting.flexible)?;

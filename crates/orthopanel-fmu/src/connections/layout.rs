@@ -108,18 +108,21 @@ impl Layout {
     }
 
     /// Adds an input; its place among all.
+    #[cold]
     pub(super) fn input(&mut self, name: String, unit: &'static str, description: String, load: Load) -> usize {
         self.inputs.push(Input { name, unit, description, load });
         self.counts().0 - 1
     }
 
     /// Adds something to be read of each mode; its place among all.
+    #[cold]
     pub(super) fn response(&mut self, row: DeflectionRow) -> usize {
         self.responses.push(row);
         self.responses.len() - 1
     }
 
     /// What each input pushes a frame by in a motion; nothing for one that moves a base or the frame.
+    #[cold]
     pub(super) fn resultants(&self, motion: RigidMotion) -> Terms {
         let rows = self.forces.iter().chain(self.inputs.iter().map(|input| input.load.row()));
         let works = self.forces.iter().map(|_| true);
@@ -131,6 +134,7 @@ impl Layout {
     }
 
     /// Where deflections of the modes kept must be known, each once.
+    #[cold]
     pub(crate) fn places(&self) -> Vec<Place> {
         let mut known = Numbers::default();
         self.rows().for_each(|row| row.places().for_each(|place| _ = known.number(place)));
@@ -138,6 +142,7 @@ impl Layout {
     }
 
     /// Where those of residual modes must be: uniform loads leave these alone.
+    #[cold]
     pub(crate) fn near_places(&self) -> Vec<Place> {
         let mut known = Numbers::default();
         self.rows().filter(|row| is_near(row)).for_each(|row| row.places().for_each(|place| _ = known.number(place)));
@@ -150,6 +155,7 @@ impl Layout {
 
     /// The modes as inputs and responses see them, from those with the deflections at [`Layout::places`] and residual ones with those at
     /// [`Layout::near_places`], behind the coordinates of the frame; without the springs.
+    #[cold]
     pub(crate) fn seen(&self, kept: &ModalModel, residual: &[Mode]) -> Result<ModalModel, ModelError> {
         let all = Numbers::of(self.places());
         let near = Numbers::of(self.near_places());
@@ -201,6 +207,7 @@ impl Layout {
     }
 
     /// These modes on the springs.
+    #[cold]
     pub(crate) fn mounted(&self, model: &ModalModel) -> Result<ModalModel, ModelError> {
         mounted(model, &self.springs)
     }
@@ -275,6 +282,7 @@ impl Numbers {
         numbers
     }
 
+    #[cold]
     fn number(&mut self, place: Place) -> usize {
         let next = self.places.len();
         let number = *self.known.entry(bits(place)).or_insert(next);

@@ -43,6 +43,7 @@ pub(crate) fn check(name: &str, what: &'static str, value: f64) -> Result<(), Fm
     Err(FmuError::Mount { name: name.into(), what, value, unit, largest: STIFFEST })
 }
 
+#[cold]
 pub(super) fn join(setting: &Setting, layout: &mut Layout) -> Result<(), ModelError> {
     for (number, mount) in setting.connections.mounts.iter().enumerate() {
         let Mount { name, at, stiffness, damping } = mount;

@@ -9,6 +9,7 @@ use orthopanel_model::{ModelError, RigidMotion};
 
 use super::{Layout, Load, MovedBy, Output, Setting, Signal};
 
+#[cold]
 pub(super) fn join(setting: &Setting, layout: &mut Layout) -> Result<(), ModelError> {
     if !setting.connections.base_acceleration {
         return Ok(());

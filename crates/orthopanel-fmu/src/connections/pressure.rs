@@ -4,6 +4,7 @@ use orthopanel_model::ModelError;
 
 use super::{Layout, Load, Setting};
 
+#[cold]
 pub(super) fn join(setting: &Setting, layout: &mut Layout) -> Result<(), ModelError> {
     if setting.connections.pressure {
         let row = setting.model.area_row(setting.flexible)?;

@@ -10,6 +10,7 @@ use orthopanel_model::{DeflectionRow, ModelError, Piece, Place, RigidMotion};
 use super::{Layout, Load, MovedBy, Output, Setting, Signal};
 
 /// The slope of a rotation about this axis.
+#[cold]
 fn row(piece: &Piece, place: Place, motion: RigidMotion) -> DeflectionRow {
     let thickness = piece.thickness;
     let pair = |at: f64, size: f64| {
@@ -29,6 +30,7 @@ fn row(piece: &Piece, place: Place, motion: RigidMotion) -> DeflectionRow {
     DeflectionRow { terms, resonators: vec![] }
 }
 
+#[cold]
 pub(super) fn join(setting: &Setting, layout: &mut Layout) -> Result<(), ModelError> {
     if !setting.connections.rotations {
         return Ok(());
