@@ -21,7 +21,7 @@ mod tests;
 
 use faer::Mat;
 use num_complex::Complex64;
-use orthopanel_data::{Accelerance, Estimation, ImpactTest, MeasurementData, TimeHistory};
+use orthopanel_data::{Estimation, ImpactTest, MeasurementData, TimeHistory};
 use orthopanel_model::Place;
 
 use crate::IdentifyError;
@@ -104,28 +104,28 @@ pub struct MeasuredRecord {
 /// # Errors
 /// [`IdentifyError::Data`] where records cannot be read or no hit is usable, [`IdentifyError::TooFewResonances`] where they show none.
 pub fn measured_modes(test: &ImpactTest) -> Result<Vec<MeasuredModes>, IdentifyError> {
-    let histories = test.time_histories()?;
+    let (histories, accelerances) = (test.time_histories()?, test.recorded_accelerances()?);
     let mut measured = Vec::new();
     for piece in 0..test.pieces.len() {
-        let of_piece: Vec<TimeHistory> =
-            histories.iter().filter(|(of, _)| *of == piece).map(|(_, history)| history.clone()).collect();
-        if !of_piece.is_empty() {
-            measured.push(of_hits(piece, &of_piece)?);
+        let hits = of_piece(&histories, piece);
+        if !hits.is_empty() {
+            measured.push(of_hits(piece, &hits)?);
         }
-        let files = test.measurements.iter().filter(|measurement| measurement.piece == piece);
-        let mut accelerances = Vec::new();
-        for measurement in files {
-            match &measurement.data {
-                MeasurementData::Accelerance(recorded) => accelerances.push(Accelerance::read(recorded)?),
-                MeasurementData::NaturalFrequencies(list) => measured.push(MeasuredModes::of_frequencies(piece, list)),
-                MeasurementData::TimeHistory(_) => {}
+        for measurement in test.measurements.iter().filter(|measurement| measurement.piece == piece) {
+            if let MeasurementData::NaturalFrequencies(list) = &measurement.data {
+                measured.push(MeasuredModes::of_frequencies(piece, list));
             }
         }
-        if !accelerances.is_empty() {
-            measured.push(MeasuredModes::of_accelerances(piece, &accelerances).ok_or_else(no_resonance)?);
+        let lines = of_piece(&accelerances, piece);
+        if !lines.is_empty() {
+            measured.push(MeasuredModes::of_accelerances(piece, &lines).ok_or_else(no_resonance)?);
         }
     }
     Ok(measured)
+}
+
+fn of_piece<T: Clone>(all: &[(usize, T)], piece: usize) -> Vec<T> {
+    all.iter().filter(|(of, _)| *of == piece).map(|(_, record)| record.clone()).collect()
 }
 
 /// Of the hits that are sound, up to where the force has fallen too far.

@@ -41,7 +41,11 @@ impl MeasuredModes {
         let duration =
             |history: &TimeHistory| history.hits.first().map_or(0.0, |hit| hit.force.len() as f64) / history.rate;
         let shortest = histories.iter().map(duration).fold(f64::INFINITY, f64::min);
-        let band = [LOWEST.max(LEAST_PERIODS / shortest), highest.min(FLAT * rate)];
+        let declared = || histories.iter().filter_map(|history| history.band);
+        let band = [
+            declared().map(|[from, _]| from).fold(LOWEST.max(LEAST_PERIODS / shortest), f64::max),
+            declared().map(|[_, to]| to).fold(highest.min(FLAT * rate), f64::min),
+        ];
         let records: Vec<RecordLines> =
             histories.par_iter().map(|history| RecordLines::of_hits(history, band)).collect();
         Self::of_lines(piece, records, band)

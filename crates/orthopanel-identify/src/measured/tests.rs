@@ -203,6 +203,16 @@ fn val_scatter_beyond_the_noise_is_no_pole() {
     }
 }
 
+/// A band that the test file declares ends that of the modes.
+#[test]
+fn a_declared_band_is_the_band_of_the_modes() {
+    let made = Made::new(&[(180.0, 8e-3), (430.0, 6e-3), (1210.0, 5e-3)], &[&[0.8, -0.5, 0.3], &[-0.4, 0.7, 0.6]]);
+    let mut histories = made.histories(2, 1e-3, 3);
+    histories.iter_mut().for_each(|history| history.band = Some([100.0, 800.0]));
+    let measured = MeasuredModes::of_hits(0, &histories, 4000.0).expect("resonances");
+    assert_eq!((measured.band, measured.poles.len()), ([100.0, 800.0], 2), "{:?}", measured.poles);
+}
+
 /// Eighteen modes of a plate over two octaves, two of them a thousandth apart, that six places tell: each is found, and none else.
 #[test]
 fn val_close_modes_of_a_plate_are_told_apart_by_the_places() {
