@@ -3,9 +3,10 @@
 use std::{fmt::Write as _, path::Path};
 
 use crate::{
-    RecordFile, RecordKind,
+    Channel, Record, RecordFile, RecordKind,
     listing::port_text,
-    records::{Node, Port, Quantity, Samples, quantity},
+    records::{Node, Port, Quantity, Samples, blows, is_force, quantity, without_unit},
+    spectra::doubt_of_frequencies,
 };
 
 /// Pairs of nodes in one file up to which each has a measurement of its own; above, `places` has them all.
@@ -20,11 +21,95 @@ pub fn draft(files: &[(&Path, &RecordFile)]) -> String {
     if files.len() > 1 {
         text += "\n# Hits of one place may share a [[measurement]]: file = [\"a.csv\", \"b.csv\"], or a pattern such as \"hit-*.csv\".\n";
     }
-    for (path, file) in files {
-        text += &measurement(path, file);
+    let paired = in_two_files(files);
+    for (place, (path, file)) in files.iter().enumerate() {
+        match paired.iter().find(|(_, motion)| *motion == place) {
+            Some((force, _)) => text += &of_two_files(files[*force], (path, file)),
+            None if paired.iter().any(|(force, _)| *force == place) => {}
+            None => text += &measurement(path, file),
+        }
     }
     text
 }
+
+/// What the records of a file against time hold, where they hold one thing alone.
+fn held(path: &Path, file: &RecordFile) -> Option<Channel> {
+    let is_of_time = |record: &&Record| record.kind == RecordKind::Time;
+    let mut held = file.records.iter().filter(is_of_time).map(|record| match quantity(&record.numerator) {
+        Quantity::Force => Some(Channel::Force),
+        Quantity::Motion(_) => Some(Channel::Acceleration),
+        Quantity::Untold => told_by_name(path),
+        Quantity::Other(_) => None,
+    });
+    let first = held.next()??;
+    (file.records.iter().all(|record| is_of_time(&record)) && held.all(|other| other == Some(first))).then_some(first)
+}
+
+/// Words in the names of files that hold one channel.
+const NAMES: [(Channel, &[&str]); 2] = [
+    (Channel::Force, &["force", "hammer", "kraft", "impact"]),
+    (Channel::Acceleration, &["acc", "response", "beschl", "motion", "sensor", "velocity", "vib"]),
+];
+
+fn told_by_name(path: &Path) -> Option<Channel> {
+    let name = path.file_stem()?.to_string_lossy().to_lowercase();
+    let has = |(_, words): &&(Channel, &[&str])| words.iter().any(|word| name.contains(word));
+    NAMES.iter().find(has).map(|(channel, _)| *channel)
+}
+
+/// Places of the files that hold the force and the motion of one record: as many of each, in the order of their names, or one force for
+/// all; none where they do not fit.
+fn in_two_files(files: &[(&Path, &RecordFile)]) -> Vec<(usize, usize)> {
+    let of = |channel: Channel| {
+        let mut places: Vec<usize> =
+            (0..files.len()).filter(|&place| held(files[place].0, files[place].1) == Some(channel)).collect();
+        places.sort_by_key(|&place| files[place].0);
+        places
+    };
+    let (forces, motions) = (of(Channel::Force), of(Channel::Acceleration));
+    let pairs: Vec<(usize, usize)> = match (&forces[..], &motions[..]) {
+        ([force], motions) => motions.iter().map(|motion| (*force, *motion)).collect(),
+        _ if forces.len() == motions.len() => forces.into_iter().zip(motions).collect(),
+        _ => Vec::new(),
+    };
+    // Of one blow both have as many samples.
+    let samples =
+        |place: usize| -> Vec<usize> { files[place].1.records.iter().map(|record| record.ordinate.len()).collect() };
+    if pairs.iter().all(|&(force, motion)| samples(force) == samples(motion)) { pairs } else { Vec::new() }
+}
+
+/// The measurement of a force and a motion that have files of their own.
+fn of_two_files((of_force, force): (&Path, &RecordFile), (of_motion, motion): (&Path, &RecordFile)) -> String {
+    let [force_name, motion_name] = [of_force, of_motion].map(|path| path.to_string_lossy().replace('\\', "/"));
+    let port = |file: &RecordFile| file.records.first().map_or(Port::default(), |record| record.response);
+    format!(
+        "\n# {}, and {}: do these two belong together?\n[[measurement]]\nkind = \"time-history\"\nfile = {{force = {}, response = {}}}\n{}{}{}",
+        summary(force).replace(['\n', '\r'], " "),
+        summary(motion).replace(['\n', '\r'], " "),
+        quoted(&force_name),
+        quoted(&motion_name),
+        place("force_at", port(force), &force.nodes),
+        place("response_at", port(motion), &motion.nodes),
+        untold_of_two(force, motion)
+    )
+}
+
+/// Lines for what two such files do not tell.
+fn untold_of_two(force: &RecordFile, motion: &RecordFile) -> String {
+    let has_no_unit = |file: &RecordFile| {
+        file.records.iter().any(|record| record.numerator.unit.is_empty() && record.numerator.system.is_none())
+    };
+    let mut text = String::new();
+    if has_no_unit(force) {
+        text += "# force_unit = \"N\"   # the record tells no unit: N unless said; \"lbf\", \"kN\", ...\n";
+    }
+    if has_no_unit(motion) {
+        text += "# response_unit = \"m/s2\"   # the record tells no unit: m/s2 unless said; \"g\", \"mm/s\", ...\n";
+    }
+    text + BAND
+}
+
+const BAND: &str = "# band = [20.0, 4000.0]   # Hz, the lines that count\n";
 
 /// What no record tells.
 const HEAD: &str = "\
@@ -83,6 +168,22 @@ fn measurement(path: &Path, file: &RecordFile) -> String {
         text += &untold(file, is_of_responses);
         return text;
     }
+    let of_responses = several_responses(file);
+    if !is_of_responses && !of_responses.is_empty() && pairs.len() < 2 {
+        let pair = pairs.first().copied().unwrap_or_default();
+        for (number, channel) in (1..).zip(&of_responses) {
+            if number > 1 {
+                text.push('\n');
+            }
+            text += &header(kind, &name);
+            text += &format!("response_channel = {channel}\n");
+            for (key, port) in [("force_at", pair[0]), ("response_at", pair[1])] {
+                text += &place(key, port, &file.nodes);
+            }
+            text += &untold(file, is_of_responses);
+        }
+        return text;
+    }
     let alone = [[Port::default(); 2]];
     for (number, pair) in (1..).zip(if pairs.is_empty() { &alone[..] } else { &pairs[..] }) {
         if number > 1 {
@@ -98,6 +199,27 @@ fn measurement(path: &Path, file: &RecordFile) -> String {
         text += &untold(file, is_of_responses);
     }
     text
+}
+
+/// The responses to one blow, as `response_channel` names them, where there are several that no node tells apart.
+fn several_responses(file: &RecordFile) -> Vec<String> {
+    let Some(first) = blows(&file.records, is_force).into_iter().next() else { return Vec::new() };
+    let motions: Vec<&Record> = first
+        .iter()
+        .filter_map(|&at| file.records.get(at))
+        .filter(|record| matches!(quantity(&record.numerator), Quantity::Motion(_)))
+        .collect();
+    let name = |record: &&Record| match without_unit(record.title.split(" | ").next().unwrap_or_default()) {
+        "" => record.number.to_string(),
+        title => quoted(title),
+    };
+    let names: Vec<String> = motions.iter().map(name).collect();
+    let is_told = (1..names.len()).all(|at| !names[..at].contains(&names[at]));
+    match names.len() {
+        0 | 1 => Vec::new(),
+        _ if is_told => names,
+        _ => motions.iter().map(|record| record.number.to_string()).collect(),
+    }
 }
 
 /// The frequency responses along z by their pairs of nodes, in the order of the file; what tells no node is alone.
@@ -266,13 +388,16 @@ fn untold(file: &RecordFile, is_of_responses: bool) -> String {
             "# force_channel = 1        # the records do not tell which they are: a number, a node, or a line of the title\n# response_channel = 2\n"
         };
     }
+    if is_of_responses && of_kind().any(|record| doubt_of_frequencies(record).is_some()) {
+        text += "# frequency_unit = \"kHz\"   # or \"Hz\": the lines end lower than those of hammer tests, and their label does not say\n";
+    }
     if is_of_responses {
         text += "# window_decay = 0.25   # s, where it was averaged under an exponential window e^(-t/0.25)\n";
         if of_kind().any(|record| matches!(record.ordinate, Samples::Real(_))) {
             text += "# the frequency response is real: export it complex, or with its phase\n";
         }
     }
-    text + "# band = [20.0, 4000.0]   # Hz, the lines that count\n"
+    text + BAND
 }
 
 /// This project's own columns are in m/s2 and N by their names.

@@ -5,7 +5,7 @@ use serde::Serialize;
 
 use crate::{
     records::{Port, Quantity, Record, RecordFile, RecordKind, Samples, quantity, type_name},
-    spectra::own_coherence,
+    spectra::{doubt_of_frequencies, own_coherence},
     units::{Measured, Unit},
 };
 
@@ -44,6 +44,13 @@ impl RecordFile {
         (0..self.records.len()).filter_map(|index| self.listed_record(index)).collect()
     }
 
+    /// What its records leave open and a test file has to answer, a sentence each.
+    pub fn questions(&self) -> Vec<String> {
+        let of_response = |record: &&Record| record.kind == RecordKind::FrequencyResponse;
+        let asked = |record: &Record| Some(format!("record {}: {}", record.number, doubt_of_frequencies(record)?));
+        self.records.iter().filter(of_response).filter_map(asked).collect()
+    }
+
     fn listed_record(&self, index: usize) -> Option<ListedRecord> {
         let record = self.records.get(index)?;
         let span = [record.abscissa.first().copied()?, record.abscissa.last().copied()?];
@@ -74,10 +81,13 @@ impl RecordFile {
     }
 }
 
+/// What seven digits of a time leave of a rate.
+const LAST_DIGITS: f64 = 1e-6;
+
 /// A rate without the errors of its last digits, which steps of few digits bring.
 fn nice(rate: f64) -> f64 {
     let rounded = format!("{rate:.5e}").parse().unwrap_or(rate);
-    if (rate / rounded - 1.0).abs() < 1e-9 { rounded } else { rate }
+    if (rate / rounded - 1.0).abs() < LAST_DIGITS { rounded } else { rate }
 }
 
 /// `"12:+z"`, `"12"`, or nothing.

@@ -259,6 +259,31 @@ fn val_the_keys_of_channels_are_checked_with_their_line() {
     }
 }
 
+/// Frequencies in kHz under no label: no hammer test ends so low.
+#[test]
+fn val_frequencies_that_no_hammer_test_has_are_asked_about() {
+    let lines = |step: f64| {
+        let mut file = Dataset { even: None, ..response((12, "m/s2"), (13, "N")) };
+        file.points = (1..=800).map(|line| vec![step * f64::from(line), 1.0, 0.0]).collect();
+        file
+    };
+    let read = |step: f64, unit: Option<&str>| {
+        let declared = RecordedResponse { frequency_unit: unit.and_then(Unit::parse), ..measurement() };
+        accelerance(records(&[lines(step)]), &declared)
+    };
+    let said = read(0.00625, None).unwrap_err();
+    assert!(
+        said.contains("its lines end at 5 Hz")
+            && said.contains("write frequency_unit = \"kHz\" in its [[measurement]]"),
+        "{said}"
+    );
+    assert!((read(0.00625, Some("kHz")).unwrap().frequency[799] - 5000.0).abs() < 1e-6);
+    assert!((read(0.00625, Some("Hz")).unwrap().frequency[799] - 5.0).abs() < 1e-9);
+    assert!(read(6.25, None).is_ok());
+    let said = read(62.5, Some("MHz")).unwrap_err();
+    assert!(said.contains("frequency_unit = \"MHz\" would put the last line at 5e10 Hz"), "{said}");
+}
+
 /// Of several channels none is guessed: the message lists them, or the key that chooses.
 #[test]
 fn val_a_channel_that_is_not_there_is_told_with_those_that_are() {
@@ -276,7 +301,9 @@ fn val_a_channel_that_is_not_there_is_told_with_those_that_are() {
     assert!(said.contains("response_channel = 9 is none of its channels"), "{said}");
     let said = history(&file, &measurement()).unwrap_err();
     assert!(said.contains("1 force and 2 acceleration records against time"), "{said}");
-    assert!(said.contains("name the channels by force_channel and response_channel"), "{said}");
+    let lines =
+        "each has a [[measurement]] of its own, with response_channel = \"4:+z\", or response_channel = \"5:-z\"";
+    assert!(said.contains(lines), "{said}");
     assert_eq!(history(&file, &of(ChannelName::Port { node: 5, direction: 0 })).unwrap().hits.len(), 1);
 }
 

@@ -20,7 +20,12 @@ use crate::{Identification, IdentifyError, Settings, accelerance_fit, frequency_
 pub fn identify(test: &ImpactTest, settings: impl Into<Settings>) -> Result<Identification, IdentifyError> {
     let settings = settings.into();
     settings.paper_weights.check()?;
-    known_beforehand::carried(test, of_data(test, settings)?, |test| of_data(test, settings))
+    let mut found = known_beforehand::carried(test, of_data(test, settings)?, |test| of_data(test, settings))?;
+    found.common_gain = accelerance_fit::common_gain(&found);
+    if let Some(gain) = found.common_gain {
+        found.notes.insert(0, accelerance_fit::said_of_gain(gain, test));
+    }
+    Ok(found)
 }
 
 /// What the data alone say.
@@ -44,6 +49,7 @@ fn of_once(test: &ImpactTest, lists: usize, settings: Settings) -> Result<Identi
         }
         let mut found = tracing::identify_with_effects(test, settings)?.determined()?;
         if lists == 0 {
+            accelerance_fit::refuse_missed(test, &found.accelerances)?;
             found.question = accelerance_fit::question_of_window(test);
             found.notes.extend(found.question.clone());
         }
@@ -54,14 +60,22 @@ fn of_once(test: &ImpactTest, lists: usize, settings: Settings) -> Result<Identi
         frequency_fit::identify_frequencies(test, settings.search).map_err(of_held)?.determined()
     } else if lists == 0 {
         let plate = plate_by_modes(test);
-        let by_modes = || plate.as_ref()?.identification(test, settings).ok()?.determined().ok();
+        // A plate whose modes are right and whose lines a factor explains is refused for that factor.
+        let by_modes = || {
+            let found = plate.as_ref()?.identification(test, settings).ok()?.determined().ok()?;
+            // Modes that lie a half width beside those of the plate leave half of the motion of a sound one.
+            match accelerance_fit::refuse_missed(test, &found.accelerances) {
+                Err(factor @ IdentifyError::OtherUnits { .. }) => Some(Err(factor)),
+                _ => Some(Ok(found)),
+            }
+        };
         if plate.as_ref().is_some_and(|plate| !plate.is_ideal() || plate.is_seen_all_over())
             && let Some(found) = by_modes()
         {
-            return Ok(found);
+            return found;
         }
         let by_lines = accelerance_fit::identify_records(test, settings).map_err(of_held);
-        by_lines.and_then(Identification::determined).or_else(|refused| by_modes().ok_or(refused))
+        by_lines.and_then(Identification::determined).or_else(|refused| by_modes().unwrap_or(Err(refused)))
     } else {
         let message = "natural frequencies and records in one test: put them in two test files, since the frequencies \
                        are most likely read off the same records and would count twice";

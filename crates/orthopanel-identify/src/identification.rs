@@ -39,6 +39,9 @@ pub struct Identification {
     pub effects: Vec<TracedEffect>,
     /// What is to be asked before these numbers count: a window that the test file does not declare. It stands in `notes` too.
     pub question: Option<String>,
+    /// The factor on all records beside what sizes, mass and constants make of them, where it is far outside of what calibrated chains
+    /// leave; the first of `notes` says so.
+    pub common_gain: Option<Estimate>,
     /// What was left out, cut, assumed or found wanting, a sentence each.
     pub notes: Vec<String>,
 }

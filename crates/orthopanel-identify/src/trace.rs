@@ -1,13 +1,13 @@
 //! Closing the loop: the effect that the base model lacks, by name.
 
 use orthopanel_data::{ImpactTest, MeasurementData};
-use orthopanel_model::StructureKind;
+use orthopanel_model::{Estimate, Owner, StructureKind};
 
-use crate::accelerance_fit::{WINDOW_EFFECT, question_of_window, refuse_other_units};
+use crate::accelerance_fit::{WINDOW_EFFECT, question_of_window, refuse_missed};
 use crate::answer::answer;
-use crate::outcome::{EstimatedModelError, Progress, Tracing, Verdict};
+use crate::outcome::{EstimatedModelError, Progress, Removed, TracedEffect, TracedParameter, Tracing, Verdict};
 use crate::tracing::trace_by_fits;
-use crate::{IdentifyError, Settings};
+use crate::{IdentifyError, Settings, identify};
 
 /// Names the effect that the base model of a test lacks, from its records or its natural frequencies. Effects that the test
 /// file declares are part of the base model.
@@ -28,15 +28,16 @@ pub fn trace(test: &ImpactTest) -> Result<Tracing, IdentifyError> {
 /// # Errors
 /// As [`trace`].
 pub fn trace_with(test: &ImpactTest, progress: &(dyn Fn(Progress) + Sync)) -> Result<Tracing, IdentifyError> {
-    check(test)?;
-    let by_lines = by_lines(test, progress);
-    if !are_hits_of_one_beam(test) || by_lines.as_ref().is_ok_and(is_met) {
-        return by_lines;
-    }
-    match by_modes(test, progress) {
-        Ok(by_modes) if by_modes.model_error.is_some_and(EstimatedModelError::is_usual) => Ok(by_modes),
-        _ => by_lines,
-    }
+    beside_identify(test, |identified| {
+        let by_lines = by_lines(test, identified, progress);
+        if !are_hits_of_one_beam(test) || by_lines.as_ref().is_ok_and(is_met) {
+            return by_lines;
+        }
+        match by_modes(test, progress) {
+            Ok(by_modes) if by_modes.model_error.is_some_and(EstimatedModelError::is_usual) => Ok(by_modes),
+            _ => by_lines,
+        }
+    })
 }
 
 /// What was held out may be missed by this times the noise.
@@ -83,8 +84,7 @@ fn are_hits_of_one_beam(test: &ImpactTest) -> bool {
 /// [`IdentifyError::PlateNotTraced`] for a declared plate; records that cannot be read or show too few resonances, and tests
 /// that this version cannot trace.
 pub fn trace_by_modes(test: &ImpactTest, progress: &(dyn Fn(Progress) + Sync)) -> Result<Tracing, IdentifyError> {
-    check(test)?;
-    by_modes(test, progress)
+    beside_identify(test, |_| by_modes(test, progress))
 }
 
 fn by_modes(test: &ImpactTest, progress: &(dyn Fn(Progress) + Sync)) -> Result<Tracing, IdentifyError> {
@@ -101,15 +101,17 @@ fn by_modes(test: &ImpactTest, progress: &(dyn Fn(Progress) + Sync)) -> Result<T
 /// # Errors
 /// As [`trace`].
 pub fn trace_by_lines(test: &ImpactTest, progress: &(dyn Fn(Progress) + Sync)) -> Result<Tracing, IdentifyError> {
-    check(test)?;
-    by_lines(test, progress)
+    beside_identify(test, |identified| by_lines(test, identified, progress))
 }
 
-fn by_lines(test: &ImpactTest, progress: &(dyn Fn(Progress) + Sync)) -> Result<Tracing, IdentifyError> {
-    let question = question_of_window(test);
+fn by_lines(
+    test: &ImpactTest,
+    identified: &Identified,
+    progress: &(dyn Fn(Progress) + Sync),
+) -> Result<Tracing, IdentifyError> {
     let found = trace_by_fits(test, progress)?.finite()?;
-    Ok(match question {
-        Some(question) => asked_of_window(found, question),
+    Ok(match &identified.question {
+        Some(question) => asked_of_window(found, question.clone()),
         None => found,
     })
 }
@@ -130,15 +132,64 @@ fn asked_of_window(mut found: Tracing, question: String) -> Tracing {
     found
 }
 
-/// What every trace refuses. Its base is a beam: of a plate it would judge another model than the one that the file declares. And
-/// records in other units than they were read in have no effect, but a line of the test file.
-fn check(test: &ImpactTest) -> Result<(), IdentifyError> {
+/// What `identify` says of a test before its trace.
+#[derive(Default)]
+struct Identified {
+    /// Why the model without what it may lack is refused.
+    refused: Option<IdentifyError>,
+    question: Option<String>,
+    /// On all records, with the sentence on it.
+    gain: Option<(Estimate, String)>,
+}
+
+/// A trace beside what `identify` says: records that it refuses have no effect, but a line of the test file that is wrong; and where most of
+/// the motion is missed, whatever the effect, nothing is said of effects.
+fn beside_identify(
+    test: &ImpactTest,
+    traced: impl FnOnce(&Identified) -> Result<Tracing, IdentifyError>,
+) -> Result<Tracing, IdentifyError> {
+    let identified = identified(test)?;
+    let found = traced(&identified)?;
+    match refuse_missed(test, &found.accelerances) {
+        Ok(()) => Ok(match identified.gain {
+            Some((gain, said)) => with_gain(found, gain, said),
+            None => found,
+        }),
+        Err(factor @ IdentifyError::OtherUnits { .. }) => Err(factor),
+        Err(missed) => Err(identified.refused.unwrap_or(missed)),
+    }
+}
+
+fn identified(test: &ImpactTest) -> Result<Identified, IdentifyError> {
+    // The base is a beam: of a plate it would judge another model than the one that the file declares.
     if test.structure == Some(StructureKind::MindlinPlate) {
         return Err(IdentifyError::PlateNotTraced);
     }
-    if test.measurements.iter().all(|measurement| measurement.data.recorded().is_some()) {
-        // As `identify` reads them, so that both say the same.
-        refuse_other_units(test, &test.accelerances(Settings::default().estimation)?)?;
+    if !test.measurements.iter().all(|measurement| measurement.data.recorded().is_some()) {
+        return Ok(Identified::default());
     }
-    Ok(())
+    match identify(test, Settings::default()) {
+        Ok(found) => {
+            let said = found.notes.first().cloned().unwrap_or_default();
+            Ok(Identified { refused: None, question: found.question, gain: found.common_gain.map(|gain| (gain, said)) })
+        }
+        Err(refused) if refused.is_of_records() => Err(refused),
+        Err(refused) => Ok(Identified { refused: Some(refused), question: question_of_window(test), gain: None }),
+    }
 }
+
+/// A factor on all records is said first, and named where nothing else lacks.
+fn with_gain(mut found: Tracing, gain: Estimate, said: String) -> Tracing {
+    found.notes.insert(0, said);
+    let is_named = found.effects.iter().any(|effect| effect.id == GAIN);
+    if found.verdict == Verdict::NothingMissing && !is_named {
+        let parameters = vec![TracedParameter { name: "gain", unit: "1", values: vec![gain] }];
+        let effect = TracedEffect { id: GAIN, owner: Owner::Channel, parameters };
+        found.verdict = Verdict::Explained;
+        found.removed.push(Removed::of(&effect, false));
+        found.effects.push(effect);
+    }
+    found
+}
+
+const GAIN: &str = "gain";

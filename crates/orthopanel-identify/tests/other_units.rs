@@ -7,7 +7,7 @@ use std::path::Path;
 
 use num_complex::Complex64;
 use orthopanel_data::{Estimation, ImpactTest, MeasurementData, TimeHistory, Window};
-use orthopanel_identify::{IdentifyError, Settings, identify, trace, trace_by_lines, trace_by_modes};
+use orthopanel_identify::{IdentifyError, Settings, Verdict, identify, trace, trace_by_lines, trace_by_modes};
 
 const HEAD: &str = "[piece]\nlength = 0.8\nwidth = 0.1\nthickness = 0.03\nmass_per_area = 6.88\n";
 
@@ -24,10 +24,16 @@ fn measurement(kind: &str, file: &str) -> String {
 
 /// The accelerance of the example over $cs^n$, as a file says it; `label` stands in brackets behind its columns.
 fn write_lines(folder: &Path, factor: f64, derivatives: i32, label: &str) {
+    write_late_lines(folder, factor, derivatives, label, 0.0);
+}
+
+/// The same, sampled late by `delay` \[s\].
+fn write_late_lines(folder: &Path, factor: f64, derivatives: i32, label: &str, delay: f64) {
     let lines = example().accelerance(Estimation { window: Window::None, ..Estimation::default() }).unwrap();
     let mut text = format!("frequency (Hz),real ({label}),imag ({label})\n");
     for (frequency, value) in lines.frequency.iter().zip(&lines.value).filter(|(f, _)| (10.0..4500.0).contains(*f)) {
         let value = value / (factor * Complex64::new(0.0, TAU * frequency).powi(derivatives));
+        let value = value * Complex64::cis(-TAU * frequency * delay);
         writeln!(text, "{frequency},{:e},{:e}", value.re, value.im).unwrap();
     }
     std::fs::write(folder.join("lines.csv"), text).unwrap();
@@ -95,13 +101,56 @@ fn val_lines_in_another_unit_or_quantity_are_mended_by_what_is_said() {
     }
 }
 
+/// A delay of the response turns the phase of the highest lines by a quarter and more, and hides neither sign nor quantity nor unit.
+#[test]
+fn val_what_is_late_is_known_all_the_same() {
+    let folder = tempfile::tempdir().unwrap();
+    for (factor, derivatives, delay, said) in [
+        (-1.0, 0, 20e-6, "write direction = -1 in each"),
+        (-1.0, 0, 50e-6, "write direction = -1 in each"),
+        (9.80665, 0, 50e-6, "response_unit = \"g\" in each"),
+        (1.0, 1, 50e-6, "quantity = \"velocity\" and response_unit = \"m/s\" in each"),
+    ] {
+        write_late_lines(folder.path(), factor, derivatives, "m/s^2/N", delay);
+        let text = format!("{HEAD}{}", measurement("accelerance", "lines.csv"));
+        let refusal = refused(&test_of(folder.path(), &text));
+        let late = refusal.split("a delay of ").nth(1).and_then(|rest| rest.split(' ').next()).unwrap();
+        assert!(refusal.contains(said), "{factor} {derivatives}: {refusal}");
+        assert!((late.parse::<f64>().unwrap() * 1e-6 / delay - 1.0).abs() < 0.05, "{delay}: {late}");
+    }
+}
+
+/// A factor of five percent leaves the constants as they are, and is the first that is said of it.
+#[test]
+fn val_a_small_factor_on_all_records_is_said_first() {
+    let folder = tempfile::tempdir().unwrap();
+    write_lines(folder.path(), 1.0 / 1.05, 0, "m/s^2/N");
+    let test = test_of(folder.path(), &format!("{HEAD}{}", measurement("accelerance", "lines.csv")));
+    let found = identify(&test, Settings::default()).unwrap();
+    let gain = found.common_gain.unwrap();
+    assert!((gain.value / 1.05 - 1.0).abs() < 5e-3 && gain.std.is_some_and(|std| std < 0.01), "{gain:?}");
+    assert!(found.notes[0].starts_with("all records together are 1.05"), "{:?}", found.notes);
+    assert_constants(&test);
+    let traced = trace(&test).unwrap();
+    assert_eq!(traced.notes[0], found.notes[0]);
+    assert_eq!((traced.verdict, traced.effects[0].id), (Verdict::Explained, "gain"));
+    write_lines(folder.path(), 1.0, 0, "m/s^2/N");
+    assert_eq!(identify(&test, Settings::default()).unwrap().common_gain, None);
+}
+
 /// A factor that no unit is: a declared gain has no bound.
 #[test]
 fn val_any_other_factor_is_a_gain_to_declare() {
     let folder = tempfile::tempdir().unwrap();
-    for (factor, said) in
-        [(25.4, "in/s2 converted as mm/s2"), (1000.0, "m/s2 converted as mm/s2"), (137.0, "a sensitivity")]
-    {
+    for (factor, said) in [
+        (25.4, "in/s2 converted as mm/s2"),
+        (1000.0, "m/s2 converted as mm/s2"),
+        (137.0, "a sensitivity"),
+        (0.5, "a sensitivity"),
+        // 2.5 % beside ft/s2 over kgf, and 3 % beside g: no unit, and the near one is named beside.
+        (1.0 / 33.0, "a sensitivity"),
+        (9.80665 / 1.03, "response_unit = \"g\" would leave 3.0 %"),
+    ] {
         write_lines(folder.path(), factor, 0, "");
         let text = format!("{HEAD}{}", measurement("accelerance", "lines.csv"));
         let refusal = refused(&test_of(folder.path(), &text));
@@ -145,12 +194,24 @@ fn val_hits_in_another_unit_or_quantity_are_mended_by_what_is_said() {
         }
         velocity.into_iter().map(|velocity| 1e3 * velocity).collect()
     });
+    // Summed by the rule of trapezoids, as most programs do it: a third too low at a third of the sampling rate.
+    write_hits(folder.path(), "trapezoids", |of: &[f64], rate: f64| {
+        let mean = of.iter().sum::<f64>() / of.len() as f64;
+        let mut velocity = vec![0.0];
+        for pair in of.windows(2) {
+            let last = velocity[velocity.len() - 1];
+            velocity.push(last + (0.5 * (pair[0] + pair[1]) - mean) / rate);
+        }
+        velocity
+    });
     for (name, said) in [
+        ("trapezoids", "quantity = \"velocity\" and response_unit = \"m/s\""),
         ("inch", "quantity = \"acceleration\" and response_unit = \"in/s2\""),
         ("turned", "direction = -1"),
         ("velocity", "quantity = \"velocity\" and response_unit = \"mm/s\""),
     ] {
-        let text = format!("{HEAD}{}band = [20.0, 2000.0]\n", measurement("time-history", &format!("{name}-*.csv")));
+        let band = if name == "trapezoids" { 4000.0 } else { 2000.0 };
+        let text = format!("{HEAD}{}band = [20.0, {band:?}]\n", measurement("time-history", &format!("{name}-*.csv")));
         let refusal = refused(&test_of(folder.path(), &text));
         assert!(refusal.starts_with("write ") && refusal.contains(said), "{name}: {refusal}");
         assert_constants(&test_of(folder.path(), &(text + &lines_of(&refusal))));

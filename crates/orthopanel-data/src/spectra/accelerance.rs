@@ -8,6 +8,7 @@ use super::channel_choice;
 use super::channels::{self, Calibration, Quantity};
 use super::coherence::{self, Pairing};
 use super::force_noise::ForceNoise;
+use super::frequencies;
 use super::hit_verdict::HitVerdict;
 use super::likely_motion::likely_motion;
 use super::read_as::ReadAs;
@@ -193,7 +194,8 @@ impl Accelerance {
             notes.push(format!("{}: {positive} lines at or below 0 Hz left out", record.at.key));
         }
         result.read_as = read_as;
-        result.frequency = record.abscissa.iter().skip(positive).copied().collect();
+        let to_hertz = frequencies::to_hertz(record, measurement)?;
+        result.frequency = record.abscissa.iter().skip(positive).map(|frequency| frequency * to_hertz).collect();
         if result.frequency.is_empty() {
             return refused(record, "no line above 0 Hz".into());
         }

@@ -9,6 +9,7 @@ use super::channels::{self, Quantity};
 use crate::{
     ChannelName, DataError, RecordedResponse,
     error::some_of,
+    listing::port_text,
     records::{Node, Port, Record, RecordFile, RecordKind, blows, data_type, is_force as tells_force, without_unit},
 };
 
@@ -226,6 +227,25 @@ fn chosen(
         });
     }
     Ok((!left.is_empty() && left.len() < all).then_some(left))
+}
+
+/// The lines that each choose one of these channels, for messages.
+pub(super) fn written((key, records): (&str, &Vec<Record>)) -> String {
+    let mut lines: Vec<String> = Vec::new();
+    for record in records {
+        let name = match port_text(record.response) {
+            port if !port.is_empty() => format!("{port:?}"),
+            _ => match without_unit(record.title.split(" | ").next().unwrap_or_default()) {
+                "" => record.number.to_string(),
+                title => format!("{:?}", crate::error::short(title)),
+            },
+        };
+        let line = format!("{key} = {name}");
+        if !lines.contains(&line) {
+            lines.push(line);
+        }
+    }
+    some_of(&lines, ", or ")
 }
 
 /// The channels of a file, for messages.

@@ -164,7 +164,11 @@ impl TimeHistory {
             let (f, a) = (forces.len(), accelerations.len());
             let problem = format!("{f} force and {a} acceleration records against time: one of each a hit is needed");
             let problem = if f > 0 && a > 0 {
-                format!("{problem}; of several to a blow name the channels by force_channel and response_channel")
+                let several = if a > f { ("response_channel", &accelerations) } else { ("force_channel", &forces) };
+                format!(
+                    "{problem}; of several to a blow each has a [[measurement]] of its own, with {}",
+                    channel_choice::written(several)
+                )
             } else {
                 format!(
                     "{problem}; where they stand in two files, name both by file = {{force = \"..\", response = \"..\"}}"

@@ -84,6 +84,7 @@ pub(super) struct Measurement {
     pub(super) origin: Option<Spanned<[f64; 2]>>,
     pub(super) band: Option<Spanned<[f64; 2]>>,
     pub(super) sampling_rate: Option<Spanned<f64>>,
+    pub(super) frequency_unit: Option<Spanned<String>>,
     pub(super) window_decay: Option<Spanned<f64>>,
     pub(super) direction: Option<Spanned<f64>>,
     pub(super) record: Option<Spanned<u32>>,

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 /// What each key wants.
-const WANTED: [(&str, &str); 48] = [
+const WANTED: [(&str, &str); 49] = [
     ("length", "a number in m"),
     ("width", "a number in m"),
     ("thickness", "a number in m"),
@@ -49,6 +49,7 @@ const WANTED: [(&str, &str); 48] = [
     ("level", "a number in N"),
     ("before", "a number in s"),
     ("sampling_rate", "a number in Hz"),
+    ("frequency_unit", "a unit of frequency in quotes, such as \"kHz\""),
     ("window_decay", "a number in s"),
     ("direction", "1 or -1"),
     ("record", "the record's number in the file, from 1"),

@@ -4,7 +4,8 @@ use num_complex::Complex64;
 use orthopanel_data::{ImpactTest, MeasurementData};
 use orthopanel_model::Place;
 
-use super::misfit::{median, misfit_percent, record_misfit_percent, scaled_misfit_percent};
+use super::misfit::{misfit_percent, record_misfit_percent};
+use super::other_units::other_units;
 use super::problem::AcceleranceProblem;
 use super::record_apart::record_apart;
 use super::records::PlaceRecord;
@@ -17,9 +18,6 @@ use crate::structures::{self, Shown};
 const CONTRADICTION: f64 = 40.0;
 /// The same of one record: an effect that the model lacks may bend one by half, a wrong place, file or sign by all.
 const RECORD_CONTRADICTION: f64 = 80.0;
-
-/// Median misfit \[%\] of every record below which a factor has mended them.
-const MENDED: f64 = 10.0;
 
 /// Refuses records that contradict the test file; a sentence on the one that stands apart where it may be kept.
 /// `resonances` \[Hz\] are those that no mode took.
@@ -43,28 +41,34 @@ pub(super) fn contradiction(
     if apart.as_ref().is_some_and(|apart| apart.is_misplaced()) {
         return Err(refused);
     }
-    let percent = misfit_percent(records.iter().map(|(_, record)| *record).zip(lines));
-    if percent > CONTRADICTION {
-        let (record, factor) = (name, common_factor(&records, lines));
-        return Err(match structures::of_test(test).shown() {
-            Shown::InPart => {
-                IdentifyError::PlateContradiction { record, percent, factor, resonances: resonances.to_vec() }
-            }
-            Shown::Wholly => IdentifyError::Contradiction { record, percent, factor },
-        });
+    if let Some(refused) = contradicted(test, &records, lines, resonances) {
+        return Err(refused);
     }
     if worst_percent > RECORD_CONTRADICTION {
-        return Err(refused);
+        return Err(other_units(test, &records, lines).unwrap_or(refused));
     }
     Ok(apart.map(|apart| apart.note(&name)))
 }
 
-/// The model over the records where one real factor on all of them mends most of what they miss.
-fn common_factor(records: &[(usize, &PlaceRecord)], lines: &[Vec<Complex64>]) -> Option<f64> {
-    let pairs = records.iter().zip(lines).flat_map(|((_, record), model)| record.value.iter().zip(model));
-    let factor = median(pairs.map(|(measured, model)| (measured / model).re));
-    let left = records.iter().zip(lines).map(|((_, record), model)| scaled_misfit_percent(record, model, factor));
-    (left.fold(0.0, f64::max) < MENDED && factor != 0.0).then_some(1.0 / factor)
+/// What is refused where half of all lines miss the model by more than [`CONTRADICTION`]: by the factor that explains it, where one does.
+pub(super) fn contradicted(
+    test: &ImpactTest,
+    records: &[(usize, &PlaceRecord)],
+    lines: &[Vec<Complex64>],
+    resonances: &[f64],
+) -> Option<IdentifyError> {
+    let percent = misfit_percent(records.iter().map(|(_, record)| *record).zip(lines));
+    if percent <= CONTRADICTION {
+        return None;
+    }
+    let misfits = records.iter().zip(lines).map(|((_, record), model)| record_misfit_percent(record, model));
+    let (_, (piece, worst)) = misfits.zip(records).max_by(|a, b| a.0.total_cmp(&b.0))?;
+    let record = record_name(test, *piece, (worst.force_at, worst.response_at));
+    let refused = match structures::of_test(test).shown() {
+        Shown::InPart => IdentifyError::PlateContradiction { record, percent, resonances: resonances.to_vec() },
+        Shown::Wholly => IdentifyError::Contradiction { record, percent },
+    };
+    Some(other_units(test, records, lines).unwrap_or(refused))
 }
 
 /// A record by its files and places of force and response, and by its piece where there are several.

@@ -1,6 +1,7 @@
 //! Identification by accelerance: maximum likelihood over the whole complex band, or the paper's eq. 23.
 
 mod band;
+mod common_gain;
 mod contradiction;
 mod followed_modes;
 mod force_window;
@@ -24,6 +25,7 @@ mod records;
 mod resonance_fit;
 mod resonance_point;
 mod resonance_start;
+mod scale;
 mod sharpening;
 mod smeared;
 mod smooth_part;
@@ -46,6 +48,7 @@ use sharpening::{Rough, line_by_line_with_noise, problem_at, sharpened_lines};
 use start::{Recorded, Start, start, usual_log_zeta};
 use wide_scan::rough_starts;
 
+pub(crate) use common_gain::{common_gain, refuse_missed, said_of_gain};
 pub(crate) use line_noise::told_variance;
 pub(crate) use other_units::refuse_other_units;
 pub(crate) use outcome::is_told;

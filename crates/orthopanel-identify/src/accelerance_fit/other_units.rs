@@ -1,19 +1,21 @@
 //! Records in other units than they were read in, of another quantity, or turned round: one factor explains all, and is said before
 //! anything is searched for.
 //!
-//! Frequencies of resonances stay as they are under any factor $cs^n$. They tell the constants, these the model's lines, and the lines
-//! the factor: $H_{cal}/s^nH_{exp}$ is the same real number at all of them for the right $n$ alone.
+//! Frequencies of resonances stay as they are under any factor $cs^n$, and under a delay. They tell the constants, these the model's lines,
+//! and the lines the factor: $H_{cal}/s^ne^{sT}H_{exp}$ is the same real number at all of them for the right $n$ and $T$ alone.
 
 use num_complex::Complex64;
-use orthopanel_data::{Accelerance, ImpactTest, MeasurementData, Motion, Unit};
-use orthopanel_model::{Owner, effect};
+use orthopanel_data::{Accelerance, ImpactTest, MeasurementData, Motion, ReadAs, Unit};
+use orthopanel_model::Place;
+use rayon::prelude::*;
 
 use super::contradiction::record_name;
-use super::misfit::{median, scaled_misfit_percent};
+use super::misfit::median;
 use super::records::PlaceRecord;
+use super::scale::{Compared, Scale, common_delay};
 use super::start::{Recorded, recorded_of, start};
 use super::{assemble, starting_parameters};
-use crate::error::{Mend, mend};
+use crate::error::{Factor, Mend, gain_of_no_unit, mend};
 use crate::structures::{self, Shown};
 use crate::{IdentifyError, Settings};
 
@@ -30,46 +32,47 @@ const CLEAR: f64 = 3.0;
 const NEARLY: f64 = 60.0;
 /// A factor no further from one than this is a gain's, or the mass's.
 const GAIN: f64 = 1.3;
-/// Up to here a factor of no unit is left to a search, as an effect; all records want the same within a part.
-const EFFECT: f64 = 2.0;
+/// All records want the same factor within this part.
 const ALIKE: f64 = 0.05;
-/// Lines of a record that are looked at: the median of these is that of all.
-const LINES: usize = 1200;
-/// Fewer lines than these tell no factor.
-const LEAST_LINES: usize = 30;
+
+/// Part of a record's band in which sums over samples are integrals: the rule of trapezoids is off by 5 % at an eighth of the sampling
+/// rate, and bands end below half of it.
+const PART: f64 = 0.25;
 
 /// What one record is to the model.
 #[derive(Debug, Clone, Copy)]
 struct Scaled {
     derivatives: i8,
-    /// The model over $s^n$ times the record.
-    factor: f64,
-    /// Median misfit with factor and derivatives, and without \[%\].
-    left: f64,
-    without: f64,
+    /// By how much it is sampled late \[s\].
+    delay: f64,
+    /// What is left beside both.
+    scale: Scale,
+    /// Median misfit as it was read \[%\].
+    as_read: f64,
+    /// Standard deviation of the factor's logarithm.
+    std: f64,
 }
 
 impl Scaled {
     /// Whether the record is as the model has it, whatever an effect may do to it.
     fn is_as_read(&self) -> bool {
-        self.without < BENT || (self.derivatives == 0 && self.is_about_one() && self.left < BENT)
+        self.as_read < BENT || (self.derivatives == 0 && self.is_about_one() && self.scale.left < BENT)
     }
 
     fn is_about_one(&self) -> bool {
-        self.factor > 0.0 && self.factor.ln().abs() < GAIN.ln()
+        self.scale.factor > 0.0 && self.scale.factor.ln().abs() < GAIN.ln()
     }
 
-    /// Whether factor and derivatives explain it.
+    /// Whether factor, derivatives and delay explain it.
     fn is_explained(&self) -> bool {
         let is_factor = self.derivatives != 0 || !self.is_about_one();
-        is_factor && self.left < EXPLAINED && self.left < MENDS * self.without
+        is_factor && self.scale.left < EXPLAINED && self.scale.left < MENDS * self.as_read
     }
 }
 
 /// Refuses records that a known factor explains, all of them or some, by the line of the test file that mends them.
 ///
-/// Plates are left to their own fit, and so is a test that declares an effect of the measuring chain. What the records refuse
-/// otherwise is not said here.
+/// Plates are left to their own fit, and so is a test that declares a gain. What the records refuse otherwise is not said here.
 ///
 /// # Errors
 /// [`IdentifyError::OtherUnits`].
@@ -90,23 +93,22 @@ pub(super) fn refuse_read_in_other_units(
     accelerances: &[(usize, Accelerance)],
     as_read: &Recorded,
 ) -> Result<(), IdentifyError> {
-    let is_of_channel = |id: &str| effect(id).is_ok_and(|effect| effect.owner() == Owner::Channel);
-    if structures::of_test(test).shown() != Shown::Wholly || test.effects.iter().any(|of| is_of_channel(&of.id)) {
+    if structures::of_test(test).shown() != Shown::Wholly || declares_a_gain(test) {
         return Ok(());
     }
     let mut best: Option<Vec<Scaled>> = None;
     let mut readings: Vec<Reading> = Vec::new();
     for derivatives in DERIVATIVES {
         if let Some(records) = read_with(test, accelerances, derivatives) {
-            readings.push(Reading { derivatives, records });
+            readings.push(Reading::of(derivatives, records));
         }
         // The next quantity is read where this one does not explain all.
         let found = match derivatives {
             0 => scaled(as_read, &readings),
-            _ => readings.last().and_then(|last| scaled(&recorded_of(test, &last.records).ok()?, &readings)),
+            _ => readings.last().and_then(|last| scaled(&recorded_of(test, &last.accelerances).ok()?, &readings)),
         };
         let Some(mut found) = found else { continue };
-        if found.iter().any(|one| !one.is_as_read() && (CLEAR..NEARLY).contains(&one.left)) {
+        if found.iter().any(|one| !one.is_as_read() && (CLEAR..NEARLY).contains(&one.scale.left)) {
             found = once_more(test, &readings, &found);
         }
         if found.iter().all(Scaled::is_as_read) {
@@ -121,72 +123,143 @@ pub(super) fn refuse_read_in_other_units(
         }
     }
     let Some(found) = best else { return Ok(()) };
-    let of_record = |(one, (_, record)): (&Scaled, &(usize, Accelerance))| {
-        mend(one.factor, one.derivatives, record.read_as).filter(|_| one.is_explained())
+    let records: Vec<Named> = accelerances
+        .iter()
+        .map(|(piece, record)| Named {
+            piece: *piece,
+            places: (record.force_at, record.response_at),
+            read_as: record.read_as,
+        })
+        .collect();
+    said(test, &records, &found).map_or(Ok(()), Err)
+}
+
+fn declares_a_gain(test: &ImpactTest) -> bool {
+    test.effects.iter().any(|effect| ["gain", "record-gain"].contains(&effect.id.as_str()))
+}
+
+/// What explains records that miss their model's `lines`, as a fit of them ended; `None` where no factor does.
+pub(super) fn other_units(
+    test: &ImpactTest,
+    records: &[(usize, &PlaceRecord)],
+    lines: &[Vec<Complex64>],
+) -> Option<IdentifyError> {
+    let with_s = |derivatives: i8| {
+        let records = records.iter().map(|(_, record)| record.times_s(derivatives)).collect();
+        Reading { derivatives, accelerances: Vec::new(), records }
     };
-    let mends: Vec<Option<Mend>> = found.iter().zip(accelerances).map(of_record).collect();
-    let mends = if mends.iter().all(Option::is_none) { of_no_unit(&found) } else { mends };
-    let Some(due) = mends.iter().flatten().next() else { return Ok(()) };
+    let readings = DERIVATIVES.map(with_s);
+    let models: Vec<Modelled> = records
+        .iter()
+        .zip(lines)
+        .map(|((_, record), lines)| Modelled { frequency: &record.frequency, lines, poles: 1 })
+        .collect();
+    let found = scaled_beside(&models, &readings)?;
+    let named = |(piece, record): &(usize, &PlaceRecord)| Named {
+        piece: *piece,
+        places: (record.force_at, record.response_at),
+        read_as: record.read_as,
+    };
+    said(test, &records.iter().map(named).collect::<Vec<_>>(), &found)
+}
+
+/// A record as messages name it.
+struct Named {
+    piece: usize,
+    places: (Place, Place),
+    read_as: ReadAs,
+}
+
+/// The line that mends most of the records, where one does.
+fn said(test: &ImpactTest, records: &[Named], found: &[Scaled]) -> Option<IdentifyError> {
+    // Records that want the same factor are judged by what they say together.
+    let together = |one: &Scaled| {
+        let is_alike = |other: &&Scaled| {
+            other.derivatives == one.derivatives && (other.scale.factor / one.scale.factor - 1.0).abs() < ALIKE
+        };
+        median(found.iter().filter(is_alike).map(|other| other.scale.factor))
+    };
+    let of_record = |(one, record): (&Scaled, &Named)| {
+        let piece = test.pieces.get(record.piece)?;
+        let of_mass = piece.doubt.mass_per_area / piece.piece.mass_per_area;
+        let factor = Factor { value: together(one), derivatives: one.derivatives, std: one.std.hypot(of_mass) };
+        mend(factor, record.read_as).filter(|_| one.is_explained())
+    };
+    let mends: Vec<Option<Mend>> = found.iter().zip(records).map(of_record).collect();
+    let mends = if mends.iter().all(Option::is_none) { of_no_unit(records, found) } else { mends };
+    let due = mends.iter().flatten().next()?;
     let wrong: Vec<usize> =
         (0..found.len()).filter(|&index| mends[index].as_ref().is_some_and(|other| other.is_same(due))).collect();
     let is_clear = found.iter().zip(&mends).all(|(one, mend)| one.is_as_read() || mend.is_some());
     if !is_clear && 2 * wrong.len() <= found.len() {
-        return Ok(());
+        return None;
     }
-    let records = (wrong.len() < found.len()).then(|| {
-        let name = |&index: &usize| {
-            let (piece, record) = &accelerances[index];
-            record_name(test, *piece, (record.force_at, record.response_at))
-        };
-        wrong.iter().map(name).collect()
-    });
-    let numbers = (wrong.len() < found.len()).then(|| wrong.iter().map(|index| index + 1).collect::<Vec<_>>());
+    let is_of_some = wrong.len() < found.len();
+    let name = |&index: &usize| record_name(test, records[index].piece, records[index].places);
+    let names = is_of_some.then(|| wrong.iter().map(name).collect());
+    let numbers = is_of_some.then(|| wrong.iter().map(|index| index + 1).collect::<Vec<_>>());
+    let is_plate = structures::of_test(test).shown() == Shown::InPart;
+    let plate = test.pieces.get(records[wrong[0]].piece).filter(|_| is_plate).map(|piece| piece.piece.mass_per_area);
     let of_wrong = |value: fn(&Scaled) -> f64| median(wrong.iter().map(|&index| value(&found[index])));
-    Err(IdentifyError::OtherUnits {
-        lines: due.lines(&records, numbers.as_deref()),
-        records,
-        factor: of_wrong(|one| one.factor),
+    Some(IdentifyError::OtherUnits {
+        lines: due.lines(&names, numbers.as_deref(), plate),
+        records: names,
+        factor: of_wrong(|one| one.scale.factor),
         derivatives: found[wrong[0]].derivatives,
-        percent: [of_wrong(|one| one.without), of_wrong(|one| one.left)],
+        delay: found[wrong[0]].delay,
+        percent: [of_wrong(|one| one.as_read), of_wrong(|one| one.scale.left)],
     })
 }
 
 /// The same from records that the factor found has put near the model: of what is far too strong or too weak noise hides other modes than
-/// it should.
+/// it should, and what is sampled late has other shapes.
 fn once_more(test: &ImpactTest, readings: &[Reading], found: &[Scaled]) -> Vec<Scaled> {
-    let by = median(found.iter().map(|one| one.factor));
+    let by = median(found.iter().map(|one| one.scale.factor));
+    let delay = found.first().map_or(0.0, |one| one.delay);
     let near: Vec<Reading> = readings
         .iter()
-        .map(|Reading { derivatives, records }| {
-            let records = records.iter().map(|(piece, record)| (*piece, times(record, by))).collect();
-            Reading { derivatives: *derivatives, records }
+        .map(|Reading { derivatives, accelerances, .. }| {
+            let of = |s: Complex64| by * (s * delay).exp();
+            let records = accelerances.iter().map(|(piece, record)| (*piece, times(record, of))).collect();
+            Reading::of(*derivatives, records)
         })
         .collect();
-    let again = near.last().and_then(|last| scaled(&recorded_of(test, &last.records).ok()?, &near));
+    let again = near.last().and_then(|last| scaled(&recorded_of(test, &last.accelerances).ok()?, &near));
     let Some(again) = again else { return found.to_vec() };
-    let kept = |(one, again): (&Scaled, Scaled)| match again.left < one.left {
-        true => Scaled { factor: by * again.factor, without: one.without, ..again },
+    let kept = |(one, again): (&Scaled, Scaled)| match again.scale.left < one.scale.left {
+        true => {
+            let scale = Scale { factor: by * again.scale.factor, ..again.scale };
+            Scaled { scale, delay: delay + again.delay, as_read: one.as_read, ..again }
+        }
         false => *one,
     };
     found.iter().zip(again).map(kept).collect()
 }
 
-/// A gain for all records, where one factor explains them that is no unit's; none where they differ, or where it is no more than an
-/// effect may be.
-fn of_no_unit(found: &[Scaled]) -> Vec<Option<Mend>> {
-    let factor = median(found.iter().map(|one| one.factor));
+/// A gain for all records, where one factor explains them that is no unit's; none where they differ, or where the sign differs too: modes that
+/// are counted wrongly turn a record of two ends round.
+fn of_no_unit(records: &[Named], found: &[Scaled]) -> Vec<Option<Mend>> {
+    let value = median(found.iter().map(|one| one.scale.factor));
+    let derivatives = found.first().map_or(0, |one| one.derivatives);
     let is_alike = |one: &Scaled| {
-        one.derivatives == 0 && one.is_explained() && (one.factor / factor - 1.0).abs() < ALIKE && factor > 0.0
+        one.derivatives == derivatives && one.is_explained() && (one.scale.factor / value - 1.0).abs() < ALIKE
     };
-    let is_one = factor.abs().ln().abs() > EFFECT.ln() && found.iter().all(is_alike);
-    let cause = "a sensitivity, or the mass of the piece".to_owned();
-    vec![is_one.then_some(Mend::Gain { measurement: None, gain: 1.0 / factor, cause }); found.len()]
+    let gain = records.first().filter(|_| value > 0.0 && found.iter().all(is_alike));
+    vec![gain.and_then(|first| gain_of_no_unit(Factor { value, derivatives, std: 0.0 }, first.read_as)); found.len()]
 }
 
-/// All records as they are where they are another quantity.
+/// All records as they are where they are another quantity, in the order of the test.
 struct Reading {
     derivatives: i8,
-    records: Vec<(usize, Accelerance)>,
+    accelerances: Vec<(usize, Accelerance)>,
+    records: Vec<PlaceRecord>,
+}
+
+impl Reading {
+    fn of(derivatives: i8, accelerances: Vec<(usize, Accelerance)>) -> Self {
+        let records = accelerances.par_iter().map(|(_, record)| PlaceRecord::of(record)).collect();
+        Self { derivatives, accelerances, records }
+    }
 }
 
 /// The records times $s^n$; `None` where they cannot be. Hits are read anew, for what a record's end cuts off is not the same of a motion
@@ -198,7 +271,11 @@ fn read_with(
 ) -> Option<Vec<(usize, Accelerance)>> {
     let are_hits = test.measurements.iter().all(|of| matches!(of.data, MeasurementData::TimeHistory(_)));
     if derivatives == 0 || !are_hits {
-        return Some(accelerances.iter().map(|(piece, record)| (*piece, times_s(record, derivatives))).collect());
+        let with_s = |(piece, record): &(usize, Accelerance)| match derivatives {
+            0 => (*piece, record.clone()),
+            _ => (*piece, times(record, |s| s.powi(i32::from(derivatives)))),
+        };
+        return Some(accelerances.iter().map(with_s).collect());
     }
     let read = accelerances.first()?.1.read_as;
     let due = i8::try_from(read.motion.derivatives()).ok()? + derivatives;
@@ -212,7 +289,7 @@ fn read_with(
     let mut found = other.accelerances(Settings::default().estimation).ok()?;
     for (_, record) in &mut found {
         // As a factor on what was read, in whatever unit that was.
-        *record = times(record, read.response);
+        *record = times(record, |_| read.response.into());
     }
     (found.len() == accelerances.len()).then_some(found)
 }
@@ -224,70 +301,58 @@ fn scaled(recorded: &Recorded, readings: &[Reading]) -> Option<Vec<Scaled>> {
     let problem = assemble(&start, Settings::default()).ok()?;
     let lines = problem.lines(&starting_parameters(&problem, &start)).ok()?;
     // Records stand by pieces there, in their order within each.
-    let mut found: Vec<Option<Scaled>> = vec![None; last.records.len()];
+    let mut models: Vec<Option<Modelled>> = last.records.iter().map(|_| None).collect();
     let of_pieces =
         problem.pieces.iter().flat_map(|piece| piece.records.iter().map(move |record| (piece.piece, record)));
     for ((piece, record), lines) in of_pieces.zip(&lines) {
-        let at = (0..found.len()).find(|&at| last.records[at].0 == piece && found[at].is_none())?;
-        found[at] = best_scale(at, record, lines, readings);
+        let at = (0..models.len()).find(|&at| last.accelerances[at].0 == piece && models[at].is_none())?;
+        let poles = recorded.pieces.iter().find(|of| of.index == piece).map_or(1, |of| of.poles.len().max(1));
+        models[at] = Some(Modelled { frequency: &record.frequency, lines, poles });
     }
-    found.into_iter().collect()
+    scaled_beside(&models.into_iter().collect::<Option<Vec<_>>>()?, readings)
 }
 
-/// The factor and the derivatives with which record number `at` is nearest to its model, which has `lines` where `as_modelled` has its.
-fn best_scale(at: usize, as_modelled: &PlaceRecord, lines: &[Complex64], readings: &[Reading]) -> Option<Scaled> {
-    let of_reading = |reading: &Reading| {
-        let record = PlaceRecord::of(&reading.records.get(at)?.1);
-        // Noise leaves lines out of one reading and not of another.
-        let line_of = |frequency: &f64| {
-            let next = as_modelled.frequency.partition_point(|line| *line < frequency * (1.0 - 1e-9));
-            let found = as_modelled.frequency.get(next).is_some_and(|line| (line / frequency - 1.0).abs() < 1e-9);
-            found.then_some(next)
-        };
-        let mut thin = record.thinned(LINES);
-        let places: Vec<Option<usize>> = thin.frequency.iter().map(line_of).collect();
-        let shared = |line: &usize| places[*line].is_some();
-        let kept: Vec<usize> = (0..thin.value.len()).filter(shared).collect();
-        thin.value = kept.iter().map(|&line| thin.value[line]).collect();
-        thin.variance = kept.iter().map(|&line| thin.variance[line]).collect();
-        let model: Vec<Complex64> = places.iter().flatten().filter_map(|&line| lines.get(line).copied()).collect();
-        if model.len() < LEAST_LINES || model.len() != thin.value.len() {
-            return None;
-        }
-        let factor = median(thin.value.iter().zip(&model).map(|(measured, model)| (measured / model).re));
-        let left = if factor == 0.0 { f64::INFINITY } else { scaled_misfit_percent(&thin, &model, factor) };
-        Some((1.0 / factor, left, scaled_misfit_percent(&thin, &model, 1.0)))
-    };
-    let mut best: Option<Scaled> = None;
-    let without = readings.iter().find(|reading| reading.derivatives == 0).and_then(of_reading)?.2;
+/// The lines of the model for one record.
+struct Modelled<'a> {
+    frequency: &'a [f64],
+    lines: &'a [Complex64],
+    /// Resonances of its piece.
+    poles: usize,
+}
+
+/// The factor, the derivatives and the delay with which each record is nearest to its model.
+fn scaled_beside(models: &[Modelled], readings: &[Reading]) -> Option<Vec<Scaled>> {
+    let mut best: Vec<Option<Scaled>> = vec![None; models.len()];
     for reading in readings {
-        let Some((factor, left, _)) = of_reading(reading) else { continue };
-        // Another quantity has to be much nearer than the one that was read.
-        if best.as_ref().is_none_or(|best| left < 0.5 * best.left) {
-            best = Some(Scaled { derivatives: reading.derivatives, factor, left, without });
+        let compared: Vec<Option<Compared>> = models
+            .par_iter()
+            .zip(&reading.records)
+            .map(|(model, record)| Compared::of(record, model.frequency, model.lines))
+            .collect();
+        let Some(compared) = compared.into_iter().collect::<Option<Vec<_>>>() else { continue };
+        let delay = common_delay(&compared);
+        for ((best, of), model) in best.iter_mut().zip(&compared).zip(models) {
+            let scale = of.scale(delay);
+            // Each resonance has an error of its own, which the lines around it share.
+            let std = 0.01 * scale.left / (model.poles as f64).sqrt();
+            let derivatives = reading.derivatives;
+            // Rules of integration agree at low frequencies alone.
+            let scale = if derivatives == 0 { scale } else { Scale { factor: of.factor_below(PART, delay), ..scale } };
+            let as_read = of.misfit_as_read(derivatives);
+            // Another quantity has to be much nearer than the one that was read.
+            if best.is_none_or(|known| scale.left < 0.5 * known.scale.left) {
+                *best = Some(Scaled { derivatives, delay, scale, as_read, std });
+            }
         }
     }
-    best
+    best.into_iter().collect()
 }
 
-/// An accelerance times a factor, with its noise.
-fn times(record: &Accelerance, factor: f64) -> Accelerance {
+/// An accelerance times a function of $s$, with its noise.
+fn times(record: &Accelerance, of: impl Fn(Complex64) -> Complex64) -> Accelerance {
     let mut taken = record.clone();
-    taken.value.iter_mut().for_each(|value| *value *= factor);
-    taken.variance.iter_mut().flatten().for_each(|variance| *variance *= factor * factor);
-    taken.force_noise = None;
-    taken
-}
-
-/// An accelerance times $s^n$, with its noise.
-fn times_s(record: &Accelerance, derivatives: i8) -> Accelerance {
-    let mut taken = record.clone();
-    if derivatives == 0 {
-        return taken;
-    }
-    let power = i32::from(derivatives);
-    let s = |frequency: &f64| Complex64::new(record.decay_rate, std::f64::consts::TAU * frequency).powi(power);
-    let factors: Vec<Complex64> = record.frequency.iter().map(s).collect();
+    let s = |frequency: &f64| Complex64::new(record.decay_rate, std::f64::consts::TAU * frequency);
+    let factors: Vec<Complex64> = record.frequency.iter().map(|frequency| of(s(frequency))).collect();
     taken.value.iter_mut().zip(&factors).for_each(|(value, by)| *value *= by);
     if let Some(variance) = &mut taken.variance {
         variance.iter_mut().zip(&factors).for_each(|(variance, by)| *variance *= by.norm_sqr());

@@ -223,6 +223,7 @@ fn report(
         accelerances: fits,
         effects: Vec::new(),
         question,
+        common_gain: None,
         notes,
         pieces,
     })

@@ -1,12 +1,13 @@
 //! Accelerances made ready for a fit: one variance a line, places by number.
 
 use num_complex::Complex64;
-use orthopanel_data::Accelerance;
+use orthopanel_data::{Accelerance, ReadAs};
 use orthopanel_model::Place;
 
 use super::force_window::TiedNoise;
 use super::line_block::{BLOCK, LineBlock};
 use super::line_noise::line_variance;
+use crate::AcceleranceFit;
 
 /// Power of all lines over that of their noise, below which no signal is in them: few hits tell a variance to some per cent.
 const MERE_NOISE: f64 = 1.05;
@@ -52,6 +53,8 @@ pub(super) struct PlaceRecord {
     pub by_strength: Option<f64>,
     /// What of the variance a force window ties together over many lines.
     pub tied: Option<TiedNoise>,
+    /// As what the record was read.
+    pub read_as: ReadAs,
 }
 
 impl PlaceRecord {
@@ -86,6 +89,26 @@ impl PlaceRecord {
             by_strength: (accelerance.hits > 1 && noise.is_none() && (0..biases.len()).any(|line| bias(line) > COUNTS))
                 .then_some(ratio),
             tied: noise.map(|noise| TiedNoise::of(noise, accelerance, &usable)),
+            read_as: accelerance.read_as,
+        }
+    }
+
+    /// The record that a fit was of.
+    pub(super) fn of_fit(fit: &AcceleranceFit, read_as: ReadAs) -> Self {
+        Self {
+            force_at: fit.force_at,
+            response_at: fit.response_at,
+            frequency: fit.frequency.clone(),
+            value: fit.measured.clone(),
+            variance: fit.variance.clone().unwrap_or_else(|| vec![1.0; fit.measured.len()]),
+            variance_known: fit.variance.is_some(),
+            scatter_told: false,
+            decay_rate: fit.decay_rate,
+            decay_rate_in_doubt: 0.0,
+            worth: vec![1.0; fit.measured.len()],
+            by_strength: None,
+            tied: None,
+            read_as,
         }
     }
 
@@ -93,6 +116,17 @@ impl PlaceRecord {
     pub(super) fn independent(&self) -> Option<Self> {
         let noise = self.tied.as_ref()?;
         Some(Self { variance: noise.independent.clone(), tied: None, ..self.clone() })
+    }
+
+    /// The same times $s^n$, with its noise.
+    pub(super) fn times_s(&self, derivatives: i8) -> Self {
+        let mut taken = Self { tied: None, ..self.clone() };
+        for line in 0..taken.frequency.len() {
+            let by = self.s(line).powi(i32::from(derivatives));
+            taken.value[line] *= by;
+            taken.variance[line] *= by.norm_sqr();
+        }
+        taken
     }
 
     /// Takes $|H|^2$ in the variance of each line from a model of it.

@@ -78,6 +78,7 @@ pub(super) fn smeared(record: &PlaceRecord, part: f64) -> Vec<PlaceRecord> {
             worth: vec![1.0; frequency.len()],
             by_strength: None,
             tied: None,
+            read_as: record.read_as,
             frequency,
             value,
         });
@@ -88,6 +89,7 @@ pub(super) fn smeared(record: &PlaceRecord, part: f64) -> Vec<PlaceRecord> {
 
 #[cfg(test)]
 mod tests {
+    use orthopanel_data::ReadAs;
     use orthopanel_model::Place;
 
     use super::*;
@@ -112,6 +114,7 @@ mod tests {
             worth: vec![1.0; frequency.len()],
             by_strength: None,
             tied: None,
+            read_as: ReadAs::SI,
             frequency,
         };
         for part in [0.02, 0.005] {

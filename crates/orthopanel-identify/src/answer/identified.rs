@@ -195,6 +195,7 @@ impl PlateByModes {
             accelerances,
             effects: Vec::new(),
             question: None,
+            common_gain: None,
             notes,
         })
     }

@@ -4,8 +4,8 @@ use orthopanel_data::DataError;
 use orthopanel_model::{ModelError, Readable};
 use thiserror::Error;
 
-pub(crate) use self::known_factor::{Mend, mend};
-use self::wording::{all_times, by_factor, known, much_noise, other_place, untaken, which};
+pub(crate) use self::known_factor::{CALIBRATED, Factor, Mend, gain_of_no_unit, mend};
+use self::wording::{by_factor, known, much_noise, other_place, untaken, which};
 pub(crate) use self::wording::{one_times, spaced};
 use crate::known_beforehand::PriorContradiction;
 use crate::least_squares::Stuck;
@@ -261,25 +261,23 @@ pub enum IdentifyError {
     },
     /// Records that no panel of these sizes could give.
     #[error(
-        "half of all lines miss the model by more than {:.0} %, whatever the constants, most of all in {record}: {}either the test file says \
+        "half of all lines miss the model by more than {:.0} %, whatever the constants, most of all in {record}: either the test file says \
          other things than the records (force_at and response_at, the sensor's direction, units and gain, sizes and mass of \
          the piece, the window, the sampling rate), or they show too little: measure more places, or from below the first \
          resonance on; or the beam lacks something large: `orthopanel trace TEST.toml` looks for it, the plate of a wide panel among others",
-        Readable(*.percent), all_times(*.factor)
+        Readable(*.percent)
     )]
     Contradiction {
         /// Files and places of the record that misses it most.
         record: String,
         /// Median of $|H_{cal}-H_{exp}|$ over $|H_{exp}|$ or three standard deviations of it, whichever is more \[%\].
         percent: f64,
-        /// The factor on all records with which they fit; `None` where there is none.
-        factor: Option<f64>,
     },
     /// Records in other units than they were read in, of another quantity, or turned round.
     #[error(
         "write {lines}: {} miss the model by {:.0} % in the median line, and times {} meet it within {:.1} %, as records do that are read \
          in a wrong unit, as a wrong quantity, or of a sensor turned round; where that is not it, look at gain and mass",
-        which(.records), Readable(.percent[0]), by_factor(*.factor, *.derivatives), Readable(.percent[1])
+        which(.records), Readable(.percent[0]), by_factor(*.factor, *.derivatives, *.delay), Readable(.percent[1])
     )]
     OtherUnits {
         /// What to write, and where.
@@ -288,26 +286,26 @@ pub enum IdentifyError {
         records: Option<Vec<String>>,
         /// The factor with which they meet the model, ...
         factor: f64,
-        /// ... and the power of $j\omega$ beside it.
+        /// ... the power of $j\omega$ beside it, ...
         derivatives: i8,
+        /// ... and the delay of the response \[s\] that is taken off; zero where none is.
+        delay: f64,
         /// Median misfit of their lines without factor and power, and with \[%\].
         percent: [f64; 2],
     },
     /// Records that miss the plate that was found.
     #[error(
-        "half of all lines miss the plate found by more than {:.0} %, most of all in {record}{}: {}either the test file \
+        "half of all lines miss the plate found by more than {:.0} %, most of all in {record}{}: either the test file \
          says other things than the records (force_at and response_at, the sensor's direction, units and gain, sizes and \
          mass of the piece, boundary, the window), or the search ended at other constants than the panel's: hold what is \
          known of them under [constants], and measure more places off the centre lines",
-        Readable(*.percent), untaken(.resonances), all_times(*.factor)
+        Readable(*.percent), untaken(.resonances)
     )]
     PlateContradiction {
         /// Files and places of the record that misses it most.
         record: String,
         /// As in [`IdentifyError::Contradiction`] \[%\].
         percent: f64,
-        /// The factor on all records with which they fit; `None` where there is none.
-        factor: Option<f64>,
         /// Resonances that no mode of the plate took \[Hz\].
         resonances: Vec<f64>,
     },
@@ -428,12 +426,27 @@ impl IdentifyError {
         matches!(self, Self::RecordContradiction { fits_at: Some(_), .. })
     }
 
+    /// Whether the records themselves are refused, so that no effect which the model may lack mends them.
+    pub(crate) fn is_of_records(&self) -> bool {
+        matches!(
+            self,
+            Self::Data(_)
+                | Self::OtherUnits { .. }
+                | Self::TooFewResonances { .. }
+                | Self::BandTooLow { .. }
+                | Self::PieceTooLarge { .. }
+                | Self::RecordContradiction { .. }
+        )
+    }
+
     /// Whether another law of damping may explain what was refused.
     pub(crate) fn may_be_of_damping(&self) -> bool {
         match self {
-            Self::Contradiction { factor, .. } | Self::PlateContradiction { factor, .. } => factor.is_none(),
             Self::RecordContradiction { fits_at, .. } => fits_at.is_none(),
-            Self::OnBound { .. } | Self::TooFewResonances { .. } => true,
+            Self::Contradiction { .. }
+            | Self::PlateContradiction { .. }
+            | Self::OnBound { .. }
+            | Self::TooFewResonances { .. } => true,
             _ => false,
         }
     }

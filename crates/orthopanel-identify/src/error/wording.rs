@@ -16,12 +16,6 @@ pub(super) fn much_noise(percent: Option<f64>) -> String {
     })
 }
 
-pub(super) fn all_times(factor: Option<f64>) -> String {
-    factor.map_or(String::new(), |factor| {
-        format!("times {:.3} all of them fit ({}); ", Readable(factor), cause_of(factor, true))
-    })
-}
-
 /// Where to write what mends records.
 pub(super) fn in_which(records: &Option<Vec<String>>) -> String {
     match records.as_deref() {
@@ -40,8 +34,8 @@ pub(super) fn which(records: &Option<Vec<String>>) -> &'static str {
     }
 }
 
-/// A factor and a power of $j\omega$.
-pub(super) fn by_factor(factor: f64, derivatives: i8) -> String {
+/// A factor, a power of $j\omega$, and a delay \[s\].
+pub(super) fn by_factor(factor: f64, derivatives: i8, delay: f64) -> String {
     let slope = match derivatives {
         0 => "",
         1 => " j omega",
@@ -50,14 +44,19 @@ pub(super) fn by_factor(factor: f64, derivatives: i8) -> String {
         _ => " / (j omega)^2",
     };
     let size = if (1e-3..1e4).contains(&factor.abs()) { format!("{factor:.4}") } else { format!("{factor:.3e}") };
-    size + slope
+    let late = match delay {
+        0.0 => String::new(),
+        _ => format!(
+            " and without a delay of {:.1} us, which stays to be declared or traced (channel-delay)",
+            1e6 * delay
+        ),
+    };
+    size + slope + &late
 }
 
 /// What is said of one record that a factor mends.
 pub(crate) fn one_times(factor: Option<f64>) -> String {
-    factor.map_or(String::new(), |factor| {
-        format!("; times {:.3} it fits ({})", Readable(factor), cause_of(factor, false))
-    })
+    factor.map_or(String::new(), |factor| format!("; times {:.3} it fits ({})", Readable(factor), cause_of(factor)))
 }
 
 /// How well a constant is known by its standard deviation.

@@ -31,6 +31,7 @@ pub(super) fn report(
     }
     Ok(Identification {
         question: None,
+        common_gain: None,
         structure: problem.structure.kind(),
         constants: identified_constants(
             test,

@@ -100,6 +100,7 @@ impl RecordsBase {
         let total: f64 = lines().map(|(_, measured)| measured.norm_sqr()).sum();
         Ok(Identification {
             question: None,
+            common_gain: None,
             structure: StructureKind::TimoshenkoBeam,
             constants: identified_constants(test, &constants, &free, of_constants),
             not_identified: vec![],

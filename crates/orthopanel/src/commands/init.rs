@@ -37,7 +37,8 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
     let mut read = Vec::new();
     for path in files {
         let file = RecordFile::read(path)?;
-        notes::say(&format!("{}: ", path.display()), &file.notes);
+        let notes: Vec<String> = file.notes.iter().cloned().chain(file.questions()).collect();
+        notes::say(&format!("{}: ", path.display()), &notes);
         read.push((beside(path, output), file));
     }
     let drafted: Vec<(&Path, &RecordFile)> = read.iter().map(|(path, file)| (path.as_path(), file)).collect();

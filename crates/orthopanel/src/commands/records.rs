@@ -14,6 +14,7 @@ use crate::{console, notes, tables};
 ///
 /// Universal files 58 and 58b, and columns of numbers in a text (CSV, LVM and others). What was assumed is said on standard error.
 /// Numbers, and nodes with their directions, are those that `record`, `force_channel` and `response_channel` of a test file take.
+/// A file that cannot be read is named, and the others are listed all the same; the command then ends with exit status 2.
 /// A file of another kind (MAT, TDMS, HDF5, WAV, XLSX, NPY) is named, with the two lines of Python that convert it.
 ///
 /// Examples: orthopanel records point-0.uff
@@ -33,6 +34,8 @@ pub struct Arguments {
 struct Answer {
     schema: &'static str,
     files: Vec<FileEntry>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    not_read: Vec<NotRead>,
 }
 
 #[derive(Serialize)]
@@ -42,20 +45,40 @@ struct FileEntry {
     notes: Vec<String>,
 }
 
+#[derive(Serialize)]
+struct NotRead {
+    file: PathBuf,
+    why: String,
+}
+
 pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
-    let mut files = Vec::new();
+    let (mut files, mut not_read, mut first) = (Vec::new(), Vec::new(), None);
     for path in &arguments.files {
-        let file = RecordFile::read(path)?;
-        files.push(FileEntry { file: path.clone(), records: file.listed(), notes: file.notes });
+        match RecordFile::read(path) {
+            Ok(file) => {
+                let notes = file.notes.iter().cloned().chain(file.questions()).collect();
+                files.push(FileEntry { file: path.clone(), records: file.listed(), notes });
+            }
+            Err(error) => {
+                not_read.push(NotRead { file: path.clone(), why: error.to_string() });
+                // The first is what the command ends with.
+                if first.is_some() {
+                    console::say(format_args!("{error}"));
+                }
+                first = first.or(Some(error));
+            }
+        }
     }
     for FileEntry { file, notes, .. } in &files {
         notes::say(&format!("{}: ", file.display()), notes);
     }
     if arguments.json {
-        return console::print_json(&Answer { schema: "orthopanel.records/1", files });
+        console::print_json(&Answer { schema: "orthopanel.records/1", files, not_read })?;
+    } else if !files.is_empty() {
+        let text: Vec<String> = files.iter().map(table).collect();
+        console::print(&text.join("\n"))?;
     }
-    let text: Vec<String> = files.iter().map(table).collect();
-    console::print(&text.join("\n"))
+    first.map_or(Ok(()), |error| Err(error.into()))
 }
 
 /// Characters of a title that are shown.

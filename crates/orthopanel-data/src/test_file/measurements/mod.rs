@@ -139,6 +139,7 @@ impl Entry<'_> {
                 self.unwanted(kind, entry.force_channel.as_ref(), "force_channel")?;
                 self.unwanted(kind, entry.response_channel.as_ref(), "response_channel")?;
                 self.unwanted(kind, entry.sampling_rate.as_ref(), "sampling_rate")?;
+                self.unwanted(kind, entry.frequency_unit.as_ref(), "frequency_unit")?;
                 self.unwanted(kind, entry.window_decay.as_ref(), "window_decay")?;
                 self.unwanted(kind, entry.columns.as_ref(), "columns")?;
                 self.unwanted(kind, entry.places.as_ref(), "places")?;
@@ -153,6 +154,7 @@ impl Entry<'_> {
                 self.unwanted(kind, entry.shape.as_ref(), "shape")?;
                 if kind.get_ref() == "time-history" {
                     self.unwanted(kind, entry.record.as_ref(), "record")?;
+                    self.unwanted(kind, entry.frequency_unit.as_ref(), "frequency_unit")?;
                 } else {
                     self.unwanted(kind, entry.sampling_rate.as_ref(), "sampling_rate")?;
                 }

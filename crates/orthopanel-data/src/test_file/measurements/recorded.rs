@@ -6,7 +6,7 @@ use orthopanel_model::{Piece, Place};
 use toml::Spanned;
 
 use super::{super::syntax, ChannelName, Direction, Entry, RecordedResponse, Trigger, files::MeasuredFile};
-use crate::{ColumnName, ColumnRole, DataError, DeclaredColumns, Motion, Unit, limits};
+use crate::{ColumnName, ColumnRole, DataError, DeclaredColumns, Motion, Unit, limits, units::Measured};
 
 impl Entry<'_> {
     /// The records of each file of the measurement.
@@ -72,6 +72,7 @@ impl Entry<'_> {
             response_channel: self.channel(entry.response_channel.as_ref(), "response_channel")?,
             trigger,
             sampling_rate,
+            frequency_unit: self.frequency_unit(entry)?,
             window_decay: positive(&entry.window_decay, "window_decay", "s")?,
             band: self.band(entry.band.as_ref(), "band")?.or(band),
             columns: self.columns(entry.columns.as_ref())?,
@@ -161,6 +162,18 @@ impl Entry<'_> {
                 let (name, remedy) = (given.get_ref().clone(), format!("must be {wanted}"));
                 Err(DataError::UnknownName { at: self.at(given.span(), key), name, remedy })
             }
+        }
+    }
+
+    fn frequency_unit(&self, entry: &syntax::Measurement) -> Result<Option<Unit>, DataError> {
+        let Some(given) = &entry.frequency_unit else { return Ok(None) };
+        match Unit::parse(given.get_ref()).filter(|unit| unit.measured() == Some(Measured::Frequency)) {
+            Some(unit) => Ok(Some(unit)),
+            None => Err(DataError::UnknownName {
+                at: self.at(given.span(), "frequency_unit"),
+                name: given.get_ref().clone(),
+                remedy: "must be \"Hz\", \"kHz\", \"rpm\" or another unit of frequency".into(),
+            }),
         }
     }
 

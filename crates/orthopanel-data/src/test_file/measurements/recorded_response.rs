@@ -46,6 +46,8 @@ pub struct RecordedResponse {
     pub trigger: Option<Trigger>,
     /// Sampling rate \[Hz\], where declared: it counts instead of the file's times.
     pub sampling_rate: Option<f64>,
+    /// Unit of the frequencies, where declared: of numbers that no label says to be in another unit than Hz.
+    pub frequency_unit: Option<Unit>,
     /// Time constant $\tau$ \[s\] of the exponential window $e^{-t/\tau}$ that lies over the records, where declared.
     pub window_decay: Option<f64>,
     /// Lines \[Hz\] that count, from and to; all where nothing is declared.
@@ -73,6 +75,7 @@ impl RecordedResponse {
             response_channel: None,
             trigger: None,
             sampling_rate: None,
+            frequency_unit: None,
             window_decay: None,
             band: None,
         }

@@ -47,6 +47,7 @@ pub(in crate::tracing) fn identify_lists(
     }
     Ok(Identification {
         question: None,
+        common_gain: None,
         structure: StructureKind::TimoshenkoBeam,
         constants: identified_constants(test, &problem.constants, constants, of_constants),
         not_identified: vec![],
