@@ -2,11 +2,11 @@
 //!
 //! A pressure $p$ does the work $p\int w\,dA$. A field of acceleration $g$, and a frame that moves by $r$ with the acceleration
 //! $\ddot b$, work by the masses: with the motion $w$ of the panel against its frame and $\psi$ its rotations,
-//! $$\Gamma_r[w] = \int\rho t\,w\,r + \tfrac{\rho t^3}{12}(\psi_x\psi_{x,r} + \psi_y\psi_{y,r})\,dA + \sum_jm_jw(x_j)r(x_j),$$
+//! $$\Gamma_r(w) = \int\rho t\,w\,r + \tfrac{\rho t^3}{12}(\psi_x\psi_{x,r} + \psi_y\psi_{y,r})\,dA + \sum_jm_jw(x_j)r(x_j),$$
 //! so that mode $m$ obeys
-//! $$\ddot a_m + 2\zeta_m\omega_m\dot a_m + \omega_m^2a_m = g\,\Gamma_z[W_m] + p\int W_mdA - \sum_r\ddot b_r\Gamma_r[W_m],$$
+//! $$\ddot a_m + 2\zeta_m\omega_m\dot a_m + \omega_m^2a_m = g\,\Gamma_z(W_m) + p\int W_mdA - \sum_r\ddot b_r\Gamma_r(W_m),$$
 //! and the panel moves absolutely by $w + \sum_rb_rr$. The frame is pushed by all loads less the rate of all momentum,
-//! $$F_r = \sum_kf_k\,r(x_k) + g\,\Gamma_r[z] + p\int r\,dA - \sum_m\Gamma_r[W_m]\ddot a_m - \sum_s\Gamma_r[s]\ddot b_s,$$
+//! $$F_r = \sum_kf_k\,r(x_k) + g\,\Gamma_r(z) + p\int r\,dA - \sum_m\Gamma_r(W_m)\ddot a_m - \sum_s\Gamma_r(s)\ddot b_s,$$
 //! of which the modes left out lack their own momentum alone: at rest it is exact.
 //!
 //! The rotations here are slopes, $\psi_x = -w_{,x}$, so that their part is one of the edges alone. What the shear strain adds is
@@ -37,7 +37,7 @@ impl PanelModel {
         Ok(DeflectionRow { terms: terms.collect(), resonators: vec![] })
     }
 
-    /// $\Gamma_r[w]$ \[kg m or kg m²\], alike; masses of effects count.
+    /// $\Gamma_r(w)$ \[kg m or kg m²\], alike; masses of effects count.
     ///
     /// # Errors
     /// As [`PanelModel::modes`], and [`ModelError::Unsupported`] for a resonator on a core that relaxes, whose mass follows no seat.

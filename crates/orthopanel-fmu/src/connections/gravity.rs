@@ -1,4 +1,4 @@
-//! A uniform field of acceleration, as gravity or a steady turn: it pushes mode $m$ by $g\,\Gamma_z[W_m]$
+//! A uniform field of acceleration, as gravity or a steady turn: it pushes mode $m$ by $g\,\Gamma_z(W_m)$
 //! ([`PanelModel::inertia_row`](orthopanel_model::PanelModel::inertia_row)).
 
 use orthopanel_model::{ModelError, RigidMotion};

@@ -85,7 +85,7 @@ pub(crate) struct Layout {
     /// What is read of each mode, at the ports and for outputs of connections.
     responses: Vec<DeflectionRow>,
     pub springs: Vec<Spring>,
-    /// The motions of the frame, each with its own inertia $\Gamma_r[r]$; their coordinates stand before all modes.
+    /// The motions of the frame, each with its own inertia $\Gamma_r(r)$; their coordinates stand before all modes.
     pub frame: Vec<(RigidMotion, f64)>,
 }
 
@@ -173,7 +173,7 @@ impl Layout {
                 ..*mode
             }
         };
-        // $\sqrt{\Gamma_r[r]}\,b_r$: then it is mass-normalised as the others are.
+        // $\sqrt{\Gamma_r(r)}\,b_r$: then it is mass-normalised as the others are.
         let frame = self.frame.iter().map(|&(motion, inertia)| {
             let moved = |input: &Input| match input.load {
                 Load::Frame(own, _) if own == motion => inertia.sqrt(),

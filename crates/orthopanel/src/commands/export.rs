@@ -59,7 +59,7 @@ pub struct Arguments {
     /// An input gravity [m/s2]: a uniform field of acceleration, -9.81 where +z points up
     #[arg(long)]
     gravity: bool,
-    /// An input pressure [Pa]: uniform on the face
+    /// An input pressure \[Pa\]: uniform on the face
     #[arg(long)]
     pressure: bool,
     /// Inputs base_acceleration [m/s2] and base_angular_acceleration_x, _y [rad/s2] of the frame that holds the edges; motions are then absolute,
