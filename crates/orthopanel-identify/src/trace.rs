@@ -17,8 +17,8 @@ use crate::{IdentifyError, Settings, identify};
 /// have it ([`trace_by_modes`]).
 ///
 /// # Errors
-/// [`IdentifyError::PlateNotTraced`] for a declared plate; records that cannot be read or show too few resonances, and tests
-/// that this version cannot trace.
+/// [`IdentifyError::PlateNotTraced`] for a declared plate; what [`identify`] refuses of the records themselves, such as too few
+/// resonances or [`IdentifyError::OtherUnits`]; an answer that misses most of the motion; and tests that this version cannot trace.
 pub fn trace(test: &ImpactTest) -> Result<Tracing, IdentifyError> {
     trace_with(test, &|_| {})
 }
@@ -142,21 +142,30 @@ struct Identified {
     gain: Option<(Estimate, String)>,
 }
 
-/// A trace beside what `identify` says: records that it refuses have no effect, but a line of the test file that is wrong; and where most of
-/// the motion is missed, whatever the effect, nothing is said of effects.
+/// A trace beside what `identify` says: records that it refuses have no effect, but a line of the test file that is wrong. Where most of the
+/// motion is missed, whatever the effect, nothing is named: what a trace leaves `unexplained` stands beside the refusal, and any other
+/// verdict is refused.
 fn beside_identify(
     test: &ImpactTest,
     traced: impl FnOnce(&Identified) -> Result<Tracing, IdentifyError>,
 ) -> Result<Tracing, IdentifyError> {
     let identified = identified(test)?;
-    let found = traced(&identified)?;
+    let mut found = traced(&identified)?;
     match refuse_missed(test, &found.accelerances) {
         Ok(()) => Ok(match identified.gain {
             Some((gain, said)) => with_gain(found, gain, said),
             None => found,
         }),
         Err(factor @ IdentifyError::OtherUnits { .. }) => Err(factor),
-        Err(missed) => Err(identified.refused.unwrap_or(missed)),
+        Err(missed) => {
+            let refused = identified.refused.unwrap_or(missed);
+            if found.verdict != Verdict::Unexplained {
+                return Err(refused);
+            }
+            found.effects.clear();
+            found.notes.insert(0, format!("identify refuses these records: {refused}"));
+            Ok(found)
+        }
     }
 }
 

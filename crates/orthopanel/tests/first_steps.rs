@@ -71,6 +71,58 @@ fn val_other_formats_are_named_with_the_lines_that_convert_them() {
     refused(&bench, "records examples", 2, &["examples", "a folder"]);
 }
 
+/// One file that is not read hides no other.
+#[test]
+fn val_records_lists_the_others_beside_a_file_that_is_not_read() {
+    let bench = Bench::new();
+    std::fs::write(bench.path("x.npy"), b"\x93NUMPY\x01\x00").expect("a file is written");
+    let output = bench.run(&format!("records x.npy nowhere.uff {HITS} --json"));
+    assert_eq!(output.status.code(), Some(2));
+    let answer: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    assert_eq!(answer["files"][0]["records"].as_array().map(Vec::len), Some(6));
+    let not_read: Vec<&str> =
+        answer["not_read"].as_array().expect("a list").iter().filter_map(|of| of["file"].as_str()).collect();
+    assert_eq!(not_read, ["x.npy", "nowhere.uff"]);
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(said.contains("x.npy: a NPY") && said.contains("nowhere.uff: cannot be read"), "{said}");
+}
+
+/// Force and response in files of their own are one measurement, and responses to one blow are one each.
+#[test]
+fn val_init_pairs_files_and_names_channels() {
+    let bench = Bench::new();
+    let table = |names: &str, columns: usize| {
+        let row = |n: usize| format!("{}{}\n", n as f64 / 12800.0, ",1".repeat(columns));
+        format!("{names}\n{}", (0..64).map(row).collect::<String>())
+    };
+    for hit in 1..3 {
+        bench.write(&format!("hammer-{hit}.csv"), &table("Time (s),Force (N)", 1));
+        bench.write(&format!("acc-{hit}.csv"), &table("Time (s),Acc (m/s2)", 1));
+    }
+    bench.done("init hammer-1.csv hammer-2.csv acc-1.csv acc-2.csv -o two.toml");
+    let text = std::fs::read_to_string(bench.path("two.toml")).expect("a draft");
+    for hit in 1..3 {
+        assert!(
+            text.contains(&format!("file = {{force = \"hammer-{hit}.csv\", response = \"acc-{hit}.csv\"}}")),
+            "{text}"
+        );
+    }
+    assert_eq!(text.matches("[[measurement]]\n").count(), 2, "{text}");
+    bench.write("three.csv", &table("Time (s),Force (N),Acc A (m/s2),Acc B (m/s2)", 3));
+    bench.done("init three.csv -o three.toml");
+    let text = std::fs::read_to_string(bench.path("three.toml")).expect("a draft");
+    for name in ["Acc A", "Acc B"] {
+        assert!(text.contains(&format!("file = \"three.csv\"\nresponse_channel = \"{name}\"")), "{text}");
+    }
+    let lines: String = (1..200).map(|line| format!("{},1,0\n", 0.02 * f64::from(line))).collect();
+    bench.write("khz.csv", &format!("frequency,real,imag\n{lines}"));
+    let said = bench.run("init khz.csv -o khz.toml");
+    assert!(
+        String::from_utf8_lossy(&said.stderr).contains("are they in kHz? write frequency_unit = \"kHz\""),
+        "{said:?}"
+    );
+}
+
 /// A unit that all records lack is named by `identify`, `trace` and `run` alike, before anything is searched.
 #[test]
 fn val_a_unit_that_all_records_lack_is_named_first() {
