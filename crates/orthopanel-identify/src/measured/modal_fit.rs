@@ -77,6 +77,15 @@ impl FittedRecord {
     pub(super) fn residue(&self, pole: usize) -> Complex64 {
         Complex64::new(self.coefficients[2 * pole], self.coefficients[2 * pole + 1])
     }
+
+    /// By how much the misfit rises without a pole, where the others stay: $q^T\Sigma^{-1}q$ with its residue and the residue's own block $\Sigma$ of
+    /// the covariance.
+    pub(super) fn loss_without(&self, pole: usize) -> f64 {
+        let of = |i: usize, j: usize| self.covariance[(2 * pole + i, 2 * pole + j)];
+        let Complex64 { re, im } = self.residue(pole);
+        let determinant = of(0, 0) * of(1, 1) - of(0, 1) * of(1, 0);
+        (of(1, 1) * re * re - 2.0 * of(0, 1) * re * im + of(0, 0) * im * im) / determinant
+    }
 }
 
 impl<'a> ModalFit<'a> {

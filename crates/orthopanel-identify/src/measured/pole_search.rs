@@ -6,7 +6,7 @@ use num_complex::Complex64;
 use rayon::prelude::*;
 
 use super::lines::RecordLines;
-use super::modal_fit::{Fitted, ModalFit, PoleParameters, lambda};
+use super::modal_fit::{Fitted, FittedRecord, ModalFit, PoleParameters, lambda};
 use super::stabilisation::stable_poles;
 
 /// Poles found, with the fit at them.
@@ -44,6 +44,9 @@ const OVERLAP: f64 = 1.2;
 
 /// Poles from the data alone, part after part of a band \[Hz\], and up to where they explain the records: beyond, modes overlap so far that no pole
 /// stands by itself. The whole band where they do nowhere.
+///
+/// What the poles of the other parts show in a part, a free vibration that the record's end cuts off or a skirt, is removed from it, and its own
+/// poles are found anew; those that explain more are kept.
 pub(super) fn in_parts(records: &[RecordLines], band: [f64; 2]) -> (PoleParameters, f64) {
     let step = records
         .iter()
@@ -54,24 +57,69 @@ pub(super) fn in_parts(records: &[RecordLines], band: [f64; 2]) -> (PoleParamete
         let to = (PART * from).max(from + LEAST_LINES as f64 * step);
         ends.push(if PART * to > band[1] { band[1] } else { to });
     }
-    let of_part = |ends: &[f64]| {
-        let seen: Vec<RecordLines> =
-            records.iter().map(|record| record.between([ends[0] / OVERLAP, ends[1] * OVERLAP])).collect();
-        let found = poles(&seen, stable_poles(&seen))?;
-        let own = |pole: &[f64; 2]| (ends[0]..ends[1]).contains(&(pole[0].exp() / TAU));
-        let explained = found.by_noise();
-        Some((found.poles.into_iter().filter(own).collect::<PoleParameters>(), explained))
+    let seen = |ends: &[f64]| -> Vec<RecordLines> {
+        records.iter().map(|record| record.between([ends[0] / OVERLAP, ends[1] * OVERLAP])).collect()
     };
-    let parts: Vec<Option<(PoleParameters, bool)>> = ends.par_windows(2).map(of_part).collect();
-    let explained = parts.iter().position(|part| part.as_ref().is_some_and(|(_, explained)| !explained));
+    let alone: Vec<Option<Part>> = ends.par_windows(2).map(|ends| Part::of([ends[0], ends[1]], &seen(ends))).collect();
+    let beside = |(number, ends): (usize, &[f64])| {
+        let mut seen = seen(ends);
+        let others = alone.iter().enumerate().filter(|(other, _)| *other != number);
+        others.filter_map(|(_, other)| other.as_ref()).for_each(|other| other.remove_from(&mut seen));
+        Part::of([ends[0], ends[1]], &seen)
+    };
+    let again: Vec<Option<Part>> = ends.par_windows(2).enumerate().map(beside).collect();
+    let misfit = |part: &Option<Part>| part.as_ref().map_or(f64::INFINITY, |part| part.per_datum);
+    let parts: Vec<Option<Part>> = alone
+        .into_iter()
+        .zip(again)
+        .map(|(alone, again)| if misfit(&again) < misfit(&alone) { again } else { alone })
+        .collect();
+    let explained = parts.iter().flatten().position(|part| part.per_datum >= SYSTEMATIC);
     let count = explained.filter(|count| *count > 0).unwrap_or(parts.len());
-    (parts.into_iter().take(count).flatten().flat_map(|(poles, _)| poles).collect(), ends[count])
+    (parts.into_iter().take(count).flatten().flat_map(|part| part.poles).collect(), ends[count])
+}
+
+/// What a part of the band shows.
+struct Part {
+    /// The poles inside it.
+    poles: PoleParameters,
+    /// Of each record, one a pole.
+    residues: Vec<Vec<Complex64>>,
+    per_datum: f64,
+}
+
+impl Part {
+    /// Of the lines that the part and what lies beside it have, with its ends \[Hz\].
+    fn of([from, to]: [f64; 2], seen: &[RecordLines]) -> Option<Self> {
+        let found = poles(seen, stable_poles(seen))?;
+        let own = |pole: &usize| (from..to).contains(&(found.poles[*pole][0].exp() / TAU));
+        let own: Vec<usize> = (0..found.poles.len()).filter(own).collect();
+        let of_record = |record: &FittedRecord| own.iter().map(|pole| record.residue(*pole)).collect();
+        Some(Self {
+            poles: own.iter().map(|pole| found.poles[*pole]).collect(),
+            residues: found.fitted.records.iter().map(of_record).collect(),
+            per_datum: found.fitted.misfit / found.freedom,
+        })
+    }
+
+    /// Removes what its poles show on the lines of another part.
+    fn remove_from(&self, records: &mut [RecordLines]) {
+        records.par_iter_mut().zip(&self.residues).for_each(|(record, residues)| {
+            let lines: Vec<usize> = (0..record.s.len()).collect();
+            for (pole, residue) in self.poles.iter().zip(residues) {
+                let [real, imaginary] = record.pole(lambda(*pole)[0], &lines).by_residue;
+                for (value, (real, imaginary)) in record.value.iter_mut().zip(real.iter().zip(&imaginary)) {
+                    *value -= residue.re * real + residue.im * imaginary;
+                }
+            }
+        });
+    }
 }
 
 /// The poles of all parts of a band together, found one by one where these do not explain the records.
 pub(super) fn joined(records: &[RecordLines], start: PoleParameters) -> Option<Found> {
-    let found = fit(records, start, LAST)?;
-    if found.by_noise() { Some(found) } else { poles(records, found.poles) }
+    let found = pruned(records, fit(records, start, LAST)?)?;
+    if found.by_noise() { fit(records, found.poles, LAST) } else { poles(records, found.poles) }
 }
 
 /// The poles of all records in common, from a start.
@@ -200,22 +248,16 @@ fn is_worth(records: &[RecordLines], without: &Found, with: &Found) -> bool {
 /// Leaves out poles that pay no more, the least first.
 fn pruned(records: &[RecordLines], mut found: Found) -> Option<Found> {
     loop {
-        let fit_now = ModalFit::new(records, &found.poles);
-        let without = |pole: usize| {
-            let mut poles = found.poles.clone();
-            poles.remove(pole);
-            poles
-        };
-        let loss = |pole: usize| {
-            let poles = without(pole);
-            fit_now.at(&poles).map_or(f64::INFINITY, |fitted| fitted.misfit - found.fitted.misfit)
-        };
+        let loss = |pole: usize| found.fitted.records.iter().map(|record| record.loss_without(pole)).sum::<f64>();
         let losses = (0..found.poles.len()).map(|pole| (loss(pole), pole));
         let Some((loss, pole)) = losses.min_by(|a, b| a.0.total_cmp(&b.0)) else { return Some(found) };
-        if found.poles.len() == 1 || loss > price(records, fit_now.data() as f64, &found) {
+        let data = ModalFit::new(records, &found.poles).data() as f64;
+        if found.poles.len() == 1 || loss > price(records, data, &found) {
             return Some(found);
         }
-        found = fit(records, without(pole), ON_THE_WAY)?;
+        let mut poles = found.poles;
+        poles.remove(pole);
+        found = fit(records, poles, ON_THE_WAY)?;
     }
 }
 
