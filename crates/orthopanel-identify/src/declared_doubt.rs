@@ -1,6 +1,6 @@
 //! Whether a declared number is wrong: a sensor's mass that the file tells too large comes back as a negative mass of the panel.
 
-use crate::hypothesis::{Hypothesis, Part};
+use crate::hypothesis::{Hypothesis, Part, Role};
 use crate::model_error::medians;
 use crate::posterior::{Judged, Point};
 use crate::search::{Inquiry, log_prior};
@@ -14,7 +14,7 @@ impl Inquiry<'_> {
     /// The base with all numbers of one declared effect free, for each that the file holds a number of; with the number of that effect among
     /// those declared. A wrong number is as likely beforehand as one effect that lacks.
     pub(crate) fn doubted(&self, base: &Judged) -> Vec<(usize, Judged)> {
-        let declared = base.hypothesis.parts.iter().enumerate().filter(|(_, part)| part.declared);
+        let declared = base.hypothesis.parts.iter().enumerate().filter(|(_, part)| part.role == Role::Declared);
         declared.filter_map(|(index, part)| Some((index, self.freed(base, (index, part))?))).collect()
     }
 
@@ -33,7 +33,7 @@ impl Inquiry<'_> {
         let ways = Part::ways(part.effect, predictor.piece(), records).into_iter();
         let ways = ways.filter(|way| way.free() > part.free());
         let freed = ways.filter_map(|mut way| {
-            way.declared = true;
+            way.role = Role::Declared;
             let starts = [vec![way.coordinates_of(&values)], way.starts(|_, _| vec![])].concat();
             let mut hypothesis = base.hypothesis.clone();
             hypothesis.parts[index] = way;

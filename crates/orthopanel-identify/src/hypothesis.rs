@@ -98,13 +98,23 @@ pub(crate) fn is_place(parameter: &EffectParameter) -> bool {
     parameter.name == "x"
 }
 
+/// Why an effect is part of a hypothesis.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Role {
+    /// The test file declares it.
+    Declared,
+    /// The hypothesis says that the base lacks it.
+    Found,
+    /// It is what another effect, which is not linear, looks like in the mean over hits ([`Effect::linearised`]).
+    Linearised,
+}
+
 /// An effect in one of the ways in which it may act: a mass added or one that is missing, the gain of this record or of that.
 #[derive(Clone)]
 pub(crate) struct Part {
     pub effect: &'static dyn Effect,
     slots: Vec<Slot>,
-    /// Whether the test file declares it.
-    pub declared: bool,
+    pub role: Role,
 }
 
 impl Part {
@@ -115,7 +125,7 @@ impl Part {
             let choices: Vec<Vec<Slot>> = choices(parameter, piece, records);
             ways = ways.iter().flat_map(|way| choices.iter().map(|choice| [&way[..], choice].concat())).collect();
         }
-        ways.into_iter().map(|slots| Self { effect, slots, declared: false }).collect()
+        ways.into_iter().map(|slots| Self { effect, slots, role: Role::Found }).collect()
     }
 
     /// As declared: the values that the test file gives are held.
@@ -131,7 +141,7 @@ impl Part {
                 *slot = Slot::Held(*value);
             }
         }
-        Some(Self { declared: true, ..way })
+        Some(Self { role: Role::Declared, ..way })
     }
 
     fn coordinates(&self) -> impl Iterator<Item = &Coordinate> {
@@ -305,9 +315,9 @@ impl Hypothesis {
         self.constants.iter().filter_map(Slot::coordinate).count()
     }
 
-    /// Undeclared effects.
+    /// The effects that the base lacks.
     pub(crate) fn undeclared(&self) -> impl Iterator<Item = &Part> {
-        self.parts.iter().filter(|part| !part.declared)
+        self.parts.iter().filter(|part| part.role == Role::Found)
     }
 
     pub(crate) fn constants(&self, z: &[f64]) -> Vec<f64> {

@@ -11,8 +11,8 @@ use orthopanel_model::{
 use rayon::prelude::*;
 
 use crate::comparison::Comparison;
-use crate::hit_strength::HitStrength;
-use crate::hypothesis::{Hypothesis, Part};
+use crate::hit_strength::{HitStrength, Springs};
+use crate::hypothesis::{Hypothesis, Part, Role};
 use crate::judge::ODDS;
 use crate::model_error::{KINDS, Waves, medians, waves};
 use crate::posterior::{Judged, Point, Posterior, Problem};
@@ -217,7 +217,7 @@ impl<'a> Inquiry<'a> {
     /// A hypothesis without each of its undeclared effects in turn, from where it ends: what was added first may not be needed with what came
     /// after.
     fn each_left_out(&self, of: &Judged, seen: &mut Vec<Vec<&'static str>>) -> Vec<Judged> {
-        let undeclared = |part: &usize| !of.hypothesis.parts[*part].declared;
+        let undeclared = |part: &usize| of.hypothesis.parts[*part].role == Role::Found;
         let parts: Vec<usize> = (0..of.hypothesis.parts.len()).filter(undeclared).collect();
         let left_out = |part: usize| {
             let (hypothesis, z) = of.hypothesis.without(part, &of.posterior.point.z);
@@ -252,6 +252,9 @@ impl<'a> Inquiry<'a> {
     }
 
     /// The hypotheses that are not clearly behind, with what hits of unequal strength show: on the likeliest it is worked out once for all.
+    ///
+    /// What is not linear has a linear part in the mean over hits ([`Effect::linearised`]). A hypothesis that holds it may say that it is no effect of
+    /// its own: then it has no prior odds of its own either, and hits are held against the panel without it.
     fn with_strength(&self, all: &[Judged]) -> Option<Vec<Judged>> {
         let (hits, best) = (self.hits.as_ref()?, all.first()?);
         let effect = catalogue().iter().copied().find(|effect| self.shows_between_hits(*effect))?;
@@ -260,13 +263,13 @@ impl<'a> Inquiry<'a> {
         }
         let ways = self.ways(effect);
         let part = ways.first()?;
-        let at = &best.posterior.point.z;
-        let (constants, effects) = (best.hypothesis.constants(at), best.hypothesis.effects(at).ok()?);
-        let k3 = |z: f64| part.values(&[z]).first().copied().unwrap_or_default();
-        let springs = hits.springs(&self.predictor, (&constants, &effects), k3).ok()??;
-        let near = |judged: &&Judged| best.log_odds - judged.log_odds < BESIDE * ODDS.ln();
-        let with = |judged: &Judged| {
-            let hypothesis = judged.hypothesis.with(part.clone());
+        let springs = |of: &Hypothesis, z: &[f64]| {
+            let (constants, effects) = (of.constants(z), of.effects(z).ok()?);
+            let k3 = |z: f64| part.values(&[z]).first().copied().unwrap_or_default();
+            hits.springs(&self.predictor, (&constants, &effects), k3).ok()?
+        };
+        let with = |judged: &Judged, hypothesis: Hypothesis, springs: Springs| {
+            let hypothesis = hypothesis.with(part.clone());
             let z = [&judged.posterior.point.z[..], &[springs.z]].concat();
             let size = z.len();
             let own = &judged.posterior.covariance;
@@ -281,7 +284,31 @@ impl<'a> Inquiry<'a> {
             let log_odds = judged.log_odds + springs.log_evidence + log_prior(ways.len());
             Judged { hypothesis, posterior, log_odds }
         };
-        Some(all.iter().filter(near).map(with).collect())
+        let near: Vec<&Judged> =
+            all.iter().filter(|judged| best.log_odds - judged.log_odds < BESIDE * ODDS.ln()).collect();
+        let mut found: Vec<Judged> = Vec::new();
+        if let Some(springs) = springs(&best.hypothesis, &best.posterior.point.z) {
+            found.extend(near.iter().map(|judged| with(judged, judged.hypothesis.clone(), springs)));
+        }
+        let Some(linear) = effect.linearised() else { return Some(found) };
+        let held = |judged: &&Judged| {
+            let is_linear = |part: &Part| part.role == Role::Found && part.effect.id() == linear.id();
+            judged.hypothesis.parts.iter().position(is_linear)
+        };
+        let holding: Vec<(&Judged, usize)> = near.iter().filter_map(|judged| Some((*judged, held(judged)?))).collect();
+        if let Some((likeliest, number)) = holding.first()
+            && let (without, z) = likeliest.hypothesis.without(*number, &likeliest.posterior.point.z)
+            && let Some(springs) = springs(&without, &z)
+        {
+            found.extend(holding.iter().map(|(judged, number)| {
+                let mut hypothesis = judged.hypothesis.clone();
+                hypothesis.parts[*number].role = Role::Linearised;
+                let mut with = with(judged, hypothesis, springs);
+                with.log_odds -= log_prior(self.ways(linear).len());
+                with
+            }));
+        }
+        Some(found)
     }
 
     /// All hypotheses that were looked at, the likeliest first.

@@ -3,6 +3,7 @@
 use orthopanel_model::{Piece, Scale, effect};
 
 use crate::error::spaced;
+use crate::hypothesis::Role;
 use crate::posterior::Judged;
 
 use super::estimates::Estimates;
@@ -18,11 +19,12 @@ pub(super) fn notes_on_prior_alone(judged: &Judged, estimates: &Estimates) -> Ve
     let mut notes = Vec::new();
     let precision = judged.hypothesis.precision();
     let mut coordinates = judged.hypothesis.free_constants()..;
-    for (found, declared) in &estimates.effects {
+    for (found, role) in &estimates.effects {
         for parameter in &found.parameters {
             for value in parameter.values.iter().filter(|value| value.std.is_some()) {
                 let at = coordinates.next().unwrap_or_default();
-                if *declared && precision[at] > 0.0 && judged.posterior.covariance[(at, at)] > PRIOR_ALONE {
+                if *role == Role::Declared && precision[at] > 0.0 && judged.posterior.covariance[(at, at)] > PRIOR_ALONE
+                {
                     let (name, unit, id) = (parameter.name, spaced(parameter.unit), found.id);
                     notes.push(format!("{name} = {:.1e}{unit} of {id} is what is usual: {LEFT_OUT}", value.value));
                 }
@@ -37,7 +39,7 @@ const LEFT_OUT: &str = "the test file declares it without this number, and the d
 /// A sentence on each free number at an end of its range: then the bound tells it, not the data. A place at the end of the piece is a place.
 pub(super) fn notes_on_bound(estimates: &Estimates, piece: &Piece) -> Vec<String> {
     let mut notes = Vec::new();
-    for (found, declared) in &estimates.effects {
+    for (found, role) in estimates.effects.iter().filter(|(_, role)| *role != Role::Linearised) {
         let Ok(known) = effect(found.id) else { continue };
         for (parameter, found_of) in known.parameters().iter().zip(&found.parameters) {
             let (low, high) = parameter.range(piece);
@@ -50,7 +52,7 @@ pub(super) fn notes_on_bound(estimates: &Estimates, piece: &Piece) -> Vec<String
             if parameter.name == "x" {
                 continue;
             }
-            let means = if *declared { LEFT_OUT } else { "the name fits, the number is the bound's" };
+            let means = if *role == Role::Declared { LEFT_OUT } else { "the name fits, the number is the bound's" };
             notes.extend(free.map(|value| {
                 let (name, unit, id) = (parameter.name, spaced(parameter.unit), found.id);
                 format!("{name} = {:.1e}{unit} of {id} lies on the bound of what is looked for: {means}", value.value)

@@ -2,6 +2,7 @@
 
 use orthopanel_model::Estimate;
 
+use crate::hypothesis::Role;
 use crate::outcome::{TracedEffect, TracedParameter};
 use crate::posterior::Judged;
 
@@ -9,8 +10,8 @@ use crate::posterior::Judged;
 pub(super) struct Estimates {
     /// Of the structure, in its order.
     pub constants: Vec<Estimate>,
-    /// All effects, and whether the test file declares each.
-    pub effects: Vec<(TracedEffect, bool)>,
+    /// All effects, and why each is there.
+    pub effects: Vec<(TracedEffect, Role)>,
 }
 
 impl Estimates {
@@ -31,14 +32,14 @@ impl Estimates {
                 }
             }
             let (id, owner) = (part.effect.id(), part.effect.owner());
-            (TracedEffect { id, owner, parameters }, part.declared)
+            (TracedEffect { id, owner, parameters }, part.role)
         });
         Self { constants, effects: effects.collect() }
     }
 
-    /// The effects that the file does not declare.
+    /// The effects that the base lacks.
     pub(super) fn undeclared(self) -> Vec<TracedEffect> {
-        self.effects.into_iter().filter(|(_, declared)| !declared).map(|(effect, _)| effect).collect()
+        self.effects.into_iter().filter(|(_, role)| *role == Role::Found).map(|(effect, _)| effect).collect()
     }
 }
 

@@ -10,6 +10,7 @@ use orthopanel_model::{
 
 use super::damping::TracedDamping;
 use super::estimates::Estimates;
+use crate::hypothesis::Role;
 use crate::measured::MeasuredModes;
 use crate::outcome::Removed;
 use crate::plate_of_ratios::widen;
@@ -59,7 +60,8 @@ pub(super) fn panel(
     panel.damping = damping.damping;
     panel.provenance.insert(DAMPING_STD.to_owned(), damping.std.into());
     panel.effects = own.into_iter().map(|(effect, _)| effect.entry()).collect();
-    Ok((panel, others.into_iter().map(|(effect, declared)| Removed::of(effect, *declared)).collect()))
+    let others = others.into_iter().filter(|(_, role)| *role != Role::Linearised);
+    Ok((panel, others.map(|(effect, role)| Removed::of(effect, *role == Role::Declared)).collect()))
 }
 
 /// Of all modes of the plate, those too that no record shows.

@@ -6,7 +6,7 @@ use faer::Mat;
 use orthopanel_model::Effect;
 
 use super::{FOLLOWED, Inquiry, LOOSE, NEAR, SMALL, log_prior, logs, starting_constants};
-use crate::hypothesis::Hypothesis;
+use crate::hypothesis::{Hypothesis, Role};
 use crate::judge::{MOST_FREQUENCY, ODDS};
 use crate::measured::Pole;
 use crate::model_error::{KINDS, Kind};
@@ -71,7 +71,7 @@ impl Inquiry<'_> {
         let at = |constants: [f64; 2]| {
             let mut nets = vec![base.hypothesis.of_constants(&constants)];
             for (part, own) in base.hypothesis.parts.iter().zip(&own) {
-                let starts = if part.declared { part.starts(|_, _| vec![]) } else { vec![own.to_vec()] };
+                let starts = if part.role == Role::Declared { part.starts(|_, _| vec![]) } else { vec![own.to_vec()] };
                 nets = nets.iter().flat_map(|net| starts.iter().map(|start| [&net[..], start].concat())).collect();
             }
             nets

@@ -1,5 +1,6 @@
 //! `cubic-stiffness`.
 
+use super::suspension::Suspension;
 use super::{
     Action, Effect, EffectParameter, EffectSetting, ElementLaw, Owner, PointElement, Seat, Share, SuspensionMotion,
 };
@@ -31,6 +32,10 @@ impl Effect for CubicStiffness {
 
     fn parameters(&self) -> &'static [EffectParameter] {
         &PARAMETERS
+    }
+
+    fn linearised(&self) -> Option<&'static dyn Effect> {
+        Some(&Suspension)
     }
 
     fn act(&self, values: &[f64], setting: &EffectSetting) -> Result<Vec<Action>, ModelError> {

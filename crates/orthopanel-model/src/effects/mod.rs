@@ -111,6 +111,11 @@ pub trait Effect: Sync {
     /// [`ModelError::EffectNeeds`] where the test does not tell what the effect needs.
     fn act(&self, values: &[f64], setting: &EffectSetting) -> Result<Vec<Action>, ModelError>;
 
+    /// The linear effect that this one looks like in the mean over hits, where it is not linear and shows between hits alone.
+    fn linearised(&self) -> Option<&'static dyn Effect> {
+        None
+    }
+
     /// Checks number and bounds of values.
     ///
     /// # Errors
