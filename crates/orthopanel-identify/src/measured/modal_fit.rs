@@ -248,11 +248,12 @@ impl<'a> ModalFit<'a> {
         if size == 0 {
             return Some((start, fitted));
         }
-        let problem = Projected { fit: self, poles: start, fitted: Some(fitted) };
+        let problem = Projected { fit: self, poles: start.clone(), fitted: Some(fitted.clone()) };
         let solver =
             LevenbergMarquardt::new().with_patience(PATIENCE).with_ftol(tolerance).with_xtol(1e-10).with_stepbound(0.1);
-        let (Projected { poles, fitted, .. }, _) = solver.minimize(problem);
-        Some((poles, fitted?))
+        let (Projected { poles, fitted: found, .. }, _) = solver.minimize(problem);
+        // A step may end where columns depend on each other.
+        Some(found.map_or((start, fitted), |found| (poles, found)))
     }
 
     /// The misfit of every line of a record in units of its standard deviation, real and imaginary part together.

@@ -39,6 +39,8 @@ const SAME: f64 = 5e-3;
 /// A part of the band ends so many times higher than it begins, and holds so many lines at least.
 const PART: f64 = 1.5;
 const LEAST_LINES: usize = 64;
+/// Poles of two parts that lie nearer to each other than this part of their half-width are one.
+const ONE: f64 = 0.3;
 /// Lines beside a part that its fit sees, as a factor of frequency.
 const OVERLAP: f64 = 1.2;
 
@@ -74,9 +76,13 @@ pub(super) fn in_parts(records: &[RecordLines], band: [f64; 2]) -> (PoleParamete
         .zip(again)
         .map(|(alone, again)| if misfit(&again) < misfit(&alone) { again } else { alone })
         .collect();
-    let explained = parts.iter().flatten().position(|part| part.per_datum >= SYSTEMATIC);
+    let explained = parts.iter().position(|part| part.as_ref().is_some_and(|part| part.per_datum >= SYSTEMATIC));
     let count = explained.filter(|count| *count > 0).unwrap_or(parts.len());
-    (parts.into_iter().take(count).flatten().flat_map(|part| part.poles).collect(), ends[count])
+    let mut poles: PoleParameters = parts.into_iter().take(count).flatten().flat_map(|part| part.poles).collect();
+    // A pole at the end of a part may be found from either side.
+    poles.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    poles.dedup_by(|b, a| b[0] - a[0] < ONE * b[1].exp());
+    (poles, ends[count])
 }
 
 /// What a part of the band shows.
@@ -118,8 +124,8 @@ impl Part {
 
 /// The poles of all parts of a band together, found one by one where these do not explain the records.
 pub(super) fn joined(records: &[RecordLines], start: PoleParameters) -> Option<Found> {
-    let found = pruned(records, fit(records, start, LAST)?)?;
-    if found.by_noise() { fit(records, found.poles, LAST) } else { poles(records, found.poles) }
+    let found = pruned(records, fit(records, start, LAST)?);
+    if found.by_noise() { fit(records, found.poles.clone(), LAST).or(Some(found)) } else { poles(records, found.poles) }
 }
 
 /// The poles of all records in common, from a start.
@@ -146,7 +152,7 @@ pub(super) fn poles(records: &[RecordLines], start: PoleParameters) -> Option<Fo
             }
         }
     }
-    let found = pruned(records, found)?;
+    let found = pruned(records, found);
     fit(records, found.poles, LAST)
 }
 
@@ -245,19 +251,20 @@ fn is_worth(records: &[RecordLines], without: &Found, with: &Found) -> bool {
     left < (1.0 - LEAST_PART) * around(&fit.residuals(&without.poles, &fitted))
 }
 
-/// Leaves out poles that pay no more, the least first.
-fn pruned(records: &[RecordLines], mut found: Found) -> Option<Found> {
+/// Leaves out poles that pay no more, the least first, as long as the others can be fitted without them.
+fn pruned(records: &[RecordLines], mut found: Found) -> Found {
     loop {
         let loss = |pole: usize| found.fitted.records.iter().map(|record| record.loss_without(pole)).sum::<f64>();
         let losses = (0..found.poles.len()).map(|pole| (loss(pole), pole));
-        let Some((loss, pole)) = losses.min_by(|a, b| a.0.total_cmp(&b.0)) else { return Some(found) };
+        let Some((loss, pole)) = losses.min_by(|a, b| a.0.total_cmp(&b.0)) else { return found };
         let data = ModalFit::new(records, &found.poles).data() as f64;
         if found.poles.len() == 1 || loss > price(records, data, &found) {
-            return Some(found);
+            return found;
         }
-        let mut poles = found.poles;
+        let mut poles = found.poles.clone();
         poles.remove(pole);
-        found = fit(records, poles, ON_THE_WAY)?;
+        let Some(without) = fit(records, poles, ON_THE_WAY) else { return found };
+        found = without;
     }
 }
 

@@ -8,6 +8,7 @@ use orthopanel_model::Place;
 
 use super::MeasuredModes;
 use super::lines::RecordLines;
+use super::modal_fit::ModalFit;
 
 /// A system by its poles and residues, and its accelerance at infinite frequency.
 struct Made {
@@ -264,4 +265,23 @@ fn val_close_modes_of_a_plate_are_told_apart_by_the_places() {
     }
     assert!(own.len() <= wanted.len() + 1, "{own:?}");
     assert!(found.chi_square.is_some_and(|chi_square| (0.8..1.2).contains(&chi_square)), "{:?}", found.chi_square);
+}
+
+/// What a pole takes up of the misfit, from its residues and their covariance, is what a fit without it leaves more.
+#[test]
+fn val_the_loss_without_a_pole_is_that_of_a_fit_without_it() {
+    let made = ringing();
+    let records: Vec<RecordLines> =
+        made.histories(2, 1e-2, 9).iter().map(|history| RecordLines::of_hits(history, [20.0, 3000.0])).collect();
+    let poles: Vec<[f64; 2]> =
+        made.poles.iter().map(|pole| [pole.norm().ln(), (-pole.re / pole.norm()).ln()]).collect();
+    let fit = ModalFit::new(&records, &poles);
+    let all = fit.at(&poles).expect("a fit");
+    for pole in 0..poles.len() {
+        let mut others = poles.clone();
+        others.remove(pole);
+        let more = fit.at(&others).expect("a fit").misfit - all.misfit;
+        let loss: f64 = all.records.iter().map(|record| record.loss_without(pole)).sum();
+        assert!((loss / more - 1.0).abs() < 1e-6, "pole {pole}: {loss} instead of {more}");
+    }
 }
