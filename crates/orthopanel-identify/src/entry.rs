@@ -3,8 +3,12 @@
 use orthopanel_data::{ImpactTest, MeasurementData};
 use orthopanel_model::{ModelError, StructureKind};
 
-use crate::answer::PlateByModes;
-use crate::{Identification, IdentifyError, Settings, accelerance_fit, frequency_fit, known_beforehand, tracing};
+use crate::answer::{PlateByModes, identify_with_effects};
+use crate::declared_effects::holds_one_kind;
+use crate::{
+    DampingLaw, Identification, IdentifyError, Search, Settings, accelerance_fit, frequency_fit, known_beforehand,
+    list_tracing,
+};
 
 /// Finds the constants of a test, and its damping where there are records: eq. 22 for natural frequencies, the whole
 /// complex accelerance for records. Starting values are found here. Effects that the test file declares are part of the
@@ -33,7 +37,7 @@ fn of_data(test: &ImpactTest, settings: Settings) -> Result<Identification, Iden
     let is_frequencies = |data: &MeasurementData| matches!(data, MeasurementData::NaturalFrequencies(_));
     let lists = test.measurements.iter().filter(|measurement| is_frequencies(&measurement.data)).count();
     if lists == test.measurements.len() {
-        let (once, notes) = tracing::without_repeats(test);
+        let (once, notes) = list_tracing::without_repeats(test);
         let mut found = of_once(&once, lists - notes.len(), settings)?;
         found.notes.extend(notes);
         return Ok(found);
@@ -44,16 +48,7 @@ fn of_data(test: &ImpactTest, settings: Settings) -> Result<Identification, Iden
 /// The same where each list stands once; `lists` is their number.
 fn of_once(test: &ImpactTest, lists: usize, settings: Settings) -> Result<Identification, IdentifyError> {
     if !test.effects.is_empty() {
-        if lists == 0 {
-            accelerance_fit::refuse_other_units(test, &test.accelerances(settings.estimation)?)?;
-        }
-        let mut found = tracing::identify_with_effects(test, settings)?.determined()?;
-        if lists == 0 {
-            accelerance_fit::refuse_missed(test, &found.accelerances)?;
-            found.question = accelerance_fit::question_of_window(test);
-            found.notes.extend(found.question.clone());
-        }
-        return Ok(found);
+        return with_effects(test, lists, settings);
     }
     let of_held = |error| of_held_constants(test, error);
     if lists == test.measurements.len() {
@@ -81,6 +76,36 @@ fn of_once(test: &ImpactTest, lists: usize, settings: Settings) -> Result<Identi
                        are most likely read off the same records and would count twice";
         Err(IdentifyError::Unsupported(message.to_owned()))
     }
+}
+
+/// A test that declares effects.
+fn with_effects(test: &ImpactTest, lists: usize, settings: Settings) -> Result<Identification, IdentifyError> {
+    let refused = |message: &str| Err(IdentifyError::Unsupported(message.to_owned()));
+    if test.structure == Some(StructureKind::MindlinPlate) {
+        return refused("declared effects ([[effect]]) act on beams: leave them out, or structure = \"mindlin-plate\"");
+    }
+    if settings.search == Search::Simplex || settings.damping_law == DampingLaw::Hysteretic {
+        return refused(
+            "declared effects ([[effect]]) want least squares and viscous damping: leave out --search and --damping",
+        );
+    }
+    if lists == test.measurements.len() {
+        return list_tracing::identify_lists(test)?.determined();
+    }
+    if lists == 0 {
+        accelerance_fit::refuse_other_units(test, &test.accelerances(settings.estimation)?)?;
+    }
+    if test.pieces.len() > 1 {
+        return refused("declared effects with records of several pieces: give each piece a test file of its own");
+    }
+    if !holds_one_kind(test) {
+        return refused("declared effects want measurements of one kind: put others into a test file of their own");
+    }
+    let mut found = identify_with_effects(test, settings.estimation)?.determined()?;
+    accelerance_fit::refuse_missed(test, &found.accelerances)?;
+    found.question = accelerance_fit::question_of_window(test);
+    found.notes.extend(found.question.clone());
+    Ok(found)
 }
 
 /// A declared plate of one piece by the modes that its records show; `None` where these cannot be had, or where constants are held, which may be

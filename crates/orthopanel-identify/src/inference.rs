@@ -6,7 +6,7 @@ use orthopanel_model::{BEAM_CONSTANTS, EffectSetting, RecordSetting};
 use crate::IdentifyError;
 use crate::comparison::Comparison;
 use crate::declared_effects::{declared_parts, pairs_of_places};
-use crate::hit_strength::HitStrength;
+use crate::free_constants::FreeConstants;
 use crate::measured::{MeasuredModes, measured_modes};
 use crate::outcome::Progress;
 use crate::posterior::Judged;
@@ -17,18 +17,19 @@ fn too_few(found: usize) -> IdentifyError {
     IdentifyError::TooFewResonances { found, needed: 2, noise_percent: None }
 }
 
-/// What is said of the hypotheses that were held against the hits of one piece, the likeliest first, while all that they were held against is at
-/// hand.
+/// What is said from the base of a test, the beam with the effects that the file declares, held against the modes that the records of one piece
+/// show, while all that it is held against is at hand.
 ///
 /// # Errors
 /// As [`measured_modes`], and what is said; [`IdentifyError::Model`] for a piece or an effect that has no meaning.
-pub(crate) fn with_hypotheses<T>(
+pub(crate) fn from_base<T>(
     test: &ImpactTest,
     progress: &(dyn Fn(Progress) + Sync),
-    say: impl FnOnce(&Inquiry, &[Judged]) -> Result<T, IdentifyError>,
+    say: impl FnOnce(Inquiry, Judged) -> Result<T, IdentifyError>,
 ) -> Result<T, IdentifyError> {
     let piece = test.pieces.first().ok_or_else(|| too_few(0))?.piece;
     // What is declared wrongly is said before the records are read.
+    let held = FreeConstants::of(test, &BEAM_CONSTANTS)?.held;
     let declared = declared_parts(test, &piece, pairs_of_places(test))?;
     let all: Vec<MeasuredModes> = measured_modes(test)?.into_iter().map(MeasuredModes::without_faint).collect();
     let measured = all.first().ok_or_else(|| too_few(0))?;
@@ -38,13 +39,9 @@ pub(crate) fn with_hypotheses<T>(
         suspension: test.suspension.clone(),
         record: RecordSetting::default(),
     };
-    let held: Vec<Option<f64>> =
-        BEAM_CONSTANTS.iter().map(|constant| test.constants.get(constant.name).copied()).collect();
     let comparison = Comparison::new(measured, piece.mass());
     let begun = Inquiry::begin(&comparison, &setting, &held, &declared)?;
     let (mut inquiry, base) = begun.ok_or_else(|| too_few(measured.poles.len()))?;
-    inquiry.hits = HitStrength::new(test, measured.band)?;
     inquiry.progress = SearchProgress::telling(progress);
-    let all = inquiry.search(base);
-    say(&inquiry, &all)
+    say(inquiry, base)
 }

@@ -97,6 +97,9 @@ pub(crate) enum Stuck<E> {
     Iterations { count: usize, cost: f64 },
 }
 
+/// What is left of the damping after a step that went down.
+const EASING: f64 = 0.1;
+
 /// When a search ends.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Ending {
@@ -112,12 +115,8 @@ pub(crate) struct Ending {
     pub first_damping: f64,
     /// Damping of a step after one that failed, at least: a smaller one would end where that ended.
     pub failed_damping: f64,
-    /// What is left of the damping after a step that went down.
-    pub easing: f64,
     /// No parameter moves further in one step.
     pub longest_step: f64,
-    /// Whether a step that promises no more than `little` is left undone: what data tell nothing of would go to its bound.
-    pub rests: bool,
 }
 
 impl Ending {
@@ -130,9 +129,7 @@ impl Ending {
         little: 0.0,
         first_damping: 1e-6,
         failed_damping: 0.0,
-        easing: 0.1,
         longest_step: f64::INFINITY,
-        rests: false,
     };
     /// For residuals that jump where two modes change places: 1e-6 of the sum of squares moves a parameter by 1e-3 of its
     /// standard deviation, and at a jump steps shrink without end.
@@ -155,16 +152,6 @@ impl Ending {
     /// A search that is cut short: after so many iterations, or where a step promises `little`.
     pub const fn short(most_iterations: usize, little: f64) -> Self {
         Self { most_iterations, little, ..Self::SMOOTH }
-    }
-
-    /// The same from a start that may be far off, or along a valley that bends: full steps fail there one after the other.
-    pub const fn far(most_iterations: usize, little: f64) -> Self {
-        Self { first_damping: 1e-2, easing: 0.3, ..Self::short(most_iterations, little) }
-    }
-
-    /// The same that stays where it is as soon as a step promises little.
-    pub const fn resting(self) -> Self {
-        Self { rests: true, ..self }
     }
 
     /// Whether the next step from here, without damping, would promise little.
@@ -212,20 +199,6 @@ pub(crate) fn descend<E>(
     bounds: &[(f64, f64)],
     ending: Ending,
 ) -> Result<(Minimum, bool), Stuck<E>> {
-    descend_along((linearise, |_: &[f64], _: &[f64]| None), start, bounds, ending)
-}
-
-/// The same with steps that bend: `bent` makes of the ends of a straight step the end of one that agrees with it to first order;
-/// where it makes nothing of it, the step is straight.
-///
-/// # Errors
-/// As [`descend`].
-pub(crate) fn descend_along<E>(
-    (linearise, bent): (impl Fn(&[f64]) -> Result<Quadratic, E>, impl Fn(&[f64], &[f64]) -> Option<Vec<f64>>),
-    start: &[f64],
-    bounds: &[(f64, f64)],
-    ending: Ending,
-) -> Result<(Minimum, bool), Stuck<E>> {
     let mut parameters = start.to_vec();
     let mut at = linearise(&parameters).map_err(Stuck::Refused)?;
     // No step leads away from there, and none leads there: a trial that is not finite goes down nowhere.
@@ -241,20 +214,14 @@ pub(crate) fn descend_along<E>(
         };
         // Once that is nothing beside what is left, either end is the minimum.
         let promised = promise(&at, &parameters, &trial);
-        if ending.rests && promised <= ending.little {
-            return Ok((Minimum { parameters, at }, true));
-        }
         let moved = trial.iter().zip(&parameters).fold(0.0_f64, |most, (a, b)| most.max((a - b).abs()));
-        let within = |(value, (low, high)): (f64, &(f64, f64))| value.clamp(*low, *high);
-        let bent = bent(&parameters, &trial).map(|bent| bent.into_iter().zip(bounds).map(within).collect());
-        let trial = bent.unwrap_or(trial);
         if let Ok(next) = linearise(&trial) {
             let (before, after) = (at.cost, next.cost);
             // At the bottom both are equal but for rounding, and either is the minimum.
             if after <= before && next.is_finite() {
                 let settled = moved < ending.small_step || ending.is_little(promised, before);
                 (parameters, at) = (trial, next);
-                (damping, growth) = (damping * ending.easing, 2.0);
+                (damping, growth) = (damping * EASING, 2.0);
                 if settled {
                     return Ok((Minimum { parameters, at }, true));
                 }
@@ -336,20 +303,5 @@ mod tests {
         let bounds = [(-10.0, 0.5), (-10.0, 10.0)];
         let Ok(minimum) = levenberg_marquardt(rosenbrock, &[-1.2, 1.0], &bounds) else { panic!("no minimum") };
         assert!((minimum.parameters[0] - 0.5).abs() < 1e-8);
-    }
-
-    /// Data that hardly tell a parameter leave it where it is, and do not send it to its bound.
-    #[test]
-    fn what_is_hardly_told_rests() {
-        let flat = |p: &[f64]| -> Result<Quadratic, ()> {
-            let (residuals, rows) = (vec![p[0] - 1.0, 1e-3 * p[1]], [[1.0, 0.0], [0.0, 1e-3]]);
-            Ok(Linearised { residuals, jacobian: Mat::from_fn(2, 2, |i, j| rows[i][j]) }.quadratic())
-        };
-        let found = |ending: Ending| match descend(flat, &[1.0, 20.0], &[(-9.0, 9.0), (-90.0, 90.0)], ending) {
-            Ok((minimum, settled)) => (minimum.parameters[1], settled),
-            Err(_) => panic!("refused"),
-        };
-        assert_eq!(found(Ending::far(9, 1.0).resting()), (20.0, true));
-        assert!(found(Ending::far(9, 1.0)).0 < 10.0, "else nothing was tested");
     }
 }

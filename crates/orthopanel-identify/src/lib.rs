@@ -18,6 +18,7 @@ mod inference;
 mod judge;
 mod known_beforehand;
 mod least_squares;
+mod list_tracing;
 mod matching;
 mod measured;
 mod model_error;
@@ -35,7 +36,6 @@ mod time_history;
 mod to_check;
 mod trace;
 mod trace_rows;
-mod tracing;
 mod usual_ratios;
 mod view;
 
@@ -49,12 +49,12 @@ pub use known_beforehand::PriorContradiction;
 pub use matching::ModeMatch;
 pub use measured::{MeasuredModes, MeasuredRecord, Pole, measured_modes};
 pub use outcome::{
-    Candidate, EstimatedModelError, FittedError, IndependentLines, NotTested, Progress, Removed, TracedEffect,
-    TracedError, TracedParameter, Tracing, Verdict,
+    Candidate, EstimatedModelError, FittedError, NotTested, Progress, Removed, TracedEffect, TracedError,
+    TracedParameter, Tracing, Verdict,
 };
 pub use settings::{PaperWeights, Search, Settings};
 pub use time_history::{
     ComparedSignals, ForceBetweenSamples, HistorySettings, HitComparison, Misfit, Stepping, compare_time_history,
 };
-pub use trace::{trace, trace_by_lines, trace_by_modes, trace_with};
+pub use trace::{trace, trace_with};
 pub use trace_rows::TRACE_SCHEMA;

@@ -9,7 +9,6 @@ use num_complex::Complex64;
 use orthopanel_model::{Field, ModelError};
 
 use crate::comparison::Comparison;
-use crate::outcome::EstimatedModelError;
 use crate::predicted::{Prediction, Predictor, distinct};
 
 /// A kind of model error.
@@ -105,17 +104,6 @@ pub(crate) struct ErrorColumns {
 /// $\ln\tau_k$ of every kind at its median.
 pub(crate) fn medians() -> [f64; KINDS] {
     PRIORS.map(|(_, median, _)| median.ln())
-}
-
-impl EstimatedModelError {
-    /// Whether both sizes lie where those of two of three real panels do.
-    pub(crate) fn is_usual(self) -> bool {
-        let is_usual = |kind: Kind, size: f64| {
-            let (_, median, factor) = PRIORS[kind as usize];
-            (median / factor..=median * factor).contains(&size)
-        };
-        is_usual(Kind::Frequency, self.frequency) && is_usual(Kind::Residue, self.residue)
-    }
 }
 
 /// Median of $\tau_f$, and the factor within which two of three lie.

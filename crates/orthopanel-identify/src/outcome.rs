@@ -40,7 +40,7 @@ pub struct Tracing {
     pub alternatives: Vec<String>,
     /// Error of the base and of the model with the effects.
     pub error: TracedError,
-    /// By how much the model misses beside noise, as it was estimated with the rest; `None` where lines or lists were traced one by one.
+    /// By how much the model misses beside noise, as it was estimated with the rest; `None` where lists were traced.
     pub model_error: Option<EstimatedModelError>,
     /// Every hypothesis that was fitted, the likeliest first.
     pub candidates: Vec<Candidate>,
@@ -145,21 +145,6 @@ pub struct TracedError {
     pub after: FittedError,
     /// The error that noise alone makes.
     pub noise_floor: f64,
-    /// How white the residuals of lines of hits are; `None` where measured modes were judged, for lists, and for files of accelerances, of
-    /// which means of lines between the resonances are judged, as far from each other as these leave.
-    pub independent: Option<IndependentLines>,
-}
-
-/// The effective number of independent lines over that of all, $1/(1+2\sum_k|\rho_k|^2)$ with the correlations $\rho_k$ of residuals $k$ lines
-/// apart (M. S. Bartlett, J. Roy. Stat. Soc. 98 (1935) 536). The window ties even the lines of white noise together, so what is left is white where it is as independent as noise.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct IndependentLines {
-    /// Of what the base model leaves.
-    pub before: f64,
-    /// Of what the model with the effects leaves.
-    pub after: f64,
-    /// Of white noise on the same lines.
-    pub noise: f64,
 }
 
 /// An error on what was fitted and on what was held out.
@@ -176,19 +161,15 @@ pub struct FittedError {
 pub struct Candidate {
     /// Its effects' ids joined by ` + `; `base` for none.
     pub id: String,
-    /// Natural logarithm of the evidence times the prior of the hypothesis: differences are logarithms of odds. Of a search of lines or
-    /// lists, $-\tfrac12$ of the criterion.
+    /// Natural logarithm of the evidence times the prior of the hypothesis: differences are logarithms of odds. Of lists, $-\tfrac12$ of the
+    /// criterion.
     pub log_evidence: f64,
-    /// Bayes' information criterion, scaled by the whiteness of the residuals: less is better. `None` where measured modes were judged,
-    /// by their evidence itself.
+    /// Bayes' information criterion of lists: less is better. `None` where measured modes were judged, by their evidence itself.
     pub bic: Option<f64>,
     /// Error on what was held out, as in [`TracedError`].
     pub held_out: f64,
     /// What was found of the effects.
     pub effects: Vec<TracedEffect>,
-    /// Where the search left it behind, the others being far ahead: $\sigma$ \[1/s\] by which peaks were widened there. Its
-    /// criterion is then what one more step promised, and may stand above that of hypotheses that it contains.
-    pub left_behind: Option<f64>,
 }
 
 /// An effect that was not tested.
@@ -203,7 +184,7 @@ pub struct NotTested {
 impl Candidate {
     /// One that is judged by a criterion.
     pub(crate) fn by_criterion(id: String, bic: f64, held_out: f64, effects: Vec<TracedEffect>) -> Self {
-        Self { id, log_evidence: -0.5 * bic, bic: Some(bic), held_out, effects, left_behind: None }
+        Self { id, log_evidence: -0.5 * bic, bic: Some(bic), held_out, effects }
     }
 }
 

@@ -69,6 +69,10 @@ pub(crate) struct Prediction {
     pub partners: Vec<Vec<Option<PartnerInRecord>>>,
     /// Damping ratio that dashpots and windows among the effects bring to each pole.
     pub damping_of_effects: Vec<f64>,
+    /// Flexible modes \[rad/s\] as the first record sees them, with a core that depends on frequency about as they are.
+    pub flexible: Vec<f64>,
+    /// The flexible mode of each pole, from 0; `None` without one.
+    pub flexible_of_poles: Vec<Option<usize>>,
     /// Whether each pole is a motion of the piece as a whole on its suspension.
     pub hangs: Vec<bool>,
     /// Whether the piece moves as a whole: it hangs on something.
@@ -432,11 +436,12 @@ impl<'a> Predictor<'a> {
         let hanging = if seen_hanging > 0.0 { seen_hanging } else { hanging };
         let near = |frequency: &&f64| TAU * **frequency < CLEAR_OF_HANGING * hanging;
         let near_hanging = measured.remainder_frequencies.iter().filter(near).count();
+        let rigid = self.panel.rigid_modes(self.setting.boundary);
+        let flexible_of_poles = partners.iter().map(|partner| partner.and_then(|n| n.checked_sub(rigid))).collect();
         let hangs = partners.iter().map(|partner| partner.is_some_and(|n| self.hangs(n))).collect();
         let decay = channels.first().map_or(0.0, |channel| channel.decay);
         let of_effects = |n: usize| first.modes.damping_ratio[n] + decay / omega[n];
         let damping_of_effects = partners.iter().map(|partner| partner.map_or(0.0, of_effects)).collect();
-        let is_free = self.panel.rigid_modes(self.setting.boundary) > 0;
         Prediction {
             values,
             by_force,
@@ -445,8 +450,10 @@ impl<'a> Predictor<'a> {
             brings,
             partners: in_records,
             damping_of_effects,
+            flexible: omega.get(rigid..).unwrap_or_default().to_vec(),
+            flexible_of_poles,
             hangs,
-            is_free,
+            is_free: rigid > 0,
             hanging: seen_hanging,
             near_hanging,
         }

@@ -14,6 +14,7 @@ use crate::comparison::Comparison;
 use crate::hit_strength::{HitStrength, Springs};
 use crate::hypothesis::{Hypothesis, Part, Role};
 use crate::judge::ODDS;
+use crate::measured::MeasuredModes;
 use crate::model_error::{KINDS, Waves, medians, waves};
 use crate::posterior::{Judged, Point, Posterior, Problem};
 use crate::predicted::Predictor;
@@ -155,6 +156,11 @@ impl<'a> Inquiry<'a> {
 
     pub(crate) fn problem<'p>(&'p self, hypothesis: &'p Hypothesis) -> Problem<'p> {
         Problem { predictor: &self.predictor, hypothesis, waves: &self.waves }
+    }
+
+    /// The modes that all are held against.
+    pub(crate) fn measured(&self) -> &'a MeasuredModes {
+        self.predictor.comparison.measured
     }
 
     fn ways(&self, effect: &'static dyn Effect) -> Vec<Part> {

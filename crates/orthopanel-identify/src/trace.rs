@@ -1,20 +1,42 @@
 //! Closing the loop: the effect that the base model lacks, by name.
 
-use orthopanel_data::{ImpactTest, MeasurementData};
+use orthopanel_data::{ImpactTest, Measurement};
 use orthopanel_model::{Estimate, Owner, StructureKind};
 
 use crate::accelerance_fit::{WINDOW_EFFECT, question_of_window, refuse_missed};
 use crate::answer::answer;
-use crate::outcome::{EstimatedModelError, Progress, Removed, TracedEffect, TracedParameter, Tracing, Verdict};
-use crate::tracing::trace_by_fits;
+use crate::declared_effects::holds_one_kind;
+use crate::list_tracing::trace_lists;
+use crate::outcome::{Progress, Removed, TracedEffect, TracedParameter, Tracing, Verdict};
 use crate::{IdentifyError, Settings, identify};
 
 /// Names the effect that the base model of a test lacks, from its records or its natural frequencies. Effects that the test
 /// file declares are part of the base model.
 ///
-/// The lines of records and the numbers of lists are held against the model first ([`trace_by_lines`]). Where no hypothesis meets the lines of the hits
-/// of one beam within their noise, the panel is not its ideal model: its modes answer, with a model error that is estimated, if that is as real panels
-/// have it ([`trace_by_modes`]).
+/// Records are brought to [`MeasuredModes`](crate::MeasuredModes) first, which know no physics. Every hypothesis, nothing missing, each effect of
+/// the catalogue, and more of them while the evidence grows, predicts the same modes. What is measured less what is predicted has the covariance
+/// $$C = C_\text{noise} + \sum_k\tau_k^2F_kF_k^T$$
+/// of noise and of the model errors that every real panel has: of each frequency and residue, of places and gains, of core, faces and mass
+/// along the panel. The sizes $\tau_k$ are estimated with the parameters $\theta$. Hypotheses are compared by the marginal likelihood
+/// $$p(d) = \int p(d\mid\theta,\tau)\,p(\theta)\,p(\tau)\,d\theta\,d\tau$$
+/// in Laplace's approximation (MacKay, Neural Computation 4, 1992), each effect lacking by itself with the prior odds of one to the size of the
+/// catalogue. What shows between hits alone, `cubic-stiffness`, is held against the best of the other hypotheses.
+///
+/// Lists of natural frequencies are fitted number by number with each effect in turn, and hypotheses are compared by Bayes' information criterion.
+///
+/// # Limits
+/// Records are those of one piece, as a beam that may turn out a plate, hit and seen on its centre line. Standard deviations hold the sizes of model
+/// error as they are estimated, not their own uncertainty, which makes them small where modes are few.
+///
+/// ```
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// use orthopanel_identify::{Verdict, trace};
+/// let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/made-hits");
+/// let found = trace(&orthopanel_data::ImpactTest::read(folder)?)?;
+/// assert_eq!(found.verdict, Verdict::NothingMissing);
+/// # Ok(())
+/// # }
+/// ```
 ///
 /// # Errors
 /// [`IdentifyError::PlateNotTraced`] for a declared plate; what [`identify`] refuses of the records themselves, such as too few
@@ -29,94 +51,33 @@ pub fn trace(test: &ImpactTest) -> Result<Tracing, IdentifyError> {
 /// As [`trace`].
 pub fn trace_with(test: &ImpactTest, progress: &(dyn Fn(Progress) + Sync)) -> Result<Tracing, IdentifyError> {
     beside_identify(test, |identified| {
-        let by_lines = by_lines(test, identified, progress);
-        if !are_hits_of_one_beam(test) || by_lines.as_ref().is_ok_and(is_met) {
-            return by_lines;
-        }
-        match by_modes(test, progress) {
-            Ok(by_modes) if by_modes.model_error.is_some_and(EstimatedModelError::is_usual) => Ok(by_modes),
-            _ => by_lines,
-        }
+        let found = of_data(test, progress)?.finite()?;
+        Ok(match &identified.question {
+            Some(question) => asked_of_window(found, question.clone()),
+            None => found,
+        })
     })
 }
 
-/// What was held out may be missed by this times the noise.
-const MET: f64 = 1.2;
-
-/// Whether an ideal panel meets the lines.
-fn is_met(tracing: &Tracing) -> bool {
-    let error = &tracing.error;
-    tracing.verdict != Verdict::Unexplained && error.after.held_out < MET * error.noise_floor
-}
-
-fn are_hits_of_one_beam(test: &ImpactTest) -> bool {
-    let hits = |data: &MeasurementData| matches!(data, MeasurementData::TimeHistory(_));
-    test.pieces.len() == 1 && test.measurements.iter().all(|measurement| hits(&measurement.data))
-}
-
-/// The effect that the base model of a beam lacks, from the modes that its hits show.
-///
-/// Hits are brought to [`MeasuredModes`](crate::MeasuredModes) first, which know no physics. Every hypothesis, nothing missing, each effect of
-/// the catalogue, and more of them while the evidence grows, predicts the same modes. What is measured less what is predicted has the covariance
-/// $$C = C_\text{noise} + \sum_k\tau_k^2F_kF_k^T$$
-/// of noise and of the model errors that every real panel has: of each frequency and residue, of places and gains, of core, faces and mass
-/// along the panel. The sizes $\tau_k$ are estimated with the parameters $\theta$. Hypotheses are compared by the marginal likelihood
-/// $$p(d) = \int p(d\mid\theta,\tau)\,p(\theta)\,p(\tau)\,d\theta\,d\tau$$
-/// in Laplace's approximation (MacKay, Neural Computation 4, 1992), each effect lacking by itself with the prior odds of one to the size of the
-/// catalogue. What shows between hits alone, `cubic-stiffness`, is held against the best of the other hypotheses.
-///
-/// # Limits
-/// The hits of one piece, as a beam that may turn out a plate, hit and seen on its centre line. Standard deviations hold the sizes of model error as
-/// they are estimated, not their own uncertainty, which makes them small where modes are few. Lists and accelerances are traced as [`trace_by_lines`]
-/// says.
-///
-/// ```
-/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
-/// use orthopanel_identify::{Verdict, trace};
-/// let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/made-hits");
-/// let found = trace(&orthopanel_data::ImpactTest::read(folder)?)?;
-/// assert_eq!(found.verdict, Verdict::NothingMissing);
-/// # Ok(())
-/// # }
-/// ```
-///
-/// # Errors
-/// [`IdentifyError::PlateNotTraced`] for a declared plate; records that cannot be read or show too few resonances, and tests
-/// that this version cannot trace.
-pub fn trace_by_modes(test: &ImpactTest, progress: &(dyn Fn(Progress) + Sync)) -> Result<Tracing, IdentifyError> {
-    beside_identify(test, |_| by_modes(test, progress))
-}
-
-fn by_modes(test: &ImpactTest, progress: &(dyn Fn(Progress) + Sync)) -> Result<Tracing, IdentifyError> {
-    if !are_hits_of_one_beam(test) {
-        let message = "a trace by modes of anything but the hits of one piece: trace it by lines";
-        return Err(IdentifyError::Unsupported(message.into()));
+fn of_data(test: &ImpactTest, progress: &(dyn Fn(Progress) + Sync)) -> Result<Tracing, IdentifyError> {
+    let is_record = |measurement: &Measurement| measurement.data.recorded().is_some();
+    if !test.measurements.iter().any(is_record) {
+        return trace_lists(test, progress);
     }
-    answer(test, progress)?.finite()
+    if test.pieces.len() != 1 {
+        let message =
+            format!("a trace of {} pieces in one test: give each piece a test file of its own", test.pieces.len());
+        return Err(IdentifyError::Unsupported(message));
+    }
+    if !holds_one_kind(test) {
+        let message = "a trace needs measurements of one kind: natural-frequencies, accelerance or time-history; put others \
+                       into a test file of their own";
+        return Err(IdentifyError::Unsupported(message.to_owned()));
+    }
+    answer(test, progress)
 }
 
-/// [`trace_with`] for a panel that is as its model but for an effect: records are fitted line by line, lists number by number, with each effect
-/// in turn, and no error of the model is allowed for.
-///
-/// # Errors
-/// As [`trace`].
-pub fn trace_by_lines(test: &ImpactTest, progress: &(dyn Fn(Progress) + Sync)) -> Result<Tracing, IdentifyError> {
-    beside_identify(test, |identified| by_lines(test, identified, progress))
-}
-
-fn by_lines(
-    test: &ImpactTest,
-    identified: &Identified,
-    progress: &(dyn Fn(Progress) + Sync),
-) -> Result<Tracing, IdentifyError> {
-    let found = trace_by_fits(test, progress)?.finite()?;
-    Ok(match &identified.question {
-        Some(question) => asked_of_window(found, question.clone()),
-        None => found,
-    })
-}
-
-/// Before lines say what lacks, the window is asked about that they may have been averaged under: free damping takes up most of it.
+/// Before records say what lacks, the window is asked about that they may have been averaged under: free damping takes up most of it.
 fn asked_of_window(mut found: Tracing, question: String) -> Tracing {
     if found.effects.iter().all(|effect| effect.id != WINDOW_EFFECT) {
         // What explained nothing stands beside a window that may explain it.

@@ -53,15 +53,6 @@ struct ErrorRow<'a> {
     before: PairRow,
     after: PairRow,
     noise_floor: f64,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    independent: Option<IndependentRow>,
-}
-
-#[derive(Serialize)]
-struct IndependentRow {
-    before: f64,
-    after: f64,
-    noise: f64,
 }
 
 #[derive(Serialize)]
@@ -85,9 +76,6 @@ struct CandidateRow<'a> {
     bic: Option<f64>,
     held_out: f64,
     parameters: BTreeMap<String, ParameterRow>,
-    /// Only of a candidate that was left behind: by how much peaks were widened there \[1/s\].
-    #[serde(skip_serializing_if = "Option::is_none")]
-    left_behind: Option<f64>,
 }
 
 #[derive(Serialize)]
@@ -120,11 +108,6 @@ impl Serialize for Tracing {
                 before: PairRow { fitted: error.before.fitted, held_out: error.before.held_out },
                 after: PairRow { fitted: error.after.fitted, held_out: error.after.held_out },
                 noise_floor: error.noise_floor,
-                independent: error.independent.map(|of| IndependentRow {
-                    before: of.before,
-                    after: of.after,
-                    noise: of.noise,
-                }),
             },
             chi_square: self.chi_square,
             model_error: self.model_error.map(|of| ModelErrorRow { frequency: of.frequency, residue: of.residue }),
@@ -137,7 +120,6 @@ impl Serialize for Tracing {
                     bic: candidate.bic,
                     held_out: candidate.held_out,
                     parameters: of_candidate(&candidate.effects),
-                    left_behind: candidate.left_behind,
                 })
                 .collect(),
             not_tested: self.not_tested.iter().map(|row| NotTestedRow { id: row.id, reason: &row.reason }).collect(),

@@ -305,7 +305,7 @@ fn without_resonance(fit: &PieceFit) -> Option<String> {
 }
 
 /// Whether the records tell a damping ratio for which no resonance speaks: what has no deviation was put in.
-pub(crate) fn is_told(ratio: &Estimate) -> bool {
+pub(super) fn is_told(ratio: &Estimate) -> bool {
     ratio.std.is_some_and(|std| std < DAMPING_UNSEEN * ratio.value)
 }
 

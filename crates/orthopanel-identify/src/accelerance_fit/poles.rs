@@ -36,8 +36,6 @@ impl Pole {
 
 /// Power of a peak over that of the valleys beside it, at least.
 const PROMINENCE: f64 = 10.0;
-/// The same of a panel with much damping, whose peaks are low and broad.
-const FLAT: f64 = 2.5;
 /// Power of either over that of the noise, at least.
 const SIGNAL_TO_NOISE: f64 = 30.0;
 /// A resonance has less damping than this.
@@ -76,21 +74,12 @@ pub(super) fn alike(records: &[PlaceRecord]) -> Vec<&PlaceRecord> {
 
 /// The poles of one piece's records, rising.
 pub(super) fn poles(records: &[PlaceRecord]) -> Vec<Pole> {
-    poles_that_rise(records, PROMINENCE)
-}
-
-/// The same with the low and broad peaks of a panel with much damping.
-pub(super) fn flat_poles(records: &[PlaceRecord]) -> Vec<Pole> {
-    poles_that_rise(records, FLAT)
-}
-
-fn poles_that_rise(records: &[PlaceRecord], prominence: f64) -> Vec<Pole> {
     let Some(first) = records.first() else { return Vec::new() };
     let alike = alike(records);
     let power: Vec<f64> =
         (0..first.frequency.len()).map(|line| alike.iter().map(|record| record.value[line].norm_sqr()).sum()).collect();
     let noise = NoisePower::of(&alike);
-    let mut heard = peaks(&power, prominence);
+    let mut heard = peaks(&power, PROMINENCE);
     heard.retain(|&line| power[line] > SIGNAL_TO_NOISE * noise.power[line]);
     let mut found: Vec<Pole> = heard.par_iter().filter_map(|&line| common_pole(&alike, &power, line)).collect();
     found.sort_by(|a, b| a.frequency.total_cmp(&b.frequency));

@@ -13,19 +13,17 @@ use crate::{AcceleranceFit, IdentifyError};
 
 /// Lines sum the modes up to so many times the highest.
 const SUMMED: f64 = 2.5;
-/// Force lost over the band that is drawn \[dB\].
-const FORCE_DROP: f64 = 20.0;
 /// Pairs of places from which one hit at each will do.
 const FEW: usize = 3;
 /// Modes of the beam that are looked through for those.
 const MOST_MODES: usize = 200;
 
-/// The accelerances of the hits, as an analyser shows them.
+/// The accelerances of the records: of hits as an analyser shows them, of files as they stand there.
 pub(super) struct Lines {
     accelerances: Vec<Accelerance>,
     /// Whether neither hits nor places could tell by how much hits differ.
     pub hits_are_few: bool,
-    /// Hits that were left out, and why.
+    /// Hits that were left out, and why; and all that is said of files of accelerances.
     pub notes: Vec<String>,
 }
 
@@ -38,11 +36,10 @@ pub(super) struct Drawn {
 impl Lines {
     /// # Errors
     /// Records that cannot be read.
-    pub(super) fn of(test: &ImpactTest) -> Result<Self, IdentifyError> {
+    pub(super) fn of(test: &ImpactTest, estimation: Estimation) -> Result<Self, IdentifyError> {
         let histories: Vec<TimeHistory> = test.time_histories()?.into_iter().map(|(_, history)| history).collect();
-        let estimation = Estimation { force_drop: FORCE_DROP, ..Estimation::default() };
-        let accelerances = histories.par_iter().map(|history| Ok(history.accelerance(estimation)?));
-        let accelerances = accelerances.collect::<Result<Vec<_>, IdentifyError>>()?;
+        let of_hits = histories.par_iter().map(|history| Ok(history.accelerance(estimation)?));
+        let mut accelerances = of_hits.collect::<Result<Vec<_>, IdentifyError>>()?;
         let mut notes = Vec::new();
         for (history, accelerance) in histories.iter().zip(&accelerances) {
             let [force, response] = [history.force_at, history.response_at].map(|place| place.x);
@@ -50,8 +47,17 @@ impl Lines {
             notes.extend(left_out.map(|note| format!("force at x = {force} m, response at x = {response} m: {note}")));
         }
         let single = |(history, accelerance): (&TimeHistory, &Accelerance)| history.kept_in(accelerance).hits.len() < 2;
-        let hits_are_few = histories.len() < FEW && histories.iter().zip(&accelerances).all(single);
+        let hits_are_few = (1..FEW).contains(&histories.len()) && histories.iter().zip(&accelerances).all(single);
+        for (_, accelerance) in test.recorded_accelerances()? {
+            notes.extend(accelerance.notes.iter().cloned());
+            accelerances.push(accelerance);
+        }
         Ok(Self { accelerances, hits_are_few, notes })
+    }
+
+    /// All that is said of the records, a sentence each.
+    pub(super) fn notes_of_records(&self) -> Vec<String> {
+        self.accelerances.iter().flat_map(|record| record.notes.iter().cloned()).collect()
     }
 
     /// At these constants with these effects; `of_effects` as in [`TracedDamping::of`].

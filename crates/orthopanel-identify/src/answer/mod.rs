@@ -2,6 +2,7 @@
 
 mod bounds;
 mod damping;
+mod declared;
 mod doubt;
 mod estimates;
 mod identified;
@@ -12,13 +13,15 @@ mod next_measurement;
 mod not_tested;
 mod panel;
 
+pub(crate) use declared::identify_with_effects;
 pub(crate) use identified::PlateByModes;
 
-use orthopanel_data::ImpactTest;
+use orthopanel_data::{Estimation, ImpactTest};
 use orthopanel_model::Readable;
 
 use crate::IdentifyError;
-use crate::inference::with_hypotheses;
+use crate::hit_strength::HitStrength;
+use crate::inference::from_base;
 use crate::judge::{judged, rivals};
 use crate::model_error::Kind;
 use crate::outcome::{Candidate, EstimatedModelError, Progress, TracedError, Tracing, Verdict};
@@ -40,16 +43,23 @@ const FEW_HITS: &str = "one hit at each of fewer than three pairs of places: how
 
 const MEASURE: &str = "misfit of the measured modes over noise and model error, rms (1: as far as these go)";
 
-/// What the measured modes of the hits of one beam say.
+/// Force lost over the band that is drawn \[dB\].
+const FORCE_DROP: f64 = 20.0;
+
+/// What the measured modes of the records of one beam say.
 ///
 /// # Errors
-/// As [`with_hypotheses`].
+/// As [`from_base`].
 pub(crate) fn answer(test: &ImpactTest, progress: &(dyn Fn(Progress) + Sync)) -> Result<Tracing, IdentifyError> {
-    with_hypotheses(test, progress, |inquiry, all| tracing_of(test, inquiry, all))
+    from_base(test, progress, |mut inquiry, base| {
+        inquiry.hits = HitStrength::new(test, inquiry.measured().band)?;
+        let all = inquiry.search(base);
+        tracing_of(test, &inquiry, &all)
+    })
 }
 
 fn tracing_of(test: &ImpactTest, inquiry: &Inquiry, all: &[Judged]) -> Result<Tracing, IdentifyError> {
-    let measured = inquiry.problem(&all[0].hypothesis).predictor.comparison.measured;
+    let measured = inquiry.measured();
     let not_finite = |what: &str| IdentifyError::NotFinite { what: what.into() };
     let none = IdentifyError::TooFewResonances { found: measured.poles.len(), needed: 2, noise_percent: None };
     let (chosen, verdict, alternatives) = judged(all).ok_or(none)?;
@@ -81,9 +91,8 @@ fn tracing_of(test: &ImpactTest, inquiry: &Inquiry, all: &[Judged]) -> Result<Tr
             error.map_or(f64::NAN, |error| error.held_out)
         },
         effects: Estimates::of(judged).undeclared(),
-        left_behind: None,
     };
-    let lines = Lines::of(test)?;
+    let lines = Lines::of(test, Estimation { force_drop: FORCE_DROP, ..Estimation::default() })?;
     let Drawn { curves, damping } = drawn(test, (inquiry, chosen), &lines)?;
     let base_curves =
         if std::ptr::eq(base, chosen) { curves.clone() } else { drawn(test, (inquiry, base), &lines)?.curves };
@@ -112,7 +121,7 @@ fn tracing_of(test: &ImpactTest, inquiry: &Inquiry, all: &[Judged]) -> Result<Tr
         verdict,
         effects: estimates.undeclared(),
         alternatives: check.map(|doubt| doubt.id).chain(alternatives).map(str::to_owned).collect(),
-        error: TracedError { measure: MEASURE.to_owned(), before, after, noise_floor: 1.0, independent: None },
+        error: TracedError { measure: MEASURE.to_owned(), before, after, noise_floor: 1.0 },
         model_error: Some(EstimatedModelError { frequency: size(Kind::Frequency), residue: size(Kind::Residue) }),
         candidates: all.par_iter().map(candidate).collect(),
         not_tested: not_tested(inquiry, all),
@@ -131,11 +140,10 @@ fn tracing_of(test: &ImpactTest, inquiry: &Inquiry, all: &[Judged]) -> Result<Tr
 /// # Errors
 /// What the model refuses.
 fn drawn(test: &ImpactTest, (inquiry, judged): (&Inquiry, &Judged), lines: &Lines) -> Result<Drawn, IdentifyError> {
-    let problem = inquiry.problem(&judged.hypothesis);
     let z = &judged.posterior.point.z;
     let (constants, effects) = (judged.hypothesis.constants(z), judged.hypothesis.effects(z)?);
     let of_effects = judged.posterior.point.at.damping_of_effects.clone();
-    lines.drawn(test, problem.predictor.comparison.measured, (&constants, &effects, &of_effects))
+    lines.drawn(test, inquiry.measured(), (&constants, &effects, &of_effects))
 }
 
 fn standing(chosen: &Judged, rival: &Judged) -> String {

@@ -1,0 +1,138 @@
+//! A beam with the effects that its test file declares, from its measured modes, as an identification.
+
+use std::f64::consts::TAU;
+
+use orthopanel_data::{Estimation, ImpactTest};
+use orthopanel_model::{BEAM_CONSTANTS, Estimate, Readable, StructureKind};
+
+use crate::free_constants::FreeConstants;
+use crate::frequency_fit::identified_constants;
+use crate::inference::from_base;
+use crate::posterior::Judged;
+use crate::search::Inquiry;
+use crate::structures::bending_nodes;
+use crate::{AcceleranceFit, HiddenMode, Identification, IdentifyError, ModeFit, PieceFit};
+
+use super::bounds::{notes_on_bound, notes_on_prior_alone};
+use super::damping::TracedDamping;
+use super::drawn;
+use super::estimates::Estimates;
+use super::lines::{Drawn, Lines};
+
+/// Identifies the constants of a beam whose test of one piece declares effects; a parameter that the file leaves out is identified too.
+///
+/// # Errors
+/// As [`from_base`], and [`IdentifyError::OnBound`].
+pub(crate) fn identify_with_effects(
+    test: &ImpactTest,
+    estimation: Estimation,
+) -> Result<Identification, IdentifyError> {
+    from_base(test, &|_| {}, |inquiry, base| identification(test, (&inquiry, &base), estimation))
+}
+
+fn identification(
+    test: &ImpactTest,
+    (inquiry, base): (&Inquiry, &Judged),
+    estimation: Estimation,
+) -> Result<Identification, IdentifyError> {
+    let estimates = Estimates::of(base);
+    let constants = FreeConstants::of(test, &BEAM_CONSTANTS)?;
+    let (free, log_std): (Vec<f64>, Vec<Option<f64>>) = constants
+        .free
+        .iter()
+        .enumerate()
+        .map(|(parameter, free)| {
+            let Estimate { value, std } = estimates.constants[free.constant];
+            (constants.parameter(parameter, value), std.map(|std| std / constants.slope(free.constant, value)))
+        })
+        .unzip();
+    constants.refuse_bounds(&free)?;
+    let lines = Lines::of(test, estimation)?;
+    let Drawn { curves, damping } = drawn(test, (inquiry, base), &lines)?;
+    let named = &test.pieces[inquiry.measured().piece];
+    let piece = piece_fit(test, (inquiry, base), &damping);
+    let errors: f64 = piece.modes.iter().map(|mode| mode.error_percent().powi(2)).sum();
+    let pairs = || curves.iter().flat_map(|curve| curve.model.iter().zip(&curve.measured));
+    let missed: f64 = pairs().map(|(model, measured)| (model - measured).norm_sqr()).sum();
+    let total: f64 = pairs().map(|(_, measured)| measured.norm_sqr()).sum();
+    let mut notes = lines.notes_of_records();
+    notes.extend(alone(inquiry, base));
+    notes.extend(notes_on_prior_alone(base, &estimates));
+    notes.extend(notes_on_bound(&estimates, &named.piece));
+    Ok(Identification {
+        structure: StructureKind::TimoshenkoBeam,
+        constants: identified_constants(test, &constants, &free, &log_std),
+        not_identified: vec![],
+        // Coordinates go with the logarithms of the constants, which come first.
+        correlations: constants.correlations(&base.posterior.covariance),
+        frequency_rms_percent: (errors / piece.modes.len().max(1) as f64).sqrt(),
+        left_one_out_percent: None,
+        accelerance_rms_percent: Some(100.0 * (missed / total).sqrt()),
+        chi_square: chi_square(&curves),
+        effects: estimates.effects.into_iter().map(|(effect, _)| effect).collect(),
+        pieces: vec![piece],
+        accelerances: curves,
+        question: None,
+        common_gain: None,
+        notes,
+    })
+}
+
+/// The modes of the beam beside the poles that are theirs, and those in the band without one.
+fn piece_fit(test: &ImpactTest, (inquiry, base): (&Inquiry, &Judged), damping: &TracedDamping) -> PieceFit {
+    let (measured, at) = (inquiry.measured(), &base.posterior.point.at);
+    let mut fit = PieceFit::of(&test.pieces[measured.piece]);
+    let in_band = at.flexible.iter().take_while(|omega| **omega < TAU * measured.band[1]).count();
+    let ratio = |mode: usize| Estimate {
+        value: damping.damping.ratios.get(mode).copied().unwrap_or(damping.damping.beyond),
+        std: damping.std.get(mode).copied().flatten(),
+    };
+    fit.damping = (0..in_band).map(ratio).collect();
+    for (index, nodes) in bending_nodes(test.boundary, at.flexible.len()).into_iter().enumerate() {
+        let mode = index + 1;
+        match at.flexible_of_poles.iter().position(|of| *of == Some(index)) {
+            Some(pole) => {
+                let frequency = measured.poles[pole].angular_frequency / TAU;
+                fit.modes.push(ModeFit {
+                    mode,
+                    nodes,
+                    measured: frequency,
+                    measured_std: Some(frequency * measured.covariance[(pole, pole)].sqrt()),
+                    model: at.values[pole].exp() / TAU,
+                    damping: Some(ratio(index)),
+                });
+            }
+            None if index < in_band => {
+                let told = Some(ratio(index)).filter(|ratio| ratio.std.is_some());
+                fit.hidden.push(HiddenMode { mode, nodes, model: at.flexible[index] / TAU, damping: told });
+            }
+            None => {}
+        }
+    }
+    fit
+}
+
+/// A sentence on the resonances that are no mode of the beam; `None` where there are none.
+fn alone(inquiry: &Inquiry, base: &Judged) -> Option<String> {
+    let at = &base.posterior.point.at;
+    let of_poles = inquiry.measured().poles.iter().zip(&at.flexible_of_poles).zip(&at.hangs);
+    let alone: Vec<String> = of_poles
+        .filter(|((_, mode), hangs)| mode.is_none() && !**hangs)
+        .map(|((pole, _), _)| format!("{:.1} Hz", Readable(pole.angular_frequency / TAU)))
+        .collect();
+    (!alone.is_empty()).then(|| {
+        format!("resonances that are no mode of the beam with what the test file declares: {}", alone.join(", "))
+    })
+}
+
+/// Misfit of the lines per datum, where all records tell their noise.
+fn chi_square(curves: &[AcceleranceFit]) -> Option<f64> {
+    let (mut sum, mut count) = (0.0, 0);
+    for AcceleranceFit { measured, model, variance, .. } in curves {
+        for ((measured, model), variance) in measured.iter().zip(model).zip(variance.as_ref()?) {
+            sum += (measured - model).norm_sqr() / variance;
+            count += 1;
+        }
+    }
+    (count > 0).then(|| sum / f64::from(count))
+}
