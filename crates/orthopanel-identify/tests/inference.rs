@@ -1,6 +1,6 @@
 //! Inference from measured modes, against panels as real ones are: made by `tests/blind_tracing`, which shares no code with the crates.
 
-use orthopanel_identify::{TracedEffect, Tracing, trace_by_modes};
+use orthopanel_identify::{TracedEffect, Tracing, trace};
 use serde_json::Value;
 
 use crate::support::made_of;
@@ -8,7 +8,7 @@ use crate::support::made_of;
 fn made(kind: &str) -> Option<(Tracing, Value)> {
     let folder = tempfile::tempdir().unwrap();
     let (test, truth) = made_of(folder.path(), "real", (kind, 20), 911)?;
-    Some((trace_by_modes(&test, &|_| {}).unwrap(), truth))
+    Some((trace(&test).unwrap(), truth))
 }
 
 /// Of the mean panel, whose core wanders by percents.
@@ -54,7 +54,7 @@ fn val_a_resonator_on_a_real_panel_is_found() {
 fn val_a_core_that_relaxes_is_found() {
     let folder = tempfile::tempdir().unwrap();
     let Some((test, truth)) = made_of(folder.path(), "clean", ("viscoelastic-core", 5), 71) else { return };
-    let said = trace_by_modes(&test, &|_| {}).unwrap();
+    let said = trace(&test).unwrap();
     assert_constants(&said, &truth);
     let core = effect(&said, "viscoelastic-core");
     for (parameter, within) in core.parameters.iter().zip([0.2, 0.4, 0.1]) {
@@ -69,7 +69,7 @@ fn val_a_core_that_relaxes_is_found() {
 fn val_a_cubic_suspension_is_found() {
     let folder = tempfile::tempdir().unwrap();
     let Some((test, truth)) = made_of(folder.path(), "clean", ("cubic-stiffness", 5), 71) else { return };
-    let said = trace_by_modes(&test, &|_| {}).unwrap();
+    let said = trace(&test).unwrap();
     assert_constants(&said, &truth);
     let springs = effect(&said, "cubic-stiffness");
     let put_in = truth["effects"][0]["parameters"]["k3"].as_f64().unwrap();
@@ -85,7 +85,7 @@ fn val_a_cubic_suspension_is_found() {
 fn val_a_plate_in_the_place_of_the_beam_is_found() {
     let folder = tempfile::tempdir().unwrap();
     let Some((test, truth)) = made_of(folder.path(), "clean", ("width-coupling", 5), 71) else { return };
-    let said = trace_by_modes(&test, &|_| {}).unwrap();
+    let said = trace(&test).unwrap();
     assert_constants(&said, &truth);
     let plate = effect(&said, "width-coupling");
     let constant = |name: &str| truth["constants"][name].as_f64().unwrap();

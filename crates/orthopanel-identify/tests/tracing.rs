@@ -113,7 +113,7 @@ fn val_a_mass_at_the_sensor_is_ambiguous_and_what_parts_it_is_told() {
     assert!(next.starts_with("move the sensor to x = ") && apart > 10.0, "{next}");
 }
 
-/// A core that softens as it is strained more is in no catalogue: what is left is not white.
+/// A core that softens as it is strained more is in no catalogue.
 #[test]
 fn val_what_no_effect_makes_stays_unexplained() {
     let folder = tempfile::tempdir().unwrap();
@@ -121,8 +121,6 @@ fn val_what_no_effect_makes_stays_unexplained() {
     let found = trace(&test).unwrap();
     assert_eq!(found.verdict, Verdict::Unexplained, "{:?}", found.effects);
     assert!(found.error.after.held_out > 1.5 * found.error.noise_floor, "{:?}", found.error);
-    let independent = found.error.independent.unwrap();
-    assert!(independent.after < 0.5 * independent.noise, "{independent:?}");
     // No place or mass parts what does not fit: what may be wrong is to be looked at.
     assert!(found.next_experiment.contains("check the sizes and their units"), "{}", found.next_experiment);
 }

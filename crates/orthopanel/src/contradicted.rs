@@ -9,7 +9,7 @@ use orthopanel_model::StructureKind;
 use crate::error::CommandError;
 use crate::evidence::Evidence;
 use crate::record_options::IdentifyOptions;
-use crate::traced::{By, Traced};
+use crate::traced::Traced;
 use crate::{console, report};
 
 /// A test whose base model was refused, and its trace.
@@ -24,7 +24,7 @@ impl Contradicted {
     ///
     /// # Errors
     /// The refusal itself where it is another than that records contradict a beam; what the trace refuses.
-    pub fn of(test: ImpactTest, (path, by): (&Path, By), refused: CommandError) -> Result<Self, CommandError> {
+    pub fn of(test: ImpactTest, path: &Path, refused: CommandError) -> Result<Self, CommandError> {
         if !matches!(refused, CommandError::Identify { source: IdentifyError::Contradiction { .. }, .. }) {
             return Err(refused);
         }
@@ -32,8 +32,7 @@ impl Contradicted {
             return Err(refused);
         }
         console::say(format_args!("not identified: {refused}"));
-        let traced =
-            Traced::from_test(&test, by).map_err(|source| CommandError::Identify { path: path.into(), source })?;
+        let traced = Traced::from_test(&test).map_err(|source| CommandError::Identify { path: path.into(), source })?;
         Ok(Self { test, traced, refused })
     }
 

@@ -79,7 +79,7 @@ pub(super) fn poles(records: &[PlaceRecord]) -> Vec<Pole> {
     let power: Vec<f64> =
         (0..first.frequency.len()).map(|line| alike.iter().map(|record| record.value[line].norm_sqr()).sum()).collect();
     let noise = NoisePower::of(&alike);
-    let mut heard = peaks(&power, PROMINENCE);
+    let mut heard = peaks(&power);
     heard.retain(|&line| power[line] > SIGNAL_TO_NOISE * noise.power[line]);
     let mut found: Vec<Pole> = heard.par_iter().filter_map(|&line| common_pole(&alike, &power, line)).collect();
     found.sort_by(|a, b| a.frequency.total_cmp(&b.frequency));
@@ -89,7 +89,7 @@ pub(super) fn poles(records: &[PlaceRecord]) -> Vec<Pole> {
 }
 
 /// Lines of local maxima that stand out from both sides.
-fn peaks(power: &[f64], prominence: f64) -> Vec<usize> {
+fn peaks(power: &[f64]) -> Vec<usize> {
     let mut found = Vec::new();
     for line in 2..power.len().saturating_sub(2) {
         let height = power[line];
@@ -102,7 +102,7 @@ fn peaks(power: &[f64], prominence: f64) -> Vec<usize> {
                 if value > height {
                     return false;
                 }
-                if value < height / prominence {
+                if value < height / PROMINENCE {
                     return true;
                 }
             }
@@ -195,29 +195,4 @@ pub(super) fn project_out(mut columns: Vec<Vec<Complex64>>, mut right: Vec<Compl
         }
     }
     right
-}
-
-#[cfg(test)]
-mod tests {
-    use num_complex::Complex64;
-
-    use super::*;
-
-    /// The power of a panel with a core that takes much energy hardly falls between two of its modes.
-    #[test]
-    fn val_peaks_of_much_damping_rise_little() {
-        let power: Vec<f64> = (1..1200)
-            .map(|hertz| {
-                let s = Complex64::new(0.0, f64::from(hertz));
-                let mode = |own: f64, zeta: f64| s * s / (s * s + 2.0 * zeta * own * s + own * own);
-                (mode(300.0, 0.12) - mode(700.0, 0.12)).norm_sqr()
-            })
-            .collect();
-        assert!(peaks(&power, PROMINENCE).len() < 2);
-        let flat = peaks(&power, FLAT);
-        assert_eq!(flat.len(), 2, "{flat:?}");
-        for (line, own) in flat.into_iter().zip([300.0, 700.0]) {
-            assert!(((line + 1) as f64 / own - 1.0).abs() < 0.1, "{line}");
-        }
-    }
 }

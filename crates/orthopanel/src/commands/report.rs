@@ -10,7 +10,7 @@ use crate::evidence::Evidence;
 use crate::identified::Identified;
 use crate::outputs::{Inputs, Outputs};
 use crate::record_options::IdentifyOptions;
-use crate::traced::{By, Traced};
+use crate::traced::Traced;
 use crate::{console, report};
 
 /// Write what a test shows onto one HTML page, which needs no network and nothing beside it
@@ -32,9 +32,6 @@ pub struct Arguments {
     output: PathBuf,
     #[command(flatten)]
     options: IdentifyOptions,
-    /// What the trace judges hypotheses by
-    #[arg(long, value_enum, default_value_t = By::Both)]
-    trace_by: By,
     /// Print one JSON object (orthopanel.report/1) on standard output
     #[arg(long)]
     json: bool,
@@ -52,7 +49,7 @@ struct Answer<'a> {
 }
 
 pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
-    let Arguments { test: path, output, options, trace_by, json } = arguments;
+    let Arguments { test: path, output, options, json } = arguments;
     let (inputs, test) = Inputs::reading_test(path)?;
     let outputs = Outputs::of(inputs)?;
     let outputs = match output.parent().filter(|folder| !folder.as_os_str().is_empty()) {
@@ -61,10 +58,10 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
     };
     let mut outputs = outputs.planned(output)?;
     let identified = match Identified::from_test(&test, path, options) {
-        Err(refused) => return trace_alone(arguments, outputs, Contradicted::of(test, (path, *trace_by), refused)?),
+        Err(refused) => return trace_alone(arguments, outputs, Contradicted::of(test, path, refused)?),
         Ok(identified) => identified,
     };
-    let traced = Traced::where_possible(&test, path, *trace_by);
+    let traced = Traced::where_possible(&test, path);
     let evidence = Evidence::of(&identified, traced.as_ref().ok(), options.settings()?.estimation, path)?;
     outputs.add(output, report::page(path, &identified, &traced, &evidence)?);
     outputs.write()?;

@@ -19,7 +19,7 @@ use crate::measured_pairs::{HitMisfit, misfit_table};
 use crate::outputs::{self, Inputs, Outputs};
 use crate::record_options::IdentifyOptions;
 use crate::time_response::Hold;
-use crate::traced::{By, Traced};
+use crate::traced::Traced;
 use crate::{console, json, pictures, progress, report, time_response};
 
 /// Do all of it: identify the panel of a test, trace what its model lacks, export its FMUs, simulate a hit, draw the result
@@ -54,9 +54,6 @@ pub struct Arguments {
     output: PathBuf,
     #[command(flatten)]
     options: IdentifyOptions,
-    /// What the trace judges hypotheses by
-    #[arg(long, value_enum, default_value_t = By::Both)]
-    trace_by: By,
     /// Print one JSON object (orthopanel.run/1) on standard output
     #[arg(long)]
     json: bool,
@@ -97,18 +94,18 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
 }
 
 fn make(arguments: &Arguments, holds_earlier: bool) -> Result<(), CommandError> {
-    let Arguments { test: path, output, options, trace_by, json } = arguments;
+    let Arguments { test: path, output, options, json } = arguments;
     let (inputs, test) = Inputs::reading_test(path)?;
     let mut files = Outputs::of(inputs)?.filling(output, MANIFEST).planned_inside(names(&test))?;
     let identified = match Identified::from_test(&test, path, options) {
         Err(refused) => {
-            let contradicted = Contradicted::of(test, (path, *trace_by), refused)?;
+            let contradicted = Contradicted::of(test, path, refused)?;
             let files = (contradicted.traced.explains() || !holds_earlier).then_some(files);
             return trace_alone(arguments, files, contradicted);
         }
         Ok(identified) => identified,
     };
-    let traced = Traced::where_possible(&test, path, *trace_by);
+    let traced = Traced::where_possible(&test, path);
     let models =
         traced.as_ref().map_or_else(|_| identified.models.clone(), |traced| traced.applied_to(&identified.models));
     let evidence = Evidence::of(&identified, traced.as_ref().ok(), options.settings()?.estimation, path)?;

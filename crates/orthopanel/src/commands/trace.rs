@@ -7,7 +7,7 @@ use orthopanel_data::ImpactTest;
 use crate::error::CommandError;
 use crate::identified::suffixes;
 use crate::outputs::{Inputs, Outputs};
-use crate::traced::{By, Traced};
+use crate::traced::Traced;
 use crate::{console, model_file};
 
 /// Name the physical effect that the model of a test lacks
@@ -25,12 +25,10 @@ use crate::{console, model_file};
 /// With several pieces in the test there is one model a piece, MODEL-NAME.json, and MODEL-manifest.json lists them (see
 /// `orthopanel identify --help`).
 ///
-/// No real panel is the ideal model: where a mode lies a thousandth beside it, lines miss by many times the noise. Then the modes that
-/// the hits show are compared, and by how much a sound model of this panel misses them is estimated with the rest; --by lines and
-/// --by modes ask for one of the two alone.
+/// No real panel is the ideal model: of records the modes that they show are compared, and by how much a sound model of this panel misses
+/// them is estimated with the rest.
 ///
-/// Examples: orthopanel trace examples/misplaced-hit/test.toml -o traced.json
-///           orthopanel trace examples/misplaced-hit/test.toml --by modes
+/// Example: orthopanel trace examples/misplaced-hit/test.toml -o traced.json
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
 pub struct Arguments {
@@ -39,20 +37,16 @@ pub struct Arguments {
     /// Model file to write (orthopanel.model/1, JSON)
     #[arg(short, long, value_name = "MODEL.json")]
     output: Option<PathBuf>,
-    /// What hypotheses are judged by
-    #[arg(long, value_enum, default_value_t = By::Both)]
-    by: By,
     /// Print one JSON object (orthopanel.trace/2) on standard output
     #[arg(long)]
     json: bool,
 }
 
 pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
-    let Arguments { test: path, output, by, json } = arguments;
+    let Arguments { test: path, output, json } = arguments;
     let (inputs, test) = Inputs::reading_test(path)?;
     let outputs = model_file::planned_each(Outputs::of(inputs)?, output.as_deref(), &test)?;
-    let traced =
-        Traced::from_test(&test, *by).map_err(|source| CommandError::Identify { path: path.clone(), source })?;
+    let traced = Traced::from_test(&test).map_err(|source| CommandError::Identify { path: path.clone(), source })?;
     let written = match output {
         Some(output) => write_models(outputs, output, &test, path, &traced),
         None => Ok(()),

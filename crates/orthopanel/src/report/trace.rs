@@ -10,7 +10,7 @@ use super::table::Table;
 use crate::error::CommandError;
 use crate::evidence::{HitsWithEffects, PairResidual};
 use crate::measured_pairs::place_text;
-use crate::traced::{INDEPENDENT, Traced, comparison, effect_rows, ranking_headings, ranking_rows};
+use crate::traced::{Traced, comparison, effect_rows, ranking_headings, ranking_rows};
 use crate::{notes, pictures};
 
 pub struct TraceSection {
@@ -20,8 +20,6 @@ pub struct TraceSection {
     pub constants: Option<Table>,
     pub measure: String,
     pub comparison: Table,
-    /// What its last column is, of records.
-    pub independent: Option<&'static str>,
     /// By how much the model misses beside noise.
     pub model_error: Option<String>,
     /// Where most is left of records that no effect explains.
@@ -31,12 +29,10 @@ pub struct TraceSection {
     /// What the ranking is by.
     pub about_ranking: &'static str,
     pub ranking: Table,
-    /// Whether the ranking has hypotheses that the search did not follow to the end.
-    pub has_left_behind: bool,
     /// What stays in the model, what was taken out and why.
     pub ownership: Vec<String>,
     pub next_experiment: String,
-    /// What was assumed or left out, and how rough the test is.
+    /// What was assumed or left out.
     pub notes: Vec<String>,
     /// Effects that these data cannot show, with the reason.
     pub not_tested: Vec<String>,
@@ -60,11 +56,9 @@ impl TraceSection {
             constants: constants_with_it(traced),
             measure: tracing.error.measure.clone(),
             comparison: Table::new(&headings, rows),
-            independent: tracing.error.independent.map(|_| INDEPENDENT),
             model_error: traced.model_error(),
             left: traced.left(),
             about_held_out: about_held_out(tracing),
-            has_left_behind: tracing.candidates.iter().any(|candidate| candidate.left_behind.is_some()),
             about_ranking: if tracing.model_error.is_some() { BY_EVIDENCE } else { BY_CRITERION },
             ranking: Table::new(&ranking, ranking_rows(tracing, usize::MAX)),
             ownership: traced.ownership(),
@@ -104,29 +98,12 @@ const BY_EVIDENCE: &str = "The natural logarithm of the evidence of each hypothe
 const BY_CRITERION: &str =
     "Bayes' information criterion over that of the best, less is better, and the error on what was held out.";
 
-/// With fewer pairs of places it is a hit that is held out.
-const LEAST_PLACES: usize = 3;
-const HIT_HELD_OUT: &str = "Held out is one hit after the other, and fitted is the mean of all hits. A single hit is noisier than the \
-                            mean, so the same misfit counts for less beside its noise: the figure held out may stand below the \
-                            fitted one.";
-const RECORD_HELD_OUT: &str = "Held out is one record after the other, of a single record one mode after the other, each foretold by all others: what those \
+const HELD_OUT: &str = "Held out is one record after the other, of a single record one mode after the other, each foretold by all others: what those \
                                leave open counts, so the figure held out may stand below the fitted one.";
-const PLACE_HELD_OUT: &str = "Held out is one pair of places after the other. What only its own record tells, as damping above \
-                              the band, stays open within what the others leave: the figure held out may stand below the fitted one.";
-
 fn about_held_out(tracing: &Tracing) -> Option<&'static str> {
     let is_below = |error: FittedError| error.held_out < error.fitted;
-    let pairs = tracing.accelerances.len();
-    let is_odd = pairs > 0 && (is_below(tracing.error.before) || is_below(tracing.error.after));
-    if tracing.model_error.is_some() {
-        return is_odd.then_some(RECORD_HELD_OUT);
-    }
-    // A record's own parameter, which leaving its place out would leave untold, is judged by hits too.
-    let is_own = tracing
-        .effects
-        .iter()
-        .any(|effect| effect.parameters.iter().any(|of| of.values.len() > 1 || of.name == "record"));
-    is_odd.then_some(if pairs < LEAST_PLACES || is_own { HIT_HELD_OUT } else { PLACE_HELD_OUT })
+    let is_odd = !tracing.accelerances.is_empty() && (is_below(tracing.error.before) || is_below(tracing.error.after));
+    is_odd.then_some(HELD_OUT)
 }
 
 /// A row a pair of places.
@@ -182,27 +159,13 @@ mod tests {
     use orthopanel_data::ImpactTest;
 
     use super::*;
-    use crate::traced::By;
-
-    /// The picture of what is left stands where the table beside it has its number.
-    #[test]
-    fn val_what_the_picture_shows_left_is_what_the_table_says() {
-        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/misplaced-hit/test.toml");
-        let test = ImpactTest::read(Path::new(path)).expect("a test");
-        let traced = Traced::from_test(&test, By::Lines).expect("a trace");
-        let told = traced.tracing.error.after.fitted;
-        for pair in &traced.tracing.accelerances {
-            let shown = PairResidual::of(pair).rms();
-            assert!((shown / told - 1.0).abs() < 0.1, "{shown} in the picture, {told} in the table");
-        }
-    }
 
     /// The lines are drawn at the numbers that the modes say: where nothing is missing, these leave little more than noise.
     #[test]
     fn val_the_picture_shows_noise_where_nothing_is_missing() {
         let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/made-hits/test.toml");
         let test = ImpactTest::read(Path::new(path)).expect("a test");
-        let traced = Traced::from_test(&test, By::Modes).expect("a trace");
+        let traced = Traced::from_test(&test).expect("a trace");
         assert!(!traced.tracing.accelerances.is_empty());
         for pair in &traced.tracing.accelerances {
             let shown = PairResidual::of(pair).rms();

@@ -1,4 +1,4 @@
-//! Where the residual of records that no effect explains stands out: in frequency, by place, from hit to hit.
+//! Where the residual of records that no effect explains stands out: in frequency and by place.
 
 use orthopanel_identify::Verdict;
 use orthopanel_model::Readable;
@@ -11,29 +11,14 @@ use crate::measured_pairs::place_text;
 const BANDS: usize = 8;
 /// Less than this over the noise stands out nowhere.
 const NOISE: f64 = 1.1;
-/// Hits that scatter by more than so many times their noise do not repeat.
-const SCATTERED: f64 = 2.0;
 
 impl Traced {
-    /// Sentences on what is left where no effect explains the records; `None` with any other verdict.
+    /// A sentence on what is left where no effect explains the records; `None` with any other verdict.
     pub fn left(&self) -> Option<String> {
-        let tracing = &self.tracing;
-        // Files of accelerances tell neither hits nor, at the resonances, how far they drift.
-        let of_hits = tracing.error.independent.is_some() || tracing.model_error.is_some();
-        if tracing.verdict != Verdict::Unexplained || !of_hits {
+        if self.tracing.verdict != Verdict::Unexplained {
             return None;
         }
-        let pairs: Vec<PairResidual> = tracing.accelerances.iter().map(PairResidual::of).collect();
-        let floor = tracing.error.noise_floor;
-        let by_level = (floor > SCATTERED).then(|| {
-            format!(
-                "The hits of a place scatter by {:.1} times their noise: what is missing changes from hit to hit, as with their level or \
-                 place",
-                Readable(floor)
-            )
-        });
-        let sentences: Vec<String> = standing_out(&pairs).into_iter().chain(by_level).collect();
-        (!sentences.is_empty()).then(|| sentences.join(". "))
+        standing_out(&self.tracing.accelerances.iter().map(PairResidual::of).collect::<Vec<_>>())
     }
 }
 

@@ -8,16 +8,13 @@ mod tables;
 use std::path::Path;
 
 use orthopanel_data::{ImpactTest, KnownConstant};
-use orthopanel_identify::{
-    AcceleranceFit, IdentifyError, Progress, Removed, Settings, Tracing, Verdict, trace_by_lines, trace_by_modes,
-    trace_with,
-};
+use orthopanel_identify::{AcceleranceFit, IdentifyError, Progress, Removed, Settings, Tracing, Verdict, trace_with};
 use orthopanel_model::{Damping, PanelModel, Place};
 use serde_json::Value;
 
 use crate::identified::{ASSUMED_DAMPING, base_models, to_digits};
 use crate::{console, notes, progress};
-pub use tables::{INDEPENDENT, comparison, effect_rows, ranking_headings, ranking_rows};
+pub use tables::{comparison, effect_rows, ranking_headings, ranking_rows};
 
 /// What a mode's entry in a model's provenance tells of the test alone.
 const AS_MEASURED: [&str; 4] = ["mode", "nodes", "measured_hz", "measured_std_hz"];
@@ -25,22 +22,8 @@ const AS_MEASURED: [&str; 4] = ["mode", "nodes", "measured_hz", "measured_std_hz
 /// Standard deviations of a traced panel's damping ratios, in its provenance.
 const DAMPING_STD: &str = "damping_std";
 
-const DAMPING_OF_MODES: &str = "with the effects, the ratios of the measured modes less what dashpots and windows among the effects bring; beyond \
+const DAMPING: &str = "with the effects, the ratios of the measured modes less what dashpots and windows among the effects bring; beyond \
                                 their geometric mean";
-const DAMPING_OF_RECORDS: &str = "with the effects, the ratios with which the records as a whole fit best; beyond the band \
-                                  assumed, one usual for their resonances";
-
-/// What hypotheses are judged by.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-pub enum By {
-    /// Every line; where no hypothesis meets the lines of the hits of one piece within their noise, the modes
-    Both,
-    /// Every line of the records, for a panel that is as its model but for an effect
-    Lines,
-    /// The modes that the hits of one piece show, beside an error of the model that is estimated: for panels as real ones are
-    Modes,
-}
-
 /// A trace of a test.
 pub struct Traced {
     pub tracing: Tracing,
@@ -48,15 +31,11 @@ pub struct Traced {
 
 impl Traced {
     /// Traces; shows on standard error how far it is, and says what was noted.
-    pub fn from_test(test: &ImpactTest, by: By) -> Result<Self, IdentifyError> {
+    pub fn from_test(test: &ImpactTest) -> Result<Self, IdentifyError> {
         let mut tracing = {
             let shown = progress::counted("tracing what the model lacks");
             let tell = |at: Progress| shown.at(at.done, at.of, at.effect);
-            match by {
-                By::Both => trace_with(test, &tell)?,
-                By::Lines => trace_by_lines(test, &tell)?,
-                By::Modes => trace_by_modes(test, &tell)?,
-            }
+            trace_with(test, &tell)?
         };
         for panel in tracing.panels.iter_mut().filter(|panel| panel.damping == Damping::default()) {
             // Lists tell no damping, and a panel without any would ring for ever.
@@ -74,8 +53,8 @@ impl Traced {
 
     /// As [`Traced::from_test`] where tracing is not all that was asked for: of a test that it refuses the sentence that
     /// says so, which goes to standard error too.
-    pub fn where_possible(test: &ImpactTest, path: &Path, by: By) -> Result<Self, String> {
-        Self::from_test(test, by).map_err(|error| {
+    pub fn where_possible(test: &ImpactTest, path: &Path) -> Result<Self, String> {
+        Self::from_test(test).map_err(|error| {
             console::say(format_args!("not traced: {}: {error}", path.display()));
             format!("Not traced: {error}.")
         })
@@ -168,8 +147,7 @@ impl Traced {
         };
         provenance.insert("accelerance_rms_percent".into(), to_digits(accelerances, 2).into());
         provenance.remove("damping_law");
-        let of = if self.tracing.model_error.is_some() { DAMPING_OF_MODES } else { DAMPING_OF_RECORDS };
-        provenance.insert("damping".into(), of.into());
+        provenance.insert("damping".into(), DAMPING.into());
     }
 
     /// Rms of what the model with the effects leaves of the records over the rms measured \[%\]; `None` where lists

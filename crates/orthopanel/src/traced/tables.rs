@@ -23,21 +23,14 @@ fn parameter_rows(effect: &TracedEffect, parameter: &TracedParameter) -> Vec<Vec
     (1..).zip(&parameter.values).map(row).collect()
 }
 
-/// The base, the model with the effects, and the noise: error on what was fitted and on what was held out, and of records the
-/// effective number of independent lines. Headings first.
-pub fn comparison(tracing: &Tracing) -> (Vec<&'static str>, Vec<Vec<String>>) {
+/// The base, the model with the effects, and the noise: error on what was fitted and on what was held out. Headings first.
+pub fn comparison(tracing: &Tracing) -> ([&'static str; 3], Vec<Vec<String>>) {
     let error = &tracing.error;
     let row = |name: &str, error: FittedError| vec![name.into(), number(error.fitted), number(error.held_out)];
     let floor = FittedError { fitted: error.noise_floor, held_out: error.noise_floor };
-    let mut headings = vec!["", "fitted", "held out"];
     let least = if tracing.model_error.is_some() { "noise and model error" } else { "noise floor" };
-    let mut rows = vec![row("before", error.before), row("after", error.after), row(least, floor)];
-    if let Some(of) = error.independent {
-        headings.push("independent");
-        let parts = [of.before, of.after, of.noise];
-        rows.iter_mut().zip(parts).for_each(|(row, part)| row.push(format!("{:.0} %", 100.0 * part)));
-    }
-    (headings, rows)
+    let rows = vec![row("before", error.before), row("after", error.after), row(least, floor)];
+    (["", "fitted", "held out"], rows)
 }
 
 /// Headings of [`ranking_rows`].
@@ -52,12 +45,8 @@ pub fn ranking_rows(tracing: &Tracing, most: usize) -> Vec<Vec<String>> {
     let best = tracing.candidates.iter().map(of).fold(f64::NEG_INFINITY, f64::max);
     let row = |candidate: &Candidate| {
         let margin = if candidate.bic.is_some() { best - of(candidate) } else { of(candidate) - best };
-        let parameters = parameters_text(candidate);
-        let told = match candidate.left_behind {
-            Some(rate) => format!("left behind at peaks widened by {rate:.0} /s; {parameters}"),
-            None => parameters,
-        };
-        vec![candidate.id.clone(), format!("{:.1}", Readable(margin)), number(candidate.held_out), told]
+        let error = number(candidate.held_out);
+        vec![candidate.id.clone(), format!("{:.1}", Readable(margin)), error, parameters_text(candidate)]
     };
     tracing.candidates.iter().take(most).map(row).collect()
 }
@@ -83,10 +72,6 @@ fn parameters_text(candidate: &Candidate) -> String {
 fn number(value: f64) -> String {
     if (0.01..1e4).contains(&value) { format!("{value:.3}") } else { format!("{value:.2e}") }
 }
-
-/// What the last column of the comparison is.
-pub const INDEPENDENT: &str = "Independent: the effective number of independent lines, of all; what is left is white where this is that of noise, whose \
-     lines the window ties together too.";
 
 /// Hypotheses listed for people; JSON holds all.
 const LISTED: usize = 10;
@@ -123,9 +108,6 @@ impl Traced {
         text += &format!("\n{}\n", tracing.error.measure);
         let (headings, rows) = comparison(tracing);
         text += &aligned(&headings, &rows);
-        if tracing.error.independent.is_some() {
-            text += &format!("{INDEPENDENT}\n");
-        }
         text.extend(self.model_error().map(|told| told + "\n"));
         text.extend(self.left().map(|left| left + ".\n"));
         let [hypothesis, evidence, held_out] = ranking_headings(tracing);
