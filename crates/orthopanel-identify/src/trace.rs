@@ -114,7 +114,7 @@ fn beside_identify(
     let mut found = traced(&identified)?;
     match refuse_missed(test, &found.accelerances) {
         Ok(()) => Ok(match identified.gain {
-            Some((gain, said)) => with_gain(found, gain, said),
+            Some((gain, said)) => with_gain(found, declared_gain(test), (gain, said)),
             None => found,
         }),
         Err(factor @ IdentifyError::OtherUnits { .. }) => Err(factor),
@@ -148,8 +148,25 @@ fn identified(test: &ImpactTest) -> Result<Identified, IdentifyError> {
     }
 }
 
-/// A factor on all records is said first, and named where nothing else lacks.
-fn with_gain(mut found: Tracing, gain: Estimate, said: String) -> Tracing {
+/// The number of a gain that the test file declares.
+fn declared_gain(test: &ImpactTest) -> Option<f64> {
+    let declared = test.effects.iter().find(|effect| effect.id == GAIN)?;
+    declared.parameters.get("gain").copied()
+}
+
+/// A factor on all records is said first, and named where nothing else lacks; beside a declared one, that one is doubted.
+fn with_gain(mut found: Tracing, declared: Option<f64>, (gain, said): (Estimate, String)) -> Tracing {
+    if let Some(declared) = declared {
+        let sentence = format!(
+            "the declared gain may have a wrong number: gain = {:.4e} in place of {declared:.4e}",
+            gain.value * declared
+        );
+        found.verdict = Verdict::Unexplained;
+        found.effects.clear();
+        found.next_experiment = format!("check the numbers of what is declared ({GAIN}): {sentence}");
+        found.notes.insert(0, sentence);
+        return found;
+    }
     found.notes.insert(0, said);
     let is_named = found.effects.iter().any(|effect| effect.id == GAIN);
     if found.verdict == Verdict::NothingMissing && !is_named {
