@@ -136,9 +136,16 @@ impl Part {
         records: usize,
     ) -> Option<Self> {
         let mut way = Self::ways(effect, piece, records).into_iter().next()?;
-        for (slot, value) in way.slots.iter_mut().zip(values) {
-            if let Some(value) = value {
-                *slot = Slot::Held(*value);
+        for ((slot, value), parameter) in way.slots.iter_mut().zip(values).zip(effect.parameters()) {
+            match (value, slot) {
+                (Some(value), slot) => *slot = Slot::Held(*value),
+                // What is looked for in a part of its range may be anywhere in it once it is declared.
+                (None, Slot::Free(Coordinate { map: Map::Size { median, log_factor, .. }, range }))
+                    if parameter.range_looked_for(piece) != *range =>
+                {
+                    *log_factor = (range.1 / *median).ln() / FARTHEST;
+                }
+                (None, _) => {}
             }
         }
         Some(Self { role: Role::Declared, ..way })
