@@ -337,6 +337,16 @@ impl Hypothesis {
         self.constants.iter().zip(values).filter_map(of).collect()
     }
 
+    /// The coordinates at which a free factor on all records is so many times what it is; `None` where there is none.
+    pub(crate) fn multiplied(&self, z: &[f64], times: f64) -> Option<Vec<f64>> {
+        let number = self.parts.iter().position(|part| part.effect.id() == "gain" && part.free() > 0)?;
+        let (part, own) = (&self.parts[number], self.of_parts(z)[number]);
+        let before = self.free_constants() + self.parts[..number].iter().map(Part::free).sum::<usize>();
+        let value = part.values(own).first()? * times;
+        let moved = part.coordinates_of(&[value]);
+        value.is_finite().then(|| [&z[..before], &moved, &z[before + own.len()..]].concat())
+    }
+
     /// The coordinates of each part, in order.
     pub(crate) fn of_parts<'z>(&self, z: &'z [f64]) -> Vec<&'z [f64]> {
         let mut from = self.free_constants();

@@ -17,7 +17,7 @@ use crate::judge::ODDS;
 use crate::measured::MeasuredModes;
 use crate::model_error::{KINDS, Waves, medians, waves};
 use crate::posterior::{Judged, Point, Posterior, Problem};
-use crate::predicted::Predictor;
+use crate::predicted::{PartnerInRecord, Prediction, Predictor};
 use crate::search_progress::SearchProgress;
 
 /// $\ln\tau_k$ with which starts are judged: wide, so that far ones have a slope to follow.
@@ -100,6 +100,19 @@ fn starting_constants(
     Ok(best)
 }
 
+/// What the measured residues are over those predicted, all together.
+fn larger(comparison: &Comparison, at: &Prediction) -> f64 {
+    let square = |values: &[f64]| -> f64 {
+        let of_record = |(record, partners): (usize, &Vec<Option<PartnerInRecord>>)| -> f64 {
+            let poles = (0..partners.len()).filter(|pole| partners[*pole].is_some());
+            let places = poles.map(|pole| comparison.residue_place(record, pole));
+            places.map(|place| values[place].powi(2) + values[place + 1].powi(2)).sum()
+        };
+        at.partners.iter().enumerate().map(of_record).sum()
+    };
+    (square(&comparison.values) / square(&at.values)).sqrt()
+}
+
 impl<'a> Inquiry<'a> {
     /// With nothing missing: the base from which all begin.
     pub(crate) fn begin(
@@ -123,7 +136,12 @@ impl<'a> Inquiry<'a> {
                 let starts = part.starts(|_, _| vec![]);
                 nets = nets.iter().flat_map(|net| starts.iter().map(|start| [&net[..], start].concat())).collect();
             }
-            let Ok(at) = problem.at(&nets[0]) else { continue };
+            let Ok(mut at) = problem.at(&nets[0]) else { continue };
+            // A sensitivity that is open may be any, and is told at once.
+            if let Some(z) = hypothesis.multiplied(&nets[0], larger(comparison, &at)) {
+                let Ok(there) = problem.at(&z) else { continue };
+                (at, nets[0]) = (there, z);
+            }
             // Modes first: a remainder near the resonances of cords leads nowhere from afar.
             let errors = problem.errors(&at);
             let Some(modes) = problem.whitening_of_modes(&errors, &logs(LOOSE)) else { continue };
