@@ -6,7 +6,7 @@
 
 use faer::Mat;
 use num_complex::Complex64;
-use orthopanel_model::{Field, ModelError};
+use orthopanel_model::{EffectState, Field, ModelError};
 
 use crate::comparison::Comparison;
 use crate::predicted::{Prediction, Predictor, distinct};
@@ -124,10 +124,10 @@ pub(crate) type Waves = Vec<(usize, Vec<f64>)>;
 ///
 /// # Errors
 /// As [`Predictor::uneven`].
-pub(crate) fn waves(predictor: &Predictor, constants: &[f64]) -> Result<Waves, ModelError> {
+pub(crate) fn waves(predictor: &Predictor, constants: &[f64], effects: &[EffectState]) -> Result<Waves, ModelError> {
     let mut waves = Vec::new();
     for field in Field::ALL {
-        for (number, column) in predictor.uneven(constants, field, WAVES)?.into_iter().enumerate() {
+        for (number, column) in predictor.uneven((constants, effects), field, WAVES)?.into_iter().enumerate() {
             let length = 2.0 * predictor.piece().length / (number + 1) as f64;
             let first = match field {
                 Field::Shear => Kind::LongestCore,

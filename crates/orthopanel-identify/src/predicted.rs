@@ -283,15 +283,21 @@ impl<'a> Predictor<'a> {
         Ok(self.compared(&channels, &Views { places, views }))
     }
 
-    /// Derivatives of all values by the amplitudes of waves of a field that is uneven along the panel, at these constants without effects.
+    /// Derivatives of all values by the amplitudes of waves of a field that is uneven along the panel, at these constants, of effects with those of the
+    /// channel alone.
     ///
     /// # Errors
     /// As [`ModifiedPanel::uneven`].
-    pub(crate) fn uneven(&self, constants: &[f64], field: Field, waves: usize) -> Result<Vec<Vec<f64>>, ModelError> {
+    pub(crate) fn uneven(
+        &self,
+        (constants, effects): (&[f64], &[EffectState]),
+        field: Field,
+        waves: usize,
+    ) -> Result<Vec<Vec<f64>>, ModelError> {
         let measured = self.comparison.measured;
         let places: Vec<[Place; 2]> =
             measured.records.iter().map(|record| [record.force_at, record.response_at]).collect();
-        let channels: Vec<Channel> = places.iter().map(|_| Channel::default()).collect();
+        let channels = (0..places.len()).map(|record| self.channel(record, effects)).collect::<Result<Vec<_>, _>>()?;
         let setting = self.setting(0);
         let even = self.panel.seen_from(&setting, &self.places, false, constants, &[])?;
         let values_of = |modes: SeenModes| {
@@ -312,14 +318,15 @@ impl<'a> Predictor<'a> {
         Ok(by_waves.into_iter().map(derivative).collect())
     }
 
-    /// The partner of each pole among the modes that the first record sees.
-    fn partners(&self, seen: &Views, omega: &[f64], bottom: f64) -> Vec<Option<usize>> {
+    /// The partner of each pole among the modes that the first record sees, each as large as the channels show it.
+    fn partners(&self, channels: &[Channel], seen: &Views, omega: &[f64], bottom: f64) -> Vec<Option<usize>> {
         let measured = self.comparison.measured;
         let top = ABOVE * measured.poles.last().map_or(TAU * measured.band[1], |pole| pole.angular_frequency);
         let candidates: Vec<usize> = (0..omega.len()).filter(|&n| omega[n] > bottom && omega[n] < top).collect();
         let product = |record: usize, n: usize| {
             let (view, [force, response]) = seen.of_record(record);
-            view.modes.deflection.get(n).map_or(0.0, |mode| mode[force] * mode[response])
+            let shown = channels[record].at(Complex64::new(0.0, omega[n])).norm();
+            view.modes.deflection.get(n).map_or(0.0, |mode| shown * mode[force] * mode[response])
         };
         let shape = |&n: &usize| (omega[n], (0..measured.records.len()).map(|record| product(record, n)).collect());
         let shapes: Vec<(f64, Vec<f64>)> = candidates.iter().map(shape).collect();
@@ -354,7 +361,7 @@ impl<'a> Predictor<'a> {
         // A mode whose skirt leaves the band is not told: it may be as damped as those below it are.
         let beside = measured.poles.iter().rev().take(BESIDE).filter_map(|pole| pole.damping_ratio);
         let top = MOSTLY_SEEN * TAU * measured.band[1] / (1.0 + SKIRT * beside.fold(0.0, f64::max));
-        let partners = self.partners(seen, omega, bottom);
+        let partners = self.partners(channels, seen, omega, bottom);
         let size = comparison.size();
         let [mut values, mut by_force, mut by_response] = [(); 3].map(|()| vec![0.0; size]);
         let mut phase = vec![Complex64::I; measured.poles.len()];

@@ -17,7 +17,7 @@ use crate::judge::ODDS;
 use crate::measured::MeasuredModes;
 use crate::model_error::{KINDS, Waves, medians, waves};
 use crate::posterior::{Judged, Point, Posterior, Problem};
-use crate::predicted::{PartnerInRecord, Prediction, Predictor};
+use crate::predicted::{Prediction, Predictor};
 use crate::search_progress::SearchProgress;
 
 /// $\ln\tau_k$ with which starts are judged: wide, so that far ones have a slope to follow.
@@ -100,15 +100,13 @@ fn starting_constants(
     Ok(best)
 }
 
-/// What the measured residues are over those predicted, all together.
+/// What the measured remainders are over those predicted, all together.
 fn larger(comparison: &Comparison, at: &Prediction) -> f64 {
+    let numbers = at.near_hanging..comparison.measured.remainder_frequencies.len();
     let square = |values: &[f64]| -> f64 {
-        let of_record = |(record, partners): (usize, &Vec<Option<PartnerInRecord>>)| -> f64 {
-            let poles = (0..partners.len()).filter(|pole| partners[*pole].is_some());
-            let places = poles.map(|pole| comparison.residue_place(record, pole));
-            places.map(|place| values[place].powi(2) + values[place + 1].powi(2)).sum()
-        };
-        at.partners.iter().enumerate().map(of_record).sum()
+        let places = (0..comparison.measured.records.len())
+            .flat_map(|record| numbers.clone().map(move |number| comparison.remainder_place(record, number)));
+        places.map(|place| values[place].powi(2) + values[place + 1].powi(2)).sum()
     };
     (square(&comparison.values) / square(&at.values)).sqrt()
 }
@@ -154,7 +152,7 @@ impl<'a> Inquiry<'a> {
             }
         }
         let Some((_, hypothesis, point)) = best else { return Ok(None) };
-        inquiry.waves = waves(&inquiry.predictor, &hypothesis.constants(&point.z))?;
+        inquiry.waves = waves(&inquiry.predictor, &hypothesis.constants(&point.z), &hypothesis.effects(&point.z)?)?;
         Ok(inquiry.with_base(hypothesis, point))
     }
 

@@ -11,7 +11,7 @@ use crate::measured::{MeasuredModes, MeasuredRecord};
 use crate::model_error::{ErrorColumns, waves};
 use crate::outcome::Verdict;
 use crate::posterior::{Judged, Whitening};
-use crate::predicted::{Prediction, Predictor};
+use crate::predicted::Predictor;
 use crate::search::Inquiry;
 use crate::to_check::to_check;
 
@@ -150,17 +150,20 @@ impl<'a> Further<'a> {
         let mut setting = self.of.setting(0);
         setting.record = RecordSetting { response_at: Some(self.measured.records[0].response_at), ..setting.record };
         let predictor = Predictor::new(&comparison, StructureKind::TimoshenkoBeam, &setting)?;
-        let at = self.predicted(&predictor, one)?;
-        let other = self.predicted(&predictor, other)?;
-        let uneven = waves(&predictor, &one.hypothesis.constants(&one.posterior.point.z))?;
+        let predicted = |judged: &Judged| -> Result<_, ModelError> {
+            let (constants, effects) = (judged.hypothesis.constants(&judged.posterior.point.z), self.effects(judged)?);
+            Ok((predictor.at(&constants, &effects, true)?, constants, effects))
+        };
+        let ((at, constants, effects), (other, ..)) = (predicted(one)?, predicted(other)?);
+        let uneven = waves(&predictor, &constants, &effects)?;
         let errors = ErrorColumns::about(&comparison, &at, &uneven);
         let by = Whitening::new(&errors.covariance(&comparison.noise, &one.posterior.log_sizes));
         let apart: Vec<f64> = at.values.iter().zip(&other.values).map(|(one, other)| one - other).collect();
         Ok(by.map(|by| by.whitened(&apart).iter().map(|value| value * value).sum::<f64>().sqrt()))
     }
 
-    /// With the effects that are not of one record alone.
-    fn predicted(&self, predictor: &Predictor, judged: &Judged) -> Result<Prediction, ModelError> {
+    /// The effects that are not of one record alone.
+    fn effects(&self, judged: &Judged) -> Result<Vec<EffectState>, ModelError> {
         let (hypothesis, z) = (&judged.hypothesis, &judged.posterior.point.z);
         let mut states = Vec::new();
         for (part, z) in hypothesis.parts.iter().zip(hypothesis.of_parts(z)) {
@@ -173,7 +176,7 @@ impl<'a> Further<'a> {
             let sensor = sensor_with(self.added_mass, &mut states)?;
             states.push(sensor);
         }
-        predictor.at(&hypothesis.constants(z), &states, true)
+        Ok(states)
     }
 }
 
