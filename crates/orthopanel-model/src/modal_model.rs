@@ -1,8 +1,6 @@
 //! The hinge of the house: everything that can vibrate becomes a [`ModalModel`]; accelerance, time response and
 //! the FMU need nothing else.
 
-use std::ops::Range;
-
 use serde::{Deserialize, Serialize};
 
 use crate::ModelError;
@@ -145,22 +143,6 @@ impl ModalModel {
                 coupling.iter_mut().for_each(|row| row.resize(size, 0.0));
             }
         }
-    }
-
-    /// The same modes with some of the force ports alone.
-    ///
-    /// # Errors
-    /// [`ModelError::PortCount`] where there are no such ports.
-    pub fn with_forces(&self, ports: Range<usize>) -> Result<Self, ModelError> {
-        let mut some = Self { force_count: ports.len(), ..self.clone() };
-        for (index, mode) in some.modes.iter_mut().enumerate() {
-            let Some(shapes) = mode.at_forces.get(ports.clone()) else {
-                let (found, expected) = (mode.at_forces.len(), ports.end);
-                return Err(ModelError::PortCount { mode: index + 1, ports: "forces", found, expected });
-            };
-            mode.at_forces = shapes.to_vec();
-        }
-        Ok(some)
     }
 
     /// Number of force ports.

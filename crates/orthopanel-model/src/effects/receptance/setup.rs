@@ -106,16 +106,6 @@ impl ReceptanceSetup {
         Ok(ReceptanceModel::new(records, zetas, columns))
     }
 
-    /// Frequencies \[Hz\] of the flexible modes that every line sums, without point elements.
-    ///
-    /// # Errors
-    /// As [`ReceptanceSetup::model`].
-    pub fn summed_frequencies(&self, values: &[f64], effects: &[EffectState]) -> Result<Vec<f64>, ModelError> {
-        let base = self.real_base(values, effects)?;
-        let lambda = |&(block, number): &(usize, usize)| base.blocks[block].lambda[number];
-        Ok(base.near[base.rigid..].iter().map(|at| lambda(at).sqrt() / std::f64::consts::TAU).collect())
-    }
-
     /// The modes that every line sums and that lie below `up_to` \[Hz\], without point elements, seen from these places.
     ///
     /// # Errors
