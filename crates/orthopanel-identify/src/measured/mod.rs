@@ -4,6 +4,7 @@
 //! below and above the band leave of it, and the covariance that the noise of the data gives all of these together.
 
 mod accelerances;
+mod drift;
 mod faint;
 mod frequencies;
 mod hits;

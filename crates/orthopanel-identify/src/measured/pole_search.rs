@@ -157,7 +157,7 @@ pub(super) fn poles(records: &[RecordLines], start: PoleParameters) -> Option<Fo
 }
 
 /// Refined poles, with lines that count by themselves near where they began; sorted.
-fn fit(records: &[RecordLines], poles: PoleParameters, tolerance: f64) -> Option<Found> {
+pub(super) fn fit(records: &[RecordLines], poles: PoleParameters, tolerance: f64) -> Option<Found> {
     let fit = ModalFit::new(records, &poles);
     let (mut poles, _) = fit.minimise(poles, tolerance)?;
     poles.sort_by(|a, b| a[0].total_cmp(&b[0]));

@@ -8,6 +8,7 @@ use num_complex::Complex64;
 use orthopanel_data::{Accelerance, TimeHistory};
 use rayon::prelude::*;
 
+use super::drift::Drift;
 use super::lines::RecordLines;
 use super::modal_fit::{ModalFit, lambda};
 use super::pole_search::{Found, in_parts, joined};
@@ -72,13 +73,14 @@ impl MeasuredModes {
         records.iter_mut().for_each(|record| *record = record.between(band));
         scatter.cut(&records);
         let mut found = joined(&records, start)?;
+        let drift = if records.len() > 1 && !found.by_noise() { Drift::removed(&mut records, &mut found) } else { Drift::none() };
         for _ in 0..SCATTERS {
             if !scatter.follows(&mut records, &found) {
                 break;
             }
             found = joined(&records, found.poles)?;
         }
-        Some(told(piece, &records, &found, band))
+        Some(told(piece, &records, (&found, &drift), band))
     }
 }
 
@@ -99,11 +101,15 @@ fn inside(found: &Found, scale: f64, band: [f64; 2]) -> (Vec<usize>, DMatrix<f64
 }
 
 /// The fit in the terms of [`MeasuredModes`]; the poles that do not stand by themselves go to the remainders.
-fn told(piece: usize, records: &[RecordLines], found: &Found, band: [f64; 2]) -> MeasuredModes {
+fn told(piece: usize, records: &[RecordLines], (found, drift): (&Found, &Drift), band: [f64; 2]) -> MeasuredModes {
     let fit = ModalFit::new(records, &found.poles);
     let chi_square = found.fitted.misfit / found.freedom;
     let scale = chi_square.max(f64::MIN_POSITIVE);
-    let (kept, pole_covariance) = inside(found, scale, band);
+    let (kept, mut pole_covariance) = inside(found, scale, band);
+    for (number, pole) in found.poles.iter().enumerate() {
+        let variances = drift.of_mean(*pole).into_iter().enumerate();
+        variances.for_each(|(part, variance)| pole_covariance[(2 * number + part, 2 * number + part)] += variance);
+    }
     let remainder_frequencies = remainder_frequencies(band);
     let [modes, all] = [kept.len(), found.poles.len()];
     let block = 2 * (modes + remainder_frequencies.len());
