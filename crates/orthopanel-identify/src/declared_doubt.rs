@@ -18,6 +18,17 @@ impl Inquiry<'_> {
         declared.filter_map(|(index, part)| Some((index, self.freed(base, (index, part))?))).collect()
     }
 
+    /// The base without each declared effect that the file gives no number of; with the effect's number among its own.
+    pub(crate) fn left_out(&self, base: &Judged) -> Vec<(usize, Judged)> {
+        let is_open = |part: &Part| part.role == Role::Declared && part.is_open();
+        let open = base.hypothesis.parts.iter().enumerate().filter(|(_, part)| is_open(part)).map(|(index, _)| index);
+        let without = |index: usize| {
+            let (hypothesis, z) = base.hypothesis.without(index, &base.posterior.point.z);
+            Some((index, self.best_from(base, hypothesis, vec![z])?))
+        };
+        open.filter_map(without).collect()
+    }
+
     fn freed(&self, base: &Judged, (index, part): (usize, &Part)) -> Option<Judged> {
         // A number of its own in each record is no single value that could be carried over.
         if part.effect.parameters().iter().any(|parameter| parameter.each_record) {

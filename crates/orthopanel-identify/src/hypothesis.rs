@@ -159,6 +159,11 @@ impl Part {
         self.coordinates().count()
     }
 
+    /// Whether all of its values are looked for.
+    pub(crate) fn is_open(&self) -> bool {
+        self.free() == self.slots.len()
+    }
+
     /// The parameter of each value.
     pub(crate) fn parameters(&self) -> impl Iterator<Item = &'static EffectParameter> {
         let times = self.slots.len().saturating_sub(self.effect.parameters().len()) + 1;

@@ -40,7 +40,7 @@ use crate::{IdentifyError, Settings, identify};
 ///
 /// # Errors
 /// [`IdentifyError::PlateNotTraced`] for a declared plate; what [`identify`] refuses of the records themselves, such as too few
-/// resonances or [`IdentifyError::OtherUnits`]; an answer that misses most of the motion; and tests that this version cannot trace.
+/// resonances or [`IdentifyError::OtherUnits`]; and tests that this version cannot trace.
 pub fn trace(test: &ImpactTest) -> Result<Tracing, IdentifyError> {
     trace_with(test, &|_| {})
 }
@@ -104,8 +104,8 @@ struct Identified {
 }
 
 /// A trace beside what `identify` says: records that it refuses have no effect, but a line of the test file that is wrong. Where most of the
-/// motion is missed, whatever the effect, nothing is named: what a trace leaves `unexplained` stands beside the refusal, and any other
-/// verdict is refused.
+/// motion is missed, whatever the effect, nothing is named, though the modes that the records show may be explained: `unexplained` stands beside
+/// the refusal.
 fn beside_identify(
     test: &ImpactTest,
     traced: impl FnOnce(&Identified) -> Result<Tracing, IdentifyError>,
@@ -120,10 +120,10 @@ fn beside_identify(
         Err(factor @ IdentifyError::OtherUnits { .. }) => Err(factor),
         Err(missed) => {
             let refused = identified.refused.unwrap_or(missed);
-            if found.verdict != Verdict::Unexplained {
-                return Err(refused);
-            }
+            found.verdict = Verdict::Unexplained;
             found.effects.clear();
+            found.removed.clear();
+            found.alternatives.clear();
             found.notes.insert(0, format!("identify refuses these records: {refused}"));
             Ok(found)
         }

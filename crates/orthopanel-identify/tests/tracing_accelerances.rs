@@ -1,11 +1,12 @@
 //! Tracing in files of accelerances, which hold no hits.
 
+use std::f64::consts::TAU;
 use std::fmt::Write as _;
 use std::path::Path;
 
 use crate::support::{made, shared_data};
 use orthopanel_data::{Estimation, ImpactTest, MeasurementData, RecordedResponse};
-use orthopanel_identify::{Settings, TracedEffect, Tracing, Verdict, identify, trace};
+use orthopanel_identify::{Settings, TracedEffect, Verdict, identify, measured_modes, trace};
 use orthopanel_model::Place;
 
 fn parameter(effect: &TracedEffect, name: &str) -> Vec<(f64, f64)> {
@@ -13,67 +14,22 @@ fn parameter(effect: &TracedEffect, name: &str) -> Vec<(f64, f64)> {
     found.values.iter().map(|value| (value.value, value.std.unwrap_or(0.0))).collect()
 }
 
-fn effect<'a>(found: &'a Tracing, id: &str) -> &'a TracedEffect {
-    let ids: Vec<&str> = found.effects.iter().map(|effect| effect.id).collect();
-    found.effects.iter().find(|effect| effect.id == id).unwrap_or_else(|| panic!("{id} is not among {ids:?}"))
-}
-
-/// The numbers of the note that holds these words.
-fn numbers_of(found: &Tracing, words: &str) -> Vec<f64> {
-    let note = found.notes.iter().find(|note| note.contains(words));
-    let note = note.unwrap_or_else(|| panic!("{words}: {:?}", found.notes));
-    note.split_whitespace().filter_map(|word| word.parse().ok()).collect()
-}
-
-/// Rms error of the natural frequencies \[%\], before and after, as a note tells it.
-fn frequency_errors(found: &Tracing) -> (f64, f64) {
-    let numbers = numbers_of(found, "natural frequencies");
-    (numbers[1], numbers[2])
-}
-
-/// A real free beam: the gain of record 4 and hammer offsets between the resonances, a sensor's mass in the resonances,
-/// which a sensor that never moves cannot prove.
+/// A real free beam whose driving point is 17 % low in gain and whose blows fell up to 9 mm beside their marks: residues miss any beam by a tenth,
+/// and no effect is named that is not there. Its frequencies drift by a third of a half-width from record to record.
 #[test]
-fn val_the_free_beam_shows_an_oblique_hit_and_hides_its_sensor() {
+fn val_the_free_beam_names_no_effect_that_is_not_there() {
     let Some(folder) = shared_data("free_beam") else { return };
-    let found = trace(&ImpactTest::read(folder.join("test.toml")).unwrap()).unwrap();
-    assert_eq!(found.verdict, Verdict::Ambiguous);
-    let ids: Vec<&str> = found.effects.iter().map(|effect| effect.id).collect();
-    assert_eq!(ids[..2], ["record-gain", "hammer-offset"]);
-    let gain = effect(&found, "record-gain");
-    assert_eq!(parameter(gain, "record")[0].0, 4.0);
-    let (value, std) = parameter(gain, "gain")[0];
-    assert!((value - 0.83).abs() < 0.02 && std < 0.02, "gain {value} +- {std}");
-    // "Off by up to 9 mm", as the data's own page says.
-    assert!(parameter(effect(&found, "hammer-offset"), "offset").iter().all(|(offset, _)| offset.abs() < 9e-3));
-    let (mass, std) = parameter(effect(&found, "sensor-mass"), "mass")[0];
-    assert!((mass - 2.5e-3).abs() < 0.5e-3 && std < 0.5e-3, "sensor {mass} +- {std} kg");
-    assert!(
-        found.alternatives.iter().all(|id| id.starts_with("record-gain + hammer-offset")),
-        "{:?}",
-        found.alternatives
-    );
-    assert!(found.next_experiment.contains("sensor"), "{}", found.next_experiment);
-    // The number of a record is no size that could end on a bound.
-    assert!(!found.notes.iter().any(|note| note.contains("lies on its bound")), "{:?}", found.notes);
-    let (before, after) = frequency_errors(&found);
-    println!("natural frequencies: {before} % rms before, {after} % after");
-    assert!((before - 0.012).abs() < 0.001 && after < 0.003, "{before} {after}");
-    let error = &found.error;
-    println!("between the peaks, neighbours averaged: {error:?}");
-    assert!(error.after.fitted < 7.0 && error.after.held_out < 7.0 && error.before.fitted > 9.0, "{error:?}");
-    let band = numbers_of(&found, "between the resonances");
-    // From 20 Hz is asked; what a high-pass or a suspension does lies below, and is read with it.
-    assert!(band[0] > 4.0 && band[0] < 20.0 && (band[1] - 1000.0).abs() < 5.0, "{band:?}");
-    // 14.5 to 7 % or less is asked, without saying how lines are weighed. Each by the motion at its frequency, as above, that is met; as one
-    // number for all lines it is missed by half a per cent.
-    let one_number = numbers_of(&found, "as one number");
-    println!("between the peaks, as one number: {one_number:?}");
-    assert!((one_number[0] - 14.5).abs() < 1.0 && one_number[1] < 7.8, "{one_number:?}");
-    // The floor is that of the lines between the resonances; what the model misses there is no noise.
-    assert!(error.noise_floor < 2.0, "{error:?}");
-    let scale = found.not_tested.iter().find(|not| not.id == "gain").unwrap();
-    assert!(scale.reason.contains("calibrated"));
+    let test = ImpactTest::read(folder.join("test.toml")).unwrap();
+    let modes = measured_modes(&test).unwrap();
+    for told in [111.994, 306.854, 596.367, 974.14] {
+        let found = modes[0].poles.iter().map(|pole| pole.angular_frequency / TAU);
+        let apart = found.map(|found| (found / told - 1.0).abs()).fold(f64::INFINITY, f64::min);
+        assert!(apart < 1e-5, "{told} Hz: {apart:e}");
+    }
+    let found = trace(&test).unwrap();
+    assert_eq!((found.verdict, found.effects.len()), (Verdict::Unexplained, 0), "{:?}", found.effects);
+    let error = found.model_error.unwrap();
+    assert!(error.frequency < 3e-4 && (0.05..0.2).contains(&error.residue), "{error:?}");
 }
 
 /// The accelerances of a made roving test, without its hits, in files of their own.
@@ -155,11 +111,7 @@ fn val_files_at_each_others_places_are_not_explained() {
     // What `identify` refuses is said first.
     let refused = identify(&moved, Settings::default()).unwrap_err();
     assert_eq!(found.notes[0], format!("identify refuses these records: {refused}"));
-    assert!(found.error.before.fitted > 30.0, "{:?}", found.error);
     assert!(found.next_experiment.contains("check the places of hammer and sensor"), "{}", found.next_experiment);
-    // Else all would be well: the resonances meet the model within their scatter.
-    let resonances = numbers_of(&found, "natural frequencies");
-    assert!(resonances[1] < 3.0 * resonances[3], "{:?}", found.notes);
 }
 
 #[test]

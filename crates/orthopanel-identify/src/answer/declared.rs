@@ -15,6 +15,7 @@ use crate::{AcceleranceFit, HiddenMode, Identification, IdentifyError, ModeFit, 
 
 use super::bounds::{notes_on_bound, notes_on_prior_alone};
 use super::damping::TracedDamping;
+use super::doubt::notes_on_not_shown;
 use super::drawn;
 use super::estimates::Estimates;
 use super::lines::{Drawn, Lines};
@@ -57,6 +58,7 @@ fn identification(
     let total: f64 = pairs().map(|(_, measured)| measured.norm_sqr()).sum();
     let mut notes = lines.notes_of_records();
     notes.extend(alone(inquiry, base));
+    notes.extend(notes_on_not_shown(inquiry, base));
     notes.extend(notes_on_prior_alone(base, &estimates));
     notes.extend(notes_on_bound(&estimates, &named.piece));
     Ok(Identification {

@@ -1,4 +1,4 @@
-//! What is said of a declared number that may be wrong.
+//! What is said of a declared number that may be wrong, and of a declared effect that may not be there.
 
 use crate::error::spaced;
 use crate::judge::ODDS;
@@ -40,6 +40,22 @@ pub(super) fn doubts(inquiry: &Inquiry, base: &Judged, best: &Judged) -> Vec<Dou
         }
     };
     doubted.map(doubt).collect()
+}
+
+/// A sentence on each declared effect without numbers that the measured modes are clearly likelier without: the numbers found are what a sound model's
+/// error is taken for.
+pub(super) fn notes_on_not_shown(inquiry: &Inquiry, base: &Judged) -> Vec<String> {
+    let gain = |without: &Judged| without.log_odds - base.log_odds;
+    let clearly = inquiry.left_out(base).into_iter().filter(|(_, without)| gain(without) > ODDS.ln());
+    let note = |(index, without): (usize, Judged)| {
+        let id = base.hypothesis.parts[index].effect.id();
+        format!(
+            "the records do not show the declared {id}: the logarithm of the odds is {:.1} better without it, whatever the numbers that are found for \
+             it. Leave the effect out, or give its numbers",
+            gain(&without)
+        )
+    };
+    clearly.map(note).collect()
 }
 
 /// Weighing what is declared costs less than any hit, and no hit parts it from an effect of the panel that undoes it.

@@ -30,7 +30,7 @@ use crate::search::Inquiry;
 use crate::to_check::GAIN_OR_MASS;
 
 use bounds::{notes_on_bound, notes_on_prior_alone};
-use doubt::{check_first, doubts};
+use doubt::{check_first, doubts, notes_on_not_shown};
 use estimates::{Estimates, id};
 use lines::{Drawn, Lines};
 use misfit::Yardstick;
@@ -111,6 +111,7 @@ fn tracing_of(test: &ImpactTest, inquiry: &Inquiry, all: &[Judged]) -> Result<Tr
     }
     notes.extend(doubts.iter().map(|doubt| doubt.sentence.clone()));
     notes.extend(near.iter().map(|rival| standing(chosen, rival)));
+    notes.extend(notes_on_not_shown(inquiry, base));
     notes.extend(notes_on_prior_alone(chosen, &estimates));
     notes.extend(notes_on_bound(&estimates, &test.pieces[measured.piece].piece));
     let next_experiment = match check.clone().next() {

@@ -3,9 +3,9 @@
 use num_complex::Complex64;
 use rayon::prelude::*;
 
+use super::joint_fit::{Found, fit};
 use super::lines::RecordLines;
 use super::modal_fit::{ModalFit, PoleParameters, lambda};
-use super::pole_search::{Found, fit};
 
 /// Rounds of common poles and own ones.
 const ROUNDS: usize = 3;
@@ -22,7 +22,6 @@ pub(super) struct Drift {
 }
 
 impl Drift {
-    /// No drift.
     pub(super) fn none() -> Self {
         Self { poles: vec![], of_mean: vec![] }
     }
@@ -31,8 +30,11 @@ impl Drift {
     /// known with variances $\sigma_r^2$, the drift has the variance $\sigma_d^2$ at which $\delta_r^2$ is $\sigma_d^2+\sigma_r^2$ in the mean, and
     /// $\delta_r\sigma_d^2/(\sigma_d^2+\sigma_r^2)$ is removed: a record that hardly shows a mode keeps the common pole.
     pub(super) fn removed(records: &mut [RecordLines], found: &mut Found) -> Self {
-        let measured = records.to_vec();
         let mut drift = Self::none();
+        if records.len() == 1 {
+            return drift;
+        }
+        let measured = records.to_vec();
         for _ in 0..ROUNDS {
             let common = found.poles.clone();
             let own: Vec<Option<Own>> = measured.par_iter().map(|record| Own::of(record, &common)).collect();
@@ -73,7 +75,8 @@ impl Own {
         let (poles, fitted) = fit.minimise(common.clone(), OWN)?;
         let scale = (fitted.misfit / fit.freedom(poles.len())).max(1.0);
         let own = poles.iter().zip(common).flat_map(|(own, common)| [own[0] - common[0], own[1] - common[1]]);
-        let variance = (0..2 * poles.len()).map(|place| scale / fitted.curvature[(place, place)].max(f64::MIN_POSITIVE));
+        let variance =
+            (0..2 * poles.len()).map(|place| scale / fitted.curvature[(place, place)].max(f64::MIN_POSITIVE));
         Some(Self { apart: own.collect(), variance: variance.collect() })
     }
 
@@ -106,8 +109,7 @@ impl Own {
 
 /// The variance of the drift of one parameter over the records.
 fn size(own: &[Option<Own>], place: usize) -> f64 {
-    let told: Vec<[f64; 2]> =
-        own.iter().flatten().map(|own| [own.apart[place].powi(2), own.variance[place]]).collect();
+    let told: Vec<[f64; 2]> = own.iter().flatten().map(|own| [own.apart[place].powi(2), own.variance[place]]).collect();
     let mut size = 0.0;
     for _ in 0..SIZES {
         let weighed = told.iter().map(|[square, variance]| {

@@ -8,6 +8,7 @@ mod drift;
 mod faint;
 mod frequencies;
 mod hits;
+mod joint_fit;
 mod line_groups;
 mod lines;
 mod modal_fit;

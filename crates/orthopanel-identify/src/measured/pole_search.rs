@@ -5,30 +5,16 @@ use std::f64::consts::TAU;
 use num_complex::Complex64;
 use rayon::prelude::*;
 
+use super::joint_fit::{Found, LAST, fit};
 use super::lines::RecordLines;
-use super::modal_fit::{Fitted, FittedRecord, ModalFit, PoleParameters, lambda};
+use super::modal_fit::{FittedRecord, ModalFit, PoleParameters, lambda};
 use super::stabilisation::stable_poles;
-
-/// Poles found, with the fit at them.
-pub(super) struct Found {
-    pub poles: PoleParameters,
-    pub fitted: Fitted,
-    pub freedom: f64,
-}
-
-impl Found {
-    /// Whether noise explains what the poles leave.
-    pub(super) fn by_noise(&self) -> bool {
-        per_datum(self) < SYSTEMATIC
-    }
-}
 
 /// Damping ratios at which a pole begins.
 const FIRST_ZETAS: [f64; 3] = [1e-3, 4e-3, 2e-2];
-/// Part of the misfit by less than which it falls where a fit ends on the way, and the last: of tens of thousands of data the logarithm of the
-/// likelihood is then told to 0.2 and to 1e-4.
+/// Part of the misfit by less than which it falls where a fit ends on the way: of tens of thousands of data the logarithm of the likelihood is then
+/// told to 0.2.
 const ON_THE_WAY: f64 = 1e-5;
-const LAST: f64 = 1e-8;
 /// Widths in lines over which the misfit is gathered for the next pole: a sharp one and a damped one.
 const WIDTHS: [usize; 3] = [5, 21, 81];
 /// Places without success after which the search ends.
@@ -76,7 +62,7 @@ pub(super) fn in_parts(records: &[RecordLines], band: [f64; 2]) -> (PoleParamete
         .zip(again)
         .map(|(alone, again)| if misfit(&again) < misfit(&alone) { again } else { alone })
         .collect();
-    let explained = parts.iter().position(|part| part.as_ref().is_some_and(|part| part.per_datum >= SYSTEMATIC));
+    let explained = parts.iter().position(|part| part.as_ref().is_some_and(|part| !part.explained));
     let count = explained.filter(|count| *count > 0).unwrap_or(parts.len());
     let mut poles: PoleParameters = parts.into_iter().take(count).flatten().flat_map(|part| part.poles).collect();
     // A pole at the end of a part may be found from either side.
@@ -92,6 +78,8 @@ struct Part {
     /// Of each record, one a pole.
     residues: Vec<Vec<Complex64>>,
     per_datum: f64,
+    /// Whether noise explains what its poles leave.
+    explained: bool,
 }
 
 impl Part {
@@ -104,7 +92,8 @@ impl Part {
         Some(Self {
             poles: own.iter().map(|pole| found.poles[*pole]).collect(),
             residues: found.fitted.records.iter().map(of_record).collect(),
-            per_datum: found.fitted.misfit / found.freedom,
+            explained: found.by_noise(),
+            per_datum: found.per_datum(),
         })
     }
 
@@ -156,16 +145,6 @@ pub(super) fn poles(records: &[RecordLines], start: PoleParameters) -> Option<Fo
     fit(records, found.poles, LAST)
 }
 
-/// Refined poles, with lines that count by themselves near where they began; sorted.
-pub(super) fn fit(records: &[RecordLines], poles: PoleParameters, tolerance: f64) -> Option<Found> {
-    let fit = ModalFit::new(records, &poles);
-    let (mut poles, _) = fit.minimise(poles, tolerance)?;
-    poles.sort_by(|a, b| a[0].total_cmp(&b[0]));
-    let fitted = fit.at(&poles)?;
-    let freedom = fit.freedom(poles.len());
-    Some(Found { poles, fitted, freedom })
-}
-
 /// With one more pole, begun at a frequency \[Hz\] with the damping that suits best; `None` where what is left there does not pay for it.
 fn with_another(records: &[RecordLines], found: &Found, (left, frequency): (&[Vec<Complex64>], f64)) -> Option<Found> {
     let begun = FIRST_ZETAS.iter().flat_map(|zeta| {
@@ -212,20 +191,12 @@ fn around(record: &RecordLines, pole: [f64; 2]) -> [usize; 2] {
     [-near, near].map(|aside| record.s.partition_point(|s| s.im < lambda(pole)[0].im + aside))
 }
 
-/// The misfit per datum, never below that of the noise alone.
-fn per_datum(found: &Found) -> f64 {
-    (found.fitted.misfit / found.freedom).max(1.0)
-}
-
-/// By how much one pole has to lower the misfit: more than noise would let it.
+/// By how much one pole has to lower the misfit: more than noise would let it, or what is left where that is more.
 fn price(records: &[RecordLines], data: f64, left: &Found) -> f64 {
-    (2 + 2 * records.len()) as f64 * data.ln() * per_datum(left)
+    (2 + 2 * records.len()) as f64 * data.ln() * left.per_datum().max(1.0)
 }
 
-/// Misfit per datum from which no noise leaves it: poles are missing, or the records hold what no pole is, a force that is not linear or a panel
-/// that changed, which many poles would mimic.
-const SYSTEMATIC: f64 = 2.0;
-/// Then a pole has to take up this part of the misfit around it, as a resonance that was missing does.
+/// Where noise does not explain what poles leave, one more has to take up this part of the misfit around it, as a resonance that was missing does.
 const LEAST_PART: f64 = 0.5;
 
 fn is_worth(records: &[RecordLines], without: &Found, with: &Found) -> bool {
@@ -252,7 +223,7 @@ fn is_worth(records: &[RecordLines], without: &Found, with: &Found) -> bool {
 }
 
 /// Leaves out poles that pay no more, the least first, as long as the others can be fitted without them.
-fn pruned(records: &[RecordLines], mut found: Found) -> Found {
+pub(super) fn pruned(records: &[RecordLines], mut found: Found) -> Found {
     loop {
         let loss = |pole: usize| found.fitted.records.iter().map(|record| record.loss_without(pole)).sum::<f64>();
         let losses = (0..found.poles.len()).map(|pole| (loss(pole), pole));
