@@ -5,6 +5,7 @@ use std::f64::consts::TAU;
 use num_complex::Complex64;
 use rayon::prelude::*;
 
+use super::drift::Drift;
 use super::joint_fit::{Found, LAST, fit};
 use super::lines::RecordLines;
 use super::modal_fit::{FittedRecord, ModalFit, PoleParameters, lambda};
@@ -78,14 +79,17 @@ struct Part {
     /// Of each record, one a pole.
     residues: Vec<Vec<Complex64>>,
     per_datum: f64,
-    /// Whether noise explains what its poles leave.
+    /// Whether noise and drift between records explain what its poles leave.
     explained: bool,
 }
 
 impl Part {
     /// Of the lines that the part and what lies beside it have, with its ends \[Hz\].
     fn of([from, to]: [f64; 2], seen: &[RecordLines]) -> Option<Self> {
-        let found = poles(seen, stable_poles(seen))?;
+        let mut found = poles(seen, stable_poles(seen))?;
+        if !found.by_noise() {
+            Drift::removed(&mut seen.to_vec(), &mut found);
+        }
         let own = |pole: &usize| (from..to).contains(&(found.poles[*pole][0].exp() / TAU));
         let own: Vec<usize> = (0..found.poles.len()).filter(own).collect();
         let of_record = |record: &FittedRecord| own.iter().map(|pole| record.residue(*pole)).collect();
