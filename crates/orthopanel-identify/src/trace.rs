@@ -8,6 +8,7 @@ use crate::answer::answer;
 use crate::declared_effects::holds_one_kind;
 use crate::list_tracing::trace_lists;
 use crate::outcome::{Progress, Removed, TracedEffect, TracedParameter, Tracing, Verdict};
+use crate::to_check::to_check;
 use crate::{IdentifyError, Settings, identify};
 
 /// Names the effect that the base model of a test lacks, from its records or its natural frequencies. Effects that the test
@@ -120,7 +121,13 @@ fn beside_identify(
         Err(factor @ IdentifyError::OtherUnits { .. }) => Err(factor),
         Err(missed) => {
             let refused = identified.refused.unwrap_or(missed);
-            found.verdict = Verdict::Unexplained;
+            if found.verdict != Verdict::Unexplained {
+                found.verdict = Verdict::Unexplained;
+                found.error.after = found.error.before;
+                found.chi_square = found.error.after.fitted.powi(2);
+                found.accelerances.clone_from(&found.base_accelerances);
+                found.next_experiment = to_check(test, found.error.after.fitted);
+            }
             found.effects.clear();
             found.removed.clear();
             found.alternatives.clear();
