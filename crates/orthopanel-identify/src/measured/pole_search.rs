@@ -36,7 +36,7 @@ const OVERLAP: f64 = 1.2;
 ///
 /// What the poles of the other parts show in a part, a free vibration that the record's end cuts off or a skirt, is removed from it, and its own
 /// poles are found anew; those that explain more are kept.
-pub(super) fn in_parts(records: &[RecordLines], band: [f64; 2]) -> (PoleParameters, f64) {
+pub(super) fn in_parts(records: &[RecordLines], (band, is_told): ([f64; 2], bool)) -> (PoleParameters, f64) {
     let step = records
         .iter()
         .filter_map(|record| Some((record.s.last()?.im - record.s.first()?.im) / TAU / record.s.len() as f64));
@@ -49,12 +49,13 @@ pub(super) fn in_parts(records: &[RecordLines], band: [f64; 2]) -> (PoleParamete
     let seen = |ends: &[f64]| -> Vec<RecordLines> {
         records.iter().map(|record| record.between([ends[0] / OVERLAP, ends[1] * OVERLAP])).collect()
     };
-    let alone: Vec<Option<Part>> = ends.par_windows(2).map(|ends| Part::of([ends[0], ends[1]], &seen(ends))).collect();
+    let alone: Vec<Option<Part>> =
+        ends.par_windows(2).map(|ends| Part::of([ends[0], ends[1]], &seen(ends), is_told)).collect();
     let beside = |(number, ends): (usize, &[f64])| {
         let mut seen = seen(ends);
         let others = alone.iter().enumerate().filter(|(other, _)| *other != number);
         others.filter_map(|(_, other)| other.as_ref()).for_each(|other| other.remove_from(&mut seen));
-        Part::of([ends[0], ends[1]], &seen)
+        Part::of([ends[0], ends[1]], &seen, is_told)
     };
     let again: Vec<Option<Part>> = ends.par_windows(2).enumerate().map(beside).collect();
     let misfit = |part: &Option<Part>| part.as_ref().map_or(f64::INFINITY, |part| part.per_datum);
@@ -85,9 +86,9 @@ struct Part {
 
 impl Part {
     /// Of the lines that the part and what lies beside it have, with its ends \[Hz\].
-    fn of([from, to]: [f64; 2], seen: &[RecordLines]) -> Option<Self> {
+    fn of([from, to]: [f64; 2], seen: &[RecordLines], is_told: bool) -> Option<Self> {
         let mut found = poles(seen, stable_poles(seen))?;
-        if !found.by_noise() {
+        if !(is_told || found.by_noise()) {
             Drift::removed(&mut seen.to_vec(), &mut found);
         }
         let own = |pole: &usize| (from..to).contains(&(found.poles[*pole][0].exp() / TAU));

@@ -75,7 +75,7 @@ impl MeasuredModes {
         (band, is_told): ([f64; 2], bool),
     ) -> Option<Self> {
         let mut scatter = Scatter::most(&mut records);
-        let (start, highest) = in_parts(&records, band);
+        let (start, highest) = in_parts(&records, (band, is_told));
         let band = [band[0], highest.min(band[1])];
         records.iter_mut().for_each(|record| *record = record.between(band));
         scatter.cut(&records);
@@ -87,7 +87,7 @@ impl MeasuredModes {
             found = joined(&records, found.poles)?;
         }
         let mut drift = Drift::none();
-        if !(is_told && found.by_noise()) {
+        if !is_told {
             Scatter::settles(&mut records, &found);
             let standing = pruned(&records, fit(&records, found.poles, LAST)?);
             found = fit(&records, standing.poles, LAST)?;
