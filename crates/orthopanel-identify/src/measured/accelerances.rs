@@ -6,7 +6,7 @@ use orthopanel_data::Accelerance;
 use super::lines::RecordLines;
 
 /// Relative standard deviation of a line where a file does not tell its noise: what a good analyser's averages have.
-const UNTOLD_NOISE: f64 = 1e-2;
+pub(super) const UNTOLD_NOISE: f64 = 1e-2;
 
 impl RecordLines {
     /// From an accelerance, on its lines between two frequencies \[Hz\]. Lines without a finite variance carry nothing and are

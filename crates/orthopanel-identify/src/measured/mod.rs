@@ -4,9 +4,11 @@
 //! below and above the band leave of it, and the covariance that the noise of the data gives all of these together.
 
 mod accelerances;
+mod drift;
 mod faint;
 mod frequencies;
 mod hits;
+mod joint_fit;
 mod line_groups;
 mod lines;
 mod modal_fit;

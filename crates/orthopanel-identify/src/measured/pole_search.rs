@@ -5,30 +5,17 @@ use std::f64::consts::TAU;
 use num_complex::Complex64;
 use rayon::prelude::*;
 
+use super::drift::Drift;
+use super::joint_fit::{Found, LAST, fit};
 use super::lines::RecordLines;
-use super::modal_fit::{Fitted, FittedRecord, ModalFit, PoleParameters, lambda};
+use super::modal_fit::{FittedRecord, ModalFit, PoleParameters, lambda};
 use super::stabilisation::stable_poles;
-
-/// Poles found, with the fit at them.
-pub(super) struct Found {
-    pub poles: PoleParameters,
-    pub fitted: Fitted,
-    pub freedom: f64,
-}
-
-impl Found {
-    /// Whether noise explains what the poles leave.
-    pub(super) fn by_noise(&self) -> bool {
-        per_datum(self) < SYSTEMATIC
-    }
-}
 
 /// Damping ratios at which a pole begins.
 const FIRST_ZETAS: [f64; 3] = [1e-3, 4e-3, 2e-2];
-/// Part of the misfit by less than which it falls where a fit ends on the way, and the last: of tens of thousands of data the logarithm of the
-/// likelihood is then told to 0.2 and to 1e-4.
+/// Part of the misfit by less than which it falls where a fit ends on the way: of tens of thousands of data the logarithm of the likelihood is then
+/// told to 0.2.
 const ON_THE_WAY: f64 = 1e-5;
-const LAST: f64 = 1e-8;
 /// Widths in lines over which the misfit is gathered for the next pole: a sharp one and a damped one.
 const WIDTHS: [usize; 3] = [5, 21, 81];
 /// Places without success after which the search ends.
@@ -49,7 +36,7 @@ const OVERLAP: f64 = 1.2;
 ///
 /// What the poles of the other parts show in a part, a free vibration that the record's end cuts off or a skirt, is removed from it, and its own
 /// poles are found anew; those that explain more are kept.
-pub(super) fn in_parts(records: &[RecordLines], band: [f64; 2]) -> (PoleParameters, f64) {
+pub(super) fn in_parts(records: &[RecordLines], (band, is_told): ([f64; 2], bool)) -> (PoleParameters, f64) {
     let step = records
         .iter()
         .filter_map(|record| Some((record.s.last()?.im - record.s.first()?.im) / TAU / record.s.len() as f64));
@@ -62,12 +49,13 @@ pub(super) fn in_parts(records: &[RecordLines], band: [f64; 2]) -> (PoleParamete
     let seen = |ends: &[f64]| -> Vec<RecordLines> {
         records.iter().map(|record| record.between([ends[0] / OVERLAP, ends[1] * OVERLAP])).collect()
     };
-    let alone: Vec<Option<Part>> = ends.par_windows(2).map(|ends| Part::of([ends[0], ends[1]], &seen(ends))).collect();
+    let alone: Vec<Option<Part>> =
+        ends.par_windows(2).map(|ends| Part::of([ends[0], ends[1]], &seen(ends), is_told)).collect();
     let beside = |(number, ends): (usize, &[f64])| {
         let mut seen = seen(ends);
         let others = alone.iter().enumerate().filter(|(other, _)| *other != number);
         others.filter_map(|(_, other)| other.as_ref()).for_each(|other| other.remove_from(&mut seen));
-        Part::of([ends[0], ends[1]], &seen)
+        Part::of([ends[0], ends[1]], &seen, is_told)
     };
     let again: Vec<Option<Part>> = ends.par_windows(2).enumerate().map(beside).collect();
     let misfit = |part: &Option<Part>| part.as_ref().map_or(f64::INFINITY, |part| part.per_datum);
@@ -76,7 +64,7 @@ pub(super) fn in_parts(records: &[RecordLines], band: [f64; 2]) -> (PoleParamete
         .zip(again)
         .map(|(alone, again)| if misfit(&again) < misfit(&alone) { again } else { alone })
         .collect();
-    let explained = parts.iter().position(|part| part.as_ref().is_some_and(|part| part.per_datum >= SYSTEMATIC));
+    let explained = parts.iter().position(|part| part.as_ref().is_some_and(|part| !part.explained));
     let count = explained.filter(|count| *count > 0).unwrap_or(parts.len());
     let mut poles: PoleParameters = parts.into_iter().take(count).flatten().flat_map(|part| part.poles).collect();
     // A pole at the end of a part may be found from either side.
@@ -92,19 +80,25 @@ struct Part {
     /// Of each record, one a pole.
     residues: Vec<Vec<Complex64>>,
     per_datum: f64,
+    /// Whether noise and drift between records explain what its poles leave.
+    explained: bool,
 }
 
 impl Part {
     /// Of the lines that the part and what lies beside it have, with its ends \[Hz\].
-    fn of([from, to]: [f64; 2], seen: &[RecordLines]) -> Option<Self> {
-        let found = poles(seen, stable_poles(seen))?;
+    fn of([from, to]: [f64; 2], seen: &[RecordLines], is_told: bool) -> Option<Self> {
+        let mut found = poles(seen, stable_poles(seen))?;
+        if !(is_told || found.by_noise()) {
+            Drift::removed(&mut seen.to_vec(), &mut found);
+        }
         let own = |pole: &usize| (from..to).contains(&(found.poles[*pole][0].exp() / TAU));
         let own: Vec<usize> = (0..found.poles.len()).filter(own).collect();
         let of_record = |record: &FittedRecord| own.iter().map(|pole| record.residue(*pole)).collect();
         Some(Self {
             poles: own.iter().map(|pole| found.poles[*pole]).collect(),
             residues: found.fitted.records.iter().map(of_record).collect(),
-            per_datum: found.fitted.misfit / found.freedom,
+            explained: found.by_noise(),
+            per_datum: found.per_datum(),
         })
     }
 
@@ -156,16 +150,6 @@ pub(super) fn poles(records: &[RecordLines], start: PoleParameters) -> Option<Fo
     fit(records, found.poles, LAST)
 }
 
-/// Refined poles, with lines that count by themselves near where they began; sorted.
-fn fit(records: &[RecordLines], poles: PoleParameters, tolerance: f64) -> Option<Found> {
-    let fit = ModalFit::new(records, &poles);
-    let (mut poles, _) = fit.minimise(poles, tolerance)?;
-    poles.sort_by(|a, b| a[0].total_cmp(&b[0]));
-    let fitted = fit.at(&poles)?;
-    let freedom = fit.freedom(poles.len());
-    Some(Found { poles, fitted, freedom })
-}
-
 /// With one more pole, begun at a frequency \[Hz\] with the damping that suits best; `None` where what is left there does not pay for it.
 fn with_another(records: &[RecordLines], found: &Found, (left, frequency): (&[Vec<Complex64>], f64)) -> Option<Found> {
     let begun = FIRST_ZETAS.iter().flat_map(|zeta| {
@@ -212,20 +196,12 @@ fn around(record: &RecordLines, pole: [f64; 2]) -> [usize; 2] {
     [-near, near].map(|aside| record.s.partition_point(|s| s.im < lambda(pole)[0].im + aside))
 }
 
-/// The misfit per datum, never below that of the noise alone.
-fn per_datum(found: &Found) -> f64 {
-    (found.fitted.misfit / found.freedom).max(1.0)
-}
-
-/// By how much one pole has to lower the misfit: more than noise would let it.
+/// By how much one pole has to lower the misfit: more than noise would let it, or what is left where that is more.
 fn price(records: &[RecordLines], data: f64, left: &Found) -> f64 {
-    (2 + 2 * records.len()) as f64 * data.ln() * per_datum(left)
+    (2 + 2 * records.len()) as f64 * data.ln() * left.per_datum().max(1.0)
 }
 
-/// Misfit per datum from which no noise leaves it: poles are missing, or the records hold what no pole is, a force that is not linear or a panel
-/// that changed, which many poles would mimic.
-const SYSTEMATIC: f64 = 2.0;
-/// Then a pole has to take up this part of the misfit around it, as a resonance that was missing does.
+/// Where noise does not explain what poles leave, one more has to take up this part of the misfit around it, as a resonance that was missing does.
 const LEAST_PART: f64 = 0.5;
 
 fn is_worth(records: &[RecordLines], without: &Found, with: &Found) -> bool {
@@ -252,7 +228,7 @@ fn is_worth(records: &[RecordLines], without: &Found, with: &Found) -> bool {
 }
 
 /// Leaves out poles that pay no more, the least first, as long as the others can be fitted without them.
-fn pruned(records: &[RecordLines], mut found: Found) -> Found {
+pub(super) fn pruned(records: &[RecordLines], mut found: Found) -> Found {
     loop {
         let loss = |pole: usize| found.fitted.records.iter().map(|record| record.loss_without(pole)).sum::<f64>();
         let losses = (0..found.poles.len()).map(|pole| (loss(pole), pole));

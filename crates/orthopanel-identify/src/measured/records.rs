@@ -8,9 +8,12 @@ use num_complex::Complex64;
 use orthopanel_data::{Accelerance, TimeHistory};
 use rayon::prelude::*;
 
+use super::accelerances::UNTOLD_NOISE;
+use super::drift::Drift;
+use super::joint_fit::{Found, LAST, fit};
 use super::lines::RecordLines;
 use super::modal_fit::{ModalFit, lambda};
-use super::pole_search::{Found, in_parts, joined};
+use super::pole_search::{in_parts, joined, pruned};
 use super::scatter::Scatter;
 use super::{MeasuredModes, MeasuredRecord, Pole};
 
@@ -48,7 +51,7 @@ impl MeasuredModes {
         ];
         let records: Vec<RecordLines> =
             histories.par_iter().map(|history| RecordLines::of_hits(history, band)).collect();
-        Self::of_lines(piece, records, band)
+        Self::of_lines(piece, records, (band, true))
     }
 
     /// From accelerances of all pairs of places of one piece on the lines that all have; `None` where they show no resonance.
@@ -61,13 +64,18 @@ impl MeasuredModes {
         ];
         let records: Vec<RecordLines> =
             accelerances.iter().map(|accelerance| RecordLines::of_accelerance(accelerance, band)).collect();
-        Self::of_lines(piece, records, band)
+        let is_told = accelerances.iter().all(|accelerance| accelerance.variance.is_some());
+        Self::of_lines(piece, records, (band, is_told))
     }
 
-    /// From lines, in a band \[Hz\].
-    pub(super) fn of_lines(piece: usize, mut records: Vec<RecordLines>, band: [f64; 2]) -> Option<Self> {
+    /// From lines, in a band \[Hz\], and whether their noise is told.
+    pub(super) fn of_lines(
+        piece: usize,
+        mut records: Vec<RecordLines>,
+        (band, is_told): ([f64; 2], bool),
+    ) -> Option<Self> {
         let mut scatter = Scatter::most(&mut records);
-        let (start, highest) = in_parts(&records, band);
+        let (start, highest) = in_parts(&records, (band, is_told));
         let band = [band[0], highest.min(band[1])];
         records.iter_mut().for_each(|record| *record = record.between(band));
         scatter.cut(&records);
@@ -78,7 +86,14 @@ impl MeasuredModes {
             }
             found = joined(&records, found.poles)?;
         }
-        Some(told(piece, &records, &found, band))
+        let mut drift = Drift::none();
+        if !is_told {
+            Scatter::settles(&mut records, &found);
+            let standing = pruned(&records, fit(&records, found.poles, LAST)?);
+            found = fit(&records, standing.poles, LAST)?;
+            drift = Drift::removed(&mut records, &mut found);
+        }
+        Some(told(piece, &records, (&found, &drift), (band, is_told)))
     }
 }
 
@@ -99,11 +114,20 @@ fn inside(found: &Found, scale: f64, band: [f64; 2]) -> (Vec<usize>, DMatrix<f64
 }
 
 /// The fit in the terms of [`MeasuredModes`]; the poles that do not stand by themselves go to the remainders.
-fn told(piece: usize, records: &[RecordLines], found: &Found, band: [f64; 2]) -> MeasuredModes {
+fn told(
+    piece: usize,
+    records: &[RecordLines],
+    (found, drift): (&Found, &Drift),
+    (band, is_told): ([f64; 2], bool),
+) -> MeasuredModes {
     let fit = ModalFit::new(records, &found.poles);
     let chi_square = found.fitted.misfit / found.freedom;
     let scale = chi_square.max(f64::MIN_POSITIVE);
-    let (kept, pole_covariance) = inside(found, scale, band);
+    let (kept, mut pole_covariance) = inside(found, scale, band);
+    for (number, pole) in found.poles.iter().enumerate() {
+        let variances = drift.of_mean(*pole).into_iter().enumerate();
+        variances.for_each(|(part, variance)| pole_covariance[(2 * number + part, 2 * number + part)] += variance);
+    }
     let remainder_frequencies = remainder_frequencies(band);
     let [modes, all] = [kept.len(), found.poles.len()];
     let block = 2 * (modes + remainder_frequencies.len());
@@ -162,9 +186,11 @@ fn told(piece: usize, records: &[RecordLines], found: &Found, band: [f64; 2]) ->
         let values: Vec<Complex64> = residues.iter().chain(&remainder).copied().collect();
         let frequencies =
             kept.iter().map(|pole| found.poles[*pole][0].exp() / TAU).chain(remainder_frequencies.iter().copied());
-        // The noise of a windowed force runs smoothly over a resonance: it moves a whole residue.
+        // The noise of a windowed force runs smoothly over a resonance: it moves a whole residue. Of a noise that is not told it is not known how
+        // much of it runs smoothly.
         for (place, (frequency, value)) in frequencies.zip(values).enumerate() {
-            let variance = 0.5 * record.force_noise_at(frequency) * value.norm_sqr();
+            let smooth = if is_told { record.force_noise_at(frequency) } else { scale * UNTOLD_NOISE.powi(2) };
+            let variance = 0.5 * smooth * value.norm_sqr();
             (0..2).for_each(|part| covariance[(from + 2 * place + part, from + 2 * place + part)] += variance);
         }
         let (force_at, response_at) = (record.force_at, record.response_at);

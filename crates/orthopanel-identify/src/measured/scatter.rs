@@ -8,10 +8,11 @@
 use std::f64::consts::LN_2;
 
 use num_complex::Complex64;
+use rayon::prelude::*;
 
+use super::joint_fit::Found;
 use super::lines::RecordLines;
 use super::modal_fit::ModalFit;
-use super::pole_search::Found;
 
 /// What a line misses, in units of its noise, and its size in the same units; both squared.
 struct Line {
@@ -19,6 +20,8 @@ struct Line {
     size: f64,
 }
 
+/// Lines of which the median is taken: a resonance is a few lines wide in a record that lasts.
+const NEIGHBOURS: usize = 65;
 /// Misfit per datum up to which noise is said to explain it.
 const BY_NOISE: f64 = 2.0;
 
@@ -47,6 +50,19 @@ impl Scatter {
         self.kappa2 = kappa2;
         self.weigh(records);
         changes
+    }
+
+    /// Weighs each line by what its neighbours are missed by, where that is more than their weights say: a file that does not tell its noise has little
+    /// where the panel moves and much where the hammer has no force left.
+    pub(super) fn settles(records: &mut [RecordLines], found: &Found) {
+        let left = ModalFit::new(records, &found.poles).residuals(&found.poles, &found.fitted);
+        records.par_iter_mut().zip(&left).for_each(|(record, left)| {
+            for (line, weight) in record.weight.iter_mut().enumerate() {
+                let from = line.saturating_sub(NEIGHBOURS / 2).min(left.len().saturating_sub(NEIGHBOURS));
+                let near = left.iter().skip(from).take(NEIGHBOURS).map(|left| 0.5 * left.norm_sqr());
+                *weight /= median(near.collect()).max(1.0).sqrt();
+            }
+        });
     }
 
     /// Of the lines that are left of the records.
@@ -88,19 +104,20 @@ fn telling(records: &[RecordLines], noise: &[Vec<f64>], left: &[Vec<Complex64>])
 
 /// $\kappa^2$ at which the median line misses by as much as it should; modes that are not found yet, a few lines each, do not raise it.
 fn scatter(lines: &[Line]) -> f64 {
-    // Squares of a complex Gaussian of mean one have the median $\ln 2$.
-    let median = |kappa2: f64| {
-        let mut squares: Vec<f64> = lines.iter().map(|line| line.missed / (1.0 + kappa2 * line.size)).collect();
-        let middle = squares.len() / 2;
-        if squares.is_empty() { 0.0 } else { *squares.select_nth_unstable_by(middle, f64::total_cmp).1 / LN_2 }
-    };
-    if median(0.0) < BY_NOISE {
+    let of = |kappa2: f64| median(lines.iter().map(|line| line.missed / (1.0 + kappa2 * line.size)).collect());
+    if of(0.0) < BY_NOISE {
         return 0.0;
     }
     let [mut low, mut high] = [1e-12, MOST * MOST];
     for _ in 0..40 {
         let middle = (low * high).sqrt();
-        *if median(middle) > 1.0 { &mut low } else { &mut high } = middle;
+        *if of(middle) > 1.0 { &mut low } else { &mut high } = middle;
     }
     high
+}
+
+/// The mean of squares of a complex Gaussian by their median, which is $\ln 2$ of it.
+fn median(mut squares: Vec<f64>) -> f64 {
+    let middle = squares.len() / 2;
+    if squares.is_empty() { 0.0 } else { *squares.select_nth_unstable_by(middle, f64::total_cmp).1 / LN_2 }
 }
