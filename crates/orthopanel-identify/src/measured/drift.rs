@@ -1,6 +1,5 @@
 //! Poles that differ from record to record: a panel that warms up, a sensor's mass that moves along.
 
-use num_complex::Complex64;
 use rayon::prelude::*;
 
 use super::joint_fit::{Found, fit};
@@ -93,15 +92,10 @@ impl Own {
             .collect();
         let mut corrected = record.clone();
         let Some(fitted) = ModalFit::new(std::slice::from_ref(record), common).at(&poles) else { return corrected };
-        let lines: Vec<usize> = (0..record.s.len()).collect();
         for (number, (own, common)) in poles.iter().zip(common).enumerate() {
             let residue = fitted.records[0].residue(number);
-            for (pole, sign) in [(own, -1.0), (common, 1.0)] {
-                let [real, imaginary] = record.pole(lambda(*pole)[0], &lines).by_residue;
-                let shown = |(real, imaginary): (&Complex64, &Complex64)| residue.re * real + residue.im * imaginary;
-                let lines = corrected.value.iter_mut().zip(real.iter().zip(&imaginary));
-                lines.for_each(|(value, columns)| *value += sign * shown(columns));
-            }
+            record.add_pole(&mut corrected.value, lambda(*own)[0], -residue);
+            record.add_pole(&mut corrected.value, lambda(*common)[0], residue);
         }
         corrected
     }

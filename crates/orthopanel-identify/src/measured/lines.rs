@@ -97,6 +97,15 @@ impl RecordLines {
         }
     }
 
+    /// Adds what a pole with this residue shows, to values that stand one a line.
+    pub(super) fn add_pole(&self, values: &mut [Complex64], lambda: Complex64, residue: Complex64) {
+        let lines: Vec<usize> = (0..self.s.len()).collect();
+        let [real, imaginary] = self.pole(lambda, &lines).by_residue;
+        for (value, (real, imaginary)) in values.iter_mut().zip(real.iter().zip(&imaginary)) {
+            *value += residue.re * real + residue.im * imaginary;
+        }
+    }
+
     /// How a pole shows on these lines.
     ///
     /// With the record's end at $T$ a hit shows of $1/(s-\lambda)$ no more than

@@ -260,13 +260,8 @@ impl<'a> ModalFit<'a> {
     pub(super) fn residuals(&self, poles: &[[f64; 2]], fitted: &Fitted) -> Vec<Vec<Complex64>> {
         let of_record = |(record, found): (&RecordLines, &FittedRecord)| {
             let mut left = record.value.clone();
-            let lines: Vec<usize> = (0..left.len()).collect();
             for (m, pole) in poles.iter().enumerate() {
-                let PoleColumns { by_residue: [real, imaginary], .. } = record.pole(lambda(*pole)[0], &lines);
-                let residue = found.residue(m);
-                for (k, left) in left.iter_mut().enumerate() {
-                    *left -= residue.re * real[k] + residue.im * imaginary[k];
-                }
+                record.add_pole(&mut left, lambda(*pole)[0], -found.residue(m));
             }
             for (term, coefficient) in found.coefficients.iter().skip(2 * poles.len()).enumerate() {
                 let of_line = left.iter_mut().zip(&record.s);

@@ -105,13 +105,11 @@ impl Part {
     /// Removes what its poles show on the lines of another part.
     fn remove_from(&self, records: &mut [RecordLines]) {
         records.par_iter_mut().zip(&self.residues).for_each(|(record, residues)| {
-            let lines: Vec<usize> = (0..record.s.len()).collect();
+            let mut value = std::mem::take(&mut record.value);
             for (pole, residue) in self.poles.iter().zip(residues) {
-                let [real, imaginary] = record.pole(lambda(*pole)[0], &lines).by_residue;
-                for (value, (real, imaginary)) in record.value.iter_mut().zip(real.iter().zip(&imaginary)) {
-                    *value -= residue.re * real + residue.im * imaginary;
-                }
+                record.add_pole(&mut value, lambda(*pole)[0], -residue);
             }
+            record.value = value;
         });
     }
 }
