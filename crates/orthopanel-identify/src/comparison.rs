@@ -14,7 +14,7 @@ const UNSEEN_DEVIATION: f64 = 0.01;
 /// What the carrier itself misses of the logarithm of a frequency: residual shapes stand for all modes beyond.
 const CARRIER: f64 = 2e-6;
 
-/// What the few terms of a series miss of a remainder: they make all its values follow from a few.
+/// What the few terms of a series miss of a remainder, or of its deviation where that is larger: they make all its values follow from a few.
 const SERIES: f64 = 1e-3;
 
 /// The measured values in units that make them alike, with the covariance of their noise: $\ln\omega_m$ of each pole; a record after the
@@ -57,7 +57,7 @@ impl<'a> Comparison<'a> {
             let beside = match i {
                 _ if i != j => 0.0,
                 _ if i < poles => CARRIER.powi(2),
-                _ if i < told && comparison.is_remainder(i) => (SERIES * comparison.values[i].abs().max(1.0)).powi(2),
+                _ if i < told && comparison.is_remainder(i) => SERIES.powi(2) * of_noise.max(comparison.variance_of_size(i)),
                 _ if i < told => f64::EPSILON,
                 _ => UNSEEN_DEVIATION.powi(2),
             };

@@ -3,7 +3,8 @@
 use std::f64::consts::TAU;
 
 use faer::linalg::matmul::triangular::{BlockStructure, matmul};
-use faer::linalg::solvers::{DenseSolveCore as _, Llt, Solve as _};
+use faer::linalg::solvers::{Llt, Solve as _};
+use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
 use faer::{Accum, Mat, Par, Side};
 use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
 use nalgebra::storage::Owned;
@@ -27,14 +28,14 @@ pub(super) type PoleParameters = Vec<[f64; 2]>;
 
 /// $\lambda$ and its derivatives by $\ln\omega$ and $\ln\zeta$.
 pub(super) fn lambda([log_omega, log_zeta]: [f64; 2]) -> [Complex64; 3] {
-    let (omega, zeta) = (log_omega.exp(), log_zeta.exp().min(MOST_ZETA));
+    let (omega, zeta) = (log_omega.exp(), log_zeta.exp().min(MOST_DAMPING));
     let root = (1.0 - zeta * zeta).sqrt();
     let value = omega * Complex64::new(-zeta, root);
     [value, value, -omega * zeta * Complex64::new(1.0, zeta / root)]
 }
 
 /// Beyond this a pole is no resonance, and its square root soon none either.
-const MOST_ZETA: f64 = 0.9;
+pub(super) const MOST_DAMPING: f64 = 0.9;
 
 /// The records of one test and how they are fitted.
 #[derive(Debug)]
@@ -64,8 +65,8 @@ pub(super) struct Fitted {
 pub(super) struct FittedRecord {
     /// Real and imaginary part of each residue, then a coefficient a power.
     pub coefficients: Vec<f64>,
-    /// Covariance of these where the poles are known.
-    pub covariance: Mat<f64>,
+    /// $R$ with $R^TR$ the covariance of these where the poles are known: where poles lie close, the product itself would be lost in rounding.
+    pub root: Mat<f64>,
     /// How they follow the poles' parameters: a row a coefficient.
     pub by_poles: Mat<f64>,
     /// What this record alone adds to [`Fitted::descent`] and [`Fitted::curvature`].
@@ -81,7 +82,7 @@ impl FittedRecord {
     /// By how much the misfit rises without a pole, where the others stay: $q^T\Sigma^{-1}q$ with its residue and the residue's own block $\Sigma$ of
     /// the covariance.
     pub(super) fn loss_without(&self, pole: usize) -> f64 {
-        let of = |i: usize, j: usize| self.covariance[(2 * pole + i, 2 * pole + j)];
+        let of = |i: usize, j: usize| self.root.col(2 * pole + i).transpose() * self.root.col(2 * pole + j);
         let Complex64 { re, im } = self.residue(pole);
         let determinant = of(0, 0) * of(1, 1) - of(0, 1) * of(1, 0);
         (of(1, 1) * re * re - 2.0 * of(0, 1) * re * im + of(0, 0) * im * im) / determinant
@@ -229,11 +230,11 @@ impl<'a> ModalFit<'a> {
             let sum: f64 = (0..2).map(|of| part(parameter, of) * solved[(i, column + of)]).sum();
             -sum / scale[i]
         });
-        let inverse = factor.inverse();
-        let covariance = Mat::from_fn(linear, linear, |i, j| inverse[(i, j)] / (scale[i] * scale[j]));
+        let mut root = Mat::from_fn(linear, linear, |i, j| if i == j { scale[i].recip() } else { 0.0 });
+        solve_lower_triangular_in_place(factor.L(), root.as_mut(), Par::Seq);
         let record = FittedRecord {
             coefficients,
-            covariance,
+            root,
             by_poles,
             descent: turned.transpose() * gradient,
             curvature: turned.transpose() * squares * &turned,

@@ -2,8 +2,8 @@
 
 use std::f64::consts::TAU;
 
-use faer::Mat;
-use nalgebra::DMatrix;
+use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
+use faer::{Mat, Par, Side};
 use num_complex::Complex64;
 use orthopanel_data::{Accelerance, TimeHistory};
 use rayon::prelude::*;
@@ -12,7 +12,7 @@ use super::accelerances::UNTOLD_NOISE;
 use super::drift::Drift;
 use super::joint_fit::{Found, LAST, fit};
 use super::lines::RecordLines;
-use super::modal_fit::{ModalFit, lambda};
+use super::modal_fit::{MOST_DAMPING, ModalFit, lambda};
 use super::pole_search::{in_parts, joined, pruned};
 use super::scatter::Scatter;
 use super::{MeasuredModes, MeasuredRecord, Pole};
@@ -31,6 +31,8 @@ const MOST_UNSURE: f64 = 5e-3;
 const MOST_UNSURE_DAMPING: f64 = 0.5;
 /// Damping ratio from which a pole is no mode but a slope.
 const MOST_ZETA: f64 = 0.25;
+/// Deviation of the logarithms of a pole's frequency and damping before any data: a factor of twenty.
+const UNTOLD_PARAMETER: f64 = 3.0;
 /// Values of the remainder that are told, and the highest of their frequencies \[Hz\].
 const REMAINDER_VALUES: usize = 8;
 const HIGHEST_REMAINDER: f64 = 400.0;
@@ -97,20 +99,25 @@ impl MeasuredModes {
     }
 }
 
-/// Which poles stand by themselves.
-fn inside(found: &Found, scale: f64, band: [f64; 2]) -> (Vec<usize>, DMatrix<f64>) {
+/// Which poles stand by themselves, and $R$ with $R^TR$ the covariance of the poles' parameters.
+fn inside(found: &Found, scale: f64, band: [f64; 2]) -> (Vec<usize>, Mat<f64>) {
     let size = 2 * found.poles.len();
-    let diagonal = DMatrix::from_diagonal(&found.fitted.curvature.diagonal());
-    let regular = &found.fitted.curvature + diagonal * 1e-12;
-    let covariance = regular.try_inverse().unwrap_or_else(|| DMatrix::identity(size, size) * f64::MAX.sqrt()) * scale;
+    // A pole may tell nothing, as a slope does once its damping has run away.
+    let prior = |i: usize, j: usize| if i == j { UNTOLD_PARAMETER.powi(-2) } else { 0.0 };
+    let curvature = Mat::from_fn(size, size, |i, j| found.fitted.curvature[(i, j)] / scale + prior(i, j));
+    let mut root = Mat::identity(size, size);
+    match curvature.llt(Side::Lower) {
+        Ok(factor) => solve_lower_triangular_in_place(factor.L(), root.as_mut(), Par::Seq),
+        Err(_) => root *= UNTOLD_PARAMETER,
+    }
     let stands = |&pole: &usize| {
         let [frequency, zeta] = [found.poles[pole][0].exp() / TAU, found.poles[pole][1].exp()];
         let skirt = SKIRT * zeta * frequency;
-        let is_sure = |parameter: usize, most: f64| covariance[(parameter, parameter)].sqrt() < most;
+        let is_sure = |parameter: usize, most: f64| root.col(parameter).norm_l2() < most;
         let sure = is_sure(2 * pole, MOST_UNSURE) && is_sure(2 * pole + 1, MOST_UNSURE_DAMPING);
         frequency - skirt > band[0] && frequency + skirt < band[1] && zeta < MOST_ZETA && sure
     };
-    ((0..found.poles.len()).filter(stands).collect(), covariance)
+    ((0..found.poles.len()).filter(stands).collect(), root)
 }
 
 /// The fit in the terms of [`MeasuredModes`]; the poles that do not stand by themselves go to the remainders.
@@ -123,11 +130,7 @@ fn told(
     let fit = ModalFit::new(records, &found.poles);
     let chi_square = found.fitted.misfit / found.freedom;
     let scale = chi_square.max(f64::MIN_POSITIVE);
-    let (kept, mut pole_covariance) = inside(found, scale, band);
-    for (number, pole) in found.poles.iter().enumerate() {
-        let variances = drift.of_mean(*pole).into_iter().enumerate();
-        variances.for_each(|(part, variance)| pole_covariance[(2 * number + part, 2 * number + part)] += variance);
-    }
+    let (kept, root) = inside(found, scale, band);
     let remainder_frequencies = remainder_frequencies(band);
     let [modes, all] = [kept.len(), found.poles.len()];
     let block = 2 * (modes + remainder_frequencies.len());
@@ -177,7 +180,8 @@ fn told(
             remainder.push(value);
         }
         let followed = &rows * &fitted.by_poles;
-        let own = &rows * &fitted.covariance * rows.transpose();
+        let own = &fitted.root * rows.transpose();
+        let own = own.transpose() * &own;
         for i in 0..block {
             (0..2 * all).for_each(|j| by_poles[(from + i, j)] += followed[(i, j)]);
             (0..block).for_each(|j| covariance[(from + i, from + j)] = scale * own[(i, j)]);
@@ -196,11 +200,14 @@ fn told(
         let (force_at, response_at) = (record.force_at, record.response_at);
         measured.push(MeasuredRecord { force_at, response_at, residues, remainder });
     }
-    let poles_known = Mat::from_fn(2 * all, 2 * all, |i, j| pole_covariance[(i, j)]);
-    covariance += &by_poles * poles_known * by_poles.transpose();
+    let known = root * by_poles.transpose();
+    covariance += known.transpose() * &known;
+    let of_mean: Vec<f64> = found.poles.iter().flat_map(|pole| drift.of_mean(*pole)).collect();
+    let drifting = Mat::from_fn(size, 2 * all, |i, j| by_poles[(i, j)] * of_mean[j].sqrt());
+    covariance += &drifting * drifting.transpose();
     let pole = |&pole: &usize| Pole {
         angular_frequency: found.poles[pole][0].exp(),
-        damping_ratio: Some(found.poles[pole][1].exp()),
+        damping_ratio: Some(found.poles[pole][1].exp().min(MOST_DAMPING)),
     };
     MeasuredModes {
         piece,
