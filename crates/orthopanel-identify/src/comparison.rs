@@ -57,7 +57,9 @@ impl<'a> Comparison<'a> {
             let beside = match i {
                 _ if i != j => 0.0,
                 _ if i < poles => CARRIER.powi(2),
-                _ if i < told && comparison.is_remainder(i) => SERIES.powi(2) * of_noise.max(comparison.variance_of_size(i)),
+                _ if i < told && comparison.is_remainder(i) => {
+                    SERIES.powi(2) * of_noise.max(comparison.variance_of_size(i))
+                }
                 _ if i < told => f64::EPSILON,
                 _ => UNSEEN_DEVIATION.powi(2),
             };

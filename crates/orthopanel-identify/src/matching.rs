@@ -177,6 +177,7 @@ mod tests {
             band: [5.0, 6000.0],
             covariance: Mat::zeros(0, 0),
             chi_square: None,
+            undone_decay: 0.0,
         };
         let matched = measured.matched(&modes);
         let numbers: Vec<Option<usize>> = matched.iter().map(|found| found.map(|found| found.mode)).collect();

@@ -226,7 +226,7 @@ impl<'a> Predictor<'a> {
 
     fn channel(&self, record: usize, effects: &[EffectState]) -> Result<Channel, ModelError> {
         let setting = self.setting(record);
-        let mut channel = Channel::default();
+        let mut channel = Channel { decay: -self.comparison.measured.undone_decay, ..Channel::default() };
         for state in effects {
             for action in state.acting_in(&setting)? {
                 match action {

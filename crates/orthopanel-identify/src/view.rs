@@ -14,7 +14,7 @@ pub(crate) struct Channel {
     pub factors: Vec<ChannelFactor>,
     pub force_offset: f64,
     pub response_offset: f64,
-    /// $1/\tau$ of windows \[1/s\].
+    /// $1/\tau$ of windows \[1/s\], less what is undone of them in what was measured.
     pub decay: f64,
     /// Whether the sensor loads the structure.
     pub loads: bool,

@@ -12,6 +12,7 @@ mod joint_fit;
 mod line_groups;
 mod lines;
 mod modal_fit;
+mod noise_decay;
 mod pole_search;
 mod records;
 pub(crate) use hits::{HitSpectra, HitsOfRecord, transform};
@@ -64,6 +65,8 @@ pub struct MeasuredModes {
     pub covariance: Mat<f64>,
     /// Misfit of the modal fit per degree of freedom in units of the noise, by which the covariance is scaled already; `None` for lists.
     pub chi_square: Option<f64>,
+    /// Decay rate \[1/s\] of the noise of the hits, as under an exponential window, which poles, residues and remainders are free of; mostly zero.
+    pub undone_decay: f64,
 }
 
 /// A pole common to all records.

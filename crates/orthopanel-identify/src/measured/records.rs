@@ -13,6 +13,7 @@ use super::drift::Drift;
 use super::joint_fit::{Found, LAST, fit};
 use super::lines::RecordLines;
 use super::modal_fit::{MOST_DAMPING, ModalFit, lambda};
+use super::noise_decay::{decay_of_noise, undone};
 use super::pole_search::{in_parts, joined, pruned};
 use super::scatter::Scatter;
 use super::{MeasuredModes, MeasuredRecord, Pole};
@@ -22,7 +23,7 @@ const LOWEST: f64 = 5.0;
 /// and never less than so many periods in a record.
 const LEAST_PERIODS: f64 = 6.0;
 /// Highest frequency of the band, over the sampling rate: analysers' filters are flat up to there.
-const FLAT: f64 = 1.0 / 2.56;
+pub(super) const FLAT: f64 = 1.0 / 2.56;
 /// Half-widths of a resonance that have to lie inside the band.
 pub(crate) const SKIRT: f64 = 4.0;
 /// Most that the logarithm of a frequency may be unsure by for its mode to stand by itself.
@@ -41,7 +42,26 @@ const SCATTERS: usize = 4;
 
 impl MeasuredModes {
     /// From the hits of all pairs of places of one piece, up to a frequency \[Hz\]; `None` where they show no resonance.
+    ///
+    /// Where the noise of the hits dies away, so may they have under an exponential window, and that is undone: noise under it is no noise by
+    /// itself on each line, and looks like poles. It stays undone where the modes then meet the hits better.
     pub(super) fn of_hits(piece: usize, histories: &[TimeHistory], highest: f64) -> Option<Self> {
+        let as_recorded = || Self::of_steady_hits(piece, histories, highest);
+        let undone_decay = decay_of_noise(histories);
+        if undone_decay == 0.0 {
+            return as_recorded();
+        }
+        let undone = Self::of_steady_hits(piece, &undone(histories, undone_decay), highest);
+        let undone = undone.map(|measured| Self { undone_decay, ..measured });
+        undone.into_iter().chain(as_recorded()).min_by(|a, b| a.per_datum().total_cmp(&b.per_datum()))
+    }
+
+    fn per_datum(&self) -> f64 {
+        self.chi_square.unwrap_or(f64::INFINITY)
+    }
+
+    /// The same of hits whose noise stays as it is.
+    fn of_steady_hits(piece: usize, histories: &[TimeHistory], highest: f64) -> Option<Self> {
         let rate = histories.iter().map(|history| history.rate).fold(f64::INFINITY, f64::min);
         let duration =
             |history: &TimeHistory| history.hits.first().map_or(0.0, |hit| hit.force.len() as f64) / history.rate;
@@ -218,6 +238,7 @@ fn told(
         band,
         covariance,
         chi_square: Some(chi_square),
+        undone_decay: 0.0,
     }
 }
 
