@@ -14,18 +14,25 @@ const UNSEEN_DEVIATION: f64 = 0.01;
 /// What the carrier itself misses of the logarithm of a frequency: residual shapes stand for all modes beyond.
 const CARRIER: f64 = 2e-6;
 
+/// Deviation of the logarithm of what damps a mode beside effects: damping ratios of a panel lie within a factor of three of each other.
+const OWN_DAMPING: f64 = 1.1;
+/// Part of the usual damping ratio below which the logarithm goes on as a straight line, for a hypothesis may leave a mode less than none.
+const LEAST_DAMPING: f64 = 0.05;
+
 /// What the few terms of a series miss of a remainder, or of its deviation where that is larger: they make all its values follow from a few.
 const SERIES: f64 = 1e-3;
 
 /// The measured values in units that make them alike, with the covariance of their noise: $\ln\omega_m$ of each pole; a record after the
 /// other its residues over the rms of that pole's, and its remainder times the mass of the piece, each as real and imaginary part;
-/// then a zero for each predicted mode that no pole belongs to.
+/// then a zero for each predicted mode that no pole belongs to, and for what damps each pole beside effects as much as usual.
 pub(crate) struct Comparison<'a> {
     pub measured: &'a MeasuredModes,
     /// Rms over the records of each pole's residues.
     pub residue: Vec<f64>,
     /// Accelerance of the piece as a rigid body at its centre \[1/kg\].
     pub rigid: f64,
+    /// Median of the damping ratios.
+    damping: f64,
     pub values: Vec<f64>,
     pub noise: Mat<f64>,
 }
@@ -38,10 +45,14 @@ impl<'a> Comparison<'a> {
             (squares / records.max(1) as f64).sqrt().max(f64::MIN_POSITIVE)
         };
         let residue: Vec<f64> = (0..poles).map(rms).collect();
-        let mut comparison = Self { measured, residue, rigid: mass.recip(), values: vec![], noise: Mat::new() };
+        let mut ratios: Vec<f64> = measured.poles.iter().filter_map(|pole| pole.damping_ratio).collect();
+        ratios.sort_by(f64::total_cmp);
+        let damping = ratios.get(ratios.len() / 2).copied().unwrap_or(1.0);
+        let mut comparison =
+            Self { measured, residue, rigid: mass.recip(), damping, values: vec![], noise: Mat::new() };
         let scales: Vec<f64> = (0..comparison.size()).map(|place| comparison.scale(place)).collect();
-        let damped = measured.poles.iter().filter(|pole| pole.damping_ratio.is_some()).count();
-        // Damping ratios are free, and left out.
+        let damped = ratios.len();
+        // Damping ratios are nearly free: what effects leave of them stands at the end.
         let own = |place: usize| if place < poles { place } else { place + damped };
         let measured_values = measured.values();
         let told = comparison.unseen().start;
@@ -61,7 +72,8 @@ impl<'a> Comparison<'a> {
                     SERIES.powi(2) * of_noise.max(comparison.variance_of_size(i))
                 }
                 _ if i < told => f64::EPSILON,
-                _ => UNSEEN_DEVIATION.powi(2),
+                _ if i < comparison.unseen().end => UNSEEN_DEVIATION.powi(2),
+                _ => OWN_DAMPING.powi(2),
             };
             of_noise + beside
         });
@@ -70,7 +82,7 @@ impl<'a> Comparison<'a> {
 
     /// Number of values.
     pub(crate) fn size(&self) -> usize {
-        self.unseen().end
+        self.own_damping_place(self.measured.poles.len())
     }
 
     /// Where a residue's real part stands; the imaginary part follows.
@@ -88,6 +100,17 @@ impl<'a> Comparison<'a> {
         let from = self.measured.poles.len() + self.measured.records.len() * self.block();
         let count = if self.measured.records.is_empty() { 0 } else { UNSEEN };
         from..from + count
+    }
+
+    /// Where stands what damps a pole beside effects.
+    pub(crate) fn own_damping_place(&self, pole: usize) -> usize {
+        self.unseen().end + if self.measured.records.is_empty() { 0 } else { pole }
+    }
+
+    /// The logarithm of what damps a pole beside effects over what is usual.
+    pub(crate) fn own_damping(&self, pole: usize, of_effects: f64) -> f64 {
+        let own = (self.measured.poles[pole].damping_ratio.unwrap_or(self.damping) - of_effects) / self.damping;
+        if own > LEAST_DAMPING { own.ln() } else { LEAST_DAMPING.ln() + (own - LEAST_DAMPING) / LEAST_DAMPING }
     }
 
     /// All values of a record.

@@ -41,7 +41,10 @@ pub(crate) fn from_base<T>(
     };
     let comparison = Comparison::new(measured, piece.mass());
     let begun = Inquiry::begin(&comparison, &setting, &held, &declared)?;
-    let (mut inquiry, base) = begun.ok_or_else(|| too_few(measured.poles.len()))?;
+    let (mut inquiry, base) = begun.ok_or_else(|| match measured.poles.len() {
+        found @ 0..2 => too_few(found),
+        _ => IdentifyError::NotFinite { what: "likelihood of the measured modes on any beam".to_owned() },
+    })?;
     inquiry.progress = SearchProgress::telling(progress);
     say(inquiry, base)
 }

@@ -1,5 +1,6 @@
 //! What is said of a test: one threshold, in odds.
 
+use crate::measured::MeasuredModes;
 use crate::model_error::Kind;
 use crate::outcome::Verdict;
 use crate::posterior::Judged;
@@ -12,13 +13,27 @@ pub(crate) const ODDS: f64 = 1000.0;
 pub(crate) const MOST_FREQUENCY: f64 = 1e-2;
 const MOST_RESIDUE: f64 = 3e-2;
 
+/// Whether a pole towers over what all others do there, and is no mode of a hypothesis. Cords that nobody told may do so as long as they stiffen the
+/// first flexible mode by no more than a model may miss, $\tfrac12(\omega/\omega_1)^2$.
+pub(crate) fn has_no_mode(judged: &Judged, measured: &MeasuredModes, pole: usize) -> bool {
+    let at = &judged.posterior.point.at;
+    let first = at.flexible.first().copied().unwrap_or(0.0);
+    let is_alone = at.partners.first().is_some_and(|record| record[pole].is_none());
+    let stiffening = 0.5 * (measured.poles[pole].angular_frequency / first).powi(2);
+    is_alone && stiffening > MOST_FREQUENCY && measured.prominence(pole) > 1.0
+}
+
 /// Of hypotheses in order, the likeliest first, the simplest that is not clearly behind; the verdict; and the rivals where that is ambiguous.
-pub(crate) fn judged(all: &[Judged]) -> Option<(&Judged, Verdict, Vec<&'static str>)> {
+pub(crate) fn judged<'a>(
+    all: &'a [Judged],
+    measured: &MeasuredModes,
+) -> Option<(&'a Judged, Verdict, Vec<&'static str>)> {
     let best = all.first()?;
     let near = || all.iter().filter(|judged| best.log_odds - judged.log_odds < ODDS.ln());
     let chosen = near().min_by_key(|judged| judged.names().len())?;
     let size = |kind: Kind| chosen.posterior.log_sizes[kind as usize].exp();
-    if size(Kind::Frequency) > MOST_FREQUENCY || size(Kind::Residue) > MOST_RESIDUE {
+    let misses_most = size(Kind::Frequency) > MOST_FREQUENCY || size(Kind::Residue) > MOST_RESIDUE;
+    if misses_most || (0..measured.poles.len()).any(|pole| has_no_mode(chosen, measured, pole)) {
         return Some((chosen, Verdict::Unexplained, vec![]));
     }
     let names = chosen.names();

@@ -1,5 +1,6 @@
 //! The most probable parameters of a hypothesis, their covariance, and its evidence.
 
+use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
 
 use faer::linalg::solvers::Llt;
@@ -450,7 +451,10 @@ impl Problem<'_> {
         }
         let by = self.whitening(&errors, &log_sizes)?;
         point.derivatives = Mat::new();
-        let (point, curvature) = self.follow(point, &by, 3, (0.01, usize::MAX))?;
+        let (point, mut curvature) = self.follow(point, &by, 3, (0.01, usize::MAX))?;
+        // No direction is wider than its prior: over an even one, from -1 to 1, a Gaussian of this curvature has the same integral.
+        let even = self.hypothesis.precision().into_iter().enumerate().filter(|(_, precision)| *precision == 0.0);
+        even.for_each(|(i, _)| curvature[(i, i)] += FRAC_PI_2);
         let at = &point.at;
         let (_, of_sizes, _) = self.sizes(at, &errors, log_sizes, 0)?;
         let missed = by.whitened(&self.missed(at));

@@ -445,10 +445,15 @@ impl<'a> Predictor<'a> {
         let near_hanging = measured.remainder_frequencies.iter().filter(near).count();
         let rigid = self.panel.rigid_modes(self.setting.boundary);
         let flexible_of_poles = partners.iter().map(|partner| partner.and_then(|n| n.checked_sub(rigid))).collect();
-        let hangs = partners.iter().map(|partner| partner.is_some_and(|n| self.hangs(n))).collect();
+        let hangs: Vec<bool> = partners.iter().map(|partner| partner.is_some_and(|n| self.hangs(n))).collect();
         let decay = channels.first().map_or(0.0, |channel| channel.decay);
         let of_effects = |n: usize| first.modes.damping_ratio[n] + decay / omega[n];
-        let damping_of_effects = partners.iter().map(|partner| partner.map_or(0.0, of_effects)).collect();
+        let damping_of_effects: Vec<f64> = partners.iter().map(|partner| partner.map_or(0.0, of_effects)).collect();
+        // What hangs is damped by its cords, and what a core takes is not known well enough.
+        let is_own = |pole: usize| !measured.records.is_empty() && !hangs[pole] && first.relaxing.is_none();
+        for pole in (0..measured.poles.len()).filter(|pole| is_own(*pole)) {
+            values[comparison.own_damping_place(pole)] = comparison.own_damping(pole, damping_of_effects[pole]);
+        }
         Prediction {
             values,
             by_force,

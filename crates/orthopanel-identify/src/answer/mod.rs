@@ -16,13 +16,15 @@ mod panel;
 pub(crate) use declared::identify_with_effects;
 pub(crate) use identified::PlateByModes;
 
+use std::f64::consts::TAU;
+
 use orthopanel_data::{Estimation, ImpactTest};
 use orthopanel_model::Readable;
 
 use crate::IdentifyError;
 use crate::hit_strength::HitStrength;
 use crate::inference::from_base;
-use crate::judge::{judged, rivals};
+use crate::judge::{has_no_mode, judged, rivals};
 use crate::model_error::Kind;
 use crate::outcome::{Candidate, EstimatedModelError, Progress, TracedError, Tracing, Verdict};
 use crate::posterior::Judged;
@@ -62,7 +64,7 @@ fn tracing_of(test: &ImpactTest, inquiry: &Inquiry, all: &[Judged]) -> Result<Tr
     let measured = inquiry.measured();
     let not_finite = |what: &str| IdentifyError::NotFinite { what: what.into() };
     let none = IdentifyError::TooFewResonances { found: measured.poles.len(), needed: 2, noise_percent: None };
-    let (chosen, verdict, alternatives) = judged(all).ok_or(none)?;
+    let (chosen, verdict, alternatives) = judged(all, measured).ok_or(none)?;
     let base = all.iter().find(|judged| judged.names().is_empty()).unwrap_or(chosen);
     let mut doubts = doubts(inquiry, base, &all[0]);
     let is_unexplained = verdict == Verdict::Unexplained;
@@ -109,6 +111,13 @@ fn tracing_of(test: &ImpactTest, inquiry: &Inquiry, all: &[Judged]) -> Result<Tr
     if lines.hits_are_few {
         notes.push(FEW_HITS.to_owned());
     }
+    let without_mode = (0..measured.poles.len()).filter(|pole| has_no_mode(chosen, measured, *pole));
+    notes.extend(without_mode.map(|pole| {
+        let frequency = measured.poles[pole].angular_frequency / TAU;
+        format!(
+            "the resonance at {frequency:.1} Hz is no mode of this model: something swings there that it does not hold"
+        )
+    }));
     notes.extend(doubts.iter().map(|doubt| doubt.sentence.clone()));
     notes.extend(near.iter().map(|rival| standing(chosen, rival)));
     notes.extend(notes_on_not_shown(inquiry, base));

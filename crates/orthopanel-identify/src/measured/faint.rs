@@ -12,7 +12,7 @@ impl MeasuredModes {
     /// twins of strong poles, which are no modes.
     pub(crate) fn without_faint(self) -> Self {
         let (poles, records) = (self.poles.len(), self.records.len());
-        let kept: Vec<bool> = (0..poles).map(|pole| records == 0 || !self.is_faint(pole)).collect();
+        let kept: Vec<bool> = (0..poles).map(|pole| records == 0 || !(self.prominence(pole) < FAINT)).collect();
         self.with_poles(&kept)
     }
 
@@ -45,7 +45,8 @@ impl MeasuredModes {
         self
     }
 
-    fn is_faint(&self, pole: usize) -> bool {
+    /// The peak of a pole over what all others do there, rms over the records.
+    pub(crate) fn prominence(&self, pole: usize) -> f64 {
         let at = Complex64::new(0.0, self.poles[pole].lambda().im);
         let line = |record: &MeasuredRecord, other: usize| {
             let (residue, lambda) = (record.residues[other], self.poles[other].lambda());
@@ -56,7 +57,7 @@ impl MeasuredModes {
             (0..self.poles.len()).filter(|other| *other != pole).map(|other| line(record, other)).sum::<Complex64>()
         };
         let beside: f64 = self.records.iter().map(|record| others(record).norm_sqr()).sum();
-        own < FAINT * FAINT * beside
+        (own / beside).sqrt()
     }
 }
 

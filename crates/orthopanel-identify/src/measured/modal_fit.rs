@@ -1,6 +1,7 @@
 //! The joint modal fit of all records: poles in common, everything linear projected out.
 
 use std::f64::consts::TAU;
+use std::ops::RangeInclusive;
 
 use faer::linalg::matmul::triangular::{BlockStructure, matmul};
 use faer::linalg::solvers::{Llt, Solve as _};
@@ -15,10 +16,13 @@ use rayon::prelude::*;
 use super::line_groups::{LineGroups, REACH};
 use super::lines::{PoleColumns, RecordLines, Truncations};
 
-/// Powers of $s$ that stand for what lies below and above the band, and their number: rigid modes and modes below are
-/// even powers from $s^0$ down, modes above even powers up; odd ones are their damping.
-const LOWEST_POWER: i32 = -4;
-const REMAINDER_TERMS: usize = 9;
+/// Powers of $s$ that stand for what lies below and above the band: rigid modes and modes below are even powers from $s^0$ down, modes above
+/// even powers up; odd ones are their damping.
+const POWERS: RangeInclusive<i32> = -4..=4;
+/// and over a band of so many times its lowest frequency, where more can be told apart: what lies at four fifths of the lowest line, a high pass
+/// as a mode, leaves a quarter of itself there beyond the lowest power.
+const POWERS_OF_WIDE: RangeInclusive<i32> = -6..=4;
+const WIDE: f64 = 30.0;
 
 /// Evaluations at most, times the parameters.
 const PATIENCE: usize = 2;
@@ -46,6 +50,7 @@ pub(super) struct ModalFit<'a> {
     known: Vec<Mat<f64>>,
     /// Lowest and highest line \[1/s\], by which the powers are scaled.
     ends: [f64; 2],
+    powers: Vec<i32>,
 }
 
 /// What the poles make of all records.
@@ -95,15 +100,17 @@ impl<'a> ModalFit<'a> {
         let lines = || records.iter().flat_map(|record| &record.s).map(|s| s.im);
         let ends = [lines().fold(f64::INFINITY, f64::min), lines().fold(0.0, f64::max)];
         let groups = records.iter().map(|record| record.groups(poles)).collect();
-        let mut fit = Self { records, groups, known: vec![], ends };
+        let powers = if ends[1] > WIDE * ends[0] { POWERS_OF_WIDE } else { POWERS };
+        let mut fit = Self { records, groups, known: vec![], ends, powers: powers.collect() };
+        let terms = fit.powers.len();
         let known = records.par_iter().zip(&fit.groups).map(|(record, groups)| {
-            let mut columns = Mat::zeros(groups.rows(), REMAINDER_TERMS + 1);
-            for term in 0..REMAINDER_TERMS {
+            let mut columns = Mat::zeros(groups.rows(), terms + 1);
+            for term in 0..terms {
                 let values: Vec<Complex64> =
                     groups.nodes().iter().map(|line| fit.remainder_term(term, record.s[*line])).collect();
                 groups.project_smooth(&record.weight, columns.col_mut(term).as_mat_mut(), &values);
             }
-            let data = columns.col_mut(REMAINDER_TERMS).as_mat_mut();
+            let data = columns.col_mut(terms).as_mat_mut();
             groups.project(&record.weight, data, |line| record.value[line]);
             columns
         });
@@ -118,13 +125,13 @@ impl<'a> ModalFit<'a> {
 
     /// The data beyond what `poles` poles and everything linear may take up.
     pub(super) fn freedom(&self, poles: usize) -> f64 {
-        let linear = self.records.len() * (2 * poles + REMAINDER_TERMS);
+        let linear = self.records.len() * (2 * poles + self.powers.len());
         self.data().saturating_sub(linear + 2 * poles).max(1) as f64
     }
 
     /// A power of $s$ of the remainder, made real and of size one at the end of the band where it is greatest.
     pub(super) fn remainder_term(&self, term: usize, s: Complex64) -> Complex64 {
-        let power = LOWEST_POWER + term as i32;
+        let power = self.powers[term];
         let end = self.ends[usize::from(power >= 0)];
         (s / Complex64::new(0.0, end)).powi(power) * if power % 2 == 0 { Complex64::ONE } else { Complex64::I }
     }
@@ -163,7 +170,8 @@ impl<'a> ModalFit<'a> {
         lambdas: &[[Complex64; 3]],
     ) -> Option<(f64, FittedRecord)> {
         let modes = lambdas.len();
-        let linear = 2 * modes + REMAINDER_TERMS;
+        let terms = self.powers.len();
+        let linear = 2 * modes + terms;
         let width = linear + 2 * modes + 1;
         let mut columns = Mat::zeros(groups.rows(), width);
         for (m, [lambda, ..]) in lambdas.iter().enumerate() {
@@ -176,8 +184,8 @@ impl<'a> ModalFit<'a> {
                 put(linear + 2 * m + part, &by_pole[part]);
             }
         }
-        columns.subcols_mut(2 * modes, REMAINDER_TERMS).copy_from(known.subcols(0, REMAINDER_TERMS));
-        columns.col_mut(width - 1).copy_from(known.col(REMAINDER_TERMS));
+        columns.subcols_mut(2 * modes, terms).copy_from(known.subcols(0, terms));
+        columns.col_mut(width - 1).copy_from(known.col(terms));
         let mut products = Mat::<f64>::zeros(width, width);
         matmul(
             products.as_mut(),

@@ -2,8 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
-use faer::{Mat, Par, Side};
+use faer::{Mat, Side};
 use num_complex::Complex64;
 use orthopanel_data::{Accelerance, TimeHistory};
 use rayon::prelude::*;
@@ -122,14 +121,18 @@ impl MeasuredModes {
 /// Which poles stand by themselves, and $R$ with $R^TR$ the covariance of the poles' parameters.
 fn inside(found: &Found, scale: f64, band: [f64; 2]) -> (Vec<usize>, Mat<f64>) {
     let size = 2 * found.poles.len();
-    // A pole may tell nothing, as a slope does once its damping has run away.
-    let prior = |i: usize, j: usize| if i == j { UNTOLD_PARAMETER.powi(-2) } else { 0.0 };
-    let curvature = Mat::from_fn(size, size, |i, j| found.fitted.curvature[(i, j)] / scale + prior(i, j));
-    let mut root = Mat::identity(size, size);
-    match curvature.llt(Side::Lower) {
-        Ok(factor) => solve_lower_triangular_in_place(factor.L(), root.as_mut(), Par::Seq),
-        Err(_) => root *= UNTOLD_PARAMETER,
-    }
+    let curvature = |i: usize, j: usize| found.fitted.curvature[(i, j)] / scale;
+    let prior = UNTOLD_PARAMETER.powi(-2);
+    let unit = |i: usize| (curvature(i, i) + prior).sqrt();
+    let scaled = Mat::from_fn(size, size, |i, j| curvature(i, j) / (unit(i) * unit(j)));
+    let root = match scaled.self_adjoint_eigen(Side::Lower) {
+        // A pole far beyond the band tells nothing: rounding may leave a curvature below zero, and the prior alone holds it.
+        Ok(eigen) => Mat::from_fn(size, size, |k, i| {
+            let of_prior: f64 = (0..size).map(|j| prior * (eigen.U()[(j, k)] / unit(j)).powi(2)).sum();
+            eigen.U()[(i, k)] / unit(i) / (eigen.S()[k].max(0.0) + of_prior).sqrt()
+        }),
+        Err(_) => Mat::from_fn(size, size, |i, j| if i == j { UNTOLD_PARAMETER } else { 0.0 }),
+    };
     let stands = |&pole: &usize| {
         let [frequency, zeta] = [found.poles[pole][0].exp() / TAU, found.poles[pole][1].exp()];
         let skirt = SKIRT * zeta * frequency;

@@ -173,6 +173,31 @@ fn val_errors_are_those_that_the_covariance_states() {
     assert!((0.9..1.1).contains(&misfits), "misfit per datum {misfits}");
 }
 
+/// Hits under an exponential window that nobody tells, which takes half of the noise before a fifth of the record is over: its decay rate
+/// shows in the noise, and poles and residues come back as they are without it. Noise that stays undoes nothing.
+#[test]
+fn val_a_window_over_hits_shows_in_their_noise_and_is_undone() {
+    const DECAY: f64 = 4.0;
+    let made = Made::new(&[(180.0, 8e-3), (430.0, 4e-3), (1210.0, 5e-3)], &[&[0.8, -0.5, 0.3], &[-0.4, 0.7, 0.6]]);
+    let mut histories = made.histories(3, 3e-3, 17);
+    let steady = MeasuredModes::of_hits(0, &histories, 4000.0).expect("resonances");
+    assert_eq!(steady.undone_decay, 0.0);
+    for hit in histories.iter_mut().flat_map(|history| &mut history.hits) {
+        for channel in [&mut hit.force, &mut hit.acceleration] {
+            channel.iter_mut().enumerate().for_each(|(n, value)| *value *= (-DECAY * n as f64 / RATE).exp());
+        }
+    }
+    let measured = MeasuredModes::of_hits(0, &histories, 4000.0).expect("resonances");
+    let missed = measured.undone_decay - DECAY;
+    assert!(missed.abs() < 0.1, "{} 1/s", measured.undone_decay);
+    assert_eq!(measured.poles.len(), 3, "{:?}", measured.poles);
+    assert!(measured.chi_square.is_some_and(|misfit| (0.8..1.2).contains(&misfit)), "{:?}", measured.chi_square);
+    for (found, expected) in measured.poles.iter().zip(&made.poles) {
+        let apart = (found.lambda() - expected - missed).norm() / expected.norm();
+        assert!(apart < 2e-6, "{} instead of {expected} and {missed}, {apart:e}", found.lambda());
+    }
+}
+
 /// Lines that scatter by 2 % of themselves, far more than the noise that their file tells: no further pole is made of it, and the covariance
 /// holds it.
 #[test]
