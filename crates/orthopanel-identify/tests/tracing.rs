@@ -113,7 +113,8 @@ fn val_what_no_effect_makes_stays_unexplained() {
     let Some((test, _)) = made_with(&folder.path().join("set"), "outside", "softening-core", 1000) else { return };
     let found = trace(&test).unwrap();
     assert_eq!(found.verdict, Verdict::Unexplained, "{:?}", found.effects);
-    assert!(found.error.after.held_out > 1.5 * found.error.noise_floor, "{:?}", found.error);
+    let misses = found.model_error.expect("modes");
+    assert!(misses.frequency > 1e-2, "no more than real panels miss: {misses:?}");
     // No place or mass parts what does not fit: what may be wrong is to be looked at.
     assert!(found.next_experiment.contains("check the sizes and their units"), "{}", found.next_experiment);
 }

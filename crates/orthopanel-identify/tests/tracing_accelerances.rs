@@ -29,7 +29,8 @@ fn val_the_free_beam_names_no_effect_that_is_not_there() {
     let found = trace(&test).unwrap();
     assert_eq!((found.verdict, found.effects.len()), (Verdict::Unexplained, 0), "{:?}", found.effects);
     let error = found.model_error.unwrap();
-    assert!(error.frequency < 3e-4 && (0.05..0.2).contains(&error.residue), "{error:?}");
+    // Half a thousandth is what panels usually miss (`model_error.rs`).
+    assert!(error.frequency < 5e-4 && (0.05..0.2).contains(&error.residue), "{error:?}");
 }
 
 /// The accelerances of a made roving test, without its hits, in files of their own.
