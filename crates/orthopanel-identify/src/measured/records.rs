@@ -121,12 +121,16 @@ impl MeasuredModes {
 /// Which poles stand by themselves, and $R$ with $R^TR$ the covariance of the poles' parameters.
 fn inside(found: &Found, scale: f64, band: [f64; 2]) -> (Vec<usize>, Mat<f64>) {
     let size = 2 * found.poles.len();
-    let curvature = |i: usize, j: usize| found.fitted.curvature[(i, j)] / scale;
+    // A pole far beyond the band tells nothing: rounding may leave a curvature below zero, and the prior alone holds it.
+    let own = |i: usize| (found.fitted.curvature[(i, i)] / scale).max(0.0);
+    let curvature = |i: usize, j: usize| {
+        let most = (own(i) * own(j)).sqrt();
+        (found.fitted.curvature[(i, j)] / scale).clamp(-most, most)
+    };
     let prior = UNTOLD_PARAMETER.powi(-2);
-    let unit = |i: usize| (curvature(i, i) + prior).sqrt();
+    let unit = |i: usize| (own(i) + prior).sqrt();
     let scaled = Mat::from_fn(size, size, |i, j| curvature(i, j) / (unit(i) * unit(j)));
     let root = match scaled.self_adjoint_eigen(Side::Lower) {
-        // A pole far beyond the band tells nothing: rounding may leave a curvature below zero, and the prior alone holds it.
         Ok(eigen) => Mat::from_fn(size, size, |k, i| {
             let of_prior: f64 = (0..size).map(|j| prior * (eigen.U()[(j, k)] / unit(j)).powi(2)).sum();
             eigen.U()[(i, k)] / unit(i) / (eigen.S()[k].max(0.0) + of_prior).sqrt()
