@@ -16,7 +16,7 @@ const CARRIER: f64 = 2e-6;
 
 /// Deviation of the logarithm of what damps a mode beside effects: damping ratios of a panel lie within a factor of three of each other.
 const OWN_DAMPING: f64 = 1.1;
-/// Part of the usual damping ratio below which the logarithm goes on as a straight line, for a hypothesis may leave a mode less than none.
+/// Least part of the usual damping ratio that the logarithm is taken of: a hypothesis may leave a mode less than none, as far from where it ends.
 const LEAST_DAMPING: f64 = 0.05;
 
 /// What the few terms of a series miss of a remainder, or of its deviation where that is larger: they make all its values follow from a few.
@@ -110,7 +110,7 @@ impl<'a> Comparison<'a> {
     /// The logarithm of what damps a pole beside effects over what is usual.
     pub(crate) fn own_damping(&self, pole: usize, of_effects: f64) -> f64 {
         let own = (self.measured.poles[pole].damping_ratio.unwrap_or(self.damping) - of_effects) / self.damping;
-        if own > LEAST_DAMPING { own.ln() } else { LEAST_DAMPING.ln() + (own - LEAST_DAMPING) / LEAST_DAMPING }
+        own.max(LEAST_DAMPING).ln()
     }
 
     /// All values of a record.
