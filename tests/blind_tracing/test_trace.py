@@ -132,6 +132,14 @@ def test_val_an_effect_is_named_first_in_a_rough_test(scored):
     assert _wrong(result, "right_first").keys() <= {"record-gain"}
 
 
+def test_val_a_sensor_on_a_strip_on_cords_is_explained(tmp_path):
+    """Cords of 150 N/m that damp both hanging modes alike, as no dashpot does, and an accelerometer of 4 g that nobody declared."""
+    make.make(tmp_path / "hung", "real", 20, 7007, only=["hung strip"])
+    (case,) = score.score(tmp_path / "hung", [ORTHOPANEL, "trace"], timeout=TIMEOUT)["judged"]
+    assert (case["verdict"], sorted(case["ids"])) == ("explained", ["sensor-mass", "suspension"])
+    assert all(case["inside"]), case["faults"]
+
+
 def test_val_what_the_catalogue_lacks_is_not_explained(scored):
     """Of 100 cases ten may be. Tension of 1.5 kN lifts a strip's modes as springs of 18 kN/m at its cords do, within 6e-5 of their frequencies:
     real panels miss by more."""
