@@ -9,7 +9,7 @@ use num_complex::Complex64;
 use orthopanel_model::{EffectState, Field, ModelError};
 
 use crate::comparison::Comparison;
-use crate::predicted::{PartnerInRecord, Prediction, Predictor, distinct};
+use crate::predicted::{Prediction, Predictor, distinct};
 
 /// A kind of model error.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -266,20 +266,17 @@ impl ErrorColumns {
         let near = (0..measured.records.len())
             .flat_map(|record| (0..at.near_hanging).map(move |number| comparison.remainder_place(record, number)));
         // A pole that is no mode of the model may be a false one: its residues tell no more than their size, and it may lie anywhere in the band.
-        let alone = |record: &[Option<PartnerInRecord>]| {
-            let without = record.iter().enumerate().filter(|(_, partner)| partner.is_none());
-            without.map(|(pole, _)| pole).collect::<Vec<_>>()
-        };
         let of_size = |place: usize| [place, place + 1].map(|place| (place, comparison.variance_of_size(place)));
         let uninformative = near.flat_map(of_size).collect();
         let anywhere = (measured.band[1] / measured.band[0]).ln().powi(2) / 12.0;
         let mut without_partner = Vec::new();
         for (record, partners) in at.partners.iter().enumerate() {
-            let places = alone(partners).into_iter().map(|pole| comparison.residue_place(record, pole));
-            without_partner.extend(places.flat_map(of_size));
+            for (pole, _) in partners.iter().enumerate().filter(|(_, partner)| partner.is_none()) {
+                without_partner.extend(of_size(comparison.residue_place(record, pole)));
+                // The frequency is the same in all records.
+                without_partner.extend((record == 0).then_some((pole, anywhere)));
+            }
         }
-        without_partner
-            .extend(at.partners.first().into_iter().flat_map(|first| alone(first)).map(|pole| (pole, anywhere)));
         Self {
             columns: matrix,
             kinds: columns.into_iter().map(|(kind, _)| kind).collect(),

@@ -12,7 +12,7 @@ impl MeasuredModes {
     /// twins of strong poles, which are no modes.
     pub(crate) fn without_faint(self) -> Self {
         let (poles, records) = (self.poles.len(), self.records.len());
-        let kept: Vec<bool> = (0..poles).map(|pole| records == 0 || !(self.prominence(pole) < FAINT)).collect();
+        let kept: Vec<bool> = (0..poles).map(|pole| records == 0 || self.prominence(pole) >= FAINT).collect();
         self.with_poles(&kept)
     }
 
