@@ -484,14 +484,22 @@ pub(crate) fn distinct(all: impl Iterator<Item = Place>) -> Vec<Place> {
 }
 
 /// The core among effects, if any depends on frequency.
+///
+/// # Errors
+/// [`ModelError::Unsupported`] on a plate: what is found could neither be drawn nor written into a model.
 fn core_of(setting: &EffectSetting, effects: &[EffectState]) -> Result<Option<CoreModulus>, ModelError> {
-    let mut core = None;
+    let (mut core, mut is_plate) = (None, false);
     for state in effects {
         for action in state.acting_in(setting)? {
-            if let Action::Core(found) = action {
-                core = Some(found);
+            match action {
+                Action::Core(found) => core = Some(found),
+                Action::Plate(_) => is_plate = true,
+                _ => {}
             }
         }
+    }
+    if core.is_some() && is_plate {
+        return Err(ModelError::Unsupported("a core that depends on frequency in a plate".to_owned()));
     }
     Ok(core)
 }
