@@ -4,6 +4,7 @@ use num_complex::Complex64;
 use orthopanel_data::Accelerance;
 
 use super::lines::RecordLines;
+use super::scatter::NEIGHBOURS;
 
 /// Relative standard deviation of a line where a file does not tell its noise: what a good analyser's averages have.
 pub(super) const UNTOLD_NOISE: f64 = 1e-2;
@@ -11,16 +12,14 @@ pub(super) const UNTOLD_NOISE: f64 = 1e-2;
 impl RecordLines {
     /// From an accelerance, on its lines between two frequencies \[Hz\]. Lines without a finite variance carry nothing and are
     /// left out. Where no variance is told, a line's is taken as 1 % of its size and of the median size of all, and the fit's misfit
-    /// scales it.
+    /// scales it; one that is told may stem from a few averages, and by chance be far too small: it counts no less than the median of its neighbours.
     pub(super) fn of_accelerance(accelerance: &Accelerance, band: [f64; 2]) -> Self {
         let sizes = || accelerance.value.iter().map(|value| value.norm_sqr());
-        let typical = {
-            let mut sizes: Vec<f64> = sizes().collect();
-            let middle = sizes.len() / 2;
-            if sizes.is_empty() { 0.0 } else { *sizes.select_nth_unstable_by(middle, f64::total_cmp).1 }
-        };
+        let typical = median(sizes().collect());
+        let per_datum = lines_per_datum(accelerance);
+        let neighbours = (NEIGHBOURS as f64 * per_datum) as usize;
         let variance = |line: usize, size: f64| match &accelerance.variance {
-            Some(told) => told.get(line).copied().unwrap_or(f64::INFINITY),
+            Some(told) => told.get(line).map_or(f64::INFINITY, |own| own.max(median_near(told, line, neighbours))),
             None => UNTOLD_NOISE.powi(2) * (size + typical),
         };
         let mut lines = Self {
@@ -29,11 +28,12 @@ impl RecordLines {
             s: vec![],
             value: vec![],
             weight: vec![],
+            per_datum,
             truncations: None,
             force_noise: vec![],
         };
         for (line, (&frequency, &value)) in accelerance.frequency.iter().zip(&accelerance.value).enumerate() {
-            let weight = (2.0 / variance(line, value.norm_sqr())).sqrt();
+            let weight = (2.0 / (per_datum * variance(line, value.norm_sqr()))).sqrt();
             if !((band[0]..=band[1]).contains(&frequency) && weight.is_finite() && weight > 0.0) {
                 continue;
             }
@@ -45,4 +45,25 @@ impl RecordLines {
         }
         lines
     }
+}
+
+/// $\sigma T\coth\sigma T$: see [`RecordLines`].
+fn lines_per_datum(accelerance: &Accelerance) -> f64 {
+    let step = match accelerance.frequency[..] {
+        [first, .., last] => (last - first) / (accelerance.frequency.len() - 1) as f64,
+        _ => return 1.0,
+    };
+    let decayed = accelerance.decay_rate / step;
+    if decayed > 0.0 { decayed / decayed.tanh() } else { 1.0 }
+}
+
+/// The median of so many values about one.
+fn median_near(values: &[f64], place: usize, count: usize) -> f64 {
+    let from = place.saturating_sub(count / 2).min(values.len().saturating_sub(count));
+    median(values.iter().skip(from).take(count).copied().collect())
+}
+
+fn median(mut values: Vec<f64>) -> f64 {
+    let middle = values.len() / 2;
+    if values.is_empty() { 0.0 } else { *values.select_nth_unstable_by(middle, f64::total_cmp).1 }
 }

@@ -92,6 +92,7 @@ impl RecordLines {
             force_at: history.force_at,
             response_at: history.response_at,
             weight: of.power.iter().map(|power| (2.0 * power).sqrt()).collect(),
+            per_datum: 1.0,
             s: of.s,
             value: of.mean,
             truncations: Some(truncations),

@@ -86,6 +86,15 @@ impl LineGroups {
         self.rows
     }
 
+    /// Real data among the rows where so many lines share one datum.
+    pub(super) fn data(&self, per_datum: f64) -> f64 {
+        let of_group = |group: &Group| {
+            let rows = if group.basis.is_empty() { group.lines.len() } else { group.basis.len() };
+            (rows as f64).min(group.lines.len() as f64 / per_datum)
+        };
+        2.0 * self.groups.iter().map(of_group).sum::<f64>()
+    }
+
     /// Writes what is kept of a complex function of the lines, real parts first.
     pub(super) fn project(&self, weight: &[f64], mut column: MatMut<'_, f64>, of_line: impl Fn(usize) -> Complex64) {
         let (mut row, half) = (0, self.rows / 2);

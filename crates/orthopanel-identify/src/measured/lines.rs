@@ -7,7 +7,9 @@ use orthopanel_model::Place;
 
 /// The accelerance of one pair of places on the lines of a transform.
 ///
-/// Each line's real and imaginary part have the standard deviation $1/g_k$, and noise is independent from line to line.
+/// Each line's real and imaginary part have the standard deviation $1/g_k$ as far as smooth functions of the lines see it. Under an exponential
+/// window $e^{-\sigma t}$ over a record that lasts $T$, noise of variance $\sigma_k^2$ is correlated from line to line by
+/// $1/(1 + j\,\pi k/\sigma T)$, which sums to $\sigma T\coth\sigma T$ lines a datum: $1/g_k^2$ is so many times $\sigma_k^2$.
 #[derive(Debug, Clone)]
 pub(super) struct RecordLines {
     pub force_at: Place,
@@ -18,6 +20,8 @@ pub(super) struct RecordLines {
     pub value: Vec<Complex64>,
     /// $g_k$ \[N/(m/s²)\].
     pub weight: Vec<f64>,
+    /// Lines that share one datum: one where noise is independent from line to line, more under an exponential window.
+    pub per_datum: f64,
     /// What the end of each hit's record cuts off; none where the accelerance is whole.
     pub truncations: Option<Truncations>,
     /// Relative variance of $H$ by the noise of the force, which moves all of a mode alike: see [`super::MeasuredModes`].
@@ -92,6 +96,7 @@ impl RecordLines {
             s: self.s[from..to].to_vec(),
             value: self.value[from..to].to_vec(),
             weight: cut(&self.weight),
+            per_datum: self.per_datum,
             truncations,
             force_noise: cut(&self.force_noise),
         }

@@ -119,14 +119,14 @@ impl<'a> ModalFit<'a> {
     }
 
     /// Real data that the fit weighs.
-    pub(super) fn data(&self) -> usize {
-        self.groups.iter().map(LineGroups::rows).sum()
+    pub(super) fn data(&self) -> f64 {
+        self.groups.iter().zip(self.records).map(|(groups, record)| groups.data(record.per_datum)).sum()
     }
 
     /// The data beyond what `poles` poles and everything linear may take up.
     pub(super) fn freedom(&self, poles: usize) -> f64 {
         let linear = self.records.len() * (2 * poles + self.powers.len());
-        self.data().saturating_sub(linear + 2 * poles).max(1) as f64
+        (self.data() - (linear + 2 * poles) as f64).max(1.0)
     }
 
     /// A power of $s$ of the remainder, made real and of size one at the end of the band where it is greatest.

@@ -129,10 +129,11 @@ pub(super) fn poles(records: &[RecordLines], start: PoleParameters) -> Option<Fo
     let mut found = fit(records, start, ON_THE_WAY)?;
     let mut tried: Vec<f64> = vec![];
     let mut failed = 0;
+    let expected = records.iter().map(|record| 2.0 / record.per_datum).sum();
     while failed < PATIENCE {
         let fit_now = ModalFit::new(records, &found.poles);
         let left = fit_now.residuals(&found.poles, &found.fitted);
-        let Some(frequency) = spectrum.worst(&spectrum.sum(&left), records.len(), &tried) else { break };
+        let Some(frequency) = spectrum.worst(&spectrum.sum(&left), expected, &tried) else { break };
         match with_another(records, &found, (&left, frequency)) {
             Some(more) if is_worth(records, &found, &more) => {
                 found = more;
@@ -156,7 +157,7 @@ fn with_another(records: &[RecordLines], found: &Found, (left, frequency): (&[Ve
     });
     let gained = begun.map(|pole| (taken_up(records, left, pole), pole));
     let (gain, pole) = gained.max_by(|a, b| a.0.total_cmp(&b.0))?;
-    let data = records.iter().map(|record| 2 * record.s.len()).sum::<usize>() as f64;
+    let data = records.iter().map(|record| 2.0 * record.s.len() as f64 / record.per_datum).sum::<f64>();
     // The columns of the other poles are left out here, which makes a gain too small where poles are close.
     if gain < PROMISING * price(records, data, found) {
         return None;
@@ -206,7 +207,7 @@ fn is_worth(records: &[RecordLines], without: &Found, with: &Found) -> bool {
     // Both on the same lines, those of the one with more poles.
     let fit = ModalFit::new(records, &with.poles);
     let Some(fitted) = fit.at(&without.poles) else { return true };
-    if fitted.misfit - with.fitted.misfit <= price(records, fit.data() as f64, with) {
+    if fitted.misfit - with.fitted.misfit <= price(records, fit.data(), with) {
         return false;
     }
     if with.by_noise() {
@@ -231,7 +232,7 @@ pub(super) fn pruned(records: &[RecordLines], mut found: Found) -> Found {
         let loss = |pole: usize| found.fitted.records.iter().map(|record| record.loss_without(pole)).sum::<f64>();
         let losses = (0..found.poles.len()).map(|pole| (loss(pole), pole));
         let Some((loss, pole)) = losses.min_by(|a, b| a.0.total_cmp(&b.0)) else { return found };
-        let data = ModalFit::new(records, &found.poles).data() as f64;
+        let data = ModalFit::new(records, &found.poles).data();
         if found.poles.len() == 1 || loss > price(records, data, &found) {
             return found;
         }
@@ -272,10 +273,9 @@ impl Spectrum {
         sum
     }
 
-    /// The frequency \[Hz\] where the misfit rises furthest out of the noise of as many records, and was not tried.
-    fn worst(&self, left: &[f64], records: usize, tried: &[f64]) -> Option<f64> {
+    /// The frequency \[Hz\] where the misfit rises furthest out of what noise leaves on a line, and was not tried.
+    fn worst(&self, left: &[f64], expected: f64, tried: &[f64]) -> Option<f64> {
         let is_new = |k: usize| tried.iter().all(|tried| (self.frequency[k] / tried).ln().abs() > SAME);
-        let expected = 2.0 * records as f64;
         let mut worst: Option<(f64, usize)> = None;
         for width in WIDTHS {
             let gathered = smooth(left, width);

@@ -21,7 +21,7 @@ struct Line {
 }
 
 /// Lines of which the median is taken: a resonance is a few lines wide in a record that lasts.
-const NEIGHBOURS: usize = 65;
+pub(super) const NEIGHBOURS: usize = 65;
 /// Misfit per datum up to which noise is said to explain it.
 const BY_NOISE: f64 = 2.0;
 
@@ -60,7 +60,7 @@ impl Scatter {
             for (line, weight) in record.weight.iter_mut().enumerate() {
                 let from = line.saturating_sub(NEIGHBOURS / 2).min(left.len().saturating_sub(NEIGHBOURS));
                 let near = left.iter().skip(from).take(NEIGHBOURS).map(|left| 0.5 * left.norm_sqr());
-                *weight /= median(near.collect()).max(1.0).sqrt();
+                *weight /= (record.per_datum * median(near.collect())).max(1.0).sqrt();
             }
         });
     }
@@ -94,8 +94,8 @@ fn size(value: Complex64, weight: f64) -> f64 {
 fn telling(records: &[RecordLines], noise: &[Vec<f64>], left: &[Vec<Complex64>]) -> Vec<Line> {
     let of_record = |((record, noise), left): ((&RecordLines, &Vec<f64>), &Vec<Complex64>)| {
         let line = |k: usize| Line {
-            missed: 0.5 * (left[k] * (noise[k] / record.weight[k])).norm_sqr(),
-            size: size(record.value[k], noise[k]),
+            missed: 0.5 * record.per_datum * (left[k] * (noise[k] / record.weight[k])).norm_sqr(),
+            size: record.per_datum * size(record.value[k], noise[k]),
         };
         (0..noise.len()).map(line).filter(|line| MOST * MOST * line.size > 1.0).collect::<Vec<_>>()
     };

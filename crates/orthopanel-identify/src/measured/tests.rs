@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use num_complex::Complex64;
-use orthopanel_data::{Hit, TimeHistory};
+use orthopanel_data::{Estimation, Hit, TimeHistory, Window};
 use orthopanel_model::Place;
 
 use super::MeasuredModes;
@@ -218,6 +218,7 @@ fn val_scatter_beyond_the_noise_is_no_pole() {
             weight: vec![1e3; s.len()],
             s: s.clone(),
             truncations: None,
+            per_datum: 1.0,
             force_noise: vec![],
         }
     };
@@ -256,6 +257,7 @@ fn val_drift_from_record_to_record_is_removed() {
             value,
             s: s.clone(),
             truncations: None,
+            per_datum: 1.0,
             force_noise: vec![],
         }
     };
@@ -320,6 +322,7 @@ fn val_close_modes_of_a_plate_are_told_apart_by_the_places() {
             response_at: place,
             s: frequency.iter().map(|frequency| Complex64::new(0.0, TAU * frequency)).collect(),
             weight: value.iter().map(|value| 1.0 / (1e-3 * value.norm() + 1e-3)).collect(),
+            per_datum: 1.0,
             force_noise: vec![0.0; value.len()],
             truncations: None,
             value,
@@ -360,5 +363,25 @@ fn val_the_loss_without_a_pole_is_that_of_a_fit_without_it() {
         let more = fit.at(&others).expect("a fit").misfit - all.misfit;
         let loss: f64 = all.records.iter().map(|record| record.loss_without(pole)).sum();
         assert!((loss / more - 1.0).abs() < 1e-6, "pole {pole}: {loss} instead of {more}");
+    }
+}
+
+/// The mean of three hits under an exponential window, with the variance that three hits tell of each line: noise that runs alike over ten lines
+/// is no pole, and what is stated of poles and residues holds.
+#[test]
+fn val_noise_under_an_exponential_window_is_no_pole() {
+    let made = ringing();
+    let window = Window::ForceExponential { half_width: 0.01, tau: 0.1 };
+    let estimated = made.histories(3, 3e-3, 23).into_iter().map(|history| {
+        let mean = history.accelerance(Estimation { window, ..Estimation::default() });
+        mean.expect("an accelerance")
+    });
+    let measured = MeasuredModes::of_accelerances(0, &estimated.collect::<Vec<_>>()).expect("resonances");
+    assert_eq!(measured.poles.len(), made.poles.len(), "{:?}", measured.poles);
+    assert!(measured.chi_square.is_some_and(|misfit| (0.6..1.4).contains(&misfit)), "{:?}", measured.chi_square);
+    for (mode, (found, expected)) in measured.poles.iter().zip(&made.poles).enumerate() {
+        let off = (found.angular_frequency / expected.norm()).ln();
+        let deviation = measured.covariance[(mode, mode)].sqrt();
+        assert!(off.abs() < 3.5 * deviation && deviation < 1e-4, "{found:?}: {off:e} off, {deviation:e} stated");
     }
 }
