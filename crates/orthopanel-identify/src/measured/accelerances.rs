@@ -4,7 +4,7 @@ use num_complex::Complex64;
 use orthopanel_data::Accelerance;
 
 use super::lines::RecordLines;
-use super::scatter::NEIGHBOURS;
+use super::medians::{NEIGHBOURS, about, median};
 
 /// Relative standard deviation of a line where a file does not tell its noise: what a good analyser's averages have.
 pub(super) const UNTOLD_NOISE: f64 = 1e-2;
@@ -14,12 +14,13 @@ impl RecordLines {
     /// left out. Where no variance is told, a line's is taken as 1 % of its size and of the median size of all, and the fit's misfit
     /// scales it; one that is told may stem from a few averages, and by chance be far too small: it counts no less than the median of its neighbours.
     pub(super) fn of_accelerance(accelerance: &Accelerance, band: [f64; 2]) -> Self {
-        let sizes = || accelerance.value.iter().map(|value| value.norm_sqr());
-        let typical = median(sizes().collect());
+        let typical = median(accelerance.value.iter().map(|value| value.norm_sqr()));
         let per_datum = lines_per_datum(accelerance);
         let neighbours = (NEIGHBOURS as f64 * per_datum) as usize;
         let variance = |line: usize, size: f64| match &accelerance.variance {
-            Some(told) => told.get(line).map_or(f64::INFINITY, |own| own.max(median_near(told, line, neighbours))),
+            Some(told) => told.get(line).map_or(f64::INFINITY, |own| {
+                own.max(median(told[about(line, neighbours, told.len())].iter().copied()))
+            }),
             None => UNTOLD_NOISE.powi(2) * (size + typical),
         };
         let mut lines = Self {
@@ -33,8 +34,11 @@ impl RecordLines {
             force_noise: vec![],
         };
         for (line, (&frequency, &value)) in accelerance.frequency.iter().zip(&accelerance.value).enumerate() {
+            if !(band[0]..=band[1]).contains(&frequency) {
+                continue;
+            }
             let weight = (2.0 / (per_datum * variance(line, value.norm_sqr()))).sqrt();
-            if !((band[0]..=band[1]).contains(&frequency) && weight.is_finite() && weight > 0.0) {
+            if !(weight.is_finite() && weight > 0.0) {
                 continue;
             }
             lines.s.push(Complex64::new(accelerance.decay_rate, std::f64::consts::TAU * frequency));
@@ -55,15 +59,4 @@ fn lines_per_datum(accelerance: &Accelerance) -> f64 {
     };
     let decayed = accelerance.decay_rate / step;
     if decayed > 0.0 { decayed / decayed.tanh() } else { 1.0 }
-}
-
-/// The median of so many values about one.
-fn median_near(values: &[f64], place: usize, count: usize) -> f64 {
-    let from = place.saturating_sub(count / 2).min(values.len().saturating_sub(count));
-    median(values.iter().skip(from).take(count).copied().collect())
-}
-
-fn median(mut values: Vec<f64>) -> f64 {
-    let middle = values.len() / 2;
-    if values.is_empty() { 0.0 } else { *values.select_nth_unstable_by(middle, f64::total_cmp).1 }
 }

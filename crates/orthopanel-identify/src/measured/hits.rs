@@ -7,6 +7,7 @@ use orthopanel_data::{Hit, TimeHistory};
 use realfft::RealFftPlanner;
 
 use super::lines::{RecordLines, TruncatedHit, Truncations};
+use super::medians::median;
 
 /// Half the width of the window over the force \[s\], and of its edges: the hammer has left the panel, the noise of its channel stays out.
 const FORCE_WINDOW: f64 = 10e-3;
@@ -178,10 +179,4 @@ pub(crate) fn transform(mut samples: Vec<f64>, lines: std::ops::Range<usize>, st
     let done = plan.process(&mut samples, &mut spectrum);
     debug_assert!(done.is_ok());
     spectrum.get(lines).map_or_else(Vec::new, |lines| lines.iter().map(|line| line * step).collect())
-}
-
-fn median(values: impl Iterator<Item = f64>) -> f64 {
-    let mut values: Vec<f64> = values.collect();
-    let middle = values.len() / 2;
-    if values.is_empty() { 0.0 } else { *values.select_nth_unstable_by(middle, f64::total_cmp).1 }
 }

@@ -26,6 +26,13 @@ struct Group {
     of_nodes: Vec<Vec<f64>>,
 }
 
+impl Group {
+    /// Combinations that are kept of it.
+    fn rows(&self) -> usize {
+        if self.basis.is_empty() { self.lines.len() } else { self.basis.len() }
+    }
+}
+
 /// Nodes of a group that has more lines: through so many a polynomial meets $1/(s-\lambda)$ within $10^{-6}$ over a group.
 const NODES: usize = 7;
 
@@ -37,7 +44,7 @@ pub(super) const REACH: f64 = 0.5;
 impl LineGroups {
     /// For lines with these weights, with the distance in lines from each to what is not smooth.
     pub(super) fn new(weight: &[f64], distance: impl Fn(usize) -> f64) -> Self {
-        let (mut groups, mut nodes, mut rows, mut from) = (vec![], vec![], 0, 0);
+        let (mut groups, mut nodes, mut from) = (Vec::<Group>::new(), vec![], 0);
         while from < weight.len() {
             let length = (REACH * distance(from)) as usize;
             // A group that begins far from a pole must not reach near it.
@@ -46,13 +53,13 @@ impl LineGroups {
             let lines = from..(from + length).min(weight.len());
             from = lines.end;
             let basis = if lines.len() > KEPT { parabolas(&weight[lines.clone()]) } else { vec![] };
-            rows += if basis.is_empty() { lines.len() } else { basis.len() };
             let own = if basis.is_empty() { lines.clone().collect() } else { nodes_of(&lines) };
             let of_nodes = by_nodes(&basis, &weight[lines.clone()], &own, lines.start);
             groups.push(Group { lines, basis, of_nodes });
             nodes.extend(own);
         }
-        Self { groups, nodes, rows: 2 * rows }
+        let rows = 2 * groups.iter().map(Group::rows).sum::<usize>();
+        Self { groups, nodes, rows }
     }
 
     /// The lines on which a smooth function has to be known for [`LineGroups::project_smooth`].
@@ -88,10 +95,7 @@ impl LineGroups {
 
     /// Real data among the rows where so many lines share one datum.
     pub(super) fn data(&self, per_datum: f64) -> f64 {
-        let of_group = |group: &Group| {
-            let rows = if group.basis.is_empty() { group.lines.len() } else { group.basis.len() };
-            (rows as f64).min(group.lines.len() as f64 / per_datum)
-        };
+        let of_group = |group: &Group| (group.rows() as f64).min(group.lines.len() as f64 / per_datum);
         2.0 * self.groups.iter().map(of_group).sum::<f64>()
     }
 

@@ -11,6 +11,7 @@ mod hits;
 mod joint_fit;
 mod line_groups;
 mod lines;
+mod medians;
 mod modal_fit;
 mod noise_decay;
 mod pole_search;

@@ -12,6 +12,7 @@ use rayon::prelude::*;
 
 use super::joint_fit::Found;
 use super::lines::RecordLines;
+use super::medians::{NEIGHBOURS, about, median};
 use super::modal_fit::ModalFit;
 
 /// What a line misses, in units of its noise, and its size in the same units; both squared.
@@ -20,8 +21,6 @@ struct Line {
     size: f64,
 }
 
-/// Lines of which the median is taken: a resonance is a few lines wide in a record that lasts.
-pub(super) const NEIGHBOURS: usize = 65;
 /// Misfit per datum up to which noise is said to explain it.
 const BY_NOISE: f64 = 2.0;
 
@@ -58,9 +57,8 @@ impl Scatter {
         let left = ModalFit::new(records, &found.poles).residuals(&found.poles, &found.fitted);
         records.par_iter_mut().zip(&left).for_each(|(record, left)| {
             for (line, weight) in record.weight.iter_mut().enumerate() {
-                let from = line.saturating_sub(NEIGHBOURS / 2).min(left.len().saturating_sub(NEIGHBOURS));
-                let near = left.iter().skip(from).take(NEIGHBOURS).map(|left| 0.5 * left.norm_sqr());
-                *weight /= (record.per_datum * median(near.collect())).max(1.0).sqrt();
+                let near = left[about(line, NEIGHBOURS, left.len())].iter().map(|left| 0.5 * left.norm_sqr());
+                *weight /= (record.per_datum * mean_square(near)).max(1.0).sqrt();
             }
         });
     }
@@ -104,7 +102,7 @@ fn telling(records: &[RecordLines], noise: &[Vec<f64>], left: &[Vec<Complex64>])
 
 /// $\kappa^2$ at which the median line misses by as much as it should; modes that are not found yet, a few lines each, do not raise it.
 fn scatter(lines: &[Line]) -> f64 {
-    let of = |kappa2: f64| median(lines.iter().map(|line| line.missed / (1.0 + kappa2 * line.size)).collect());
+    let of = |kappa2: f64| mean_square(lines.iter().map(|line| line.missed / (1.0 + kappa2 * line.size)));
     if of(0.0) < BY_NOISE {
         return 0.0;
     }
@@ -117,7 +115,6 @@ fn scatter(lines: &[Line]) -> f64 {
 }
 
 /// The mean of squares of a complex Gaussian by their median, which is $\ln 2$ of it.
-fn median(mut squares: Vec<f64>) -> f64 {
-    let middle = squares.len() / 2;
-    if squares.is_empty() { 0.0 } else { *squares.select_nth_unstable_by(middle, f64::total_cmp).1 / LN_2 }
+fn mean_square(squares: impl Iterator<Item = f64>) -> f64 {
+    median(squares) / LN_2
 }

@@ -367,7 +367,7 @@ fn val_the_loss_without_a_pole_is_that_of_a_fit_without_it() {
 }
 
 /// The mean of three hits under an exponential window, with the variance that three hits tell of each line: noise that runs alike over ten lines
-/// is no pole, and what is stated of poles and residues holds.
+/// is no pole, and what is stated of the poles' frequencies holds.
 #[test]
 fn val_noise_under_an_exponential_window_is_no_pole() {
     let made = ringing();
