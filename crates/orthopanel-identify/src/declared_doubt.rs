@@ -34,14 +34,13 @@ impl Inquiry<'_> {
         if part.effect.parameters().iter().any(|parameter| parameter.each_record) {
             return None;
         }
-        let predictor = self.problem(&base.hypothesis).predictor;
-        let records = predictor.comparison.measured.records.len();
+        let records = self.measured().records.len();
         let of_parts = base.hypothesis.of_parts(&base.posterior.point.z);
         let values = part.values(of_parts[index]);
         let before: usize = base.hypothesis.free_constants() + of_parts[..index].iter().map(|z| z.len()).sum::<usize>();
         let (before, after) =
             (&base.posterior.point.z[..before], &base.posterior.point.z[before + of_parts[index].len()..]);
-        let ways = Part::ways(part.effect, predictor.piece(), records).into_iter();
+        let ways = Part::ways(part.effect, self.predictor().piece(), records).into_iter();
         let ways = ways.filter(|way| way.free() > part.free());
         let freed = ways.filter_map(|mut way| {
             way.role = Role::Declared;

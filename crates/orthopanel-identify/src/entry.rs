@@ -3,11 +3,10 @@
 use orthopanel_data::{ImpactTest, MeasurementData};
 use orthopanel_model::{ModelError, StructureKind};
 
-use crate::answer::{PlateByModes, identify_with_effects};
+use crate::answer::{PlateByModes, identify_lists_with_effects, identify_with_effects, without_repeats};
 use crate::declared_effects::holds_one_kind;
 use crate::{
     DampingLaw, Identification, IdentifyError, Search, Settings, accelerance_fit, frequency_fit, known_beforehand,
-    list_tracing,
 };
 
 /// Finds the constants of a test, and its damping where there are records: eq. 22 for natural frequencies, the whole
@@ -37,7 +36,7 @@ fn of_data(test: &ImpactTest, settings: Settings) -> Result<Identification, Iden
     let is_frequencies = |data: &MeasurementData| matches!(data, MeasurementData::NaturalFrequencies(_));
     let lists = test.measurements.iter().filter(|measurement| is_frequencies(&measurement.data)).count();
     if lists == test.measurements.len() {
-        let (once, notes) = list_tracing::without_repeats(test);
+        let (once, notes) = without_repeats(test);
         let mut found = of_once(&once, lists - notes.len(), settings)?;
         found.notes.extend(notes);
         return Ok(found);
@@ -90,7 +89,7 @@ fn with_effects(test: &ImpactTest, lists: usize, settings: Settings) -> Result<I
         );
     }
     if lists == test.measurements.len() {
-        return list_tracing::identify_lists(test)?.determined();
+        return identify_lists_with_effects(test)?.determined();
     }
     if lists == 0 {
         accelerance_fit::refuse_other_units(test, &test.accelerances(settings.estimation)?)?;

@@ -3,6 +3,7 @@
 use faer::Mat;
 use orthopanel_model::{Action, Effect, EffectParameter, EffectState, ModelError, Piece, Prior, Scale};
 
+use crate::free_constants::FreeConstants;
 use crate::predicted::Predictor;
 
 /// Largest size of a coordinate with a Gaussian prior.
@@ -79,13 +80,13 @@ impl Slot {
 }
 
 /// The values of some slots, whose coordinates stand first in `z`.
-fn values(slots: &[Slot], z: &[f64]) -> Vec<f64> {
+fn values<'a>(slots: impl IntoIterator<Item = &'a Slot>, z: &[f64]) -> Vec<f64> {
     let mut z = z.iter();
     let value = |slot: &Slot| match slot {
         Slot::Held(value) => *value,
         Slot::Free(coordinate) => coordinate.value(z.next().copied().unwrap_or(0.0)),
     };
-    slots.iter().map(value).collect()
+    slots.into_iter().map(value).collect()
 }
 
 /// Whether an effect sits at a place of its own: a piece may have several of it.
@@ -94,7 +95,7 @@ pub(crate) fn has_place(effect: &dyn Effect) -> bool {
 }
 
 /// Whether a parameter is the place of an effect along the piece.
-pub(crate) fn is_place(parameter: &EffectParameter) -> bool {
+fn is_place(parameter: &EffectParameter) -> bool {
     parameter.name == "x"
 }
 
@@ -286,22 +287,40 @@ fn choices(parameter: &EffectParameter, piece: &Piece, records: usize) -> Vec<Ve
 /// Constants and effects, all that is free in one list of coordinates: the constants first.
 #[derive(Clone)]
 pub(crate) struct Hypothesis {
-    constants: Vec<Slot>,
+    constants: Vec<ConstantSlot>,
     pub parts: Vec<Part>,
-    records: usize,
+}
+
+/// A constant of the structure, by its number, and the piece that has it of its own.
+#[derive(Clone)]
+struct ConstantSlot {
+    constant: usize,
+    piece: Option<usize>,
+    slot: Slot,
 }
 
 /// Factor within which two of three constants lie of where a search begins: any start serves, and all hypotheses share it.
 const CONSTANTS: f64 = 2.0;
 
 impl Hypothesis {
-    /// Constants about these values, or held.
-    pub(crate) fn new(constants: &[(f64, bool)], parts: Vec<Part>, records: usize) -> Self {
-        let slot = |&(value, held): &(f64, bool)| {
-            let map = Map::Size { median: value, log_factor: CONSTANTS.ln(), sign: 1.0 };
-            if held { Slot::Held(value) } else { Slot::Free(Coordinate { map, range: (0.0, f64::MAX) }) }
-        };
-        Self { constants: constants.iter().map(slot).collect(), parts, records }
+    /// Constants about these values, where the test does not hold them.
+    pub(crate) fn new(constants: &FreeConstants, about: &[f64], parts: Vec<Part>) -> Self {
+        let mut slots = Vec::new();
+        for (constant, (held, about)) in constants.held.iter().zip(about).enumerate() {
+            let map = Map::Size { median: *about, log_factor: CONSTANTS.ln(), sign: 1.0 };
+            let free = Slot::Free(Coordinate { map, range: (0.0, f64::MAX) });
+            match held {
+                Some(value) => slots.push(ConstantSlot { constant, piece: None, slot: Slot::Held(*value) }),
+                None => {
+                    slots.extend(constants.free.iter().filter(|of| of.constant == constant).map(|of| ConstantSlot {
+                        constant,
+                        piece: of.piece,
+                        slot: free,
+                    }))
+                }
+            }
+        }
+        Self { constants: slots, parts }
     }
 
     /// With one part more.
@@ -320,11 +339,11 @@ impl Hypothesis {
     }
 
     fn coordinates(&self) -> impl Iterator<Item = &Coordinate> {
-        self.constants.iter().filter_map(Slot::coordinate).chain(self.parts.iter().flat_map(Part::coordinates))
+        self.of_slots().filter_map(Slot::coordinate).chain(self.parts.iter().flat_map(Part::coordinates))
     }
 
     pub(crate) fn free_constants(&self) -> usize {
-        self.constants.iter().filter_map(Slot::coordinate).count()
+        self.of_slots().filter_map(Slot::coordinate).count()
     }
 
     /// The effects that the base lacks.
@@ -332,14 +351,36 @@ impl Hypothesis {
         self.parts.iter().filter(|part| part.role == Role::Found)
     }
 
+    fn of_slots(&self) -> impl Iterator<Item = &Slot> {
+        self.constants.iter().map(|of| &of.slot)
+    }
+
+    /// Number and piece of each constant, in the order of [`Self::values_with_deviations`].
+    pub(crate) fn constant_numbers(&self) -> impl Iterator<Item = (usize, Option<usize>)> {
+        self.constants.iter().map(|of| (of.constant, of.piece))
+    }
+
+    /// Of the first piece.
     pub(crate) fn constants(&self, z: &[f64]) -> Vec<f64> {
-        values(&self.constants, z)
+        self.constants_of(0, z)
+    }
+
+    /// Of a piece, in the structure's order.
+    pub(crate) fn constants_of(&self, piece: usize, z: &[f64]) -> Vec<f64> {
+        let all = values(self.of_slots(), z);
+        let of_piece = self.constants.iter().zip(all).filter(|(of, _)| of.piece.is_none_or(|own| own == piece));
+        let mut found: Vec<(usize, bool, f64)> =
+            of_piece.map(|(of, value)| (of.constant, of.piece.is_none(), value)).collect();
+        // Its own before the one that others share.
+        found.sort_by_key(|(constant, is_shared, _)| (*constant, *is_shared));
+        found.dedup_by_key(|(constant, ..)| *constant);
+        found.into_iter().map(|(.., value)| value).collect()
     }
 
     /// The coordinates of these constants, as far as they are free.
     pub(crate) fn of_constants(&self, values: &[f64]) -> Vec<f64> {
-        let of = |(slot, value): (&Slot, &f64)| slot.coordinate().map(|coordinate| coordinate.of_value(*value));
-        self.constants.iter().zip(values).filter_map(of).collect()
+        let of = |of: &ConstantSlot| Some(of.slot.coordinate()?.of_value(*values.get(of.constant)?));
+        self.constants.iter().filter_map(of).collect()
     }
 
     /// The coordinates at which a free factor on all records is so many times what it is; `None` where there is none.
@@ -350,6 +391,24 @@ impl Hypothesis {
         let value = part.values(own).first()? * times;
         let moved = part.coordinates_of(&[value]);
         value.is_finite().then(|| [&z[..before], &moved, &z[before + own.len()..]].concat())
+    }
+
+    /// Numbers of the coordinates that are places of what the base lacks.
+    pub(crate) fn places(&self) -> Vec<usize> {
+        let mut places = Vec::new();
+        let mut at = self.free_constants();
+        for part in &self.parts {
+            for (slot, parameter) in part.slots.iter().zip(part.parameters()) {
+                if slot.coordinate().is_none() {
+                    continue;
+                }
+                if part.role == Role::Found && is_place(parameter) {
+                    places.push(at);
+                }
+                at += 1;
+            }
+        }
+        places
     }
 
     /// The coordinates of each part, in order.
@@ -365,14 +424,14 @@ impl Hypothesis {
 
     /// # Errors
     /// As [`EffectState::new`].
-    pub(crate) fn effects(&self, z: &[f64]) -> Result<Vec<EffectState>, ModelError> {
+    pub(crate) fn effects(&self, z: &[f64], records: usize) -> Result<Vec<EffectState>, ModelError> {
         let states = self.parts.iter().zip(self.of_parts(z));
-        states.map(|(part, z)| EffectState::new(part.effect, part.values(z), self.records.max(1))).collect()
+        states.map(|(part, z)| EffectState::new(part.effect, part.values(z), records.max(1))).collect()
     }
 
     /// Constants, then the values of each effect, with their standard deviations where they are free.
     pub(crate) fn values_with_deviations(&self, z: &[f64], covariance: &Mat<f64>) -> Vec<(f64, Option<f64>)> {
-        let slots = self.constants.iter().chain(self.parts.iter().flat_map(|part| &part.slots));
+        let slots = self.of_slots().chain(self.parts.iter().flat_map(|part| &part.slots));
         let mut place = 0..;
         let value = |slot: &Slot| match slot {
             Slot::Held(value) => (*value, None),

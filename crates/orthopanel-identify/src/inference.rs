@@ -1,7 +1,7 @@
 //! From a test to the hypotheses that are held against its measured modes.
 
 use orthopanel_data::ImpactTest;
-use orthopanel_model::{BEAM_CONSTANTS, EffectSetting, RecordSetting};
+use orthopanel_model::{BEAM_CONSTANTS, EffectSetting, RecordSetting, StructureKind};
 
 use crate::IdentifyError;
 use crate::comparison::Comparison;
@@ -10,8 +10,10 @@ use crate::free_constants::FreeConstants;
 use crate::measured::{MeasuredModes, measured_modes};
 use crate::outcome::Progress;
 use crate::posterior::Judged;
+use crate::predicted::Predictor;
 use crate::search::Inquiry;
 use crate::search_progress::SearchProgress;
+use crate::stacked::{Block, Stacked};
 
 fn too_few(found: usize) -> IdentifyError {
     IdentifyError::TooFewResonances { found, needed: 2, noise_percent: None }
@@ -27,24 +29,46 @@ pub(crate) fn from_base<T>(
     progress: &(dyn Fn(Progress) + Sync),
     say: impl FnOnce(Inquiry, Judged) -> Result<T, IdentifyError>,
 ) -> Result<T, IdentifyError> {
-    let piece = test.pieces.first().ok_or_else(|| too_few(0))?.piece;
+    let largest = test.pieces.iter().map(|named| named.piece).max_by(|a, b| a.mass().total_cmp(&b.mass()));
+    let piece = largest.ok_or_else(|| too_few(0))?;
     // What is declared wrongly is said before the records are read.
-    let held = FreeConstants::of(test, &BEAM_CONSTANTS)?.held;
+    let constants = FreeConstants::of(test, &BEAM_CONSTANTS)?;
     let declared = declared_parts(test, &piece, pairs_of_places(test))?;
     let all: Vec<MeasuredModes> = measured_modes(test)?.into_iter().map(MeasuredModes::without_faint).collect();
     let measured = all.first().ok_or_else(|| too_few(0))?;
-    let setting = EffectSetting {
-        piece,
+    let comparisons: Vec<Comparison> =
+        all.iter().map(|of| Comparison::new(of, test.pieces[of.piece].piece.mass())).collect();
+    let of_piece = |of: &MeasuredModes| EffectSetting {
+        piece: test.pieces[of.piece].piece,
         boundary: test.boundary,
         suspension: test.suspension.clone(),
-        record: RecordSetting::default(),
+        record: RecordSetting { response_at: of.sensor_at, ..RecordSetting::default() },
     };
-    let comparison = Comparison::new(measured, piece.mass());
-    let begun = Inquiry::begin(&comparison, &setting, &held, &declared)?;
+    let mut blocks = Vec::new();
+    for comparison in &comparisons {
+        let of = comparison.measured;
+        let predictor = Predictor::new(comparison, StructureKind::TimoshenkoBeam, &of_piece(of))?;
+        blocks.push(Block { piece: of.piece, predictor, waves: vec![] });
+    }
+    let begun = Inquiry::begin(Stacked::new(blocks), &constants, &declared)?;
     let (mut inquiry, base) = begun.ok_or_else(|| match measured.poles.len() {
         found @ 0..2 => too_few(found),
         _ => IdentifyError::NotFinite { what: "likelihood of the measured modes on any beam".to_owned() },
     })?;
     inquiry.progress = SearchProgress::telling(progress);
     say(inquiry, base)
+}
+
+#[doc(hidden)]
+pub fn probe_list(
+    test: &ImpactTest,
+) -> Result<Vec<(Vec<&'static str>, f64, Vec<(f64, Option<f64>)>, f64)>, IdentifyError> {
+    from_base(test, &|_| {}, |inquiry, base| {
+        let all = inquiry.search(base);
+        let of = |j: &Judged| {
+            let values = j.hypothesis.values_with_deviations(&j.posterior.point.z, &j.posterior.covariance);
+            (j.names(), j.log_odds, values, j.posterior.log_sizes[0].exp())
+        };
+        Ok(all.iter().map(of).collect())
+    })
 }

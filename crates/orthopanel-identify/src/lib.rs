@@ -18,7 +18,6 @@ mod inference;
 mod judge;
 mod known_beforehand;
 mod least_squares;
-mod list_tracing;
 mod matching;
 mod measured;
 mod model_error;
@@ -30,6 +29,7 @@ mod predicted;
 mod search;
 mod search_progress;
 mod settings;
+mod stacked;
 mod starting_constants;
 mod structures;
 mod time_history;
@@ -45,6 +45,8 @@ pub use error::IdentifyError;
 pub use identification::{
     AcceleranceFit, Correlation, HiddenMode, Identification, IdentifiedConstant, ModeFit, NotIdentified, PieceFit,
 };
+#[doc(hidden)]
+pub use inference::probe_list;
 pub use known_beforehand::PriorContradiction;
 pub use matching::ModeMatch;
 pub use measured::{MeasuredModes, MeasuredRecord, Pole, measured_modes};

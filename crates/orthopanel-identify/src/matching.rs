@@ -173,6 +173,7 @@ mod tests {
             poles: vec![pole(501.0), pole(504.0), pole(5000.0)],
             beside: vec![],
             records: (0..3).map(record).collect(),
+            sensor_at: None,
             remainder_frequencies: vec![],
             band: [5.0, 6000.0],
             covariance: Mat::zeros(0, 0),

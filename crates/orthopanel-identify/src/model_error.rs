@@ -285,6 +285,27 @@ impl ErrorColumns {
         }
     }
 
+    /// Of blocks that stand below each other.
+    pub(crate) fn stacked(mut all: Vec<Self>) -> Self {
+        if all.len() == 1 {
+            return all.remove(0);
+        }
+        let rows = all.iter().map(|own| own.columns.nrows()).sum();
+        let count = all.iter().map(|own| own.columns.ncols()).sum();
+        let mut stacked =
+            Self { columns: Mat::zeros(rows, count), kinds: vec![], uninformative: vec![], without_partner: vec![] };
+        let mut row = 0;
+        for own in all {
+            let [rows, count] = [own.columns.nrows(), own.columns.ncols()];
+            stacked.columns.submatrix_mut(row, stacked.kinds.len(), rows, count).copy_from(&own.columns);
+            stacked.kinds.extend(own.kinds);
+            stacked.uninformative.extend(own.uninformative.into_iter().map(|(place, of)| (row + place, of)));
+            stacked.without_partner.extend(own.without_partner.into_iter().map(|(place, of)| (row + place, of)));
+            row += rows;
+        }
+        stacked
+    }
+
     /// The same where every pole is to be a mode of the model: for the search of an effect that gives it one.
     pub(crate) fn with_every_partner(mut self) -> Self {
         self.without_partner.clear();

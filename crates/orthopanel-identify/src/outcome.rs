@@ -40,7 +40,7 @@ pub struct Tracing {
     pub alternatives: Vec<String>,
     /// Error of the base and of the model with the effects.
     pub error: TracedError,
-    /// By how much the model misses beside noise, as it was estimated with the rest; `None` where lists were traced.
+    /// By how much the model misses beside noise, as it was estimated with the rest.
     pub model_error: Option<EstimatedModelError>,
     /// Every hypothesis that was fitted, the likeliest first.
     pub candidates: Vec<Candidate>,
@@ -130,8 +130,8 @@ pub struct TracedParameter {
 pub struct EstimatedModelError {
     /// Standard deviation of the logarithm of each natural frequency \[1\].
     pub frequency: f64,
-    /// The same of each residue along its phase, over the rms of its mode's residues \[1\].
-    pub residue: f64,
+    /// The same of each residue along its phase, over the rms of its mode's residues \[1\]; `None` where frequencies alone were measured.
+    pub residue: Option<f64>,
 }
 
 /// Error before and after, on what was fitted and on what was held out.
@@ -161,11 +161,8 @@ pub struct FittedError {
 pub struct Candidate {
     /// Its effects' ids joined by ` + `; `base` for none.
     pub id: String,
-    /// Natural logarithm of the evidence times the prior of the hypothesis: differences are logarithms of odds. Of lists, $-\tfrac12$ of the
-    /// criterion.
+    /// Natural logarithm of the evidence times the prior of the hypothesis: differences are logarithms of odds.
     pub log_evidence: f64,
-    /// Bayes' information criterion of lists: less is better. `None` where measured modes were judged, by their evidence itself.
-    pub bic: Option<f64>,
     /// Error on what was held out, as in [`TracedError`].
     pub held_out: f64,
     /// What was found of the effects.
@@ -179,13 +176,6 @@ pub struct NotTested {
     pub id: &'static str,
     /// Why these data cannot show it.
     pub reason: String,
-}
-
-impl Candidate {
-    /// One that is judged by a criterion.
-    pub(crate) fn by_criterion(id: String, bic: f64, held_out: f64, effects: Vec<TracedEffect>) -> Self {
-        Self { id, log_evidence: -0.5 * bic, bic: Some(bic), held_out, effects }
-    }
 }
 
 /// An effect that is in the data and not of the panel.

@@ -10,8 +10,8 @@ use faer::{Mat, Par, Side};
 use orthopanel_model::ModelError;
 
 use crate::hypothesis::Hypothesis;
-use crate::model_error::{ErrorColumns, KINDS, Waves, deviations, medians};
-use crate::predicted::{Prediction, Predictor};
+use crate::model_error::{ErrorColumns, KINDS, deviations, medians};
+use crate::stacked::{Predictions, Stacked};
 
 /// Step of a difference, in coordinates.
 const STEP: f64 = 1e-4;
@@ -51,10 +51,8 @@ impl Whitening {
 
 /// A hypothesis held against the measured modes.
 pub(crate) struct Problem<'a> {
-    pub predictor: &'a Predictor<'a>,
+    pub stacked: &'a Stacked<'a>,
     pub hypothesis: &'a Hypothesis,
-    /// What unevenness does, of [`crate::model_error::waves`].
-    pub waves: &'a Waves,
 }
 
 /// A point in the coordinates of a hypothesis, with its misfit $r^TC^{-1}r + z^TPz$.
@@ -65,7 +63,7 @@ pub(crate) struct Point {
     /// The misfit and $\ln\det C$: what points that have covariances of their own are compared by.
     pub cost: f64,
     /// What is predicted there, with derivatives by places.
-    pub at: Arc<Prediction>,
+    pub at: Arc<Predictions>,
     /// $\partial f/\partial z$ there or not far from there; empty where it is not known.
     pub derivatives: Mat<f64>,
 }
@@ -144,36 +142,33 @@ fn square(values: &[f64]) -> f64 {
 
 impl Problem<'_> {
     /// What is predicted at a point, with derivatives by places.
-    pub(crate) fn at(&self, z: &[f64]) -> Result<Prediction, ModelError> {
-        self.predictor.at(&self.hypothesis.constants(z), &self.hypothesis.effects(z)?, true)
+    pub(crate) fn at(&self, z: &[f64]) -> Result<Predictions, ModelError> {
+        self.stacked.at(self.hypothesis, z)
     }
 
     /// What is measured less what is predicted.
-    pub(crate) fn missed(&self, at: &Prediction) -> Vec<f64> {
-        self.predictor
-            .comparison
-            .values
-            .iter()
-            .zip(&at.values)
-            .map(|(measured, predicted)| measured - predicted)
-            .collect()
+    pub(crate) fn missed(&self, at: &Predictions) -> Vec<f64> {
+        self.stacked.missed(at)
     }
 
-    pub(crate) fn errors(&self, at: &Prediction) -> ErrorColumns {
-        ErrorColumns::about(self.predictor.comparison, at, self.waves)
+    pub(crate) fn errors(&self, at: &Predictions) -> ErrorColumns {
+        self.stacked.errors(at)
     }
 
     pub(crate) fn whitening(&self, errors: &ErrorColumns, log_sizes: &[f64; KINDS]) -> Option<Whitening> {
-        Whitening::new(&errors.covariance(&self.predictor.comparison.noise, log_sizes))
+        Whitening::new(&errors.covariance(self.stacked.noise(), log_sizes))
     }
 
     /// With remainders that tell little: no more than their size.
     pub(crate) fn whitening_of_modes(&self, errors: &ErrorColumns, log_sizes: &[f64; KINDS]) -> Option<Whitening> {
-        let comparison = self.predictor.comparison;
-        let mut covariance = errors.covariance(&comparison.noise, log_sizes);
-        for record in 0..comparison.measured.records.len() {
-            for place in comparison.remainder_place(record, 0)..comparison.block_of(record).end {
-                covariance[(place, place)] += comparison.variance_of_size(place);
+        let mut covariance = errors.covariance(self.stacked.noise(), log_sizes);
+        for (range, block) in self.stacked.ranges().zip(&self.stacked.blocks) {
+            let comparison = block.comparison();
+            for record in 0..comparison.measured.records.len() {
+                for place in comparison.remainder_place(record, 0)..comparison.block_of(record).end {
+                    let row = range.start + place;
+                    covariance[(row, row)] += comparison.variance_of_size(place);
+                }
             }
         }
         Whitening::new(&covariance)
@@ -243,23 +238,26 @@ impl Problem<'_> {
     }
 
     /// Derivatives by the coordinates that move places alone, which need no modes of their own.
-    fn by_places(&self, z: &[f64], at: &Prediction) -> Vec<Option<Vec<f64>>> {
+    fn by_places(&self, z: &[f64], at: &Predictions) -> Vec<Option<Vec<f64>>> {
         let mut columns: Vec<Option<Vec<f64>>> = vec![None; self.hypothesis.free_constants()];
-        let measured = self.predictor.comparison.measured;
         for (part, z) in self.hypothesis.parts.iter().zip(self.hypothesis.of_parts(z)) {
             for (number, slope) in part.slopes(z).iter().enumerate() {
                 let mut column = vec![0.0; at.values.len()];
                 let mut places_alone = true;
-                for record in 0..measured.records.len() {
-                    let shifts = part.shifts(self.predictor, record, number);
-                    places_alone &= shifts.is_some();
-                    for of_response in shifts.into_iter().flatten() {
-                        let by = if of_response { &at.by_response } else { &at.by_force };
-                        let block = self.predictor.comparison.block_of(record);
-                        block.for_each(|row| column[row] += slope * by[row]);
+                for ((range, block), at) in self.stacked.ranges().zip(&self.stacked.blocks).zip(&at.blocks) {
+                    let records = block.comparison().measured.records.len();
+                    places_alone &= records > 0;
+                    for record in 0..records {
+                        let shifts = part.shifts(&block.predictor, record, number);
+                        places_alone &= shifts.is_some();
+                        for of_response in shifts.into_iter().flatten() {
+                            let by = if of_response { &at.by_response } else { &at.by_force };
+                            let own = block.comparison().block_of(record);
+                            own.for_each(|row| column[range.start + row] += slope * by[row]);
+                        }
                     }
                 }
-                columns.push((places_alone && !measured.records.is_empty()).then_some(column));
+                columns.push(places_alone.then_some(column));
             }
         }
         columns
@@ -366,7 +364,7 @@ impl Problem<'_> {
     /// $\tfrac12(\ln\det C + r^TC^{-1}r) + \tfrac12\sum((\ln\tau_k-\mu_k)/s_k)^2$.
     pub(crate) fn sizes(
         &self,
-        at: &Prediction,
+        at: &Predictions,
         errors: &ErrorColumns,
         mut log_sizes: [f64; KINDS],
         most: usize,

@@ -104,7 +104,8 @@ impl<'a> Predictor<'a> {
         let places = distinct(measured.records.iter().flat_map(|record| [record.force_at, record.response_at]));
         let panel = ModifiedPanel::new(structure, setting, measured.poles.len() + SPARE)?;
         let top = measured.poles.last().map_or(measured.band[1], |pole| pole.angular_frequency / TAU);
-        let panel = panel.perhaps_wide(setting, &places, WIDE * top);
+        let of_plate = if places.is_empty() { across(&setting.piece) } else { places.clone() };
+        let panel = panel.perhaps_wide(setting, &of_plate, WIDE * top);
         // What is not linear shows between hits, not in modes.
         let record = RecordSetting { suspension_motion: SuspensionMotion::InTime, ..setting.record.clone() };
         let setting = EffectSetting { record, ..setting.clone() };
@@ -278,7 +279,10 @@ impl<'a> Predictor<'a> {
             views.push(View { of: own, ..self.view(&setting, &ports, with_slopes, constants, effects)? });
         }
         if views.is_empty() {
-            views.push(self.view(&self.setting, &[], false, constants, effects)?);
+            let mut acts = effects.iter().map(|state| state.acting_in(&self.setting));
+            let is_plate = acts.any(|acts| acts.is_ok_and(|acts| matches!(acts[..], [Action::Plate(_)])));
+            let places = if is_plate { across(self.piece()) } else { vec![] };
+            views.push(self.view(&self.setting, &places, false, constants, effects)?);
         }
         Ok(self.compared(&channels, &Views { places, views }))
     }
@@ -321,6 +325,15 @@ impl<'a> Predictor<'a> {
     /// The partner of each pole among the modes that the first record sees, each as large as the channels show it.
     fn partners(&self, channels: &[Channel], seen: &Views, omega: &[f64], bottom: f64) -> Vec<Option<usize>> {
         let measured = self.comparison.measured;
+        if measured.records.is_empty() {
+            // A list counts the flexible modes that bend along the piece.
+            let bends_along = |n: &usize| {
+                let seen = &seen.views[0].modes.deflection[*n];
+                seen.is_empty() || seen.chunks_exact(2).map(|pair| pair[0] * pair[1]).sum::<f64>() > 0.0
+            };
+            let mut flexible = (self.panel.rigid_modes(self.setting.boundary)..omega.len()).filter(bends_along);
+            return measured.poles.iter().map(|_| flexible.next()).collect();
+        }
         let top = ABOVE * measured.poles.last().map_or(TAU * measured.band[1], |pole| pole.angular_frequency);
         let candidates: Vec<usize> = (0..omega.len()).filter(|&n| omega[n] > bottom && omega[n] < top).collect();
         let product = |record: usize, n: usize| {
@@ -471,6 +484,15 @@ impl<'a> Predictor<'a> {
         }
     }
 }
+
+/// Places on the centre line, each before the one beside it on an edge: a mode that bends across or twists has not the same sign in both.
+fn across(piece: &Piece) -> Vec<Place> {
+    let along = ALONG.map(|part| part * piece.length);
+    along.into_iter().flat_map(|x| [0.0, 0.5 * piece.width].map(|y| Place { x, y })).collect()
+}
+
+/// Parts of the length at which pairs of places across stand.
+const ALONG: [f64; 6] = [-0.47, -0.31, -0.07, 0.13, 0.29, 0.47];
 
 /// Each place once, in the order in which they come.
 pub(crate) fn distinct(all: impl Iterator<Item = Place>) -> Vec<Place> {

@@ -1,24 +1,27 @@
 //! Hypotheses: nothing missing, each effect, and more while the evidence grows.
 
 mod further_effect;
+mod in_lists;
 
 use std::f64::consts::TAU;
 
 use faer::Mat;
 use orthopanel_model::{
-    Action, Effect, EffectParameter, EffectSetting, ModelError, Scale, StructureKind, catalogue, natural_frequencies,
+    Action, Effect, EffectParameter, EffectSetting, ModelError, Scale, catalogue, natural_frequencies,
 };
 use rayon::prelude::*;
 
 use crate::comparison::Comparison;
+use crate::free_constants::FreeConstants;
 use crate::hit_strength::{HitStrength, Springs};
 use crate::hypothesis::{Hypothesis, Part, Role};
 use crate::judge::ODDS;
 use crate::measured::MeasuredModes;
-use crate::model_error::{KINDS, Waves, medians, waves};
+use crate::model_error::{KINDS, medians, waves};
 use crate::posterior::{Judged, Point, Posterior, Problem};
 use crate::predicted::{Prediction, Predictor};
 use crate::search_progress::SearchProgress;
+use crate::stacked::{Block, Stacked};
 
 /// $\ln\tau_k$ with which starts are judged: wide, so that far ones have a slope to follow.
 const LOOSE: [f64; KINDS] = [
@@ -43,8 +46,7 @@ const MOST_EFFECTS: usize = 3;
 
 /// All that is the same for every hypothesis.
 pub(crate) struct Inquiry<'a> {
-    predictor: Predictor<'a>,
-    waves: Waves,
+    pub stacked: Stacked<'a>,
     /// The hits, where the test has any.
     pub hits: Option<HitStrength>,
     /// How far it is.
@@ -62,19 +64,15 @@ fn logs(sizes: [f64; KINDS]) -> [f64; KINDS] {
 
 /// Constants of a beam that fit the frequencies alone, the likeliest first: at each ratio $E/G$ the scale that puts most poles near modes.
 /// Of the `lowest` poles.
-fn starting_constants(
-    comparison: &Comparison,
-    setting: &EffectSetting,
-    lowest: usize,
-) -> Result<Vec<[f64; 2]>, ModelError> {
-    let measured = comparison.measured;
+fn starting_constants(block: &Block, lowest: usize) -> Result<Vec<[f64; 2]>, ModelError> {
+    let (measured, setting) = (block.comparison().measured, block.predictor.setting(0));
     let poles: Vec<f64> = measured.poles.iter().take(lowest).map(|pole| pole.angular_frequency / TAU).collect();
     let top = poles.last().copied().unwrap_or(0.0);
     let mut found: Vec<(f64, [f64; 2])> = Vec::new();
     for step in 0..RATIOS {
         let ratio = 2.0 * (step as f64 / (RATIOS - 1) as f64 * 300f64.ln()).exp();
         let values = [1e10, 1e10 / ratio];
-        let modes = natural_frequencies(setting, &values, &[], poles.len() + 6)?;
+        let modes = natural_frequencies(&setting, &values, &[], poles.len() + 6)?;
         for (pole, mode) in
             (0..poles.len().min(5)).flat_map(|pole| (0..modes.len().min(3)).map(move |mode| (pole, mode)))
         {
@@ -114,20 +112,15 @@ fn larger(comparison: &Comparison, at: &Prediction) -> f64 {
 impl<'a> Inquiry<'a> {
     /// With nothing missing: the base from which all begin.
     pub(crate) fn begin(
-        comparison: &'a Comparison<'a>,
-        setting: &EffectSetting,
-        held: &[Option<f64>],
+        stacked: Stacked<'a>,
+        constants: &FreeConstants,
         declared: &[Part],
     ) -> Result<Option<(Self, Judged)>, ModelError> {
-        let predictor = Predictor::new(comparison, StructureKind::TimoshenkoBeam, setting)?;
-        let records = comparison.measured.records.len();
-        let mut inquiry = Self { predictor, waves: vec![], hits: None, progress: SearchProgress::default() };
-        let starts = starting_constants(comparison, setting, usize::MAX)?;
+        let mut inquiry = Self { stacked, hits: None, progress: SearchProgress::default() };
+        let starts = starting_constants(inquiry.stacked.longest(), usize::MAX)?;
         let mut best: Option<(f64, Hypothesis, Point)> = None;
         for start in starts {
-            let constants: Vec<(f64, bool)> =
-                start.iter().zip(held).map(|(start, held)| (held.unwrap_or(*start), held.is_some())).collect();
-            let hypothesis = Hypothesis::new(&constants, declared.to_vec(), records);
+            let hypothesis = Hypothesis::new(constants, &start, declared.to_vec());
             let problem = inquiry.problem(&hypothesis);
             let mut nets: Vec<Vec<f64>> = vec![vec![0.0; hypothesis.free_constants()]];
             for part in &hypothesis.parts {
@@ -136,7 +129,7 @@ impl<'a> Inquiry<'a> {
             }
             let Ok(mut at) = problem.at(&nets[0]) else { continue };
             // A sensitivity that is open may be any, and is told at once.
-            if let Some(z) = hypothesis.multiplied(&nets[0], larger(comparison, &at)) {
+            if let Some(z) = hypothesis.multiplied(&nets[0], larger(inquiry.comparison(), at.first())) {
                 let Ok(there) = problem.at(&z) else { continue };
                 (at, nets[0]) = (there, z);
             }
@@ -152,13 +145,18 @@ impl<'a> Inquiry<'a> {
             }
         }
         let Some((_, hypothesis, point)) = best else { return Ok(None) };
-        inquiry.waves = waves(&inquiry.predictor, &hypothesis.constants(&point.z), &hypothesis.effects(&point.z)?)?;
+        for block in &mut inquiry.stacked.blocks {
+            let (constants, effects) = block.values(&hypothesis, &point.z)?;
+            block.waves = waves(&block.predictor, &constants, &effects)?;
+        }
         Ok(inquiry.with_base(hypothesis, point))
     }
 
     /// The base from which all begin, near a point.
     fn with_base(mut self, hypothesis: Hypothesis, point: Point) -> Option<(Self, Judged)> {
-        self.predictor.hanging = Some(point.at.hanging);
+        for (block, at) in self.stacked.blocks.iter_mut().zip(&point.at.blocks) {
+            block.predictor.hanging = Some(at.hanging);
+        }
         // Here sizes first: small ones would lead the constants away where an effect is large.
         let problem = self.problem(&hypothesis);
         let errors = problem.errors(&point.at);
@@ -171,16 +169,25 @@ impl<'a> Inquiry<'a> {
     }
 
     pub(crate) fn problem<'p>(&'p self, hypothesis: &'p Hypothesis) -> Problem<'p> {
-        Problem { predictor: &self.predictor, hypothesis, waves: &self.waves }
+        Problem { stacked: &self.stacked, hypothesis }
     }
 
-    /// The modes that all are held against.
+    /// What stands in place of the records of the only block where records are judged.
+    pub(crate) fn predictor(&self) -> &Predictor<'a> {
+        &self.stacked.first().predictor
+    }
+
+    fn comparison(&self) -> &'a Comparison<'a> {
+        self.stacked.first().comparison()
+    }
+
+    /// The modes of the records.
     pub(crate) fn measured(&self) -> &'a MeasuredModes {
-        self.predictor.comparison.measured
+        self.comparison().measured
     }
 
     fn ways(&self, effect: &'static dyn Effect) -> Vec<Part> {
-        Part::ways(effect, self.predictor.piece(), self.predictor.comparison.measured.records.len())
+        Part::ways(effect, self.predictor().piece(), self.measured().records.len())
     }
 
     /// The posterior once more, to its end, from its own sizes of model error and from those of the best.
@@ -199,8 +206,11 @@ impl<'a> Inquiry<'a> {
 
     /// Whether the test has records enough: the gain of the only record is the gain.
     pub(crate) fn can_show(&self, effect: &dyn Effect) -> bool {
+        if self.is_of_lists() {
+            return self.hidden_in_lists(effect).is_none();
+        }
         let is_of_one = effect.parameters().iter().any(|parameter| parameter.scale == Scale::Index);
-        !is_of_one || self.predictor.comparison.measured.records.len() > 1
+        !is_of_one || self.measured().records.len() > 1
     }
 
     /// Every effect of the catalogue added to a base, but those sets that were `seen`, the likeliest first.
@@ -260,12 +270,23 @@ impl<'a> Inquiry<'a> {
     /// # Errors
     /// What the test lacks for it.
     pub(crate) fn acts(&self, effect: &dyn Effect) -> Result<Vec<Action>, ModelError> {
-        let piece = self.predictor.piece();
+        // Some lists may tell where a sensor sat, and others not.
+        let mut acts = self.stacked.blocks.iter().map(|block| self.acts_in(effect, &block.predictor.setting(0)));
+        let first = acts.next().unwrap_or(Ok(vec![]));
+        if first.as_ref().is_ok_and(|first| !first.is_empty()) {
+            return first;
+        }
+        acts.find(|acts| acts.as_ref().is_ok_and(|acts| !acts.is_empty())).unwrap_or(first)
+    }
+
+    /// The same in a setting.
+    fn acts_in(&self, effect: &dyn Effect, setting: &EffectSetting) -> Result<Vec<Action>, ModelError> {
+        let piece = &setting.piece;
         let value = |parameter: &EffectParameter| {
             parameter.held_at.or_else(|| parameter.starts(piece).first().copied()).unwrap_or_default()
         };
         let values: Vec<f64> = effect.parameters().iter().map(value).collect();
-        effect.act(&values, &self.predictor.setting(0))
+        effect.act(&values, setting)
     }
 
     /// Whether an effect leaves modes as they are, and shows between hits of unequal strength.
@@ -286,9 +307,9 @@ impl<'a> Inquiry<'a> {
         let ways = self.ways(effect);
         let part = ways.first()?;
         let springs = |of: &Hypothesis, z: &[f64]| {
-            let (constants, effects) = (of.constants(z), of.effects(z).ok()?);
+            let (constants, effects) = self.stacked.first().values(of, z).ok()?;
             let k3 = |z: f64| part.values(&[z]).first().copied().unwrap_or_default();
-            hits.springs(&self.predictor, (&constants, &effects), k3).ok()?
+            hits.springs(self.predictor(), (&constants, &effects), k3).ok()?
         };
         let with = |judged: &Judged, hypothesis: Hypothesis, springs: Springs| {
             let hypothesis = hypothesis.with(part.clone());

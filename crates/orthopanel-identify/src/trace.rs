@@ -4,9 +4,8 @@ use orthopanel_data::{ImpactTest, Measurement};
 use orthopanel_model::{Estimate, Owner, StructureKind};
 
 use crate::accelerance_fit::{WINDOW_EFFECT, question_of_window, refuse_missed};
-use crate::answer::answer;
+use crate::answer::{answer, answer_of_lists};
 use crate::declared_effects::holds_one_kind;
-use crate::list_tracing::trace_lists;
 use crate::outcome::{Progress, Removed, TracedEffect, TracedParameter, Tracing, Verdict};
 use crate::to_check::to_check;
 use crate::{IdentifyError, Settings, identify};
@@ -23,7 +22,8 @@ use crate::{IdentifyError, Settings, identify};
 /// in Laplace's approximation (MacKay, Neural Computation 4, 1992), each effect lacking by itself with the prior odds of one to the size of the
 /// catalogue. What shows between hits alone, `cubic-stiffness`, is held against the best of the other hypotheses.
 ///
-/// Lists of natural frequencies are fitted number by number with each effect in turn, and hypotheses are compared by Bayes' information criterion.
+/// Lists of natural frequencies are measured modes without residues: their numbers match them with the modes, and those of several pieces are judged
+/// together.
 ///
 /// # Limits
 /// Records are those of one piece, as a beam that may turn out a plate, hit and seen on its centre line. Standard deviations hold the sizes of model
@@ -63,7 +63,7 @@ pub fn trace_with(test: &ImpactTest, progress: &(dyn Fn(Progress) + Sync)) -> Re
 fn of_data(test: &ImpactTest, progress: &(dyn Fn(Progress) + Sync)) -> Result<Tracing, IdentifyError> {
     let is_record = |measurement: &Measurement| measurement.data.recorded().is_some();
     if !test.measurements.iter().any(is_record) {
-        return trace_lists(test, progress);
+        return answer_of_lists(test, progress);
     }
     if test.pieces.len() != 1 {
         let message =

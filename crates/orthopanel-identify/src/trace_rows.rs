@@ -58,7 +58,9 @@ struct ErrorRow<'a> {
 #[derive(Serialize)]
 struct ModelErrorRow {
     frequency: f64,
-    residue: f64,
+    /// Only where records were traced.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    residue: Option<f64>,
 }
 
 #[derive(Serialize)]
@@ -71,9 +73,6 @@ struct PairRow {
 struct CandidateRow<'a> {
     id: &'a str,
     log_evidence: f64,
-    /// Only of a candidate that was judged by it.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    bic: Option<f64>,
     held_out: f64,
     parameters: BTreeMap<String, ParameterRow>,
 }
@@ -117,7 +116,6 @@ impl Serialize for Tracing {
                 .map(|candidate| CandidateRow {
                     id: &candidate.id,
                     log_evidence: candidate.log_evidence,
-                    bic: candidate.bic,
                     held_out: candidate.held_out,
                     parameters: of_candidate(&candidate.effects),
                 })

@@ -56,23 +56,21 @@ fn what_is_declared_is_not_traced_again() {
     assert_eq!(found.removed[0].id, "sensor-mass");
 }
 
-/// The seed's pieces 1 and 2: a plate for both is better by the margin and on what was left out.
+/// The seed's pieces 1 and 2 are a beam to 1 %: a plate whose Poisson's ratio is a material's is as likely, not clearly so, and is said to be ahead.
+/// The plate that meets them to 0.36 % (`val_one_line_parts_a_plate_from_pieces_that_differ`) wants 0.68, which no face has.
 #[test]
-fn val_wide_pieces_of_the_paper_want_a_plate() {
+fn val_wide_pieces_of_the_paper_are_a_beam_to_a_hundredth() {
     let found = of_example("pieces-1-2");
-    assert_eq!((found.verdict, found.effects[0].id), (Verdict::Explained, "width-coupling"));
+    assert_eq!((found.verdict, found.effects.len()), (Verdict::NothingMissing, 0));
     assert!((found.error.before.fitted - 1.04).abs() < 0.01 && (found.error.before.held_out - 1.23).abs() < 0.01);
-    assert!(found.error.after.fitted < 0.37 && found.error.after.held_out < 0.5, "{:?}", found.error);
-    let bic = |id: &str| found.candidates.iter().find(|candidate| candidate.id == id).unwrap().bic.unwrap();
-    assert!(bic("base") - bic("width-coupling") > 20.0);
-    assert!(["edge-mass", "rotary-inertia"].iter().all(|id| bic(id) - bic("width-coupling") > 20.0));
-    // A Poisson's ratio of 0.68 is no material's: the other reading, pieces that differ, must be said with what it misses.
-    let said = found.notes.iter().find(|note| note.contains("no material's")).unwrap();
-    let number_before = |words: &str| -> f64 {
-        said.split(words).next().and_then(|before| before.split_whitespace().last()).unwrap().parse().unwrap()
-    };
-    assert!((number_before(" % above that of the others") - 5.8).abs() < 0.1, "{said}");
-    assert!((number_before(" % rms, in place of") - 0.641).abs() < 0.01, "{said}");
+    assert!(
+        found.model_error.is_some_and(|error| (8e-3..1.2e-2).contains(&error.frequency)),
+        "{:?}",
+        found.model_error
+    );
+    let evidence = |id: &str| found.candidates.iter().find(|candidate| candidate.id == id).unwrap().log_evidence;
+    assert!((evidence("width-coupling") - evidence("base")).abs() < 2.0);
+    assert!(["edge-mass", "rotary-inertia"].iter().all(|id| evidence("width-coupling") - evidence(id) > 2.0));
 }
 
 /// One line parts the two readings of the pieces 1 and 2: without mode 6 of the wide piece, pieces of the usual Poisson's ratio that
@@ -103,8 +101,5 @@ fn val_thick_pieces_of_the_paper_lack_nothing_that_their_frequencies_show() {
     let found = of_example("pieces-3-4");
     assert_eq!((found.verdict, found.effects.len()), (Verdict::NothingMissing, 0));
     let FittedError { fitted, held_out } = found.error.before;
-    assert!((fitted - 0.433).abs() < 1e-3 && (held_out - 0.543).abs() < 1e-3, "{:?}", found.error);
-    let plate = found.candidates.iter().find(|candidate| candidate.id == "width-coupling").unwrap();
-    // Its constants are hardly seen, so that the last digit is the search's.
-    assert!((plate.held_out - 0.527).abs() < 5e-3, "{}", plate.held_out);
+    assert!((fitted - 0.433).abs() < 2e-3 && (held_out - 0.543).abs() < 8e-3, "{:?}", found.error);
 }

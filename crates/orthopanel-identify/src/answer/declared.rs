@@ -5,20 +5,21 @@ use std::f64::consts::TAU;
 use orthopanel_data::{Estimation, ImpactTest};
 use orthopanel_model::{BEAM_CONSTANTS, Estimate, Readable, StructureKind};
 
-use crate::free_constants::FreeConstants;
+use crate::free_constants::{FreeConstant, FreeConstants};
 use crate::frequency_fit::identified_constants;
 use crate::inference::from_base;
 use crate::posterior::Judged;
 use crate::search::Inquiry;
 use crate::structures::bending_nodes;
-use crate::{AcceleranceFit, HiddenMode, Identification, IdentifyError, ModeFit, PieceFit};
+use crate::{AcceleranceFit, HiddenMode, Identification, IdentifiedConstant, IdentifyError, ModeFit, PieceFit};
 
 use super::bounds::{notes_on_bound, notes_on_prior_alone};
 use super::damping::TracedDamping;
 use super::doubt::notes_on_not_shown;
-use super::drawn;
 use super::estimates::Estimates;
 use super::lines::{Drawn, Lines};
+use super::lists::{notes_on_hidden, percent};
+use super::{drawn, not_finite};
 
 /// Identifies the constants of a beam whose test of one piece declares effects; a parameter that the file leaves out is identified too.
 ///
@@ -31,6 +32,72 @@ pub(crate) fn identify_with_effects(
     from_base(test, &|_| {}, |inquiry, base| identification(test, (&inquiry, &base), estimation))
 }
 
+/// The same from lists of natural frequencies, of one piece or several.
+///
+/// # Errors
+/// As [`from_base`], [`IdentifyError::OnBound`], and [`IdentifyError::Unsupported`] for an effect that no frequency shows.
+pub(crate) fn identify_lists_with_effects(test: &ImpactTest) -> Result<Identification, IdentifyError> {
+    from_base(test, &|_| {}, |inquiry, base| {
+        let mut notes = notes_on_hidden(test, &inquiry)?;
+        let estimates = Estimates::of(&base);
+        notes.extend(notes_on_prior_alone(&base, &estimates));
+        notes.extend(notes_on_bound(&estimates, inquiry.predictor().piece()));
+        let mut pieces: Vec<PieceFit> = test.pieces.iter().map(PieceFit::of).collect();
+        for (block, at) in inquiry.stacked.blocks.iter().zip(&base.posterior.point.at.blocks) {
+            let measured = block.comparison().measured;
+            let nodes = bending_nodes(test.boundary, measured.poles.len());
+            for (index, (pole, nodes)) in measured.poles.iter().zip(nodes).enumerate() {
+                let frequency = pole.angular_frequency / TAU;
+                let std = measured.covariance[(index, index)].sqrt();
+                pieces[block.piece].modes.push(ModeFit {
+                    mode: index + 1,
+                    nodes,
+                    measured: frequency,
+                    measured_std: Some(frequency * std).filter(|_| std > 0.0),
+                    model: at.values[index].exp() / TAU,
+                    damping: None,
+                });
+            }
+        }
+        let error = percent(&inquiry, &base).ok_or_else(|| not_finite("error of the frequencies"))?;
+        let is_judged = inquiry.frequencies() > base.posterior.point.z.len();
+        let constants = FreeConstants::of(test, &BEAM_CONSTANTS)?;
+        Ok(Identification {
+            structure: StructureKind::TimoshenkoBeam,
+            constants: constants_of(test, (&constants, &base), &estimates)?,
+            not_identified: vec![],
+            correlations: constants.correlations(&base.posterior.covariance),
+            frequency_rms_percent: error.fitted,
+            left_one_out_percent: is_judged.then_some(error.held_out),
+            accelerance_rms_percent: None,
+            chi_square: None,
+            effects: estimates.effects.into_iter().map(|(effect, _)| effect).collect(),
+            pieces,
+            accelerances: vec![],
+            question: None,
+            common_gain: None,
+            notes,
+        })
+    })
+}
+
+/// # Errors
+/// [`IdentifyError::OnBound`].
+fn constants_of(
+    test: &ImpactTest,
+    (constants, base): (&FreeConstants, &Judged),
+    estimates: &Estimates,
+) -> Result<Vec<IdentifiedConstant>, IdentifyError> {
+    let of = |(parameter, free): (usize, &FreeConstant)| {
+        let place = base.hypothesis.constant_numbers().position(|number| number == (free.constant, free.piece));
+        let Estimate { value, std } = estimates.constants[place.unwrap_or_default()];
+        (constants.parameter(parameter, value), std.map(|std| std / constants.slope(free.constant, value)))
+    };
+    let (free, log_std): (Vec<f64>, Vec<Option<f64>>) = constants.free.iter().enumerate().map(of).unzip();
+    constants.refuse_bounds(&free)?;
+    Ok(identified_constants(test, constants, &free, &log_std))
+}
+
 fn identification(
     test: &ImpactTest,
     (inquiry, base): (&Inquiry, &Judged),
@@ -38,16 +105,7 @@ fn identification(
 ) -> Result<Identification, IdentifyError> {
     let estimates = Estimates::of(base);
     let constants = FreeConstants::of(test, &BEAM_CONSTANTS)?;
-    let (free, log_std): (Vec<f64>, Vec<Option<f64>>) = constants
-        .free
-        .iter()
-        .enumerate()
-        .map(|(parameter, free)| {
-            let Estimate { value, std } = estimates.constants[free.constant];
-            (constants.parameter(parameter, value), std.map(|std| std / constants.slope(free.constant, value)))
-        })
-        .unzip();
-    constants.refuse_bounds(&free)?;
+    let identified = constants_of(test, (&constants, base), &estimates)?;
     let lines = Lines::of(test, estimation)?;
     let Drawn { curves, damping } = drawn(test, (inquiry, base), &lines)?;
     let named = &test.pieces[inquiry.measured().piece];
@@ -63,7 +121,7 @@ fn identification(
     notes.extend(notes_on_bound(&estimates, &named.piece));
     Ok(Identification {
         structure: StructureKind::TimoshenkoBeam,
-        constants: identified_constants(test, &constants, &free, &log_std),
+        constants: identified,
         not_identified: vec![],
         // Coordinates go with the logarithms of the constants, which come first.
         correlations: constants.correlations(&base.posterior.covariance),
@@ -82,7 +140,7 @@ fn identification(
 
 /// The modes of the beam beside the poles that are theirs, and those in the band without one.
 fn piece_fit(test: &ImpactTest, (inquiry, base): (&Inquiry, &Judged), damping: &TracedDamping) -> PieceFit {
-    let (measured, at) = (inquiry.measured(), &base.posterior.point.at);
+    let (measured, at) = (inquiry.measured(), base.posterior.point.at.first());
     let mut fit = PieceFit::of(&test.pieces[measured.piece]);
     let in_band = at.flexible.iter().take_while(|omega| **omega < TAU * measured.band[1]).count();
     let ratio = |mode: usize| Estimate {
@@ -116,7 +174,7 @@ fn piece_fit(test: &ImpactTest, (inquiry, base): (&Inquiry, &Judged), damping: &
 
 /// A sentence on the resonances that are no mode of the beam; `None` where there are none.
 fn alone(inquiry: &Inquiry, base: &Judged) -> Option<String> {
-    let at = &base.posterior.point.at;
+    let at = base.posterior.point.at.first();
     let of_poles = inquiry.measured().poles.iter().zip(&at.flexible_of_poles).zip(&at.hangs);
     let alone: Vec<String> = of_poles
         .filter(|((_, mode), hangs)| mode.is_none() && !**hangs)

@@ -18,7 +18,7 @@ impl Estimates {
     pub(super) fn of(Judged { hypothesis, posterior, .. }: &Judged) -> Self {
         let values = hypothesis.values_with_deviations(&posterior.point.z, &posterior.covariance);
         let mut values = values.into_iter().map(|(value, std)| Estimate { value, std });
-        let constants = values.by_ref().take(hypothesis.constants(&posterior.point.z).len()).collect();
+        let constants = values.by_ref().take(hypothesis.constant_numbers().count()).collect();
         let effects = hypothesis.parts.iter().map(|part| {
             let mut parameters: Vec<TracedParameter> = Vec::new();
             for (parameter, value) in part.parameters().zip(values.by_ref()) {

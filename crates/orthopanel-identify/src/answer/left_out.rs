@@ -19,13 +19,23 @@ pub(super) struct Linear<'a> {
     pub precision: Vec<f64>,
 }
 
+/// A group of data beside its prediction from all others.
+pub(super) struct LeftOut {
+    /// $e_r^TS_r^{-1}e_r$.
+    pub square: f64,
+    /// $e_r$.
+    pub missed: Mat<f64>,
+    /// $S_r$.
+    pub covariance: Mat<f64>,
+}
+
 impl Linear<'_> {
-    /// $e_r^TS_r^{-1}e_r$ of each group $r$ of data, which lists their places: what it misses of its prediction from all others, of covariance $S_r$.
+    /// Of each group $r$ of data, which lists their places: what it misses of its prediction from all others.
     ///
     /// Before any datum $y$ has the covariance $P^{-1} = C + J\Lambda^{-1}J^T$, and so
     /// $$P = C^{-1} - C^{-1}J(J^TC^{-1}J + \Lambda)^{-1}J^TC^{-1},\qquad S_r = P_{rr}^{-1},\qquad e_r = P_{rr}^{-1}(Py)_r$$
     /// (Dubrule, Math. Geol. 15, 1983): nothing is fitted anew. `None` where the data do not determine the parameters.
-    pub(super) fn left_out(&self, groups: &[Vec<usize>]) -> Option<Vec<f64>> {
+    pub(super) fn left_out(&self, groups: &[Vec<usize>]) -> Option<Vec<LeftOut>> {
         let (rows, columns) = (self.derivatives.nrows(), self.derivatives.ncols());
         let transposed = self.derivatives.transpose();
         let mut curvature = transposed * &self.derivatives;
@@ -43,8 +53,10 @@ impl Linear<'_> {
             let mut own = noise.transpose() * &noise - taken.transpose() * &taken;
             (0..group.len()).for_each(|i| own[(i, i)] += RIDGE * noise.col(i).squared_norm_l2());
             let told = Mat::from_fn(group.len(), 1, |i, _| whole[(group[i], 0)]);
-            let missed = own.llt(Side::Lower).ok()?.solve(&told);
-            Some((told.transpose() * missed)[(0, 0)])
+            let factor = own.llt(Side::Lower).ok()?;
+            let missed = factor.solve(&told);
+            let covariance = factor.solve(Mat::<f64>::identity(group.len(), group.len()));
+            Some(LeftOut { square: (told.transpose() * &missed)[(0, 0)], missed, covariance })
         };
         groups.iter().map(of_group).collect()
     }
@@ -102,7 +114,7 @@ mod tests {
             let sure = of(group, group) - of(group, &others) * noise.solve(of(&others, group))
                 + &free * curvature.solve(free.transpose());
             let wanted = (missed.transpose() * sure.llt(Side::Lower).expect("a covariance").solve(&missed))[(0, 0)];
-            assert!((found / wanted - 1.0).abs() < 1e-9, "{found} {wanted}");
+            assert!((found.square / wanted - 1.0).abs() < 1e-9, "{} {wanted}", found.square);
         }
     }
 }

@@ -1,12 +1,15 @@
 //! How far hypotheses are from the measured modes, in units of noise and of the model error of the chosen one.
 
+use std::ops::Range;
+
 use faer::Mat;
 
 use crate::comparison::Comparison;
 use crate::outcome::FittedError;
 use crate::posterior::{Judged, Point, Posterior, Problem, Whitening};
+use crate::stacked::Block;
 
-use super::left_out::Linear;
+use super::left_out::{LeftOut, Linear};
 
 /// Steps that a hypothesis is given to come as near as it can, and the gain from which one more is worth while.
 const STEPS: usize = 12;
@@ -25,10 +28,16 @@ impl Yardstick {
     pub(super) fn of(problem: &Problem, posterior: &Posterior) -> Option<Self> {
         let errors = problem.errors(&posterior.point.at);
         let by = problem.whitening(&errors, &posterior.log_sizes)?;
-        let comparison = problem.predictor.comparison;
-        let mut inverse_factor = Mat::identity(comparison.size(), comparison.size());
+        let size = posterior.point.at.values.len();
+        let mut inverse_factor = Mat::identity(size, size);
         by.whiten(&mut inverse_factor);
-        Some(Self { by, inverse_factor, groups: groups(comparison) })
+        let stacked = problem.stacked;
+        let of_block = |(range, block): (Range<usize>, &Block)| {
+            let groups = groups(block.comparison());
+            groups.into_iter().map(move |group| group.into_iter().map(|place| range.start + place).collect())
+        };
+        let groups = stacked.ranges().zip(&stacked.blocks).flat_map(of_block).collect();
+        Some(Self { by, inverse_factor, groups })
     }
 
     /// The error of a hypothesis as near as it comes under this covariance, which need not be its own.
@@ -39,22 +48,32 @@ impl Yardstick {
 
     /// The error at a point: rms over all values, and what is foretold of each group by the others, to first order.
     pub(super) fn error(&self, problem: &Problem, point: &Point) -> Option<FittedError> {
+        let missed = self.by.whitened(&problem.missed(&point.at));
+        let fitted = (missed.iter().map(|value| value * value).sum::<f64>() / missed.len().max(1) as f64).sqrt();
+        let left_out = self.linear(problem, point)?.left_out(&self.groups)?;
+        let mean_square = |(left_out, group): (LeftOut, &Vec<usize>)| left_out.square / group.len().max(1) as f64;
+        let sum: f64 = left_out.into_iter().zip(&self.groups).map(mean_square).sum();
+        Some(FittedError { fitted, held_out: (sum / self.groups.len().max(1) as f64).sqrt() })
+    }
+
+    /// What is missed of the first datum of each group beside its prediction from the others, and its variance.
+    pub(super) fn left_out(&self, problem: &Problem, point: &Point) -> Option<Vec<(f64, f64)>> {
+        let left_out = self.linear(problem, point)?.left_out(&self.groups)?;
+        Some(left_out.into_iter().map(|of| (of.missed[(0, 0)], of.covariance[(0, 0)])).collect())
+    }
+
+    fn linear(&self, problem: &Problem, point: &Point) -> Option<Linear<'_>> {
         let z = &point.z;
         let missed = self.by.whitened(&problem.missed(&point.at));
         let mut derivatives = problem.derivatives(point, 0)?;
         self.by.whiten(&mut derivatives);
-        let fitted = (missed.iter().map(|value| value * value).sum::<f64>() / missed.len().max(1) as f64).sqrt();
         // What was measured less what is thought of it before any datum.
         let moved = |(row, missed): (usize, &f64)| {
             missed + (0..z.len()).map(|column| derivatives[(row, column)] * z[column]).sum::<f64>()
         };
         let values = missed.iter().enumerate().map(moved).collect();
         let precision = problem.hypothesis.precision();
-        let linear = Linear { inverse_factor: &self.inverse_factor, values, derivatives, precision };
-        let left_out = linear.left_out(&self.groups)?;
-        let mean_square = |(left_out, group): (f64, &Vec<usize>)| left_out / group.len().max(1) as f64;
-        let sum: f64 = left_out.into_iter().zip(&self.groups).map(mean_square).sum();
-        Some(FittedError { fitted, held_out: (sum / self.groups.len().max(1) as f64).sqrt() })
+        Some(Linear { inverse_factor: &self.inverse_factor, values, derivatives, precision })
     }
 }
 

@@ -8,31 +8,30 @@ mod estimates;
 mod identified;
 mod left_out;
 mod lines;
+mod lists;
 mod misfit;
+mod next_list;
 mod next_measurement;
 mod not_tested;
 mod panel;
+mod weighed;
 
-pub(crate) use declared::identify_with_effects;
+pub(crate) use declared::{identify_lists_with_effects, identify_with_effects};
 pub(crate) use identified::PlateByModes;
-
-use std::f64::consts::TAU;
+pub(crate) use lists::{answer_of_lists, without_repeats};
 
 use orthopanel_data::{Estimation, ImpactTest};
-use orthopanel_model::Readable;
 
 use crate::IdentifyError;
 use crate::hit_strength::HitStrength;
 use crate::inference::from_base;
-use crate::judge::{has_no_mode, judged, rivals};
 use crate::model_error::Kind;
-use crate::outcome::{Candidate, EstimatedModelError, Progress, TracedError, Tracing, Verdict};
+use crate::outcome::{Candidate, EstimatedModelError, Progress, TracedError, Tracing};
 use crate::posterior::Judged;
 use crate::search::Inquiry;
 use crate::to_check::GAIN_OR_MASS;
 
-use bounds::{notes_on_bound, notes_on_prior_alone};
-use doubt::{check_first, doubts, notes_on_not_shown};
+use doubt::check_first;
 use estimates::{Estimates, id};
 use lines::{Drawn, Lines};
 use misfit::Yardstick;
@@ -40,6 +39,7 @@ use next_measurement::next_measurement;
 use not_tested::not_tested;
 use panel::panel;
 use rayon::prelude::*;
+use weighed::Weighed;
 
 const FEW_HITS: &str = "one hit at each of fewer than three pairs of places: how hits differ is not seen. Hit each place three times, or hit three places";
 
@@ -60,17 +60,14 @@ pub(crate) fn answer(test: &ImpactTest, progress: &(dyn Fn(Progress) + Sync)) ->
     })
 }
 
+fn not_finite(what: &str) -> IdentifyError {
+    IdentifyError::NotFinite { what: what.into() }
+}
+
 fn tracing_of(test: &ImpactTest, inquiry: &Inquiry, all: &[Judged]) -> Result<Tracing, IdentifyError> {
     let measured = inquiry.measured();
-    let not_finite = |what: &str| IdentifyError::NotFinite { what: what.into() };
-    let none = IdentifyError::TooFewResonances { found: measured.poles.len(), needed: 2, noise_percent: None };
-    let (chosen, verdict, alternatives) = judged(all, measured).ok_or(none)?;
-    let base = all.iter().find(|judged| judged.names().is_empty()).unwrap_or(chosen);
-    let mut doubts = doubts(inquiry, base, &all[0]);
-    let is_unexplained = verdict == Verdict::Unexplained;
-    doubts.retain(|doubt| doubt.is_rival || is_unexplained);
-    let check = doubts.iter().filter(|_| !is_unexplained);
-    let verdict = if check.clone().next().is_some() { Verdict::Ambiguous } else { verdict };
+    let weighed = Weighed::of(inquiry, all)?;
+    let Weighed { chosen, base, verdict, .. } = weighed;
     let problem = inquiry.problem(&chosen.hypothesis);
     let yardstick = Yardstick::of(&problem, &chosen.posterior);
     let yardstick = yardstick.ok_or_else(|| not_finite("covariance of the measured modes"))?;
@@ -85,7 +82,6 @@ fn tracing_of(test: &ImpactTest, inquiry: &Inquiry, all: &[Judged]) -> Result<Tr
     let candidate = |judged: &Judged| Candidate {
         id: id(judged),
         log_evidence: judged.log_odds,
-        bic: None,
         held_out: if std::ptr::eq(judged, base) {
             before.held_out
         } else {
@@ -99,10 +95,9 @@ fn tracing_of(test: &ImpactTest, inquiry: &Inquiry, all: &[Judged]) -> Result<Tr
     let base_curves =
         if std::ptr::eq(base, chosen) { curves.clone() } else { drawn(test, (inquiry, base), &lines)?.curves };
     let estimates = Estimates::of(chosen);
-    let plate = chosen.hypothesis.parts.iter().position(|part| part.replaces_structure(problem.predictor));
-    let of_effects = &chosen.posterior.point.at.damping_of_effects;
+    let plate = chosen.hypothesis.parts.iter().position(|part| part.replaces_structure(inquiry.predictor()));
+    let of_effects = &chosen.posterior.point.at.first().damping_of_effects;
     let (panel, removed) = panel(test, (measured, of_effects), &estimates, damping, plate)?;
-    let near: Vec<&Judged> = if verdict == Verdict::Ambiguous { rivals(all, chosen).collect() } else { vec![] };
     let size = |kind: Kind| chosen.posterior.log_sizes[kind as usize].exp();
     let mut notes = lines.notes;
     if chosen.names().contains(&"gain") {
@@ -111,28 +106,17 @@ fn tracing_of(test: &ImpactTest, inquiry: &Inquiry, all: &[Judged]) -> Result<Tr
     if lines.hits_are_few {
         notes.push(FEW_HITS.to_owned());
     }
-    let without_mode = (0..measured.poles.len()).filter(|pole| has_no_mode(chosen, measured, *pole));
-    notes.extend(without_mode.map(|pole| {
-        let frequency = measured.poles[pole].angular_frequency / TAU;
-        format!(
-            "the resonance at {frequency:.1} Hz is no mode of this model: something swings there that it does not hold"
-        )
-    }));
-    notes.extend(doubts.iter().map(|doubt| doubt.sentence.clone()));
-    notes.extend(near.iter().map(|rival| standing(chosen, rival)));
-    notes.extend(notes_on_not_shown(inquiry, base));
-    notes.extend(notes_on_prior_alone(chosen, &estimates));
-    notes.extend(notes_on_bound(&estimates, &test.pieces[measured.piece].piece));
-    let next_experiment = match check.clone().next() {
+    notes.extend(weighed.notes(inquiry, test, &estimates));
+    let next_experiment = match weighed.check() {
         Some(doubt) => check_first(doubt),
-        None => next_measurement((test, inquiry), (chosen, verdict, after.fitted), (&near, all)),
+        None => next_measurement((test, inquiry), (chosen, verdict, after.fitted), (&weighed.near, all)),
     };
     Ok(Tracing {
         verdict,
         effects: estimates.undeclared(),
-        alternatives: check.map(|doubt| doubt.id).chain(alternatives).map(str::to_owned).collect(),
+        alternatives: weighed.alternatives(),
         error: TracedError { measure: MEASURE.to_owned(), before, after, noise_floor: 1.0 },
-        model_error: Some(EstimatedModelError { frequency: size(Kind::Frequency), residue: size(Kind::Residue) }),
+        model_error: Some(EstimatedModelError { frequency: size(Kind::Frequency), residue: Some(size(Kind::Residue)) }),
         candidates: all.par_iter().map(candidate).collect(),
         not_tested: not_tested(inquiry, all),
         next_experiment,
@@ -151,18 +135,7 @@ fn tracing_of(test: &ImpactTest, inquiry: &Inquiry, all: &[Judged]) -> Result<Tr
 /// What the model refuses.
 fn drawn(test: &ImpactTest, (inquiry, judged): (&Inquiry, &Judged), lines: &Lines) -> Result<Drawn, IdentifyError> {
     let z = &judged.posterior.point.z;
-    let (constants, effects) = (judged.hypothesis.constants(z), judged.hypothesis.effects(z)?);
-    let of_effects = judged.posterior.point.at.damping_of_effects.clone();
+    let (constants, effects) = inquiry.stacked.first().values(&judged.hypothesis, z)?;
+    let of_effects = judged.posterior.point.at.first().damping_of_effects.clone();
     lines.drawn(test, inquiry.measured(), (&constants, &effects, &of_effects))
-}
-
-fn standing(chosen: &Judged, rival: &Judged) -> String {
-    let apart = rival.log_odds - chosen.log_odds;
-    let (place, odds) = if apart < 0.0 { ("behind", -apart) } else { ("ahead of", apart) };
-    format!(
-        "{} is {place} {} by {:.1} in the natural logarithm of the odds: these data do not part the two",
-        id(rival),
-        id(chosen),
-        Readable(odds)
-    )
 }

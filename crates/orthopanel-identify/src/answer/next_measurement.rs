@@ -20,7 +20,7 @@ const PLACES: usize = 17;
 /// Mass that a tester has at hand, in parts of the piece's \[1\].
 const ADDED: f64 = 0.01;
 /// Times noise and model error from which a measurement parts two hypotheses.
-const PARTS: f64 = 3.0;
+pub(super) const PARTS: f64 = 3.0;
 
 /// What a tester changes of the first record.
 struct Proposal {
@@ -55,7 +55,7 @@ pub(super) fn next_measurement(
 
 /// The proposal whose least difference is the greatest.
 fn parting(inquiry: &Inquiry, chosen: &Judged, rivals: &[&Judged]) -> String {
-    let predictor = inquiry.problem(&chosen.hypothesis).predictor;
+    let predictor = inquiry.predictor();
     let told = |proposal: Proposal| {
         let further = Further::new(predictor, &proposal)?;
         let apart: Option<Vec<f64>> = rivals.iter().map(|rival| further.difference(chosen, rival).ok()?).collect();
@@ -181,7 +181,7 @@ impl<'a> Further<'a> {
 }
 
 /// A sensor heavier by this mass \[kg\], in the place of one that is on.
-fn sensor_with(mass: f64, states: &mut Vec<EffectState>) -> Result<EffectState, ModelError> {
+pub(super) fn sensor_with(mass: f64, states: &mut Vec<EffectState>) -> Result<EffectState, ModelError> {
     let sensor = effect("sensor-mass")?;
     let before = states.iter().position(|state| state.effect.id() == sensor.id()).map(|index| states.remove(index));
     let mut values = before.map_or_else(|| vec![0.0; sensor.parameters().len()], |state| state.values);

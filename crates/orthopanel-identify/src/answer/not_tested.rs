@@ -20,6 +20,9 @@ pub(super) fn not_tested(inquiry: &Inquiry, all: &[Judged]) -> Vec<NotTested> {
 }
 
 fn reason(inquiry: &Inquiry, effect: &dyn Effect) -> String {
+    if inquiry.is_of_lists() {
+        return inquiry.hidden_in_lists(effect).unwrap_or_else(|| NO_START.to_owned());
+    }
     if !inquiry.can_show(effect) {
         return ONE_RECORD.to_owned();
     }

@@ -3,18 +3,20 @@
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
-use orthopanel_data::ImpactTest;
+use orthopanel_data::{ImpactTest, NamedPiece};
 use orthopanel_model::{
-    BEAM_CONSTANTS, Damping, MODEL_SCHEMA, ModeRange, ModelError, Owner, PanelModel, Place, Ports, StructureKind,
+    BEAM_CONSTANTS, Boundary, Damping, Estimate, MODEL_SCHEMA, ModeRange, ModelError, Owner, PanelModel, Piece, Place,
+    Ports, StructureKind,
 };
 
 use super::damping::TracedDamping;
 use super::estimates::Estimates;
 use crate::hypothesis::Role;
 use crate::measured::MeasuredModes;
-use crate::outcome::Removed;
+use crate::outcome::{Removed, TracedEffect};
 use crate::plate_of_ratios::widen;
-use crate::predicted::distinct;
+use crate::posterior::Judged;
+use crate::predicted::{Predictor, distinct};
 
 /// Key of a model's provenance under which the standard deviations of its damping ratios stand.
 const DAMPING_STD: &str = "damping_std";
@@ -35,21 +37,10 @@ pub(super) fn panel(
 ) -> Result<(PanelModel, Vec<Removed>), ModelError> {
     let places = |at: fn(&crate::MeasuredRecord) -> Place| distinct(measured.records.iter().map(at));
     let constants = BEAM_CONSTANTS.iter().zip(&estimates.constants);
-    let parts = estimates.effects.iter().enumerate().filter(|(number, _)| Some(*number) != plate);
-    let (own, others): (Vec<_>, Vec<_>) =
-        parts.map(|(_, part)| part).partition(|(effect, _)| effect.owner == Owner::Panel);
-    let mut panel = PanelModel {
-        name: None,
-        schema: MODEL_SCHEMA.to_owned(),
-        piece: test.pieces[measured.piece].piece,
-        boundary: test.boundary,
-        structure: StructureKind::TimoshenkoBeam,
-        constants: constants.map(|(constant, estimate)| (constant.name.to_owned(), *estimate)).collect(),
-        damping: Damping::default(),
-        effects: vec![],
-        ports: Ports { forces: places(|record| record.force_at), responses: places(|record| record.response_at) },
-        provenance: BTreeMap::new(),
-    };
+    let (own, others) = own_and_others(estimates, plate);
+    let constants = constants.map(|(constant, estimate)| (constant.name.to_owned(), *estimate)).collect();
+    let ports = Ports { forces: places(|record| record.force_at), responses: places(|record| record.response_at) };
+    let mut panel = bare((test.pieces[measured.piece].piece, test.boundary), constants, ports);
     let damping = match plate.and_then(|number| estimates.effects.get(number)) {
         Some((ratios, _)) => {
             widen(&mut panel, ratios);
@@ -60,8 +51,65 @@ pub(super) fn panel(
     panel.damping = damping.damping;
     panel.provenance.insert(DAMPING_STD.to_owned(), damping.std.into());
     panel.effects = own.into_iter().map(|(effect, _)| effect.entry()).collect();
-    let others = others.into_iter().filter(|(_, role)| *role != Role::Linearised);
-    Ok((panel, others.map(|(effect, role)| Removed::of(effect, *role == Role::Declared)).collect()))
+    Ok((panel, removed(&others)))
+}
+
+/// A panel for each piece of lists of frequencies, with the effects that are its own, and which of the others are removed and why. Frequencies tell no
+/// damping.
+pub(super) fn panels_of_lists(
+    test: &ImpactTest,
+    judged: &Judged,
+    estimates: &Estimates,
+    predictor: &Predictor,
+) -> (Vec<PanelModel>, Vec<Removed>) {
+    let plate = judged.hypothesis.parts.iter().position(|part| part.replaces_structure(predictor));
+    let (own, others) = own_and_others(estimates, plate);
+    let of_piece = |(piece, named): (usize, &NamedPiece)| {
+        let constants = BEAM_CONSTANTS.iter().enumerate().filter_map(|(constant, of)| {
+            let found = |own: Option<usize>| {
+                let place = judged.hypothesis.constant_numbers().position(|number| number == (constant, own))?;
+                estimates.constants.get(place).copied()
+            };
+            Some((of.name.to_owned(), found(Some(piece)).or_else(|| found(None))?))
+        });
+        let ports = Ports { forces: vec![], responses: vec![] };
+        let mut panel = bare((named.piece, test.boundary), constants.collect(), ports);
+        if let Some((ratios, _)) = plate.and_then(|number| estimates.effects.get(number)) {
+            widen(&mut panel, ratios);
+        }
+        panel.effects = own.iter().map(|(effect, _)| effect.entry()).collect();
+        panel
+    };
+    (test.pieces.iter().enumerate().map(of_piece).collect(), removed(&others))
+}
+
+type Parts<'a> = Vec<&'a (TracedEffect, Role)>;
+
+/// Effects of the panel, and those of rig and measuring chain.
+fn own_and_others(estimates: &Estimates, plate: Option<usize>) -> (Parts<'_>, Parts<'_>) {
+    let parts = estimates.effects.iter().enumerate().filter(|(number, _)| Some(*number) != plate);
+    parts.map(|(_, part)| part).partition(|(effect, _)| effect.owner == Owner::Panel)
+}
+
+fn removed(others: &Parts) -> Vec<Removed> {
+    let others = others.iter().filter(|(_, role)| *role != Role::Linearised);
+    others.map(|(effect, role)| Removed::of(effect, *role == Role::Declared)).collect()
+}
+
+/// A beam without damping and effects.
+fn bare((piece, boundary): (Piece, Boundary), constants: BTreeMap<String, Estimate>, ports: Ports) -> PanelModel {
+    PanelModel {
+        name: None,
+        schema: MODEL_SCHEMA.to_owned(),
+        piece,
+        boundary,
+        structure: StructureKind::TimoshenkoBeam,
+        constants,
+        damping: Damping { ratios: vec![], beyond: 0.0 },
+        effects: vec![],
+        ports,
+        provenance: BTreeMap::new(),
+    }
 }
 
 /// Of all modes of the plate, those too that no record shows.

@@ -84,6 +84,7 @@ mod tests {
             poles: vec![pole(2000.0), pole(2010.0), pole(5000.0)],
             beside: vec![],
             records: vec![record],
+            sensor_at: None,
             remainder_frequencies: vec![20.0],
             band: [10.0, 1000.0],
             covariance: faer::Mat::from_fn(14, 14, |i, j| if i == j { i as f64 } else { 0.0 }),

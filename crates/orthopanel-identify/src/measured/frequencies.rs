@@ -24,6 +24,7 @@ impl MeasuredModes {
             poles: list.values.iter().map(pole).collect(),
             beside: vec![],
             records: vec![],
+            sensor_at: list.response_at,
             remainder_frequencies: vec![],
             band: ends,
             covariance: Mat::from_fn(modes, modes, |i, j| if i == j { variance(i) } else { 0.0 }),

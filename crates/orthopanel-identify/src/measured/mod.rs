@@ -58,6 +58,8 @@ pub struct MeasuredModes {
     pub beside: Vec<Pole>,
     /// One entry a record; empty where only frequencies were measured.
     pub records: Vec<MeasuredRecord>,
+    /// Where a sensor sat while only frequencies were measured, if that is told.
+    pub sensor_at: Option<Place>,
     /// Where the remainders are given \[Hz\], rising.
     pub remainder_frequencies: Vec<f64>,
     /// Lowest and highest frequency that was fitted \[Hz\].

@@ -241,6 +241,7 @@ fn told(
         poles: kept.iter().map(pole).collect(),
         beside: (0..all).filter(|pole| !kept.contains(pole)).map(|number| pole(&number)).collect(),
         records: measured,
+        sensor_at: None,
         remainder_frequencies,
         band,
         covariance,

@@ -7,10 +7,12 @@ use orthopanel_model::Effect;
 
 use super::{FOLLOWED, Inquiry, LOOSE, NEAR, SMALL, log_prior, logs, starting_constants};
 use crate::hypothesis::{Hypothesis, Role};
-use crate::judge::{MOST_FREQUENCY, ODDS};
+use crate::judge::{ODDS, most_frequency};
 use crate::measured::Pole;
 use crate::model_error::{KINDS, Kind};
 use crate::posterior::{Judged, Point, Posterior, Projection};
+use crate::predicted::Prediction;
+use crate::stacked::Block;
 
 /// So many times wider where no start is followed yet: a net is coarse.
 const NET: f64 = 4.0;
@@ -26,19 +28,23 @@ const LOWEST_POLES: [usize; 3] = [3, 4, 6];
 impl Inquiry<'_> {
     /// The poles that the base misses most, those that are none of its modes first.
     fn most_missed(&self, base: &Judged) -> Vec<Pole> {
-        let measured = self.predictor.comparison.measured;
-        let at = &base.posterior.point.at;
-        let missed = |pole: usize| {
-            if at.partners.iter().any(|record| record[pole].is_none()) {
-                return f64::INFINITY;
-            }
-            let places =
-                (0..measured.records.len()).map(|record| self.predictor.comparison.residue_place(record, pole));
-            let missed = |place: usize| (self.predictor.comparison.values[place] - at.values[place]).powi(2);
-            places.flat_map(|place| [place, place + 1]).map(missed).sum::<f64>()
+        let of_block = |(block, at): (&Block, &Prediction)| {
+            let comparison = block.comparison();
+            let measured = comparison.measured;
+            let missed = |pole: usize| {
+                if at.partners.iter().any(|record| record[pole].is_none()) {
+                    return f64::INFINITY;
+                }
+                let residue = |record: usize| comparison.residue_place(record, pole);
+                let residues = (0..measured.records.len()).map(residue).flat_map(|place| [place, place + 1]);
+                // A list has frequencies alone.
+                let frequency = measured.records.is_empty().then_some(pole);
+                residues.chain(frequency).map(|place| (comparison.values[place] - at.values[place]).powi(2)).sum()
+            };
+            measured.poles.iter().enumerate().map(|(number, pole)| (missed(number), *pole)).collect::<Vec<_>>()
         };
-        let mut poles: Vec<(f64, Pole)> =
-            measured.poles.iter().enumerate().map(|(number, pole)| (missed(number), *pole)).collect();
+        let blocks = self.stacked.blocks.iter().zip(&base.posterior.point.at.blocks);
+        let mut poles: Vec<(f64, Pole)> = blocks.flat_map(of_block).collect();
         poles.sort_by(|a, b| b.0.total_cmp(&a.0));
         poles.into_iter().take(MISSED).map(|(_, pole)| pole).collect()
     }
@@ -46,11 +52,9 @@ impl Inquiry<'_> {
     /// Frequencies \[Hz\] of a mass on a spring at $x$ with which the panel has a mode at each of these poles: with $\alpha$ the receptance
     /// of the panel there, $\omega_r^2 = \omega^2/(1-\omega^2m\,\alpha(\omega))$; and frequencies beside each pole, for the panel is not known well.
     fn tuned(&self, base: &Judged, poles: &[Pole], mass: f64, x: f64) -> Vec<f64> {
-        let at = &base.posterior.point.z;
-        let (constants, effects) = (base.hypothesis.constants(at), base.hypothesis.effects(at));
-        let Ok(seen) = effects.and_then(|effects| self.predictor.seen_at(x, &constants, &effects)) else {
-            return vec![];
-        };
+        let values = self.stacked.first().values(&base.hypothesis, &base.posterior.point.z);
+        let seen = values.and_then(|(constants, effects)| self.predictor().seen_at(x, &constants, &effects));
+        let Ok(seen) = seen else { return vec![] };
         let tuned = |pole: &Pole| {
             let square = pole.angular_frequency.powi(2);
             let share = |(deflection, omega): (&Vec<f64>, &f64)| deflection[0].powi(2) / (omega.powi(2) - square);
@@ -77,15 +81,16 @@ impl Inquiry<'_> {
             nets
         };
         let mut bases = vec![base.posterior.point.z.clone()];
-        if base.posterior.log_sizes[Kind::Frequency as usize].exp() > MOST_FREQUENCY {
-            let replaces = with.parts.last().is_some_and(|part| part.replaces_structure(&self.predictor));
+        if base.posterior.log_sizes[Kind::Frequency as usize].exp() > most_frequency(self.measured()) {
+            let replaces = with.parts.last().is_some_and(|part| part.replaces_structure(self.predictor()));
             let lowest = if replaces { &LOWEST_POLES[..] } else { &[usize::MAX] };
-            let (comparison, setting) = (self.predictor.comparison, self.predictor.setting(0));
             for &lowest in lowest {
-                let constants = starting_constants(comparison, &setting, lowest).unwrap_or_default();
+                let constants = starting_constants(self.stacked.longest(), lowest).unwrap_or_default();
                 bases.extend(constants.into_iter().take(2).flat_map(at));
             }
         }
+        // With constants held all begin alike.
+        bases.dedup();
         bases
     }
 
@@ -103,18 +108,20 @@ impl Inquiry<'_> {
         let projection = Projection::new(&at_base.derivatives, &of_base.hypothesis.precision(), &loose)?;
         let bases = self.bases(base, &ways[0]);
         // Another structure is too dear for more than one set of derivatives.
-        let replaces = ways[0].parts.last().is_some_and(|part| part.replaces_structure(&self.predictor));
+        let replaces = ways[0].parts.last().is_some_and(|part| part.replaces_structure(self.predictor()));
         let exact_from = if replaces { usize::MAX } else { at_base.z.len() };
         let starts = |(way, hypothesis): (usize, &Hypothesis)| {
             let problem = self.problem(hypothesis);
-            let starts = hypothesis
-                .parts
-                .last()
-                .map_or(vec![], |part| part.starts(|mass, x| self.tuned(base, &missed, mass, x)));
+            let starts = match hypothesis.parts.last() {
+                // The modes that a list counts follow the ratios of a plate smoothly.
+                Some(part) if replaces && self.is_of_lists() => vec![vec![0.0; part.free()]],
+                Some(part) => part.starts(|mass, x| self.tuned(base, &missed, mass, x)),
+                None => vec![],
+            };
             let point = |(of_base, start): (&Vec<f64>, &Vec<f64>)| {
                 let point = problem.point([&of_base[..], start].concat(), &loose)?;
                 // Motions of the piece as a whole have errors of their own.
-                if point.at.hangs != at_base.at.hangs {
+                if !point.at.hangs_as(&at_base.at) {
                     let errors = problem.errors(&point.at).with_every_partner();
                     return problem.judged_by(point, &problem.whitening(&errors, &coarse)?);
                 }
@@ -170,7 +177,14 @@ impl Inquiry<'_> {
         } else {
             match self.promising(base, &ways, &points) {
                 Some(promising) if !promising.is_empty() => promising,
-                Some(_) if base.names().is_empty() => points.into_iter().take(1).collect(),
+                Some(_) if base.names().is_empty() => {
+                    let (way, point) = points.into_iter().next()?;
+                    if replaces {
+                        let posterior = self.problem(&ways[way]).posterior(point, base.posterior.log_sizes, 4)?;
+                        return Some(judged((way, posterior)));
+                    }
+                    vec![(way, point)]
+                }
                 Some(_) => return None,
                 None => points,
             }
@@ -207,7 +221,7 @@ impl Inquiry<'_> {
             let problem = self.problem(&ways[way]);
             let z = [&at_base.z[..], &start.z[at_base.z.len()..]].concat();
             let start = problem.point(z, &by)?;
-            if start.at.hangs != at_base.at.hangs {
+            if !start.at.hangs_as(&at_base.at) {
                 return Some(f64::INFINITY);
             }
             let own = problem.derivatives(&start, at_base.z.len())?;

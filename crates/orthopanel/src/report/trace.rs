@@ -10,7 +10,7 @@ use super::table::Table;
 use crate::error::CommandError;
 use crate::evidence::{HitsWithEffects, PairResidual};
 use crate::measured_pairs::place_text;
-use crate::traced::{Traced, comparison, effect_rows, ranking_headings, ranking_rows};
+use crate::traced::{RANKING_HEADINGS, Traced, comparison, effect_rows, ranking_rows};
 use crate::{notes, pictures};
 
 pub struct TraceSection {
@@ -46,7 +46,7 @@ pub struct TraceSection {
 impl TraceSection {
     pub fn of(name: &str, traced: &Traced, compared: &[&HitsWithEffects]) -> Result<Self, CommandError> {
         let tracing = &traced.tracing;
-        let [hypothesis, evidence, held_out] = ranking_headings(tracing);
+        let [hypothesis, evidence, held_out] = RANKING_HEADINGS;
         let ranking = [hypothesis, evidence, held_out, "\"parameters"];
         let (headings, rows) = comparison(tracing);
         let fitted = if tracing.effects.is_empty() { &[][..] } else { &tracing.accelerances[..] };
@@ -59,7 +59,7 @@ impl TraceSection {
             model_error: traced.model_error(),
             left: traced.left(),
             about_held_out: about_held_out(tracing),
-            about_ranking: if tracing.model_error.is_some() { BY_EVIDENCE } else { BY_CRITERION },
+            about_ranking: BY_EVIDENCE,
             ranking: Table::new(&ranking, ranking_rows(tracing, usize::MAX)),
             ownership: traced.ownership(),
             next_experiment: tracing.next_experiment.clone(),
@@ -95,8 +95,6 @@ fn with_intervals<'a>(mut rows: Vec<Vec<String>>, estimates: impl Iterator<Item 
 
 const BY_EVIDENCE: &str = "The natural logarithm of the evidence of each hypothesis beside that of the likeliest, which takes the parameters that it \
                            brings and the model error into account, and the error on what was held out.";
-const BY_CRITERION: &str =
-    "Bayes' information criterion over that of the best, less is better, and the error on what was held out.";
 
 const HELD_OUT: &str = "Held out is one record after the other, of a single record one mode after the other, each foretold by all others: what those \
                                leave open counts, so the figure held out may stand below the fitted one.";

@@ -14,7 +14,7 @@ use serde_json::Value;
 
 use crate::identified::{ASSUMED_DAMPING, base_models, to_digits};
 use crate::{console, notes, progress};
-pub use tables::{comparison, effect_rows, ranking_headings, ranking_rows};
+pub use tables::{RANKING_HEADINGS, comparison, effect_rows, ranking_rows};
 
 /// What a mode's entry in a model's provenance tells of the test alone.
 const AS_MEASURED: [&str; 4] = ["mode", "nodes", "measured_hz", "measured_std_hz"];

@@ -46,11 +46,8 @@ impl Traced {
     pub fn model_error(&self) -> Option<String> {
         let of = self.tracing.model_error?;
         let percent = |part: f64| format!("{} %", to_digits(100.0 * part, 2));
-        Some(format!(
-            "Beside noise the model misses frequencies by {} and residues by {}.",
-            percent(of.frequency),
-            percent(of.residue)
-        ))
+        let residues = of.residue.map_or(String::new(), |residue| format!(" and residues by {}", percent(residue)));
+        Some(format!("Beside noise the model misses frequencies by {}{residues}.", percent(of.frequency)))
     }
 
     fn alternatives(&self) -> String {

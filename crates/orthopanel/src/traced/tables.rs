@@ -28,23 +28,18 @@ pub fn comparison(tracing: &Tracing) -> ([&'static str; 3], Vec<Vec<String>>) {
     let error = &tracing.error;
     let row = |name: &str, error: FittedError| vec![name.into(), number(error.fitted), number(error.held_out)];
     let floor = FittedError { fitted: error.noise_floor, held_out: error.noise_floor };
-    let least = if tracing.model_error.is_some() { "noise and model error" } else { "noise floor" };
-    let rows = vec![row("before", error.before), row("after", error.after), row(least, floor)];
+    let rows = vec![row("before", error.before), row("after", error.after), row("noise and model error", floor)];
     (["", "fitted", "held out"], rows)
 }
 
 /// Headings of [`ranking_rows`].
-pub fn ranking_headings(tracing: &Tracing) -> [&'static str; 3] {
-    let by_criterion = tracing.candidates.iter().any(|candidate| candidate.bic.is_some());
-    ["hypothesis", if by_criterion { "BIC above best" } else { "log evidence" }, "held out"]
-}
+pub const RANKING_HEADINGS: [&str; 3] = ["hypothesis", "log evidence", "held out"];
 
-/// Candidate, its evidence beside the best one's, or how much worse its information criterion is, error held out and parameters.
+/// Candidate, its evidence beside the best one's, error held out and parameters.
 pub fn ranking_rows(tracing: &Tracing, most: usize) -> Vec<Vec<String>> {
-    let of = |candidate: &Candidate| candidate.bic.map_or(candidate.log_evidence, |bic| -bic);
-    let best = tracing.candidates.iter().map(of).fold(f64::NEG_INFINITY, f64::max);
+    let best = tracing.candidates.iter().map(|candidate| candidate.log_evidence).fold(f64::NEG_INFINITY, f64::max);
     let row = |candidate: &Candidate| {
-        let margin = if candidate.bic.is_some() { best - of(candidate) } else { of(candidate) - best };
+        let margin = candidate.log_evidence - best;
         let error = number(candidate.held_out);
         vec![candidate.id.clone(), format!("{:.1}", Readable(margin)), error, parameters_text(candidate)]
     };
@@ -110,7 +105,7 @@ impl Traced {
         text += &aligned(&headings, &rows);
         text.extend(self.model_error().map(|told| told + "\n"));
         text.extend(self.left().map(|left| left + ".\n"));
-        let [hypothesis, evidence, held_out] = ranking_headings(tracing);
+        let [hypothesis, evidence, held_out] = RANKING_HEADINGS;
         let headings = [hypothesis, evidence, held_out, "parameters"];
         text += &format!("\n{}", ending_in_words(&headings, &ranking_rows(tracing, LISTED)));
         match tracing.candidates.len().saturating_sub(LISTED) {

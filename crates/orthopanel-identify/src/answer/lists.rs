@@ -1,0 +1,290 @@
+//! What natural frequencies alone say of the pieces of a test.
+
+use faer::Mat;
+use orthopanel_data::{ImpactTest, Measurement, MeasurementData, limits};
+
+use crate::IdentifyError;
+use crate::declared_effects::declared;
+use crate::hypothesis::has_place;
+use crate::inference::from_base;
+use crate::model_error::Kind;
+use crate::outcome::{Candidate, EstimatedModelError, FittedError, Progress, TracedError, Tracing, Verdict};
+use crate::posterior::{Judged, Point};
+use crate::search::Inquiry;
+
+use super::doubt::check_first;
+use super::estimates::{Estimates, id};
+use super::misfit::Yardstick;
+use super::next_list::next_list;
+use super::not_tested::not_tested;
+use super::panel::panels_of_lists;
+use super::{Weighed, not_finite};
+
+const MEASURE: &str = "natural frequencies, % rms; held out: each predicted from the others";
+const MIRRORED: &str = "frequencies of a piece held alike at both ends are the same with an effect at x and at -x: places are given \
+                        with x > 0, and a record of hits at one end tells the side";
+/// Frequencies for each unknown, one effect of one number among them: with fewer nothing can be said to lack.
+const FOR_EACH: usize = 2;
+/// Errors that are written out one by one, at most.
+const WRITTEN: usize = 12;
+
+/// What the lists of a test say.
+///
+/// # Errors
+/// As [`from_base`]; [`IdentifyError::TooManyFrequencies`], [`IdentifyError::TooFewFrequencies`], and [`IdentifyError::Unsupported`] for a declared effect
+/// that no frequency shows.
+pub(crate) fn answer_of_lists(
+    test: &ImpactTest,
+    progress: &(dyn Fn(Progress) + Sync),
+) -> Result<Tracing, IdentifyError> {
+    let (test, repeated) = &without_repeats(test);
+    refuse_many(test)?;
+    from_base(test, progress, |inquiry, base| {
+        let hidden = notes_on_hidden(test, &inquiry)?;
+        let unknowns = base.posterior.point.z.len();
+        let found = inquiry.frequencies();
+        if found <= unknowns {
+            let names = "and one more, to judge by".to_owned();
+            return Err(IdentifyError::TooFewFrequencies { found, needed: unknowns + 1, names });
+        }
+        let (mirrored, all): (Vec<bool>, Vec<Judged>) =
+            inquiry.search(base).into_iter().map(|judged| on_the_right(&inquiry, judged)).unzip();
+        let mut tracing = tracing_of(test, &inquiry, &all)?;
+        tracing.notes.extend(mirrored.contains(&true).then(|| MIRRORED.to_owned()));
+        tracing.notes.extend(repeated.iter().cloned().chain(hidden));
+        Ok(tracing)
+    })
+}
+
+/// The test with each list once, and what was left out, a sentence each: a list that stands twice to the last digit is one measurement.
+pub(crate) fn without_repeats(test: &ImpactTest) -> (ImpactTest, Vec<String>) {
+    let mut once = test.clone();
+    once.measurements.clear();
+    let mut notes = Vec::new();
+    for (number, measurement) in (1..).zip(&test.measurements) {
+        let alike = |kept: &Measurement| kept.piece == measurement.piece && kept.data == measurement.data;
+        if once.measurements.iter().any(alike) {
+            notes.push(format!(
+                "measurement {number} is the list of an earlier one to the last digit: it counts once, for a copy tells nothing"
+            ));
+        } else {
+            once.measurements.push(measurement.clone());
+        }
+    }
+    (once, notes)
+}
+
+fn refuse_many(test: &ImpactTest) -> Result<(), IdentifyError> {
+    let listed = |measurement: &Measurement| match &measurement.data {
+        MeasurementData::NaturalFrequencies(list) => list.values.len(),
+        _ => 0,
+    };
+    let found = test.measurements.iter().map(listed).max().unwrap_or(0);
+    if found > limits::FREQUENCIES_TRACED {
+        return Err(IdentifyError::TooManyFrequencies { found, most: limits::FREQUENCIES_TRACED });
+    }
+    let most = limits::FREQUENCIES_TRACED_OF_PIECE;
+    for (index, piece) in test.pieces.iter().enumerate() {
+        let found = test.measurements.iter().filter(|of| of.piece == index).map(listed).sum();
+        if found > most {
+            return Err(IdentifyError::TooManyFrequenciesOfPiece { piece: piece.name.clone(), found, most });
+        }
+    }
+    Ok(())
+}
+
+/// Of declared effects that no frequency shows: a sentence on each whose numbers the file gives.
+///
+/// # Errors
+/// [`IdentifyError::Unsupported`] for one whose numbers are to be found.
+pub(super) fn notes_on_hidden(test: &ImpactTest, inquiry: &Inquiry) -> Result<Vec<String>, IdentifyError> {
+    let mut notes = Vec::new();
+    for told in declared(test, inquiry.predictor().piece(), 1)? {
+        let id = told.effect.id();
+        let why = match inquiry.hidden_in_lists(told.effect) {
+            Some(_) if has_place(told.effect) => continue,
+            Some(why) => why,
+            None => continue,
+        };
+        if told.values.iter().zip(told.effect.parameters()).any(|(value, of)| value.is_none() && of.held_at.is_none()) {
+            return Err(IdentifyError::Unsupported(format!(
+                "effect {id:?}: nothing of it can be found from these natural frequencies: {why}; or leave the effect out"
+            )));
+        }
+        notes.push(format!("the declared {id} has no influence on these data: {why}"));
+    }
+    Ok(notes)
+}
+
+fn tracing_of(test: &ImpactTest, inquiry: &Inquiry, all: &[Judged]) -> Result<Tracing, IdentifyError> {
+    let weighed = Weighed::of(inquiry, all)?;
+    let Weighed { chosen, base, .. } = weighed;
+    let unknowns = base.posterior.point.z.len() + 1;
+    let too_few = weighed.verdict == Verdict::NothingMissing && inquiry.frequencies() < FOR_EACH * unknowns;
+    let verdict = if too_few { Verdict::Ambiguous } else { weighed.verdict };
+    let error = |judged: &Judged| percent(inquiry, judged);
+    let (before, after) = (error(base), error(chosen));
+    let before = before.ok_or_else(|| not_finite("error of the base model"))?;
+    let after = after.ok_or_else(|| not_finite("error of the model with the effects"))?;
+    let candidate = |judged: &Judged| Candidate {
+        id: id(judged),
+        log_evidence: judged.log_odds,
+        held_out: error(judged).map_or(f64::NAN, |error| error.held_out),
+        effects: Estimates::of(judged).undeclared(),
+    };
+    let estimates = Estimates::of(chosen);
+    let (panels, removed) = panels_of_lists(test, chosen, &estimates, inquiry.predictor());
+    let model_error = chosen.posterior.log_sizes[Kind::Frequency as usize].exp();
+    let notes = weighed.notes(inquiry, test, &estimates);
+    let next_experiment = match (weighed.check(), verdict) {
+        (Some(doubt), _) => check_first(doubt),
+        (None, Verdict::Unexplained) => what_to_check(test, inquiry, chosen),
+        (None, Verdict::Ambiguous) if too_few => more_frequencies(inquiry, base),
+        (None, Verdict::NothingMissing) => {
+            "none: the base model meets the frequencies as well as any effect does".to_owned()
+        }
+        _ => next_list(inquiry, &panels, chosen, &weighed.nearest(all)),
+    };
+    Ok(Tracing {
+        verdict,
+        effects: estimates.undeclared(),
+        alternatives: weighed.alternatives(),
+        error: TracedError {
+            measure: MEASURE.to_owned(),
+            before,
+            after,
+            noise_floor: 100.0 * noise(inquiry).hypot(model_error),
+        },
+        model_error: Some(EstimatedModelError { frequency: model_error, residue: None }),
+        candidates: all.iter().map(candidate).collect(),
+        not_tested: not_tested(inquiry, all),
+        next_experiment,
+        chi_square: misfit(inquiry, chosen).ok_or_else(|| not_finite("misfit of the frequencies"))?,
+        panels,
+        removed,
+        accelerances: vec![],
+        base_accelerances: vec![],
+        notes,
+    })
+}
+
+/// Rms of what the lists tell of their noise, relative to each frequency.
+pub(super) fn noise(inquiry: &Inquiry) -> f64 {
+    let blocks = inquiry.stacked.blocks.iter().map(|block| block.comparison().measured);
+    let variances: Vec<f64> =
+        blocks.flat_map(|of| (0..of.poles.len()).map(|pole| of.covariance[(pole, pole)])).collect();
+    (variances.iter().sum::<f64>() / variances.len().max(1) as f64).sqrt()
+}
+
+/// Rms error of all frequencies, and of each as the others foretell it under the hypothesis' own noise and model error \[%\]. A frequency that the
+/// others do not foretell, as that of a resonator, is none of them.
+pub(super) fn percent(inquiry: &Inquiry, judged: &Judged) -> Option<FittedError> {
+    let problem = inquiry.problem(&judged.hypothesis);
+    let point = &judged.posterior.point;
+    let rms = |missed: &[f64]| {
+        let square: f64 = missed.iter().map(|missed| (-missed).exp_m1().powi(2)).sum();
+        100.0 * (square / missed.len().max(1) as f64).sqrt()
+    };
+    let covariance = problem.errors(&point.at).covariance(inquiry.stacked.noise(), &judged.posterior.log_sizes);
+    let left_out = Yardstick::of(&problem, &judged.posterior)?.left_out(&problem, point)?;
+    let is_foretold =
+        |(place, (_, variance)): &(usize, (f64, f64))| covariance[(*place, *place)] > OF_OTHERS * variance;
+    let foretold: Vec<f64> =
+        left_out.into_iter().enumerate().filter(is_foretold).map(|(_, (missed, _))| missed).collect();
+    Some(FittedError { fitted: rms(&problem.missed(&point.at)), held_out: rms(&foretold) })
+}
+
+/// Part of the variance of a frequency as its others foretell it that is noise and model error: with less, it alone tells itself.
+const OF_OTHERS: f64 = 0.01;
+
+/// Mean square of what is missed over noise and model error.
+fn misfit(inquiry: &Inquiry, judged: &Judged) -> Option<f64> {
+    let problem = inquiry.problem(&judged.hypothesis);
+    let at = &judged.posterior.point.at;
+    let by = problem.whitening(&problem.errors(at), &judged.posterior.log_sizes)?;
+    let missed = by.whitened(&problem.missed(at));
+    Some(missed.iter().map(|value| value * value).sum::<f64>() / missed.len().max(1) as f64)
+}
+
+/// A hypothesis with its first place at x > 0, where the frequencies are the same there; and whether they are.
+fn on_the_right(inquiry: &Inquiry, mut judged: Judged) -> (bool, Judged) {
+    let places = judged.hypothesis.places();
+    let Some(&first) = places.first() else { return (false, judged) };
+    let problem = inquiry.problem(&judged.hypothesis);
+    let mut z = judged.posterior.point.z.clone();
+    places.iter().for_each(|&place| z[place] = -z[place]);
+    let Some(there) = problem.unjudged(z) else { return (false, judged) };
+    let here = &judged.posterior.point;
+    let is_mirrored = there.at.values.iter().zip(&here.at.values).all(|(a, b)| (a - b).abs() < ALIKE);
+    if is_mirrored && here.z[first] < 0.0 {
+        let turned = |i: usize| if places.contains(&i) { -1.0 } else { 1.0 };
+        let own = &judged.posterior.covariance;
+        judged.posterior.covariance =
+            Mat::from_fn(own.nrows(), own.ncols(), |i, j| turned(i) * turned(j) * own[(i, j)]);
+        judged.posterior.point = Point { misfit: here.misfit, cost: here.cost, ..there };
+    }
+    (is_mirrored, judged)
+}
+
+/// Relative difference of frequencies that are the same.
+const ALIKE: f64 = 1e-8;
+
+/// What to do where nothing of the catalogue meets the lists.
+fn what_to_check(test: &ImpactTest, inquiry: &Inquiry, judged: &Judged) -> String {
+    let held = if test.constants.is_empty() { "" } else { " and the constants held" };
+    format!(
+        "before another measurement check the sizes and units (m, kg/m2){held}, the boundary, and the numbering (flexible modes \
+         from 1, none left out or read twice): {}. If all that is right, hit the piece and record it (kind = \"time-history\"): \
+         records tell what frequencies alone do not",
+        where_it_misses(test, inquiry, judged)
+    )
+}
+
+/// How large the miss is, in which mode it is largest, and mode by mode.
+fn where_it_misses(test: &ImpactTest, inquiry: &Inquiry, judged: &Judged) -> String {
+    let of_piece = |piece: usize| match test.pieces.get(piece) {
+        Some(named) if test.pieces.len() > 1 => format!("piece {} ", named.name),
+        _ => String::new(),
+    };
+    let mut largest = (0.0_f64, 0, 0);
+    let mut each = Vec::new();
+    for (block, at) in inquiry.stacked.blocks.iter().zip(&judged.posterior.point.at.blocks) {
+        let poles = &block.comparison().measured.poles;
+        let errors: Vec<f64> = poles
+            .iter()
+            .zip(&at.values)
+            .map(|(pole, model)| 100.0 * (model.exp() / pole.angular_frequency - 1.0))
+            .collect();
+        for (mode, &error) in (1..).zip(&errors) {
+            if error.abs() > largest.0.abs() || largest.1 == 0 {
+                largest = (error, mode, block.piece);
+            }
+        }
+        let written: Vec<String> = errors.iter().take(WRITTEN).map(|error| format!("{error:+.2}")).collect();
+        let more = if errors.len() > WRITTEN { ", ..." } else { "" };
+        each.push(format!("{}{}{more} %", of_piece(block.piece), written.join(", ")));
+    }
+    let (error, mode, piece) = largest;
+    format!(
+        "the model misses the frequencies by {:.2} % rms; most in {}mode {mode} ({error:+.2} %, model above measured is +); mode by mode {}",
+        percent(inquiry, judged).map_or(f64::NAN, |error| error.fitted),
+        of_piece(piece),
+        each.join("; "),
+    )
+}
+
+/// What is missing where too few were measured for anything to be found missing.
+fn more_frequencies(inquiry: &Inquiry, base: &Judged) -> String {
+    let (found, constants) = (inquiry.frequencies(), base.hypothesis.free_constants());
+    let open = base.posterior.point.z.len() - constants;
+    let needed = FOR_EACH * (constants + open + 1);
+    let (beside, or) = match open {
+        0 => (String::new(), ""),
+        _ => (format!(", {open} numbers of declared effects"), ", or say the numbers of declared effects"),
+    };
+    format!(
+        "read {} more natural frequencies or more: {found} for {constants} constants{beside} and one effect are too few to judge by, {needed} are \
+         the least; or hold a constant that you know under [constants]{or}",
+        needed.saturating_sub(found).max(1),
+    )
+}

@@ -1,0 +1,103 @@
+//! What is said of the hypotheses of a test, whatever was measured.
+
+use std::f64::consts::TAU;
+
+use orthopanel_data::ImpactTest;
+use orthopanel_model::Readable;
+
+use crate::IdentifyError;
+use crate::judge::{has_no_mode, judged, rivals};
+use crate::outcome::Verdict;
+use crate::posterior::Judged;
+use crate::search::Inquiry;
+
+use super::bounds::{notes_on_bound, notes_on_prior_alone};
+use super::doubt::{Doubt, doubts, notes_on_not_shown};
+use super::estimates::{Estimates, id};
+
+/// The hypothesis that is chosen, and what stands beside it.
+pub(super) struct Weighed<'a> {
+    pub chosen: &'a Judged,
+    /// With nothing missing.
+    pub base: &'a Judged,
+    pub verdict: Verdict,
+    /// Hypotheses that are not clearly behind, where that is ambiguous; those ahead of nothing missing, but not clearly.
+    pub near: Vec<&'a Judged>,
+    rivals: Vec<&'static str>,
+    doubts: Vec<Doubt>,
+}
+
+impl<'a> Weighed<'a> {
+    /// # Errors
+    /// [`IdentifyError::TooFewResonances`] where there is no hypothesis.
+    pub(super) fn of(inquiry: &Inquiry, all: &'a [Judged]) -> Result<Self, IdentifyError> {
+        let measured = inquiry.measured();
+        let none = IdentifyError::TooFewResonances { found: measured.poles.len(), needed: 2, noise_percent: None };
+        let (chosen, verdict, found_rivals) = judged(all, measured).ok_or(none)?;
+        let base = all.iter().find(|judged| judged.names().is_empty()).unwrap_or(chosen);
+        let mut doubts = doubts(inquiry, base, &all[0]);
+        let is_unexplained = verdict == Verdict::Unexplained;
+        doubts.retain(|doubt| doubt.is_rival || is_unexplained);
+        let verdict = if is_unexplained || doubts.is_empty() { verdict } else { Verdict::Ambiguous };
+        let near = match verdict {
+            Verdict::Ambiguous => rivals(all, chosen).collect(),
+            // Not clearly ahead, but ahead.
+            Verdict::NothingMissing => all.iter().take_while(|judged| judged.log_odds > chosen.log_odds).collect(),
+            _ => vec![],
+        };
+        Ok(Self { chosen, base, verdict, near, rivals: found_rivals, doubts })
+    }
+
+    /// A declared number that is to be checked before anything else.
+    pub(super) fn check(&self) -> Option<&Doubt> {
+        self.doubts.first().filter(|_| self.verdict != Verdict::Unexplained)
+    }
+
+    pub(super) fn alternatives(&self) -> Vec<String> {
+        let doubted = self.doubts.iter().filter(|_| self.verdict != Verdict::Unexplained).map(|doubt| doubt.id);
+        doubted.chain(self.rivals.iter().copied()).map(str::to_owned).collect()
+    }
+
+    /// The rivals, or else the likeliest other hypothesis that lacks one of the effects.
+    pub(super) fn nearest(&self, all: &'a [Judged]) -> Vec<&'a Judged> {
+        if !self.near.is_empty() {
+            return self.near.clone();
+        }
+        let names = self.chosen.names();
+        let is_other = |judged: &&Judged| {
+            let own = judged.names();
+            !own.is_empty() && names.iter().any(|name| !own.contains(name))
+        };
+        all.iter().find(is_other).into_iter().collect()
+    }
+
+    pub(super) fn notes(&self, inquiry: &Inquiry, test: &ImpactTest, estimates: &Estimates) -> Vec<String> {
+        let measured = inquiry.measured();
+        let without_mode = (0..measured.poles.len()).filter(|pole| has_no_mode(self.chosen, measured, *pole));
+        let mut notes: Vec<String> = without_mode
+            .map(|pole| {
+                let frequency = measured.poles[pole].angular_frequency / TAU;
+                format!(
+                    "the resonance at {frequency:.1} Hz is no mode of this model: something swings there that it does not hold"
+                )
+            })
+            .collect();
+        notes.extend(self.doubts.iter().map(|doubt| doubt.sentence.clone()));
+        notes.extend(self.near.iter().map(|rival| self.standing(rival)));
+        notes.extend(notes_on_not_shown(inquiry, self.base));
+        notes.extend(notes_on_prior_alone(self.chosen, estimates));
+        notes.extend(notes_on_bound(estimates, &test.pieces[measured.piece].piece));
+        notes
+    }
+
+    fn standing(&self, rival: &Judged) -> String {
+        let apart = rival.log_odds - self.chosen.log_odds;
+        let (place, odds) = if apart < 0.0 { ("behind", -apart) } else { ("ahead of", apart) };
+        format!(
+            "{} is {place} {} by {:.1} in the natural logarithm of the odds: these data do not part the two",
+            id(rival),
+            id(self.chosen),
+            Readable(odds)
+        )
+    }
+}
