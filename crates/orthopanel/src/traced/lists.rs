@@ -11,8 +11,10 @@ use super::Traced;
 
 /// A plate's modes are looked for up to this part of the highest frequency measured.
 const BEYOND: f64 = 1.25;
-/// By so much of itself the error may differ from the trace's own.
+/// By so much of itself the error may differ from the trace's own,
 const ALIKE: f64 = 0.02;
+/// and by what a trace's own modes may miss, five times \[%\].
+const MISSED: f64 = 1e-3;
 
 impl Traced {
     /// Natural frequencies \[Hz\] of the model with the effects, those of the rig too, for every mode of each piece's
@@ -31,7 +33,7 @@ impl Traced {
         let errors: Vec<f64> = modes.map(|(mode, model)| 100.0 * (model / mode.measured - 1.0)).collect();
         let rms = (errors.iter().map(|error| error * error).sum::<f64>() / errors.len().max(1) as f64).sqrt();
         let told = self.tracing.error.after.fitted;
-        ((rms - told).abs() <= ALIKE * told).then_some(found)
+        ((rms - told).abs() <= ALIKE * told + MISSED).then_some(found)
     }
 
     fn of_piece(&self, test: &ImpactTest, index: usize, fit: &PieceFit, panel: &PanelModel) -> Option<Vec<f64>> {
