@@ -14,7 +14,7 @@ use rayon::prelude::*;
 use crate::comparison::Comparison;
 use crate::free_constants::FreeConstants;
 use crate::hit_strength::{HitStrength, Springs};
-use crate::hypothesis::{Hypothesis, Part, Role};
+use crate::hypothesis::{Hypothesis, Part, Role, has_place};
 use crate::judge::ODDS;
 use crate::measured::MeasuredModes;
 use crate::model_error::{KINDS, medians, waves};
@@ -215,7 +215,9 @@ impl<'a> Inquiry<'a> {
 
     /// Every effect of the catalogue added to a base, but those sets that were `seen`, the likeliest first.
     fn each_effect(&self, base: &Judged, seen: &mut Vec<Vec<&'static str>>) -> Vec<Judged> {
-        let has = |id: &str| base.hypothesis.parts.iter().any(|part| part.effect.id() == id);
+        // Of a declared effect with a place there may be one more.
+        let is_another = |part: &Part| part.role == Role::Declared && has_place(part.effect);
+        let has = |id: &str| base.hypothesis.parts.iter().any(|part| part.effect.id() == id && !is_another(part));
         let mut is_new = |id: &'static str| {
             let mut names = [base.names(), vec![id]].concat();
             names.sort_unstable();

@@ -180,8 +180,11 @@ impl Inquiry<'_> {
                 Some(_) if base.names().is_empty() => {
                     let (way, point) = points.into_iter().next()?;
                     if replaces {
-                        let posterior = self.problem(&ways[way]).posterior(point, base.posterior.log_sizes, 4)?;
-                        return Some(judged((way, posterior)));
+                        let problem = self.problem(&ways[way]);
+                        let from = [logs(SMALL), base.posterior.log_sizes];
+                        let ends = from.into_iter().filter_map(|sizes| problem.posterior(point.clone(), sizes, 4));
+                        let best = ends.max_by(|a, b| a.log_evidence.total_cmp(&b.log_evidence))?;
+                        return Some(judged((way, best)));
                     }
                     vec![(way, point)]
                 }
