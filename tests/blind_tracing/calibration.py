@@ -34,6 +34,39 @@ def table(pairs):
     return rows
 
 
+WIDTH, HEIGHT, LEFT, TOP, BOTTOM = 640, 420, 70, 60, 70  # px: of the picture, and around its axes
+
+
+def picture(rows, title):
+    """The rows of `table` as an SVG: how often the first candidate was right, with 95 %, beside what was stated in the mean."""
+    wide, tall = (WIDTH - LEFT - 20) / len(rows), HEIGHT - TOP - BOTTOM
+    at = lambda rate: TOP + (1.0 - rate) * tall  # noqa: E731
+    drawn = []
+    for rate in (0.0, 0.25, 0.5, 0.75, 1.0):
+        drawn.append(f'<line x1="{LEFT}" x2="{WIDTH - 20}" y1="{at(rate):.1f}" y2="{at(rate):.1f}" stroke="#ddd"/>')
+        drawn.append(f'<text x="{LEFT - 8}" y="{at(rate) + 4:.1f}" text-anchor="end">{100 * rate:.0f} %</text>')
+    for number, row in enumerate(rows):
+        middle = LEFT + (number + 0.5) * wide
+        name = f"{100 * row['from']:g} to {100 * row['to']:g} %"
+        drawn.append(f'<text x="{middle:.1f}" y="{HEIGHT - BOTTOM + 20}" text-anchor="middle">{name}</text>')
+        drawn.append(f'<text x="{middle:.1f}" y="{HEIGHT - BOTTOM + 38}" text-anchor="middle" fill="#555">{row["of"]} tests</text>')
+        if not row["of"]:
+            continue
+        low, high = (at(end) for end in row["interval"])
+        stated, right = at(row["stated"]), at(row["right"] / row["of"])
+        drawn.append(f'<line x1="{middle - 26:.1f}" x2="{middle + 26:.1f}" y1="{stated:.1f}" y2="{stated:.1f}" stroke="#d60" stroke-width="3"/>')
+        drawn.append(f'<line x1="{middle:.1f}" x2="{middle:.1f}" y1="{low:.1f}" y2="{high:.1f}" stroke="#036" stroke-width="2"/>')
+        drawn.append(f'<circle cx="{middle:.1f}" cy="{right:.1f}" r="5" fill="#036"/>')
+    return (
+        f'<svg xmlns="http://www.w3.org/2000/svg" width="{WIDTH}" height="{HEIGHT}" viewBox="0 0 {WIDTH} {HEIGHT}" '
+        'font-family="sans-serif" font-size="13">\n<rect width="100%" height="100%" fill="white"/>\n'
+        f'<text x="{LEFT}" y="22" font-size="16">{title}</text>\n'
+        f'<text x="{LEFT}" y="42"><tspan fill="#d60">stated in the mean</tspan>, and <tspan fill="#036">how often that was right, '
+        "with 95 %</tspan></text>\n" + "\n".join(drawn) + f'\n<text x="{LEFT}" y="{HEIGHT - 10}">'
+        "stated probability of the first candidate against the second</text>\n</svg>\n"
+    )
+
+
 def wilson(values, deviations=1.96):
     """The 95 % interval of the rate of true among `values` (Wilson, J. Am. Stat. Assoc. 22, 1927); None of no values."""
     count = len(values)

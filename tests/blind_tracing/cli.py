@@ -12,7 +12,7 @@ import shlex
 import sys
 from pathlib import Path
 
-from . import constants, make, score, sets
+from . import calibration, constants, make, score, sets
 from .contour import Sampling
 
 
@@ -28,6 +28,9 @@ def main(arguments=None):
             how = constants if given.action == "constants" else score
             result = how.score(given.out, shlex.split(given.command), given.parallel, given.timeout)
             print(how.text(result))
+            if given.action == "score" and given.picture:
+                title = f"{result['cases']} tests of the set {result['set']}, seed {result['seed']}"
+                given.picture.write_text(calibration.picture(result["calibration"], title), encoding="utf-8")
             if given.json:
                 given.json.write_text(json.dumps(result, indent=1) + "\n", encoding="utf-8")
             if not result["reached"]:
@@ -58,5 +61,7 @@ def _parser():
         scoring.add_argument("--command", default=runs, help=f'run as COMMAND case/test.toml --json (default "{runs}")')
         scoring.add_argument("--parallel", type=int, default=2, help="cases at a time (default 2)")
         scoring.add_argument("--timeout", type=float, default=120.0, help="s a case (default 120)")
+        if name == "score":
+            scoring.add_argument("--picture", type=Path, metavar="FILE.svg", help="draw how sure the tracer was, and how often it was right")
         scoring.add_argument("--json", type=Path, metavar="FILE", help="write the result as JSON, too")
     return parser

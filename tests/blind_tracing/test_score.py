@@ -2,6 +2,7 @@
 
 import json
 import sys
+from xml.etree import ElementTree
 
 import pytest
 
@@ -219,3 +220,13 @@ def test_what_is_stated_is_held_against_what_was_right():
     rows = calibration.table([(0.6, True), (0.7, False), (0.9526, True), (1.0, True)])
     assert [(row["right"], row["of"]) for row in rows] == [(1, 2), (0, 0), (1, 1), (0, 0), (1, 1)]
     assert rows[0]["stated"] == pytest.approx(0.65) and rows[1]["stated"] is None
+
+
+def test_the_picture_puts_what_was_right_beside_what_was_stated():
+    """Half right at 65 % stated: the mark of the first is below that of the second, and bins without tests have none."""
+    svg = ElementTree.fromstring(calibration.picture(calibration.table([(0.6, True), (0.7, False)]), "two tests"))
+    space = "{http://www.w3.org/2000/svg}"
+    (right,) = svg.findall(f"{space}circle")
+    stated = next(line for line in svg.findall(f"{space}line") if line.get("stroke") == "#d60")
+    scale = (calibration.HEIGHT - calibration.TOP - calibration.BOTTOM) * 0.15
+    assert float(right.get("cy")) - float(stated.get("y1")) == pytest.approx(scale, abs=0.2)

@@ -103,12 +103,6 @@ pub(crate) fn first_setting(test: &ImpactTest, piece: &Piece) -> EffectSetting {
     EffectSetting { piece: *piece, boundary: test.boundary, suspension: test.suspension.clone(), record }
 }
 
-/// Whether all measurements of a test are of the same kind.
-pub(crate) fn holds_one_kind(test: &ImpactTest) -> bool {
-    let kinds: Vec<_> = test.measurements.iter().map(|measurement| std::mem::discriminant(&measurement.data)).collect();
-    kinds.windows(2).all(|pair| pair[0] == pair[1])
-}
-
 /// Records of a test: files of the same places are hits of one.
 pub(crate) fn pairs_of_places(test: &ImpactTest) -> usize {
     let mut pairs: Vec<[Place; 2]> = Vec::new();

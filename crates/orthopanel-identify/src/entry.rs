@@ -4,7 +4,6 @@ use orthopanel_data::{ImpactTest, MeasurementData};
 use orthopanel_model::{ModelError, StructureKind};
 
 use crate::answer::{PlateByModes, identify_lists_with_effects, identify_with_effects, without_repeats};
-use crate::declared_effects::holds_one_kind;
 use crate::{
     DampingLaw, Identification, IdentifyError, Search, Settings, accelerance_fit, frequency_fit, known_beforehand,
 };
@@ -35,7 +34,7 @@ pub fn identify(test: &ImpactTest, settings: impl Into<Settings>) -> Result<Iden
 fn of_data(test: &ImpactTest, settings: Settings) -> Result<Identification, IdentifyError> {
     let is_frequencies = |data: &MeasurementData| matches!(data, MeasurementData::NaturalFrequencies(_));
     let lists = test.measurements.iter().filter(|measurement| is_frequencies(&measurement.data)).count();
-    if lists == test.measurements.len() {
+    if lists > 0 {
         let (once, notes) = without_repeats(test);
         let mut found = of_once(&once, lists - notes.len(), settings)?;
         found.notes.extend(notes);
@@ -46,13 +45,13 @@ fn of_data(test: &ImpactTest, settings: Settings) -> Result<Identification, Iden
 
 /// The same where each list stands once; `lists` is their number.
 fn of_once(test: &ImpactTest, lists: usize, settings: Settings) -> Result<Identification, IdentifyError> {
-    if !test.effects.is_empty() {
-        return with_effects(test, lists, settings);
+    if !test.effects.is_empty() || (lists > 0 && lists < test.measurements.len()) {
+        return by_modes_of_beams(test, lists, settings);
     }
     let of_held = |error| of_held_constants(test, error);
     if lists == test.measurements.len() {
         frequency_fit::identify_frequencies(test, settings.search).map_err(of_held)?.determined()
-    } else if lists == 0 {
+    } else {
         let plate = plate_by_modes(test);
         // A plate whose modes are right and whose lines a factor explains is refused for that factor.
         let by_modes = || {
@@ -70,36 +69,24 @@ fn of_once(test: &ImpactTest, lists: usize, settings: Settings) -> Result<Identi
         }
         let by_lines = accelerance_fit::identify_records(test, settings).map_err(of_held);
         by_lines.and_then(Identification::determined).or_else(|refused| by_modes().unwrap_or(Err(refused)))
-    } else {
-        let message = "natural frequencies and records in one test: put them in two test files, since the frequencies \
-                       are most likely read off the same records and would count twice";
-        Err(IdentifyError::Unsupported(message.to_owned()))
     }
 }
 
-/// A test that declares effects.
-fn with_effects(test: &ImpactTest, lists: usize, settings: Settings) -> Result<Identification, IdentifyError> {
-    let refused = |message: &str| Err(IdentifyError::Unsupported(message.to_owned()));
+/// A test that declares effects, or has lists of natural frequencies beside records.
+fn by_modes_of_beams(test: &ImpactTest, lists: usize, settings: Settings) -> Result<Identification, IdentifyError> {
+    let what =
+        if test.effects.is_empty() { "natural frequencies beside records" } else { "declared effects ([[effect]])" };
+    let refused = |message: &str| Err(IdentifyError::Unsupported(format!("{what}{message}")));
     if test.structure == Some(StructureKind::MindlinPlate) {
-        return refused("declared effects ([[effect]]) act on beams: leave them out, or structure = \"mindlin-plate\"");
+        return refused(" are for beams: leave them out, or structure = \"mindlin-plate\"");
     }
     if settings.search == Search::Simplex || settings.damping_law == DampingLaw::Hysteretic {
-        return refused(
-            "declared effects ([[effect]]) want least squares and viscous damping: leave out --search and --damping",
-        );
+        return refused(" want least squares and viscous damping: leave out --search and --damping");
     }
     if lists == test.measurements.len() {
         return identify_lists_with_effects(test)?.determined();
     }
-    if lists == 0 {
-        accelerance_fit::refuse_other_units(test, &test.accelerances(settings.estimation)?)?;
-    }
-    if test.pieces.len() > 1 {
-        return refused("declared effects with records of several pieces: give each piece a test file of its own");
-    }
-    if !holds_one_kind(test) {
-        return refused("declared effects want measurements of one kind: put others into a test file of their own");
-    }
+    accelerance_fit::refuse_other_units(test, &test.accelerances(settings.estimation)?)?;
     let mut found = identify_with_effects(test, settings.estimation)?.determined()?;
     accelerance_fit::refuse_missed(test, &found.accelerances)?;
     found.question = accelerance_fit::question_of_window(test);

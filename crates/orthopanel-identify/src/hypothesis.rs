@@ -422,11 +422,18 @@ impl Hypothesis {
         self.parts.iter().map(part).collect()
     }
 
+    /// The effects that act on measured modes of so many records.
+    ///
     /// # Errors
     /// As [`EffectState::new`].
-    pub(crate) fn effects(&self, z: &[f64], records: usize) -> Result<Vec<EffectState>, ModelError> {
-        let states = self.parts.iter().zip(self.of_parts(z));
-        states.map(|(part, z)| EffectState::new(part.effect, part.values(z), records.max(1))).collect()
+    pub(crate) fn effects(
+        &self,
+        z: &[f64],
+        records: usize,
+        acts: impl Fn(&dyn Effect) -> bool,
+    ) -> Result<Vec<EffectState>, ModelError> {
+        let acting = self.parts.iter().zip(self.of_parts(z)).filter(|(part, _)| acts(part.effect));
+        acting.map(|(part, z)| EffectState::new(part.effect, part.values(z), records.max(1))).collect()
     }
 
     /// Constants, then the values of each effect, with their standard deviations where they are free.

@@ -34,8 +34,17 @@ pub(crate) fn from_base<T>(
     // What is declared wrongly is said before the records are read.
     let constants = FreeConstants::of(test, &BEAM_CONSTANTS)?;
     let declared = declared_parts(test, &piece, pairs_of_places(test))?;
-    let all: Vec<MeasuredModes> = measured_modes(test)?.into_iter().map(MeasuredModes::without_faint).collect();
+    let mut all: Vec<MeasuredModes> = measured_modes(test)?.into_iter().map(MeasuredModes::without_faint).collect();
+    all.sort_by_key(|of| of.records.is_empty());
     let measured = all.first().ok_or_else(|| too_few(0))?;
+    if all.iter().skip(1).any(|of| !of.records.is_empty()) {
+        return Err(IdentifyError::Unsupported(
+            "records of several pieces, or hits beside files of accelerances: give each a test file of its own; lists of natural \
+             frequencies, of any piece, may stand beside one of them"
+                .to_owned(),
+        ));
+    }
+    let hit = (!measured.records.is_empty()).then_some(measured.piece);
     let comparisons: Vec<Comparison> =
         all.iter().map(|of| Comparison::new(of, test.pieces[of.piece].piece.mass())).collect();
     let of_piece = |of: &MeasuredModes| EffectSetting {
@@ -48,7 +57,8 @@ pub(crate) fn from_base<T>(
     for comparison in &comparisons {
         let of = comparison.measured;
         let predictor = Predictor::new(comparison, StructureKind::TimoshenkoBeam, &of_piece(of))?;
-        blocks.push(Block { piece: of.piece, predictor, waves: vec![] });
+        let is_of_other = hit.is_some_and(|hit| hit != of.piece);
+        blocks.push(Block { piece: of.piece, is_of_other, predictor, waves: vec![] });
     }
     let begun = Inquiry::begin(Stacked::new(blocks), &constants, &declared)?;
     let (mut inquiry, base) = begun.ok_or_else(|| match measured.poles.len() {
@@ -57,18 +67,4 @@ pub(crate) fn from_base<T>(
     })?;
     inquiry.progress = SearchProgress::telling(progress);
     say(inquiry, base)
-}
-
-#[doc(hidden)]
-pub fn probe_list(
-    test: &ImpactTest,
-) -> Result<Vec<(Vec<&'static str>, f64, Vec<(f64, Option<f64>)>, f64)>, IdentifyError> {
-    from_base(test, &|_| {}, |inquiry, base| {
-        let all = inquiry.search(base);
-        let of = |j: &Judged| {
-            let values = j.hypothesis.values_with_deviations(&j.posterior.point.z, &j.posterior.covariance);
-            (j.names(), j.log_odds, values, j.posterior.log_sizes[0].exp())
-        };
-        Ok(all.iter().map(of).collect())
-    })
 }

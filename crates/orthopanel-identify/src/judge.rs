@@ -45,14 +45,19 @@ pub(crate) fn judged<'a>(
         return Some((chosen, Verdict::Unexplained, vec![]));
     }
     let names = chosen.names();
-    if names.is_empty() {
-        return Some((chosen, Verdict::NothingMissing, vec![]));
-    }
-    let mut rivals: Vec<&'static str> = rivals(all, chosen).flat_map(Judged::names).collect();
+    let mut rivals: Vec<&'static str> = match names.is_empty() {
+        // Likelier than nothing missing, but not clearly: none is named, and nothing missing is not said either.
+        true => all.iter().take_while(|judged| judged.log_odds > chosen.log_odds).flat_map(Judged::names).collect(),
+        false => rivals(all, chosen).flat_map(Judged::names).collect(),
+    };
     rivals.retain(|name| !names.contains(name));
     rivals.sort_unstable();
     rivals.dedup();
-    let verdict = if rivals.is_empty() { Verdict::Explained } else { Verdict::Ambiguous };
+    let verdict = match (names.is_empty(), rivals.is_empty()) {
+        (true, true) => Verdict::NothingMissing,
+        (false, true) => Verdict::Explained,
+        (_, false) => Verdict::Ambiguous,
+    };
     Some((chosen, verdict, rivals))
 }
 

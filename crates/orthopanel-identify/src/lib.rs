@@ -45,8 +45,6 @@ pub use error::IdentifyError;
 pub use identification::{
     AcceleranceFit, Correlation, HiddenMode, Identification, IdentifiedConstant, ModeFit, NotIdentified, PieceFit,
 };
-#[doc(hidden)]
-pub use inference::probe_list;
 pub use known_beforehand::PriorContradiction;
 pub use matching::ModeMatch;
 pub use measured::{MeasuredModes, MeasuredRecord, Pole, measured_modes};

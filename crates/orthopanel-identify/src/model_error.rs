@@ -95,6 +95,8 @@ pub(crate) struct ErrorColumns {
     pub columns: Mat<f64>,
     /// Of each column its kind, as a number below [`KINDS`].
     pub kinds: Vec<usize>,
+    /// Of columns that are of the piece, not of one measurement of it, the number of the mode or of the wave.
+    of_piece: Vec<Option<usize>>,
     /// Values that tell no more than their size, with their variance: near motions of the piece as a whole,
     uninformative: Vec<(usize, f64)>,
     /// and residues of poles that are no modes of the model, which may be false.
@@ -190,6 +192,9 @@ impl ErrorColumns {
     pub(crate) fn about(comparison: &Comparison, at: &Prediction, waves: &Waves) -> Self {
         let mut columns: Vec<(usize, Vec<(usize, f64)>)> = Vec::new();
         let measured = comparison.measured;
+        // A list that tells no noise has it in the same size.
+        let of_mode = |pole: usize| at.flexible_of_poles[pole].filter(|_| measured.covariance[(pole, pole)] > 0.0);
+        let mut of_piece: Vec<Option<usize>> = (0..measured.poles.len()).map(of_mode).collect();
         for pole in 0..measured.poles.len() {
             let times = if at.hangs[pole] { HANGING } else { 1.0 };
             columns.push((Kind::Frequency as usize, vec![(pole, times)]));
@@ -245,6 +250,8 @@ impl ErrorColumns {
             columns.push(dense(Kind::ForcePlace, &at.by_force, range.clone()));
             columns.push(dense(Kind::RecordGain, &at.values, range));
         }
+        of_piece.resize(columns.len(), None);
+        of_piece.extend((0..waves.len()).map(Some));
         columns
             .extend(waves.iter().map(|(kind, wave)| (*kind, wave.iter().copied().enumerate().take(unseen).collect())));
         if !measured.records.is_empty() {
@@ -277,28 +284,45 @@ impl ErrorColumns {
                 without_partner.extend((record == 0).then_some((pole, anywhere)));
             }
         }
+        of_piece.resize(columns.len(), None);
         Self {
             columns: matrix,
             kinds: columns.into_iter().map(|(kind, _)| kind).collect(),
+            of_piece,
             uninformative,
             without_partner,
         }
     }
 
-    /// Of blocks that stand below each other.
-    pub(crate) fn stacked(mut all: Vec<Self>) -> Self {
+    /// Of blocks that stand below each other, each with its piece: what is of a piece is the same in all that was measured of it.
+    pub(crate) fn stacked(mut all: Vec<(usize, Self)>) -> Self {
         if all.len() == 1 {
-            return all.remove(0);
+            return all.remove(0).1;
         }
-        let rows = all.iter().map(|own| own.columns.nrows()).sum();
-        let count = all.iter().map(|own| own.columns.ncols()).sum();
-        let mut stacked =
-            Self { columns: Mat::zeros(rows, count), kinds: vec![], uninformative: vec![], without_partner: vec![] };
+        let rows = all.iter().map(|(_, own)| own.columns.nrows()).sum();
+        let (mut kinds, mut keys) = (vec![], vec![]);
+        let mut places: Vec<Vec<usize>> = Vec::new();
+        for (piece, own) in &all {
+            let place = |(kind, number): (&usize, &Option<usize>)| {
+                let key = number.map(|number| (*piece, *kind, number));
+                let known = key.is_some().then(|| keys.iter().position(|known| *known == key)).flatten();
+                known.unwrap_or_else(|| {
+                    kinds.push(*kind);
+                    keys.push(key);
+                    kinds.len() - 1
+                })
+            };
+            places.push(own.kinds.iter().zip(&own.of_piece).map(place).collect());
+        }
+        let of_piece = keys.iter().map(|key| key.map(|(.., number)| number)).collect();
+        let columns = Mat::zeros(rows, kinds.len());
+        let mut stacked = Self { columns, kinds, of_piece, uninformative: vec![], without_partner: vec![] };
         let mut row = 0;
-        for own in all {
-            let [rows, count] = [own.columns.nrows(), own.columns.ncols()];
-            stacked.columns.submatrix_mut(row, stacked.kinds.len(), rows, count).copy_from(&own.columns);
-            stacked.kinds.extend(own.kinds);
+        for ((_, own), places) in all.into_iter().zip(places) {
+            let rows = own.columns.nrows();
+            for (column, place) in places.into_iter().enumerate() {
+                (0..rows).for_each(|i| stacked.columns[(row + i, place)] = own.columns[(i, column)]);
+            }
             stacked.uninformative.extend(own.uninformative.into_iter().map(|(place, of)| (row + place, of)));
             stacked.without_partner.extend(own.without_partner.into_iter().map(|(place, of)| (row + place, of)));
             row += rows;

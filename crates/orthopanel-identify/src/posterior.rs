@@ -243,10 +243,9 @@ impl Problem<'_> {
         for (part, z) in self.hypothesis.parts.iter().zip(self.hypothesis.of_parts(z)) {
             for (number, slope) in part.slopes(z).iter().enumerate() {
                 let mut column = vec![0.0; at.values.len()];
-                let mut places_alone = true;
+                let mut places_alone = !self.stacked.first().comparison().measured.records.is_empty();
                 for ((range, block), at) in self.stacked.ranges().zip(&self.stacked.blocks).zip(&at.blocks) {
                     let records = block.comparison().measured.records.len();
-                    places_alone &= records > 0;
                     for record in 0..records {
                         let shifts = part.shifts(&block.predictor, record, number);
                         places_alone &= shifts.is_some();

@@ -104,7 +104,8 @@ impl<'a> Predictor<'a> {
         let places = distinct(measured.records.iter().flat_map(|record| [record.force_at, record.response_at]));
         let panel = ModifiedPanel::new(structure, setting, measured.poles.len() + SPARE)?;
         let top = measured.poles.last().map_or(measured.band[1], |pole| pole.angular_frequency / TAU);
-        let of_plate = if places.is_empty() { across(&setting.piece) } else { places.clone() };
+        let of_plate =
+            if places.is_empty() { vec![Place { x: 0.5 * setting.piece.length, y: 0.0 }] } else { places.clone() };
         let panel = panel.perhaps_wide(setting, &of_plate, WIDE * top);
         // What is not linear shows between hits, not in modes.
         let record = RecordSetting { suspension_motion: SuspensionMotion::InTime, ..setting.record.clone() };

@@ -3,16 +3,18 @@
 use std::ops::Range;
 
 use faer::Mat;
-use orthopanel_model::{EffectState, ModelError};
+use orthopanel_model::{Effect, EffectState, ModelError, Owner};
 
 use crate::comparison::Comparison;
-use crate::hypothesis::Hypothesis;
+use crate::hypothesis::{Hypothesis, has_place};
 use crate::model_error::{ErrorColumns, Waves};
 use crate::predicted::{Prediction, Predictor};
 
 /// The measured modes of one list, or of the records of one piece, and what predicts them.
 pub(crate) struct Block<'a> {
     pub piece: usize,
+    /// Whether it is a list of a piece beside the records of another: an effect at a place is on the piece that was hit.
+    pub is_of_other: bool,
     pub predictor: Predictor<'a>,
     /// What unevenness does, of [`crate::model_error::waves`].
     pub waves: Waves,
@@ -30,11 +32,14 @@ impl<'a> Block<'a> {
         z: &[f64],
     ) -> Result<(Vec<f64>, Vec<EffectState>), ModelError> {
         let records = self.comparison().measured.records.len();
-        Ok((hypothesis.constants_of(self.piece, z), hypothesis.effects(z, records)?))
+        let acts = |effect: &dyn Effect| {
+            (records > 0 || effect.owner() != Owner::Channel) && !(self.is_of_other && has_place(effect))
+        };
+        Ok((hypothesis.constants_of(self.piece, z), hypothesis.effects(z, records, acts)?))
     }
 }
 
-/// Blocks below each other, one at least.
+/// Blocks below each other, one at least; the records, if there are any, stand first.
 pub(crate) struct Stacked<'a> {
     pub blocks: Vec<Block<'a>>,
     /// Covariance of the noise of all.
@@ -49,7 +54,7 @@ pub(crate) struct Predictions {
 }
 
 impl Predictions {
-    /// Of the only block where records are judged.
+    /// Of the records, where there are any.
     pub(crate) fn first(&self) -> &Prediction {
         &self.blocks[0]
     }
@@ -73,7 +78,7 @@ impl<'a> Stacked<'a> {
         stacked
     }
 
-    /// The only block where records are judged.
+    /// The records, where there are any.
     pub(crate) fn first(&self) -> &Block<'a> {
         &self.blocks[0]
     }
@@ -117,7 +122,9 @@ impl<'a> Stacked<'a> {
     }
 
     pub(crate) fn errors(&self, at: &Predictions) -> ErrorColumns {
-        let about = |(block, at): (&Block, &Prediction)| ErrorColumns::about(block.comparison(), at, &block.waves);
+        let about = |(block, at): (&Block, &Prediction)| {
+            (block.piece, ErrorColumns::about(block.comparison(), at, &block.waves))
+        };
         ErrorColumns::stacked(self.blocks.iter().zip(&at.blocks).map(about).collect())
     }
 }

@@ -4,8 +4,7 @@ use orthopanel_data::{ImpactTest, Measurement};
 use orthopanel_model::{Estimate, Owner, StructureKind};
 
 use crate::accelerance_fit::{WINDOW_EFFECT, question_of_window, refuse_missed};
-use crate::answer::{answer, answer_of_lists};
-use crate::declared_effects::holds_one_kind;
+use crate::answer::{answer, answer_of_lists, without_repeats};
 use crate::outcome::{Progress, Removed, TracedEffect, TracedParameter, Tracing, Verdict};
 use crate::to_check::to_check;
 use crate::{IdentifyError, Settings, identify};
@@ -22,8 +21,9 @@ use crate::{IdentifyError, Settings, identify};
 /// in Laplace's approximation (MacKay, Neural Computation 4, 1992), each effect lacking by itself with the prior odds of one to the size of the
 /// catalogue. What shows between hits alone, `cubic-stiffness`, is held against the best of the other hypotheses.
 ///
-/// Lists of natural frequencies are measured modes without residues: their numbers match them with the modes, and those of several pieces are judged
-/// together.
+/// Lists of natural frequencies are measured modes without residues: their numbers match them with the modes. Lists of several pieces, and lists beside
+/// the records of one piece, are judged together: pieces share effects and the constants that are not their own; an effect at a place is on the piece
+/// that was hit; and what the model misses of a mode of a piece is the same in all that was measured of it.
 ///
 /// # Limits
 /// Records are those of one piece, as a beam that may turn out a plate, hit and seen on its centre line. Standard deviations hold the sizes of model
@@ -61,21 +61,17 @@ pub fn trace_with(test: &ImpactTest, progress: &(dyn Fn(Progress) + Sync)) -> Re
 }
 
 fn of_data(test: &ImpactTest, progress: &(dyn Fn(Progress) + Sync)) -> Result<Tracing, IdentifyError> {
-    let is_record = |measurement: &Measurement| measurement.data.recorded().is_some();
     if !test.measurements.iter().any(is_record) {
         return answer_of_lists(test, progress);
     }
-    if test.pieces.len() != 1 {
-        let message =
-            format!("a trace of {} pieces in one test: give each piece a test file of its own", test.pieces.len());
-        return Err(IdentifyError::Unsupported(message));
-    }
-    if !holds_one_kind(test) {
-        let message = "a trace needs measurements of one kind: natural-frequencies, accelerance or time-history; put others \
-                       into a test file of their own";
-        return Err(IdentifyError::Unsupported(message.to_owned()));
-    }
-    answer(test, progress)
+    let (once, repeated) = without_repeats(test);
+    let mut found = answer(&once, progress)?;
+    found.notes.extend(repeated);
+    Ok(found)
+}
+
+fn is_record(measurement: &Measurement) -> bool {
+    measurement.data.recorded().is_some()
 }
 
 /// Before records say what lacks, the window is asked about that they may have been averaged under: free damping takes up most of it.
@@ -142,10 +138,16 @@ fn identified(test: &ImpactTest) -> Result<Identified, IdentifyError> {
     if test.structure == Some(StructureKind::MindlinPlate) {
         return Err(IdentifyError::PlateNotTraced);
     }
-    if !test.measurements.iter().all(|measurement| measurement.data.recorded().is_some()) {
+    let Some(hit) = test.measurements.iter().find(|measurement| is_record(measurement)).map(|hit| hit.piece) else {
         return Ok(Identified::default());
+    };
+    let mut records = test.clone();
+    if !test.measurements.iter().all(is_record) {
+        records.measurements.retain(|measurement| is_record(measurement) && measurement.piece == hit);
+        records.measurements.iter_mut().for_each(|measurement| measurement.piece = 0);
+        records.pieces = vec![test.pieces[hit].clone()];
     }
-    match identify(test, Settings::default()) {
+    match identify(&records, Settings::default()) {
         Ok(found) => {
             let said = found.notes.first().cloned().unwrap_or_default();
             Ok(Identified { refused: None, question: found.question, gain: found.common_gain.map(|gain| (gain, said)) })
@@ -175,11 +177,12 @@ fn with_gain(mut found: Tracing, declared: Option<f64>, (gain, said): (Estimate,
         return found;
     }
     found.notes.insert(0, said);
-    let is_named = found.effects.iter().any(|effect| effect.id == GAIN);
-    if found.verdict == Verdict::NothingMissing && !is_named {
+    let is_likely = found.verdict == Verdict::NothingMissing || found.alternatives.iter().any(|id| id == GAIN);
+    if found.effects.is_empty() && is_likely {
         let parameters = vec![TracedParameter { name: "gain", unit: "1", values: vec![gain] }];
         let effect = TracedEffect { id: GAIN, owner: Owner::Channel, parameters };
-        found.verdict = Verdict::Explained;
+        found.alternatives.retain(|id| id != GAIN);
+        found.verdict = if found.alternatives.is_empty() { Verdict::Explained } else { Verdict::Ambiguous };
         found.removed.push(Removed::of(&effect, false));
         found.effects.push(effect);
     }

@@ -2,7 +2,6 @@
 
 use std::ops::Range;
 
-use num_complex::Complex64;
 use rayon::prelude::*;
 
 use super::records::PlaceRecord;
@@ -170,29 +169,4 @@ pub(super) fn fit_pole(record: &PlaceRecord, power: &[f64], peak: usize) -> Opti
     let at_peak = (pole.frequency - frequency[peak]).abs() < 2.0 * width.max(step);
     let sure = pole.log_zeta_std < 0.5 && pole.zeta < MOST_DAMPING;
     (at_peak && sure).then_some((pole, fit.lines))
-}
-
-/// What of `right` no combination of the columns can make: Gram-Schmidt, twice for its rounding.
-pub(super) fn project_out(mut columns: Vec<Vec<Complex64>>, mut right: Vec<Complex64>) -> Vec<Complex64> {
-    let remove = |direction: &[Complex64], from: &mut [Complex64]| {
-        let share: Complex64 = direction.iter().zip(from.iter()).map(|(d, f)| d.conj() * f).sum();
-        for (value, d) in from.iter_mut().zip(direction) {
-            *value -= share * d;
-        }
-    };
-    for index in 0..columns.len() {
-        let (done, rest) = columns.split_at_mut(index);
-        let Some(column) = rest.first_mut() else { continue };
-        for _ in 0..2 {
-            done.iter().for_each(|direction| remove(direction, column));
-        }
-        let norm = column.iter().map(|value| value.norm_sqr()).sum::<f64>().sqrt();
-        if norm > 0.0 {
-            column.iter_mut().for_each(|value| *value /= norm);
-        }
-        for _ in 0..2 {
-            remove(column, &mut right);
-        }
-    }
-    right
 }

@@ -19,9 +19,10 @@ use super::doubt::notes_on_not_shown;
 use super::estimates::Estimates;
 use super::lines::{Drawn, Lines};
 use super::lists::{notes_on_hidden, percent};
-use super::{drawn, not_finite};
+use super::{drawn, lists_beside, not_finite};
 
-/// Identifies the constants of a beam whose test of one piece declares effects; a parameter that the file leaves out is identified too.
+/// Identifies the constants of a beam from the records of one piece, with the effects that the test declares, a parameter that it leaves out too, and
+/// with lists of natural frequencies of any piece beside them.
 ///
 /// # Errors
 /// As [`from_base`], and [`IdentifyError::OnBound`].
@@ -42,23 +43,7 @@ pub(crate) fn identify_lists_with_effects(test: &ImpactTest) -> Result<Identific
         let estimates = Estimates::of(&base);
         notes.extend(notes_on_prior_alone(&base, &estimates));
         notes.extend(notes_on_bound(&estimates, inquiry.predictor().piece()));
-        let mut pieces: Vec<PieceFit> = test.pieces.iter().map(PieceFit::of).collect();
-        for (block, at) in inquiry.stacked.blocks.iter().zip(&base.posterior.point.at.blocks) {
-            let measured = block.comparison().measured;
-            let nodes = bending_nodes(test.boundary, measured.poles.len());
-            for (index, (pole, nodes)) in measured.poles.iter().zip(nodes).enumerate() {
-                let frequency = pole.angular_frequency / TAU;
-                let std = measured.covariance[(index, index)].sqrt();
-                pieces[block.piece].modes.push(ModeFit {
-                    mode: index + 1,
-                    nodes,
-                    measured: frequency,
-                    measured_std: Some(frequency * std).filter(|_| std > 0.0),
-                    model: at.values[index].exp() / TAU,
-                    damping: None,
-                });
-            }
-        }
+        let pieces = pieces_of_lists(test, &inquiry, &base);
         let error = percent(&inquiry, &base).ok_or_else(|| not_finite("error of the frequencies"))?;
         let is_judged = inquiry.frequencies() > base.posterior.point.z.len();
         let constants = FreeConstants::of(test, &BEAM_CONSTANTS)?;
@@ -79,6 +64,28 @@ pub(crate) fn identify_lists_with_effects(test: &ImpactTest) -> Result<Identific
             notes,
         })
     })
+}
+
+/// Each piece with the modes of its lists beside those of the beam.
+fn pieces_of_lists(test: &ImpactTest, inquiry: &Inquiry, base: &Judged) -> Vec<PieceFit> {
+    let mut pieces: Vec<PieceFit> = test.pieces.iter().map(PieceFit::of).collect();
+    for (block, at) in inquiry.stacked.blocks.iter().zip(&base.posterior.point.at.blocks) {
+        let measured = block.comparison().measured;
+        let nodes = bending_nodes(test.boundary, measured.poles.len());
+        for (index, (pole, nodes)) in measured.poles.iter().zip(nodes).enumerate() {
+            let frequency = pole.angular_frequency / TAU;
+            let std = measured.covariance[(index, index)].sqrt();
+            pieces[block.piece].modes.push(ModeFit {
+                mode: index + 1,
+                nodes,
+                measured: frequency,
+                measured_std: Some(frequency * std).filter(|_| std > 0.0),
+                model: at.values[index].exp() / TAU,
+                damping: None,
+            });
+        }
+    }
+    pieces
 }
 
 /// # Errors
@@ -109,12 +116,16 @@ fn identification(
     let lines = Lines::of(test, estimation)?;
     let Drawn { curves, damping } = drawn(test, (inquiry, base), &lines)?;
     let named = &test.pieces[inquiry.measured().piece];
-    let piece = piece_fit(test, (inquiry, base), &damping);
-    let errors: f64 = piece.modes.iter().map(|mode| mode.error_percent().powi(2)).sum();
+    let mut pieces = pieces_of_lists(test, inquiry, base);
+    // Of the piece that was hit its records say more.
+    pieces[inquiry.measured().piece] = piece_fit(test, (inquiry, base), &damping);
+    let modes = || pieces.iter().flat_map(|piece| &piece.modes);
+    let errors: f64 = modes().map(|mode| mode.error_percent().powi(2)).sum();
     let pairs = || curves.iter().flat_map(|curve| curve.model.iter().zip(&curve.measured));
     let missed: f64 = pairs().map(|(model, measured)| (model - measured).norm_sqr()).sum();
     let total: f64 = pairs().map(|(_, measured)| measured.norm_sqr()).sum();
     let mut notes = lines.notes_of_records();
+    notes.extend(lists_beside(inquiry));
     notes.extend(alone(inquiry, base));
     notes.extend(notes_on_not_shown(inquiry, base));
     notes.extend(notes_on_prior_alone(base, &estimates));
@@ -125,12 +136,12 @@ fn identification(
         not_identified: vec![],
         // Coordinates go with the logarithms of the constants, which come first.
         correlations: constants.correlations(&base.posterior.covariance),
-        frequency_rms_percent: (errors / piece.modes.len().max(1) as f64).sqrt(),
+        frequency_rms_percent: (errors / modes().count().max(1) as f64).sqrt(),
         left_one_out_percent: None,
         accelerance_rms_percent: Some(100.0 * (missed / total).sqrt()),
         chi_square: chi_square(&curves),
         effects: estimates.effects.into_iter().map(|(effect, _)| effect).collect(),
-        pieces: vec![piece],
+        pieces,
         accelerances: curves,
         question: None,
         common_gain: None,

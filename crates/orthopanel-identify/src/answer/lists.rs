@@ -133,7 +133,7 @@ fn tracing_of(test: &ImpactTest, inquiry: &Inquiry, all: &[Judged]) -> Result<Tr
         effects: Estimates::of(judged).undeclared(),
     };
     let estimates = Estimates::of(chosen);
-    let (panels, removed) = panels_of_lists(test, chosen, &estimates, inquiry.predictor());
+    let (panels, removed) = panels_of_lists(test, inquiry, chosen, &estimates);
     let model_error = chosen.posterior.log_sizes[Kind::Frequency as usize].exp();
     let notes = weighed.notes(inquiry, test, &estimates);
     let next_experiment = match (weighed.check(), verdict) {

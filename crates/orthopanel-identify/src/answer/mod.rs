@@ -37,7 +37,7 @@ use lines::{Drawn, Lines};
 use misfit::Yardstick;
 use next_measurement::next_measurement;
 use not_tested::not_tested;
-use panel::panel;
+use panel::{panel, panels_of_lists};
 use rayon::prelude::*;
 use weighed::Weighed;
 
@@ -59,6 +59,16 @@ pub(crate) fn answer(test: &ImpactTest, progress: &(dyn Fn(Progress) + Sync)) ->
         tracing_of(test, &inquiry, &all)
     })
 }
+
+/// What is to be known of natural frequencies beside the records of the same piece.
+fn lists_beside(inquiry: &Inquiry) -> Option<String> {
+    let (records, lists) = inquiry.stacked.blocks.split_first()?;
+    let is_beside = !inquiry.is_of_lists() && lists.iter().any(|list| list.piece == records.piece);
+    is_beside.then(|| LISTS_BESIDE.to_owned())
+}
+
+const LISTS_BESIDE: &str = "natural frequencies stand beside the records of the same piece: leave them out if they were read off these records, for \
+                            they would count twice";
 
 fn not_finite(what: &str) -> IdentifyError {
     IdentifyError::NotFinite { what: what.into() }
@@ -97,7 +107,9 @@ fn tracing_of(test: &ImpactTest, inquiry: &Inquiry, all: &[Judged]) -> Result<Tr
     let estimates = Estimates::of(chosen);
     let plate = chosen.hypothesis.parts.iter().position(|part| part.replaces_structure(inquiry.predictor()));
     let of_effects = &chosen.posterior.point.at.first().damping_of_effects;
-    let (panel, removed) = panel(test, (measured, of_effects), &estimates, damping, plate)?;
+    let (hit, removed) = panel(test, (measured, of_effects), (chosen, &estimates), damping, plate)?;
+    let (mut panels, _) = panels_of_lists(test, inquiry, chosen, &estimates);
+    panels[measured.piece] = hit;
     let size = |kind: Kind| chosen.posterior.log_sizes[kind as usize].exp();
     let mut notes = lines.notes;
     if chosen.names().contains(&"gain") {
@@ -106,6 +118,7 @@ fn tracing_of(test: &ImpactTest, inquiry: &Inquiry, all: &[Judged]) -> Result<Tr
     if lines.hits_are_few {
         notes.push(FEW_HITS.to_owned());
     }
+    notes.extend(lists_beside(inquiry));
     notes.extend(weighed.notes(inquiry, test, &estimates));
     let next_experiment = match weighed.check() {
         Some(doubt) => check_first(doubt),
@@ -121,7 +134,7 @@ fn tracing_of(test: &ImpactTest, inquiry: &Inquiry, all: &[Judged]) -> Result<Tr
         not_tested: not_tested(inquiry, all),
         next_experiment,
         chi_square: after.fitted.powi(2),
-        panels: vec![panel],
+        panels,
         removed,
         accelerances: curves,
         base_accelerances: base_curves,

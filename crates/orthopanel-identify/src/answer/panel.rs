@@ -11,12 +11,13 @@ use orthopanel_model::{
 
 use super::damping::TracedDamping;
 use super::estimates::Estimates;
-use crate::hypothesis::Role;
+use crate::hypothesis::{Role, has_place};
 use crate::measured::MeasuredModes;
 use crate::outcome::{Removed, TracedEffect};
 use crate::plate_of_ratios::widen;
 use crate::posterior::Judged;
-use crate::predicted::{Predictor, distinct};
+use crate::predicted::distinct;
+use crate::search::Inquiry;
 
 /// Key of a model's provenance under which the standard deviations of its damping ratios stand.
 const DAMPING_STD: &str = "damping_std";
@@ -31,14 +32,13 @@ const ABOVE: f64 = 1.1;
 pub(super) fn panel(
     test: &ImpactTest,
     (measured, of_effects): (&MeasuredModes, &[f64]),
-    estimates: &Estimates,
+    (judged, estimates): (&Judged, &Estimates),
     damping: TracedDamping,
     plate: Option<usize>,
 ) -> Result<(PanelModel, Vec<Removed>), ModelError> {
     let places = |at: fn(&crate::MeasuredRecord) -> Place| distinct(measured.records.iter().map(at));
-    let constants = BEAM_CONSTANTS.iter().zip(&estimates.constants);
     let (own, others) = own_and_others(estimates, plate);
-    let constants = constants.map(|(constant, estimate)| (constant.name.to_owned(), *estimate)).collect();
+    let constants = constants(judged, estimates, measured.piece);
     let ports = Ports { forces: places(|record| record.force_at), responses: places(|record| record.response_at) };
     let mut panel = bare((test.pieces[measured.piece].piece, test.boundary), constants, ports);
     let damping = match plate.and_then(|number| estimates.effects.get(number)) {
@@ -55,32 +55,40 @@ pub(super) fn panel(
 }
 
 /// A panel for each piece of lists of frequencies, with the effects that are its own, and which of the others are removed and why. Frequencies tell no
-/// damping.
+/// damping. An effect at a place is on the piece that was hit, if any was.
 pub(super) fn panels_of_lists(
     test: &ImpactTest,
+    inquiry: &Inquiry,
     judged: &Judged,
     estimates: &Estimates,
-    predictor: &Predictor,
 ) -> (Vec<PanelModel>, Vec<Removed>) {
-    let plate = judged.hypothesis.parts.iter().position(|part| part.replaces_structure(predictor));
+    let plate = judged.hypothesis.parts.iter().position(|part| part.replaces_structure(inquiry.predictor()));
+    let hit = (!inquiry.is_of_lists()).then_some(inquiry.measured().piece);
+    let is_elsewhere = |id: &str| orthopanel_model::effect(id).is_ok_and(has_place);
     let (own, others) = own_and_others(estimates, plate);
     let of_piece = |(piece, named): (usize, &NamedPiece)| {
-        let constants = BEAM_CONSTANTS.iter().enumerate().filter_map(|(constant, of)| {
-            let found = |own: Option<usize>| {
-                let place = judged.hypothesis.constant_numbers().position(|number| number == (constant, own))?;
-                estimates.constants.get(place).copied()
-            };
-            Some((of.name.to_owned(), found(Some(piece)).or_else(|| found(None))?))
-        });
         let ports = Ports { forces: vec![], responses: vec![] };
-        let mut panel = bare((named.piece, test.boundary), constants.collect(), ports);
+        let mut panel = bare((named.piece, test.boundary), constants(judged, estimates, piece), ports);
         if let Some((ratios, _)) = plate.and_then(|number| estimates.effects.get(number)) {
             widen(&mut panel, ratios);
         }
-        panel.effects = own.iter().map(|(effect, _)| effect.entry()).collect();
+        let acts = |effect: &&TracedEffect| hit.is_none_or(|hit| hit == piece) || !is_elsewhere(effect.id);
+        panel.effects = own.iter().map(|(effect, _)| effect).filter(acts).map(TracedEffect::entry).collect();
         panel
     };
     (test.pieces.iter().enumerate().map(of_piece).collect(), removed(&others))
+}
+
+/// The constants of a piece.
+fn constants(judged: &Judged, estimates: &Estimates, piece: usize) -> BTreeMap<String, Estimate> {
+    let of = |(constant, of): (usize, &orthopanel_model::Constant)| {
+        let found = |own: Option<usize>| {
+            let place = judged.hypothesis.constant_numbers().position(|number| number == (constant, own))?;
+            estimates.constants.get(place).copied()
+        };
+        Some((of.name.to_owned(), found(Some(piece)).or_else(|| found(None))?))
+    };
+    BEAM_CONSTANTS.iter().enumerate().filter_map(of).collect()
 }
 
 type Parts<'a> = Vec<&'a (TracedEffect, Role)>;

@@ -40,9 +40,11 @@ impl<'a> Weighed<'a> {
         doubts.retain(|doubt| doubt.is_rival || is_unexplained);
         let verdict = if is_unexplained || doubts.is_empty() { verdict } else { Verdict::Ambiguous };
         let near = match verdict {
+            // Not clearly ahead of nothing missing, but ahead.
+            Verdict::Ambiguous if chosen.names().is_empty() => {
+                all.iter().take_while(|judged| judged.log_odds > chosen.log_odds).collect()
+            }
             Verdict::Ambiguous => rivals(all, chosen).collect(),
-            // Not clearly ahead, but ahead.
-            Verdict::NothingMissing => all.iter().take_while(|judged| judged.log_odds > chosen.log_odds).collect(),
             _ => vec![],
         };
         Ok(Self { chosen, base, verdict, near, rivals: found_rivals, doubts })

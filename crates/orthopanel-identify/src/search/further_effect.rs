@@ -4,6 +4,7 @@ use std::f64::consts::TAU;
 
 use faer::Mat;
 use orthopanel_model::Effect;
+use rayon::prelude::*;
 
 use super::{FOLLOWED, Inquiry, LOOSE, NEAR, SMALL, log_prior, logs, starting_constants};
 use crate::hypothesis::{Hypothesis, Role};
@@ -113,12 +114,10 @@ impl Inquiry<'_> {
         let starts = |(way, hypothesis): (usize, &Hypothesis)| {
             let problem = self.problem(hypothesis);
             let starts = match hypothesis.parts.last() {
-                // The modes that a list counts follow the ratios of a plate smoothly.
-                Some(part) if replaces && self.is_of_lists() => vec![vec![0.0; part.free()]],
                 Some(part) => part.starts(|mass, x| self.tuned(base, &missed, mass, x)),
                 None => vec![],
             };
-            let point = |(of_base, start): (&Vec<f64>, &Vec<f64>)| {
+            let point = |(of_base, start): (&Vec<f64>, &Vec<f64>)| -> Option<Point> {
                 let point = problem.point([&of_base[..], start].concat(), &loose)?;
                 // Motions of the piece as a whole have errors of their own.
                 if !point.at.hangs_as(&at_base.at) {
@@ -135,7 +134,8 @@ impl Inquiry<'_> {
                 Some(Point { z, cost: point.cost - gain, ..point })
             };
             let starts = bases.iter().flat_map(|of_base| starts.iter().map(move |start| (of_base, start)));
-            starts.filter_map(point).map(|point| (way, point)).collect::<Vec<_>>()
+            let starts: Vec<(&Vec<f64>, &Vec<f64>)> = starts.collect();
+            starts.into_par_iter().filter_map(point).map(|point| (way, point)).collect::<Vec<_>>()
         };
         let judged = |(way, posterior): (usize, Posterior)| {
             let log_odds = base.log_odds - base.posterior.log_evidence + posterior.log_evidence + log_prior(ways.len());
@@ -169,25 +169,23 @@ impl Inquiry<'_> {
                 let by = problem.whitening(&problem.errors(&point.at).with_every_partner(), sizes)?;
                 problem.follow(point, &by, most, (1.0, exact_from)).map(|(point, _)| (way, point))
             };
-            points.into_iter().filter_map(on).collect()
+            points.into_par_iter().filter_map(on).collect()
         };
-        let points = best(ways.iter().enumerate().flat_map(starts).collect(), 4 * FOLLOWED);
+        let points = best(ways.par_iter().enumerate().flat_map_iter(starts).collect(), 4 * FOLLOWED);
         let points = if bases.len() > 1 {
             best(follow(points, &coarse, 5), 2 * FOLLOWED)
         } else {
             match self.promising(base, &ways, &points) {
                 Some(promising) if !promising.is_empty() => promising,
-                Some(_) if base.names().is_empty() => {
+                Some(_) if base.names().is_empty() && replaces => {
                     let (way, point) = points.into_iter().next()?;
-                    if replaces {
-                        let problem = self.problem(&ways[way]);
-                        let from = [logs(SMALL), base.posterior.log_sizes];
-                        let ends = from.into_iter().filter_map(|sizes| problem.posterior(point.clone(), sizes, 4));
-                        let best = ends.max_by(|a, b| a.log_evidence.total_cmp(&b.log_evidence))?;
-                        return Some(judged((way, best)));
-                    }
-                    vec![(way, point)]
+                    let problem = self.problem(&ways[way]);
+                    let from = [logs(SMALL), base.posterior.log_sizes];
+                    let ends = from.into_iter().filter_map(|sizes| problem.posterior(point.clone(), sizes, 4));
+                    let best = ends.max_by(|a, b| a.log_evidence.total_cmp(&b.log_evidence))?;
+                    return Some(judged((way, best)));
                 }
+                Some(_) if base.names().is_empty() => points.into_iter().take(1).collect(),
                 Some(_) => return None,
                 None => points,
             }
@@ -201,13 +199,16 @@ impl Inquiry<'_> {
         let points = best(follow(points, &std::array::from_fn(|k| 0.5 * (LOOSE[k] * SMALL[k]).ln()), 4), FOLLOWED);
         // From small sizes, since an effect drowns in those of too poor a hypothesis; and from those, since it need not be all that lacks.
         let from = [logs(SMALL), base.posterior.log_sizes];
-        let ends = from.into_iter().filter_map(|sizes| {
-            let all = best(follow(best(follow(points.clone(), &sizes, 4), 1), &sizes, 8), 1);
-            let (way, point) = all.into_iter().next()?;
-            let posterior = self.problem(&ways[way]).posterior(point, sizes, 2)?;
-            Some((way, posterior))
-        });
-        ends.max_by(|a, b| a.1.log_evidence.total_cmp(&b.1.log_evidence)).map(judged)
+        let ends: Vec<(usize, Posterior)> = from
+            .into_par_iter()
+            .filter_map(|sizes| {
+                let all = best(follow(best(follow(points.clone(), &sizes, 4), 1), &sizes, 8), 1);
+                let (way, point) = all.into_iter().next()?;
+                let posterior = self.problem(&ways[way]).posterior(point, sizes, 2)?;
+                Some((way, posterior))
+            })
+            .collect();
+        ends.into_iter().max_by(|a, b| a.1.log_evidence.total_cmp(&b.1.log_evidence)).map(judged)
     }
 
     /// The starts from which an effect may come to the odds that count, the best few; `None` where the base's curvature is singular. By a score test: what its coordinates and its starts make good of the base's misfit to first order, under sizes of model error that
