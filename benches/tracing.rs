@@ -1,9 +1,9 @@
 //! A roving test (five places, three hits each, 32768 samples) traced through the whole catalogue, held-out judging
-//! included, and what a line and an effect cost.
+//! included, and what an effect costs.
 //!
 //! `cargo bench -p orthopanel-identify --bench tracing` prints criterion's figures, then the time of each whole trace
 //! beside the one asked. `tests/blind_tracing` makes the tests, in the Python named by `ORTHOPANEL_PYTHON` (default:
-//! `.venv/bin/python`, else `python3`); without numpy and scipy only lines and effects are measured.
+//! `.venv/bin/python`, else `python3`); without numpy and scipy only effects are measured.
 #![allow(clippy::print_stdout)]
 
 use std::hint::black_box;
@@ -11,11 +11,12 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::{Duration, Instant};
 
-use criterion::{BenchmarkId, Criterion, Throughput};
-use num_complex::Complex64;
+use criterion::{BenchmarkId, Criterion};
 use orthopanel_data::ImpactTest;
 use orthopanel_identify::trace;
-use orthopanel_model::{Boundary, Damping, EffectState, Piece, Place, ReceptanceSetup, RecordSetting, effect};
+use orthopanel_model::{
+    Boundary, EffectSetting, EffectState, ModifiedPanel, Piece, Place, RecordSetting, StructureKind, effect,
+};
 
 /// What was asked of a whole trace on two cores.
 const ASKED: Duration = Duration::from_secs(3);
@@ -25,7 +26,6 @@ const SEED: &str = "1000";
 
 fn main() -> Result<(), String> {
     let mut criterion = Criterion::default().configure_from_args();
-    lines(&mut criterion);
     effects(&mut criterion);
     criterion.final_summary();
     if std::env::args().any(|argument| argument == "--test") {
@@ -48,51 +48,27 @@ fn main() -> Result<(), String> {
     Ok(())
 }
 
-/// A model of one record with these effects.
-fn setup() -> ReceptanceSetup {
-    let piece = Piece { length: 0.8, width: 0.1, thickness: 0.03, mass_per_area: 6.88 };
-    let at = |x: f64| Some(Place { x, y: 0.0 });
-    let record = RecordSetting { force_at: at(-0.31), response_at: at(0.27), ..RecordSetting::default() };
-    ReceptanceSetup::new(&piece, Boundary::FREE, &[], &[record], 24).expect("a valid setup")
-}
-
-fn frequencies(count: usize) -> Vec<Complex64> {
-    (1..=count).map(|line| Complex64::new(6.0, std::f64::consts::TAU * 5000.0 * line as f64 / count as f64)).collect()
-}
-
-/// Evaluates all lines with their derivatives; the model is built once.
-fn measure(group: &str, criterion: &mut Criterion, cases: &[(usize, usize, Vec<EffectState>)]) {
-    let setup = setup();
-    let damping = Damping { ratios: vec![0.005; 14], beyond: 0.005 };
-    let mut group = criterion.benchmark_group(group);
-    for (number, count, states) in cases {
-        let model = setup.model(&[1.07e10, 5.4e8], &damping, states).expect("a valid model");
-        let s = frequencies(*count);
-        group.throughput(Throughput::Elements(*count as u64));
-        group.bench_function(BenchmarkId::from_parameter(number), |bencher| {
-            bencher.iter(|| {
-                let mut sum = Complex64::ZERO;
-                let mut evaluator = model.evaluator(0).expect("the first record");
-                evaluator.lines(black_box(&s), |_, value, by| sum += value + by.of(0));
-                sum
-            });
-        });
-    }
-    group.finish();
-}
-
-fn lines(criterion: &mut Criterion) {
-    let cases: Vec<_> = [500, 1000, 2000, 4000].map(|count| (count, count, vec![])).into_iter().collect();
-    measure("lines of one record", criterion, &cases);
-}
-
+/// The modes that a prediction begins with, beside none to four masses.
 fn effects(criterion: &mut Criterion) {
+    let piece = Piece { length: 0.8, width: 0.1, thickness: 0.03, mass_per_area: 6.88 };
+    let record = RecordSetting { number: 1, ..RecordSetting::default() };
+    let setting = EffectSetting { piece, boundary: Boundary::FREE, suspension: vec![], record };
+    let panel = ModifiedPanel::new(StructureKind::TimoshenkoBeam, &setting, 14).expect("a beam");
+    let places = [-0.31, 0.27].map(|x| Place { x, y: 0.0 });
     let masses: Vec<EffectState> = [-0.2, 0.05, 0.15, 0.33]
         .into_iter()
         .map(|x| EffectState::new(effect("local-mass").expect("in the catalogue"), vec![0.01, x], 1).expect("valid"))
         .collect();
-    let cases: Vec<_> = (0..=masses.len()).map(|count| (count, 1000, masses[..count].to_vec())).collect();
-    measure("point effects on 1000 lines", criterion, &cases);
+    let mut group = criterion.benchmark_group("modes with point effects");
+    for count in 0..=masses.len() {
+        group.bench_function(BenchmarkId::from_parameter(count), |bencher| {
+            bencher.iter(|| {
+                let values = black_box([1.07e10, 5.4e8]);
+                panel.seen_from(&setting, &places, false, &values, &masses[..count]).expect("modes")
+            });
+        });
+    }
+    group.finish();
 }
 
 /// A made test that lacks one effect: its file.

@@ -23,15 +23,12 @@ pub(crate) fn curves(
         let lines = record.frequency.partition_point(|&frequency| frequency <= band);
         let frequency = record.frequency[..lines].to_vec();
         let at = |f: &f64| Complex64::new(record.decay_rate, std::f64::consts::TAU * f);
-        let mut of_model = vec![Complex64::ZERO; lines];
-        if let Some(mut evaluator) = model.evaluator(index) {
-            evaluator.lines(&frequency.iter().map(at).collect::<Vec<_>>(), |line, value, _| of_model[line] = value);
-        }
+        let s: Vec<Complex64> = frequency.iter().map(at).collect();
         AcceleranceFit {
             piece: 0,
             force_at: record.force_at,
             response_at: record.response_at,
-            model: of_model,
+            model: model.accelerances(index, &s).unwrap_or_default(),
             measured: record.value[..lines].to_vec(),
             decay_rate: record.decay_rate,
             // Smooth: over what a few hits scatter line by line, noise alone would leave 1.4 where there are three.

@@ -144,7 +144,7 @@ impl<'a> Predictor<'a> {
         key.extend(ports.iter().chain(&setting.record.response_at).flat_map(|place| [place.x, place.y]));
         let mut structural = Vec::new();
         for (number, state) in effects.iter().enumerate() {
-            let acts = |action: &Action| matches!(action, Action::Element(_) | Action::Field(..) | Action::Plate(_));
+            let acts = |action: &Action| matches!(action, Action::Element(_) | Action::Field(_) | Action::Plate(_));
             if state.acting_in(setting)?.iter().any(acts) {
                 key.push(number as f64);
                 key.extend(&state.values);
@@ -232,12 +232,12 @@ impl<'a> Predictor<'a> {
         for state in effects {
             for action in state.acting_in(&setting)? {
                 match action {
-                    Action::Channel(factor, _) => channel.factors.push(factor),
+                    Action::Channel(factor) => channel.factors.push(factor),
                     Action::Place(shift) if shift.of_response => channel.response_offset += shift.offset,
                     Action::Place(shift) => channel.force_offset += shift.offset,
-                    Action::Window { tau, .. } => channel.decay += tau.recip(),
+                    Action::Window { tau } => channel.decay += tau.recip(),
                     Action::Element(element) => channel.loads |= element.seat == Seat::AtResponse,
-                    Action::Field(..) | Action::Core(_) | Action::Plate(_) => {}
+                    Action::Field(_) | Action::Core(_) | Action::Plate(_) => {}
                 }
             }
         }

@@ -22,7 +22,7 @@ pub(crate) struct Channel {
 
 impl Channel {
     pub(crate) fn at(&self, s: Complex64) -> Complex64 {
-        self.factors.iter().map(|factor| factor.line(s).value).product()
+        self.factors.iter().map(|factor| factor.at(s)).product()
     }
 }
 

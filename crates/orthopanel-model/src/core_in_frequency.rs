@@ -131,7 +131,7 @@ fn own_mode(
     core: CoreModulus,
     at: impl Fn(f64) -> Result<Vec<CoupledMode>, ModelError>,
 ) -> Result<CoupledMode, ModelError> {
-    let modulus = |mode: &CoupledMode| core.line(Complex64::new(0.0, mode.angular_frequency)).value;
+    let modulus = |mode: &CoupledMode| core.factor(Complex64::new(0.0, mode.angular_frequency));
     let solved = |factor: f64| at(factor)?.into_iter().nth(index).ok_or(ModelError::Eigenproblem);
     let mut mode = first;
     for _ in 0..MOST_STEPS {

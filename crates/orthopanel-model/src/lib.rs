@@ -43,11 +43,10 @@ pub use boundary::{Boundary, End};
 pub use constant::Constant;
 pub use deflection_row::{DeflectionRow, RigidMotion};
 pub use effects::{
-    Action, CORE_WAVES, ChannelFactor, CoreFit, CoreLine, CoreModulus, Effect, EffectParameter, EffectSetting,
-    EffectState, ElementLaw, ElementLine, FactorLine, Field, FieldTerm, LineBlock, LineDerivatives, LineEvaluator,
-    ModesAtLine, ModifiedPanel, NaturalFrequencies, Owner, PointElement, Prior, ReceptanceModel, ReceptanceSetup,
-    RecordSetting, Reference, RelaxingLines, RelaxingMode, RelaxingModes, Scale, Seat, SeenModes, Share, Shift,
-    SuspensionMotion, catalogue, effect, natural_frequencies, roughness,
+    Action, ChannelFactor, CoreFit, CoreModulus, Effect, EffectParameter, EffectSetting, EffectState, ElementLaw,
+    Field, FieldTerm, ModesAtLine, ModifiedPanel, Owner, PointElement, Prior, ReceptanceModel, ReceptanceSetup,
+    RecordSetting, RelaxingLines, RelaxingMode, RelaxingModes, Scale, Seat, SeenModes, Shift, SuspensionMotion,
+    catalogue, effect, natural_frequencies,
 };
 pub use error::{ModelError, Readable};
 pub use identifier::is_identifier;
@@ -64,8 +63,7 @@ pub use residual_modes::Attachments;
 pub use response::{CubicForces, ForceRecord, ModalStepper, cubic_support_forces};
 pub use ritz_modes::{modes_below, ritz_modes, ritz_modes_near};
 pub use skyline::SymmetricMatrix;
-pub use static_deflection::static_deflections;
-pub use structure::{Block, Flexibility, Motion, RitzMode, Structure, TermDerivative};
+pub use structure::{Block, Motion, RitzMode, Structure};
 pub use time_model::TimeModel;
 pub use timoshenko_beam::{
     BEAM_CONSTANTS, BeamConstants, BeamElements, BeamMode, BeamTerms, ExactBeam, SHEAR_COEFFICIENT, ShearLoss,

@@ -77,7 +77,7 @@ impl PanelModel {
     ///
     /// # Errors
     /// As [`PanelModel::modes`].
-    pub fn structure_for(&self, count: usize) -> Result<(Box<dyn Structure>, Vec<f64>), ModelError> {
+    pub(crate) fn structure_for(&self, count: usize) -> Result<(Box<dyn Structure>, Vec<f64>), ModelError> {
         self.check()?;
         Ok(match self.structure {
             StructureKind::TimoshenkoBeam => {
@@ -230,7 +230,7 @@ impl PanelModel {
     /// # Errors
     /// [`ModelError::MissingConstant`], [`ModelError::Constant`] or [`ModelError::Size`] where the model has no
     /// physical meaning; [`ModelError::Unsupported`] for a plate, or an effect that this version cannot solve.
-    pub fn beam_modes(&self, range: ModeRange) -> Result<Vec<BeamMode>, ModelError> {
+    fn beam_modes(&self, range: ModeRange) -> Result<Vec<BeamMode>, ModelError> {
         self.check()?;
         if self.structure != StructureKind::TimoshenkoBeam {
             return Err(ModelError::Unsupported("the exact beam of structure \"mindlin-plate\"".into()));

@@ -4,10 +4,10 @@ use std::sync::Arc;
 
 use crate::effects::{CoupledPanel, FarModes, Flexibilities, MOST_SUMMED, SPARE_MODES};
 use crate::mindlin_plate::FixedPlate;
+use crate::static_deflection::static_deflections;
 use crate::time_model::CORE;
 use crate::{
     EffectSetting, MindlinPlate, ModelError, Motion, PanelModel, Place, StaticFlexibility, Structure, StructureKind,
-    static_deflections,
 };
 
 /// Modes for which the basis of a plate's static part is chosen: it holds some four times as many.
@@ -95,7 +95,7 @@ impl PanelModel {
         for (r, (row, (bare, own))) in modified.iter_mut().zip(bare.into_iter().zip(own)).enumerate() {
             for (f, (sum, (bare, own))) in row.iter_mut().zip(bare.into_iter().zip(own)).enumerate() {
                 let motions = [responses[r], forces[f]].map(|place| (Motion::Deflection, place));
-                let kink = small.static_remainder(values, motions).map_or(0.0, |(kink, _)| kink);
+                let kink = small.static_remainder(values, motions).unwrap_or_default();
                 *sum += bare - own - kink;
             }
         }

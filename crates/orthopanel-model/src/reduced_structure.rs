@@ -225,7 +225,7 @@ impl<S: Structure> Structure for ReducedStructure<S> {
         Some(self.seen(block, &self.whole.motion_row(block, motion, place)?))
     }
 
-    fn static_remainder(&self, values: &[f64], motions: [(Motion, Place); 2]) -> Option<(f64, Vec<f64>)> {
+    fn static_remainder(&self, values: &[f64], motions: [(Motion, Place); 2]) -> Option<f64> {
         self.whole.static_remainder(values, motions)
     }
 

@@ -223,25 +223,6 @@ impl SymmetricMatrix {
         all
     }
 
-    /// $V^TAV$. Of a diagonal matrix only the rows that are not zero take part.
-    pub(crate) fn congruent(&self, columns: &Mat<f64>) -> Mat<f64> {
-        let is_diagonal = self.profile.first.iter().enumerate().all(|(row, &first)| first == row);
-        if !is_diagonal {
-            return product(columns.transpose(), self.times(columns).as_ref());
-        }
-        let kept: Vec<usize> = (0..self.nrows()).filter(|&row| self.values[row] != 0.0).collect();
-        let part = |factor: &dyn Fn(usize) -> f64| {
-            let mut part = Mat::zeros(kept.len(), columns.ncols());
-            for column in 0..columns.ncols() {
-                let whole = columns.col_as_slice(column);
-                let rows = part.col_as_slice_mut(column).iter_mut().zip(&kept);
-                rows.for_each(|(value, &row)| *value = factor(row) * whole[row]);
-            }
-            part
-        };
-        product(part(&|_| 1.0).transpose(), part(&|row| self.values[row]).as_ref())
-    }
-
     /// Number of negative eigenvalues: the negative pivots of $LDL^T$ (Sylvester's law of inertia). `None` where a pivot vanishes.
     pub(crate) fn negative_pivots(mut self) -> Option<usize> {
         let own = &mut self;

@@ -19,7 +19,7 @@ use crate::{ModelError, Place, Structure};
 ///
 /// # Errors
 /// As [`crate::ritz_modes()`], but for the number of modes.
-pub fn static_deflections(
+pub(crate) fn static_deflections(
     structure: &dyn Structure,
     values: &[f64],
     forces: &[Place],
@@ -85,3 +85,6 @@ fn held_coordinates(block: &Block) -> Vec<usize> {
     }
     held
 }
+
+#[cfg(test)]
+mod tests;

@@ -48,13 +48,13 @@ pub trait Structure {
 
     /// Static flexibility between two motions, of all flexible modes together and without the error of the basis; `None`
     /// where no closed form is known.
-    fn static_flexibility(&self, _values: &[f64], _motions: [(Motion, Place); 2]) -> Option<Flexibility> {
+    fn static_flexibility(&self, _values: &[f64], _motions: [(Motion, Place); 2]) -> Option<f64> {
         None
     }
 
-    /// What the basis lacks of the static flexibility between two motions, and its derivatives by the coefficients; `None`
-    /// where that is not known. Asked only where [`Structure::static_flexibility`] knows nothing.
-    fn static_remainder(&self, _values: &[f64], _motions: [(Motion, Place); 2]) -> Option<(f64, Vec<f64>)> {
+    /// What the basis lacks of the static flexibility between two motions; `None` where that is not known. Asked only where
+    /// [`Structure::static_flexibility`] knows nothing.
+    fn static_remainder(&self, _values: &[f64], _motions: [(Motion, Place); 2]) -> Option<f64> {
         None
     }
 
@@ -63,16 +63,11 @@ pub trait Structure {
         None
     }
 
-    /// What the basis lacks of $\sum_m\phi_{1m}\phi_{2m}/\omega_m^4$ over all flexible modes, with its derivatives, between each of
-    /// `rows` and each of the first `columns` of them, row by row; nothing where that is not known. It is the second term of the
-    /// series in $s^2$ that stands for the modes above a sum, where [`Structure::static_flexibility`] is the first.
-    fn inertial_remainders(&self, _values: &[f64], _rows: &[(Motion, Place)], _columns: usize) -> Vec<Flexibility> {
-        vec![]
-    }
-
-    /// How stiffness and mass follow each parameter of the structure's own terms; none unless said.
-    fn term_derivatives(&self, _values: &[f64]) -> Vec<TermDerivative> {
-        vec![]
+    /// What the basis lacks of $\sum_m\phi_{1m}\phi_{2m}/\omega_m^4$ over all flexible modes between any two motions of a list;
+    /// `None` where that is not known. It is the second term of the series in $s^2$ that stands for the modes above a sum, where
+    /// [`Structure::static_flexibility`] is the first.
+    fn inertial_remainders(&self, _values: &[f64], _motions: &[(Motion, Place)]) -> Option<Mat<f64>> {
+        None
     }
 }
 
@@ -87,37 +82,6 @@ pub enum Motion {
     Rotation,
     /// $\partial\psi/\partial x$ \[1/m\]: how the rotation changes when its place moves.
     Curvature,
-}
-
-impl Motion {
-    /// The motion's derivative by the place.
-    pub(crate) fn by_place(self) -> Self {
-        match self {
-            Self::Deflection | Self::Slope => Self::Slope,
-            Self::Rotation | Self::Curvature => Self::Curvature,
-        }
-    }
-}
-
-/// A static flexibility $\sum\phi_m(a)\phi_m(b)/\omega_m^2$ over all flexible modes, with its derivatives.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Flexibility {
-    /// The sum.
-    pub value: f64,
-    /// By each constant.
-    pub by_constants: Vec<f64>,
-    /// By the parameter of each of [`Structure::term_derivatives`]; `None` where only the modes tell.
-    pub by_terms: Vec<Option<f64>>,
-}
-
-/// $\partial K/\partial p$ and $\partial M/\partial p$ by one parameter, a matrix a block; empty where it does not enter, or
-/// where the coordinates themselves move with it, so that only differences tell.
-#[derive(Debug, Clone, PartialEq)]
-pub struct TermDerivative {
-    /// Of the stiffness.
-    pub stiffness: Vec<Mat<f64>>,
-    /// Of the mass.
-    pub mass: Vec<Mat<f64>>,
 }
 
 /// Coordinates that only couple among themselves.

@@ -70,7 +70,7 @@ impl PanelModel {
                 Seat::AlongEdge(Place { x, .. }) => {
                     across.iter().map(|&(y, dy)| (Place { x, y }, dy / self.piece.width)).collect()
                 }
-                Seat::At(place) | Seat::Free(place, _) => vec![(place, 1.0)],
+                Seat::At(place) => vec![(place, 1.0)],
                 Seat::AtResponse => vec![],
             };
             for (place, share) in seats {
@@ -124,5 +124,5 @@ impl PanelModel {
 }
 
 fn rotary_factor(effects: &[EffectState], setting: &EffectSetting) -> Result<f64, ModelError> {
-    Ok(SpreadEffects::of(effects, setting, 0)?.terms.unwrap_or_default().rotary_factor)
+    Ok(SpreadEffects::of(effects, setting)?.terms.unwrap_or_default().rotary_factor)
 }

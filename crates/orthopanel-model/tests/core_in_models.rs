@@ -38,7 +38,7 @@ fn assert_core_is_met(numbers: [f64; 3], others: &str, same: &[(&str, &[f64])], 
     let mut whole = 0.0_f64;
     for (n, &frequency) in frequencies.iter().enumerate() {
         missed = missed.max((found.modes.accelerance(0, 0, frequency) - exact[n]).norm());
-        let modulus = |strength| CoreModulus { strength, tau, alpha }.line(s[n]).value;
+        let modulus = |strength| CoreModulus { strength, tau, alpha }.factor(s[n]);
         let change = (modulus(strength * (1.0 + 1e-3)) - modulus(strength)).norm() / modulus(strength).norm();
         moved = moved.max((stronger[n] - exact[n]).norm() / change);
         bare = bare.max((without[n] - exact[n]).norm());
@@ -135,7 +135,7 @@ fn val_modes_with_a_core_are_the_poles_of_the_receptance() {
             s -= step;
         }
         let law = CoreModulus { strength: values[0], tau: values[1], alpha: values[2] };
-        let loss = law.line(Complex64::new(0.0, omega)).value.im;
+        let loss = law.factor(Complex64::new(0.0, omega)).im;
         let missed = (s - start).norm() / omega;
         assert!(missed > 0.0, "no step was taken");
         assert!(missed < 2.0 * zeta * loss && missed < 0.05 * zeta, "{s} {start}");

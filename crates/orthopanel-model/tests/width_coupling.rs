@@ -46,9 +46,7 @@ fn val_width_coupling_has_converged() {
         let setup = ReceptanceSetup::new(&piece, Boundary::FREE, &[], std::slice::from_ref(&record), summed).unwrap();
         let plate = EffectState::new(effect("width-coupling").unwrap(), WIDE.to_vec(), 1).unwrap();
         let model = setup.model(&CONSTANTS, &Damping { ratios: vec![], beyond: 0.004 }, &[plate]).unwrap();
-        let mut by = vec![Complex64::ZERO; model.columns()];
-        let mut evaluator = model.evaluator(0).unwrap();
-        WIDE_LINES.iter().map(|f| evaluator.line(Complex64::new(6.0, TAU * f), &mut by)).collect()
+        model.accelerances(0, &WIDE_LINES.map(|f| Complex64::new(6.0, TAU * f))).unwrap()
     };
     for ((few, many), frequency) in lines(14).iter().zip(lines(26)).zip(WIDE_LINES) {
         let error = (few - many).norm() / (TAU * frequency).powi(2) / (many.norm() * piece.mass()).max(1.0);

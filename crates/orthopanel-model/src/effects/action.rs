@@ -3,28 +3,25 @@
 use super::{ChannelFactor, CoreModulus, PointElement};
 use crate::{ShearLoss, Support};
 
-/// One change of a prediction. Where it names parameters, these are numbers in [`super::Effect::parameters`].
+/// One change of a prediction.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Action {
     /// An element joined to the structure at one place.
     Element(PointElement),
-    /// A term of stiffness or mass spread over the structure, with a parameter for each of its numbers in order.
-    Field(FieldTerm, Vec<usize>),
-    /// A shear modulus that depends on frequency; its three numbers are the parameters 0 to 2.
+    /// A term of stiffness or mass spread over the structure.
+    Field(FieldTerm),
+    /// A shear modulus that depends on frequency.
     Core(CoreModulus),
-    /// A factor on the accelerance, with a parameter for each of its numbers in order.
-    Channel(ChannelFactor, Vec<usize>),
+    /// A factor on the accelerance.
+    Channel(ChannelFactor),
     /// A place that is not where the test says.
     Place(Shift),
     /// The response is seen through a window $e^{-t/\tau}$ that the record does not tell of.
     Window {
         /// $\tau$ \[s\].
         tau: f64,
-        /// Its parameter.
-        parameter: usize,
     },
-    /// A plate in place of the beam, by the ratios $E_y/E_x$, $\nu_{xy}$, $G_{xy}/E_x$ and $G_{yz}/G_{zx}$; these are
-    /// the parameters 0 to 3.
+    /// A plate in place of the beam, by the ratios $E_y/E_x$, $\nu_{xy}$, $G_{xy}/E_x$ and $G_{yz}/G_{zx}$.
     Plate([f64; 4]),
 }
 
@@ -33,12 +30,9 @@ pub enum Action {
 pub enum FieldTerm {
     /// Factor on the rotary inertia $\rho t^3/12$.
     RotaryFactor(f64),
-    /// Shear stiffness lost over a span: numbers loss, span, place.
+    /// Shear stiffness lost over a span.
     ShearLoss(ShearLoss),
-    /// A wave of an uneven core: its number from 0, see [`crate::BeamTerms::core_waves`], and its amplitude, which is the
-    /// parameter.
-    CoreWave(usize, f64),
-    /// Clamped ends that yield: numbers translation, rotation.
+    /// Clamped ends that yield.
     Support(Support),
 }
 
@@ -49,6 +43,4 @@ pub struct Shift {
     pub of_response: bool,
     /// By how much \[m\].
     pub offset: f64,
-    /// Its parameter.
-    pub parameter: usize,
 }

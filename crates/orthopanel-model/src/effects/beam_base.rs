@@ -11,7 +11,7 @@
 use faer::Mat;
 
 use super::low_modes::LowModes;
-use super::receptance::modal_base::Row;
+use super::row::Row;
 use crate::structure::Motion;
 use crate::timoshenko_beam::{BeamMode, ExactBeam, Grid, Section, StaticShape, StaticShapes};
 use crate::{BeamConstants, BeamTerms, Boundary, ModelError, Piece, ShearLoss};

@@ -28,6 +28,6 @@ impl Effect for ChannelDelay {
     fn act(&self, values: &[f64], setting: &EffectSetting) -> Result<Vec<Action>, ModelError> {
         self.check(values, &setting.piece)?;
         let &[delay] = values else { return Ok(vec![]) };
-        Ok(vec![Action::Channel(ChannelFactor::Delay { delay }, vec![0])])
+        Ok(vec![Action::Channel(ChannelFactor::Delay { delay })])
     }
 }

@@ -49,7 +49,7 @@ impl CoreFit {
             return Err(ModelError::NotFinite { what: "band of a core's fit", value: to });
         }
         let lines = spaced(from, to, LINES);
-        let exact: Vec<Complex64> = lines.iter().map(|f| core.line(at(*f)).value).collect();
+        let exact: Vec<Complex64> = lines.iter().map(|f| core.factor(at(*f))).collect();
         let mut best: Option<(f64, Self)> = None;
         for ratio in RATIOS {
             for (low, high) in LOWEST.iter().flat_map(|low| HIGHEST.iter().map(move |high| (low, high))) {
@@ -69,7 +69,7 @@ impl CoreFit {
             return Err(ModelError::NotFinite { what: "core modulus", value: error });
         }
         let lines = spaced(from, to, CHECKED);
-        let exact: Vec<Complex64> = lines.iter().map(|f| core.line(at(*f)).value).collect();
+        let exact: Vec<Complex64> = lines.iter().map(|f| core.factor(at(*f))).collect();
         Ok(Self { error: fit.greatest(&lines, &exact), ..fit })
     }
 
@@ -150,7 +150,7 @@ mod tests {
             assert!(fit.terms.len() == TERMS && fit.terms.iter().all(|[weight, omega]| *weight >= 0.0 && *omega > 0.0));
             let lines = spaced(band[0], band[1], 1777);
             let worst = lines.iter().map(|f| {
-                let exact = core.line(at(*f)).value;
+                let exact = core.factor(at(*f));
                 (fit.factor(at(*f)) - exact).norm() / exact.norm()
             });
             let worst = worst.fold(0.0, f64::max);

@@ -90,63 +90,38 @@ impl CoupledMode {
     }
 }
 
-/// The first natural frequencies \[Hz\] of a beam's flexible modes with effects of panel and rig, at any constants: what is
-/// the same for all of them is worked out once.
+/// The first `count` natural frequencies \[Hz\] of a beam's flexible modes with effects of panel and rig, at the constants $E_x$,
+/// $G_{zx}$, rising.
 ///
 /// What the effects ask of a test, they find in the setting: the places of suspension and sensor. Modes are undamped, and
 /// those that a suspension makes of rigid motions are left out. What acts on an accelerance alone changes nothing.
-#[derive(Debug, Clone)]
-pub struct NaturalFrequencies {
-    setting: EffectSetting,
-    count: usize,
-    beam: Even,
-}
-
-impl NaturalFrequencies {
-    /// Of the first `count` modes.
-    ///
-    /// # Errors
-    /// As [`TimoshenkoBeam::new`](crate::TimoshenkoBeam::new).
-    pub fn new(setting: &EffectSetting, count: usize) -> Result<Self, ModelError> {
-        Ok(Self { setting: setting.clone(), count, beam: Even::beam(setting, count + setting.boundary.rigid_modes())? })
-    }
-
-    /// Rising, at the constants $E_x$, $G_{zx}$.
-    ///
-    /// # Errors
-    /// [`ModelError::EffectNeeds`] and [`ModelError::EffectParameter`] where an effect cannot act, [`ModelError::Unsupported`] for
-    /// a core that depends on frequency and for a plate, and as [`crate::ritz_modes()`].
-    pub fn at(&self, values: &[f64], effects: &[EffectState]) -> Result<Vec<f64>, ModelError> {
-        let Self { setting, count, beam } = self;
-        let rigid = setting.boundary.rigid_modes();
-        let damping = Damping { ratios: vec![], beyond: 0.0 };
-        let parts = PanelWithEffects { setting, even: beam, values, effects, damping: &damping };
-        let (panel, _, found) = CoupledPanel::solve(parts, count + rigid)?;
-        // Without springs and resonators rigid motions stay at zero; else a free beam's have no node and one. A resonator's own mode
-        // may have no more of these: the lowest are the rigid ones.
-        let stays = |element: &PointElement| matches!(element.law, ElementLaw::Mass { .. });
-        let told = rigid == 0 || elements(effects, setting)?.iter().all(stays);
-        let grid = if told { vec![] } else { panel.grid(count + rigid) };
-        let mut left = if told { 0 } else { rigid };
-        let mut is_flexible = |omega: f64, shares: &_| {
-            let is_rigid = left > 0 && (omega <= 0.0 || nodes(&grid, shares) < rigid);
-            left -= usize::from(is_rigid);
-            omega > 0.0 && !is_rigid
-        };
-        let flexible = found.iter().filter(|(omega, _, shares)| is_flexible(*omega, shares));
-        Ok(flexible.take(*count).map(|(omega, ..)| omega / std::f64::consts::TAU).collect())
-    }
-}
-
-/// The first `count` natural frequencies \[Hz\], as [`NaturalFrequencies`] finds them.
 ///
 /// # Errors
-/// As [`NaturalFrequencies::at`].
+/// [`ModelError::EffectNeeds`] and [`ModelError::EffectParameter`] where an effect cannot act, [`ModelError::Unsupported`] for
+/// a core that depends on frequency and for a plate, and as [`TimoshenkoBeam::new`](crate::TimoshenkoBeam::new) and
+/// [`crate::ritz_modes()`].
 pub fn natural_frequencies(
     setting: &EffectSetting,
     values: &[f64],
     effects: &[EffectState],
     count: usize,
 ) -> Result<Vec<f64>, ModelError> {
-    NaturalFrequencies::new(setting, count)?.at(values, effects)
+    let rigid = setting.boundary.rigid_modes();
+    let beam = Even::beam(setting, count + rigid)?;
+    let damping = Damping { ratios: vec![], beyond: 0.0 };
+    let parts = PanelWithEffects { setting, even: &beam, values, effects, damping: &damping };
+    let (panel, _, found) = CoupledPanel::solve(parts, count + rigid)?;
+    // Without springs and resonators rigid motions stay at zero; else a free beam's have no node and one. A resonator's own mode
+    // may have no more of these: the lowest are the rigid ones.
+    let stays = |element: &PointElement| matches!(element.law, ElementLaw::Mass { .. });
+    let told = rigid == 0 || elements(effects, setting)?.iter().all(stays);
+    let grid = if told { vec![] } else { panel.grid(count + rigid) };
+    let mut left = if told { 0 } else { rigid };
+    let mut is_flexible = |omega: f64, shares: &_| {
+        let is_rigid = left > 0 && (omega <= 0.0 || nodes(&grid, shares) < rigid);
+        left -= usize::from(is_rigid);
+        omega > 0.0 && !is_rigid
+    };
+    let flexible = found.iter().filter(|(omega, _, shares)| is_flexible(*omega, shares));
+    Ok(flexible.take(count).map(|(omega, ..)| omega / std::f64::consts::TAU).collect())
 }

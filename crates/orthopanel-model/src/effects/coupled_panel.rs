@@ -5,9 +5,9 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use super::beam_base::BeamBase;
 use super::coupled_system::{FoundMode, System};
 use super::low_modes::{FarAnswers, LowModes};
-use super::receptance::modal_base::{Row, SharedStructure};
-use super::receptance::wide_plate::{Summed, WidePlate, WidePlates};
+use super::row::{Row, SharedStructure};
 use super::spread_effects::SpreadEffects;
+use super::wide_plate::{Summed, WidePlate, WidePlates};
 use super::{Action, CoreModulus, EffectSetting, EffectState, ElementLaw, PointElement, Seat};
 use crate::mindlin_plate::PlateTerms;
 use crate::panel_mode::crossings;
@@ -168,7 +168,7 @@ impl ModifiedStructure {
         effects: &[EffectState],
         others: &[EffectState],
     ) -> Result<Self, ModelError> {
-        let spread = SpreadEffects::of(effects, setting, 0)?;
+        let spread = SpreadEffects::of(effects, setting)?;
         if spread.terms.is_some() || spread.core.is_some() {
             return Err(ModelError::Unsupported("width-coupling beside another effect spread over the panel".into()));
         }
@@ -183,7 +183,7 @@ impl ModifiedStructure {
     pub(super) fn new(parts: PanelWithEffects, summed: usize) -> Result<Self, ModelError> {
         let PanelWithEffects { setting, even, values, effects, .. } = parts;
         let (piece, boundary) = (setting.piece, setting.boundary);
-        let spread = SpreadEffects::of(effects, setting, 0)?;
+        let spread = SpreadEffects::of(effects, setting)?;
         if spread.plate.is_some() {
             return Err(ModelError::Unsupported(
                 "width-coupling in a model file: write structure \"mindlin-plate\" with its six constants".into(),
@@ -210,8 +210,7 @@ impl ModifiedStructure {
             Even::Beam(even) if is_even => even.low_modes(values, summed)?,
             _ => Arc::new(LowModes::new(structure.as_ref(), values, summed)?),
         };
-        let core = spread.core.map(|(core, _)| core);
-        Ok(Self { structure, plate, is_even, piece, values: values.to_vec(), low, elements, core })
+        Ok(Self { structure, plate, is_even, piece, values: values.to_vec(), low, elements, core: spread.core })
     }
 
     /// The plate, where it is one and nothing is spread over it.
@@ -331,8 +330,8 @@ impl CoupledPanel {
     /// What the basis lacks of a residual shape in a row where the bare coordinates have these values.
     pub(super) fn beyond_basis(&self, row: Row, bare: &[f64], residual: &Residual) -> f64 {
         match self.structure.static_flexibility(&self.values, [row, residual.row]) {
-            Some(whole) => whole.value - bare.iter().zip(&residual.image).map(|(a, b)| a * b).sum::<f64>(),
-            None => self.structure.static_remainder(&self.values, [row, residual.row]).map_or(0.0, |(value, _)| value),
+            Some(whole) => whole - bare.iter().zip(&residual.image).map(|(a, b)| a * b).sum::<f64>(),
+            None => self.structure.static_remainder(&self.values, [row, residual.row]).unwrap_or_default(),
         }
     }
 
@@ -375,7 +374,7 @@ pub(super) fn nodes(grid: &[Vec<f64>], shares: &[f64]) -> usize {
 /// Where an element of [`elements`] sits.
 pub(super) fn row(element: &PointElement) -> Option<Row> {
     match element.seat {
-        Seat::At(place) | Seat::Free(place, _) | Seat::AlongEdge(place) => Some((element.motion, place)),
+        Seat::At(place) | Seat::AlongEdge(place) => Some((element.motion, place)),
         Seat::AtResponse => None,
     }
 }

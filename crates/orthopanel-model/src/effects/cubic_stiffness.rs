@@ -1,20 +1,12 @@
 //! `cubic-stiffness`.
 
 use super::suspension::Suspension;
-use super::{
-    Action, Effect, EffectParameter, EffectSetting, ElementLaw, Owner, PointElement, Seat, Share, SuspensionMotion,
-};
-use crate::{ModelError, Place};
+use super::{Action, Effect, EffectParameter, EffectSetting, Owner, SuspensionMotion};
+use crate::ModelError;
 
-/// A suspension that stiffens: force $k_3w^3$ at each suspension point. Under a motion of amplitude $A$ its first
-/// harmonic is that of a spring
-/// $$k_{eq} = \tfrac34k_3A^2$$
-/// (harmonic balance; Nayfeh and Mook, Nonlinear Oscillations (1979), section 2.3). $A$ is the record's own
-/// [`SuspensionMotion::Amplitudes`]. Where hits are known, [`SuspensionMotion::InTime`], the force is worked out in time
-/// instead, from each hit's own motion, and nothing is added here.
-///
-/// Limits of the harmonic balance: one amplitude stands for a motion of several modes that decays; further harmonics are left
-/// out. It holds while $k_{eq}$ stays small beside the stiffness that the point sees, so start from the softest hit.
+/// A suspension that stiffens: force $k_3w^3$ at each suspension point. It is worked out in time, from each hit's own motion
+/// ([`cubic_support_forces`](crate::cubic_support_forces)), so where hits are known, [`SuspensionMotion::InTime`], nothing is added
+/// here.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct CubicStiffness;
 
@@ -40,22 +32,12 @@ impl Effect for CubicStiffness {
 
     fn act(&self, values: &[f64], setting: &EffectSetting) -> Result<Vec<Action>, ModelError> {
         self.check(values, &setting.piece)?;
-        let &[k3] = values else { return Ok(vec![]) };
-        let at = setting.suspension_for(self.id())?;
-        let known = match &setting.record.suspension_motion {
-            SuspensionMotion::InTime => return Ok(vec![]),
-            SuspensionMotion::Amplitudes(known) if known.len() == at.len() => Some(known),
-            _ => None,
-        };
+        setting.suspension_for(self.id())?;
         let what =
             "the hits themselves (kind = \"time-history\"): a force that is not linear depends on their strength";
-        let amplitudes = known.ok_or(ModelError::EffectNeeds { effect: self.id(), what })?;
-        let spring = |(&place, amplitude): (&Place, &f64)| {
-            let factor = 0.75 * amplitude * amplitude;
-            let law = ElementLaw::Spring { stiffness: factor * k3, damping: 0.0 };
-            let shares = vec![Share { number: 0, parameter: 0, factor }];
-            Action::Element(PointElement { shares, ..PointElement::on_deflection(law, Seat::At(place)) })
-        };
-        Ok(at.iter().zip(amplitudes).map(spring).collect())
+        match setting.record.suspension_motion {
+            SuspensionMotion::InTime => Ok(vec![]),
+            SuspensionMotion::Unknown => Err(ModelError::EffectNeeds { effect: self.id(), what }),
+        }
     }
 }

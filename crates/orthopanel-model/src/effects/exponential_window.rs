@@ -34,6 +34,6 @@ impl Effect for ExponentialWindow {
     fn act(&self, values: &[f64], setting: &EffectSetting) -> Result<Vec<Action>, ModelError> {
         self.check(values, &setting.piece)?;
         let &[tau] = values else { return Ok(vec![]) };
-        Ok(vec![Action::Window { tau, parameter: 0 }])
+        Ok(vec![Action::Window { tau }])
     }
 }

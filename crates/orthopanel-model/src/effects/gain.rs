@@ -34,6 +34,6 @@ impl Effect for Gain {
     fn act(&self, values: &[f64], setting: &EffectSetting) -> Result<Vec<Action>, ModelError> {
         self.check(values, &setting.piece)?;
         let &[gain] = values else { return Ok(vec![]) };
-        Ok(vec![Action::Channel(ChannelFactor::Gain { gain }, vec![0])])
+        Ok(vec![Action::Channel(ChannelFactor::Gain { gain })])
     }
 }

@@ -30,9 +30,6 @@ impl Effect for HammerOffset {
     fn act(&self, values: &[f64], setting: &EffectSetting) -> Result<Vec<Action>, ModelError> {
         self.check(values, &setting.piece)?;
         let &[offset] = values else { return Ok(vec![]) };
-        if setting.record.is_reaction {
-            return Ok(vec![]);
-        }
-        Ok(vec![Action::Place(Shift { of_response: false, offset, parameter: 0 })])
+        Ok(vec![Action::Place(Shift { of_response: false, offset })])
     }
 }

@@ -29,6 +29,6 @@ impl Effect for HighPass {
     fn act(&self, values: &[f64], setting: &EffectSetting) -> Result<Vec<Action>, ModelError> {
         self.check(values, &setting.piece)?;
         let &[corner] = values else { return Ok(vec![]) };
-        Ok(vec![Action::Channel(ChannelFactor::HighPass { corner }, vec![0])])
+        Ok(vec![Action::Channel(ChannelFactor::HighPass { corner })])
     }
 }

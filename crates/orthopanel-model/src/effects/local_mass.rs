@@ -31,7 +31,7 @@ impl Effect for LocalMass {
     fn act(&self, values: &[f64], setting: &EffectSetting) -> Result<Vec<Action>, ModelError> {
         self.check(values, &setting.piece)?;
         let &[mass, x] = values else { return Ok(vec![]) };
-        let seat = Seat::Free(Place { x, y: 0.0 }, 1);
+        let seat = Seat::At(Place { x, y: 0.0 });
         Ok(vec![Action::Element(PointElement::on_deflection(ElementLaw::Mass { mass }, seat))])
     }
 }

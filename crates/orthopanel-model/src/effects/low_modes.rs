@@ -2,7 +2,7 @@
 
 use faer::Mat;
 
-use super::receptance::modal_base::{Row, coordinate_rows};
+use super::row::{Row, coordinate_rows};
 use crate::dense::product;
 use crate::ritz_modes::{checked_coefficients, ritz_modes};
 use crate::static_deflection::deflected;
@@ -79,8 +79,8 @@ impl LowModes {
     fn close(&self, structure: &dyn Structure, values: &[f64], rows: &[Row], answers: &mut FarAnswers) {
         let near = &answers.near;
         let [far, inertia] = &mut answers.series;
-        for (index, lacking) in structure.inertial_remainders(values, rows, rows.len()).iter().enumerate() {
-            inertia[(index / rows.len(), index % rows.len())] += lacking.value;
+        if let Some(lacking) = structure.inertial_remainders(values, rows) {
+            *inertia += lacking;
         }
         if let Some(lacking) = structure.static_remainders(values, rows) {
             *far += lacking;
@@ -91,7 +91,7 @@ impl LowModes {
                 if let Some(whole) = structure.static_flexibility(values, [first, second]) {
                     let flexible = self.modes.iter().enumerate().skip(self.rigid);
                     let summed: f64 = flexible.map(|(m, mode)| near[(m, p)] * near[(m, q)] / mode.2).sum();
-                    far[(p, q)] = whole.value - summed;
+                    far[(p, q)] = whole - summed;
                 }
             }
         }

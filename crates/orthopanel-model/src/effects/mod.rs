@@ -1,7 +1,7 @@
-//! Effects: pieces of physics that the base model may lack, one file each, and the receptances of a piece with them.
+//! Effects: pieces of physics that the base model may lack, one file each, and a piece with them.
 //!
-//! An effect is a name, an owner and a few parameters; [`Effect::act`] says what they do to a test. What carries it out
-//! is [`ReceptanceModel`], line by line of a spectrum. [`catalogue()`] lists all.
+//! An effect is a name, an owner and a few parameters; [`Effect::act`] says what they do to a test. [`ModifiedPanel`] carries it
+//! out in modes, [`ReceptanceModel`] line by line of a spectrum. [`catalogue()`] lists all.
 
 mod action;
 mod beam_base;
@@ -21,10 +21,12 @@ mod receptance;
 mod relaxing_lines;
 mod relaxing_modes;
 mod relaxing_panel;
+mod row;
 mod setting;
 mod spread_effects;
 mod state;
 mod uneven_beam;
+mod wide_plate;
 
 mod channel_delay;
 mod cubic_stiffness;
@@ -38,7 +40,6 @@ mod position_error;
 mod record_gain;
 mod resonator;
 mod rotary_inertia;
-mod roughness;
 mod sensor_mass;
 mod sensor_resonance;
 mod stiffness_loss;
@@ -49,20 +50,20 @@ mod width_coupling;
 
 pub use action::{Action, FieldTerm, Shift};
 pub use catalogue::{catalogue, effect};
-pub use channel_factor::{ChannelFactor, FactorLine};
+pub use channel_factor::ChannelFactor;
 pub use core_fit::CoreFit;
-pub use core_modulus::{CoreLine, CoreModulus};
+pub use core_modulus::CoreModulus;
 pub(crate) use coupled_flexibility::{FarMode, FarModes, Flexibilities, MOST_SUMMED};
 pub(crate) use coupled_modes::CoupledMode;
-pub use coupled_modes::{NaturalFrequencies, natural_frequencies};
+pub use coupled_modes::natural_frequencies;
 pub(crate) use coupled_panel::{CoupledPanel, Even, PanelWithEffects, SPARE_MODES, elements as point_elements};
 pub use modified_panel::{ModifiedPanel, SeenModes};
-pub use parameter::{EffectParameter, Prior, Reference, Scale};
-pub use point_element::{ElementLaw, ElementLine, PointElement, Seat, Share};
-pub use receptance::{LineBlock, LineDerivatives, LineEvaluator, ReceptanceModel, ReceptanceSetup};
+use parameter::Reference;
+pub use parameter::{EffectParameter, Prior, Scale};
+pub use point_element::{ElementLaw, PointElement, Seat};
+pub use receptance::{ReceptanceModel, ReceptanceSetup};
 pub use relaxing_lines::RelaxingLines;
 pub use relaxing_modes::{ModesAtLine, RelaxingMode, RelaxingModes};
-pub use roughness::{CORE_WAVES, roughness};
 pub use setting::{EffectSetting, RecordSetting, SuspensionMotion};
 pub(crate) use spread_effects::SpreadEffects;
 pub use state::EffectState;

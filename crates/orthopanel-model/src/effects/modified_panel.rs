@@ -5,9 +5,9 @@ use std::sync::Arc;
 use super::beam_base::BeamBase;
 use super::coupled_panel::{Even, ModifiedStructure, PanelWithEffects, elements, row};
 use super::coupled_system::{FoundMode, System};
-use super::receptance::modal_base::Row;
-use super::receptance::wide_plate::WidePlates;
+use super::row::Row;
 use super::spread_effects::SpreadEffects;
+use super::wide_plate::WidePlates;
 use super::{Action, EffectSetting, EffectState, ElementLaw, PointElement, Seat};
 use crate::timoshenko_beam::Section;
 use crate::{
@@ -113,9 +113,9 @@ impl ModifiedPanel {
         effects: &[EffectState],
     ) -> Result<Option<OnBase>, ModelError> {
         let (Even::Beam(beam), &[e_x, g_zx]) = (&self.even, values) else { return Ok(None) };
-        let SpreadEffects { terms, core, plate, .. } = SpreadEffects::of(effects, setting, 0)?;
+        let SpreadEffects { terms, core, plate } = SpreadEffects::of(effects, setting)?;
         let terms = terms.unwrap_or_default();
-        if core.is_some() || plate.is_some() || !terms.core_waves.is_empty() {
+        if core.is_some() || plate.is_some() {
             return Ok(None);
         }
         terms.check()?;
@@ -240,7 +240,7 @@ impl ModifiedPanel {
 
 /// Whether effects change what is spread over the panel.
 fn spread_over(setting: &EffectSetting, effects: &[EffectState]) -> Result<bool, ModelError> {
-    let spread = SpreadEffects::of(effects, setting, 0)?;
+    let spread = SpreadEffects::of(effects, setting)?;
     Ok(spread.terms.is_some() || spread.core.is_some() || spread.plate.is_some())
 }
 

@@ -61,7 +61,7 @@ pub enum Scale {
 
 /// What bounds and starting values are counted in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Reference {
+pub(super) enum Reference {
     /// The parameter's own unit.
     Unit,
     /// The piece's length.

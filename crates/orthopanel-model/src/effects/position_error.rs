@@ -29,6 +29,6 @@ impl Effect for PositionError {
     fn act(&self, values: &[f64], setting: &EffectSetting) -> Result<Vec<Action>, ModelError> {
         self.check(values, &setting.piece)?;
         let &[offset] = values else { return Ok(vec![]) };
-        Ok(vec![Action::Place(Shift { of_response: true, offset, parameter: 0 })])
+        Ok(vec![Action::Place(Shift { of_response: true, offset })])
     }
 }

@@ -34,6 +34,6 @@ impl Effect for RecordGain {
         if record.round() != setting.record.number as f64 {
             return Ok(vec![]);
         }
-        Ok(vec![Action::Channel(ChannelFactor::Gain { gain }, vec![0])])
+        Ok(vec![Action::Channel(ChannelFactor::Gain { gain })])
     }
 }

@@ -70,7 +70,7 @@ impl RelaxingLines {
 
     /// The accelerances \[(m/s²)/N\] at $s \ne 0$ \[1/s\]: a row a response, a column a force.
     pub fn at(&self, s: Complex64) -> Vec<Vec<Complex64>> {
-        let excess = self.core.line(s).value - 1.0;
+        let excess = self.core.factor(s) - 1.0;
         let size = self.mass.nrows();
         let dynamic = Mat::from_fn(size, size, |i, j| {
             let at = (i, j);

@@ -21,7 +21,7 @@ impl CoreModulus {
     ///
     /// They are Chebyshev's points over a stretch of $\ln g$ from zero.
     pub fn nodes(&self, highest: f64) -> Vec<f64> {
-        let reached = self.line(Complex64::new(0.0, highest)).value.norm().ln();
+        let reached = self.factor(Complex64::new(0.0, highest)).norm().ln();
         let stretch = STRETCHES.into_iter().find(|stretch| *stretch >= reached).unwrap_or(reached);
         let count = NODES + (stretch / NODE_EACH) as usize;
         let angle = |k: usize| std::f64::consts::PI * (k as f64 + 0.5) / count as f64;
@@ -110,7 +110,7 @@ impl RelaxingModes {
 
     /// Weights of the nodes at $s$.
     fn shares(&self, s: Complex64) -> Vec<Complex64> {
-        let at = self.core.line(s).value.ln();
+        let at = self.core.factor(s).ln();
         if let Some(hit) = self.nodes.iter().position(|(node, _)| (at - node).norm() < 1e-14) {
             return (0..self.nodes.len()).map(|k| Complex64::from(f64::from(u8::from(k == hit)))).collect();
         }

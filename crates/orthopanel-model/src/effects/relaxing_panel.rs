@@ -6,7 +6,7 @@ use faer::Mat;
 
 use super::coupled_panel::{CoupledPanel, Even, ModifiedStructure, PanelWithEffects, Residual, row};
 use super::coupled_system::{System, uncoupled};
-use super::receptance::modal_base::Row;
+use super::row::Row;
 use super::{CoreFit, CoreModulus, CoupledMode, ElementLaw};
 use crate::block_pencil::BlockPencil;
 use crate::dense::{Cholesky, dot, product, symmetric_eigen};

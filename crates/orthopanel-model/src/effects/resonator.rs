@@ -36,6 +36,6 @@ impl Effect for Resonator {
         self.check(values, &setting.piece)?;
         let &[mass, frequency, zeta, x] = values else { return Ok(vec![]) };
         let law = ElementLaw::Resonator { mass, frequency, zeta };
-        Ok(vec![Action::Element(PointElement::on_deflection(law, Seat::Free(Place { x, y: 0.0 }, 3)))])
+        Ok(vec![Action::Element(PointElement::on_deflection(law, Seat::At(Place { x, y: 0.0 })))])
     }
 }

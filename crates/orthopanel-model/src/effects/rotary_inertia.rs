@@ -29,6 +29,6 @@ impl Effect for RotaryInertia {
     fn act(&self, values: &[f64], setting: &EffectSetting) -> Result<Vec<Action>, ModelError> {
         self.check(values, &setting.piece)?;
         let &[factor] = values else { return Ok(vec![]) };
-        Ok(vec![Action::Field(FieldTerm::RotaryFactor(factor), vec![0])])
+        Ok(vec![Action::Field(FieldTerm::RotaryFactor(factor))])
     }
 }

@@ -1,6 +1,6 @@
 //! `sensor-mass`.
 
-use super::{Action, Effect, EffectParameter, EffectSetting, ElementLaw, Owner, PointElement, Reference, Seat, Share};
+use super::{Action, Effect, EffectParameter, EffectSetting, ElementLaw, Owner, PointElement, Reference, Seat};
 use crate::{ModelError, Motion};
 
 /// The sensor's mass $m$ \[kg\] and, where it shows, its moment of inertia $J$ \[kg m²\] about the panel's middle plane, at
@@ -37,7 +37,6 @@ impl Effect for SensorMass {
         }
         let turning = PointElement {
             motion: Motion::Rotation,
-            shares: vec![Share { number: 0, parameter: 1, factor: 1.0 }],
             ..PointElement::on_deflection(ElementLaw::Mass { mass: inertia }, Seat::AtResponse)
         };
         let moving = PointElement::on_deflection(ElementLaw::Mass { mass }, Seat::AtResponse);

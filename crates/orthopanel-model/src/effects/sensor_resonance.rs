@@ -31,6 +31,6 @@ impl Effect for SensorResonance {
     fn act(&self, values: &[f64], setting: &EffectSetting) -> Result<Vec<Action>, ModelError> {
         self.check(values, &setting.piece)?;
         let &[frequency, zeta] = values else { return Ok(vec![]) };
-        Ok(vec![Action::Channel(ChannelFactor::Resonance { frequency, zeta }, vec![0, 1])])
+        Ok(vec![Action::Channel(ChannelFactor::Resonance { frequency, zeta })])
     }
 }

@@ -28,18 +28,14 @@ pub struct RecordSetting {
     pub hit_time: f64,
     /// What is known of how the suspension points move.
     pub suspension_motion: SuspensionMotion,
-    /// Whether the force is not the hammer's but one at the place itself, as a suspension's: no offset of the hammer moves it.
-    pub is_reaction: bool,
 }
 
 /// What is known of how the suspension points move in a record, on which forces that are not linear depend.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum SuspensionMotion {
     /// Nothing.
     #[default]
     Unknown,
-    /// How far each moves \[m\]: the effective amplitude of `cubic-stiffness`.
-    Amplitudes(Vec<f64>),
     /// Whoever asks works the forces out of the hits, in time, and joins what they do: the receptance is left linear.
     InTime,
 }

@@ -28,7 +28,7 @@ impl EffectState {
     }
 
     /// Where in the values a parameter of a record stands.
-    pub(super) fn position(&self, parameter: usize, record: usize) -> usize {
+    fn position(&self, parameter: usize, record: usize) -> usize {
         let before = self.effect.parameters().iter().take(parameter);
         let start: usize = before.map(|parameter| if parameter.each_record { self.records } else { 1 }).sum();
         let each = self.effect.parameters().get(parameter).is_some_and(|parameter| parameter.each_record);
@@ -52,15 +52,6 @@ impl EffectState {
     /// As [`Effect::act`].
     pub fn acting_in(&self, setting: &EffectSetting) -> Result<Vec<Action>, ModelError> {
         self.effect.act(&self.values_in(setting.record.number)?, setting)
-    }
-
-    /// The column of each effect's first value.
-    pub(super) fn starts(effects: &[Self], first: usize) -> impl Iterator<Item = usize> {
-        effects.iter().scan(first, |next, effect| {
-            let start = *next;
-            *next += effect.values.len();
-            Some(start)
-        })
     }
 
     /// From an entry of a model file; a parameter that the file leaves out keeps the value it is held at.

@@ -35,6 +35,6 @@ impl Effect for StiffnessLoss {
     fn act(&self, values: &[f64], setting: &EffectSetting) -> Result<Vec<Action>, ModelError> {
         self.check(values, &setting.piece)?;
         let &[loss, span, at] = values else { return Ok(vec![]) };
-        Ok(vec![Action::Field(FieldTerm::ShearLoss(ShearLoss { loss, span, at }), vec![0, 1, 2])])
+        Ok(vec![Action::Field(FieldTerm::ShearLoss(ShearLoss { loss, span, at }))])
     }
 }

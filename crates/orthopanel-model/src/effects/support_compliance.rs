@@ -36,6 +36,6 @@ impl Effect for SupportCompliance {
         if ![setting.boundary.left, setting.boundary.right].contains(&End::Clamped) {
             return Err(ModelError::EffectNeeds { effect: self.id(), what: "an end that is clamped ([boundary])" });
         }
-        Ok(vec![Action::Field(FieldTerm::Support(Support { translation, rotation }), vec![1, 0])])
+        Ok(vec![Action::Field(FieldTerm::Support(Support { translation, rotation }))])
     }
 }

@@ -2,7 +2,7 @@
 
 use faer::Mat;
 
-use super::receptance::modal_base::Row;
+use super::row::Row;
 use super::{EffectSetting, ModifiedPanel, SeenModes};
 use crate::legendre::gauss_legendre;
 use crate::timoshenko_beam::Section;
@@ -103,7 +103,10 @@ impl ModifiedPanel {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Boundary, CORE_WAVES, EffectState, Piece, RecordSetting, StructureKind, effect, roughness};
+    use crate::{
+        BeamTerms, Boundary, EffectState, Piece, RecordSetting, ShearLoss, StructureKind, TimoshenkoBeam, effect,
+        ritz_modes,
+    };
 
     const PIECE: Piece = Piece { length: 0.8, width: 0.1, thickness: 0.03, mass_per_area: 6.88 };
     const VALUES: [f64; 2] = [1.07e10, 5.363e8];
@@ -115,14 +118,12 @@ mod tests {
         (ModifiedPanel::new(StructureKind::TimoshenkoBeam, &setting, 8).expect("a beam"), setting)
     }
 
-    /// Against differences between beams with these effects at an amplitude and at its negative.
-    fn assert_derivatives(field: Field, piece: Piece, effects: impl Fn(usize, f64) -> Vec<EffectState>) {
+    /// Against differences between beams with a wave at an amplitude and at its negative.
+    fn assert_derivatives(field: Field, piece: Piece, wavy: impl Fn(usize, f64) -> SeenModes) {
         let (panel, setting) = beam(piece);
-        let seen =
-            |effects: &[EffectState]| panel.seen_from(&setting, &PLACES, false, &VALUES, effects).expect("modes");
-        let even = seen(&[]);
+        let even = panel.seen_from(&setting, &PLACES, false, &VALUES, &[]).expect("modes");
         for (number, wave) in panel.uneven(&setting, &PLACES, &VALUES, (field, 5)).expect("waves").iter().enumerate() {
-            let [less, more] = [-1e-3, 1e-3].map(|amplitude| seen(&effects(number, amplitude)));
+            let [less, more] = [-1e-3, 1e-3].map(|amplitude| wavy(number, amplitude));
             for n in 2..8 {
                 let omega = (more.angular_frequency[n] - less.angular_frequency[n]) / 2e-3;
                 let own = wave.angular_frequency[n];
@@ -144,11 +145,30 @@ mod tests {
         }
     }
 
+    /// Spans with gaps between them that are stiffer and softer in shear. Of a wave that turns by $2u$ over a span, steps that are as high as
+    /// it is at their middles hold $\sin u/u$ on the part of the length that the spans take, and else only waves shorter than these modes feel.
     #[test]
-    fn val_waves_of_the_core_are_those_of_an_uneven_beam() {
+    fn val_waves_of_the_core_are_those_of_many_spans() {
+        const SPANS: usize = 24;
         assert_derivatives(Field::Shear, PIECE, |number, amplitude| {
-            let waves = (0..CORE_WAVES).map(|other| if other == number { amplitude } else { 0.0 });
-            vec![EffectState::new(roughness(), [0.0, 1.0].into_iter().chain(waves).collect(), 1).expect("waves")]
+            let part = 0.5;
+            let each = PIECE.length / SPANS as f64;
+            let turn = std::f64::consts::PI * (number + 1) as f64 / SPANS as f64;
+            let u = 0.5 * part * turn;
+            let loss = |index: usize| {
+                let middle = index as f64 + 0.5;
+                let step = amplitude * (turn * middle).cos() * u / (u.sin() * part);
+                ShearLoss { loss: -step, span: part * each, at: each * middle - 0.5 * PIECE.length }
+            };
+            let terms = BeamTerms { losses: (0..SPANS).map(loss).collect(), ..BeamTerms::default() };
+            let beam = TimoshenkoBeam::with_terms(&PIECE, Boundary::default(), 40, terms).expect("a beam");
+            let modes = ritz_modes(&beam, &VALUES, 8).expect("modes");
+            SeenModes {
+                angular_frequency: modes.iter().map(|mode| mode.angular_frequency).collect(),
+                damping_ratio: vec![],
+                deflection: modes.iter().map(|mode| PLACES.map(|at| mode.deflection(&beam, at)).to_vec()).collect(),
+                slope: vec![],
+            }
         });
     }
 
@@ -156,13 +176,15 @@ mod tests {
     #[test]
     fn val_waves_of_mass_are_those_of_many_masses() {
         let thin = Piece { thickness: 0.003, ..PIECE };
+        let (panel, setting) = beam(thin);
         assert_derivatives(Field::Mass, thin, |number, amplitude| {
             let mass = |(t, weight): &(f64, f64)| {
                 let wave = (std::f64::consts::FRAC_PI_2 * (t + 1.0) * (number + 1) as f64).cos();
                 let values = vec![0.5 * weight * amplitude * wave * PIECE.mass(), 0.5 * t * PIECE.length];
                 EffectState::new(effect("local-mass").expect("known"), values, 1).expect("a mass")
             };
-            gauss_legendre(24).iter().map(mass).collect()
+            let masses: Vec<EffectState> = gauss_legendre(24).iter().map(mass).collect();
+            panel.seen_from(&setting, &PLACES, false, &VALUES, &masses).expect("modes")
         });
     }
 

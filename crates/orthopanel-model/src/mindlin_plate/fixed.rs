@@ -63,7 +63,8 @@ impl Structure for FixedPlate {
 #[cfg(test)]
 mod tests {
     use super::FixedPlate;
-    use crate::{Boundary, MindlinPlate, Piece, Place, Structure, static_deflections};
+    use crate::static_deflection::static_deflections;
+    use crate::{Boundary, MindlinPlate, Piece, Place, Structure};
 
     /// One matrix in place of a sum of six gives the same answers, to rounding.
     #[test]

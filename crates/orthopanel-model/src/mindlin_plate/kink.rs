@@ -80,12 +80,6 @@ struct Seen {
     across: Vec<f64>,
 }
 
-/// $a_m$ of a mode across, and its derivatives by $D_{22}$ and $A_{44}$.
-struct Foundation {
-    held: f64,
-    by: [f64; 2],
-}
-
 /// A place along one direction with the order of the derivative that is asked there.
 type Side = (usize, f64);
 
@@ -101,36 +95,17 @@ impl Membrane {
         Some(Self { half_length, returned, along, along_of, across: Modes::of(y, y.count(Field::Deflection))? })
     }
 
-    /// $\Delta R$ and its derivatives by $D_{22}$, $A_{55}$, $A_{44}$; `None` for a rotation, which has no kink.
+    /// $\Delta R$ between two motions; `None` for a rotation, which has no kink.
     pub(super) fn kink(
         &self,
         bases: &[EdgeBasis; 2],
-        [d_22, a_55, a_44]: [f64; 3],
+        stiffnesses: [f64; 3],
         [first, second]: [(Motion, crate::Place); 2],
-    ) -> Option<[f64; 4]> {
-        let (first, second) = (self.end(bases, first)?, self.end(bases, second)?);
-        let mut sum = [0.0; 4];
-        for (m, &nu) in self.across.slopes.iter().enumerate() {
-            let weight = first.across[m] * second.across[m];
-            let foundation = self.foundation(nu, [d_22, a_55, a_44]);
-            let a = foundation.held;
-            let (exact, exact_by) = self.exact([a_55, a], first.side, second.side);
-            let mut lacking = [exact, exact_by[0], exact_by[1]];
-            for (sigma, term) in self.terms(m, [&first, &second], [a_55, a]) {
-                let inverse = (a_55 * sigma + a).recip();
-                lacking[0] -= term;
-                lacking[1] += term * inverse * sigma;
-                lacking[2] += term * inverse;
-            }
-            let [by_d_22, by_a_44] = foundation.by.map(|by| by * lacking[2]);
-            for (total, part) in sum.iter_mut().zip([lacking[0], by_d_22, lacking[1], by_a_44]) {
-                *total += weight * part;
-            }
-        }
-        Some(sum)
+    ) -> Option<f64> {
+        Some(self.between(stiffnesses, &self.end(bases, first)?, &self.end(bases, second)?))
     }
 
-    /// $\Delta R$ between any two motions of a list; zero for a rotation.
+    /// The same between any two motions of a list; zero for a rotation.
     pub(super) fn kinks(
         &self,
         bases: &[EdgeBasis; 2],
@@ -138,23 +113,25 @@ impl Membrane {
         motions: &[(Motion, crate::Place)],
     ) -> Mat<f64> {
         let ends: Vec<Option<Seen>> = motions.iter().map(|motion| self.end(bases, *motion)).collect();
-        let between = |first: &Seen, second: &Seen| {
-            let lacking = |(m, &nu): (usize, &f64)| {
-                let stiffness = [stiffnesses[1], self.foundation(nu, stiffnesses).held];
-                let terms: f64 = self.terms(m, [first, second], stiffness).map(|(_, term)| term).sum();
-                first.across[m] * second.across[m] * (self.green(stiffness, first.side, second.side) - terms)
-            };
-            self.across.slopes.iter().enumerate().map(lacking).sum()
-        };
         let mut kinks = Mat::zeros(ends.len(), ends.len());
         for (p, first) in ends.iter().enumerate() {
             for (q, second) in ends.iter().enumerate().skip(p) {
                 let (Some(first), Some(second)) = (first, second) else { continue };
-                kinks[(p, q)] = between(first, second);
+                kinks[(p, q)] = self.between(stiffnesses, first, second);
                 kinks[(q, p)] = kinks[(p, q)];
             }
         }
         kinks
+    }
+
+    /// $\Delta R$ with $D_{22}$, $A_{55}$, $A_{44}$.
+    fn between(&self, stiffnesses: [f64; 3], first: &Seen, second: &Seen) -> f64 {
+        let lacking = |(m, &nu): (usize, &f64)| {
+            let stiffness = [stiffnesses[1], self.foundation(nu, stiffnesses)];
+            let terms: f64 = self.terms(m, [first, second], stiffness).sum();
+            first.across[m] * second.across[m] * (self.green(stiffness, first.side, second.side) - terms)
+        };
+        self.across.slopes.iter().enumerate().map(lacking).sum()
     }
 
     /// A motion as the membrane's modes see it.
@@ -172,44 +149,23 @@ impl Membrane {
     }
 
     /// $a_m$ of a mode across.
-    fn foundation(&self, nu: f64, [d_22, a_55, a_44]: [f64; 3]) -> Foundation {
+    fn foundation(&self, nu: f64, [d_22, a_55, a_44]: [f64; 3]) -> f64 {
         // A membrane that nothing holds answers a force without end; what its series lacks is finite.
         let least = LOOSE * a_55 / (self.half_length * self.half_length);
-        let (bending, shear) = (d_22 * nu, a_44);
-        let yielding = bending / (shear + bending);
-        let a = a_44 * nu * yielding;
-        let by = [(nu * (1.0 - yielding)).powi(2), nu * yielding * yielding];
-        Foundation { held: a.max(least), by: if a > least { by } else { [0.0; 2] } }
+        let bending = d_22 * nu;
+        (a_44 * nu * bending / (a_44 + bending)).max(least)
     }
 
-    /// Of each mode along x its $\int u'^2$, and what it brings to $G_n$.
+    /// What each mode along x brings to $G_n$.
     fn terms<'a>(
         &'a self,
         across: usize,
         [first, second]: [&'a Seen; 2],
         [a_55, a]: [f64; 2],
-    ) -> impl Iterator<Item = (f64, f64)> + 'a {
+    ) -> impl Iterator<Item = f64> + 'a {
         let along = self.along_of[across];
         let products = first.along[along].iter().zip(&second.along[along]).map(|(u, other)| u * other);
-        self.along[along]
-            .slopes
-            .iter()
-            .zip(products)
-            .map(move |(sigma, product)| (*sigma, product / (a_55 * sigma + a)))
-    }
-
-    /// $G$ between two sides, and its derivatives by $A_{55}$ and $a$.
-    fn exact(&self, stiffness: [f64; 2], first: Side, second: Side) -> (f64, [f64; 2]) {
-        let by = |index: usize| {
-            let step = STEP * stiffness[index];
-            let [low, high] = [-step, step].map(|step| {
-                let mut moved = stiffness;
-                moved[index] += step;
-                self.green(moved, first, second)
-            });
-            (high - low) / (2.0 * step)
-        };
-        (self.green(stiffness, first, second), [by(0), by(1)])
+        self.along[along].slopes.iter().zip(products).map(move |(sigma, product)| product / (a_55 * sigma + a))
     }
 
     /// $A_{55}G'' - aG = -\delta$: $e^{-\kappa|x-x'|}$ with what comes back from the ends.
@@ -234,5 +190,3 @@ impl Membrane {
 
 /// Foundation of the membrane at least, beside $A_{55}/h^2$.
 const LOOSE: f64 = 1e-5;
-/// Of the differences of $G$, in parts of a stiffness.
-const STEP: f64 = 1e-5;

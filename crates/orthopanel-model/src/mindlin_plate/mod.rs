@@ -237,17 +237,10 @@ impl MindlinPlate {
         Membrane::new(&self.along, 0.5 * self.piece.length, [left, right], &lengths)
     }
 
-    /// What the basis lacks of the static flexibility between two motions, and its derivatives by the coefficients; `None`
-    /// for a rotation, which has no kink.
-    pub(crate) fn kink(
-        &self,
-        membrane: &Membrane,
-        values: &[f64],
-        motions: [(Motion, Place); 2],
-    ) -> Option<(f64, Vec<f64>)> {
+    /// What the basis lacks of the static flexibility between two motions; `None` for a rotation, which has no kink.
+    pub(crate) fn kink(&self, membrane: &Membrane, values: &[f64], motions: [(Motion, Place); 2]) -> Option<f64> {
         let [_, d_22, _, _, a_55, a_44] = plate_stiffnesses(self.piece.thickness, values).ok()?;
-        let [value, by_d_22, by_a_55, by_a_44] = membrane.kink(&self.along, [d_22, a_55, a_44], motions)?;
-        Some((value, vec![0.0, by_d_22, 0.0, 0.0, by_a_55, by_a_44]))
+        membrane.kink(&self.along, [d_22, a_55, a_44], motions)
     }
 
     /// The membrane of a plate without terms of its own, made once.
@@ -296,7 +289,7 @@ impl Structure for MindlinPlate {
     }
 
     /// The kinks, of an even plate.
-    fn static_remainder(&self, values: &[f64], motions: [(Motion, Place); 2]) -> Option<(f64, Vec<f64>)> {
+    fn static_remainder(&self, values: &[f64], motions: [(Motion, Place); 2]) -> Option<f64> {
         self.kink(self.even_membrane()?, values, motions)
     }
 

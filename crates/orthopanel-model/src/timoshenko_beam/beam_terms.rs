@@ -1,5 +1,4 @@
-//! What may differ from the even beam, or plate: shear stiffness lost over a span, a core that is not even, rotary inertia,
-//! supports that yield.
+//! What may differ from the even beam, or plate: shear stiffness lost over a span, rotary inertia, supports that yield.
 
 use crate::ModelError;
 
@@ -10,28 +9,17 @@ pub struct BeamTerms {
     pub rotary_factor: f64,
     /// Spans that have lost shear stiffness.
     pub losses: Vec<ShearLoss>,
-    /// Unevenness of the core along a beam: amplitudes $a_k$ \[1\], $k$ from 1, of
-    /// $\sum_ka_k\cos k\pi(x/a + \tfrac12)$, added to 1 as losses are taken off. A plate has none.
-    pub core_waves: Vec<f64>,
     /// What holds every clamped end, where that is not rigid.
     pub support: Option<Support>,
 }
 
 impl Default for BeamTerms {
     fn default() -> Self {
-        Self { rotary_factor: 1.0, losses: vec![], core_waves: vec![], support: None }
+        Self { rotary_factor: 1.0, losses: vec![], support: None }
     }
 }
 
 impl BeamTerms {
-    /// The part of the even shear stiffness \[1\] that is there at $t = 2x/a$.
-    pub(super) fn shear_part(&self, t: f64, half_length: f64) -> f64 {
-        let x = t * half_length;
-        let lost: f64 = self.losses.iter().filter(|loss| loss.holds(x, half_length)).map(|loss| loss.loss).sum();
-        let waves = core_waves(self.core_waves.len(), t);
-        1.0 - lost + self.core_waves.iter().zip(waves).map(|(amplitude, wave)| amplitude * wave).sum::<f64>()
-    }
-
     /// Checks that stiffness and inertia stay positive.
     ///
     /// # Errors
@@ -45,11 +33,6 @@ impl BeamTerms {
                 return Err(ModelError::NotFinite { what: "place of a shear loss", value: loss.at });
             }
         }
-        if !self.core_waves.is_empty() {
-            let deepest: f64 = self.core_waves.iter().map(|amplitude| amplitude.abs()).sum();
-            let most = self.losses.iter().map(|loss| loss.loss).fold(0.0, f64::max);
-            sizes.push(("shear stiffness of an uneven core", 1.0 - most - deepest, ""));
-        }
         if let Some(support) = self.support {
             sizes.push(("translation stiffness of a support", support.translation, "N/m"));
             sizes.push(("rotation stiffness of a support", support.rotation, "N m/rad"));
@@ -59,18 +42,6 @@ impl BeamTerms {
             None => Ok(()),
         }
     }
-}
-
-/// The first unit waves at $t = 2x/a$, of one half-wave over the length and more, by
-/// $\cos(k + 1)\theta = 2\cos\theta\cos k\theta - \cos(k - 1)\theta$.
-pub(super) fn core_waves(count: usize, t: f64) -> impl Iterator<Item = f64> {
-    let first = (std::f64::consts::FRAC_PI_2 * (t + 1.0)).cos();
-    let (mut before, mut this) = (1.0, first);
-    (0..count).map(move |_| {
-        let wave = this;
-        (before, this) = (this, 2.0 * first * this - before);
-        wave
-    })
 }
 
 /// Shear stiffness $k'G_{zx}A\,(1-\text{loss})$ for $|x - \text{at}| < \text{span}/2$.

@@ -2,13 +2,13 @@
 
 use faer::Mat;
 
-use super::beam_terms::{BeamTerms, ShearLoss};
+use super::beam_terms::BeamTerms;
 use super::inertial_remainder::InertialRemainder;
 use super::strain_basis::{Parity, StrainFunction, end_motions, steps, strain_functions};
 use super::term_matrices::{Quadrature, series_products, support_stiffness};
 use super::{BEAM_CONSTANTS, Section, StaticFlexibility};
 use crate::legendre::legendre;
-use crate::structure::{Block, Flexibility, Motion, Structure, TermDerivative};
+use crate::structure::{Block, Motion, Structure};
 use crate::{Boundary, Constant, ModelError, Piece, Place, SymmetricMatrix};
 
 /// The beam of eq. 5 as a [`Structure`]: coefficients are $E_x$ and $G_{zx}$ themselves, with
@@ -19,7 +19,6 @@ use crate::{Boundary, Constant, ModelError, Piece, Place, SymmetricMatrix};
 #[derive(Debug, Clone)]
 pub struct TimoshenkoBeam {
     half_length: f64,
-    section: Section,
     terms: BeamTerms,
     functions: Vec<Vec<StrainFunction>>,
     blocks: Vec<Block>,
@@ -38,10 +37,7 @@ impl TimoshenkoBeam {
 
     /// A beam that is not even, or whose clamped ends yield: see [`BeamTerms`].
     ///
-    /// Where supports yield, the springs add a third coefficient of fixed value 1. The parameters of
-    /// [`Structure::term_derivatives`] stand in this order: the rotary factor; loss, span and place of each shear loss;
-    /// translation and rotation stiffness of the supports; the waves of an uneven core. Span and place have no matrices: see
-    /// [`TermDerivative`].
+    /// Where supports yield, the springs add a third coefficient of fixed value 1.
     ///
     /// # Errors
     /// [`ModelError::Size`] where a size, factor or stiffness has no physical meaning, [`ModelError::HeldSide`]
@@ -59,7 +55,7 @@ impl TimoshenkoBeam {
         }
         functions
             .extend(terms.losses.iter().flat_map(|loss| steps(half_length, loss.edges(half_length), order.max(4))));
-        let uneven = !terms.losses.is_empty() || !terms.core_waves.is_empty() || terms.support.is_some();
+        let uneven = !terms.losses.is_empty() || terms.support.is_some();
         let (mut even, mut odd, mut all) = (vec![], vec![], vec![]);
         for function in functions {
             match function.parity {
@@ -80,7 +76,7 @@ impl TimoshenkoBeam {
         let blocks = functions.iter().map(|block| assemble(block, section, half_length, &terms)).collect();
         let flexibility = StaticFlexibility::with_terms(&piece, boundary, &terms)?;
         let inertia = InertialRemainder::new(half_length, section, order.max(4), &terms.losses);
-        Ok(Self { half_length, section, terms, functions, blocks, flexibility, inertia })
+        Ok(Self { half_length, terms, functions, blocks, flexibility, inertia })
     }
 }
 
@@ -95,17 +91,14 @@ fn assemble(functions: &[StrainFunction], section: Section, half_length: f64, te
     let Section { second_moment, shear_area, mass, rotary_inertia } = section;
     let curvature = series_products(functions, half_length, |f| &f.curvature).into();
     let rotation = series_products(functions, half_length, |f| &f.rotation).into();
-    let (strain, deflection) = if terms.losses.is_empty() && terms.core_waves.is_empty() {
+    let (strain, deflection) = if terms.losses.is_empty() {
         let strain = series_products(functions, half_length, |f| &f.shear);
         (strain.into(), series_products(functions, half_length, |f| &f.deflection).into())
     } else {
-        let quadrature = Quadrature::new(functions, half_length, terms);
+        let quadrature = Quadrature::new(functions, half_length, &terms.losses);
         let mut strain = SymmetricMatrix::from(quadrature.shear());
         for loss in &terms.losses {
             strain = sum(&[(1.0, &strain), (-loss.loss, &quadrature.span(loss).into())]);
-        }
-        for (amplitude, wave) in terms.core_waves.iter().zip(quadrature.waves(terms.core_waves.len())) {
-            strain = sum(&[(1.0, &strain), (*amplitude, &wave.into())]);
         }
         (strain, quadrature.deflection().into())
     };
@@ -158,71 +151,16 @@ impl Structure for TimoshenkoBeam {
         Some(functions.iter().map(|f| f.at(motion, t, &polynomials, self.half_length)).collect())
     }
 
-    fn static_flexibility(&self, values: &[f64], motions: [(Motion, Place); 2]) -> Option<Flexibility> {
+    fn static_flexibility(&self, values: &[f64], motions: [(Motion, Place); 2]) -> Option<f64> {
         let [&e_x, &g_zx] = [values.first()?, values.get(1)?];
-        let parts = self.flexibility.between_motions(motions.map(|(motion, place)| (motion, place.x)), [e_x, g_zx]);
-        let known = parts.by_losses.into_iter().flat_map(|by| [Some(by), None, None]);
-        let support = self.terms.support.map(|_| parts.by_support).into_iter().flatten();
-        let waves = parts.by_waves.into_iter().map(Some);
-        Some(Flexibility {
-            value: parts.value,
-            by_constants: parts.by_constants.to_vec(),
-            // Rotary inertia alters the field that a free beam's own inertia balances.
-            by_terms: std::iter::once(None).chain(known).chain(support.map(Some)).chain(waves).collect(),
-        })
+        let motions = motions.map(|(motion, place)| (motion, place.x));
+        Some(self.flexibility.between_motions(motions, [e_x, g_zx]).0)
     }
 
-    fn inertial_remainders(&self, values: &[f64], rows: &[(Motion, Place)], columns: usize) -> Vec<Flexibility> {
-        let Some(g_zx) = values.get(1) else { return vec![] };
-        let rows: Vec<_> = rows.iter().map(|(motion, place)| self.inertia.unheld(*motion, place.x)).collect();
-        let pairs = rows.iter().flat_map(|a| rows.iter().take(columns).map(move |b| (a, b)));
-        let pairs = pairs.map(|(a, b)| {
-            let value = self.inertia.between(a, b) / (g_zx * g_zx);
-            // It goes with the flexibility at both places; the rotary inertia and supports have no part in it.
-            let by_loss = |loss: &ShearLoss| {
-                let inside = [a, b].into_iter().filter(|row| loss.holds(row.at, self.half_length)).count();
-                value * inside as f64 / (1.0 - loss.loss)
-            };
-            let by_losses = self.terms.losses.iter().flat_map(|loss| [Some(by_loss(loss)), None, None]);
-            let by_terms = std::iter::once(None).chain(by_losses).collect();
-            Flexibility { value, by_constants: vec![0.0, -2.0 * value / g_zx], by_terms }
-        });
-        pairs.collect()
-    }
-
-    fn term_derivatives(&self, values: &[f64]) -> Vec<TermDerivative> {
-        let shear = values.get(1).copied().unwrap_or_default() * self.section.shear_area;
-        let of_stiffness = |matrices: Vec<Mat<f64>>| TermDerivative { stiffness: matrices, mass: vec![] };
-        let even_inertia = self.section.rotary_inertia / self.terms.rotary_factor;
-        let by_rotary = |functions: &Vec<StrainFunction>| {
-            faer::Scale(even_inertia) * series_products(functions, self.half_length, |f| &f.rotation)
-        };
-        let mut list = vec![TermDerivative { stiffness: vec![], mass: self.functions.iter().map(by_rotary).collect() }];
-        for loss in &self.terms.losses {
-            let by_loss = |functions: &Vec<StrainFunction>| {
-                faer::Scale(-shear) * Quadrature::new(functions, self.half_length, &self.terms).span(loss)
-            };
-            list.push(of_stiffness(self.functions.iter().map(by_loss).collect()));
-            // With span and place the edges move, and with them the functions that begin there.
-            list.extend([of_stiffness(vec![]), of_stiffness(vec![])]);
-        }
-        if self.terms.support.is_some() {
-            for springs in [[1.0, 0.0], [0.0, 1.0]] {
-                let matrices = self.functions.iter().map(|functions| support_stiffness(functions, springs));
-                list.push(of_stiffness(matrices.collect()));
-            }
-        }
-        let count = self.terms.core_waves.len();
-        if count > 0 {
-            let waves = |functions: &Vec<StrainFunction>| {
-                Quadrature::new(functions, self.half_length, &self.terms).waves(count).into_iter()
-            };
-            let mut blocks: Vec<_> = self.functions.iter().map(waves).collect();
-            list.extend((0..count).map(|_| {
-                let of_blocks = blocks.iter_mut().filter_map(Iterator::next);
-                of_stiffness(of_blocks.map(|wave| faer::Scale(shear) * wave).collect())
-            }));
-        }
-        list
+    fn inertial_remainders(&self, values: &[f64], motions: &[(Motion, Place)]) -> Option<Mat<f64>> {
+        let g_zx = values.get(1)?;
+        let loads: Vec<_> = motions.iter().map(|(motion, place)| self.inertia.unheld(*motion, place.x)).collect();
+        let between = |row: usize, column: usize| self.inertia.between(&loads[row], &loads[column]) / (g_zx * g_zx);
+        Some(Mat::from_fn(loads.len(), loads.len(), between))
     }
 }

@@ -1,9 +1,8 @@
 //! Deflection of the beam under a force that stands still: what all flexible modes together leave at low frequency.
 
-use super::beam_terms::{BeamTerms, ShearLoss, core_waves};
+use super::beam_terms::{BeamTerms, ShearLoss};
 use super::static_field::StaticField;
 use super::{Section, gauss_points};
-use crate::order::sort;
 use crate::structure::Motion;
 use crate::{Boundary, End, ModelError, Piece};
 
@@ -19,24 +18,9 @@ pub struct StaticFlexibility {
     half_length: f64,
     section: Section,
     boundary: Boundary,
-    terms: BeamTerms,
+    losses: Vec<ShearLoss>,
     /// Flexibility of the support of a clamped end: \[m/N\] and \[rad/(N m)\].
     support: [f64; 2],
-}
-
-/// A static flexibility in its parts: each part is what one constant or term answers for.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct FlexibilityParts {
-    /// The flexibility itself.
-    pub value: f64,
-    /// Its derivatives by $E_x$ and $G_{zx}$.
-    pub by_constants: [f64; 2],
-    /// Its derivative by each shear loss.
-    pub by_losses: Vec<f64>,
-    /// Its derivative by each wave of an uneven core.
-    pub by_waves: Vec<f64>,
-    /// Its derivatives by the translation and rotation stiffness of the supports.
-    pub by_support: [f64; 2],
 }
 
 impl StaticFlexibility {
@@ -54,17 +38,16 @@ impl StaticFlexibility {
         let mut section = Section::of(&piece);
         section.rotary_inertia *= terms.rotary_factor;
         let support = terms.support.map_or([0.0; 2], |support| [1.0 / support.translation, 1.0 / support.rotation]);
-        Ok(Self { half_length: 0.5 * piece.length, section, boundary, terms: terms.clone(), support })
+        Ok(Self { half_length: 0.5 * piece.length, section, boundary, losses: terms.losses.clone(), support })
     }
 
     /// $G$ \[m/N\] between two places at the constants $E_x$ and $G_{zx}$, and its derivatives by both.
     pub fn between(&self, first: f64, second: f64, e_x: f64, g_zx: f64) -> (f64, [f64; 2]) {
-        let parts = self.between_motions([(Motion::Deflection, first), (Motion::Deflection, second)], [e_x, g_zx]);
-        (parts.value, parts.by_constants)
+        self.between_motions([(Motion::Deflection, first), (Motion::Deflection, second)], [e_x, g_zx])
     }
 
     /// The like of [`StaticFlexibility::between`] for any two motions: the load is what works on each.
-    pub(crate) fn between_motions(&self, at: [(Motion, f64); 2], [e_x, g_zx]: [f64; 2]) -> FlexibilityParts {
+    pub(crate) fn between_motions(&self, at: [(Motion, f64); 2], [e_x, g_zx]: [f64; 2]) -> (f64, [f64; 2]) {
         let stiffness = [e_x * self.section.second_moment, g_zx * self.section.shear_area];
         // Redundants: both fields made orthogonal to the self-stresses, in complementary energy.
         let mut orthogonal: Vec<StaticField> = Vec::new();
@@ -75,27 +58,7 @@ impl StaticFlexibility {
         let [bending, shear, support] = self.energies(&a, &b);
         let (by_bending, by_shear) = (bending / stiffness[0], shear / stiffness[1]);
         // Least energy: moving the redundants changes nothing to first order, so only the stiffnesses count.
-        let by_losses = self.terms.losses.iter().map(|loss| self.by_loss(loss, &a, &b) / stiffness[1]).collect();
-        let by_waves = self.by_waves(&a, &b).into_iter().map(|by| by / stiffness[1]).collect();
-        let ends = self.end_products(&a, &b);
-        FlexibilityParts {
-            value: by_bending + by_shear + support,
-            by_constants: [-by_bending / e_x, -by_shear / g_zx],
-            by_losses,
-            by_waves,
-            by_support: [0, 1].map(|i| -ends[i] * self.support[i] * self.support[i]),
-        }
-    }
-
-    /// Derivative of $\int V_1V_2/(1-\text{loss})\,dx$ by the loss.
-    fn by_loss(&self, loss: &ShearLoss, a: &StaticField, b: &StaticField) -> f64 {
-        let [low, high] = loss.edges(self.half_length);
-        if !self.terms.core_waves.is_empty() {
-            let mut sum = 0.0;
-            self.each_shear(a, b, [low, high], &mut |x, product| sum += product * self.shear_part(x).powi(-2));
-            return sum;
-        }
-        self.shear_between(a, b, low, high) / (1.0 - loss.loss).powi(2)
+        (by_bending + by_shear + support, [-by_bending / e_x, -by_shear / g_zx])
     }
 
     /// `field` less its share of each of `states`.
@@ -184,70 +147,13 @@ impl StaticFlexibility {
         let [moments, shears] = StaticField::concentrated(a, b);
         sums[0] += moments;
         sums[1] += shears;
-        if self.terms.core_waves.is_empty() {
-            for loss in &self.terms.losses {
-                let [low, high] = loss.edges(h);
-                sums[1] += (1.0 / (1.0 - loss.loss) - 1.0) * self.shear_between(a, b, low, high);
-            }
-        } else {
-            sums[1] = 0.0;
-            self.each_shear(a, b, [-h, h], &mut |x, product| sums[1] += product / self.shear_part(x));
+        for loss in &self.losses {
+            let [low, high] = loss.edges(h);
+            sums[1] += (1.0 / (1.0 - loss.loss) - 1.0) * shear_between(a, b, low, high);
         }
         let ends = self.end_products(a, b);
         sums[2] = self.support[0] * ends[0] + self.support[1] * ends[1];
         sums
-    }
-
-    fn shear_between(&self, a: &StaticField, b: &StaticField, low: f64, high: f64) -> f64 {
-        let spread: f64 = segments(a, b, [low, high])
-            .flat_map(|[start, end]| points(start, end))
-            .map(|(x, weight)| weight * a.at(x)[1] * b.at(x)[1])
-            .sum();
-        let inside = |field: &StaticField| field.place() > low && field.place() < high;
-        spread + a.concentrated_shear(b, inside(a)) + b.concentrated_shear(a, inside(b))
-    }
-
-    /// Derivatives of $\int V_1V_2/g\,dx$ by the waves of the core.
-    fn by_waves(&self, a: &StaticField, b: &StaticField) -> Vec<f64> {
-        let h = self.half_length;
-        let mut sums = vec![0.0; self.terms.core_waves.len()];
-        if sums.is_empty() {
-            return sums;
-        }
-        self.each_shear(a, b, [-h, h], &mut |x, product| {
-            let by_part = -product * self.shear_part(x).powi(-2);
-            let waves = core_waves(sums.len(), x / h);
-            sums.iter_mut().zip(waves).for_each(|(sum, wave)| *sum += by_part * wave);
-        });
-        sums
-    }
-
-    /// The part $g$ of the shear stiffness that is there.
-    fn shear_part(&self, x: f64) -> f64 {
-        self.terms.shear_part(x / self.half_length, self.half_length)
-    }
-
-    /// Takes each $x$ of `[low, high]` with its part of $\int V_1V_2\,dx$, at points close enough for a core with waves.
-    fn each_shear(&self, a: &StaticField, b: &StaticField, [low, high]: [f64; 2], take: &mut dyn FnMut(f64, f64)) {
-        let h = self.half_length;
-        let longest = 2.0 * h / (STRETCHES * self.terms.core_waves.len().max(1)) as f64;
-        let mut nodes: Vec<f64> = self.terms.losses.iter().flat_map(|loss| loss.edges(h)).collect();
-        nodes.extend([low, high, a.place(), b.place()]);
-        nodes.retain(|x| (low..=high).contains(x));
-        sort(&mut nodes);
-        for pair in nodes.windows(2).filter(|pair| pair[1] > pair[0]) {
-            let count = ((pair[1] - pair[0]) / longest).ceil().max(1.0);
-            let step = (pair[1] - pair[0]) / count;
-            for part in 0..count as usize {
-                let start = pair[0] + step * part as f64;
-                for (x, weight) in points(start, start + step) {
-                    take(x, weight * a.at(x)[1] * b.at(x)[1]);
-                }
-            }
-        }
-        let inside = |field: &StaticField| field.place() > low && field.place() < high;
-        take(a.place(), a.concentrated_shear(b, inside(a)));
-        take(b.place(), b.concentrated_shear(a, inside(b)));
     }
 
     /// Products of shear forces and of moments at the clamped ends.
@@ -268,8 +174,15 @@ impl StaticFlexibility {
     }
 }
 
-/// Stretches to each half-wave of an uneven core: four points on each leave 1e-8 of a cosine's integral.
-const STRETCHES: usize = 2;
+/// $\int V_1V_2\,dx$ between two places, peaks and all.
+fn shear_between(a: &StaticField, b: &StaticField, low: f64, high: f64) -> f64 {
+    let spread: f64 = segments(a, b, [low, high])
+        .flat_map(|[start, end]| points(start, end))
+        .map(|(x, weight)| weight * a.at(x)[1] * b.at(x)[1])
+        .sum();
+    let inside = |field: &StaticField| field.place() > low && field.place() < high;
+    spread + a.concentrated_shear(b, inside(a)) + b.concentrated_shear(a, inside(b))
+}
 
 /// Stretches of `[low, high]` on which both fields are polynomials.
 fn segments(a: &StaticField, b: &StaticField, [low, high]: [f64; 2]) -> impl Iterator<Item = [f64; 2]> {

@@ -3,7 +3,7 @@
 
 use faer::Mat;
 
-use super::beam_terms::{BeamTerms, ShearLoss, core_waves};
+use super::beam_terms::ShearLoss;
 use super::strain_basis::StrainFunction;
 use crate::dense::product;
 use crate::legendre::{gauss_legendre, legendre_at, norm};
@@ -49,14 +49,14 @@ pub(super) struct Quadrature<'a> {
 }
 
 impl<'a> Quadrature<'a> {
-    pub(super) fn new(functions: &'a [StrainFunction], half_length: f64, of: &BeamTerms) -> Self {
+    pub(super) fn new(functions: &'a [StrainFunction], half_length: f64, losses: &[ShearLoss]) -> Self {
         let terms = functions.iter().map(|f| f.deflection.len()).max().unwrap_or(0);
         let mut edges: Vec<f64> =
-            of.losses.iter().flat_map(|loss| loss.edges(half_length)).map(|x| x / half_length).collect();
+            losses.iter().flat_map(|loss| loss.edges(half_length)).map(|x| x / half_length).collect();
         edges.extend([-1.0, 1.0]);
         sort(&mut edges);
-        // Products of two functions, and some points more for a cosine: each half-wave wants less than two.
-        let rule = gauss_legendre(terms + 2 + of.core_waves.len());
+        // Products of two functions.
+        let rule = gauss_legendre(terms + 2);
         let stretches = edges.windows(2).filter_map(|pair| match pair {
             [low, high] if high > low => Some((0.5 * (low + high), 0.5 * (high - low))),
             _ => None,
@@ -121,20 +121,6 @@ impl<'a> Quadrature<'a> {
             values.col_as_slice_mut(column).iter_mut().zip(&root).for_each(|(value, root)| *value *= root);
         }
         self.spread(&strained, &product(values.transpose(), values.as_ref()))
-    }
-
-    /// $\int c_k(w'+\psi)_i(w'+\psi)_j\,dx$ of each of so many waves $c_k$ of the core.
-    pub(super) fn waves(&self, count: usize) -> Vec<Mat<f64>> {
-        let all: Vec<usize> = (0..self.points.len()).collect();
-        let (strained, values) = self.strains(&all);
-        let waves: Vec<Vec<f64>> = self.points.iter().map(|&(t, _)| core_waves(count, t).collect()).collect();
-        let wave = |number: usize| {
-            let at_points = self.points.iter().zip(&waves);
-            let weights: Vec<f64> = at_points.map(|((_, weight), waves)| weight * waves[number]).collect();
-            let weighted = Mat::from_fn(values.nrows(), values.ncols(), |row, i| weights[row] * values[(row, i)]);
-            self.spread(&strained, &product(values.transpose(), weighted.as_ref()))
-        };
-        (0..count).map(wave).collect()
     }
 
     /// The functions that have shear strain, and theirs at some of the points, a column each.

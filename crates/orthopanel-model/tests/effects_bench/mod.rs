@@ -41,11 +41,7 @@ impl Bench {
 
     pub fn accelerance(&self, effects: &[(&str, &[f64])], s: Complex64) -> Complex64 {
         let state = |(id, values): &(&str, &[f64])| EffectState::new(effect(id).unwrap(), values.to_vec(), 1).unwrap();
-        self.accelerance_with(&effects.iter().map(state).collect::<Vec<_>>(), s)
-    }
-
-    /// The same with effects that need not be in the catalogue.
-    pub fn accelerance_with(&self, states: &[EffectState], s: Complex64) -> Complex64 {
+        let states: Vec<EffectState> = effects.iter().map(state).collect();
         let record = RecordSetting {
             force_at: Some(at(self.force)),
             response_at: Some(at(self.response)),
@@ -53,9 +49,8 @@ impl Bench {
             ..RecordSetting::default()
         };
         let setup = ReceptanceSetup::new(&self.piece, self.boundary, &self.suspension, &[record], 14).unwrap();
-        let model = setup.model(&self.constants, &Damping { ratios: vec![], beyond: self.zeta }, states).unwrap();
-        let mut by = vec![Complex64::ZERO; model.columns()];
-        model.evaluator(0).unwrap().line(s, &mut by)
+        let model = setup.model(&self.constants, &Damping { ratios: vec![], beyond: self.zeta }, &states).unwrap();
+        model.accelerances(0, &[s]).unwrap()[0]
     }
 
     /// The receptance has its pole between both sides of `frequency` \[Hz\].

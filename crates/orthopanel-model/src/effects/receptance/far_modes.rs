@@ -7,66 +7,25 @@
 //! $$w_k = (-s^2)^k - \frac{2\zeta s}{\sqrt{\lambda_c}}\sum_{i\le k}a_i\lambda_c^i\,(k-i+1)(-s^2)^{k-i}.$$
 //! Without damping of these modes a driving point is wrong by 1e-3 of its motion where 24 are summed.
 
+use num_complex::Complex64;
+
 use super::view::SERIES_TERMS;
-use super::wide::Wide;
 
 /// $\sqrt u$ on $0..1$ by least squares, weighed as modes at even distances count in $C_0$: nothing is missed in the mean, 6 % rms.
 const ROOT: [f64; 3] = [0.11926884, 1.63064541, -0.8110908];
 
-/// The weights on some lines.
-#[derive(Debug, Clone, Default)]
-pub(super) struct FarModes {
-    /// $w_k$.
-    pub weights: Vec<Wide>,
-    /// What damping adds to these, which is their derivative by $\ln\zeta$ too.
-    pub by_damping: Vec<Wide>,
-    /// Their derivatives by $\lambda_c$.
-    pub by_lambda: Vec<Wide>,
-    /// Their derivatives by $s$.
-    pub by_s: Vec<Wide>,
-    /// $(-s^2)^k$.
-    powers: Vec<Wide>,
-}
-
-impl FarModes {
-    /// At `s`, above a mode of $\lambda_c$ and its root, all with one damping ratio; derivatives by $s$ only where asked for.
-    #[inline(always)]
-    pub(super) fn set(&mut self, s: &Wide, zeta: f64, [lambda, root]: [&Wide; 2], with_by_s: bool) {
-        let step = s.times(s).scaled(-1.0);
-        self.powers.clear();
-        self.powers.push(Wide::ONE);
-        for k in 1..SERIES_TERMS {
-            self.powers.push(self.powers[k - 1].times(&step));
-        }
-        let slowness = root.inverse().scaled(-2.0 * zeta);
-        let scales = [slowness, slowness.times(lambda), slowness.times(&lambda.times(lambda))];
-        let by_log = s.times(&lambda.inverse());
-        for list in [&mut self.weights, &mut self.by_damping, &mut self.by_lambda, &mut self.by_s] {
-            list.clear();
-        }
-        for k in 0..SERIES_TERMS {
-            let (mut loss, mut steeper, mut by_s) = (Wide::ZERO, Wide::ZERO, Wide::ZERO);
-            for (i, (scale, a)) in scales.iter().zip(ROOT).enumerate().take(k + 1) {
-                let term = scale.scaled(a * (k - i + 1) as f64).times(&self.powers[k - i]);
-                loss.add(&term);
-                steeper.add_scaled(i as f64 - 0.5, &term);
-                if with_by_s {
-                    // d(s(-s²)^k)/ds = (2k+1)(-s²)^k
-                    by_s.add_scaled((2 * (k - i) + 1) as f64, &term);
-                }
-            }
-            let loss = loss.times(s);
-            let mut weight = self.powers[k];
-            weight.add(&loss);
-            self.weights.push(weight);
-            self.by_damping.push(loss);
-            self.by_lambda.push(steeper.times(&by_log));
-            if with_by_s {
-                if k > 0 {
-                    by_s.add_product(&s.scaled(-2.0 * k as f64), &self.powers[k - 1]);
-                }
-                self.by_s.push(by_s);
-            }
-        }
+/// $w_k$ at `s` above a mode of $\lambda_c$; none without a mode. All have one damping ratio.
+pub(super) fn weights(s: Complex64, zeta: f64, lambda: Option<Complex64>) -> [Complex64; SERIES_TERMS] {
+    let mut powers = [Complex64::ONE; SERIES_TERMS];
+    for k in 1..SERIES_TERMS {
+        powers[k] = -powers[k - 1] * s * s;
     }
+    let Some(lambda) = lambda else { return powers };
+    let slowness = -2.0 * zeta * s / lambda.sqrt();
+    let scales = [slowness, slowness * lambda, slowness * lambda * lambda];
+    std::array::from_fn(|k| {
+        let terms = scales.iter().zip(ROOT).enumerate().take(k + 1);
+        let loss = terms.map(|(i, (scale, a))| scale * a * (k - i + 1) as f64 * powers[k - i]);
+        powers[k] + loss.sum::<Complex64>()
+    })
 }

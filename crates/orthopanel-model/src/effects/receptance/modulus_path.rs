@@ -1,10 +1,11 @@
 //! Modes at a complex shear modulus, continued from real ones.
 
-use super::modal_base::{ModalBase, Row, SharedStructure};
-use super::moved_structure::Moved;
+use num_complex::Complex64;
+
+use super::modal_base::ModalBase;
 use super::view::{Layout, View};
-use super::wide::Wide;
 use crate::effects::CoreModulus;
+use crate::effects::row::{Row, SharedStructure};
 use crate::{ModelError, side_by_side};
 
 /// Nodes of the interpolation. On the arc of a core with $\Delta = 1$ nine leave 1e-7 of a receptance.
@@ -39,8 +40,6 @@ impl NodeBases {
         values: &[f64],
         core: &CoreModulus,
         near: usize,
-        terms: &[usize],
-        moved: &[Moved],
     ) -> Result<Self, ModelError> {
         // A stretch of some width, so that the modes at its nodes differ by more than their rounding.
         let half = 0.5 * core.strength.max(0.05);
@@ -52,7 +51,7 @@ impl NodeBases {
             if let Some(modulus) = at.get_mut(SHEAR_MODULUS) {
                 *modulus *= node;
             }
-            ModalBase::new(structure, &at, near, terms, moved)
+            ModalBase::new(structure, &at, near)
         };
         let mut bases: Vec<ModalBase> = Vec::new();
         for base in side_by_side::map(&nodes, at_node) {
@@ -65,8 +64,8 @@ impl NodeBases {
         Ok(Self { nodes, bases })
     }
 
-    pub(super) fn path(&self, active: &[Row], slopes: &[Row]) -> Result<ModulusPath, ModelError> {
-        let views = self.bases.iter().map(|base| View::new(base, active, slopes)).collect::<Result<_, _>>()?;
+    pub(super) fn path(&self, rows: &[Row]) -> Result<ModulusPath, ModelError> {
+        let views = self.bases.iter().map(|base| View::new(base, rows)).collect::<Result<_, _>>()?;
         let weight = |k: usize| {
             let others = self.nodes.iter().enumerate().filter(|(other, _)| *other != k);
             others.map(|(_, node)| 1.0 / (self.nodes[k] - node)).product()
@@ -80,22 +79,17 @@ impl ModulusPath {
         self.views[0].layout
     }
 
-    /// Writes the view at the modulus factors `g` of some lines: Lagrange's polynomial.
-    #[inline(always)]
-    pub(super) fn at(&self, g: &Wide, numbers: &mut Vec<Wide>) {
-        let away: Vec<Wide> = self.nodes.iter().map(|&node| Wide::from_fn(|line| g.at(line) - node)).collect();
-        let shares: Vec<Wide> = (0..self.nodes.len())
-            .map(|k| {
-                let others = away.iter().enumerate().filter(|(other, _)| *other != k);
-                others.fold(Wide::ONE.scaled(self.weights[k]), |product, (_, away)| product.times(away))
-            })
-            .collect();
-        numbers.clear();
-        let size = self.views.first().map_or(0, |view| view.numbers.len());
-        for index in 0..size {
-            let mut sum = Wide::ZERO;
-            shares.iter().zip(&self.views).for_each(|(share, view)| sum.add_scaled(view.numbers[index], share));
-            numbers.push(sum);
+    /// The numbers of the view at a modulus factor: Lagrange's polynomial.
+    pub(super) fn at(&self, g: Complex64) -> Vec<Complex64> {
+        let share = |k: usize| {
+            let others = self.nodes.iter().enumerate().filter(|(other, _)| *other != k);
+            others.fold(Complex64::from(self.weights[k]), |product, (_, node)| product * (g - node))
+        };
+        let mut numbers = vec![Complex64::ZERO; self.views[0].numbers.len()];
+        for (k, view) in self.views.iter().enumerate() {
+            let share = share(k);
+            numbers.iter_mut().zip(&view.numbers).for_each(|(sum, number)| *sum += share * number);
         }
+        numbers
     }
 }

@@ -1,22 +1,18 @@
 //! A test as its receptances need it: piece, records, and the effects that are switched on.
 
-use std::sync::{Arc, Mutex};
+use std::sync::Arc;
 
-use super::modal_base::{ModalBase, SharedStructure};
+use super::modal_base::ModalBase;
 use super::model::{ReceptanceModel, RecordModel};
 use super::modulus_path::NodeBases;
-use super::moved_structure::Moved;
 use super::record::RecordPlan;
 use super::view::View;
-use super::wide_plate::{Summed, WidePlates};
-use crate::effects::spread_effects::SpreadEffects;
-use crate::effects::{CoreModulus, EffectSetting, EffectState, RecordSetting};
-use crate::{
-    BEAM_CONSTANTS, BeamTerms, Boundary, Damping, ModalModel, Mode, ModelError, Motion, Piece, Place, TimoshenkoBeam,
-    side_by_side,
-};
+use crate::effects::row::SharedStructure;
+use crate::effects::wide_plate::{Summed, WidePlates};
+use crate::effects::{CoreModulus, EffectSetting, EffectState, RecordSetting, SpreadEffects};
+use crate::{Boundary, Damping, ModalModel, Mode, ModelError, Motion, Piece, Place, TimoshenkoBeam, side_by_side};
 
-/// What stays the same while a search moves constants, damping and the parameters of effects.
+/// What stays the same while constants, damping and the parameters of effects change.
 pub struct ReceptanceSetup {
     piece: Piece,
     boundary: Boundary,
@@ -24,8 +20,6 @@ pub struct ReceptanceSetup {
     records: Vec<RecordSetting>,
     summed: usize,
     beam: SharedStructure,
-    /// Modes of the even beam at the constants asked for last.
-    even: Mutex<Vec<Arc<ModalBase>>>,
     plates: WidePlates,
 }
 
@@ -51,15 +45,8 @@ impl ReceptanceSetup {
         let records: Vec<_> = records.to_vec();
         let records = records.into_iter().enumerate().map(|(i, record)| record.numbered(i + 1)).collect();
         let beam = Arc::new(TimoshenkoBeam::new(&piece, boundary, basis_terms(summed))?);
-        let even = Mutex::new(vec![]);
         let plates = WidePlates::new(piece, boundary, places);
-        Ok(Self { piece, boundary, suspension: suspension.to_vec(), records, summed, beam, even, plates })
-    }
-
-    /// What an effect may ask about record `index`, counted from zero.
-    pub fn setting(&self, index: usize) -> Option<EffectSetting> {
-        let record = self.records.get(index)?.clone();
-        Some(self.setting_of(record))
+        Ok(Self { piece, boundary, suspension: suspension.to_vec(), records, summed, beam, plates })
     }
 
     fn setting_of(&self, record: RecordSetting) -> EffectSetting {
@@ -70,8 +57,7 @@ impl ReceptanceSetup {
     /// of the flexible modes, and these effects.
     ///
     /// Damping belongs to the modes of the piece without point elements and at its relaxed modulus, but with every term
-    /// that is spread over it and with its supports: $\zeta_m$ of $s^2 + 2\zeta_m\omega_ms + \omega_m^2$. Ratios in the list
-    /// have a derivative each, and that of the modes beyond has one.
+    /// that is spread over it and with its supports: $\zeta_m$ of $s^2 + 2\zeta_m\omega_ms + \omega_m^2$.
     ///
     /// # Errors
     /// [`ModelError::EffectValues`], [`ModelError::EffectParameter`] and [`ModelError::EffectNeeds`] where an effect cannot
@@ -82,28 +68,16 @@ impl ReceptanceSetup {
         damping: &Damping,
         effects: &[EffectState],
     ) -> Result<ReceptanceModel, ModelError> {
-        let constants = BEAM_CONSTANTS.len();
-        let free = damping.ratios.len();
-        let first_effect = constants + free + 1;
-        let Based { bases, core, columns: structural, summed } = self.based(values, effects, first_effect)?;
-        let shear_modulus = values.get(1).copied().unwrap_or_default();
+        let (bases, summed) = self.bases(values, effects)?;
         let record = |record: &RecordSetting| {
-            let mut plan = RecordPlan::new(&self.setting_of(record.clone()), effects, first_effect)?;
-            plan.columns.structure.clone_from(&structural);
-            plan.columns.zetas = (constants, free);
+            let plan = RecordPlan::new(&self.setting_of(record.clone()), effects)?;
             Ok(match &bases {
-                Bases::Real(base) => RecordModel::real(View::new(base, &plan.active, &plan.slopes)?, plan),
-                Bases::Complex(bases) => {
-                    let path = bases.path(&plan.active, &plan.slopes)?;
-                    RecordModel::complex(path, core, shear_modulus, plan)
-                }
+                Bases::Real(base) => RecordModel::real(View::new(base, &plan.rows)?, plan),
+                Bases::Complex(bases, core) => RecordModel::complex(bases.path(&plan.rows)?, *core, plan),
             })
         };
-        let records = side_by_side::map(&self.records, record);
-        let records = records.into_iter().collect::<Result<Vec<_>, ModelError>>()?;
-        let columns = first_effect + effects.iter().map(|effect| effect.values.len()).sum::<usize>();
-        let zetas: Vec<f64> = (1..=summed + 1).map(|mode| damping.ratio(mode)).collect();
-        Ok(ReceptanceModel::new(records, zetas, columns))
+        let records = side_by_side::map(&self.records, record).into_iter().collect::<Result<Vec<_>, ModelError>>()?;
+        Ok(ReceptanceModel::new(records, (1..=summed + 1).map(|mode| damping.ratio(mode)).collect()))
     }
 
     /// The modes that every line sums and that lie below `up_to` \[Hz\], without point elements, seen from these places.
@@ -117,7 +91,11 @@ impl ReceptanceSetup {
         [forces, responses]: [&[Place]; 2],
         up_to: f64,
     ) -> Result<ModalModel, ModelError> {
-        let base = self.real_base(values, effects)?;
+        let base = match self.bases(values, effects)?.0 {
+            Bases::Real(base) => base,
+            // Damping is of the relaxed modulus.
+            Bases::Complex(..) => ModalBase::new(&self.beam, values, self.summed)?,
+        };
         let rows: Vec<_> = forces.iter().chain(responses).map(|&place| (Motion::Deflection, place)).collect();
         let shapes = (0..base.blocks.len()).map(|block| base.rows(block, &rows)).collect::<Result<Vec<_>, _>>()?;
         let modes = base.near.iter().enumerate().map(|(index, &(block, number))| {
@@ -134,106 +112,33 @@ impl ReceptanceSetup {
         ModalModel::new(forces.len(), responses.len(), modes.collect())
     }
 
-    /// The modes that damping belongs to.
-    fn real_base(&self, values: &[f64], effects: &[EffectState]) -> Result<Arc<ModalBase>, ModelError> {
-        match self.based(values, effects, BEAM_CONSTANTS.len())?.bases {
-            Bases::Real(base) => Ok(base),
-            // Damping is of the relaxed modulus.
-            Bases::Complex(_) => self.even(values),
-        }
-    }
-
-    /// The modes with what effects spread over the piece; `first_effect` is the column of the first effect's first value.
-    fn based(&self, values: &[f64], effects: &[EffectState], first_effect: usize) -> Result<Based, ModelError> {
+    /// The modes with what effects spread over the piece, and how many flexible ones every line sums.
+    fn bases(&self, values: &[f64], effects: &[EffectState]) -> Result<(Bases, usize), ModelError> {
         let setting = self.setting_of(self.records.first().cloned().unwrap_or_default());
-        let modified = SpreadEffects::of(effects, &setting, first_effect)?;
-        let constants = 0..BEAM_CONSTANTS.len();
-        if let Some((ratios, column)) = modified.plate {
+        let SpreadEffects { terms, core, plate } = SpreadEffects::of(effects, &setting)?;
+        if let Some(ratios) = plate {
             let values: Vec<f64> = values.iter().chain(&ratios).copied().collect();
             let plate = self.plates.near(&values, Summed::Beam(self.summed))?;
-            let base = ModalBase::new(&plate.structure, &values, plate.summed, &[], &[])?;
-            let columns = constants.chain(column..column + ratios.len()).collect();
-            return Ok(Based { bases: Bases::Real(Arc::new(base)), core: None, columns, summed: plate.summed });
+            return Ok((Bases::Real(ModalBase::new(&plate.structure, &values, plate.summed)?), plate.summed));
         }
-        let is_even = modified.terms.is_none();
-        let (structure, moved): (SharedStructure, Vec<Moved>) = match modified.terms {
+        let structure: SharedStructure = match terms {
             Some(terms) => {
-                let beam = Arc::new(self.uneven(terms.clone())?);
-                let moved = self.moved(&terms, &beam)?;
-                (beam, moved)
+                let order = basis_terms(self.summed);
+                Arc::new(TimoshenkoBeam::with_terms(&self.piece, self.boundary, order, terms)?)
             }
-            None => (Arc::clone(&self.beam), vec![]),
+            None => Arc::clone(&self.beam),
         };
-        let (numbers, columns): (Vec<usize>, Vec<usize>) = modified.parameters.into_iter().unzip();
-        let columns = constants.chain(columns).collect();
-        let bases = match modified.core {
-            Some((core, _)) => {
-                Bases::Complex(NodeBases::new(&structure, values, &core, self.summed, &numbers, &moved)?)
-            }
-            None if is_even => Bases::Real(self.even(values)?),
-            None => Bases::Real(Arc::new(ModalBase::new(&structure, values, self.summed, &numbers, &moved)?)),
+        let bases = match core {
+            Some(core) => Bases::Complex(NodeBases::new(&structure, values, &core, self.summed)?, core),
+            None => Bases::Real(ModalBase::new(&structure, values, self.summed)?),
         };
-        Ok(Based { bases, core: modified.core, columns, summed: self.summed })
+        Ok((bases, self.summed))
     }
-
-    /// The modes of the even beam: starts of many effects are tried at the same constants.
-    fn even(&self, values: &[f64]) -> Result<Arc<ModalBase>, ModelError> {
-        let known = |bases: &[Arc<ModalBase>]| bases.iter().find(|base| base.values == values).cloned();
-        // A lock that a panic has poisoned only costs the repetition.
-        if let Some(base) = self.even.lock().ok().and_then(|bases| known(&bases)) {
-            return Ok(base);
-        }
-        let base = Arc::new(ModalBase::new(&self.beam, values, self.summed, &[], &[])?);
-        if let Ok(mut bases) = self.even.lock() {
-            bases.truncate(KEPT - 1);
-            bases.insert(0, Arc::clone(&base));
-        }
-        Ok(base)
-    }
-
-    fn uneven(&self, terms: BeamTerms) -> Result<TimoshenkoBeam, ModelError> {
-        TimoshenkoBeam::with_terms(&self.piece, self.boundary, basis_terms(self.summed), terms)
-    }
-
-    /// The beam with span and place of each shear loss moved.
-    fn moved(&self, terms: &BeamTerms, beam: &Arc<TimoshenkoBeam>) -> Result<Vec<Moved>, ModelError> {
-        // Shapes bend over a tenth of the length: 1e-5 of it leaves 1e-7 of rounding and of curvature.
-        let step = 1e-5 * self.piece.length;
-        let side = |index: usize, span: f64, at: f64| {
-            let mut terms = terms.clone();
-            if let Some(loss) = terms.losses.get_mut(index) {
-                loss.span += span;
-                loss.at += at;
-            }
-            self.uneven(terms)
-        };
-        let mut moved = Vec::new();
-        for index in 0..terms.losses.len() {
-            // The rotary factor stands first; loss, span and place follow for each.
-            let first = 1 + 3 * index;
-            let spans = [side(index, -step, 0.0)?, side(index, step, 0.0)?];
-            moved.push(Moved::new(first + 1, step, beam, spans));
-            let places = [side(index, 0.0, -step)?, side(index, 0.0, step)?];
-            moved.push(Moved::new(first + 2, step, beam, places));
-        }
-        Ok(moved)
-    }
-}
-
-/// What all records share.
-struct Based {
-    bases: Bases,
-    /// With the column of its first parameter.
-    core: Option<(CoreModulus, usize)>,
-    /// Column of each parameter of the structure.
-    columns: Vec<usize>,
-    /// Flexible modes that every line sums.
-    summed: usize,
 }
 
 enum Bases {
-    Real(Arc<ModalBase>),
-    Complex(NodeBases),
+    Real(ModalBase),
+    Complex(NodeBases, CoreModulus),
 }
 
 fn once_each(places: impl Iterator<Item = Place>) -> Vec<Place> {
@@ -242,9 +147,6 @@ fn once_each(places: impl Iterator<Item = Place>) -> Vec<Place> {
         known
     })
 }
-
-/// Bases of the even beam that are kept.
-const KEPT: usize = 4;
 
 /// Twice as many terms as modes, and some: the sum's modes then stand to rounding. Half of that looks like an effect.
 fn basis_terms(summed: usize) -> usize {

@@ -4,7 +4,7 @@ use std::sync::{Arc, Mutex};
 
 use faer::Mat;
 
-use super::modal_base::SharedStructure;
+use super::row::SharedStructure;
 use crate::mindlin_plate::Membrane;
 use crate::ritz_modes::ritz_modes;
 use crate::structure::{Block, Motion, Structure};
@@ -46,15 +46,8 @@ impl Structure for RatioPlate {
         self.plate.coefficients(&plate_constants(six(values)?))
     }
 
-    fn coefficient_derivatives(&self, values: &[f64]) -> Result<Mat<f64>, ModelError> {
-        let ratios @ [e_x, g_zx, e_y, _, g_xy, g_yz] = six(values)?;
-        let by_plate = self.plate.coefficient_derivatives(&plate_constants(ratios))?;
-        let mut by_ratios = Mat::zeros(6, 6);
-        let chain = [(0, 0, 1.0), (1, 0, e_y), (1, 2, e_x), (2, 3, 1.0), (3, 0, g_xy), (3, 4, e_x), (4, 1, g_yz)];
-        for (constant, ratio, factor) in chain.into_iter().chain([(4, 5, g_zx), (5, 1, 1.0)]) {
-            (0..6).for_each(|row| by_ratios[(row, ratio)] += by_plate[(row, constant)] * factor);
-        }
-        Ok(by_ratios)
+    fn coefficient_derivatives(&self, _values: &[f64]) -> Result<Mat<f64>, ModelError> {
+        Err(ModelError::Unsupported("derivatives of a plate by its ratios".into()))
     }
 
     fn blocks(&self) -> &[Block] {
@@ -69,7 +62,7 @@ impl Structure for RatioPlate {
         self.plate.motion_row(block, motion, place)
     }
 
-    fn static_remainder(&self, values: &[f64], motions: [(Motion, Place); 2]) -> Option<(f64, Vec<f64>)> {
+    fn static_remainder(&self, values: &[f64], motions: [(Motion, Place); 2]) -> Option<f64> {
         self.plate.kink(self.membrane.as_ref()?, &plate_constants(six(values).ok()?), motions)
     }
 
@@ -84,7 +77,7 @@ impl Structure for RatioPlate {
 
 /// A plate that lines can sum.
 #[derive(Clone)]
-pub(in crate::effects) struct WidePlate {
+pub(super) struct WidePlate {
     pub structure: SharedStructure,
     /// Flexible modes that every line sums.
     pub summed: usize,
@@ -92,7 +85,7 @@ pub(in crate::effects) struct WidePlate {
 
 /// Up to where modes of a plate are summed.
 #[derive(Debug, Clone, Copy)]
-pub(in crate::effects) enum Summed {
+pub(super) enum Summed {
     /// Where the beam's mode of this number lies, times [`SUMMED`].
     Beam(usize),
     /// A frequency \[Hz\].
@@ -100,7 +93,7 @@ pub(in crate::effects) enum Summed {
 }
 
 /// The plates that a search has met.
-pub(in crate::effects) struct WidePlates {
+pub(super) struct WidePlates {
     piece: Piece,
     boundary: Boundary,
     /// Where forces act and responses are seen.
@@ -126,12 +119,12 @@ const SUMMED: f64 = 0.8;
 const HELD: f64 = 1.0;
 
 impl WidePlates {
-    pub(in crate::effects) fn new(piece: Piece, boundary: Boundary, places: Vec<Place>) -> Self {
+    pub(super) fn new(piece: Piece, boundary: Boundary, places: Vec<Place>) -> Self {
         Self { piece, boundary, places, known: Mutex::new(vec![]) }
     }
 
     /// The plate for values near these.
-    pub(in crate::effects) fn near(&self, values: &[f64], summed: Summed) -> Result<WidePlate, ModelError> {
+    pub(super) fn near(&self, values: &[f64], summed: Summed) -> Result<WidePlate, ModelError> {
         let values = six(values)?;
         for (constant, &value) in RATIO_CONSTANTS.iter().zip(&values) {
             constant.check(value)?;

@@ -1,8 +1,7 @@
 //! The plate under a force that stands still.
 
-use orthopanel_model::{
-    Boundary, End, MindlinPlate, Piece, Place, SHEAR_COEFFICIENT, sensitive_modes, static_deflections,
-};
+use super::static_deflections;
+use crate::{Boundary, End, MindlinPlate, Piece, Place, SHEAR_COEFFICIENT, sensitive_modes};
 
 const HONEYCOMB: [f64; 6] = [1.07e10, 8.2e9, 0.3, 2.9e9, 3.1e8, 5.363e8];
 
