@@ -8,13 +8,13 @@ use rayon::prelude::*;
 use crate::accelerance_fit::told_variance;
 use crate::{AcceleranceFit, IdentifyError};
 
-/// Measured and calculated, up to `band` \[Hz\], record by record; `setup` has the records in the same order.
+/// Measured and calculated, up to `band` \[Hz\], record by record of a piece; `setup` has the records in the same order.
 ///
 /// # Errors
 /// What the model refuses.
 pub(crate) fn curves(
     accelerances: &[Accelerance],
-    setup: &ReceptanceSetup,
+    (piece, setup): (usize, &ReceptanceSetup),
     (constants, damping, effects): (&[f64], &Damping, &[EffectState]),
     band: f64,
 ) -> Result<Vec<AcceleranceFit>, IdentifyError> {
@@ -25,7 +25,7 @@ pub(crate) fn curves(
         let at = |f: &f64| Complex64::new(record.decay_rate, std::f64::consts::TAU * f);
         let s: Vec<Complex64> = frequency.iter().map(at).collect();
         AcceleranceFit {
-            piece: 0,
+            piece,
             force_at: record.force_at,
             response_at: record.response_at,
             model: model.accelerances(index, &s).unwrap_or_default(),

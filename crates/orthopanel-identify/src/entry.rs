@@ -4,6 +4,7 @@ use orthopanel_data::{ImpactTest, MeasurementData};
 use orthopanel_model::{ModelError, StructureKind};
 
 use crate::answer::{PlateByModes, identify_lists_with_effects, identify_with_effects, without_repeats};
+use crate::inference::is_record;
 use crate::{
     DampingLaw, Identification, IdentifyError, Search, Settings, accelerance_fit, frequency_fit, known_beforehand,
 };
@@ -86,10 +87,11 @@ fn by_modes_of_beams(test: &ImpactTest, lists: usize, settings: Settings) -> Res
     if lists == test.measurements.len() {
         return identify_lists_with_effects(test)?.determined();
     }
-    accelerance_fit::refuse_other_units(test, &test.accelerances(settings.estimation)?)?;
+    let records = records_alone(test);
+    accelerance_fit::refuse_other_units(&records, &records.accelerances(settings.estimation)?)?;
     let mut found = identify_with_effects(test, settings.estimation)?.determined()?;
     accelerance_fit::refuse_missed(test, &found.accelerances)?;
-    found.question = accelerance_fit::question_of_window(test);
+    found.question = accelerance_fit::question_of_window(&records);
     found.notes.extend(found.question.clone());
     Ok(found)
 }
@@ -100,6 +102,19 @@ fn plate_by_modes(test: &ImpactTest) -> Option<PlateByModes> {
     let is_one_plate =
         test.structure == Some(StructureKind::MindlinPlate) && test.pieces.len() == 1 && test.constants.is_empty();
     if is_one_plate { PlateByModes::of(test).ok().flatten() } else { None }
+}
+
+/// The records of a test without the lists that stand beside them, and the piece that was hit alone.
+pub(crate) fn records_alone(test: &ImpactTest) -> ImpactTest {
+    let mut records = test.clone();
+    if let Some(hit) = test.measurements.iter().find(|measurement| is_record(measurement))
+        && !test.measurements.iter().all(is_record)
+    {
+        records.measurements.retain(|measurement| is_record(measurement) && measurement.piece == hit.piece);
+        records.measurements.iter_mut().for_each(|measurement| measurement.piece = 0);
+        records.pieces = vec![test.pieces[hit.piece].clone()];
+    }
+    records
 }
 
 /// A law that is indefinite where the search began says nothing of the values it began with, where these are not the user's.

@@ -270,7 +270,7 @@ fn choices(parameter: &EffectParameter, piece: &Piece, records: usize) -> Vec<Ve
     if parameter.scale == Scale::Index {
         return (1..=records.max(1)).map(|record| vec![Slot::Held(record as f64)]).collect();
     }
-    let times = if parameter.each_record { records } else { 1 };
+    let times = if parameter.each_record { records.max(1) } else { 1 };
     let of = |map: Map| vec![Slot::Free(Coordinate { map, range }); times];
     let free = match parameter.prior {
         Prior::Even => vec![of(Map::Even { low: range.0, high: range.1 })],
@@ -358,11 +358,6 @@ impl Hypothesis {
     /// Number and piece of each constant, in the order of [`Self::values_with_deviations`].
     pub(crate) fn constant_numbers(&self) -> impl Iterator<Item = (usize, Option<usize>)> {
         self.constants.iter().map(|of| (of.constant, of.piece))
-    }
-
-    /// Of the first piece.
-    pub(crate) fn constants(&self, z: &[f64]) -> Vec<f64> {
-        self.constants_of(0, z)
     }
 
     /// Of a piece, in the structure's order.

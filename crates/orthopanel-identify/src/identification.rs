@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use crate::hypothesis::has_place;
 use crate::{IdentifyError, TracedEffect};
 use num_complex::Complex64;
 use orthopanel_data::NamedPiece;
@@ -230,6 +231,13 @@ impl Identification {
         // A piece's own constant stands behind the shared one, and so replaces it.
         let of_piece = |constant: &&IdentifiedConstant| constant.piece.as_ref().is_none_or(|name| *name == fit.name);
         let ratios = fit.damping.iter().map(|ratio| ratio.value).collect();
+        // An effect at a place is on the piece that was hit.
+        let hit = self.accelerances.first().and_then(|record| self.pieces.get(record.piece));
+        let is_elsewhere = hit.is_some_and(|hit| hit.name != fit.name);
+        let acts = |effect: &&TracedEffect| {
+            let is_placed = || orthopanel_model::effect(effect.id).is_ok_and(has_place);
+            effect.owner == Owner::Panel && !(is_elsewhere && is_placed())
+        };
         PanelModel {
             name: None,
             schema: MODEL_SCHEMA.to_owned(),
@@ -243,12 +251,7 @@ impl Identification {
                 .map(|constant| (constant.name.to_owned(), estimate(constant)))
                 .collect(),
             damping: Damping { ratios, beyond: 0.0 },
-            effects: self
-                .effects
-                .iter()
-                .filter(|effect| effect.owner == Owner::Panel)
-                .map(TracedEffect::entry)
-                .collect(),
+            effects: self.effects.iter().filter(acts).map(TracedEffect::entry).collect(),
             ports,
             provenance: BTreeMap::new(),
         }

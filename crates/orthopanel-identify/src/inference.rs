@@ -1,6 +1,6 @@
 //! From a test to the hypotheses that are held against its measured modes.
 
-use orthopanel_data::ImpactTest;
+use orthopanel_data::{ImpactTest, Measurement};
 use orthopanel_model::{BEAM_CONSTANTS, EffectSetting, RecordSetting, StructureKind};
 
 use crate::IdentifyError;
@@ -19,31 +19,46 @@ fn too_few(found: usize) -> IdentifyError {
     IdentifyError::TooFewResonances { found, needed: 2, noise_percent: None }
 }
 
-/// What is said from the base of a test, the beam with the effects that the file declares, held against the modes that the records of one piece
-/// show, while all that it is held against is at hand.
+/// # Errors
+/// [`IdentifyError::Unsupported`] for records of several pieces or of two kinds: places and gains would be numbered across them.
+pub(crate) fn refuse_several(test: &ImpactTest) -> Result<(), IdentifyError> {
+    let records = test.measurements.iter().filter(|measurement| is_record(measurement));
+    let of: Vec<_> = records.map(|of| (of.piece, std::mem::discriminant(&of.data))).collect();
+    if of.windows(2).all(|pair| pair[0] == pair[1]) {
+        return Ok(());
+    }
+    Err(IdentifyError::Unsupported(
+        "records of several pieces, or hits beside files of accelerances, with effects or lists: give each a test file of its own; lists of \
+         natural frequencies, of any piece, may stand beside one of them"
+            .to_owned(),
+    ))
+}
+
+pub(crate) fn is_record(measurement: &Measurement) -> bool {
+    measurement.data.recorded().is_some()
+}
+
+/// What is said from the base of a test, the beam with the effects that the file declares, held against the measured modes, while all that it is held
+/// against is at hand.
 ///
 /// # Errors
-/// As [`measured_modes`], and what is said; [`IdentifyError::Model`] for a piece or an effect that has no meaning.
+/// As [`refuse_several`] and [`measured_modes`], and what is said; [`IdentifyError::Model`] for a piece or an effect that has no meaning.
 pub(crate) fn from_base<T>(
     test: &ImpactTest,
     progress: &(dyn Fn(Progress) + Sync),
     say: impl FnOnce(Inquiry, Judged) -> Result<T, IdentifyError>,
 ) -> Result<T, IdentifyError> {
-    let largest = test.pieces.iter().map(|named| named.piece).max_by(|a, b| a.mass().total_cmp(&b.mass()));
-    let piece = largest.ok_or_else(|| too_few(0))?;
+    let hit = test.measurements.iter().find(|measurement| is_record(measurement));
+    let hit = hit.map(|hit| test.pieces[hit.piece].piece);
+    let largest = || test.pieces.iter().map(|named| named.piece).max_by(|a, b| a.mass().total_cmp(&b.mass()));
+    let piece = hit.or_else(largest).ok_or_else(|| too_few(0))?;
+    refuse_several(test)?;
     // What is declared wrongly is said before the records are read.
     let constants = FreeConstants::of(test, &BEAM_CONSTANTS)?;
     let declared = declared_parts(test, &piece, pairs_of_places(test))?;
     let mut all: Vec<MeasuredModes> = measured_modes(test)?.into_iter().map(MeasuredModes::without_faint).collect();
     all.sort_by_key(|of| of.records.is_empty());
     let measured = all.first().ok_or_else(|| too_few(0))?;
-    if all.iter().skip(1).any(|of| !of.records.is_empty()) {
-        return Err(IdentifyError::Unsupported(
-            "records of several pieces, or hits beside files of accelerances: give each a test file of its own; lists of natural \
-             frequencies, of any piece, may stand beside one of them"
-                .to_owned(),
-        ));
-    }
     let hit = (!measured.records.is_empty()).then_some(measured.piece);
     let comparisons: Vec<Comparison> =
         all.iter().map(|of| Comparison::new(of, test.pieces[of.piece].piece.mass())).collect();

@@ -4,6 +4,7 @@ use crate::measured::MeasuredModes;
 use crate::model_error::Kind;
 use crate::outcome::Verdict;
 use crate::posterior::Judged;
+use crate::stacked::Stacked;
 
 /// Odds from which a hypothesis is clearly ahead: an effect is named at these odds against the best hypothesis without it. Very strong evidence
 /// begins at 150 (Kass and Raftery, J. Am. Stat. Assoc. 90, 1995); here sizes of model error are held where they are most probable, and evidence that
@@ -16,9 +17,11 @@ const MOST_RESIDUE: f64 = 3e-2;
 const MOST_READ: f64 = 2e-2;
 
 /// Largest deviation of the logarithm of a frequency from a sound model.
-pub(crate) fn most_frequency(measured: &MeasuredModes) -> f64 {
-    let is_untold = measured.records.is_empty() && measured.covariance.norm_max() == 0.0;
-    if is_untold { MOST_READ } else { MOST_FREQUENCY }
+pub(crate) fn most_frequency(stacked: &Stacked) -> f64 {
+    let measured = || stacked.blocks.iter().map(|block| block.comparison().measured);
+    let are_lists = measured().all(|of| of.records.is_empty());
+    let is_untold = measured().any(|of| of.covariance.norm_max() == 0.0);
+    if are_lists && is_untold { MOST_READ } else { MOST_FREQUENCY }
 }
 
 /// Whether a pole towers over what all others do there, and is no mode of a hypothesis. Cords that nobody told may do so as long as they stiffen the
@@ -32,15 +35,13 @@ pub(crate) fn has_no_mode(judged: &Judged, measured: &MeasuredModes, pole: usize
 }
 
 /// Of hypotheses in order, the likeliest first, the simplest that is not clearly behind; the verdict; and the rivals where that is ambiguous.
-pub(crate) fn judged<'a>(
-    all: &'a [Judged],
-    measured: &MeasuredModes,
-) -> Option<(&'a Judged, Verdict, Vec<&'static str>)> {
+pub(crate) fn judged<'a>(all: &'a [Judged], stacked: &Stacked) -> Option<(&'a Judged, Verdict, Vec<&'static str>)> {
     let best = all.first()?;
     let near = || all.iter().filter(|judged| best.log_odds - judged.log_odds < ODDS.ln());
     let chosen = near().min_by_key(|judged| judged.names().len())?;
     let size = |kind: Kind| chosen.posterior.log_sizes[kind as usize].exp();
-    let misses_most = size(Kind::Frequency) > most_frequency(measured) || size(Kind::Residue) > MOST_RESIDUE;
+    let measured = stacked.first().comparison().measured;
+    let misses_most = size(Kind::Frequency) > most_frequency(stacked) || size(Kind::Residue) > MOST_RESIDUE;
     if misses_most || (0..measured.poles.len()).any(|pole| has_no_mode(chosen, measured, pole)) {
         return Some((chosen, Verdict::Unexplained, vec![]));
     }

@@ -314,9 +314,8 @@ impl ErrorColumns {
             };
             places.push(own.kinds.iter().zip(&own.of_piece).map(place).collect());
         }
-        let of_piece = keys.iter().map(|key| key.map(|(.., number)| number)).collect();
         let columns = Mat::zeros(rows, kinds.len());
-        let mut stacked = Self { columns, kinds, of_piece, uninformative: vec![], without_partner: vec![] };
+        let mut stacked = Self { columns, kinds, of_piece: vec![], uninformative: vec![], without_partner: vec![] };
         let mut row = 0;
         for ((_, own), places) in all.into_iter().zip(places) {
             let rows = own.columns.nrows();

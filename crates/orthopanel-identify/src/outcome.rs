@@ -11,7 +11,8 @@ pub enum Verdict {
     NothingMissing,
     /// One effect, or several, clearly ahead of all others.
     Explained,
-    /// Several effects fit alike: see [`Tracing::alternatives`] and [`Tracing::next_experiment`].
+    /// Several effects fit alike, or some are ahead of nothing missing, but not clearly, and none is named: see [`Tracing::alternatives`] and
+    /// [`Tracing::next_experiment`].
     Ambiguous,
     /// Structure remains in the residual, and no effect of the catalogue takes it away.
     Unexplained,
@@ -36,7 +37,7 @@ pub struct Tracing {
     pub verdict: Verdict,
     /// The effects that explain the data best; what the file declares is not among them.
     pub effects: Vec<TracedEffect>,
-    /// Effects that explain the data about as well: ids, several joined by ` + `.
+    /// Effects that explain the data about as well: ids, each once.
     pub alternatives: Vec<String>,
     /// Error of the base and of the model with the effects.
     pub error: TracedError,

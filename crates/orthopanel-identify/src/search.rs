@@ -118,16 +118,18 @@ impl<'a> Inquiry<'a> {
     ) -> Result<Option<(Self, Judged)>, ModelError> {
         let mut inquiry = Self { stacked, hits: None, progress: SearchProgress::default() };
         let starts = starting_constants(inquiry.stacked.longest(), usize::MAX)?;
+        let poles = inquiry.stacked.longest().comparison().measured.poles.iter();
+        let hertz: Vec<f64> = poles.map(|pole| pole.angular_frequency / TAU).collect();
         let mut best: Option<(f64, Hypothesis, Point)> = None;
         for start in starts {
             let hypothesis = Hypothesis::new(constants, &start, declared.to_vec());
             let problem = inquiry.problem(&hypothesis);
             let mut nets: Vec<Vec<f64>> = vec![vec![0.0; hypothesis.free_constants()]];
             for part in &hypothesis.parts {
-                let starts = part.starts(|_, _| vec![]);
+                let starts = part.starts(|_, _| hertz.clone());
                 nets = nets.iter().flat_map(|net| starts.iter().map(|start| [&net[..], start].concat())).collect();
             }
-            let Ok(mut at) = problem.at(&nets[0]) else { continue };
+            let Some(Ok(mut at)) = nets.first().map(|first| problem.at(first)) else { continue };
             // A sensitivity that is open may be any, and is told at once.
             if let Some(z) = hypothesis.multiplied(&nets[0], larger(inquiry.comparison(), at.first())) {
                 let Ok(there) = problem.at(&z) else { continue };
@@ -172,7 +174,7 @@ impl<'a> Inquiry<'a> {
         Problem { stacked: &self.stacked, hypothesis }
     }
 
-    /// What stands in place of the records of the only block where records are judged.
+    /// What predicts the first block: the records, where there are any.
     pub(crate) fn predictor(&self) -> &Predictor<'a> {
         &self.stacked.first().predictor
     }
@@ -181,7 +183,7 @@ impl<'a> Inquiry<'a> {
         self.stacked.first().comparison()
     }
 
-    /// The modes of the records.
+    /// The modes of the first block: the records, where there are any.
     pub(crate) fn measured(&self) -> &'a MeasuredModes {
         self.comparison().measured
     }
@@ -267,7 +269,7 @@ impl<'a> Inquiry<'a> {
         fewer
     }
 
-    /// What an effect does to the first record at usual values.
+    /// What an effect does at usual values, in the first block where it does anything.
     ///
     /// # Errors
     /// What the test lacks for it.

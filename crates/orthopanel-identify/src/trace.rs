@@ -1,10 +1,12 @@
 //! Closing the loop: the effect that the base model lacks, by name.
 
-use orthopanel_data::{ImpactTest, Measurement};
+use orthopanel_data::ImpactTest;
 use orthopanel_model::{Estimate, Owner, StructureKind};
 
 use crate::accelerance_fit::{WINDOW_EFFECT, question_of_window, refuse_missed};
 use crate::answer::{answer, answer_of_lists, without_repeats};
+use crate::entry::records_alone;
+use crate::inference::{is_record, refuse_several};
 use crate::outcome::{Progress, Removed, TracedEffect, TracedParameter, Tracing, Verdict};
 use crate::to_check::to_check;
 use crate::{IdentifyError, Settings, identify};
@@ -68,10 +70,6 @@ fn of_data(test: &ImpactTest, progress: &(dyn Fn(Progress) + Sync)) -> Result<Tr
     let mut found = answer(&once, progress)?;
     found.notes.extend(repeated);
     Ok(found)
-}
-
-fn is_record(measurement: &Measurement) -> bool {
-    measurement.data.recorded().is_some()
 }
 
 /// Before records say what lacks, the window is asked about that they may have been averaged under: free damping takes up most of it.
@@ -138,22 +136,18 @@ fn identified(test: &ImpactTest) -> Result<Identified, IdentifyError> {
     if test.structure == Some(StructureKind::MindlinPlate) {
         return Err(IdentifyError::PlateNotTraced);
     }
-    let Some(hit) = test.measurements.iter().find(|measurement| is_record(measurement)).map(|hit| hit.piece) else {
+    if !test.measurements.iter().any(is_record) {
         return Ok(Identified::default());
-    };
-    let mut records = test.clone();
-    if !test.measurements.iter().all(is_record) {
-        records.measurements.retain(|measurement| is_record(measurement) && measurement.piece == hit);
-        records.measurements.iter_mut().for_each(|measurement| measurement.piece = 0);
-        records.pieces = vec![test.pieces[hit].clone()];
     }
+    refuse_several(test)?;
+    let records = records_alone(test);
     match identify(&records, Settings::default()) {
         Ok(found) => {
             let said = found.notes.first().cloned().unwrap_or_default();
             Ok(Identified { refused: None, question: found.question, gain: found.common_gain.map(|gain| (gain, said)) })
         }
         Err(refused) if refused.is_of_records() => Err(refused),
-        Err(refused) => Ok(Identified { refused: Some(refused), question: question_of_window(test), gain: None }),
+        Err(refused) => Ok(Identified { refused: Some(refused), question: question_of_window(&records), gain: None }),
     }
 }
 
@@ -163,7 +157,7 @@ fn declared_gain(test: &ImpactTest) -> Option<f64> {
     declared.parameters.get("gain").copied()
 }
 
-/// A factor on all records is said first, and named where nothing else lacks; beside a declared one, that one is doubted.
+/// A factor on all records is said first, and named where nothing else lacks clearly; beside a declared one, that one is doubted.
 fn with_gain(mut found: Tracing, declared: Option<f64>, (gain, said): (Estimate, String)) -> Tracing {
     if let Some(declared) = declared {
         let sentence = format!(
@@ -183,6 +177,11 @@ fn with_gain(mut found: Tracing, declared: Option<f64>, (gain, said): (Estimate,
         let effect = TracedEffect { id: GAIN, owner: Owner::Channel, parameters };
         found.alternatives.retain(|id| id != GAIN);
         found.verdict = if found.alternatives.is_empty() { Verdict::Explained } else { Verdict::Ambiguous };
+        if found.verdict == Verdict::Explained {
+            // What was in doubt is not any more.
+            found.notes.retain(|note| !note.starts_with(&format!("{GAIN} is ahead of ")));
+            found.next_experiment = "none: the factor on all records is known".to_owned();
+        }
         found.removed.push(Removed::of(&effect, false));
         found.effects.push(effect);
     }

@@ -40,6 +40,11 @@ pub(crate) fn identify_with_effects(
 pub(crate) fn identify_lists_with_effects(test: &ImpactTest) -> Result<Identification, IdentifyError> {
     from_base(test, &|_| {}, |inquiry, base| {
         let mut notes = notes_on_hidden(test, &inquiry)?;
+        let (found, needed) = (inquiry.frequencies(), base.posterior.point.z.len());
+        if found < needed {
+            let names = "constants and numbers of declared effects".to_owned();
+            return Err(IdentifyError::TooFewFrequencies { found, needed, names });
+        }
         let estimates = Estimates::of(&base);
         notes.extend(notes_on_prior_alone(&base, &estimates));
         notes.extend(notes_on_bound(&estimates, inquiry.predictor().piece()));

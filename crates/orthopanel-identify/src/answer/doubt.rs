@@ -50,7 +50,7 @@ pub(super) fn notes_on_not_shown(inquiry: &Inquiry, base: &Judged) -> Vec<String
     let note = |(index, without): (usize, Judged)| {
         let id = base.hypothesis.parts[index].effect.id();
         format!(
-            "the records do not show the declared {id}: the logarithm of the odds is {:.1} better without it, whatever the numbers that are found for \
+            "the data do not show the declared {id}: the logarithm of the odds is {:.1} better without it, whatever the numbers that are found for \
              it. Leave the effect out, or give its numbers",
             gain(&without)
         )
@@ -60,5 +60,5 @@ pub(super) fn notes_on_not_shown(inquiry: &Inquiry, base: &Judged) -> Vec<String
 
 /// Weighing what is declared costs less than any hit, and no hit parts it from an effect of the panel that undoes it.
 pub(super) fn check_first(doubt: &Doubt) -> String {
-    format!("weigh or measure what the test file declares, before any further hit: {}", doubt.sentence)
+    format!("weigh or measure what the test file declares, before any further measurement: {}", doubt.sentence)
 }

@@ -90,7 +90,8 @@ impl Lines {
         let bare = Damping::default();
         let modes = setup.summed_modes(constants, (&bare, effects), [&forces, &responses], SUMMED * band)?;
         let damping = TracedDamping::of(measured, &modes, of_effects);
-        let curves = curves(&self.accelerances, &setup, (constants, &damping.damping, effects), band)?;
+        let curves =
+            curves(&self.accelerances, (measured.piece, &setup), (constants, &damping.damping, effects), band)?;
         Ok(Drawn { curves, damping })
     }
 }

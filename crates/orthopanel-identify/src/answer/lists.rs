@@ -4,7 +4,7 @@ use faer::Mat;
 use orthopanel_data::{ImpactTest, Measurement, MeasurementData, limits};
 
 use crate::IdentifyError;
-use crate::declared_effects::declared;
+use crate::declared_effects::{Declared, declared};
 use crate::hypothesis::has_place;
 use crate::inference::from_base;
 use crate::model_error::Kind;
@@ -62,8 +62,9 @@ pub(crate) fn without_repeats(test: &ImpactTest) -> (ImpactTest, Vec<String>) {
     once.measurements.clear();
     let mut notes = Vec::new();
     for (number, measurement) in (1..).zip(&test.measurements) {
+        let is_list = matches!(measurement.data, MeasurementData::NaturalFrequencies(_));
         let alike = |kept: &Measurement| kept.piece == measurement.piece && kept.data == measurement.data;
-        if once.measurements.iter().any(alike) {
+        if is_list && once.measurements.iter().any(alike) {
             notes.push(format!(
                 "measurement {number} is the list of an earlier one to the last digit: it counts once, for a copy tells nothing"
             ));
@@ -74,7 +75,9 @@ pub(crate) fn without_repeats(test: &ImpactTest) -> (ImpactTest, Vec<String>) {
     (once, notes)
 }
 
-fn refuse_many(test: &ImpactTest) -> Result<(), IdentifyError> {
+/// # Errors
+/// [`IdentifyError::TooManyFrequencies`], [`IdentifyError::TooManyFrequenciesOfPiece`].
+pub(super) fn refuse_many(test: &ImpactTest) -> Result<(), IdentifyError> {
     let listed = |measurement: &Measurement| match &measurement.data {
         MeasurementData::NaturalFrequencies(list) => list.values.len(),
         _ => 0,
@@ -103,10 +106,12 @@ pub(super) fn notes_on_hidden(test: &ImpactTest, inquiry: &Inquiry) -> Result<Ve
         let id = told.effect.id();
         let why = match inquiry.hidden_in_lists(told.effect) {
             Some(_) if has_place(told.effect) => continue,
+            // A core acts, though nothing of it could be found.
+            Some(_) if is_told(&told) && inquiry.acts(told.effect).is_ok_and(|acts| !acts.is_empty()) => continue,
             Some(why) => why,
             None => continue,
         };
-        if told.values.iter().zip(told.effect.parameters()).any(|(value, of)| value.is_none() && of.held_at.is_none()) {
+        if !is_told(&told) {
             return Err(IdentifyError::Unsupported(format!(
                 "effect {id:?}: nothing of it can be found from these natural frequencies: {why}; or leave the effect out"
             )));
@@ -114,6 +119,11 @@ pub(super) fn notes_on_hidden(test: &ImpactTest, inquiry: &Inquiry) -> Result<Ve
         notes.push(format!("the declared {id} has no influence on these data: {why}"));
     }
     Ok(notes)
+}
+
+/// Whether the file gives all numbers of an effect.
+fn is_told(of: &Declared) -> bool {
+    of.values.iter().zip(of.effect.parameters()).all(|(value, of)| value.is_some() || of.held_at.is_some())
 }
 
 fn tracing_of(test: &ImpactTest, inquiry: &Inquiry, all: &[Judged]) -> Result<Tracing, IdentifyError> {
@@ -143,12 +153,12 @@ fn tracing_of(test: &ImpactTest, inquiry: &Inquiry, all: &[Judged]) -> Result<Tr
         (None, Verdict::NothingMissing) => {
             "none: the base model meets the frequencies as well as any effect does".to_owned()
         }
-        _ => next_list(inquiry, &panels, chosen, &weighed.nearest(all)),
+        _ => next_list(test, inquiry, chosen, &weighed.nearest(all)),
     };
     Ok(Tracing {
         verdict,
         effects: estimates.undeclared(),
-        alternatives: weighed.alternatives(),
+        alternatives: if too_few { tried(all) } else { weighed.alternatives() },
         error: TracedError {
             measure: MEASURE.to_owned(),
             before,
@@ -166,6 +176,14 @@ fn tracing_of(test: &ImpactTest, inquiry: &Inquiry, all: &[Judged]) -> Result<Tr
         base_accelerances: vec![],
         notes,
     })
+}
+
+/// Every effect that was tried, once.
+fn tried(all: &[Judged]) -> Vec<String> {
+    let mut names: Vec<&str> = all.iter().flat_map(Judged::names).collect();
+    names.sort_unstable();
+    names.dedup();
+    names.into_iter().map(str::to_owned).collect()
 }
 
 /// Rms of what the lists tell of their noise, relative to each frequency.
@@ -189,8 +207,11 @@ pub(super) fn percent(inquiry: &Inquiry, judged: &Judged) -> Option<FittedError>
     let left_out = Yardstick::of(&problem, &judged.posterior)?.left_out(&problem, point)?;
     let is_foretold =
         |(place, (_, variance)): &(usize, (f64, f64))| covariance[(*place, *place)] > OF_OTHERS * variance;
-    let foretold: Vec<f64> =
-        left_out.into_iter().enumerate().filter(is_foretold).map(|(_, (missed, _))| missed).collect();
+    let missed = |(_, (missed, _)): (usize, (f64, f64))| missed;
+    let mut foretold: Vec<f64> = left_out.iter().copied().enumerate().filter(is_foretold).map(missed).collect();
+    if foretold.is_empty() {
+        foretold = left_out.into_iter().enumerate().map(missed).collect();
+    }
     Some(FittedError { fitted: rms(&problem.missed(&point.at)), held_out: rms(&foretold) })
 }
 

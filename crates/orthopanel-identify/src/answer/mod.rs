@@ -18,6 +18,7 @@ mod weighed;
 
 pub(crate) use declared::{identify_lists_with_effects, identify_with_effects};
 pub(crate) use identified::PlateByModes;
+use lists::refuse_many;
 pub(crate) use lists::{answer_of_lists, without_repeats};
 
 use orthopanel_data::{Estimation, ImpactTest};
@@ -51,8 +52,9 @@ const FORCE_DROP: f64 = 20.0;
 /// What the measured modes of the records of one beam say.
 ///
 /// # Errors
-/// As [`from_base`].
+/// As [`from_base`], and [`IdentifyError::TooManyFrequencies`] for lists beside the records.
 pub(crate) fn answer(test: &ImpactTest, progress: &(dyn Fn(Progress) + Sync)) -> Result<Tracing, IdentifyError> {
+    refuse_many(test)?;
     from_base(test, progress, |mut inquiry, base| {
         inquiry.hits = HitStrength::new(test, inquiry.measured().band)?;
         let all = inquiry.search(base);

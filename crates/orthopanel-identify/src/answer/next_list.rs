@@ -1,5 +1,6 @@
 //! The further list of natural frequencies that would part the chosen hypothesis from its rivals best.
 
+use orthopanel_data::ImpactTest;
 use orthopanel_model::{EffectSetting, ModeRange, ModelError, PanelModel, Place, StructureKind, natural_frequencies};
 
 use crate::model_error::Kind;
@@ -7,9 +8,10 @@ use crate::posterior::Judged;
 use crate::search::Inquiry;
 use crate::stacked::Block;
 
-use super::estimates::id;
+use super::estimates::{Estimates, id};
 use super::lists::noise;
 use super::next_measurement::{PARTS, sensor_with};
+use super::panel::panels_of_lists;
 
 /// Masses that a tester adds, in parts of the piece's \[1\].
 const ADDED: [f64; 3] = [0.05, 0.1, 0.2];
@@ -23,14 +25,21 @@ const FURTHER: f64 = 1.3;
 const NAMED: usize = 3;
 
 /// What to measure next, in words, with the difference that the hypotheses then show over noise and model error.
-pub(super) fn next_list(inquiry: &Inquiry, panels: &[PanelModel], chosen: &Judged, others: &[&Judged]) -> String {
+pub(super) fn next_list(test: &ImpactTest, inquiry: &Inquiry, chosen: &Judged, others: &[&Judged]) -> String {
     if others.is_empty() {
         return "none: no other effect of the catalogue could be tried".to_owned();
     }
     let second = others.iter().map(|other| id(other)).collect::<Vec<_>>().join(", ");
     let first = id(chosen);
-    if panels.iter().any(|panel| panel.structure == StructureKind::MindlinPlate) {
-        return across(inquiry, panels, &second);
+    // What is a beam in one and a plate in the other shows off the centre line.
+    let panels = |judged: &Judged| panels_of_lists(test, inquiry, judged, &Estimates::of(judged)).0;
+    let is_plate = |panel: &PanelModel| panel.structure == StructureKind::MindlinPlate;
+    let of_chosen = panels(chosen);
+    if of_chosen.iter().any(is_plate) {
+        return across(inquiry, &of_chosen, &second);
+    }
+    if let Some(plates) = others.iter().map(|other| panels(other)).find(|panels| panels.iter().any(is_plate)) {
+        return across(inquiry, &plates, &first);
     }
     let block = inquiry.stacked.longest();
     let setting = block.predictor.setting(0);

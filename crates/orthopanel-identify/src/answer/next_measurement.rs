@@ -151,7 +151,8 @@ impl<'a> Further<'a> {
         setting.record = RecordSetting { response_at: Some(self.measured.records[0].response_at), ..setting.record };
         let predictor = Predictor::new(&comparison, StructureKind::TimoshenkoBeam, &setting)?;
         let predicted = |judged: &Judged| -> Result<_, ModelError> {
-            let (constants, effects) = (judged.hypothesis.constants(&judged.posterior.point.z), self.effects(judged)?);
+            let (constants, effects) =
+                (judged.hypothesis.constants_of(self.measured.piece, &judged.posterior.point.z), self.effects(judged)?);
             Ok((predictor.at(&constants, &effects, true)?, constants, effects))
         };
         let ((at, constants, effects), (other, ..)) = (predicted(one)?, predicted(other)?);

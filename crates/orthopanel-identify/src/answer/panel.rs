@@ -64,7 +64,7 @@ pub(super) fn panels_of_lists(
 ) -> (Vec<PanelModel>, Vec<Removed>) {
     let plate = judged.hypothesis.parts.iter().position(|part| part.replaces_structure(inquiry.predictor()));
     let hit = (!inquiry.is_of_lists()).then_some(inquiry.measured().piece);
-    let is_elsewhere = |id: &str| orthopanel_model::effect(id).is_ok_and(has_place);
+    let is_placed = |id: &str| orthopanel_model::effect(id).is_ok_and(has_place);
     let (own, others) = own_and_others(estimates, plate);
     let of_piece = |(piece, named): (usize, &NamedPiece)| {
         let ports = Ports { forces: vec![], responses: vec![] };
@@ -72,7 +72,7 @@ pub(super) fn panels_of_lists(
         if let Some((ratios, _)) = plate.and_then(|number| estimates.effects.get(number)) {
             widen(&mut panel, ratios);
         }
-        let acts = |effect: &&TracedEffect| hit.is_none_or(|hit| hit == piece) || !is_elsewhere(effect.id);
+        let acts = |effect: &&TracedEffect| hit.is_none_or(|hit| hit == piece) || !is_placed(effect.id);
         panel.effects = own.iter().map(|(effect, _)| effect).filter(acts).map(TracedEffect::entry).collect();
         panel
     };

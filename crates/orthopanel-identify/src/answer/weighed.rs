@@ -21,7 +21,7 @@ pub(super) struct Weighed<'a> {
     /// With nothing missing.
     pub base: &'a Judged,
     pub verdict: Verdict,
-    /// Hypotheses that are not clearly behind, where that is ambiguous; those ahead of nothing missing, but not clearly.
+    /// Where that is ambiguous, the hypotheses that are not clearly behind; of nothing missing, those that are ahead of it.
     pub near: Vec<&'a Judged>,
     rivals: Vec<&'static str>,
     doubts: Vec<Doubt>,
@@ -33,7 +33,7 @@ impl<'a> Weighed<'a> {
     pub(super) fn of(inquiry: &Inquiry, all: &'a [Judged]) -> Result<Self, IdentifyError> {
         let measured = inquiry.measured();
         let none = IdentifyError::TooFewResonances { found: measured.poles.len(), needed: 2, noise_percent: None };
-        let (chosen, verdict, found_rivals) = judged(all, measured).ok_or(none)?;
+        let (chosen, verdict, found_rivals) = judged(all, &inquiry.stacked).ok_or(none)?;
         let base = all.iter().find(|judged| judged.names().is_empty()).unwrap_or(chosen);
         let mut doubts = doubts(inquiry, base, &all[0]);
         let is_unexplained = verdict == Verdict::Unexplained;

@@ -82,7 +82,7 @@ impl Inquiry<'_> {
             nets
         };
         let mut bases = vec![base.posterior.point.z.clone()];
-        if base.posterior.log_sizes[Kind::Frequency as usize].exp() > most_frequency(self.measured()) {
+        if base.posterior.log_sizes[Kind::Frequency as usize].exp() > most_frequency(&self.stacked) {
             let replaces = with.parts.last().is_some_and(|part| part.replaces_structure(self.predictor()));
             let lowest = if replaces { &LOWEST_POLES[..] } else { &[usize::MAX] };
             for &lowest in lowest {

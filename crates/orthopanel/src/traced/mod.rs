@@ -87,7 +87,8 @@ impl Traced {
     /// out.
     pub fn applied_to(&self, models: &[PanelModel]) -> Vec<PanelModel> {
         let mut models = models.to_vec();
-        for (model, panel) in models.iter_mut().zip(self.panels().unwrap_or_default()) {
+        let hit = self.tracing.accelerances.first().map(|record| record.piece);
+        for (piece, (model, panel)) in models.iter_mut().zip(self.panels().unwrap_or_default()).enumerate() {
             model.structure = panel.structure;
             model.constants.clone_from(&panel.constants);
             model.damping.clone_from(&panel.damping);
@@ -101,7 +102,7 @@ impl Traced {
                     mode.retain(|key, _| AS_MEASURED.contains(&key.as_str()));
                 });
             }
-            self.put_own_errors(model);
+            self.put_own_errors(model, hit.is_none_or(|hit| hit == piece));
         }
         let removed: Vec<&str> = self.taken_out().map(|removed| removed.id).collect();
         for model in &mut models {
@@ -134,11 +135,14 @@ impl Traced {
     }
 
     /// The errors and the damping that a provenance tells are those of the model without the effects: in their place come
-    /// this model's own, as far as the trace tells them.
-    fn put_own_errors(&self, model: &mut PanelModel) {
+    /// this model's own, as far as the trace tells them; of a piece beside the one that was hit it tells none.
+    fn put_own_errors(&self, model: &mut PanelModel, is_told: bool) {
         let provenance = &mut model.provenance;
         for key in ["frequency_rms_percent", "accelerance_rms_percent"] {
             provenance.remove(key);
+        }
+        if !is_told {
+            return;
         }
         let Some(accelerances) = self.accelerance_rms_percent() else {
             let error = to_digits(self.tracing.error.after.fitted, 2);
