@@ -10,6 +10,8 @@ use crate::stacked::Stacked;
 /// begins at 150 (Kass and Raftery, J. Am. Stat. Assoc. 90, 1995); here sizes of model error are held where they are most probable, and evidence that
 /// was worth 20 to 150 stood for false effects about as often as for right ones on made panels as real ones are (docs/decisions/inference.md).
 pub(crate) const ODDS: f64 = 1000.0;
+/// Odds from which a hypothesis that is ahead of nothing missing is told: strong evidence begins there (as above), and less is none.
+const TOLD: f64 = 20.0;
 /// Largest model errors that real panels have: of the logarithm of a frequency, and of a residue along its phase.
 const MOST_FREQUENCY: f64 = 1e-2;
 const MOST_RESIDUE: f64 = 3e-2;
@@ -48,7 +50,7 @@ pub(crate) fn judged<'a>(all: &'a [Judged], stacked: &Stacked) -> Option<(&'a Ju
     let names = chosen.names();
     let mut rivals: Vec<&'static str> = match names.is_empty() {
         // Likelier than nothing missing, but not clearly: none is named, and nothing missing is not said either.
-        true => all.iter().take_while(|judged| judged.log_odds > chosen.log_odds).flat_map(Judged::names).collect(),
+        true => ahead(all, chosen).flat_map(Judged::names).collect(),
         false => rivals(all, chosen).flat_map(Judged::names).collect(),
     };
     rivals.retain(|name| !names.contains(name));
@@ -60,6 +62,12 @@ pub(crate) fn judged<'a>(all: &'a [Judged], stacked: &Stacked) -> Option<(&'a Ju
         (_, false) => Verdict::Ambiguous,
     };
     Some((chosen, verdict, rivals))
+}
+
+/// The hypotheses that strong evidence puts ahead of nothing missing, the likeliest first.
+pub(crate) fn ahead<'a>(all: &'a [Judged], base: &Judged) -> impl Iterator<Item = &'a Judged> {
+    let from = base.log_odds + TOLD.ln();
+    all.iter().take_while(move |judged| judged.log_odds > from)
 }
 
 /// The hypotheses that are not clearly behind and lack one of the chosen effects, the likeliest first.

@@ -108,7 +108,7 @@ fn a_declared_effect_that_is_not_there_is_told_as_such() {
     let hung = bench.made_hits("[suspension]\nat = [-0.22, 0.22]\n[[effect]]\nid = \"suspension\"\n");
     for command in ["identify", "trace"] {
         let notes = bench.json(&format!("{command} {hung}"))["notes"].to_string();
-        assert!(notes.contains("the records do not show the declared suspension"), "{command}: {notes}");
+        assert!(notes.contains("the data do not show the declared suspension"), "{command}: {notes}");
     }
     assert_eq!(bench.json(&format!("trace {hung}"))["verdict"], "nothing-missing");
 }

@@ -6,7 +6,7 @@ use orthopanel_data::ImpactTest;
 use orthopanel_model::Readable;
 
 use crate::IdentifyError;
-use crate::judge::{has_no_mode, judged, rivals};
+use crate::judge::{ahead, has_no_mode, judged, rivals};
 use crate::outcome::Verdict;
 use crate::posterior::Judged;
 use crate::search::Inquiry;
@@ -40,10 +40,7 @@ impl<'a> Weighed<'a> {
         doubts.retain(|doubt| doubt.is_rival || is_unexplained);
         let verdict = if is_unexplained || doubts.is_empty() { verdict } else { Verdict::Ambiguous };
         let near = match verdict {
-            // Not clearly ahead of nothing missing, but ahead.
-            Verdict::Ambiguous if chosen.names().is_empty() => {
-                all.iter().take_while(|judged| judged.log_odds > chosen.log_odds).collect()
-            }
+            Verdict::Ambiguous if chosen.names().is_empty() => ahead(all, chosen).collect(),
             Verdict::Ambiguous => rivals(all, chosen).collect(),
             _ => vec![],
         };

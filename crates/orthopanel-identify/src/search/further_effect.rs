@@ -23,10 +23,22 @@ const MISSED: usize = 4;
 const BESIDE_POLE: [f64; 2] = [0.985, 1.01];
 /// Furthest shift of the base's coordinates from which a start is followed.
 const SHIFT: f64 = 0.2;
+/// Furthest that bending modes of a plate lie from those of a beam, in the logarithm of a frequency.
+const PLATE_BESIDE: f64 = 0.5;
 /// Numbers of the lowest poles that a plate shares with a beam: below the first that bends across.
 const LOWEST_POLES: [usize; 3] = [3, 4, 6];
 
 impl Inquiry<'_> {
+    /// Whether a pole lies above all modes that the base has for it: a plate up to there would have modes without number.
+    fn reaches_beyond(&self, base: &Judged) -> bool {
+        let blocks = self.stacked.blocks.iter().zip(&base.posterior.point.at.blocks);
+        let last = |(block, at): (&Block, &Prediction)| {
+            let pole = block.comparison().measured.poles.last().map_or(0.0, |pole| pole.angular_frequency);
+            pole > at.flexible.last().copied().unwrap_or(0.0)
+        };
+        blocks.map(last).any(|is_above| is_above)
+    }
+
     /// The poles that the base misses most, those that are none of its modes first.
     fn most_missed(&self, base: &Judged) -> Vec<Pole> {
         let of_block = |(block, at): (&Block, &Prediction)| {
@@ -110,6 +122,11 @@ impl Inquiry<'_> {
         let bases = self.bases(base, &ways[0]);
         // Another structure is too dear for more than one set of derivatives.
         let replaces = ways[0].parts.last().is_some_and(|part| part.replaces_structure(self.predictor()));
+        // Modes of a plate that bend along lie near those of the beam.
+        let is_far = base.posterior.log_sizes[Kind::Frequency as usize].exp() > PLATE_BESIDE;
+        if replaces && (is_far || self.reaches_beyond(base)) {
+            return None;
+        }
         let exact_from = if replaces { usize::MAX } else { at_base.z.len() };
         let starts = |(way, hypothesis): (usize, &Hypothesis)| {
             let problem = self.problem(hypothesis);
