@@ -10,8 +10,8 @@ use crate::stacked::Stacked;
 /// begins at 150 (Kass and Raftery, J. Am. Stat. Assoc. 90, 1995); here sizes of model error are held where they are most probable, and evidence that
 /// was worth 20 to 150 stood for false effects about as often as for right ones on made panels as real ones are (docs/decisions/inference.md).
 pub(crate) const ODDS: f64 = 1000.0;
-/// Odds from which a hypothesis that is ahead of nothing missing is told: strong evidence begins there (as above), and less is none.
-const TOLD: f64 = 20.0;
+/// Odds from which a hypothesis that is ahead of nothing missing is told: positive evidence begins at 3 (Kass and Raftery, as above).
+const TOLD: f64 = 3.0;
 /// Largest model errors that real panels have: of the logarithm of a frequency, and of a residue along its phase.
 const MOST_FREQUENCY: f64 = 1e-2;
 const MOST_RESIDUE: f64 = 3e-2;
@@ -64,7 +64,7 @@ pub(crate) fn judged<'a>(all: &'a [Judged], stacked: &Stacked) -> Option<(&'a Ju
     Some((chosen, verdict, rivals))
 }
 
-/// The hypotheses that strong evidence puts ahead of nothing missing, the likeliest first.
+/// The hypotheses that positive evidence puts ahead of nothing missing, the likeliest first.
 pub(crate) fn ahead<'a>(all: &'a [Judged], base: &Judged) -> impl Iterator<Item = &'a Judged> {
     let from = base.log_odds + TOLD.ln();
     all.iter().take_while(move |judged| judged.log_odds > from)

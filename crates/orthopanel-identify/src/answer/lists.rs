@@ -2,6 +2,7 @@
 
 use faer::Mat;
 use orthopanel_data::{ImpactTest, Measurement, MeasurementData, limits};
+use orthopanel_model::Owner;
 
 use crate::IdentifyError;
 use crate::declared_effects::{Declared, declared};
@@ -107,7 +108,13 @@ pub(super) fn notes_on_hidden(test: &ImpactTest, inquiry: &Inquiry) -> Result<Ve
         let why = match inquiry.hidden_in_lists(told.effect) {
             Some(_) if has_place(told.effect) => continue,
             // A core acts, though nothing of it could be found.
-            Some(_) if is_told(&told) && inquiry.acts(told.effect).is_ok_and(|acts| !acts.is_empty()) => continue,
+            Some(_)
+                if told.effect.owner() != Owner::Channel
+                    && is_told(&told)
+                    && inquiry.acts(told.effect).is_ok_and(|acts| !acts.is_empty()) =>
+            {
+                continue;
+            }
             Some(why) => why,
             None => continue,
         };
