@@ -31,12 +31,11 @@ const LOWEST_POLES: [usize; 3] = [3, 4, 6];
 impl Inquiry<'_> {
     /// Whether a pole lies above all modes that the base has for it: a plate up to there would have modes without number.
     fn reaches_beyond(&self, base: &Judged) -> bool {
-        let blocks = self.stacked.blocks.iter().zip(&base.posterior.point.at.blocks);
-        let last = |(block, at): (&Block, &Prediction)| {
+        let mut blocks = self.stacked.blocks.iter().zip(&base.posterior.point.at.blocks);
+        blocks.any(|(block, at)| {
             let pole = block.comparison().measured.poles.last().map_or(0.0, |pole| pole.angular_frequency);
             pole > at.flexible.last().copied().unwrap_or(0.0)
-        };
-        blocks.map(last).any(|is_above| is_above)
+        })
     }
 
     /// The poles that the base misses most, those that are none of its modes first.
