@@ -1,4 +1,4 @@
-"""Lists of natural frequencies beside the records of one place: a list of the piece that was hit, and one of a second piece of its make."""
+"""What was measured in several ways: lists beside records, records of two pieces of one make, and hits beside files of accelerances."""
 
 import json
 import os
@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from . import attachments, files, lists, records
+from . import accelerances, attachments, files, lists, records
 from . import bench as benches
 
 ORTHOPANEL = os.environ.get("ORTHOPANEL")
@@ -83,3 +83,66 @@ def test_val_lists_narrow_the_constants_that_few_records_leave(tests):
             sure[test.name, name] = value["std"]
     for name in ("e_x", "g_zx"):
         assert sure["both.toml", name] < sure["test.toml", name], sure
+
+
+SENSOR = 0.008  # kg
+
+
+def within(folder, text):
+    """The measurements of a test file, found from the folder above its own."""
+    return text.replace('file = "', f'file = "{folder.name}/')
+
+
+def test_val_a_sensor_on_two_pieces_is_found_from_the_records_of_both(tmp_path):
+    """Two pieces of one make, each hit with the same sensor on: one mass, constants in common, and the panel of each without the sensor."""
+    random = np.random.default_rng(2311)
+    long = replace(benches.draw(random, "single"), suspension=())
+    short = copy(long)
+    short.panel = replace(long.panel, length=round(0.8 * long.panel.length, 3), width=round(1.2 * long.panel.width, 3))
+    short.forces, short.response = np.round(0.8 * long.forces, 3), round(0.8 * long.response, 3)
+    text = ""
+    for name, bench in [("long", long), ("short", short)]:
+        bench.attachments = [(bench.response, attachments.mass(SENSOR))]
+        files.write_case(tmp_path / name, bench, records.play(bench, random))
+        alone = (tmp_path / name / "test.toml").read_text(encoding="utf-8")
+        text += within(tmp_path / name, named(alone, name)) + "\n"
+    test = tmp_path / "test.toml"
+    test.write_text(text, encoding="utf-8")
+    found = asked("trace", test)
+    assert (found["verdict"], [effect["id"] for effect in found["effects"]]) == ("explained", ["sensor-mass"]), found["candidates"][:3]
+    mass = found["effects"][0]["parameters"]["mass"]
+    assert abs(mass["value"] - SENSOR) < 3.0 * mass["std"] < 0.5 * SENSOR, mass
+    reasons = {one["id"]: one["reason"] for one in found["not_tested"]}
+    assert "trace one piece" in reasons["local-mass"]
+    # With the sensor declared, each piece is identified with it, and drawn by its own records.
+    test.write_text(f'{text}\n[[effect]]\nid = "sensor-mass"\n', encoding="utf-8")
+    found = asked("identify", test)
+    truth = long.constants()
+    for name in ("e_x", "g_zx"):
+        value = found["constants"][name]
+        assert abs(value["value"] - truth[name]) < 3.0 * value["std"], (name, value)
+    assert {mode["piece"] for mode in found["modes"]} == {"long", "short"}
+    assert all(abs(mode["error_percent"]) < 0.05 for mode in found["modes"]), found["modes"]
+    # What stands at a place would be on one of the two, and the file cannot say on which.
+    test.write_text(f'{text}\n[[effect]]\nid = "local-mass"\nx = 0.1\n', encoding="utf-8")
+    ran = subprocess.run([ORTHOPANEL, "trace", test], capture_output=True, text=True, timeout=200)
+    assert ran.returncode != 0 and "trace one piece in a test file" in ran.stderr, ran.stderr
+
+
+def test_val_hits_beside_a_file_of_accelerances_of_one_piece_find_a_mass_together(tmp_path):
+    """One place hit, another kept by the analyser as an accelerance."""
+    random = np.random.default_rng(2312)
+    bench = replace(benches.draw(random, "single", sampling=accelerances.SAMPLING), suspension=())
+    bench.attachments = [(PLACE, attachments.mass(MASS))]
+    files.write_case(tmp_path / "hits", bench, records.play(bench, random))
+    other = copy(bench)
+    other.forces = np.array([-0.3 * bench.panel.length])
+    accelerances.write_case(tmp_path / "lines", other, records.play(other, random))
+    texts = {name: within(tmp_path / name, (tmp_path / name / "test.toml").read_text(encoding="utf-8")) for name in ("hits", "lines")}
+    test = tmp_path / "test.toml"
+    test.write_text(texts["hits"] + "\n[[measurement]]" + texts["lines"].split("[[measurement]]")[1], encoding="utf-8")
+    found = asked("trace", test)
+    assert (found["verdict"], [effect["id"] for effect in found["effects"]]) == ("explained", ["local-mass"]), found["candidates"][:3]
+    for name, truth in [("mass", MASS), ("x", PLACE)]:
+        value = found["effects"][0]["parameters"][name]
+        assert abs(value["value"] - truth) < 3.0 * value["std"], (name, value)

@@ -24,7 +24,8 @@ pub fn identify(test: &ImpactTest, settings: impl Into<Settings>) -> Result<Iden
     let settings = settings.into();
     settings.paper_weights.check()?;
     let mut found = known_beforehand::carried(test, of_data(test, settings)?, |test| of_data(test, settings))?;
-    found.common_gain = accelerance_fit::common_gain(&found);
+    let modes = found.pieces.iter().map(|piece| piece.modes.len()).sum();
+    found.common_gain = accelerance_fit::common_gain(&found.accelerances, modes);
     if let Some(gain) = found.common_gain {
         found.notes.insert(0, accelerance_fit::said_of_gain(gain, test));
     }
@@ -104,16 +105,16 @@ fn plate_by_modes(test: &ImpactTest) -> Option<PlateByModes> {
     if is_one_plate { PlateByModes::of(test).ok().flatten() } else { None }
 }
 
-/// The records of a test without the lists that stand beside them, and the piece that was hit alone.
+/// The records of a test without the lists that stand beside them, and the pieces that were hit alone.
 pub(crate) fn records_alone(test: &ImpactTest) -> ImpactTest {
     let mut records = test.clone();
-    if let Some(hit) = test.measurements.iter().find(|measurement| is_record(measurement))
-        && !test.measurements.iter().all(is_record)
-    {
-        records.measurements.retain(|measurement| is_record(measurement) && measurement.piece == hit.piece);
-        records.measurements.iter_mut().for_each(|measurement| measurement.piece = 0);
-        records.pieces = vec![test.pieces[hit.piece].clone()];
+    records.measurements.retain(is_record);
+    let is_hit = |piece: &usize| records.measurements.iter().any(|record| record.piece == *piece);
+    let hit: Vec<usize> = (0..test.pieces.len()).filter(is_hit).collect();
+    for record in &mut records.measurements {
+        record.piece = hit.partition_point(|piece| *piece < record.piece);
     }
+    records.pieces = hit.into_iter().map(|piece| test.pieces[piece].clone()).collect();
     records
 }
 

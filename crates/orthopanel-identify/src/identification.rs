@@ -2,7 +2,6 @@
 
 use std::collections::BTreeMap;
 
-use crate::hypothesis::has_place;
 use crate::{IdentifyError, TracedEffect};
 use num_complex::Complex64;
 use orthopanel_data::NamedPiece;
@@ -234,10 +233,7 @@ impl Identification {
         // An effect at a place is on the piece that was hit.
         let hit = self.accelerances.first().and_then(|record| self.pieces.get(record.piece));
         let is_elsewhere = hit.is_some_and(|hit| hit.name != fit.name);
-        let acts = |effect: &&TracedEffect| {
-            let is_placed = || orthopanel_model::effect(effect.id).is_ok_and(has_place);
-            effect.owner == Owner::Panel && !(is_elsewhere && is_placed())
-        };
+        let acts = |effect: &&TracedEffect| effect.owner == Owner::Panel && !(is_elsewhere && effect.has_place());
         PanelModel {
             name: None,
             schema: MODEL_SCHEMA.to_owned(),

@@ -1,12 +1,13 @@
 //! From a test to the hypotheses that are held against its measured modes.
 
 use orthopanel_data::{ImpactTest, Measurement};
-use orthopanel_model::{BEAM_CONSTANTS, EffectSetting, RecordSetting, StructureKind};
+use orthopanel_model::{BEAM_CONSTANTS, EffectSetting, RecordSetting, StructureKind, effect};
 
 use crate::IdentifyError;
 use crate::comparison::Comparison;
 use crate::declared_effects::{declared_parts, pairs_of_places};
 use crate::free_constants::FreeConstants;
+use crate::hypothesis::{OF_PIECE, OF_RECORD, has_place, is_of_record};
 use crate::measured::{MeasuredModes, measured_modes};
 use crate::outcome::Progress;
 use crate::posterior::Judged;
@@ -20,18 +21,27 @@ fn too_few(found: usize) -> IdentifyError {
 }
 
 /// # Errors
-/// [`IdentifyError::Unsupported`] for records of several pieces or of two kinds: places and gains would be numbered across them.
+/// [`IdentifyError::Unsupported`] for a declared effect of which nothing says on which piece, or in which record, it is.
 pub(crate) fn refuse_several(test: &ImpactTest) -> Result<(), IdentifyError> {
     let records = test.measurements.iter().filter(|measurement| is_record(measurement));
-    let of: Vec<_> = records.map(|of| (of.piece, std::mem::discriminant(&of.data))).collect();
-    if of.windows(2).all(|pair| pair[0] == pair[1]) {
+    let mut of: Vec<_> = records.map(|of| (of.piece, std::mem::discriminant(&of.data))).collect();
+    of.dedup();
+    if of.len() < 2 {
         return Ok(());
     }
-    Err(IdentifyError::Unsupported(
-        "records of several pieces, or hits beside files of accelerances, with effects or lists: give each a test file of its own; lists of \
-         natural frequencies, of any piece, may stand beside one of them"
-            .to_owned(),
-    ))
+    let is_of_several_pieces = of.iter().any(|(piece, _)| *piece != of[0].0);
+    for declared in &test.effects {
+        let effect = effect(&declared.id)?;
+        let why = if is_of_record(effect) {
+            OF_RECORD
+        } else if is_of_several_pieces && has_place(effect) {
+            OF_PIECE
+        } else {
+            continue;
+        };
+        return Err(IdentifyError::Unsupported(format!("effect {:?}: {why}", declared.id)));
+    }
+    Ok(())
 }
 
 pub(crate) fn is_record(measurement: &Measurement) -> bool {
@@ -48,10 +58,10 @@ pub(crate) fn from_base<T>(
     progress: &(dyn Fn(Progress) + Sync),
     say: impl FnOnce(Inquiry, Judged) -> Result<T, IdentifyError>,
 ) -> Result<T, IdentifyError> {
-    let hit = test.measurements.iter().find(|measurement| is_record(measurement));
-    let hit = hit.map(|hit| test.pieces[hit.piece].piece);
+    let hit = test.measurements.iter().filter(|measurement| is_record(measurement)).map(|record| record.piece);
+    let hit: Vec<usize> = hit.collect();
     let largest = || test.pieces.iter().map(|named| named.piece).max_by(|a, b| a.mass().total_cmp(&b.mass()));
-    let piece = hit.or_else(largest).ok_or_else(|| too_few(0))?;
+    let piece = hit.first().map(|hit| test.pieces[*hit].piece).or_else(largest).ok_or_else(|| too_few(0))?;
     refuse_several(test)?;
     // What is declared wrongly is said before the records are read.
     let constants = FreeConstants::of(test, &BEAM_CONSTANTS)?;
@@ -59,7 +69,6 @@ pub(crate) fn from_base<T>(
     let mut all: Vec<MeasuredModes> = measured_modes(test)?.into_iter().map(MeasuredModes::without_faint).collect();
     all.sort_by_key(|of| of.records.is_empty());
     let measured = all.first().ok_or_else(|| too_few(0))?;
-    let hit = (!measured.records.is_empty()).then_some(measured.piece);
     let comparisons: Vec<Comparison> =
         all.iter().map(|of| Comparison::new(of, test.pieces[of.piece].piece.mass())).collect();
     let of_piece = |of: &MeasuredModes| EffectSetting {
@@ -72,7 +81,7 @@ pub(crate) fn from_base<T>(
     for comparison in &comparisons {
         let of = comparison.measured;
         let predictor = Predictor::new(comparison, StructureKind::TimoshenkoBeam, &of_piece(of))?;
-        let is_of_other = hit.is_some_and(|hit| hit != of.piece);
+        let is_of_other = !hit.is_empty() && !hit.contains(&of.piece);
         blocks.push(Block { piece: of.piece, is_of_other, predictor, waves: vec![] });
     }
     let begun = Inquiry::begin(Stacked::new(blocks), &constants, &declared)?;

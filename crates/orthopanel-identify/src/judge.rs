@@ -1,6 +1,6 @@
 //! What is said of a test: one threshold, in odds.
 
-use crate::measured::MeasuredModes;
+use crate::measured::Pole;
 use crate::model_error::Kind;
 use crate::outcome::Verdict;
 use crate::posterior::Judged;
@@ -26,54 +26,44 @@ pub(crate) fn most_frequency(stacked: &Stacked) -> f64 {
     if are_lists && is_untold { MOST_READ } else { MOST_FREQUENCY }
 }
 
-/// Whether a pole towers over what all others do there, and is no mode of a hypothesis. Cords that nobody told may do so as long as they stiffen the
-/// first flexible mode by no more than a model may miss, $\tfrac12(\omega/\omega_1)^2$.
-pub(crate) fn has_no_mode(judged: &Judged, measured: &MeasuredModes, pole: usize) -> bool {
-    let at = judged.posterior.point.at.first();
-    let first = at.flexible.first().copied().unwrap_or(0.0);
-    let is_alone = at.partners.first().is_some_and(|record| record[pole].is_none());
-    let stiffening = 0.5 * (measured.poles[pole].angular_frequency / first).powi(2);
-    is_alone && stiffening > MOST_FREQUENCY && measured.prominence(pole) > 1.0
+/// The poles, with their pieces, that tower over what all others do there, and are no mode of a hypothesis. Cords that nobody told may do so as long as
+/// they stiffen the first flexible mode by no more than a model may miss, $\tfrac12(\omega/\omega_1)^2$.
+pub(crate) fn without_mode(judged: &Judged, stacked: &Stacked) -> Vec<(usize, Pole)> {
+    let mut found = Vec::new();
+    for (number, block) in stacked.recorded() {
+        let (at, measured) = (&judged.posterior.point.at.blocks[number], block.comparison().measured);
+        let first = at.flexible.first().copied().unwrap_or(0.0);
+        let stands_out = |pole: &usize| {
+            let is_alone = at.partners.first().is_some_and(|record| record[*pole].is_none());
+            let stiffening = 0.5 * (measured.poles[*pole].angular_frequency / first).powi(2);
+            is_alone && stiffening > MOST_FREQUENCY && measured.prominence(*pole) > 1.0
+        };
+        let poles = (0..measured.poles.len()).filter(stands_out);
+        found.extend(poles.map(|pole| (block.piece, measured.poles[pole])));
+    }
+    found
 }
 
-/// Of hypotheses in order, the likeliest first, the simplest that is not clearly behind; the verdict; and the rivals where that is ambiguous.
-pub(crate) fn judged<'a>(all: &'a [Judged], stacked: &Stacked) -> Option<(&'a Judged, Verdict, Vec<&'static str>)> {
+/// Of hypotheses in order, the likeliest first, the simplest that is not clearly behind; the verdict; and where that is ambiguous the hypotheses that
+/// are not clearly behind and lack one of its effects, or of nothing missing those that are ahead of it, the likeliest first.
+pub(crate) fn judged<'a>(all: &'a [Judged], stacked: &Stacked) -> Option<(&'a Judged, Verdict, Vec<&'a Judged>)> {
     let best = all.first()?;
     let near = || all.iter().filter(|judged| best.log_odds - judged.log_odds < ODDS.ln());
     let chosen = near().min_by_key(|judged| judged.names().len())?;
     let size = |kind: Kind| chosen.posterior.log_sizes[kind as usize].exp();
-    let measured = stacked.first().comparison().measured;
     let misses_most = size(Kind::Frequency) > most_frequency(stacked) || size(Kind::Residue) > MOST_RESIDUE;
-    if misses_most || (0..measured.poles.len()).any(|pole| has_no_mode(chosen, measured, pole)) {
+    if misses_most || !without_mode(chosen, stacked).is_empty() {
         return Some((chosen, Verdict::Unexplained, vec![]));
     }
     let names = chosen.names();
-    let mut rivals: Vec<&'static str> = match names.is_empty() {
+    let has_all = |judged: &Judged| names.iter().all(|name| judged.names().contains(name));
+    let (rivals, without): (Vec<&Judged>, Verdict) = if names.is_empty() {
         // Likelier than nothing missing, but not clearly: none is named, and nothing missing is not said either.
-        true => ahead(all, chosen).flat_map(Judged::names).collect(),
-        false => rivals(all, chosen).flat_map(Judged::names).collect(),
+        let from = chosen.log_odds + TOLD.ln();
+        (all.iter().take_while(|judged| judged.log_odds > from).collect(), Verdict::NothingMissing)
+    } else {
+        (near().filter(|judged| !has_all(judged)).collect(), Verdict::Explained)
     };
-    rivals.retain(|name| !names.contains(name));
-    rivals.sort_unstable();
-    rivals.dedup();
-    let verdict = match (names.is_empty(), rivals.is_empty()) {
-        (true, true) => Verdict::NothingMissing,
-        (false, true) => Verdict::Explained,
-        (_, false) => Verdict::Ambiguous,
-    };
+    let verdict = if rivals.is_empty() { without } else { Verdict::Ambiguous };
     Some((chosen, verdict, rivals))
-}
-
-/// The hypotheses that positive evidence puts ahead of nothing missing, the likeliest first.
-pub(crate) fn ahead<'a>(all: &'a [Judged], base: &Judged) -> impl Iterator<Item = &'a Judged> {
-    let from = base.log_odds + TOLD.ln();
-    all.iter().take_while(move |judged| judged.log_odds > from)
-}
-
-/// The hypotheses that are not clearly behind and lack one of the chosen effects, the likeliest first.
-pub(crate) fn rivals<'a>(all: &'a [Judged], chosen: &Judged) -> impl Iterator<Item = &'a Judged> {
-    let best = all.first().map_or(f64::NEG_INFINITY, |judged| judged.log_odds);
-    let names = chosen.names();
-    let has_all = move |judged: &Judged| names.iter().all(|name| judged.names().contains(name));
-    all.iter().filter(move |judged| best - judged.log_odds < ODDS.ln() && !has_all(judged))
 }

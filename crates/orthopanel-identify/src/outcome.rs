@@ -2,6 +2,7 @@
 
 use orthopanel_model::{EffectEntry, Estimate, Owner, PanelModel};
 
+use crate::hypothesis::has_place;
 use crate::{AcceleranceFit, IdentifyError};
 
 /// What can be said of the physics that the base model lacks.
@@ -104,6 +105,11 @@ pub struct TracedEffect {
 }
 
 impl TracedEffect {
+    /// Whether it sits at a place of its own.
+    pub(crate) fn has_place(&self) -> bool {
+        orthopanel_model::effect(self.id).is_ok_and(has_place)
+    }
+
     /// As a model file holds it.
     pub(crate) fn entry(&self) -> EffectEntry {
         let first = |parameter: &TracedParameter| Some((parameter.name.to_owned(), *parameter.values.first()?));

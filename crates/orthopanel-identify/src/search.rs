@@ -14,7 +14,7 @@ use rayon::prelude::*;
 use crate::comparison::Comparison;
 use crate::free_constants::FreeConstants;
 use crate::hit_strength::{HitStrength, Springs};
-use crate::hypothesis::{Hypothesis, Part, Role, has_place};
+use crate::hypothesis::{Hypothesis, OF_PIECE, OF_RECORD, Part, Role, has_place, is_of_record};
 use crate::judge::ODDS;
 use crate::measured::MeasuredModes;
 use crate::model_error::{KINDS, medians, waves};
@@ -43,6 +43,10 @@ const NEAR: f64 = 2.0;
 const BESIDE: f64 = 1.0;
 /// Effects at most, beside those declared.
 const MOST_EFFECTS: usize = 3;
+
+const ONE_RECORD: &str = "one record has no other to differ from";
+const BY_LEVEL_OF_PIECE: &str =
+    "how hits of unequal strength differ is looked at of one piece alone: trace one piece in a test file";
 
 /// All that is the same for every hypothesis.
 pub(crate) struct Inquiry<'a> {
@@ -206,13 +210,26 @@ impl<'a> Inquiry<'a> {
         closer
     }
 
-    /// Whether the test has records enough: the gain of the only record is the gain.
-    pub(crate) fn can_show(&self, effect: &dyn Effect) -> bool {
+    /// Why the test cannot show an effect, whatever its numbers; `None` where it can.
+    pub(crate) fn hidden(&self, effect: &dyn Effect) -> Option<String> {
         if self.is_of_lists() {
-            return self.hidden_in_lists(effect).is_none();
+            return self.hidden_in_lists(effect);
         }
-        let is_of_one = effect.parameters().iter().any(|parameter| parameter.scale == Scale::Index);
-        !is_of_one || self.measured().records.len() > 1
+        let is_of_several_pieces = self.stacked.hit().nth(1).is_some();
+        // The gain of the only record is the gain.
+        let is_of_one = || effect.parameters().iter().any(|parameter| parameter.scale == Scale::Index);
+        let why = if self.stacked.recorded().nth(1).is_some() && is_of_record(effect) {
+            OF_RECORD
+        } else if is_of_several_pieces && has_place(effect) {
+            OF_PIECE
+        } else if is_of_several_pieces && self.shows_between_hits(effect) {
+            BY_LEVEL_OF_PIECE
+        } else if is_of_one() && self.measured().records.len() < 2 {
+            ONE_RECORD
+        } else {
+            return None;
+        };
+        Some(why.to_owned())
     }
 
     /// Every effect of the catalogue added to a base, but those sets that were `seen`, the likeliest first.
@@ -230,7 +247,7 @@ impl<'a> Inquiry<'a> {
         let effects: Vec<&'static dyn Effect> = catalogue()
             .iter()
             .copied()
-            .filter(|effect| self.can_show(*effect) && !self.shows_between_hits(*effect))
+            .filter(|effect| self.hidden(*effect).is_none() && !self.shows_between_hits(*effect))
             .filter(|effect| !has(effect.id()) && is_new(effect.id()))
             .collect();
         self.progress.more(effects.len());
@@ -239,11 +256,13 @@ impl<'a> Inquiry<'a> {
             self.progress.tried(effect.id());
             judged
         };
-        let mut judged: Vec<Judged> = effects.into_par_iter().filter_map(added).collect();
-        judged.sort_by(|a, b| b.log_odds.total_cmp(&a.log_odds));
-        let Some(best) = judged.first().map(|best| (best.log_odds, best.posterior.log_sizes)) else { return vec![] };
-        let closer = |one: Judged| {
-            if one.log_odds > best.0 - NEAR * ODDS.ln() { self.closer(&one, &best.1) } else { one }
+        let mut judged: Vec<(Judged, bool)> = effects.into_par_iter().filter_map(added).collect();
+        judged.sort_by(|(a, _), (b, _)| b.log_odds.total_cmp(&a.log_odds));
+        let Some((best, _)) = judged.first() else { return vec![] };
+        let best = (best.log_odds, best.posterior.log_sizes);
+        let closer = |(one, is_promising): (Judged, bool)| {
+            let is_near = is_promising && one.log_odds > best.0 - NEAR * ODDS.ln();
+            if is_near { self.closer(&one, &best.1) } else { one }
         };
         let mut judged: Vec<Judged> = judged.into_par_iter().map(closer).collect();
         judged.sort_by(|a, b| b.log_odds.total_cmp(&a.log_odds));

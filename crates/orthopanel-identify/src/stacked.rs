@@ -13,7 +13,7 @@ use crate::predicted::{Prediction, Predictor};
 /// The measured modes of one list, or of the records of one piece, and what predicts them.
 pub(crate) struct Block<'a> {
     pub piece: usize,
-    /// Whether it is a list of a piece beside the records of another: an effect at a place is on the piece that was hit.
+    /// Whether it is a list of a piece that was not hit beside the records of one that was: an effect at a place is on the latter.
     pub is_of_other: bool,
     pub predictor: Predictor<'a>,
     /// What unevenness does, of [`crate::model_error::waves`].
@@ -81,6 +81,18 @@ impl<'a> Stacked<'a> {
     /// The records, where there are any.
     pub(crate) fn first(&self) -> &Block<'a> {
         &self.blocks[0]
+    }
+
+    /// The blocks of records, each with its number.
+    pub(crate) fn recorded(&self) -> impl Iterator<Item = (usize, &Block<'a>)> {
+        self.blocks.iter().enumerate().filter(|(_, block)| !block.comparison().measured.records.is_empty())
+    }
+
+    /// Of each piece that was hit the first block of its records, with its number.
+    pub(crate) fn hit(&self) -> impl Iterator<Item = (usize, &Block<'a>)> {
+        let is_first =
+            |(number, block): &(usize, &Block)| self.blocks[..*number].iter().all(|before| before.piece != block.piece);
+        self.recorded().filter(is_first)
     }
 
     /// The block with the most poles.

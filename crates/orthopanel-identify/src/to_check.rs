@@ -3,10 +3,6 @@
 use orthopanel_data::ImpactTest;
 use orthopanel_model::Readable;
 
-/// Said wherever a gain of all records is named.
-pub(crate) const GAIN_OR_MASS: &str = "a gain of all records is also what a wrong mass makes: mass and all moduli times one number divide every accelerance by it. Weigh \
-                                       the piece before the gain is put down to the measuring chain";
-
 /// What may be wrong in the test file, the declared effects among it, and what is left over the noise.
 pub(crate) fn to_check(test: &ImpactTest, left: f64) -> String {
     let declared: Vec<&str> = test.effects.iter().map(|effect| effect.id.as_str()).collect();

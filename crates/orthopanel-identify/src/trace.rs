@@ -1,13 +1,13 @@
 //! Closing the loop: the effect that the base model lacks, by name.
 
 use orthopanel_data::ImpactTest;
-use orthopanel_model::{Estimate, Owner, StructureKind};
+use orthopanel_model::StructureKind;
 
-use crate::accelerance_fit::{WINDOW_EFFECT, question_of_window, refuse_missed};
+use crate::accelerance_fit::{WINDOW_EFFECT, has_record_apart, question_of_window, refuse_missed, refuse_records};
 use crate::answer::{answer, answer_of_lists, without_repeats};
 use crate::entry::records_alone;
 use crate::inference::{is_record, refuse_several};
-use crate::outcome::{Progress, Removed, TracedEffect, TracedParameter, Tracing, Verdict};
+use crate::outcome::{Progress, Tracing, Verdict};
 use crate::to_check::to_check;
 use crate::{IdentifyError, Settings, identify};
 
@@ -23,12 +23,13 @@ use crate::{IdentifyError, Settings, identify};
 /// in Laplace's approximation (MacKay, Neural Computation 4, 1992), each effect lacking by itself with the prior odds of one to the size of the
 /// catalogue. What shows between hits alone, `cubic-stiffness`, is held against the best of the other hypotheses.
 ///
-/// Lists of natural frequencies are measured modes without residues: their numbers match them with the modes. Lists of several pieces, and lists beside
-/// the records of one piece, are judged together: pieces share effects and the constants that are not their own; an effect at a place is on the piece
+/// Lists of natural frequencies are measured modes without residues: their numbers match them with the modes. Records and lists of one piece or of several
+/// are judged together: pieces share effects and the constants that are not their own; beside lists of other pieces an effect at a place is on the piece
 /// that was hit; and what the model misses of a mode of a piece is the same in all that was measured of it.
 ///
 /// # Limits
-/// Records are those of one piece, as a beam that may turn out a plate, hit and seen on its centre line. Standard deviations hold the sizes of model
+/// Records are those of beams, which may turn out plates, hit and seen on the centre line. Where several pieces were hit, effects at a place and those
+/// of one record are not looked for. Standard deviations hold the sizes of model
 /// error as they are estimated, not their own uncertainty, which makes them small where modes are few.
 ///
 /// ```
@@ -53,23 +54,24 @@ pub fn trace(test: &ImpactTest) -> Result<Tracing, IdentifyError> {
 /// # Errors
 /// As [`trace`].
 pub fn trace_with(test: &ImpactTest, progress: &(dyn Fn(Progress) + Sync)) -> Result<Tracing, IdentifyError> {
-    beside_identify(test, |identified| {
-        let found = of_data(test, progress)?.finite()?;
-        Ok(match &identified.question {
-            Some(question) => asked_of_window(found, question.clone()),
-            None => found,
-        })
-    })
-}
-
-fn of_data(test: &ImpactTest, progress: &(dyn Fn(Progress) + Sync)) -> Result<Tracing, IdentifyError> {
-    if !test.measurements.iter().any(is_record) {
-        return answer_of_lists(test, progress);
+    // The base is a beam: of a plate it would judge another model than the one that the file declares.
+    if test.structure == Some(StructureKind::MindlinPlate) {
+        return Err(IdentifyError::PlateNotTraced);
     }
+    if !test.measurements.iter().any(is_record) {
+        return answer_of_lists(test, progress)?.finite();
+    }
+    refuse_several(test)?;
+    let records = records_alone(test);
+    refuse_records(&records)?;
     let (once, repeated) = without_repeats(test);
-    let mut found = answer(&once, progress)?;
+    let traced = answer(&once, progress).and_then(Tracing::finite);
+    let mut found = beside_identify(test, &records, traced)?;
     found.notes.extend(repeated);
-    Ok(found)
+    Ok(match question_of_window(&records) {
+        Some(question) => asked_of_window(found, question),
+        None => found,
+    })
 }
 
 /// Before records say what lacks, the window is asked about that they may have been averaged under: free damping takes up most of it.
@@ -88,104 +90,43 @@ fn asked_of_window(mut found: Tracing, question: String) -> Tracing {
     found
 }
 
-/// What `identify` says of a test before its trace.
-#[derive(Default)]
-struct Identified {
-    /// Why the model without what it may lack is refused.
-    refused: Option<IdentifyError>,
-    question: Option<String>,
-    /// On all records, with the sentence on it.
-    gain: Option<(Estimate, String)>,
-}
-
-/// A trace beside what `identify` says: records that it refuses have no effect, but a line of the test file that is wrong. Where most of the
-/// motion is missed, whatever the effect, nothing is named, though the modes that the records show may be explained: `unexplained` stands beside
-/// the refusal.
+/// A trace that leaves much of the records without an explanation, beside what `identify` says of them: records that it refuses have no effect, but a
+/// line of the test file that is wrong. Where most of the motion is missed, whatever the effect, nothing is named, though the modes that the records
+/// show may be explained: `unexplained` stands beside the refusal.
 fn beside_identify(
     test: &ImpactTest,
-    traced: impl FnOnce(&Identified) -> Result<Tracing, IdentifyError>,
+    records: &ImpactTest,
+    traced: Result<Tracing, IdentifyError>,
 ) -> Result<Tracing, IdentifyError> {
-    let identified = identified(test)?;
-    let mut found = traced(&identified)?;
-    match refuse_missed(test, &found.accelerances) {
-        Ok(()) => Ok(match identified.gain {
-            Some((gain, said)) => with_gain(found, declared_gain(test), (gain, said)),
-            None => found,
-        }),
-        Err(factor @ IdentifyError::OtherUnits { .. }) => Err(factor),
-        Err(missed) => {
-            let refused = identified.refused.unwrap_or(missed);
-            if found.verdict != Verdict::Unexplained {
-                found.verdict = Verdict::Unexplained;
-                found.error.after = found.error.before;
-                found.chi_square = found.error.after.fitted.powi(2);
-                found.accelerances.clone_from(&found.base_accelerances);
-                found.next_experiment = to_check(test, found.error.after.fitted);
-            }
-            found.effects.clear();
-            found.removed.clear();
-            found.alternatives.clear();
-            found.notes.insert(0, format!("identify refuses these records: {refused}"));
-            Ok(found)
+    let missed = |found: &Tracing| refuse_missed(test, &found.accelerances).err();
+    let is_clear =
+        |found: &Tracing| found.verdict != Verdict::Unexplained && !has_record_apart(&found.base_accelerances);
+    let missed = match &traced {
+        Ok(found) => match missed(found) {
+            None if is_clear(found) => return traced,
+            Some(factor @ IdentifyError::OtherUnits { .. }) => return Err(factor),
+            missed => missed,
+        },
+        Err(_) => None,
+    };
+    let refused = match identify(records, Settings::default()) {
+        Err(refused) if refused.is_of_records() => return Err(refused),
+        identified => identified.err(),
+    };
+    let mut found = traced?;
+    if let Some(missed) = missed {
+        let refused = refused.unwrap_or(missed);
+        if found.verdict != Verdict::Unexplained {
+            found.verdict = Verdict::Unexplained;
+            found.error.after = found.error.before;
+            found.chi_square = found.error.after.fitted.powi(2);
+            found.accelerances.clone_from(&found.base_accelerances);
+            found.next_experiment = to_check(test, found.error.after.fitted);
         }
-    }
-}
-
-fn identified(test: &ImpactTest) -> Result<Identified, IdentifyError> {
-    // The base is a beam: of a plate it would judge another model than the one that the file declares.
-    if test.structure == Some(StructureKind::MindlinPlate) {
-        return Err(IdentifyError::PlateNotTraced);
-    }
-    if !test.measurements.iter().any(is_record) {
-        return Ok(Identified::default());
-    }
-    refuse_several(test)?;
-    let records = records_alone(test);
-    match identify(&records, Settings::default()) {
-        Ok(found) => {
-            let said = found.notes.first().cloned().unwrap_or_default();
-            Ok(Identified { refused: None, question: found.question, gain: found.common_gain.map(|gain| (gain, said)) })
-        }
-        Err(refused) if refused.is_of_records() => Err(refused),
-        Err(refused) => Ok(Identified { refused: Some(refused), question: question_of_window(&records), gain: None }),
-    }
-}
-
-/// The number of a gain that the test file declares.
-fn declared_gain(test: &ImpactTest) -> Option<f64> {
-    let declared = test.effects.iter().find(|effect| effect.id == GAIN)?;
-    declared.parameters.get("gain").copied()
-}
-
-/// A factor on all records is said first, and named where nothing else lacks clearly; beside a declared one, that one is doubted.
-fn with_gain(mut found: Tracing, declared: Option<f64>, (gain, said): (Estimate, String)) -> Tracing {
-    if let Some(declared) = declared {
-        let sentence = format!(
-            "the declared gain may have a wrong number: gain = {:.4e} in place of {declared:.4e}",
-            gain.value * declared
-        );
-        found.verdict = Verdict::Unexplained;
         found.effects.clear();
-        found.next_experiment = format!("check the numbers of what is declared ({GAIN}): {sentence}");
-        found.notes.insert(0, sentence);
-        return found;
+        found.removed.clear();
+        found.alternatives.clear();
+        found.notes.insert(0, format!("identify refuses these records: {refused}"));
     }
-    found.notes.insert(0, said);
-    let is_likely = found.verdict == Verdict::NothingMissing || found.alternatives.iter().any(|id| id == GAIN);
-    if found.effects.is_empty() && is_likely {
-        let parameters = vec![TracedParameter { name: "gain", unit: "1", values: vec![gain] }];
-        let effect = TracedEffect { id: GAIN, owner: Owner::Channel, parameters };
-        found.alternatives.retain(|id| id != GAIN);
-        found.verdict = if found.alternatives.is_empty() { Verdict::Explained } else { Verdict::Ambiguous };
-        if found.verdict == Verdict::Explained {
-            // What was in doubt is not any more.
-            found.notes.retain(|note| !note.starts_with(&format!("{GAIN} is ahead of ")));
-            found.next_experiment = "none: the factor on all records is known".to_owned();
-        }
-        found.removed.push(Removed::of(&effect, false));
-        found.effects.push(effect);
-    }
-    found
+    Ok(found)
 }
-
-const GAIN: &str = "gain";

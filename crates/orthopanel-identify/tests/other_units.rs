@@ -126,7 +126,7 @@ fn val_a_small_factor_on_all_records_is_said_first() {
     assert!(found.notes[0].starts_with("all records together are 1.05"), "{:?}", found.notes);
     assert_constants(&test);
     let traced = trace(&test).unwrap();
-    assert_eq!(traced.notes[0], found.notes[0]);
+    assert!(traced.notes[0].starts_with("all records together are 1.05"), "{:?}", traced.notes);
     assert_eq!((traced.verdict, traced.effects[0].id), (Verdict::Explained, "gain"));
     write_lines(folder.path(), 1.0, 0, "m/s^2/N");
     assert_eq!(identify(&test, Settings::default()).unwrap().common_gain, None);

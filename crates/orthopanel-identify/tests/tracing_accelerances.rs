@@ -116,26 +116,6 @@ fn val_files_at_each_others_places_are_not_explained() {
 }
 
 #[test]
-fn records_of_two_pieces_are_refused_with_the_way_out() {
-    let folder = tempfile::tempdir().unwrap();
-    std::fs::write(folder.path().join("0.csv"), "frequency_hz,real,imag\n1.0,1.0,0.0\n2.0,1.0,0.0\n").unwrap();
-    let mut text = String::new();
-    for name in ["one", "other"] {
-        write!(
-            text,
-            "[[piece]]\nname = \"{name}\"\nlength = 1.0\nwidth = 0.1\nthickness = 0.01\nmass_per_area = 5.0\n"
-        )
-        .unwrap();
-    }
-    for name in ["one", "other"] {
-        write!(text, "[[measurement]]\npiece = \"{name}\"\nkind = \"accelerance\"\nfile = \"0.csv\"\n").unwrap();
-        text += "force_at = [0.0, 0.0]\nresponse_at = [0.4, 0.0]\n";
-    }
-    let refused = trace(&ImpactTest::from_toml(&text, folder.path().join("test.toml")).unwrap()).unwrap_err();
-    assert!(refused.to_string().contains("a test file of its own"), "{refused}");
-}
-
-#[test]
 fn a_gain_of_a_record_that_the_test_has_not_is_refused_with_the_count() {
     let folder = tempfile::tempdir().unwrap();
     let of_record = |record: &str| {

@@ -109,7 +109,7 @@ fn a_gain_is_told_to_be_what_a_wrong_mass_makes_too() {
     let found = trace(&ImpactTest::from_toml(&heavy, folder.join("test.toml")).unwrap()).unwrap();
     let gain = found.effects[0].parameters[0].values[0].value;
     assert!(found.effects[0].id == "gain" && (gain - 7.5 / 6.88).abs() < 2e-3, "{:?}", found.effects);
-    assert!(found.notes.iter().any(|note| note.contains("wrong mass")), "{:?}", found.notes);
+    assert!(found.notes.iter().any(|note| note.contains("mass_per_area = 6.88")), "{:?}", found.notes);
 }
 
 /// This was told as records that show no resonance.

@@ -33,6 +33,10 @@ use std::process::ExitCode;
 use clap::Parser;
 use error::{BAD_INPUT, CommandError};
 
+/// A trace takes and returns small matrices by the million, from several threads.
+#[global_allocator]
+static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
+
 fn main() -> ExitCode {
     outcome().unwrap_or_else(|error| {
         console::say_each(&format!("orthopanel: {error}"));

@@ -9,8 +9,10 @@ use super::records::PlaceRecord;
 use super::scale::{Compared, common_delay};
 use crate::error::CALIBRATED;
 use crate::structures::{self, Shown};
-use crate::{AcceleranceFit, Identification, IdentifyError, Settings};
+use crate::{AcceleranceFit, IdentifyError, Settings};
 
+/// The effect that a factor on all records is.
+pub(crate) const GAIN: &str = "gain";
 /// A factor further from one than so many standard deviations is no matter of chance.
 const FAR: f64 = 3.0;
 /// A median deviation times this is a standard deviation, of normal errors.
@@ -20,12 +22,10 @@ const NORMAL: f64 = 1.4826;
 /// `None` where it does not, or where the records want factors of their own.
 ///
 /// Its standard deviation is that of the records' factors among each other, and that with which each is known: each resonance has an
-/// error of its own, which the lines around it share.
-pub(crate) fn common_gain(found: &Identification) -> Option<Estimate> {
-    let compared = found
-        .accelerances
-        .iter()
-        .map(|fit| Compared::of(&PlaceRecord::of_fit(fit, ReadAs::SI), &fit.frequency, &fit.model));
+/// error of its own, which the lines around it share, and there are so many `modes`.
+pub(crate) fn common_gain(fits: &[AcceleranceFit], modes: usize) -> Option<Estimate> {
+    let compared =
+        fits.iter().map(|fit| Compared::of(&PlaceRecord::of_fit(fit, ReadAs::SI), &fit.frequency, &fit.model));
     let compared: Vec<Compared> = compared.collect::<Option<_>>()?;
     let delay = common_delay(&compared);
     let scales: Vec<_> = compared.iter().map(|of| of.scale(delay)).collect();
@@ -34,7 +34,6 @@ pub(crate) fn common_gain(found: &Identification) -> Option<Estimate> {
     }
     let log = median(scales.iter().map(|scale| -scale.factor.ln()));
     let scatter = NORMAL * median(scales.iter().map(|scale| (-scale.factor.ln() - log).abs()));
-    let modes: usize = found.pieces.iter().map(|piece| piece.modes.len()).sum();
     let known = 0.01 * median(scales.iter().map(|scale| scale.left)) / (modes.max(1) as f64).sqrt();
     let is_far = log.abs() > FAR * CALIBRATED.hypot(known).hypot(scatter);
     let std = known.hypot(scatter / (scales.len() as f64).sqrt());

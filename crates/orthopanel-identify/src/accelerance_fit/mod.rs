@@ -45,9 +45,10 @@ use sharpening::{Rough, line_by_line_with_noise, problem_at, sharpened_lines};
 use start::{Recorded, Start, start, usual_log_zeta};
 use wide_scan::rough_starts;
 
-pub(crate) use common_gain::{common_gain, refuse_missed, said_of_gain};
+pub(crate) use common_gain::{GAIN, common_gain, refuse_missed, said_of_gain};
 pub(crate) use line_noise::told_variance;
 pub(crate) use other_units::refuse_other_units;
+pub(crate) use record_apart::has_record_apart;
 pub use synthesis::DampingLaw;
 pub(crate) use undeclared_window::EFFECT as WINDOW_EFFECT;
 
@@ -63,6 +64,14 @@ pub(crate) fn question_of_window(test: &ImpactTest) -> Option<String> {
     }
     let bare = ImpactTest { effects: Vec::new(), ..test.clone() };
     identify_records(&bare, Settings::default()).ok()?.question
+}
+
+/// Refuses records that cannot be read, that a factor explains, or whose piece has sizes in another unit.
+///
+/// # Errors
+/// [`IdentifyError::Data`], [`IdentifyError::OtherUnits`] and [`IdentifyError::PieceTooLarge`].
+pub(crate) fn refuse_records(test: &ImpactTest) -> Result<(), IdentifyError> {
+    start::recorded(test, Settings::default()).map(|_| ())
 }
 
 /// Finds constants and damping from the records of a test.

@@ -1,11 +1,13 @@
 //! One record that stands far from the fit of the others, and the place at which it would not.
 
 use num_complex::Complex64;
+use orthopanel_data::ReadAs;
 use orthopanel_model::{ModelError, Place, Readable};
 
 use super::misfit::{median, record_misfit_percent, scaled_misfit_percent};
 use super::problem::{AcceleranceProblem, PieceProblem, model_lines};
 use super::records::PlaceRecord;
+use crate::AcceleranceFit;
 use crate::error::one_times;
 
 /// So many records at least: of two that contradict each other neither is the odd one.
@@ -80,6 +82,20 @@ impl Apart {
     }
 }
 
+/// Of misfits \[%\] from the worst down, the worst and the next, where the worst stands apart.
+fn apart(misfits: &[f64]) -> Option<(f64, f64)> {
+    let &[worst, next, ..] = misfits else { return None };
+    (misfits.len() >= LEAST_RECORDS && worst >= APART && next <= AGREEING * worst).then_some((worst, next))
+}
+
+/// Whether one record stands far from the model while the others meet it.
+pub(crate) fn has_record_apart(fits: &[AcceleranceFit]) -> bool {
+    let misfit = |fit: &AcceleranceFit| record_misfit_percent(&PlaceRecord::of_fit(fit, ReadAs::SI), &fit.model);
+    let mut misfits: Vec<f64> = fits.iter().map(misfit).collect();
+    misfits.sort_by(|a, b| b.total_cmp(a));
+    apart(&misfits).is_some()
+}
+
 /// The record that stands far from the fit of the others while these agree; `None` where none does.
 pub(super) fn record_apart(
     problem: &AcceleranceProblem,
@@ -96,11 +112,9 @@ pub(super) fn record_apart(
         .map(|((piece, record), model)| (record_misfit_percent(record, model), piece, record))
         .collect();
     misfits.sort_by(|a, b| b.0.total_cmp(&a.0));
-    let [(percent, piece, own), (others, ..), rest @ ..] = misfits.as_slice() else { return Ok(None) };
-    let (percent, others) = (*percent, *others);
-    if rest.len() + 2 < LEAST_RECORDS || percent < APART || others > AGREEING * percent {
-        return Ok(None);
-    }
+    let percents: Vec<f64> = misfits.iter().map(|(percent, ..)| *percent).collect();
+    let Some((percent, others)) = apart(&percents) else { return Ok(None) };
+    let (_, piece, own) = &misfits[0];
     let (values, log_zetas) = problem.of_piece(*piece, parameters);
     let trial = Trial { piece: &problem.pieces[*piece], record: own.thinned(LINES), at: (&values, log_zetas), problem };
     let (factor, factor_leaves) = trial.factor()?;

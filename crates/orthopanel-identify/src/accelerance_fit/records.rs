@@ -57,6 +57,29 @@ pub(super) struct PlaceRecord {
     pub read_as: ReadAs,
 }
 
+#[cfg(test)]
+impl PlaceRecord {
+    /// Lines at one place, of noise that nothing tells.
+    pub(super) fn even(frequency: Vec<f64>, value: Vec<Complex64>) -> Self {
+        let place = Place { x: 0.0, y: 0.0 };
+        Self {
+            force_at: place,
+            response_at: place,
+            variance: vec![1.0; frequency.len()],
+            variance_known: false,
+            scatter_told: false,
+            decay_rate: 0.0,
+            decay_rate_in_doubt: 0.0,
+            worth: vec![1.0; frequency.len()],
+            by_strength: None,
+            tied: None,
+            read_as: ReadAs::SI,
+            frequency,
+            value,
+        }
+    }
+}
+
 impl PlaceRecord {
     pub(super) fn of(accelerance: &Accelerance) -> Self {
         let (mut variance, ratio) = line_variance(accelerance);

@@ -138,9 +138,6 @@ impl Orthonormal {
 
 #[cfg(test)]
 mod tests {
-    use orthopanel_data::ReadAs;
-    use orthopanel_model::Place;
-
     use super::*;
 
     /// Slopes of the sum of squares against differences of it, where two resonances overlap and neither is met.
@@ -156,22 +153,7 @@ mod tests {
                     + 0.1 * (line * 7.0).sin()
             })
             .collect();
-        let place = Place { x: 0.3, y: 0.0 };
-        let record = PlaceRecord {
-            force_at: place,
-            response_at: place,
-            variance: vec![1.0; frequency.len()],
-            variance_known: false,
-            scatter_told: false,
-            decay_rate: 0.0,
-            decay_rate_in_doubt: 0.0,
-            worth: vec![1.0; frequency.len()],
-            by_strength: None,
-            tied: None,
-            read_as: ReadAs::SI,
-            value: value.clone(),
-            frequency,
-        };
+        let record = PlaceRecord::even(frequency, value.clone());
         let fit = ResonanceFit { record: &record, lines: 0..200, value };
         let at = [99.2_f64.ln(), 0.005_f64.ln(), 100.7_f64.ln(), 0.005_f64.ln()];
         let found = fit.linearise(&at);

@@ -152,9 +152,6 @@ pub(super) fn common_delay(records: &[Compared]) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use orthopanel_data::ReadAs;
-    use orthopanel_model::Place;
-
     use super::*;
 
     /// Two modes and a rigid one, as numbers.
@@ -171,21 +168,7 @@ mod tests {
         let model: Vec<Complex64> = frequency.iter().map(|f| panel(*f)).collect();
         let of = |factor: f64, delay: f64| {
             let late = |(f, model): (&f64, &Complex64)| model / factor * Complex64::cis(-TAU * f * delay);
-            let record = PlaceRecord {
-                force_at: Place { x: -0.3, y: 0.0 },
-                response_at: Place { x: 0.3, y: 0.0 },
-                value: frequency.iter().zip(&model).map(late).collect(),
-                variance: vec![1.0; frequency.len()],
-                variance_known: false,
-                scatter_told: false,
-                decay_rate: 0.0,
-                decay_rate_in_doubt: 0.0,
-                worth: vec![1.0; frequency.len()],
-                by_strength: None,
-                tied: None,
-                read_as: ReadAs::SI,
-                frequency: frequency.clone(),
-            };
+            let record = PlaceRecord::even(frequency.clone(), frequency.iter().zip(&model).map(late).collect());
             Compared::of(&record, &frequency, &model).unwrap()
         };
         for delay in [0.0, 20e-6, -50e-6, 3e-4] {

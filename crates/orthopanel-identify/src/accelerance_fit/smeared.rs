@@ -89,9 +89,6 @@ pub(super) fn smeared(record: &PlaceRecord, part: f64) -> Vec<PlaceRecord> {
 
 #[cfg(test)]
 mod tests {
-    use orthopanel_data::ReadAs;
-    use orthopanel_model::Place;
-
     use super::*;
 
     /// Two modes and a rigid part against their closed form further right.
@@ -102,20 +99,13 @@ mod tests {
             1.4 + 0.8 * mode(400.0, 0.002) - 1.1 * mode(900.0, 0.001)
         };
         let frequency: Vec<f64> = (1..4000).map(|line| 0.5 * f64::from(line)).collect();
+        let value = frequency.iter().map(|f| at(Complex64::new(3.0, TAU * f))).collect();
         let record = PlaceRecord {
-            force_at: Place { x: 0.0, y: 0.0 },
-            response_at: Place { x: 0.0, y: 0.0 },
-            value: frequency.iter().map(|f| at(Complex64::new(3.0, TAU * f))).collect(),
             variance: vec![1e-6; frequency.len()],
             variance_known: true,
             scatter_told: true,
             decay_rate: 3.0,
-            decay_rate_in_doubt: 0.0,
-            worth: vec![1.0; frequency.len()],
-            by_strength: None,
-            tied: None,
-            read_as: ReadAs::SI,
-            frequency,
+            ..PlaceRecord::even(frequency, value)
         };
         for part in [0.02, 0.005] {
             let mut lines = 0;

@@ -8,7 +8,9 @@ use orthopanel_model::{BEAM_CONSTANTS, Estimate, Readable, StructureKind};
 use crate::free_constants::{FreeConstant, FreeConstants};
 use crate::frequency_fit::identified_constants;
 use crate::inference::from_base;
+use crate::measured::MeasuredModes;
 use crate::posterior::Judged;
+use crate::predicted::Prediction;
 use crate::search::Inquiry;
 use crate::structures::bending_nodes;
 use crate::{AcceleranceFit, HiddenMode, Identification, IdentifiedConstant, IdentifyError, ModeFit, PieceFit};
@@ -19,10 +21,10 @@ use super::doubt::notes_on_not_shown;
 use super::estimates::Estimates;
 use super::lines::{Drawn, Lines};
 use super::lists::{notes_on_hidden, percent};
-use super::{drawn, lists_beside, not_finite};
+use super::{curves_of, drawn, lists_beside, not_finite};
 
-/// Identifies the constants of a beam from the records of one piece, with the effects that the test declares, a parameter that it leaves out too, and
-/// with lists of natural frequencies of any piece beside them.
+/// Identifies the constants of beams from records, with the effects that the test declares, a parameter that it leaves out too, and with lists of natural
+/// frequencies beside them.
 ///
 /// # Errors
 /// As [`from_base`], and [`IdentifyError::OnBound`].
@@ -74,7 +76,8 @@ pub(crate) fn identify_lists_with_effects(test: &ImpactTest) -> Result<Identific
 /// Each piece with the modes of its lists beside those of the beam.
 fn pieces_of_lists(test: &ImpactTest, inquiry: &Inquiry, base: &Judged) -> Vec<PieceFit> {
     let mut pieces: Vec<PieceFit> = test.pieces.iter().map(PieceFit::of).collect();
-    for (block, at) in inquiry.stacked.blocks.iter().zip(&base.posterior.point.at.blocks) {
+    let blocks = inquiry.stacked.blocks.iter().zip(&base.posterior.point.at.blocks);
+    for (block, at) in blocks.filter(|(block, _)| block.comparison().measured.records.is_empty()) {
         let measured = block.comparison().measured;
         let nodes = bending_nodes(test.boundary, measured.poles.len());
         for (index, (pole, nodes)) in measured.poles.iter().zip(nodes).enumerate() {
@@ -119,11 +122,14 @@ fn identification(
     let constants = FreeConstants::of(test, &BEAM_CONSTANTS)?;
     let identified = constants_of(test, (&constants, base), &estimates)?;
     let lines = Lines::of(test, estimation)?;
-    let Drawn { curves, damping } = drawn(test, (inquiry, base), &lines)?;
-    let named = &test.pieces[inquiry.measured().piece];
+    let drawn = drawn(test, (inquiry, base), &lines)?;
+    let curves = curves_of(&drawn);
     let mut pieces = pieces_of_lists(test, inquiry, base);
-    // Of the piece that was hit its records say more.
-    pieces[inquiry.measured().piece] = piece_fit(test, (inquiry, base), &damping);
+    // Of a piece that was hit its records say more.
+    for ((number, hit), Drawn { damping, .. }) in inquiry.stacked.hit().zip(drawn) {
+        let at = &base.posterior.point.at.blocks[number];
+        pieces[hit.piece] = piece_fit(test, (hit.comparison().measured, at), &damping);
+    }
     let modes = || pieces.iter().flat_map(|piece| &piece.modes);
     let errors: f64 = modes().map(|mode| mode.error_percent().powi(2)).sum();
     let pairs = || curves.iter().flat_map(|curve| curve.model.iter().zip(&curve.measured));
@@ -131,10 +137,15 @@ fn identification(
     let total: f64 = pairs().map(|(_, measured)| measured.norm_sqr()).sum();
     let mut notes = lines.notes_of_records();
     notes.extend(lists_beside(inquiry));
-    notes.extend(alone(inquiry, base));
+    notes.extend(
+        inquiry
+            .stacked
+            .hit()
+            .filter_map(|(number, hit)| alone(hit.comparison().measured, &base.posterior.point.at.blocks[number])),
+    );
     notes.extend(notes_on_not_shown(inquiry, base));
     notes.extend(notes_on_prior_alone(base, &estimates));
-    notes.extend(notes_on_bound(&estimates, &named.piece));
+    notes.extend(notes_on_bound(&estimates, inquiry.predictor().piece()));
     Ok(Identification {
         structure: StructureKind::TimoshenkoBeam,
         constants: identified,
@@ -155,8 +166,7 @@ fn identification(
 }
 
 /// The modes of the beam beside the poles that are theirs, and those in the band without one.
-fn piece_fit(test: &ImpactTest, (inquiry, base): (&Inquiry, &Judged), damping: &TracedDamping) -> PieceFit {
-    let (measured, at) = (inquiry.measured(), base.posterior.point.at.first());
+fn piece_fit(test: &ImpactTest, (measured, at): (&MeasuredModes, &Prediction), damping: &TracedDamping) -> PieceFit {
     let mut fit = PieceFit::of(&test.pieces[measured.piece]);
     let in_band = at.flexible.iter().take_while(|omega| **omega < TAU * measured.band[1]).count();
     let ratio = |mode: usize| Estimate {
@@ -189,9 +199,8 @@ fn piece_fit(test: &ImpactTest, (inquiry, base): (&Inquiry, &Judged), damping: &
 }
 
 /// A sentence on the resonances that are no mode of the beam; `None` where there are none.
-fn alone(inquiry: &Inquiry, base: &Judged) -> Option<String> {
-    let at = base.posterior.point.at.first();
-    let of_poles = inquiry.measured().poles.iter().zip(&at.flexible_of_poles).zip(&at.hangs);
+fn alone(measured: &MeasuredModes, at: &Prediction) -> Option<String> {
+    let of_poles = measured.poles.iter().zip(&at.flexible_of_poles).zip(&at.hangs);
     let alone: Vec<String> = of_poles
         .filter(|((_, mode), hangs)| mode.is_none() && !**hangs)
         .map(|((pole, _), _)| format!("{:.1} Hz", Readable(pole.angular_frequency / TAU)))

@@ -20,7 +20,8 @@ const MOST_MODES: usize = 200;
 
 /// The accelerances of the records: of hits as an analyser shows them, of files as they stand there.
 pub(super) struct Lines {
-    accelerances: Vec<Accelerance>,
+    /// Each with its piece.
+    accelerances: Vec<(usize, Accelerance)>,
     /// Whether neither hits nor places could tell by how much hits differ.
     pub hits_are_few: bool,
     /// Hits that were left out, and why; and all that is said of files of accelerances.
@@ -37,9 +38,9 @@ impl Lines {
     /// # Errors
     /// Records that cannot be read.
     pub(super) fn of(test: &ImpactTest, estimation: Estimation) -> Result<Self, IdentifyError> {
-        let histories: Vec<TimeHistory> = test.time_histories()?.into_iter().map(|(_, history)| history).collect();
+        let (pieces, histories): (Vec<usize>, Vec<TimeHistory>) = test.time_histories()?.into_iter().unzip();
         let of_hits = histories.par_iter().map(|history| Ok(history.accelerance(estimation)?));
-        let mut accelerances = of_hits.collect::<Result<Vec<_>, IdentifyError>>()?;
+        let accelerances = of_hits.collect::<Result<Vec<_>, IdentifyError>>()?;
         let mut notes = Vec::new();
         for (history, accelerance) in histories.iter().zip(&accelerances) {
             let [force, response] = [history.force_at, history.response_at].map(|place| place.x);
@@ -48,19 +49,20 @@ impl Lines {
         }
         let single = |(history, accelerance): (&TimeHistory, &Accelerance)| history.kept_in(accelerance).hits.len() < 2;
         let hits_are_few = (1..FEW).contains(&histories.len()) && histories.iter().zip(&accelerances).all(single);
-        for (_, accelerance) in test.recorded_accelerances()? {
-            notes.extend(accelerance.notes.iter().cloned());
-            accelerances.push(accelerance);
+        let mut accelerances: Vec<(usize, Accelerance)> = pieces.into_iter().zip(accelerances).collect();
+        for of_file in test.recorded_accelerances()? {
+            notes.extend(of_file.1.notes.iter().cloned());
+            accelerances.push(of_file);
         }
         Ok(Self { accelerances, hits_are_few, notes })
     }
 
     /// All that is said of the records, a sentence each.
     pub(super) fn notes_of_records(&self) -> Vec<String> {
-        self.accelerances.iter().flat_map(|record| record.notes.iter().cloned()).collect()
+        self.accelerances.iter().flat_map(|(_, record)| record.notes.iter().cloned()).collect()
     }
 
-    /// At these constants with these effects; `of_effects` as in [`TracedDamping::of`].
+    /// Of the piece of these modes, at these constants with these effects; `of_effects` as in [`TracedDamping::of`].
     ///
     /// # Errors
     /// What the model refuses.
@@ -83,15 +85,16 @@ impl Lines {
             suspension_motion: SuspensionMotion::InTime,
             ..RecordSetting::default()
         };
-        let settings: Vec<RecordSetting> = self.accelerances.iter().map(setting).collect();
+        let own = self.accelerances.iter().filter(|(piece, _)| *piece == measured.piece);
+        let accelerances: Vec<Accelerance> = own.map(|(_, accelerance)| accelerance.clone()).collect();
+        let settings: Vec<RecordSetting> = accelerances.iter().map(setting).collect();
         let setup = ReceptanceSetup::new(&piece, test.boundary, &test.suspension, &settings, summed + 1)?;
         let (forces, responses): (Vec<Place>, Vec<Place>) =
             measured.records.iter().map(|record| (record.force_at, record.response_at)).unzip();
         let bare = Damping::default();
         let modes = setup.summed_modes(constants, (&bare, effects), [&forces, &responses], SUMMED * band)?;
         let damping = TracedDamping::of(measured, &modes, of_effects);
-        let curves =
-            curves(&self.accelerances, (measured.piece, &setup), (constants, &damping.damping, effects), band)?;
+        let curves = curves(&accelerances, (measured.piece, &setup), (constants, &damping.damping, effects), band)?;
         Ok(Drawn { curves, damping })
     }
 }

@@ -143,6 +143,9 @@ fn tracing_of(test: &ImpactTest, inquiry: &Inquiry, all: &[Judged]) -> Result<Tr
     let (before, after) = (error(base), error(chosen));
     let before = before.ok_or_else(|| not_finite("error of the base model"))?;
     let after = after.ok_or_else(|| not_finite("error of the model with the effects"))?;
+    let problem = inquiry.problem(&chosen.hypothesis);
+    let yardstick = Yardstick::of(&problem, &chosen.posterior);
+    let yardstick = yardstick.ok_or_else(|| not_finite("misfit of the frequencies"))?;
     let candidate = |judged: &Judged| Candidate {
         id: id(judged),
         log_evidence: judged.log_odds,
@@ -176,7 +179,7 @@ fn tracing_of(test: &ImpactTest, inquiry: &Inquiry, all: &[Judged]) -> Result<Tr
         candidates: all.iter().map(candidate).collect(),
         not_tested: not_tested(inquiry, all),
         next_experiment,
-        chi_square: misfit(inquiry, chosen).ok_or_else(|| not_finite("misfit of the frequencies"))?,
+        chi_square: yardstick.fitted(&problem, &chosen.posterior.point).powi(2),
         panels,
         removed,
         accelerances: vec![],
@@ -224,15 +227,6 @@ pub(super) fn percent(inquiry: &Inquiry, judged: &Judged) -> Option<FittedError>
 
 /// Part of the variance of a frequency as its others foretell it that is noise and model error: with less, it alone tells itself.
 const OF_OTHERS: f64 = 0.01;
-
-/// Mean square of what is missed over noise and model error.
-fn misfit(inquiry: &Inquiry, judged: &Judged) -> Option<f64> {
-    let problem = inquiry.problem(&judged.hypothesis);
-    let at = &judged.posterior.point.at;
-    let by = problem.whitening(&problem.errors(at), &judged.posterior.log_sizes)?;
-    let missed = by.whitened(&problem.missed(at));
-    Some(missed.iter().map(|value| value * value).sum::<f64>() / missed.len().max(1) as f64)
-}
 
 /// A hypothesis with its first place at x > 0, where the frequencies are the same there; and whether they are.
 fn on_the_right(inquiry: &Inquiry, mut judged: Judged) -> (bool, Judged) {

@@ -48,12 +48,17 @@ impl Yardstick {
 
     /// The error at a point: rms over all values, and what is foretold of each group by the others, to first order.
     pub(super) fn error(&self, problem: &Problem, point: &Point) -> Option<FittedError> {
-        let missed = self.by.whitened(&problem.missed(&point.at));
-        let fitted = (missed.iter().map(|value| value * value).sum::<f64>() / missed.len().max(1) as f64).sqrt();
+        let fitted = self.fitted(problem, point);
         let left_out = self.linear(problem, point)?.left_out(&self.groups)?;
         let mean_square = |(left_out, group): (LeftOut, &Vec<usize>)| left_out.square / group.len().max(1) as f64;
         let sum: f64 = left_out.into_iter().zip(&self.groups).map(mean_square).sum();
         Some(FittedError { fitted, held_out: (sum / self.groups.len().max(1) as f64).sqrt() })
+    }
+
+    /// Rms of what is missed of all values.
+    pub(super) fn fitted(&self, problem: &Problem, point: &Point) -> f64 {
+        let missed = self.by.whitened(&problem.missed(&point.at));
+        (missed.iter().map(|value| value * value).sum::<f64>() / missed.len().max(1) as f64).sqrt()
     }
 
     /// What is missed of the first datum of each group beside its prediction from the others, and its variance.

@@ -5,6 +5,7 @@ mod damping;
 mod declared;
 mod doubt;
 mod estimates;
+mod factor;
 mod identified;
 mod left_out;
 mod lines;
@@ -23,17 +24,18 @@ pub(crate) use lists::{answer_of_lists, without_repeats};
 
 use orthopanel_data::{Estimation, ImpactTest};
 
-use crate::IdentifyError;
 use crate::hit_strength::HitStrength;
 use crate::inference::from_base;
 use crate::model_error::Kind;
-use crate::outcome::{Candidate, EstimatedModelError, Progress, TracedError, Tracing};
+use crate::outcome::{Candidate, EstimatedModelError, Progress, Removed, TracedError, Tracing};
 use crate::posterior::Judged;
 use crate::search::Inquiry;
-use crate::to_check::GAIN_OR_MASS;
+use crate::stacked::Block;
+use crate::{AcceleranceFit, IdentifyError};
 
 use doubt::check_first;
 use estimates::{Estimates, id};
+use factor::Factor;
 use lines::{Drawn, Lines};
 use misfit::Yardstick;
 use next_measurement::next_measurement;
@@ -49,14 +51,16 @@ const MEASURE: &str = "misfit of the measured modes over noise and model error, 
 /// Force lost over the band that is drawn \[dB\].
 const FORCE_DROP: f64 = 20.0;
 
-/// What the measured modes of the records of one beam say.
+/// What the measured modes of records of beams say, and of lists beside them.
 ///
 /// # Errors
 /// As [`from_base`], and [`IdentifyError::TooManyFrequencies`] for lists beside the records.
 pub(crate) fn answer(test: &ImpactTest, progress: &(dyn Fn(Progress) + Sync)) -> Result<Tracing, IdentifyError> {
     refuse_many(test)?;
     from_base(test, progress, |mut inquiry, base| {
-        inquiry.hits = HitStrength::new(test, inquiry.measured().band)?;
+        if inquiry.stacked.hit().nth(1).is_none() {
+            inquiry.hits = HitStrength::new(test, inquiry.measured().band)?;
+        }
         let all = inquiry.search(base);
         tracing_of(test, &inquiry, &all)
     })
@@ -64,8 +68,8 @@ pub(crate) fn answer(test: &ImpactTest, progress: &(dyn Fn(Progress) + Sync)) ->
 
 /// What is to be known of natural frequencies beside the records of the same piece.
 fn lists_beside(inquiry: &Inquiry) -> Option<String> {
-    let (records, lists) = inquiry.stacked.blocks.split_first()?;
-    let is_beside = !inquiry.is_of_lists() && lists.iter().any(|list| list.piece == records.piece);
+    let lists = || inquiry.stacked.blocks.iter().filter(|block| block.comparison().measured.records.is_empty());
+    let is_beside = inquiry.stacked.hit().any(|(_, hit)| lists().any(|list| list.piece == hit.piece));
     is_beside.then(|| LISTS_BESIDE.to_owned())
 }
 
@@ -77,9 +81,13 @@ fn not_finite(what: &str) -> IdentifyError {
 }
 
 fn tracing_of(test: &ImpactTest, inquiry: &Inquiry, all: &[Judged]) -> Result<Tracing, IdentifyError> {
-    let measured = inquiry.measured();
-    let weighed = Weighed::of(inquiry, all)?;
-    let Weighed { chosen, base, verdict, .. } = weighed;
+    let mut weighed = Weighed::of(inquiry, all)?;
+    let Weighed { chosen, base, .. } = weighed;
+    let lines = Lines::of(test, Estimation { force_drop: FORCE_DROP, ..Estimation::default() })?;
+    let of_chosen = drawn(test, (inquiry, chosen), &lines)?;
+    let curves = curves_of(&of_chosen);
+    let factor = Factor::of(test, inquiry, &mut weighed, &curves);
+    let verdict = weighed.verdict;
     let problem = inquiry.problem(&chosen.hypothesis);
     let yardstick = Yardstick::of(&problem, &chosen.posterior);
     let yardstick = yardstick.ok_or_else(|| not_finite("covariance of the measured modes"))?;
@@ -102,33 +110,38 @@ fn tracing_of(test: &ImpactTest, inquiry: &Inquiry, all: &[Judged]) -> Result<Tr
         },
         effects: Estimates::of(judged).undeclared(),
     };
-    let lines = Lines::of(test, Estimation { force_drop: FORCE_DROP, ..Estimation::default() })?;
-    let Drawn { curves, damping } = drawn(test, (inquiry, chosen), &lines)?;
-    let base_curves =
-        if std::ptr::eq(base, chosen) { curves.clone() } else { drawn(test, (inquiry, base), &lines)?.curves };
+    let of_base = if std::ptr::eq(base, chosen) { None } else { Some(drawn(test, (inquiry, base), &lines)?) };
+    let base_curves = of_base.as_deref().map_or_else(|| curves.clone(), curves_of);
     let estimates = Estimates::of(chosen);
     let plate = chosen.hypothesis.parts.iter().position(|part| part.replaces_structure(inquiry.predictor()));
-    let of_effects = &chosen.posterior.point.at.first().damping_of_effects;
-    let (hit, removed) = panel(test, (measured, of_effects), (chosen, &estimates), damping, plate)?;
-    let (mut panels, _) = panels_of_lists(test, inquiry, chosen, &estimates);
-    panels[measured.piece] = hit;
-    let size = |kind: Kind| chosen.posterior.log_sizes[kind as usize].exp();
-    let mut notes = lines.notes;
-    if chosen.names().contains(&"gain") {
-        notes.push(GAIN_OR_MASS.to_owned());
+    let (mut panels, mut removed) = panels_of_lists(test, inquiry, chosen, &estimates);
+    for ((number, hit), Drawn { damping, .. }) in inquiry.stacked.hit().zip(of_chosen) {
+        let of_effects = &chosen.posterior.point.at.blocks[number].damping_of_effects;
+        let measured = hit.comparison().measured;
+        panels[hit.piece] = panel(test, (measured, of_effects), (chosen, &estimates), damping, plate)?;
     }
+    let size = |kind: Kind| chosen.posterior.log_sizes[kind as usize].exp();
+    let mut notes: Vec<String> = factor.iter().map(|factor| factor.sentence.clone()).collect();
+    notes.extend(lines.notes);
     if lines.hits_are_few {
         notes.push(FEW_HITS.to_owned());
     }
     notes.extend(lists_beside(inquiry));
     notes.extend(weighed.notes(inquiry, test, &estimates));
-    let next_experiment = match weighed.check() {
-        Some(doubt) => check_first(doubt),
-        None => next_measurement((test, inquiry), (chosen, verdict, after.fitted), (&weighed.near, all)),
+    let clear = factor.as_ref().and_then(|factor| factor.next.clone());
+    let next_experiment = match (clear, weighed.check()) {
+        (Some(clear), _) => clear,
+        (None, Some(doubt)) => check_first(doubt),
+        (None, None) => next_measurement((test, inquiry), (chosen, verdict, after.fitted), (&weighed.near, all)),
     };
+    let mut effects = estimates.undeclared();
+    if let Some(gain) = factor.and_then(|factor| factor.effect) {
+        removed.push(Removed::of(&gain, false));
+        effects.push(gain);
+    }
     Ok(Tracing {
         verdict,
-        effects: estimates.undeclared(),
+        effects,
         alternatives: weighed.alternatives(),
         error: TracedError { measure: MEASURE.to_owned(), before, after, noise_floor: 1.0 },
         model_error: Some(EstimatedModelError { frequency: size(Kind::Frequency), residue: Some(size(Kind::Residue)) }),
@@ -144,13 +157,23 @@ fn tracing_of(test: &ImpactTest, inquiry: &Inquiry, all: &[Judged]) -> Result<Tr
     })
 }
 
-/// The records' lines beside a hypothesis.
+/// The lines of each piece that was hit beside a hypothesis.
 ///
 /// # Errors
 /// What the model refuses.
-fn drawn(test: &ImpactTest, (inquiry, judged): (&Inquiry, &Judged), lines: &Lines) -> Result<Drawn, IdentifyError> {
-    let z = &judged.posterior.point.z;
-    let (constants, effects) = inquiry.stacked.first().values(&judged.hypothesis, z)?;
-    let of_effects = judged.posterior.point.at.first().damping_of_effects.clone();
-    lines.drawn(test, inquiry.measured(), (&constants, &effects, &of_effects))
+fn drawn(
+    test: &ImpactTest,
+    (inquiry, judged): (&Inquiry, &Judged),
+    lines: &Lines,
+) -> Result<Vec<Drawn>, IdentifyError> {
+    let of_hit = |(number, hit): (usize, &Block)| {
+        let (constants, effects) = hit.values(&judged.hypothesis, &judged.posterior.point.z)?;
+        let of_effects = &judged.posterior.point.at.blocks[number].damping_of_effects;
+        lines.drawn(test, hit.comparison().measured, (&constants, &effects, of_effects))
+    };
+    inquiry.stacked.hit().map(of_hit).collect()
+}
+
+fn curves_of(drawn: &[Drawn]) -> Vec<AcceleranceFit> {
+    drawn.iter().flat_map(|drawn| drawn.curves.iter().cloned()).collect()
 }

@@ -6,7 +6,6 @@ use crate::outcome::NotTested;
 use crate::posterior::Judged;
 use crate::search::Inquiry;
 
-const ONE_RECORD: &str = "one record has no other to differ from";
 const OTHER_MODES: &str = "it changes the modes in a way that measured modes are not asked for yet";
 const BY_LEVEL: &str = "it shows between hits of unequal strength: hit each place softly and hard";
 const NO_START: &str = "no start led anywhere";
@@ -20,13 +19,11 @@ pub(super) fn not_tested(inquiry: &Inquiry, all: &[Judged]) -> Vec<NotTested> {
 }
 
 fn reason(inquiry: &Inquiry, effect: &dyn Effect) -> String {
-    if inquiry.is_of_lists() {
-        return inquiry.hidden_in_lists(effect).unwrap_or_else(|| NO_START.to_owned());
-    }
-    if !inquiry.can_show(effect) {
-        return ONE_RECORD.to_owned();
+    if let Some(hidden) = inquiry.hidden(effect) {
+        return hidden;
     }
     match inquiry.acts(effect) {
+        _ if inquiry.is_of_lists() => NO_START.to_owned(),
         Err(error) => error.to_string(),
         Ok(actions) if actions.is_empty() => BY_LEVEL.to_owned(),
         Ok(actions) if actions.iter().any(|action| matches!(action, Action::Core(_) | Action::Plate(_))) => {

@@ -11,7 +11,7 @@ use orthopanel_model::{
 
 use super::damping::TracedDamping;
 use super::estimates::Estimates;
-use crate::hypothesis::{Role, has_place};
+use crate::hypothesis::Role;
 use crate::measured::MeasuredModes;
 use crate::outcome::{Removed, TracedEffect};
 use crate::plate_of_ratios::widen;
@@ -24,7 +24,7 @@ const DAMPING_STD: &str = "damping_std";
 /// Modes of a plate up to so many times the highest pole get a damping ratio.
 const ABOVE: f64 = 1.1;
 
-/// The panel with the effects that are its own, and which of the others are removed and why; `plate` is the number of the effect that stands a
+/// The panel of a piece that was hit, with the effects that are its own; `plate` is the number of the effect that stands a
 /// plate in the place of the beam, and `of_effects` as in [`TracedDamping::of`].
 ///
 /// # Errors
@@ -35,9 +35,9 @@ pub(super) fn panel(
     (judged, estimates): (&Judged, &Estimates),
     damping: TracedDamping,
     plate: Option<usize>,
-) -> Result<(PanelModel, Vec<Removed>), ModelError> {
+) -> Result<PanelModel, ModelError> {
     let places = |at: fn(&crate::MeasuredRecord) -> Place| distinct(measured.records.iter().map(at));
-    let (own, others) = own_and_others(estimates, plate);
+    let (own, _) = own_and_others(estimates, plate);
     let constants = constants(judged, estimates, measured.piece);
     let ports = Ports { forces: places(|record| record.force_at), responses: places(|record| record.response_at) };
     let mut panel = bare((test.pieces[measured.piece].piece, test.boundary), constants, ports);
@@ -51,11 +51,11 @@ pub(super) fn panel(
     panel.damping = damping.damping;
     panel.provenance.insert(DAMPING_STD.to_owned(), damping.std.into());
     panel.effects = own.into_iter().map(|(effect, _)| effect.entry()).collect();
-    Ok((panel, removed(&others)))
+    Ok(panel)
 }
 
-/// A panel for each piece of lists of frequencies, with the effects that are its own, and which of the others are removed and why. Frequencies tell no
-/// damping. An effect at a place is on the piece that was hit, if any was.
+/// A panel for each piece as its constants say alone, with the effects that are its own, and which of the others are removed and why. Frequencies tell
+/// no damping. An effect at a place is on the piece that was hit, if any was.
 pub(super) fn panels_of_lists(
     test: &ImpactTest,
     inquiry: &Inquiry,
@@ -63,8 +63,7 @@ pub(super) fn panels_of_lists(
     estimates: &Estimates,
 ) -> (Vec<PanelModel>, Vec<Removed>) {
     let plate = judged.hypothesis.parts.iter().position(|part| part.replaces_structure(inquiry.predictor()));
-    let hit = (!inquiry.is_of_lists()).then_some(inquiry.measured().piece);
-    let is_placed = |id: &str| orthopanel_model::effect(id).is_ok_and(has_place);
+    let hit: Vec<usize> = inquiry.stacked.hit().map(|(_, hit)| hit.piece).collect();
     let (own, others) = own_and_others(estimates, plate);
     let of_piece = |(piece, named): (usize, &NamedPiece)| {
         let ports = Ports { forces: vec![], responses: vec![] };
@@ -72,7 +71,7 @@ pub(super) fn panels_of_lists(
         if let Some((ratios, _)) = plate.and_then(|number| estimates.effects.get(number)) {
             widen(&mut panel, ratios);
         }
-        let acts = |effect: &&TracedEffect| hit.is_none_or(|hit| hit == piece) || !is_placed(effect.id);
+        let acts = |effect: &&TracedEffect| hit.is_empty() || hit.contains(&piece) || !effect.has_place();
         panel.effects = own.iter().map(|(effect, _)| effect).filter(acts).map(TracedEffect::entry).collect();
         panel
     };

@@ -6,7 +6,8 @@ use orthopanel_data::ImpactTest;
 use orthopanel_model::Readable;
 
 use crate::IdentifyError;
-use crate::judge::{ahead, has_no_mode, judged, rivals};
+use crate::judge::{judged, without_mode};
+use crate::measured::Pole;
 use crate::outcome::Verdict;
 use crate::posterior::Judged;
 use crate::search::Inquiry;
@@ -23,8 +24,12 @@ pub(super) struct Weighed<'a> {
     pub verdict: Verdict,
     /// Where that is ambiguous, the hypotheses that are not clearly behind; of nothing missing, those that are ahead of it.
     pub near: Vec<&'a Judged>,
-    rivals: Vec<&'static str>,
     doubts: Vec<Doubt>,
+}
+
+/// Of which piece something is, where a test has several.
+fn of_piece(test: &ImpactTest, piece: usize) -> String {
+    if test.pieces.len() > 1 { format!(" of piece {}", test.pieces[piece].name) } else { String::new() }
 }
 
 impl<'a> Weighed<'a> {
@@ -33,18 +38,13 @@ impl<'a> Weighed<'a> {
     pub(super) fn of(inquiry: &Inquiry, all: &'a [Judged]) -> Result<Self, IdentifyError> {
         let measured = inquiry.measured();
         let none = IdentifyError::TooFewResonances { found: measured.poles.len(), needed: 2, noise_percent: None };
-        let (chosen, verdict, found_rivals) = judged(all, &inquiry.stacked).ok_or(none)?;
+        let (chosen, verdict, near) = judged(all, &inquiry.stacked).ok_or(none)?;
         let base = all.iter().find(|judged| judged.names().is_empty()).unwrap_or(chosen);
         let mut doubts = doubts(inquiry, base, &all[0]);
         let is_unexplained = verdict == Verdict::Unexplained;
         doubts.retain(|doubt| doubt.is_rival || is_unexplained);
         let verdict = if is_unexplained || doubts.is_empty() { verdict } else { Verdict::Ambiguous };
-        let near = match verdict {
-            Verdict::Ambiguous if chosen.names().is_empty() => ahead(all, chosen).collect(),
-            Verdict::Ambiguous => rivals(all, chosen).collect(),
-            _ => vec![],
-        };
-        Ok(Self { chosen, base, verdict, near, rivals: found_rivals, doubts })
+        Ok(Self { chosen, base, verdict, near, doubts })
     }
 
     /// A declared number that is to be checked before anything else.
@@ -53,8 +53,13 @@ impl<'a> Weighed<'a> {
     }
 
     pub(super) fn alternatives(&self) -> Vec<String> {
+        let names = self.chosen.names();
+        let mut rivals: Vec<&str> = self.near.iter().flat_map(|judged| judged.names()).collect();
+        rivals.retain(|name| !names.contains(name));
+        rivals.sort_unstable();
+        rivals.dedup();
         let doubted = self.doubts.iter().filter(|_| self.verdict != Verdict::Unexplained).map(|doubt| doubt.id);
-        doubted.chain(self.rivals.iter().copied()).map(str::to_owned).collect()
+        doubted.chain(rivals).map(str::to_owned).collect()
     }
 
     /// The rivals, or else the likeliest other hypothesis that lacks one of the effects.
@@ -72,15 +77,14 @@ impl<'a> Weighed<'a> {
 
     pub(super) fn notes(&self, inquiry: &Inquiry, test: &ImpactTest, estimates: &Estimates) -> Vec<String> {
         let measured = inquiry.measured();
-        let without_mode = (0..measured.poles.len()).filter(|pole| has_no_mode(self.chosen, measured, *pole));
-        let mut notes: Vec<String> = without_mode
-            .map(|pole| {
-                let frequency = measured.poles[pole].angular_frequency / TAU;
-                format!(
-                    "the resonance at {frequency:.1} Hz is no mode of this model: something swings there that it does not hold"
-                )
-            })
-            .collect();
+        let is_no_mode = |(piece, pole): (usize, Pole)| {
+            let frequency = pole.angular_frequency / TAU;
+            let of = of_piece(test, piece);
+            format!(
+                "the resonance at {frequency:.1} Hz{of} is no mode of this model: something swings there that it does not hold"
+            )
+        };
+        let mut notes: Vec<String> = without_mode(self.chosen, &inquiry.stacked).into_iter().map(is_no_mode).collect();
         notes.extend(self.doubts.iter().map(|doubt| doubt.sentence.clone()));
         notes.extend(self.near.iter().map(|rival| self.standing(rival)));
         notes.extend(notes_on_not_shown(inquiry, self.base));

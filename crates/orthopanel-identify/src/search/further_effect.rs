@@ -107,8 +107,8 @@ impl Inquiry<'_> {
     }
 
     /// An effect more, in the way and from the start that serve best: a net of starts of all ways is ranked, the best are followed with
-    /// wide sizes of model error, the best of these to the posterior.
-    pub(super) fn with_effect(&self, base: &Judged, effect: &'static dyn Effect) -> Option<Judged> {
+    /// wide sizes of model error, the best of these to the posterior. With it whether it may come to the odds that count, as far as is known.
+    pub(super) fn with_effect(&self, base: &Judged, effect: &'static dyn Effect) -> Option<(Judged, bool)> {
         let of_base = self.problem(&base.hypothesis);
         let at_base = &base.posterior.point;
         let errors = of_base.errors(&at_base.at).with_every_partner();
@@ -193,15 +193,12 @@ impl Inquiry<'_> {
         } else {
             match self.promising(base, &ways, &points) {
                 Some(promising) if !promising.is_empty() => promising,
-                Some(_) if base.names().is_empty() && replaces => {
+                // Where it ends is told, and how likely it is there, but it is not looked for further.
+                Some(_) if base.names().is_empty() => {
                     let (way, point) = points.into_iter().next()?;
-                    let problem = self.problem(&ways[way]);
-                    let from = [logs(SMALL), base.posterior.log_sizes];
-                    let ends = from.into_iter().filter_map(|sizes| problem.posterior(point.clone(), sizes, 4));
-                    let best = ends.max_by(|a, b| a.log_evidence.total_cmp(&b.log_evidence))?;
-                    return Some(judged((way, best)));
+                    let posterior = self.problem(&ways[way]).posterior(point, base.posterior.log_sizes, 4)?;
+                    return Some((judged((way, posterior)), false));
                 }
-                Some(_) if base.names().is_empty() => points.into_iter().take(1).collect(),
                 Some(_) => return None,
                 None => points,
             }
@@ -210,7 +207,8 @@ impl Inquiry<'_> {
         let cost = of_base.judged_by(at_base.clone(), &of_base.whitening(&errors, &logs(LOOSE))?)?.cost;
         if points.first().is_some_and(|(_, best)| best.cost > cost + behind) {
             let (way, point) = points.into_iter().next()?;
-            return self.problem(&ways[way]).posterior(point, logs(LOOSE), 1).map(|posterior| judged((way, posterior)));
+            let posterior = self.problem(&ways[way]).posterior(point, logs(LOOSE), 1)?;
+            return Some((judged((way, posterior)), false));
         }
         let points = best(follow(points, &std::array::from_fn(|k| 0.5 * (LOOSE[k] * SMALL[k]).ln()), 4), FOLLOWED);
         // From small sizes, since an effect drowns in those of too poor a hypothesis; and from those, since it need not be all that lacks.
@@ -224,11 +222,12 @@ impl Inquiry<'_> {
                 Some((way, posterior))
             })
             .collect();
-        ends.into_iter().max_by(|a, b| a.1.log_evidence.total_cmp(&b.1.log_evidence)).map(judged)
+        let best = ends.into_iter().max_by(|a, b| a.1.log_evidence.total_cmp(&b.1.log_evidence))?;
+        Some((judged(best), true))
     }
 
-    /// The starts from which an effect may come to the odds that count, the best few; `None` where the base's curvature is singular. By a score test: what its coordinates and its starts make good of the base's misfit to first order, under sizes of model error that
-    /// are no wider than small ones.
+    /// The starts from which an effect may come to the odds that count, the best few; `None` where the base's curvature is singular. By a score test:
+    /// what its coordinates and its starts make good of the base's misfit to first order, under sizes of model error that are no wider than small ones.
     fn promising(&self, base: &Judged, ways: &[Hypothesis], starts: &[(usize, Point)]) -> Option<Vec<(usize, Point)>> {
         let at_base = &base.posterior.point;
         let of_base = self.problem(&base.hypothesis);

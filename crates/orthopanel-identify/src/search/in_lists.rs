@@ -3,7 +3,7 @@
 use orthopanel_model::{Action, Effect, Owner, Place};
 
 use super::Inquiry;
-use crate::hypothesis::has_place;
+use crate::hypothesis::{OF_PIECE, has_place};
 
 impl Inquiry<'_> {
     /// Whether frequencies are all that was measured.
@@ -45,7 +45,7 @@ impl Inquiry<'_> {
         }
         let first = self.stacked.first().piece;
         if has_place(effect) && self.stacked.blocks.iter().any(|block| block.piece != first) {
-            return said("each piece would have a place of its own: trace one piece in a test file");
+            return said(OF_PIECE);
         }
         None
     }
