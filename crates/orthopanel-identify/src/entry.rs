@@ -5,6 +5,7 @@ use orthopanel_model::{ModelError, StructureKind};
 
 use crate::answer::{PlateByModes, identify_lists_with_effects, identify_with_effects, without_repeats};
 use crate::inference::is_record;
+use crate::shapes_of_list::shapes_by_frequency;
 use crate::{
     DampingLaw, Identification, IdentifyError, Search, Settings, accelerance_fit, frequency_fit, known_beforehand,
 };
@@ -52,7 +53,19 @@ fn of_once(test: &ImpactTest, lists: usize, settings: Settings) -> Result<Identi
     }
     let of_held = |error| of_held_constants(test, error);
     if lists == test.measurements.len() {
-        frequency_fit::identify_frequencies(test, settings.search).map_err(of_held)?.determined()
+        let by_frequencies = |test: &ImpactTest| frequency_fit::identify_frequencies(test, settings.search);
+        let found = by_frequencies(test).or_else(|refused| {
+            // Modes of any kind, where bending modes alone do not meet a list without shapes.
+            let is_far = matches!(refused, IdentifyError::FarFromList { .. });
+            let Some(read) = is_far.then(|| shapes_by_frequency(test)).transpose()?.flatten() else {
+                return Err(refused);
+            };
+            let mut found = by_frequencies(&read.test)?;
+            found.notes.splice(..0, read.notes);
+            found.question = found.question.or(read.question);
+            Ok(found)
+        });
+        found.map_err(of_held)?.determined()
     } else {
         let plate = plate_by_modes(test);
         // A plate whose modes are right and whose lines a factor explains is refused for that factor.

@@ -29,6 +29,7 @@ mod predicted;
 mod search;
 mod search_progress;
 mod settings;
+mod shapes_of_list;
 mod stacked;
 mod starting_constants;
 mod structures;

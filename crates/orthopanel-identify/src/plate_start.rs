@@ -5,12 +5,12 @@ use faer::{Mat, Side};
 use orthopanel_model::{Boundary, MindlinPlate, ModelError, Piece, Place, Structure, ritz_modes};
 use rayon::prelude::*;
 
-use crate::matching::Partner;
 use crate::measured::MeasuredModes;
 use crate::model_error::frequency_prior;
 
-/// Ratios $E_y/E_x$, $G_{xy}/E_x$ and $G_{zx}/E_x$ at which plates begin: from spruce to aluminium faces, from balsa to steel honeycomb.
-const ALONG: [f64; 6] = [0.05, 0.1, 0.25, 0.5, 0.8, 1.2];
+/// Ratios $E_y/E_x$, and $G_{xy}$ and $G_{zx}$ over the larger of the two, at which plates begin: from spruce along and across its grain to aluminium
+/// faces, from balsa to steel honeycomb.
+const ALONG: [f64; 9] = [0.05, 0.1, 0.25, 0.5, 0.8, 1.2, 2.5, 6.0, 15.0];
 const SHEAR: [f64; 5] = [0.03, 0.07, 0.15, 0.3, 0.45];
 const CORE: [f64; 3] = [0.02, 0.06, 0.3];
 /// $G_{yz}/G_{zx}$ there, and Poisson's ratio of equal moduli.
@@ -72,7 +72,9 @@ impl<'a> PlateStart<'a> {
         let pairs = measured.records.iter().map(|record| (record.force_at, record.response_at)).collect();
         let records = 0..measured.records.len();
         let size = |pole: usize| rms(&records.clone().map(|record| measured.product(record, pole)).collect::<Vec<_>>());
-        let sizes: Vec<f64> = (0..measured.poles.len()).map(size).collect();
+        // Of a list no pole is stronger than another.
+        let is_list = measured.records.is_empty();
+        let sizes: Vec<f64> = (0..measured.poles.len()).map(|pole| if is_list { 1.0 } else { size(pole) }).collect();
         let mut sorted = sizes.clone();
         sorted.sort_by(f64::total_cmp);
         let typical = sorted.get(sorted.len() / 2).copied().unwrap_or(1.0);
@@ -134,9 +136,40 @@ impl<'a> PlateStart<'a> {
         let band = 1.03 * first.angular_frequency..0.97 * last.angular_frequency;
         let taken = |mode: usize| partners.iter().flatten().any(|(partner, _)| *partner == mode);
         let lost = modes.iter().enumerate().filter(|(number, (omega, shape))| {
-            band.contains(omega) && !taken(*number) && rms(shape) > STRONG * self.typical
+            let is_strong = shape.is_empty() || rms(shape) > STRONG * self.typical;
+            band.contains(omega) && !taken(*number) && is_strong
         });
         (cost + LOST * lost.count() as f64) / lowest.poles.len() as f64
+    }
+
+    /// Which modes the poles are at these constants, and how likely that is.
+    ///
+    /// # Errors
+    /// What the plate refuses.
+    pub(crate) fn reading(&self, fit: &PlateFit) -> Result<PolesRead, ModelError> {
+        let modes = self.modes(&fit.values, self.count(self.measured))?;
+        let seen: Vec<(f64, Vec<f64>)> = modes.iter().map(|mode| mode.seen.clone()).collect();
+        let apart = (TIMES * fit.missed).max(NEAREST);
+        let (partners, pairs) = self.measured.assigned(&seen, |_| apart, |pole| self.alone(pole));
+        let lost = self.cost(self.measured, &seen, apart) * self.measured.poles.len() as f64 - pairs;
+        let alone = (0..partners.len()).filter(|pole| partners[*pole].is_none()).map(|pole| self.alone(pole));
+        let cost = 2.0 * fit.cost + alone.sum::<f64>() + lost;
+        let partners: Vec<Option<usize>> = partners.into_iter().map(|partner| partner.map(|(mode, _)| mode)).collect();
+        let own_cost = self.missed(&modes, &partners).least_cost();
+        let mut others = Vec::new();
+        for (pole, own) in partners.iter().enumerate().filter_map(|(pole, own)| Some((pole, (*own)?))) {
+            let away = |mode: usize| (self.measured.poles[pole].angular_frequency / modes[mode].seen.0).ln().abs();
+            for other in (0..modes.len()).filter(|other| *other != own && away(*other) < FARTHEST) {
+                // A mode that is another pole's changes places with it.
+                let mut exchanged = partners.clone();
+                if let Some(taken) = partners.iter().position(|partner| *partner == Some(other)) {
+                    exchanged[taken] = Some(own);
+                }
+                exchanged[pole] = Some(other);
+                others.push((pole, other, 2.0 * (self.missed(&modes, &exchanged).least_cost() - own_cost)));
+            }
+        }
+        Ok(PolesRead { modes: partners, cost, others })
     }
 
     /// The best starts of a net of ratios, each scaled so that one of its lowest modes lies where one of the lowest poles is.
@@ -145,7 +178,8 @@ impl<'a> PlateStart<'a> {
         let net = ALONG.iter().flat_map(|a| SHEAR.iter().flat_map(move |b| CORE.iter().map(move |c| [*a, *b, *c])));
         let of_ratios = |[along, shear, core]: [f64; 3]| -> Result<Vec<(f64, Constants)>, ModelError> {
             let nu = POISSON * (0.9 / along.sqrt()).min(1.0);
-            let values = [1e10, along * 1e10, nu, shear * 1e10, ACROSS * core * 1e10, core * 1e10];
+            let larger = 1e10 * along.max(1.0);
+            let values = [1e10, along * 1e10, nu, shear * larger, ACROSS * core * larger, core * larger];
             let modes = self.modes(&values, RANKED + RANKED / 2)?;
             let mut found = Vec::new();
             for mode in modes.iter().take(LOWEST_MODES) {
@@ -236,6 +270,16 @@ impl<'a> PlateStart<'a> {
     }
 }
 
+/// Which modes poles are.
+pub(crate) struct PolesRead {
+    /// Of each pole the number of its mode among the flexible ones, from 0.
+    pub modes: Vec<Option<usize>>,
+    /// Twice the negative logarithm of the likelihood, with what stays alone on either side.
+    pub cost: f64,
+    /// What it costs more that a pole is another mode: the pole, the mode, and the cost.
+    pub others: Vec<(usize, usize, f64)>,
+}
+
 /// Constants with what the frequencies of the poles say of them, and of the error of the model.
 pub(crate) struct PlateFit {
     pub values: Constants,
@@ -245,6 +289,8 @@ pub(crate) struct PlateFit {
     pub covariance: Mat<f64>,
     /// Standard deviation of the logarithm of a frequency.
     pub missed: f64,
+    /// Negative logarithm of the marginal likelihood of the frequencies that have a mode.
+    pub cost: f64,
 }
 
 impl PlateFit {
@@ -293,6 +339,22 @@ impl Missed {
         Mat::from_fn(count, count, |i, j| sum(i, j) + if i == j { self.precision[i] } else { 0.0 })
     }
 
+    /// The least of [`Self::cost`] over all sizes, each where a step of the constants makes good what it can to first order.
+    fn least_cost(&self) -> f64 {
+        let count = self.precision.len();
+        let of_size = |size: f64| {
+            let Ok(factor) = self.curvature(size).llt(Side::Lower) else { return f64::INFINITY };
+            let slope = |i: usize| self.rows.iter().map(|(left, noise, by)| by[i] * left / (size * size + noise)).sum();
+            let step = factor.solve(&Mat::from_fn(count, 1, |i, _| slope(i)));
+            let made_good = |by: &[f64]| (0..count).map(|i| by[i] * step[(i, 0)]).sum::<f64>();
+            let rows = self.rows.iter().map(|(left, noise, by)| (left - made_good(by), *noise, by.clone())).collect();
+            let moved = Self { rows, precision: self.precision.clone() };
+            let prior: f64 = (0..count).map(|i| self.precision[i] * step[(i, 0)].powi(2)).sum();
+            moved.cost(size) + 0.5 * prior
+        };
+        sizes().map(of_size).fold(f64::INFINITY, f64::min)
+    }
+
     /// Negative logarithm of the marginal likelihood of a size of model error, with its prior.
     fn cost(&self, size: f64) -> f64 {
         let variance = |noise: f64| size * size + noise;
@@ -313,35 +375,46 @@ const SIZES_COUNT: usize = 120;
 /// A pole and its mode lie no further apart than so many times the model error, and may lie this far at least.
 const TIMES: f64 = 2.0;
 const NEAREST: f64 = 2e-3;
+/// and no mode further than this is another that a pole may be.
+const FARTHEST: f64 = 0.1;
 const ROUNDS: usize = 8;
 
+/// The sizes that are looked at.
+fn sizes() -> impl Iterator<Item = f64> {
+    let step = (SIZES[1] / SIZES[0]).ln() / (SIZES_COUNT - 1) as f64;
+    (0..SIZES_COUNT).map(move |k| SIZES[0] * (step * k as f64).exp())
+}
+
 impl PlateStart<'_> {
+    /// What these modes leave of the poles whose partners they are.
+    fn missed(&self, modes: &[PlateMode], partners: &[Option<usize>]) -> Missed {
+        let free: Vec<usize> = (0..6).filter(|&i| self.held[i].is_none()).collect();
+        let row = |(pole, partner): (usize, &Option<usize>)| {
+            let mode = &modes[(*partner)?];
+            let left = (self.measured.poles[pole].angular_frequency / mode.seen.0).ln();
+            let noise = self.measured.covariance[(pole, pole)] + BASIS * BASIS;
+            Some((left, noise, free.iter().map(|&i| mode.by[i]).collect()))
+        };
+        let precision = free.iter().map(|&i| PlateFit::prior(i).powi(-2)).collect();
+        Missed { rows: partners.iter().enumerate().filter_map(row).collect(), precision }
+    }
+
     /// The most probable constants near a start by the frequencies of all poles, with the size of the model error integrated over.
     ///
     /// # Errors
     /// What the plate refuses.
     pub(crate) fn fit(&self, start: Constants) -> Result<PlateFit, ModelError> {
         let free: Vec<usize> = (0..6).filter(|&i| self.held[i].is_none()).collect();
-        let precision: Vec<f64> = free.iter().map(|&i| PlateFit::prior(i).powi(-2)).collect();
         let (mut values, mut size) = (start, STAGES[STAGES.len() - 1].2);
         for round in 0..=ROUNDS {
             let modes = self.modes(&values, self.count(self.measured))?;
             let seen: Vec<(f64, Vec<f64>)> = modes.iter().map(|mode| mode.seen.clone()).collect();
             let apart = (TIMES * size).max(NEAREST);
             let (partners, _) = self.measured.assigned(&seen, |_| apart, |pole| self.alone(pole));
-            let row = |(pole, partner): (usize, &Partner)| {
-                let mode = &modes[partner.as_ref()?.0];
-                let left = (self.measured.poles[pole].angular_frequency / mode.seen.0).ln();
-                let noise = self.measured.covariance[(pole, pole)] + BASIS * BASIS;
-                Some((left, noise, free.iter().map(|&i| mode.by[i]).collect()))
-            };
-            let missed =
-                Missed { rows: partners.iter().enumerate().filter_map(row).collect(), precision: precision.clone() };
-            let step = (SIZES[1] / SIZES[0]).ln() / (SIZES_COUNT - 1) as f64;
-            let sizes: Vec<(f64, f64)> = (0..SIZES_COUNT)
-                .map(|k| SIZES[0] * (step * k as f64).exp())
-                .map(|size| (size, missed.cost(size)))
-                .collect();
+            let partners: Vec<Option<usize>> =
+                partners.into_iter().map(|partner| partner.map(|(mode, _)| mode)).collect();
+            let missed = self.missed(&modes, &partners);
+            let sizes: Vec<(f64, f64)> = sizes().map(|size| (size, missed.cost(size))).collect();
             let Some(&(best, least)) = sizes.iter().min_by(|a, b| a.1.total_cmp(&b.1)) else { break };
             size = best;
             if round == ROUNDS {
@@ -354,11 +427,12 @@ impl PlateStart<'_> {
                     whole += weight;
                 }
                 covariance *= faer::Scale(1.0 / whole.max(f64::MIN_POSITIVE));
-                return Ok(PlateFit { values, free, covariance, missed: size });
+                return Ok(PlateFit { values, free, covariance, missed: size, cost: least });
             }
             values = self.step(self.measured, &start, &values, (apart, size))?;
         }
-        Ok(PlateFit { values, covariance: Mat::zeros(free.len(), free.len()), free, missed: size })
+        let covariance = Mat::zeros(free.len(), free.len());
+        Ok(PlateFit { values, covariance, free, missed: size, cost: f64::INFINITY })
     }
 }
 

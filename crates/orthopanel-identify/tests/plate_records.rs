@@ -22,3 +22,29 @@ fn val_real_plates_have_the_constants_of_their_own_lists() {
         assert!(found.pieces[0].modes.len() > 25, "{name}: {} modes", found.pieces[0].modes.len());
     }
 }
+
+/// The same plates' lists of ten and eleven frequencies, and one of a plate with a clamped edge whose authors exchanged two shapes, without any shape: the
+/// constants are those that the lists with shapes give. The folder is not part of the repository.
+#[test]
+fn val_real_lists_without_shapes_have_the_constants_of_those_with() {
+    for (name, wanted) in [
+        ("spruce-2L-list", [1.044e10, 9.647e8, 6.577e8]),
+        ("spruce-5R-list", [1.104e10, 9.625e8, 7.965e8]),
+        ("nemus-S3-rep1", [1.165e10, 9.449e8, 5.314e8]),
+    ] {
+        let Some(path) = shared_data(&format!("../cases/lists/{name}/test.toml")) else { return };
+        let text = std::fs::read_to_string(path).expect("a test");
+        let shapeless: Vec<&str> = text.lines().filter(|line| !line.starts_with("shape")).collect();
+        let test = ImpactTest::from_toml(&shapeless.join("\n"), "test.toml").expect("a test");
+        let found = identify(&test, Settings::default()).expect("constants");
+        assert!(found.notes[0].contains("read by frequency alone"), "{:?}", found.notes);
+        for (constant, wanted) in ["e_x", "e_y", "g_xy"].into_iter().zip(wanted) {
+            let own = found.constants.iter().find(|own| own.name == constant).expect("identified");
+            assert!((own.value / wanted - 1.0).abs() < 0.01, "{name} {constant}: {} {wanted}", own.value);
+        }
+        if name == "nemus-S3-rep1" {
+            // As its authors have them it is missed by 1.25 %, the other way round by 1.05 %.
+            assert!(found.notes[0].contains("635.1 Hz [1, 1], 657.3 Hz [0, 2]"), "{:?}", found.notes);
+        }
+    }
+}

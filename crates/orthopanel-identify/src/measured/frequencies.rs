@@ -10,7 +10,7 @@ use super::{MeasuredModes, Pole};
 impl MeasuredModes {
     /// Each frequency with the variance that its bin and its scatter give, $d^2/12 + s^2$, zero where the list states neither: what the model
     /// misses is then its own error, which no list tells apart from noise.
-    pub(super) fn of_frequencies(piece: usize, list: &NaturalFrequencies) -> Self {
+    pub(crate) fn of_frequencies(piece: usize, list: &NaturalFrequencies) -> Self {
         let of = |values: &[f64], mode: usize| values.get(mode).copied().unwrap_or(0.0);
         let variance = |mode: usize| {
             let square = of(&list.resolution, mode).powi(2) / 12.0 + of(&list.scatter, mode).powi(2);

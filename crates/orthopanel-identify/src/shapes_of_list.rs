@@ -1,0 +1,148 @@
+//! Which modes the frequencies of a plate are that a list gives without `shape`: by frequency alone.
+
+use orthopanel_data::{ImpactTest, MeasurementData, NaturalFrequencies};
+use orthopanel_model::{PLATE_CONSTANTS, Readable, StructureKind};
+
+use crate::IdentifyError;
+use crate::judge::ODDS;
+use crate::measured::MeasuredModes;
+use crate::plate_start::PlateStart;
+use crate::structures;
+
+/// Fewest frequencies that part readings: with one for each constant any names are met.
+const FEWEST: usize = 6;
+/// Modes are looked for up to so many times the highest frequency.
+const ABOVE: f64 = 1.1;
+
+/// A test whose lists have shapes.
+pub(crate) struct Read {
+    pub test: ImpactTest,
+    /// How each list was read.
+    pub notes: Vec<String>,
+    /// What is to be asked where another reading is not clearly behind.
+    pub question: Option<String>,
+}
+
+/// The nodal lines of a mode along x and along y.
+type Shape = [u32; 2];
+
+/// The shapes of a list's frequencies, those without one `None`, and twice the negative logarithm of the likelihood.
+struct Reading {
+    names: Vec<Option<Shape>>,
+    cost: f64,
+    /// Lines that may have another shape at the same constants, with what that costs.
+    doubts: Vec<(usize, Shape, f64)>,
+}
+
+/// The lists of a plate read by frequency alone, where they tell no shapes; `None` where all do, or one has too few frequencies.
+///
+/// Constants are looked for from sizes and mass alone. A reading is as likely as its frequencies are at the constants that meet them best, with
+/// the error of the model estimated; each mode in the band that the list lacks, and each frequency that no mode has, counts against it.
+///
+/// # Errors
+/// What the plate refuses.
+pub(crate) fn shapes_by_frequency(test: &ImpactTest) -> Result<Option<Read>, IdentifyError> {
+    let mut read = Read { test: test.clone(), notes: vec![], question: None };
+    for measurement in &mut read.test.measurements {
+        let MeasurementData::NaturalFrequencies(list) = &mut measurement.data else { continue };
+        if !list.shape.is_empty() {
+            continue;
+        }
+        if list.values.len() < FEWEST {
+            return Ok(None);
+        }
+        let readings = readings(test, measurement.piece, list)?;
+        let Some(best) = readings.first() else { return Ok(None) };
+        let piece = &test.pieces[measurement.piece].name;
+        let left_out: Vec<String> = list
+            .values
+            .iter()
+            .zip(&best.names)
+            .filter(|(_, name)| name.is_none())
+            .map(|(f, _)| format!("{f} Hz"))
+            .collect();
+        if 2 * left_out.len() > list.values.len() {
+            return Ok(None);
+        }
+        read.notes
+            .push(format!("the list of piece {piece} has no `shape`: read by frequency alone as {}", text(list, best)));
+        if !left_out.is_empty() {
+            read.notes
+                .push(format!("piece {piece}: {} is no mode of this plate and was left out", left_out.join(", ")));
+        }
+        if let Some(question) = asked(list, piece, &readings) {
+            read.notes.push(question.clone());
+            read.question = read.question.or(Some(question));
+        }
+        name(list, best);
+    }
+    Ok(Some(read).filter(|read| !read.notes.is_empty()))
+}
+
+/// Every reading that some start leads to, the likeliest first.
+fn readings(test: &ImpactTest, piece: usize, list: &NaturalFrequencies) -> Result<Vec<Reading>, IdentifyError> {
+    let measured = MeasuredModes::of_frequencies(piece, list);
+    let sizes = test.pieces[piece].piece;
+    let held = PLATE_CONSTANTS.each_ref().map(|constant| test.constants.get(constant.name).copied());
+    let start = PlateStart::new(&measured, (sizes, test.boundary), held);
+    let structure = structures::of(StructureKind::MindlinPlate).recorded(&sizes, test.boundary);
+    let highest = list.values.iter().copied().fold(0.0, f64::max);
+    let mut readings: Vec<Reading> = Vec::new();
+    for (_, values) in start.constants()? {
+        let fit = start.fit(values)?;
+        let read = start.reading(&fit)?;
+        let nodes = structure.modes_below(&fit.values, ABOVE * highest, &[])?;
+        let shape = |mode: usize| Some(nodes.get(mode)?.nodes.map(|count| count as u32));
+        let names: Vec<Option<Shape>> = read.modes.iter().map(|mode| shape((*mode)?)).collect();
+        let near = read.others.iter().filter(|(.., cost)| *cost < 2.0 * ODDS.ln());
+        let doubts = near.filter_map(|(line, mode, cost)| Some((*line, shape(*mode)?, *cost))).collect();
+        if read.cost.is_finite() && readings.iter().all(|other| other.names != names) {
+            readings.push(Reading { names, cost: read.cost, doubts });
+        }
+    }
+    readings.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+    Ok(readings)
+}
+
+/// Gives a list the names of a reading; what has none leaves it.
+fn name(list: &mut NaturalFrequencies, reading: &Reading) {
+    let kept = |values: &[f64]| -> Vec<f64> {
+        values.iter().zip(&reading.names).filter(|(_, name)| name.is_some()).map(|(value, _)| *value).collect()
+    };
+    list.resolution = kept(&list.resolution);
+    list.scatter = kept(&list.scatter);
+    list.values = kept(&list.values);
+    list.shape = reading.names.iter().flatten().copied().collect();
+}
+
+fn text(list: &NaturalFrequencies, reading: &Reading) -> String {
+    let pairs = list.values.iter().zip(&reading.names);
+    pairs.filter_map(|(value, name)| Some(format!("{value} Hz {:?}", (*name)?))).collect::<Vec<_>>().join(", ")
+}
+
+/// Which lines to look at: those that other constants give another shape, not clearly less likely, and those that may have another at these.
+fn asked(list: &NaturalFrequencies, piece: &str, readings: &[Reading]) -> Option<String> {
+    let best = readings.first()?;
+    let mut doubts = best.doubts.clone();
+    for other in &readings[1..] {
+        let cost = other.cost - best.cost;
+        let differ = (0..best.names.len()).filter(|line| best.names[*line] != other.names[*line]);
+        doubts.extend(
+            differ.filter(|_| cost < 2.0 * ODDS.ln()).filter_map(|line| Some((line, other.names[line]?, cost))),
+        );
+    }
+    doubts.sort_by(|a, b| (a.0, a.1).cmp(&(b.0, b.1)).then(a.2.total_cmp(&b.2)));
+    doubts.dedup_by_key(|(line, shape, _)| (*line, *shape));
+    let said = |(line, shape, cost): &(usize, Shape, f64)| {
+        let less = Readable((0.5 * cost).exp());
+        format!("{} Hz may be {shape:?} (odds of 1 to {less:.1})", list.values[*line])
+    };
+    let said: Vec<String> = doubts.iter().map(said).collect();
+    (!said.is_empty()).then(|| {
+        format!(
+            "piece {piece}: frequencies alone do not tell all shapes clearly: {}; look at the nodal lines of these modes, and give shape = \
+             [[nodes_x, nodes_y], ...]",
+            said.join(", ")
+        )
+    })
+}
