@@ -3,7 +3,7 @@
 
 use std::fmt::Write as _;
 
-use orthopanel_model::{Boundary, CoreFit, EffectEntry, Estimate, PanelModel, effect};
+use orthopanel_model::{Boundary, CoreFit, EffectEntry, Estimate, PanelModel, VISCOELASTIC_CORE, effect};
 
 use crate::acceleration_band::AccelerationBands;
 use crate::documentation::escaped;
@@ -75,7 +75,7 @@ impl Origin<'_> {
     fn fate(&self, entry: &EffectEntry) -> String {
         match &self.core {
             _ if entry.owner != "panel" => "left out: no part of the panel".into(),
-            Some(fit) if entry.id == CORE => relaxing(fit),
+            Some(fit) if entry.id == VISCOELASTIC_CORE => relaxing(fit),
             _ => "in the modes".into(),
         }
     }
@@ -114,9 +114,6 @@ impl Origin<'_> {
 
 /// The entry of a model's provenance that lists its measured modes.
 const MODES: &str = "modes";
-
-/// The effect that brings internal variables.
-const CORE: &str = "viscoelastic-core";
 
 const MEASURED: &str = "<p>Each mode as measured, with whatever was taken out of the panel still on it:</p>\n<table>\n\
      <tr><th>mode</th><th>measured [Hz]</th><th>standard deviation [Hz]</th></tr>\n";

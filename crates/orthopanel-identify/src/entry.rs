@@ -60,7 +60,7 @@ fn of_once(test: &ImpactTest, lists: usize, settings: Settings) -> Result<Identi
             let Some(read) = is_far.then(|| shapes_by_frequency(test)).transpose()?.flatten() else {
                 return Err(refused);
             };
-            let mut found = by_frequencies(&read.test)?;
+            let Ok(mut found) = by_frequencies(&read.test) else { return Err(refused) };
             found.notes.splice(..0, read.notes);
             found.question = found.question.or(read.question);
             Ok(found)

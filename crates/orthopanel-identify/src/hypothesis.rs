@@ -1,7 +1,7 @@
 //! A hypothesis: effects with free parameters, in coordinates in which each prior is a standard one.
 
 use faer::Mat;
-use orthopanel_model::{Action, Effect, EffectParameter, EffectState, ModelError, Piece, Prior, Scale};
+use orthopanel_model::{Action, Effect, EffectParameter, EffectState, GAIN, ModelError, Piece, Prior, Scale};
 
 use crate::free_constants::FreeConstants;
 use crate::predicted::Predictor;
@@ -391,7 +391,7 @@ impl Hypothesis {
 
     /// The coordinates at which a free factor on all records is so many times what it is; `None` where there is none.
     pub(crate) fn multiplied(&self, z: &[f64], times: f64) -> Option<Vec<f64>> {
-        let number = self.parts.iter().position(|part| part.effect.id() == "gain" && part.free() > 0)?;
+        let number = self.parts.iter().position(|part| part.effect.id() == GAIN && part.free() > 0)?;
         let (part, own) = (&self.parts[number], self.of_parts(z)[number]);
         let before = self.free_constants() + self.parts[..number].iter().map(Part::free).sum::<usize>();
         let value = part.values(own).first()? * times;

@@ -1,9 +1,9 @@
 //! Closing the loop: the effect that the base model lacks, by name.
 
 use orthopanel_data::ImpactTest;
-use orthopanel_model::StructureKind;
+use orthopanel_model::{EXPONENTIAL_WINDOW, StructureKind};
 
-use crate::accelerance_fit::{WINDOW_EFFECT, has_record_apart, question_of_window, refuse_missed, refuse_records};
+use crate::accelerance_fit::{has_record_apart, question_of_window, refuse_missed, refuse_records};
 use crate::answer::{answer, answer_of_lists, without_repeats};
 use crate::entry::records_alone;
 use crate::inference::{is_record, refuse_several};
@@ -76,14 +76,14 @@ pub fn trace_with(test: &ImpactTest, progress: &(dyn Fn(Progress) + Sync)) -> Re
 
 /// Before records say what lacks, the window is asked about that they may have been averaged under: free damping takes up most of it.
 fn asked_of_window(mut found: Tracing, question: String) -> Tracing {
-    if found.effects.iter().all(|effect| effect.id != WINDOW_EFFECT) {
+    if found.effects.iter().all(|effect| effect.id != EXPONENTIAL_WINDOW) {
         // What explained nothing stands beside a window that may explain it.
         if found.verdict == Verdict::Unexplained {
             found.effects.clear();
         }
         found.verdict = Verdict::Ambiguous;
-        found.alternatives.retain(|id| id != WINDOW_EFFECT);
-        found.alternatives.insert(0, WINDOW_EFFECT.to_owned());
+        found.alternatives.retain(|id| id != EXPONENTIAL_WINDOW);
+        found.alternatives.insert(0, EXPONENTIAL_WINDOW.to_owned());
         found.next_experiment = question.clone();
     }
     found.notes.insert(0, question);

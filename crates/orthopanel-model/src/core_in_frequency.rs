@@ -6,8 +6,7 @@ use num_complex::Complex64;
 
 use crate::effects::{Action, CoreModulus, CoupledMode, CoupledPanel, RelaxingLines};
 use crate::panel_modes::ModeRange;
-use crate::time_model::CORE;
-use crate::{EffectSetting, EffectState, ModelError, PanelMode, PanelModel, Place};
+use crate::{EffectSetting, EffectState, ModelError, PanelMode, PanelModel, Place, VISCOELASTIC_CORE};
 
 /// Steps of the search for a mode's own modulus: each leaves a tenth of the last one's change or less.
 const MOST_STEPS: usize = 40;
@@ -111,7 +110,8 @@ impl PanelModel {
 
 /// All effects but the core, and that.
 fn apart(effects: Vec<EffectState>, setting: &EffectSetting) -> Result<(Vec<EffectState>, CoreModulus), ModelError> {
-    let (cores, others): (Vec<_>, Vec<_>) = effects.into_iter().partition(|state| state.effect.id() == CORE);
+    let (cores, others): (Vec<_>, Vec<_>) =
+        effects.into_iter().partition(|state| state.effect.id() == VISCOELASTIC_CORE);
     let mut found = None;
     for state in cores {
         for action in state.effect.act(&state.values, setting)? {

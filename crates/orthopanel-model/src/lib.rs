@@ -43,10 +43,11 @@ pub use boundary::{Boundary, End};
 pub use constant::Constant;
 pub use deflection_row::{DeflectionRow, RigidMotion};
 pub use effects::{
-    Action, ChannelFactor, CoreFit, CoreModulus, Effect, EffectParameter, EffectSetting, EffectState, ElementLaw,
-    Field, FieldTerm, ModesAtLine, ModifiedPanel, Owner, PointElement, Prior, ReceptanceModel, ReceptanceSetup,
-    RecordSetting, RelaxingLines, RelaxingMode, RelaxingModes, Scale, Seat, SeenModes, Shift, SuspensionMotion,
-    catalogue, effect, natural_frequencies,
+    Action, CUBIC_STIFFNESS, ChannelFactor, CoreFit, CoreModulus, EXPONENTIAL_WINDOW, Effect, EffectParameter,
+    EffectSetting, EffectState, ElementLaw, Field, FieldTerm, GAIN, ModesAtLine, ModifiedPanel, Owner, PointElement,
+    Prior, RECORD_GAIN, ReceptanceModel, ReceptanceSetup, RecordSetting, RelaxingLines, RelaxingMode, RelaxingModes,
+    SENSOR_MASS, Scale, Seat, SeenModes, Shift, SuspensionMotion, VISCOELASTIC_CORE, catalogue, effect,
+    natural_frequencies,
 };
 pub use error::{ModelError, Readable};
 pub use identifier::is_identifier;

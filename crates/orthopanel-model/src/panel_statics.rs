@@ -5,9 +5,9 @@ use std::sync::Arc;
 use crate::effects::{CoupledPanel, FarModes, Flexibilities, MOST_SUMMED, SPARE_MODES};
 use crate::mindlin_plate::FixedPlate;
 use crate::static_deflection::static_deflections;
-use crate::time_model::CORE;
 use crate::{
     EffectSetting, MindlinPlate, ModelError, Motion, PanelModel, Place, StaticFlexibility, Structure, StructureKind,
+    VISCOELASTIC_CORE,
 };
 
 /// Modes for which the basis of a plate's static part is chosen: it holds some four times as many.
@@ -70,7 +70,7 @@ impl PanelModel {
     /// Without the core, which at rest has its low modulus.
     fn relaxed(&self) -> Self {
         let mut relaxed = self.clone();
-        relaxed.effects.retain(|entry| entry.id != CORE);
+        relaxed.effects.retain(|entry| entry.id != VISCOELASTIC_CORE);
         relaxed
     }
 

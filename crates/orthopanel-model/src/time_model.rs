@@ -1,7 +1,9 @@
 //! What a time stepper needs of a panel: its modes, and the internal variables of a core that relaxes.
 
 use crate::effects::{CoreFit, CoupledPanel};
-use crate::{EffectSetting, ModalModel, ModeRange, ModelError, PanelModel, Place, StructureKind, modes_below};
+use crate::{
+    EffectSetting, ModalModel, ModeRange, ModelError, PanelModel, Place, StructureKind, VISCOELASTIC_CORE, modes_below,
+};
 
 /// Modes as seen from ports, ready to be stepped.
 #[derive(Debug, Clone, PartialEq)]
@@ -19,7 +21,7 @@ pub struct TimeModel {
 impl PanelModel {
     /// Whether a viscoelastic core is among the effects.
     pub fn relaxes(&self) -> bool {
-        self.effects.iter().any(|entry| entry.id == CORE)
+        self.effects.iter().any(|entry| entry.id == VISCOELASTIC_CORE)
     }
 
     /// The modes of `range` as seen from these ports, and with a viscoelastic core those of the enlarged panel: the same
@@ -99,9 +101,6 @@ impl PanelModel {
         Ok(below.first().copied().unwrap_or(0))
     }
 }
-
-/// The effect whose modulus depends on frequency.
-pub(crate) const CORE: &str = "viscoelastic-core";
 
 /// Two frequencies make a band.
 const FEWEST_RELAXING: usize = 2;

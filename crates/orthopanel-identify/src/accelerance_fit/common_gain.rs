@@ -11,8 +11,6 @@ use crate::error::CALIBRATED;
 use crate::structures::{self, Shown};
 use crate::{AcceleranceFit, IdentifyError, Settings};
 
-/// The effect that a factor on all records is.
-pub(crate) const GAIN: &str = "gain";
 /// A factor further from one than so many standard deviations is no matter of chance.
 const FAR: f64 = 3.0;
 /// A median deviation times this is a standard deviation, of normal errors.

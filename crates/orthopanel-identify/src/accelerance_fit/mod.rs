@@ -34,7 +34,7 @@ mod whole_covariance;
 mod wide_scan;
 
 use orthopanel_data::{ImpactTest, MeasurementData};
-use orthopanel_model::Readable;
+use orthopanel_model::{EXPONENTIAL_WINDOW, Readable};
 
 use crate::least_squares::Minimum;
 use crate::structures::Shown;
@@ -45,12 +45,11 @@ use sharpening::{Rough, line_by_line_with_noise, problem_at, sharpened_lines};
 use start::{Recorded, Start, start, usual_log_zeta};
 use wide_scan::rough_starts;
 
-pub(crate) use common_gain::{GAIN, common_gain, refuse_missed, said_of_gain};
+pub(crate) use common_gain::{common_gain, refuse_missed, said_of_gain};
 pub(crate) use line_noise::told_variance;
 pub(crate) use other_units::refuse_other_units;
 pub(crate) use record_apart::has_record_apart;
 pub use synthesis::DampingLaw;
-pub(crate) use undeclared_window::EFFECT as WINDOW_EFFECT;
 
 /// The question whether frequency responses were averaged under an exponential window that the test file does not declare, as
 /// [`identify_records`] asks it of the panel without any effect; `None` where nothing looks like one, and of hits, which say themselves
@@ -58,7 +57,7 @@ pub(crate) use undeclared_window::EFFECT as WINDOW_EFFECT;
 pub(crate) fn question_of_window(test: &ImpactTest) -> Option<String> {
     let are_lines = |data: &MeasurementData| matches!(data, MeasurementData::Accelerance(_));
     let is_asked = test.measurements.iter().all(|measurement| are_lines(&measurement.data))
-        && test.effects.iter().all(|on| on.id != undeclared_window::EFFECT);
+        && test.effects.iter().all(|on| on.id != EXPONENTIAL_WINDOW);
     if !is_asked {
         return None;
     }

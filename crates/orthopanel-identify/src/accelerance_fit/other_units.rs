@@ -6,7 +6,7 @@
 
 use num_complex::Complex64;
 use orthopanel_data::{Accelerance, ImpactTest, MeasurementData, Motion, ReadAs, Unit};
-use orthopanel_model::Place;
+use orthopanel_model::{GAIN as GAIN_EFFECT, Place, RECORD_GAIN};
 use rayon::prelude::*;
 
 use super::contradiction::record_name;
@@ -135,7 +135,7 @@ pub(super) fn refuse_read_in_other_units(
 }
 
 fn declares_a_gain(test: &ImpactTest) -> bool {
-    test.effects.iter().any(|effect| ["gain", "record-gain"].contains(&effect.id.as_str()))
+    test.effects.iter().any(|effect| [GAIN_EFFECT, RECORD_GAIN].contains(&effect.id.as_str()))
 }
 
 /// What explains records that miss their model's `lines`, as a fit of them ended; `None` where no factor does.

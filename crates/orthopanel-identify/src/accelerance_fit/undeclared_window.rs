@@ -16,9 +16,6 @@ use super::records::PlaceRecord;
 use super::start::Start;
 use crate::{IdentifyError, PieceFit};
 
-/// The effect that an undeclared window is.
-pub(crate) const EFFECT: &str = "exponential-window";
-
 /// Misfit per datum above which the window may be what the model lacks.
 const SUSPECT: f64 = 1.2;
 /// Decay rates tried, as parts of that of the mode that dies away slowest: a window leaves each mode some damping of its own.

@@ -1,12 +1,12 @@
 //! A factor on all records, far outside of what calibrated chains leave.
 
 use orthopanel_data::ImpactTest;
-use orthopanel_model::{Estimate, Owner};
+use orthopanel_model::{Estimate, GAIN, Owner};
 
 use super::estimates::Estimates;
 use super::weighed::Weighed;
 use crate::AcceleranceFit;
-use crate::accelerance_fit::{GAIN, common_gain, said_of_gain};
+use crate::accelerance_fit::{common_gain, said_of_gain};
 use crate::outcome::{TracedEffect, TracedParameter, Verdict};
 use crate::search::Inquiry;
 

@@ -2,7 +2,7 @@
 
 use faer::Mat;
 use orthopanel_data::ImpactTest;
-use orthopanel_model::{EffectState, ModelError, Place, RecordSetting, Scale, StructureKind, effect};
+use orthopanel_model::{EffectState, ModelError, Place, RecordSetting, SENSOR_MASS, Scale, StructureKind, effect};
 use rayon::prelude::*;
 
 use super::estimates::id;
@@ -183,7 +183,7 @@ impl<'a> Further<'a> {
 
 /// A sensor heavier by this mass \[kg\], in the place of one that is on.
 pub(super) fn sensor_with(mass: f64, states: &mut Vec<EffectState>) -> Result<EffectState, ModelError> {
-    let sensor = effect("sensor-mass")?;
+    let sensor = effect(SENSOR_MASS)?;
     let before = states.iter().position(|state| state.effect.id() == sensor.id()).map(|index| states.remove(index));
     let mut values = before.map_or_else(|| vec![0.0; sensor.parameters().len()], |state| state.values);
     values.first_mut().into_iter().for_each(|first| *first += mass);

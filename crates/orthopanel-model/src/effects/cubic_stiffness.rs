@@ -10,12 +10,15 @@ use crate::ModelError;
 #[derive(Debug, Clone, Copy)]
 pub(super) struct CubicStiffness;
 
+/// Id of this effect.
+pub const CUBIC_STIFFNESS: &str = "cubic-stiffness";
+
 const PARAMETERS: [EffectParameter; 1] =
     [EffectParameter::log("k3", "N/m3", [1e6, 1e18], &[1e10, 1e9, 1e11, 1e13]).sized(1e10, 4.0)];
 
 impl Effect for CubicStiffness {
     fn id(&self) -> &'static str {
-        "cubic-stiffness"
+        CUBIC_STIFFNESS
     }
 
     fn owner(&self) -> Owner {

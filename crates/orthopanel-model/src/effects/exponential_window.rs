@@ -15,12 +15,15 @@ use crate::ModelError;
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ExponentialWindow;
 
+/// Id of this effect.
+pub const EXPONENTIAL_WINDOW: &str = "exponential-window";
+
 const PARAMETERS: [EffectParameter; 1] =
     [EffectParameter::log("tau", "s", [1e-3, 100.0], &[0.3, 0.1, 1.0]).sized(0.5, 2.5)];
 
 impl Effect for ExponentialWindow {
     fn id(&self) -> &'static str {
-        "exponential-window"
+        EXPONENTIAL_WINDOW
     }
 
     fn owner(&self) -> Owner {

@@ -15,12 +15,15 @@ pub(super) const ANY_FACTOR: [f64; 2] = [1e-9, 1e9];
 /// A factor beyond is that of a unit, about which is asked before anything is traced.
 pub(super) const NO_UNIT: [f64; 2] = [0.05, 20.0];
 
+/// Id of this effect.
+pub const GAIN: &str = "gain";
+
 const PARAMETERS: [EffectParameter; 1] =
     [EffectParameter::log("gain", "1", ANY_FACTOR, &[1.0, 0.9, 1.1]).looked_for_in(NO_UNIT).sized(1.0, 1.12)];
 
 impl Effect for Gain {
     fn id(&self) -> &'static str {
-        "gain"
+        GAIN
     }
 
     fn owner(&self) -> Owner {

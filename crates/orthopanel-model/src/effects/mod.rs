@@ -58,17 +58,23 @@ pub(crate) use coupled_flexibility::{FarMode, FarModes, Flexibilities, MOST_SUMM
 pub(crate) use coupled_modes::CoupledMode;
 pub use coupled_modes::natural_frequencies;
 pub(crate) use coupled_panel::{CoupledPanel, Even, PanelWithEffects, SPARE_MODES, elements as point_elements};
+pub use cubic_stiffness::CUBIC_STIFFNESS;
+pub use exponential_window::EXPONENTIAL_WINDOW;
+pub use gain::GAIN;
 pub use modified_panel::{ModifiedPanel, SeenModes};
 use parameter::Reference;
 pub use parameter::{EffectParameter, Prior, Scale};
 pub use point_element::{ElementLaw, PointElement, Seat};
 pub use receptance::{ReceptanceModel, ReceptanceSetup};
+pub use record_gain::RECORD_GAIN;
 pub use relaxing_lines::RelaxingLines;
 pub use relaxing_modes::{ModesAtLine, RelaxingMode, RelaxingModes};
+pub use sensor_mass::SENSOR_MASS;
 pub use setting::{EffectSetting, RecordSetting, SuspensionMotion};
 pub(crate) use spread_effects::SpreadEffects;
 pub use state::EffectState;
 pub use uneven_beam::Field;
+pub use viscoelastic_core::VISCOELASTIC_CORE;
 
 use crate::{ModelError, Piece};
 

@@ -10,6 +10,9 @@ use crate::ModelError;
 #[derive(Debug, Clone, Copy)]
 pub(super) struct RecordGain;
 
+/// Id of this effect.
+pub const RECORD_GAIN: &str = "record-gain";
+
 const PARAMETERS: [EffectParameter; 2] = [
     EffectParameter::log("gain", "1", ANY_FACTOR, &[0.9, 1.1]).looked_for_in(NO_UNIT).sized(1.0, 1.14),
     EffectParameter::record(),
@@ -17,7 +20,7 @@ const PARAMETERS: [EffectParameter; 2] = [
 
 impl Effect for RecordGain {
     fn id(&self) -> &'static str {
-        "record-gain"
+        RECORD_GAIN
     }
 
     fn owner(&self) -> Owner {

@@ -11,6 +11,9 @@ use crate::{ModelError, Motion};
 #[derive(Debug, Clone, Copy)]
 pub(super) struct SensorMass;
 
+/// Id of this effect.
+pub const SENSOR_MASS: &str = "sensor-mass";
+
 const PARAMETERS: [EffectParameter; 2] = [
     EffectParameter::log("mass", "kg", [1e-5, 0.5], &[0.01, 0.002, 0.05]).sized(8e-3, 2.2).of(Reference::Mass),
     EffectParameter::linear("inertia", "kg m2", [0.0, 1e-3], &[1e-7]).sized(5e-7, 3.0).held_at(0.0),
@@ -18,7 +21,7 @@ const PARAMETERS: [EffectParameter; 2] = [
 
 impl Effect for SensorMass {
     fn id(&self) -> &'static str {
-        "sensor-mass"
+        SENSOR_MASS
     }
 
     fn owner(&self) -> Owner {

@@ -10,6 +10,9 @@ use crate::ModelError;
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ViscoelasticCore;
 
+/// Id of this effect.
+pub const VISCOELASTIC_CORE: &str = "viscoelastic-core";
+
 const PARAMETERS: [EffectParameter; 3] = [
     EffectParameter::log("strength", "1", [1e-3, 3.0], &[0.1, 0.5]).sized(0.12, 2.2),
     EffectParameter::log("tau", "s", [1e-6, 1.0], &[1e-4, 1e-3, 1e-5]).sized(1.8e-4, 2.5),
@@ -18,7 +21,7 @@ const PARAMETERS: [EffectParameter; 3] = [
 
 impl Effect for ViscoelasticCore {
     fn id(&self) -> &'static str {
-        "viscoelastic-core"
+        VISCOELASTIC_CORE
     }
 
     fn owner(&self) -> Owner {

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use orthopanel_model::{ModeKind, ModeRange, PanelMode, Readable, StructureKind};
+use orthopanel_model::{ModeKind, ModeRange, PanelMode, Readable, StructureKind, VISCOELASTIC_CORE};
 use serde::Serialize;
 
 use crate::arguments::count;
@@ -78,7 +78,7 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
         kind: of.name().map(|name| name.kind),
         zeta: of.own_damping_ratio().unwrap_or_else(|| model.damping.ratio(mode)),
     };
-    let core = model.effects.iter().any(|effect| effect.id == "viscoelastic-core").then_some(CORE);
+    let core = model.effects.iter().any(|effect| effect.id == VISCOELASTIC_CORE).then_some(CORE);
     let answer = Answer { schema: "orthopanel.modes/1", modes: (1..).zip(&flexible).map(entry).collect(), core };
     if let Some(path) = arguments.picture.as_ref().filter(|_| flexible.is_empty()) {
         console::say(format_args!("{} not written: no mode was asked for", path.display()));

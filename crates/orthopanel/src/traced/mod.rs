@@ -9,7 +9,7 @@ use std::path::Path;
 
 use orthopanel_data::{ImpactTest, KnownConstant};
 use orthopanel_identify::{AcceleranceFit, IdentifyError, Progress, Removed, Settings, Tracing, Verdict, trace_with};
-use orthopanel_model::{Damping, PanelModel, Place};
+use orthopanel_model::{CUBIC_STIFFNESS, Damping, PanelModel, Place};
 use serde_json::Value;
 
 use crate::identified::{ASSUMED_DAMPING, base_models, to_digits};
@@ -71,7 +71,7 @@ impl Traced {
     /// where one makes of each hit something else.
     pub fn accelerance_of(&self, places: (Place, Place)) -> Option<&AcceleranceFit> {
         let effects = &self.tracing.effects;
-        if effects.is_empty() || effects.iter().any(|effect| effect.id == "cubic-stiffness") {
+        if effects.is_empty() || effects.iter().any(|effect| effect.id == CUBIC_STIFFNESS) {
             return None;
         }
         self.tracing.accelerances.iter().find(|pair| (pair.force_at, pair.response_at) == places)
