@@ -180,13 +180,6 @@ def position_error(bench, draw):
     return {"offset": bench.sensed() - before}
 
 
-def point_support(bench, draw):
-    """Something stiff touches the panel away from its suspension."""
-    stiffness, x = draw.rising(5e3, 3e5), draw.along(bench)
-    bench.attachments.append((x, attachments.spring(stiffness)))
-    return {"stiffness": stiffness, "x": x}
-
-
 STRUCTURAL = {
     "sensor-mass": sensor_mass,
     "suspension": suspension,
@@ -211,8 +204,8 @@ CHANNEL = {
     "position-error": position_error,
 }
 EFFECTS = STRUCTURAL | CHANNEL
-# Kinds of a set of their own: an effect with what it keeps unless it pays, and one that joined the catalogue when the other sets were judged.
-FURTHER = {"sensor-mass": turning_sensor_mass, "point-support": point_support}
+# Kinds of a set of their own, each an effect of the catalogue with what it keeps unless it pays.
+FURTHER = {"sensor-mass": turning_sensor_mass}
 CANTILEVER = ("support-compliance",)  # effects that want a clamped piece
 # With one record, one record's gain is the gain: there is nothing to tell apart.
 NOT_SINGLE = ("record-gain",)

@@ -20,6 +20,13 @@ def dry_friction(bench, draw):
     return {"force": force, "speed": speed, "x": x}
 
 
+def spring_to_ground(bench, draw):
+    """Something stiff touches the panel away from its suspension."""
+    stiffness, x = draw.rising(5e3, 3e5), _aside(bench, draw)
+    bench.attachments.append((x, attachments.spring(stiffness)))
+    return {"stiffness": stiffness, "x": x}
+
+
 def dashpot_to_ground(bench, draw):
     """A damper away from the suspension."""
     damping, x = draw.rising(2.0, 60.0), _aside(bench, draw)
@@ -71,6 +78,7 @@ def _aside(bench, draw):
 OUTSIDE = {
     "saturating-amplifier": saturating_amplifier,
     "dry-friction": dry_friction,
+    "spring-to-ground": spring_to_ground,
     "dashpot-to-ground": dashpot_to_ground,
     "temperature-drift": temperature_drift,
     "mains-hum": mains_hum,

@@ -93,13 +93,6 @@ fn val_bounce_and_pitch_on_soft_springs() {
     bench.resonates(effects, pitch, 2e-5);
 }
 
-/// A rigid panel on one spring at its centre.
-#[test]
-fn val_bounce_on_a_support_that_nobody_wrote_down() {
-    let bounce = (10.0 / PIECE.mass()).sqrt() / TAU;
-    Bench::panel().resonates(&[("point-support", &[10.0, 0.0])], bounce, 2e-5);
-}
-
 /// A rigid mass on a spring with a second one on top, at the panel's centre: two degrees of freedom.
 #[test]
 fn val_resonator_parts_a_resonance_in_two() {

@@ -36,7 +36,6 @@ mod gain;
 mod hammer_offset;
 mod high_pass;
 mod local_mass;
-mod point_support;
 mod position_error;
 mod record_gain;
 mod resonator;
