@@ -52,7 +52,7 @@ def tests(tmp_path_factory):
 
 def asked(command, test, *more):
     """What a command says of a test."""
-    ran = subprocess.run([ORTHOPANEL, command, test, "--json", *more], capture_output=True, text=True, timeout=200)
+    ran = subprocess.run([ORTHOPANEL, command, test, "--json", *more], capture_output=True, text=True, timeout=400)
     assert ran.returncode == 0, ran.stderr
     return json.loads(ran.stdout)
 
@@ -125,7 +125,7 @@ def test_val_a_sensor_on_two_pieces_is_found_from_the_records_of_both(tmp_path):
     assert all(abs(mode["error_percent"]) < 0.05 for mode in found["modes"]), found["modes"]
     # What stands at a place would be on one of the two, and the file cannot say on which.
     test.write_text(f'{text}\n[[effect]]\nid = "local-mass"\nx = 0.1\n', encoding="utf-8")
-    ran = subprocess.run([ORTHOPANEL, "trace", test], capture_output=True, text=True, timeout=200)
+    ran = subprocess.run([ORTHOPANEL, "trace", test], capture_output=True, text=True, timeout=400)
     assert ran.returncode != 0 and "trace one piece in a test file" in ran.stderr, ran.stderr
 
 
