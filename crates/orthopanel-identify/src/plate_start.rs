@@ -2,9 +2,11 @@
 
 use faer::prelude::Solve;
 use faer::{Mat, Side};
-use orthopanel_model::{Boundary, MindlinPlate, ModelError, Piece, Place, Structure, ritz_modes};
+use orthopanel_data::ImpactTest;
+use orthopanel_model::{Boundary, MindlinPlate, ModelError, PLATE_CONSTANTS, Piece, Place, Structure, ritz_modes};
 use rayon::prelude::*;
 
+use crate::matching::Partner;
 use crate::measured::MeasuredModes;
 use crate::model_error::frequency_prior;
 
@@ -51,6 +53,11 @@ struct PlateMode {
     by: Constants,
 }
 
+/// The constants that a test holds.
+pub(crate) fn held(test: &ImpactTest) -> [Option<f64>; 6] {
+    PLATE_CONSTANTS.each_ref().map(|constant| test.constants.get(constant.name).copied())
+}
+
 /// What is known of a plate before its constants are.
 pub(crate) struct PlateStart<'a> {
     measured: &'a MeasuredModes,
@@ -93,6 +100,11 @@ impl<'a> PlateStart<'a> {
         Ok(found)
     }
 
+    /// Numbers of the constants that are not held.
+    fn free(&self) -> Vec<usize> {
+        (0..6).filter(|&i| self.held[i].is_none()).collect()
+    }
+
     fn with_held(&self, values: Constants) -> Constants {
         std::array::from_fn(|i| self.held[i].unwrap_or(values[i]))
     }
@@ -131,15 +143,22 @@ impl<'a> PlateStart<'a> {
     /// Cost a pole of the lowest poles, where these may lie `apart` from the modes; strong modes without a pole cost as well.
     fn cost(&self, lowest: &MeasuredModes, modes: &[(f64, Vec<f64>)], apart: f64) -> f64 {
         let (partners, cost) = lowest.assigned(modes, |_| apart, |pole| self.alone(pole));
-        let ends = lowest.poles.first().zip(lowest.poles.last());
-        let Some((first, last)) = ends else { return f64::INFINITY };
+        if lowest.poles.is_empty() {
+            return f64::INFINITY;
+        }
+        (cost + self.lost(lowest, modes, &partners)) / lowest.poles.len() as f64
+    }
+
+    /// What strong modes between the first of the lowest poles and the last cost that no pole is.
+    fn lost(&self, lowest: &MeasuredModes, modes: &[(f64, Vec<f64>)], partners: &[Partner]) -> f64 {
+        let Some((first, last)) = lowest.poles.first().zip(lowest.poles.last()) else { return 0.0 };
         let band = 1.03 * first.angular_frequency..0.97 * last.angular_frequency;
         let taken = |mode: usize| partners.iter().flatten().any(|(partner, _)| *partner == mode);
         let lost = modes.iter().enumerate().filter(|(number, (omega, shape))| {
             let is_strong = shape.is_empty() || rms(shape) > STRONG * self.typical;
             band.contains(omega) && !taken(*number) && is_strong
         });
-        (cost + LOST * lost.count() as f64) / lowest.poles.len() as f64
+        LOST * lost.count() as f64
     }
 
     /// Which modes the poles are at these constants, and how likely that is.
@@ -150,8 +169,8 @@ impl<'a> PlateStart<'a> {
         let modes = self.modes(&fit.values, self.count(self.measured))?;
         let seen: Vec<(f64, Vec<f64>)> = modes.iter().map(|mode| mode.seen.clone()).collect();
         let apart = (TIMES * fit.missed).max(NEAREST);
-        let (partners, pairs) = self.measured.assigned(&seen, |_| apart, |pole| self.alone(pole));
-        let lost = self.cost(self.measured, &seen, apart) * self.measured.poles.len() as f64 - pairs;
+        let (partners, _) = self.measured.assigned(&seen, |_| apart, |pole| self.alone(pole));
+        let lost = self.lost(self.measured, &seen, &partners);
         let alone = (0..partners.len()).filter(|pole| partners[*pole].is_none()).map(|pole| self.alone(pole));
         let cost = 2.0 * fit.cost + alone.sum::<f64>() + lost;
         let partners: Vec<Option<usize>> = partners.into_iter().map(|partner| partner.map(|(mode, _)| mode)).collect();
@@ -239,7 +258,7 @@ impl<'a> PlateStart<'a> {
         let modes = self.modes(values, self.count(lowest))?;
         let seen: Vec<(f64, Vec<f64>)> = modes.iter().map(|mode| mode.seen.clone()).collect();
         let (partners, _) = lowest.assigned(&seen, |_| apart, |pole| self.alone(pole));
-        let free: Vec<usize> = (0..6).filter(|&i| self.held[i].is_none()).collect();
+        let free = self.free();
         let coordinate = |values: &Constants, i: usize| if i == NU { values[i] } else { values[i].ln() };
         let mut curvature = Mat::<f64>::zeros(free.len(), free.len());
         let mut slope = Mat::<f64>::zeros(free.len(), 1);
@@ -388,7 +407,7 @@ fn sizes() -> impl Iterator<Item = f64> {
 impl PlateStart<'_> {
     /// What these modes leave of the poles whose partners they are.
     fn missed(&self, modes: &[PlateMode], partners: &[Option<usize>]) -> Missed {
-        let free: Vec<usize> = (0..6).filter(|&i| self.held[i].is_none()).collect();
+        let free = self.free();
         let row = |(pole, partner): (usize, &Option<usize>)| {
             let mode = &modes[(*partner)?];
             let left = (self.measured.poles[pole].angular_frequency / mode.seen.0).ln();
@@ -404,7 +423,7 @@ impl PlateStart<'_> {
     /// # Errors
     /// What the plate refuses.
     pub(crate) fn fit(&self, start: Constants) -> Result<PlateFit, ModelError> {
-        let free: Vec<usize> = (0..6).filter(|&i| self.held[i].is_none()).collect();
+        let free = self.free();
         let (mut values, mut size) = (start, STAGES[STAGES.len() - 1].2);
         for round in 0..=ROUNDS {
             let modes = self.modes(&values, self.count(self.measured))?;

@@ -215,7 +215,7 @@ impl<'a> Inquiry<'a> {
         if self.is_of_lists() {
             return self.hidden_in_lists(effect);
         }
-        let is_of_several_pieces = self.stacked.hit().nth(1).is_some();
+        let is_of_several_pieces = self.stacked.is_of_several_pieces();
         // The gain of the only record is the gain.
         let is_of_one = || effect.parameters().iter().any(|parameter| parameter.scale == Scale::Index);
         let why = if self.stacked.recorded().nth(1).is_some() && is_of_record(effect) {

@@ -1,12 +1,12 @@
 //! Which modes the frequencies of a plate are that a list gives without `shape`: by frequency alone.
 
 use orthopanel_data::{ImpactTest, MeasurementData, NaturalFrequencies};
-use orthopanel_model::{PLATE_CONSTANTS, Readable, StructureKind};
+use orthopanel_model::{Readable, StructureKind};
 
 use crate::IdentifyError;
 use crate::judge::ODDS;
 use crate::measured::MeasuredModes;
-use crate::plate_start::PlateStart;
+use crate::plate_start::{PlateStart, held};
 use crate::structures;
 
 /// Fewest frequencies that part readings: with one for each constant any names are met.
@@ -83,8 +83,7 @@ pub(crate) fn shapes_by_frequency(test: &ImpactTest) -> Result<Option<Read>, Ide
 fn readings(test: &ImpactTest, piece: usize, list: &NaturalFrequencies) -> Result<Vec<Reading>, IdentifyError> {
     let measured = MeasuredModes::of_frequencies(piece, list);
     let sizes = test.pieces[piece].piece;
-    let held = PLATE_CONSTANTS.each_ref().map(|constant| test.constants.get(constant.name).copied());
-    let start = PlateStart::new(&measured, (sizes, test.boundary), held);
+    let start = PlateStart::new(&measured, (sizes, test.boundary), held(test));
     let structure = structures::of(StructureKind::MindlinPlate).recorded(&sizes, test.boundary);
     let highest = list.values.iter().copied().fold(0.0, f64::max);
     let mut readings: Vec<Reading> = Vec::new();

@@ -95,6 +95,11 @@ impl<'a> Stacked<'a> {
         self.recorded().filter(is_first)
     }
 
+    /// Whether more than one piece was hit.
+    pub(crate) fn is_of_several_pieces(&self) -> bool {
+        self.hit().nth(1).is_some()
+    }
+
     /// The block with the most poles.
     pub(crate) fn longest(&self) -> &Block<'a> {
         let poles = |block: &&Block| block.comparison().measured.poles.len();

@@ -9,7 +9,7 @@ use orthopanel_model::{
 
 use crate::accelerance_fit::told_variance;
 use crate::measured::{MeasuredModes, measured_modes};
-use crate::plate_start::{PlateFit, PlateStart};
+use crate::plate_start::{PlateFit, PlateStart, held};
 use crate::settings::Settings;
 use crate::structures;
 use crate::{
@@ -55,7 +55,7 @@ impl PlateByModes {
             return Ok(None);
         };
         let piece = test.pieces[measured.piece].piece;
-        let mut held = PLATE_CONSTANTS.each_ref().map(|constant| test.constants.get(constant.name).copied());
+        let mut held = held(test);
         let start = PlateStart::new(&measured, (piece, test.boundary), held);
         let Some((_, values)) = start.constants()?.into_iter().next() else { return Ok(None) };
         let mut fit = start.fit(values)?;

@@ -58,7 +58,7 @@ const FORCE_DROP: f64 = 20.0;
 pub(crate) fn answer(test: &ImpactTest, progress: &(dyn Fn(Progress) + Sync)) -> Result<Tracing, IdentifyError> {
     refuse_many(test)?;
     from_base(test, progress, |mut inquiry, base| {
-        if inquiry.stacked.hit().nth(1).is_none() {
+        if !inquiry.stacked.is_of_several_pieces() {
             inquiry.hits = HitStrength::new(test, inquiry.measured().band)?;
         }
         let all = inquiry.search(base);
