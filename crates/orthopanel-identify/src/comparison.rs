@@ -2,10 +2,12 @@
 
 use std::ops::Range;
 
-use faer::Mat;
+use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
+use faer::{Mat, Par, Side};
 use num_complex::Complex64;
 
 use crate::measured::MeasuredModes;
+use crate::whitening::Split;
 
 /// Predicted modes without a pole that are counted, the strongest first.
 pub(crate) const UNSEEN: usize = 4;
@@ -21,6 +23,9 @@ const LEAST_DAMPING: f64 = 0.05;
 
 /// What the few terms of a series miss of a remainder, or of its deviation where that is larger: they make all its values follow from a few.
 const SERIES: f64 = 1e-3;
+
+/// Values from which on their covariance is split: its factor takes more time than that.
+const MANY: usize = 400;
 
 /// The measured values in units that make them alike, with the covariance of their noise: $\ln\omega_m$ of each pole; a record after the
 /// other its residues over the rms of that pole's, and its remainder times the mass of the piece, each as real and imaginary part;
@@ -78,6 +83,30 @@ impl<'a> Comparison<'a> {
             of_noise + beside
         });
         comparison
+    }
+
+    /// The ranges that noise and the errors of each record tie together, and what the noise of the poles brings to all: given the poles, records
+    /// are independent. `None` where there are few values.
+    pub(crate) fn split(&self) -> Option<Split> {
+        let (poles, records, size) = (self.measured.poles.len(), self.measured.records.len(), self.size());
+        if size < MANY {
+            return None;
+        }
+        let damped = self.measured.poles.iter().filter(|pole| pole.damping_ratio.is_some()).count();
+        let of_poles = poles + damped;
+        let own = |place: usize| if place < poles { place } else { place + damped };
+        let covariance = &self.measured.covariance;
+        let factor = covariance.submatrix(0, 0, of_poles, of_poles).llt(Side::Lower).ok()?;
+        let told = self.unseen().start;
+        // A row a value: its covariance with the poles, times $L^{-T}$.
+        let mut common = Mat::from_fn(of_poles, size, |pole, place| {
+            if place < told { covariance[(own(place), pole)] / self.scale(place) } else { 0.0 }
+        });
+        solve_lower_triangular_in_place(factor.L(), common.as_mut(), Par::Seq);
+        let records = (0..records).map(|record| self.block_of(record));
+        let ranges = std::iter::once(0..poles).chain(records).chain(std::iter::once(told..size));
+        let ranges = ranges.filter(|range| !range.is_empty());
+        Some(Split { ranges: ranges.collect(), common: common.transpose().to_owned() })
     }
 
     /// Number of values.

@@ -40,7 +40,7 @@ impl Inquiry<'_> {
         let before: usize = base.hypothesis.free_constants() + of_parts[..index].iter().map(|z| z.len()).sum::<usize>();
         let (before, after) =
             (&base.posterior.point.z[..before], &base.posterior.point.z[before + of_parts[index].len()..]);
-        let ways = Part::ways(part.effect, self.predictor().piece(), records).into_iter();
+        let ways = Part::ways(part.effect, (self.predictor().piece(), self.predictor().structure), records).into_iter();
         let ways = ways.filter(|way| way.free() > part.free());
         let freed = ways.filter_map(|mut way| {
             way.role = Role::Declared;

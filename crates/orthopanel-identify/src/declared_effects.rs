@@ -1,10 +1,13 @@
 //! The effects that a test file declares.
 
 use orthopanel_data::{ImpactTest, Measurement, MeasurementData};
-use orthopanel_model::{Action, Effect, EffectSetting, ModelError, Piece, Place, RecordSetting, Scale, effect};
+use orthopanel_model::{
+    Action, Effect, EffectSetting, ModelError, Piece, Place, RecordSetting, Scale, StructureKind, effect,
+};
 
 use crate::IdentifyError;
 use crate::hypothesis::{Part, has_place};
+use crate::structures;
 
 /// An effect with the values that the file tells, one a parameter.
 pub(crate) struct Declared {
@@ -47,6 +50,10 @@ pub(crate) fn declared(test: &ImpactTest, piece: &Piece, records: usize) -> Resu
                 let (effect, name, unit) = (effect.id(), parameter.name, parameter.unit);
                 return Err(ModelError::EffectParameter { effect, name, value, unit, low, high }.into());
             }
+            if parameter.across && structures::of_test(test).kind() == StructureKind::TimoshenkoBeam && value != 0.0 {
+                let name = parameter.name;
+                return refused(&format!("{name} = {value}: a beam has its effects on its centre line, leave it out"));
+            }
             let is_in_test = value.round() >= 1.0 && value.round() <= records as f64;
             if parameter.scale == Scale::Index && !lists && !is_in_test {
                 let name = parameter.name;
@@ -66,12 +73,16 @@ pub(crate) fn declared(test: &ImpactTest, piece: &Piece, records: usize) -> Resu
 /// # Errors
 /// As [`declared`], and [`ModelError::EffectNeeds`] with what the test lacks for one: a search would pass over starts that fail.
 pub(crate) fn declared_parts(test: &ImpactTest, piece: &Piece, records: usize) -> Result<Vec<Part>, IdentifyError> {
+    let structure = structures::of_test(test).kind();
     let setting = first_setting(test, piece);
     let mut parts = Vec::new();
     for Declared { effect, values } in declared(test, piece, records)? {
-        let held: Vec<Option<f64>> =
-            values.iter().zip(effect.parameters()).map(|(value, parameter)| value.or(parameter.held_at)).collect();
-        let Some(part) = Part::declared(effect, &held, piece, records) else { continue };
+        let held: Vec<Option<f64>> = values
+            .iter()
+            .zip(effect.parameters())
+            .map(|(value, of)| value.or(of.held_at.filter(|_| !of.across)))
+            .collect();
+        let Some(part) = Part::declared(effect, &held, (piece, structure), records) else { continue };
         let usual = part.values(&vec![0.0; part.free()]);
         // With a value in each record these are no values of one.
         if usual.len() == effect.parameters().len() {

@@ -1,15 +1,18 @@
 //! A hypothesis: effects with free parameters, in coordinates in which each prior is a standard one.
 
 use faer::Mat;
-use orthopanel_model::{Action, Effect, EffectParameter, EffectState, GAIN, ModelError, Piece, Prior, Scale};
+use orthopanel_model::{
+    Action, Effect, EffectParameter, EffectState, GAIN, ModelError, Piece, Place, Prior, Scale, StructureKind,
+};
 
 use crate::free_constants::FreeConstants;
 use crate::predicted::Predictor;
 
 /// Largest size of a coordinate with a Gaussian prior.
 const FARTHEST: f64 = 5.0;
-/// Places along the piece at which a search begins, and values of the other coordinates there.
+/// Places along a beam at which a search begins, and along either side of a plate.
 const PLACES: usize = 15;
+const PLACES_EACH_WAY: usize = 9;
 
 /// From a coordinate to a value.
 #[derive(Debug, Clone, Copy)]
@@ -131,10 +134,10 @@ pub(crate) struct Part {
 
 impl Part {
     /// Every way in which an effect may act in a test of so many records.
-    pub(crate) fn ways(effect: &'static dyn Effect, piece: &Piece, records: usize) -> Vec<Self> {
+    pub(crate) fn ways(effect: &'static dyn Effect, of: (&Piece, StructureKind), records: usize) -> Vec<Self> {
         let mut ways: Vec<Vec<Slot>> = vec![vec![]];
         for parameter in effect.parameters() {
-            let choices: Vec<Vec<Slot>> = choices(parameter, piece, records);
+            let choices: Vec<Vec<Slot>> = choices(parameter, of, records);
             ways = ways.iter().flat_map(|way| choices.iter().map(|choice| [&way[..], choice].concat())).collect();
         }
         ways.into_iter().map(|slots| Self { effect, slots, role: Role::Found }).collect()
@@ -144,10 +147,10 @@ impl Part {
     pub(crate) fn declared(
         effect: &'static dyn Effect,
         values: &[Option<f64>],
-        piece: &Piece,
+        (piece, structure): (&Piece, StructureKind),
         records: usize,
     ) -> Option<Self> {
-        let mut way = Self::ways(effect, piece, records).into_iter().next()?;
+        let mut way = Self::ways(effect, (piece, structure), records).into_iter().next()?;
         for ((slot, value), parameter) in way.slots.iter_mut().zip(values).zip(effect.parameters()) {
             match (value, slot) {
                 (Some(value), slot) => *slot = Slot::Held(*value),
@@ -233,18 +236,22 @@ impl Part {
     }
 
     /// Where a search begins: a net over the prior, the finer the fewer the coordinates. What vibrates by itself at a place begins where the
-    /// panel with it has a mode at each of the measured frequencies, as `tuned(mass, x)` finds them \[Hz\].
-    pub(crate) fn starts(&self, tuned: impl Fn(f64, f64) -> Vec<f64>) -> Vec<Vec<f64>> {
+    /// panel with it has a mode at each of the measured frequencies, as `tuned(mass, place)` finds them \[Hz\].
+    pub(crate) fn starts(&self, tuned: impl Fn(f64, Place) -> Vec<f64>) -> Vec<Vec<f64>> {
         let unit = |number: usize| self.effect.parameters().get(number).map_or("", |parameter| parameter.unit);
         let free = || self.slots.iter().enumerate().filter_map(|(number, slot)| Some((number, slot.coordinate()?)));
         let units: Vec<&str> = free().map(|(number, _)| unit(number)).collect();
         let has_place = has_place(self.effect);
+        let is_even = |of: &&Coordinate| matches!(of.map, Map::Even { .. });
+        let places = if self.coordinates().filter(is_even).count() > 1 { PLACES_EACH_WAY } else { PLACES };
         let net = |each_size: bool| {
             let mut starts: Vec<Vec<f64>> = vec![vec![]];
             for (index, (_, coordinate)) in free().enumerate() {
                 let net: Vec<f64> = match coordinate.map {
-                    Map::Even { .. } => even_net(PLACES, 0.95),
+                    Map::Even { .. } => even_net(places, 0.95),
                     Map::Size { .. } if units.len() == 1 => even_net(9, 2.0),
+                    // Frequencies are many there.
+                    Map::Size { .. } if units.contains(&"Hz") && places == PLACES_EACH_WAY => vec![0.0],
                     Map::Size { .. } if index == 0 || each_size => vec![-0.8, 0.8],
                     Map::Size { .. } | Map::Gaussian { .. } => vec![0.0],
                 };
@@ -258,15 +265,17 @@ impl Part {
         }
         let of = |wanted: &str| units.iter().position(|unit| *unit == wanted);
         let (Some(mass), Some(frequency), Some(x)) = (of("kg"), of("Hz"), of("m")) else { return starts };
+        let y = units.iter().skip(x + 1).position(|unit| *unit == "m").map(|number| x + 1 + number);
         let coordinates: Vec<&Coordinate> = self.coordinates().collect();
         let tune = |start: Vec<f64>| {
-            let [mass, x] = [mass, x].map(|number| coordinates[number].value(start[number]));
+            let value = |number: usize| coordinates[number].value(start[number]);
+            let (mass, place) = (value(mass), Place { x: value(x), y: y.map_or(0.0, value) });
             let at = |hertz: f64| {
                 let mut start = start.clone();
                 start[frequency] = coordinates[frequency].of_value(hertz);
                 start
             };
-            tuned(mass, x).into_iter().map(at).collect::<Vec<_>>()
+            tuned(mass, place).into_iter().map(at).collect::<Vec<_>>()
         };
         starts.into_iter().flat_map(tune).collect()
     }
@@ -276,7 +285,7 @@ fn even_net(count: usize, to: f64) -> Vec<f64> {
     (0..count).map(|i| to * (2.0 * i as f64 / (count - 1) as f64 - 1.0)).collect()
 }
 
-fn choices(parameter: &EffectParameter, piece: &Piece, records: usize) -> Vec<Vec<Slot>> {
+fn choices(parameter: &EffectParameter, (piece, structure): (&Piece, StructureKind), records: usize) -> Vec<Vec<Slot>> {
     let range = parameter.range(piece);
     if parameter.scale == Scale::Index {
         return (1..=records.max(1)).map(|record| vec![Slot::Held(record as f64)]).collect();
@@ -291,8 +300,13 @@ fn choices(parameter: &EffectParameter, piece: &Piece, records: usize) -> Vec<Ve
             signs.iter().map(|&sign| of(Map::Size { median, log_factor: factor.ln(), sign })).collect()
         }
     };
-    // As it is unless it pays to free it.
-    parameter.held_at.map(|value| vec![Slot::Held(value)]).into_iter().chain(free).collect()
+    // As it is unless it pays to free it: a place across a beam never does, and that on a plate has to be found.
+    let held = parameter.held_at.map(|value| vec![Slot::Held(value)]);
+    match (parameter.across, structure) {
+        (true, StructureKind::TimoshenkoBeam) => held.into_iter().collect(),
+        (true, StructureKind::MindlinPlate) => free,
+        _ => held.into_iter().chain(free).collect(),
+    }
 }
 
 /// Constants and effects, all that is free in one list of coordinates: the constants first.
@@ -312,14 +326,21 @@ struct ConstantSlot {
 
 /// Factor within which two of three constants lie of where a search begins: any start serves, and all hypotheses share it.
 const CONSTANTS: f64 = 2.0;
+/// Deviation of Poisson's ratio from there.
+const RATIO: f64 = 0.15;
 
 impl Hypothesis {
     /// Constants about these values, where the test does not hold them.
     pub(crate) fn new(constants: &FreeConstants, about: &[f64], parts: Vec<Part>) -> Self {
         let mut slots = Vec::new();
         for (constant, (held, about)) in constants.held.iter().zip(about).enumerate() {
-            let map = Map::Size { median: *about, log_factor: CONSTANTS.ln(), sign: 1.0 };
-            let free = Slot::Free(Coordinate { map, range: (0.0, f64::MAX) });
+            let of = &constants.constants[constant];
+            let free = Slot::Free(if constants.is_modulus(constant) {
+                let map = Map::Size { median: *about, log_factor: CONSTANTS.ln(), sign: 1.0 };
+                Coordinate { map, range: (0.0, f64::MAX) }
+            } else {
+                Coordinate { map: Map::Gaussian { mean: *about, std: RATIO }, range: (of.low, of.high) }
+            });
             match held {
                 Some(value) => slots.push(ConstantSlot { constant, piece: None, slot: Slot::Held(*value) }),
                 None => {

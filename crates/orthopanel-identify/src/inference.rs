@@ -1,7 +1,7 @@
 //! From a test to the hypotheses that are held against its measured modes.
 
 use orthopanel_data::{ImpactTest, Measurement};
-use orthopanel_model::{BEAM_CONSTANTS, EffectSetting, RecordSetting, StructureKind, effect};
+use orthopanel_model::{EffectSetting, RecordSetting, effect};
 
 use crate::IdentifyError;
 use crate::comparison::Comparison;
@@ -15,6 +15,7 @@ use crate::predicted::Predictor;
 use crate::search::Inquiry;
 use crate::search_progress::SearchProgress;
 use crate::stacked::{Block, Stacked};
+use crate::structures;
 
 fn too_few(found: usize) -> IdentifyError {
     IdentifyError::TooFewResonances { found, needed: 2, noise_percent: None }
@@ -48,7 +49,7 @@ pub(crate) fn is_record(measurement: &Measurement) -> bool {
     measurement.data.recorded().is_some()
 }
 
-/// What is said from the base of a test, the beam with the effects that the file declares, held against the measured modes, while all that it is held
+/// What is said from the base of a test, the structure with the effects that the file declares, held against the measured modes, while all that it is held
 /// against is at hand.
 ///
 /// # Errors
@@ -64,7 +65,8 @@ pub(crate) fn from_base<T>(
     let piece = hit.first().map(|hit| test.pieces[*hit].piece).or_else(largest).ok_or_else(|| too_few(0))?;
     refuse_several(test)?;
     // What is declared wrongly is said before the records are read.
-    let constants = FreeConstants::of(test, &BEAM_CONSTANTS)?;
+    let structure = structures::of_test(test).kind();
+    let constants = FreeConstants::of(test, structure.constants())?;
     let declared = declared_parts(test, &piece, pairs_of_places(test))?;
     let mut all: Vec<MeasuredModes> = measured_modes(test)?.into_iter().map(MeasuredModes::without_faint).collect();
     all.sort_by_key(|of| of.records.is_empty());
@@ -80,14 +82,14 @@ pub(crate) fn from_base<T>(
     let mut blocks = Vec::new();
     for comparison in &comparisons {
         let of = comparison.measured;
-        let predictor = Predictor::new(comparison, StructureKind::TimoshenkoBeam, &of_piece(of))?;
+        let predictor = Predictor::new(comparison, structure, &of_piece(of))?;
         let is_of_other = !hit.is_empty() && !hit.contains(&of.piece);
         blocks.push(Block { piece: of.piece, is_of_other, predictor, waves: vec![] });
     }
     let begun = Inquiry::begin(Stacked::new(blocks), &constants, &declared)?;
     let (mut inquiry, base) = begun.ok_or_else(|| match measured.poles.len() {
         found @ 0..2 => too_few(found),
-        _ => IdentifyError::NotFinite { what: "likelihood of the measured modes on any beam".to_owned() },
+        _ => IdentifyError::NotFinite { what: "likelihood of the measured modes on any such piece".to_owned() },
     })?;
     inquiry.progress = SearchProgress::telling(progress);
     say(inquiry, base)

@@ -39,6 +39,7 @@ mod trace;
 mod trace_rows;
 mod usual_ratios;
 mod view;
+mod whitening;
 
 pub use accelerance_fit::DampingLaw;
 pub use entry::identify;

@@ -4,12 +4,15 @@
 //! $$C = C_\text{noise} + \sum_k\tau_k^2F_kF_k^T,$$
 //! where each kind $k$ of error has its columns $F_k$ and a size $\tau_k$, which is estimated with the rest and has a log-normal prior.
 
+use std::ops::Range;
+
 use faer::Mat;
 use num_complex::Complex64;
-use orthopanel_model::{EffectState, Field, ModelError};
+use orthopanel_model::{EffectState, Field, ModelError, StructureKind};
 
 use crate::comparison::Comparison;
 use crate::predicted::{Prediction, Predictor, distinct};
+use crate::whitening::{Split, Whitening};
 
 /// A kind of model error.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -83,6 +86,9 @@ pub(crate) const KINDS: usize = PRIORS.len();
 const HANGING: f64 = 10.0;
 /// Part of an error of a remainder that is in quadrature.
 const QUADRATURE: f64 = 0.3;
+/// Modes that are many, and the distance in widths up to which damping between two of them counts.
+const MANY: usize = 16;
+const NEAR: f64 = 10.0;
 /// Waves of unevenness along the panel.
 const WAVES: usize = 20;
 /// Shortest length \[m\] of waves of each size but the last: cells are stretched, and adhesive is spread, alike over some 50 to 200 mm, so that
@@ -92,9 +98,12 @@ const LENGTHS: [f64; 3] = [0.5, 0.25, 0.125];
 /// The columns $F$ of all kinds, side by side.
 #[derive(Clone)]
 pub(crate) struct ErrorColumns {
-    pub columns: Mat<f64>,
+    /// Number of values.
+    size: usize,
+    /// Places and values that are not zero.
+    columns: Vec<Vec<(usize, f64)>>,
     /// Of each column its kind, as a number below [`KINDS`].
-    pub kinds: Vec<usize>,
+    kinds: Vec<usize>,
     /// Of columns that are of the piece, not of one measurement of it, the number of the mode or of the wave.
     of_piece: Vec<Option<usize>>,
     /// Values that tell no more than their size, with their variance: near motions of the piece as a whole,
@@ -122,12 +131,15 @@ pub(crate) fn deviations() -> [f64; KINDS] {
 /// What unevenness along the panel does to all values: of each wave its kind and its column.
 pub(crate) type Waves = Vec<(usize, Vec<f64>)>;
 
-/// [`Waves`] of every field.
+/// [`Waves`] of every field; of a plate none.
 ///
 /// # Errors
 /// As [`Predictor::uneven`].
 pub(crate) fn waves(predictor: &Predictor, constants: &[f64], effects: &[EffectState]) -> Result<Waves, ModelError> {
     let mut waves = Vec::new();
+    if predictor.structure == StructureKind::MindlinPlate {
+        return Ok(waves);
+    }
     for field in Field::ALL {
         for (number, column) in predictor.uneven((constants, effects), field, WAVES)?.into_iter().enumerate() {
             let length = 2.0 * predictor.piece().length / (number + 1) as f64;
@@ -156,6 +168,10 @@ fn couplings(comparison: &Comparison, at: &Prediction) -> Vec<(usize, Vec<(usize
         for &m in &flexible[..number] {
             let (Some(of_n), Some(of_m)) = (pole(n), pole(m)) else { continue };
             let own = 2.0 * (of_n.re * of_m.re).sqrt();
+            // What damping does between modes far from each other is below what residues miss by themselves; of many modes most are.
+            if flexible.len() > MANY && (of_n - of_m).norm() > NEAR * own {
+                continue;
+            }
             let mut column = Vec::new();
             for (record, partners) in at.partners.iter().enumerate() {
                 let (Some(a), Some(b)) = (partners[n], partners[m]) else { continue };
@@ -242,12 +258,15 @@ impl ErrorColumns {
         }
         columns.extend(couplings(comparison, at));
         let unseen = comparison.unseen().start;
+        let is_told = |along: &[f64]| along.iter().any(|value| *value != 0.0);
         let dense = |kind: Kind, from: &[f64], range: std::ops::Range<usize>| {
             (kind as usize, range.map(|place| (place, from[place])).collect::<Vec<_>>())
         };
         for record in 0..measured.records.len() {
             let range = comparison.block_of(record);
-            columns.push(dense(Kind::ForcePlace, &at.by_force, range.clone()));
+            for along in at.by_force.iter().filter(|along| is_told(along)) {
+                columns.push(dense(Kind::ForcePlace, along, range.clone()));
+            }
             columns.push(dense(Kind::RecordGain, &at.values, range));
         }
         of_piece.resize(columns.len(), None);
@@ -258,17 +277,16 @@ impl ErrorColumns {
             let residues = comparison.residue_place(0, 0)..unseen;
             columns.push(dense(Kind::Gain, &at.values, residues));
             for own in distinct(measured.records.iter().map(|record| record.response_at)) {
-                let mut column = vec![0.0; comparison.size()];
-                for (number, _) in measured.records.iter().enumerate().filter(|(_, record)| record.response_at == own) {
-                    let range = comparison.block_of(number);
-                    column[range.clone()].copy_from_slice(&at.by_response[range]);
+                for along in at.by_response.iter().filter(|along| is_told(along)) {
+                    let mut column = vec![0.0; comparison.size()];
+                    let of_sensor = measured.records.iter().enumerate().filter(|(_, record)| record.response_at == own);
+                    for (number, _) in of_sensor {
+                        let range = comparison.block_of(number);
+                        column[range.clone()].copy_from_slice(&along[range]);
+                    }
+                    columns.push(dense(Kind::ResponsePlace, &column, 0..unseen));
                 }
-                columns.push(dense(Kind::ResponsePlace, &column, 0..unseen));
             }
-        }
-        let mut matrix = Mat::zeros(comparison.size(), columns.len());
-        for (number, (_, entries)) in columns.iter().enumerate() {
-            entries.iter().for_each(|(place, value)| matrix[(*place, number)] = *value);
         }
         let near = (0..measured.records.len())
             .flat_map(|record| (0..at.near_hanging).map(move |number| comparison.remainder_place(record, number)));
@@ -285,13 +303,8 @@ impl ErrorColumns {
             }
         }
         of_piece.resize(columns.len(), None);
-        Self {
-            columns: matrix,
-            kinds: columns.into_iter().map(|(kind, _)| kind).collect(),
-            of_piece,
-            uninformative,
-            without_partner,
-        }
+        let (kinds, columns) = columns.into_iter().unzip();
+        Self { size: comparison.size(), columns, kinds, of_piece, uninformative, without_partner }
     }
 
     /// Of blocks that stand below each other, each with its piece: what is of a piece is the same in all that was measured of it.
@@ -299,7 +312,7 @@ impl ErrorColumns {
         if all.len() == 1 {
             return all.remove(0).1;
         }
-        let rows = all.iter().map(|(_, own)| own.columns.nrows()).sum();
+        let size = all.iter().map(|(_, own)| own.size).sum();
         let (mut kinds, mut keys) = (vec![], vec![]);
         let mut places: Vec<Vec<usize>> = Vec::new();
         for (piece, own) in &all {
@@ -314,17 +327,17 @@ impl ErrorColumns {
             };
             places.push(own.kinds.iter().zip(&own.of_piece).map(place).collect());
         }
-        let columns = Mat::zeros(rows, kinds.len());
-        let mut stacked = Self { columns, kinds, of_piece: vec![], uninformative: vec![], without_partner: vec![] };
+        let columns = vec![vec![]; kinds.len()];
+        let mut stacked =
+            Self { size, columns, kinds, of_piece: vec![], uninformative: vec![], without_partner: vec![] };
         let mut row = 0;
         for ((_, own), places) in all.into_iter().zip(places) {
-            let rows = own.columns.nrows();
-            for (column, place) in places.into_iter().enumerate() {
-                (0..rows).for_each(|i| stacked.columns[(row + i, place)] = own.columns[(i, column)]);
+            for (column, place) in own.columns.into_iter().zip(places) {
+                stacked.columns[place].extend(column.into_iter().map(|(i, value)| (row + i, value)));
             }
             stacked.uninformative.extend(own.uninformative.into_iter().map(|(place, of)| (row + place, of)));
             stacked.without_partner.extend(own.without_partner.into_iter().map(|(place, of)| (row + place, of)));
-            row += rows;
+            row += own.size;
         }
         stacked
     }
@@ -335,16 +348,107 @@ impl ErrorColumns {
         self
     }
 
+    /// What tells no more than its size: places and variances.
+    fn variances(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
+        self.uninformative.iter().chain(&self.without_partner).copied()
+    }
+
+    /// Columns side by side, each times its size, where they are not zero in a range of values.
+    fn scaled(&self, numbers: &[usize], range: &Range<usize>, log_sizes: &[f64; KINDS]) -> Mat<f64> {
+        let mut scaled = Mat::zeros(range.len(), numbers.len());
+        for (column, &number) in numbers.iter().enumerate() {
+            let size = log_sizes[self.kinds[number]].exp();
+            self.columns[number].iter().for_each(|(place, value)| scaled[(place - range.start, column)] = size * value);
+        }
+        scaled
+    }
+
     /// $C_\text{noise} + \sum\tau_k^2F_kF_k^T$.
     pub(crate) fn covariance(&self, noise: &Mat<f64>, log_sizes: &[f64; KINDS]) -> Mat<f64> {
-        let scaled = Mat::from_fn(self.columns.nrows(), self.columns.ncols(), |i, j| {
-            self.columns[(i, j)] * log_sizes[self.kinds[j]].exp()
-        });
+        let all: Vec<usize> = (0..self.columns.len()).collect();
+        let scaled = self.scaled(&all, &(0..self.size), log_sizes);
         let mut covariance = noise + &scaled * scaled.transpose();
-        self.uninformative
-            .iter()
-            .chain(&self.without_partner)
-            .for_each(|(place, variance)| covariance[(*place, *place)] += variance);
+        self.variances().for_each(|(place, variance)| covariance[(place, place)] += variance);
         covariance
+    }
+
+    /// Numbers of the columns that lie in each range alone, and of those that do not.
+    fn parted(&self, split: &Split) -> (Vec<Vec<usize>>, Vec<usize>) {
+        let (mut own, mut common) = (vec![vec![]; split.ranges.len()], vec![]);
+        for (number, column) in self.columns.iter().enumerate() {
+            match split.range_of(column.iter().map(|(place, _)| *place)) {
+                Some(range) => own[range].push(number),
+                None => common.push(number),
+            }
+        }
+        (own, common)
+    }
+
+    /// The covariance, with `more` on its diagonal; `None` where it is not positive definite.
+    pub(crate) fn whitening(
+        &self,
+        (noise, split): (&Mat<f64>, Option<&Split>),
+        log_sizes: &[f64; KINDS],
+        more: &[(usize, f64)],
+    ) -> Option<Whitening> {
+        let Some(split) = split else {
+            let mut covariance = self.covariance(noise, log_sizes);
+            more.iter().for_each(|(place, variance)| covariance[(*place, *place)] += variance);
+            return Whitening::new(&covariance);
+        };
+        let (own, common) = self.parted(split);
+        let block = |(range, own): (&Range<usize>, &Vec<usize>)| {
+            let (from, size) = (range.start, range.len());
+            let shared = split.common.subrows(from, size);
+            let scaled = self.scaled(own, range, log_sizes);
+            let block = noise.submatrix(from, from, size, size) - shared * shared.transpose();
+            (range.clone(), block + &scaled * scaled.transpose())
+        };
+        let mut blocks: Vec<(Range<usize>, Mat<f64>)> = split.ranges.iter().zip(&own).map(block).collect();
+        for (place, variance) in self.variances().chain(more.iter().copied()) {
+            let Some(number) = split.range_of([place].into_iter()) else { continue };
+            let (range, block) = &mut blocks[number];
+            block[(place - range.start, place - range.start)] += variance;
+        }
+        let common = self.scaled(&common, &(0..self.size), log_sizes);
+        Whitening::split(blocks, Some(faer::concat![[split.common, common]]))
+    }
+
+    /// Derivatives of $\tfrac12(\ln\det C + r^TC^{-1}r)$ by every $\ln\tau_k$, and their expected curvature, $\mathrm{tr}\,2\,C^{-1}G_kC^{-1}G_l$ with
+    /// $G_k = \tau_k^2F_kF_k^T$; `missed` is $Wr$. Where the covariance is split, products of two columns that share no range are left out of the
+    /// curvature: they are small.
+    pub(crate) fn scores(
+        &self,
+        (by, split): (&Whitening, Option<&Split>),
+        log_sizes: &[f64; KINDS],
+        missed: &[f64],
+    ) -> (Mat<f64>, Mat<f64>) {
+        let (mut slope, mut curvature) = (Mat::<f64>::zeros(KINDS, 1), Mat::<f64>::zeros(KINDS, KINDS));
+        let mut add = |numbers: &[usize], products: Mat<f64>, crossed: &[f64]| {
+            for (j, &of_j) in numbers.iter().enumerate() {
+                slope[(self.kinds[of_j], 0)] += products[(j, j)] - crossed[j].powi(2);
+                for (i, &of_i) in numbers.iter().enumerate() {
+                    curvature[(self.kinds[of_i], self.kinds[of_j])] += 2.0 * products[(i, j)].powi(2);
+                }
+            }
+        };
+        let all: Vec<usize> = (0..self.columns.len()).collect();
+        let common = match split {
+            Some(split) => {
+                let (own, common) = self.parted(split);
+                for (block, (range, own)) in split.ranges.iter().zip(own).enumerate() {
+                    let (products, crossed) = by.products_in(block, self.scaled(&own, range, log_sizes), missed);
+                    add(&own, products, &crossed);
+                }
+                common
+            }
+            None => all,
+        };
+        let mut columns = self.scaled(&common, &(0..self.size), log_sizes);
+        by.whiten(&mut columns);
+        let along = |j: usize| columns.col_as_slice(j).iter().zip(missed).map(|(a, b)| a * b).sum();
+        let crossed: Vec<f64> = (0..common.len()).map(along).collect();
+        add(&common, columns.transpose() * &columns, &crossed);
+        (slope, curvature)
     }
 }

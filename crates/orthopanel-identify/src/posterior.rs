@@ -4,14 +4,14 @@ use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
 
 use faer::linalg::solvers::Llt;
-use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
 use faer::prelude::Solve;
-use faer::{Mat, Par, Side};
+use faer::{Mat, Side};
 use orthopanel_model::ModelError;
 
 use crate::hypothesis::Hypothesis;
 use crate::model_error::{ErrorColumns, KINDS, deviations, medians};
 use crate::stacked::{Predictions, Stacked};
+use crate::whitening::Whitening;
 
 /// Step of a difference, in coordinates.
 const STEP: f64 = 1e-4;
@@ -22,32 +22,6 @@ const LONGEST_SIZE: f64 = 1.0;
 const CURVED: f64 = 0.01;
 /// Bounds of a size of model error.
 const SIZES: [f64; 2] = [1e-6, 0.5];
-
-/// $C = LL^T$, and $\ln\det C$.
-pub(crate) struct Whitening {
-    factor: Llt<f64>,
-    pub log_determinant: f64,
-}
-
-impl Whitening {
-    pub(crate) fn new(covariance: &Mat<f64>) -> Option<Self> {
-        let factor = covariance.llt(Side::Lower).ok()?;
-        let lower = factor.L();
-        let log_determinant = (0..covariance.nrows()).map(|i| 2.0 * lower[(i, i)].ln()).sum();
-        Some(Self { factor, log_determinant })
-    }
-
-    /// $L^{-1}$ times these columns.
-    pub(crate) fn whiten(&self, columns: &mut Mat<f64>) {
-        solve_lower_triangular_in_place(self.factor.L(), columns.as_mut(), Par::Seq);
-    }
-
-    pub(crate) fn whitened(&self, values: &[f64]) -> Vec<f64> {
-        let mut column = Mat::from_fn(values.len(), 1, |i, _| values[i]);
-        self.whiten(&mut column);
-        column.col_as_slice(0).to_vec()
-    }
-}
 
 /// A hypothesis held against the measured modes.
 pub(crate) struct Problem<'a> {
@@ -156,22 +130,21 @@ impl Problem<'_> {
     }
 
     pub(crate) fn whitening(&self, errors: &ErrorColumns, log_sizes: &[f64; KINDS]) -> Option<Whitening> {
-        Whitening::new(&errors.covariance(self.stacked.noise(), log_sizes))
+        errors.whitening((self.stacked.noise(), self.stacked.split()), log_sizes, &[])
     }
 
     /// With remainders that tell little: no more than their size.
     pub(crate) fn whitening_of_modes(&self, errors: &ErrorColumns, log_sizes: &[f64; KINDS]) -> Option<Whitening> {
-        let mut covariance = errors.covariance(self.stacked.noise(), log_sizes);
+        let mut more = Vec::new();
         for (range, block) in self.stacked.ranges().zip(&self.stacked.blocks) {
             let comparison = block.comparison();
             for record in 0..comparison.measured.records.len() {
                 for place in comparison.remainder_place(record, 0)..comparison.block_of(record).end {
-                    let row = range.start + place;
-                    covariance[(row, row)] += comparison.variance_of_size(place);
+                    more.push((range.start + place, comparison.variance_of_size(place)));
                 }
             }
         }
-        Whitening::new(&covariance)
+        errors.whitening((self.stacked.noise(), self.stacked.split()), log_sizes, &more)
     }
 
     fn prior(&self, z: &[f64]) -> f64 {
@@ -250,7 +223,7 @@ impl Problem<'_> {
                         let shifts = part.shifts(&block.predictor, record, number);
                         places_alone &= shifts.is_some();
                         for of_response in shifts.into_iter().flatten() {
-                            let by = if of_response { &at.by_response } else { &at.by_force };
+                            let [by, _] = if of_response { &at.by_response } else { &at.by_force };
                             let own = block.comparison().block_of(record);
                             own.for_each(|row| column[range.start + row] += slope * by[row]);
                         }
@@ -377,24 +350,11 @@ impl Problem<'_> {
             value.is_finite().then_some((value, by))
         };
         let (mut value, mut by) = cost(&log_sizes)?;
-        let count = errors.columns.ncols();
         let mut curvature;
         let mut round = 0;
         loop {
-            let mut columns = Mat::from_fn(missed.len(), count + 1, |i, j| match errors.kinds.get(j) {
-                Some(&kind) => errors.columns[(i, j)] * log_sizes[kind].exp(),
-                None => missed[i],
-            });
-            by.whiten(&mut columns);
-            let products = columns.transpose() * &columns;
-            let mut slope = Mat::<f64>::zeros(KINDS, 1);
-            curvature = Mat::<f64>::zeros(KINDS, KINDS);
-            for j in 0..count {
-                slope[(errors.kinds[j], 0)] += products[(j, j)] - products[(j, count)].powi(2);
-                for i in 0..count {
-                    curvature[(errors.kinds[i], errors.kinds[j])] += 2.0 * products[(i, j)].powi(2);
-                }
-            }
+            let mut slope;
+            (slope, curvature) = errors.scores((&by, self.stacked.split()), &log_sizes, &by.whitened(&missed));
             for k in 0..KINDS {
                 let precision = deviations[k].powi(-2);
                 slope[(k, 0)] += (log_sizes[k] - medians[k]) * precision;

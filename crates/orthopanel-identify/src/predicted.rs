@@ -12,15 +12,16 @@ use orthopanel_model::{
 
 use crate::comparison::{Comparison, UNSEEN};
 use crate::measured::{Pole, SKIRT};
-use crate::view::{Channel, Relaxing, View, Views};
+use crate::view::{Channel, PARTS, Relaxing, View, Views};
 
 /// Predicted modes beyond the number of poles that take part.
 const SPARE: usize = 6;
 /// Up to so many times the highest measured frequency a predicted mode may be the partner of a pole.
 const ABOVE: f64 = 1.3;
-/// Deviation of the logarithm of the frequency of a mode that is to be matched: of the piece itself, and of the piece as a whole on its
-/// suspension.
-const APART: [f64; 2] = [0.06, 0.25];
+/// Deviation of the logarithm of the frequency of a mode that is to be matched: of a beam, and of a plate, whose modes lie closer.
+const APART: [f64; 2] = [0.06, 0.015];
+/// The same of the piece as a whole on its suspension.
+const HANGING_APART: f64 = 0.25;
 /// Amplitude of a wave of unevenness from which its derivative is taken.
 const WAVE_STEP: f64 = 1e-5;
 /// Times the highest frequency of the piece as a whole from which on a remainder is that of a free piece but for small terms.
@@ -42,6 +43,7 @@ const USUAL_DAMPING: f64 = 0.003;
 /// A structure with the places of a test, in which effects act.
 pub(crate) struct Predictor<'a> {
     pub comparison: &'a Comparison<'a>,
+    pub structure: StructureKind,
     panel: ModifiedPanel,
     setting: EffectSetting,
     /// Every place of the test once.
@@ -58,9 +60,9 @@ pub(crate) struct Predictor<'a> {
 pub(crate) struct Prediction {
     /// In the order of [`Comparison::values`].
     pub values: Vec<f64>,
-    /// The same by the place of the force of all records, and of the response \[1/m\]: zeros where no record tells.
-    pub by_force: Vec<f64>,
-    pub by_response: Vec<f64>,
+    /// The same by the place of the force of all records, and of the response \[1/m\], along x and along y: zeros where no record tells.
+    pub by_force: [Vec<f64>; 2],
+    pub by_response: [Vec<f64>; 2],
     /// Direction of each pole's residues in the complex plane, where all differ by sign alone.
     pub phase: Vec<Complex64>,
     /// Of each record and pole what a residue of size one, along the phase, brings to the remainder at each of its frequencies.
@@ -110,7 +112,8 @@ impl<'a> Predictor<'a> {
         // What is not linear shows between hits, not in modes.
         let record = RecordSetting { suspension_motion: SuspensionMotion::InTime, ..setting.record.clone() };
         let setting = EffectSetting { record, ..setting.clone() };
-        Ok(Self { comparison, panel, setting, places, hanging: None, apart: APART[0], found: Mutex::default() })
+        let apart = APART[usize::from(structure == StructureKind::MindlinPlate)];
+        Ok(Self { comparison, structure, panel, setting, places, hanging: None, apart, found: Mutex::default() })
     }
 
     /// The piece.
@@ -168,11 +171,11 @@ impl<'a> Predictor<'a> {
     /// As [`ModifiedPanel::seen_from`].
     pub(crate) fn seen_at(
         &self,
-        x: f64,
+        at: Place,
         constants: &[f64],
         effects: &[EffectState],
     ) -> Result<Arc<SeenModes>, ModelError> {
-        self.modes(&self.setting(0), &[Place { x, y: 0.0 }], false, constants, effects)
+        self.modes(&self.setting(0), &[at], false, constants, effects)
     }
 
     /// The modes of the structure in a record as seen from these ports, as damped as the poles beside them, and what the channel makes of a line.
@@ -191,7 +194,7 @@ impl<'a> Predictor<'a> {
             let omega = seen.angular_frequency[n];
             let away = |pole: &&Pole| (pole.angular_frequency / omega).ln().abs();
             let beside = self.comparison.measured.poles.iter().min_by(|a, b| away(a).total_cmp(&away(b)));
-            let measured = beside.filter(|pole| away(pole) < APART[1]).and_then(|pole| pole.damping_ratio);
+            let measured = beside.filter(|pole| away(pole) < HANGING_APART).and_then(|pole| pole.damping_ratio);
             let damping_ratio =
                 if omega > 0.0 { measured.unwrap_or(USUAL_DAMPING + seen.damping_ratio[n]) } else { 0.0 };
             let deflection = seen.deflection[n].clone();
@@ -199,6 +202,32 @@ impl<'a> Predictor<'a> {
         };
         let channel = self.channel(record, effects)?;
         Ok(((0..seen.angular_frequency.len()).map(mode).collect(), move |s| channel.at(s)))
+    }
+
+    /// The accelerance of a record at these $s$ \[1/s\].
+    ///
+    /// # Errors
+    /// As [`ModifiedPanel::seen_from`].
+    pub(crate) fn accelerance(
+        &self,
+        record: usize,
+        (constants, effects): (&[f64], &[EffectState]),
+        s: &[Complex64],
+    ) -> Result<Vec<Complex64>, ModelError> {
+        let own = self.channel(record, effects)?;
+        let taken = &self.comparison.measured.records[record];
+        let moved = |place: Place, by: f64| Place { x: place.x + by, ..place };
+        let ports = [moved(taken.force_at, own.force_offset), moved(taken.response_at, own.response_offset)];
+        let (modes, channel) = self.in_record(record, &ports, constants, effects)?;
+        let at = |s: &Complex64| {
+            let s = s + own.decay;
+            let share = |mode: &Mode| {
+                let (omega, zeta) = (mode.angular_frequency, mode.damping_ratio);
+                mode.at_forces[0] * mode.at_responses[1] / (s * s + 2.0 * zeta * omega * s + omega * omega)
+            };
+            channel(s) * s * s * modes.iter().map(share).sum::<Complex64>()
+        };
+        Ok(s.iter().map(at).collect())
     }
 
     /// The modes of the structure as seen from these ports, with a core that depends on frequency.
@@ -345,7 +374,7 @@ impl<'a> Predictor<'a> {
         let shape = |&n: &usize| (omega[n], (0..measured.records.len()).map(|record| product(record, n)).collect());
         let shapes: Vec<(f64, Vec<f64>)> = candidates.iter().map(shape).collect();
         let found =
-            measured.partners(&shapes, |index| if self.hangs(candidates[index]) { APART[1] } else { self.apart });
+            measured.partners(&shapes, |index| if self.hangs(candidates[index]) { HANGING_APART } else { self.apart });
         found.into_iter().map(|found| found.map(|(index, _)| candidates[index])).collect()
     }
 
@@ -377,7 +406,7 @@ impl<'a> Predictor<'a> {
         let top = MOSTLY_SEEN * TAU * measured.band[1] / (1.0 + SKIRT * beside.fold(0.0, f64::max));
         let partners = self.partners(channels, seen, omega, bottom);
         let size = comparison.size();
-        let [mut values, mut by_force, mut by_response] = [(); 3].map(|()| vec![0.0; size]);
+        let mut parts = [(); PARTS].map(|()| vec![0.0; size]);
         let mut phase = vec![Complex64::I; measured.poles.len()];
         for (pole, partner) in partners.iter().enumerate() {
             // A pole without a partner tells nothing by its frequency; its residue is missed altogether.
@@ -387,19 +416,17 @@ impl<'a> Predictor<'a> {
                 }
                 None => omega[n],
             };
-            values[pole] = partner.map_or(measured.poles[pole].angular_frequency, own).ln();
+            parts[0][pole] = partner.map_or(measured.poles[pole].angular_frequency, own).ln();
         }
         let remainders = measured.remainder_frequencies.len();
         let mut brings = vec![vec![vec![Complex64::ZERO; remainders]; measured.poles.len()]; measured.records.len()];
         let mut in_records = vec![vec![None; measured.poles.len()]; measured.records.len()];
         let mut strength = vec![0.0; omega.len()];
         for (record, channel) in channels.iter().enumerate() {
-            let mut put = |place: usize, [value, force, response]: [Complex64; 3]| {
-                comparison.put(&mut values, place, value);
-                comparison.put(&mut by_force, place, force);
-                comparison.put(&mut by_response, place, response);
+            let mut put = |place: usize, of: [Complex64; PARTS]| {
+                parts.iter_mut().zip(of).for_each(|(part, value)| comparison.put(part, place, value));
             };
-            let mut remainder = vec![[Complex64::ZERO; 3]; remainders];
+            let mut remainder = vec![[Complex64::ZERO; PARTS]; remainders];
             let (view, ports) = seen.of_record(record);
             for n in 0..view.near() {
                 let pole = partners.iter().position(|partner| *partner == Some(n));
@@ -439,6 +466,7 @@ impl<'a> Predictor<'a> {
                 put(comparison.remainder_place(record, number), sums);
             }
         }
+        let [mut values, force_x, response_x, force_y, response_y] = parts;
         let mut typical = comparison.residue.clone();
         typical.sort_by(f64::total_cmp);
         let typical = typical.get(typical.len() / 2).copied().unwrap_or(1.0);
@@ -470,8 +498,8 @@ impl<'a> Predictor<'a> {
         }
         Prediction {
             values,
-            by_force,
-            by_response,
+            by_force: [force_x, force_y],
+            by_response: [response_x, response_y],
             phase,
             brings,
             partners: in_records,

@@ -7,7 +7,8 @@ use std::f64::consts::TAU;
 
 use faer::Mat;
 use orthopanel_model::{
-    Action, Effect, EffectParameter, EffectSetting, ModelError, Scale, catalogue, natural_frequencies,
+    Action, Effect, EffectParameter, EffectSetting, FieldTerm, ModelError, Scale, StructureKind, catalogue,
+    natural_frequencies,
 };
 use rayon::prelude::*;
 
@@ -18,6 +19,7 @@ use crate::hypothesis::{Hypothesis, OF_PIECE, OF_RECORD, Part, Role, has_place, 
 use crate::judge::ODDS;
 use crate::measured::MeasuredModes;
 use crate::model_error::{KINDS, medians, waves};
+use crate::plate_start::PlateStart;
 use crate::posterior::{Judged, Point, Posterior, Problem};
 use crate::predicted::{Prediction, Predictor};
 use crate::search_progress::SearchProgress;
@@ -66,9 +68,24 @@ fn logs(sizes: [f64; KINDS]) -> [f64; KINDS] {
     sizes.map(f64::ln)
 }
 
+/// Constants that fit the frequencies alone, the likeliest first.
+fn starting_constants(block: &Block, constants: &FreeConstants) -> Result<Vec<Vec<f64>>, ModelError> {
+    match block.predictor.structure {
+        StructureKind::TimoshenkoBeam => {
+            Ok(constants_of_beam(block, usize::MAX)?.into_iter().map(|values| values.to_vec()).collect())
+        }
+        StructureKind::MindlinPlate => {
+            let setting = block.predictor.setting(0);
+            let held = std::array::from_fn(|constant| constants.held[constant]);
+            let start = PlateStart::new(block.comparison().measured, (setting.piece, setting.boundary), held);
+            Ok(start.constants()?.into_iter().take(FOLLOWED).map(|(_, values)| values.to_vec()).collect())
+        }
+    }
+}
+
 /// Constants of a beam that fit the frequencies alone, the likeliest first: at each ratio $E/G$ the scale that puts most poles near modes.
 /// Of the `lowest` poles.
-fn starting_constants(block: &Block, lowest: usize) -> Result<Vec<[f64; 2]>, ModelError> {
+fn constants_of_beam(block: &Block, lowest: usize) -> Result<Vec<[f64; 2]>, ModelError> {
     let (measured, setting) = (block.comparison().measured, block.predictor.setting(0));
     let poles: Vec<f64> = measured.poles.iter().take(lowest).map(|pole| pole.angular_frequency / TAU).collect();
     let top = poles.last().copied().unwrap_or(0.0);
@@ -121,7 +138,7 @@ impl<'a> Inquiry<'a> {
         declared: &[Part],
     ) -> Result<Option<(Self, Judged)>, ModelError> {
         let mut inquiry = Self { stacked, hits: None, progress: SearchProgress::default() };
-        let starts = starting_constants(inquiry.stacked.longest(), usize::MAX)?;
+        let starts = starting_constants(inquiry.stacked.longest(), constants)?;
         let poles = inquiry.stacked.longest().comparison().measured.poles.iter();
         let hertz: Vec<f64> = poles.map(|pole| pole.angular_frequency / TAU).collect();
         let mut best: Option<(f64, Hypothesis, Point)> = None;
@@ -193,7 +210,7 @@ impl<'a> Inquiry<'a> {
     }
 
     fn ways(&self, effect: &'static dyn Effect) -> Vec<Part> {
-        Part::ways(effect, self.predictor().piece(), self.measured().records.len())
+        Part::ways(effect, (self.predictor().piece(), self.predictor().structure), self.measured().records.len())
     }
 
     /// The posterior once more, to its end, from its own sizes of model error and from those of the best.
@@ -215,6 +232,9 @@ impl<'a> Inquiry<'a> {
         if self.is_of_lists() {
             return self.hidden_in_lists(effect);
         }
+        if let Some(why) = self.hidden_on_plates(effect) {
+            return Some(why.to_owned());
+        }
         let is_of_several_pieces = self.stacked.is_of_several_pieces();
         // The gain of the only record is the gain.
         let is_of_one = || effect.parameters().iter().any(|parameter| parameter.scale == Scale::Index);
@@ -230,6 +250,19 @@ impl<'a> Inquiry<'a> {
             return None;
         };
         Some(why.to_owned())
+    }
+
+    /// Why an effect is not looked for on a plate.
+    fn hidden_on_plates(&self, effect: &dyn Effect) -> Option<&'static str> {
+        if self.predictor().structure != StructureKind::MindlinPlate {
+            return None;
+        }
+        self.acts(effect).ok()?.iter().find_map(|action| match action {
+            Action::Plate(_) => Some("the test file declares a plate"),
+            Action::Core(_) => Some("a core that depends on frequency is looked for in beams alone"),
+            Action::Field(FieldTerm::Support(_)) => Some("edges that yield are looked for on beams alone"),
+            _ => None,
+        })
     }
 
     /// Every effect of the catalogue added to a base, but those sets that were `seen`, the likeliest first.

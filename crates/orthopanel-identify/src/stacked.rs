@@ -9,6 +9,7 @@ use crate::comparison::Comparison;
 use crate::hypothesis::{Hypothesis, has_place};
 use crate::model_error::{ErrorColumns, Waves};
 use crate::predicted::{Prediction, Predictor};
+use crate::whitening::Split;
 
 /// The measured modes of one list, or of the records of one piece, and what predicts them.
 pub(crate) struct Block<'a> {
@@ -44,6 +45,7 @@ pub(crate) struct Stacked<'a> {
     pub blocks: Vec<Block<'a>>,
     /// Covariance of the noise of all.
     noise: Mat<f64>,
+    split: Option<Split>,
 }
 
 /// What a hypothesis predicts of every block.
@@ -67,7 +69,8 @@ impl Predictions {
 
 impl<'a> Stacked<'a> {
     pub(crate) fn new(blocks: Vec<Block<'a>>) -> Self {
-        let mut stacked = Self { blocks, noise: Mat::new() };
+        let split = if blocks.len() == 1 { blocks[0].comparison().split() } else { None };
+        let mut stacked = Self { blocks, noise: Mat::new(), split };
         let ranges: Vec<Range<usize>> = stacked.ranges().collect();
         let size = ranges.last().map_or(0, |range| range.end);
         stacked.noise = Mat::zeros(size, size);
@@ -108,6 +111,11 @@ impl<'a> Stacked<'a> {
 
     pub(crate) fn noise(&self) -> &Mat<f64> {
         &self.noise
+    }
+
+    /// How the covariance is split, of many values of one block.
+    pub(crate) fn split(&self) -> Option<&Split> {
+        self.split.as_ref()
     }
 
     /// The rows of each block.

@@ -8,6 +8,9 @@ use orthopanel_model::{ChannelFactor, ModesAtLine, Place, RelaxingMode, Relaxing
 
 use crate::measured::MeasuredModes;
 
+/// Of what a record sees: the value, and how it follows the place of the force along x, that of the response, and both along y.
+pub(crate) const PARTS: usize = 5;
+
 /// What acts on one record besides the structure.
 #[derive(Default)]
 pub(crate) struct Channel {
@@ -63,21 +66,18 @@ impl View {
     pub(crate) fn mode(&self, (n, [force, response]): (usize, [usize; 2]), zeta: f64) -> ModeInRecord {
         if let Some(relaxing) = &self.relaxing {
             let mode = relaxing.mode(n, zeta);
-            let shape = between(&mode.deflection, &mode.slope, [force, response]);
+            let shape = between(&mode.deflection, [&mode.slope, &[]], [force, response]);
             let deflection = [force, response].map(|port| mode.deflection[port]);
             let core = Some((mode.damping, mode.by_s));
             return ModeInRecord { omega: mode.angular_frequency, zeta, deflection, shape, core };
         }
-        let deflection = &self.modes.deflection[n];
-        let slope = |port: usize| self.modes.slope[n].get(port).copied().unwrap_or(0.0);
-        let shape = [
-            deflection[force] * deflection[response],
-            slope(force) * deflection[response],
-            deflection[force] * slope(response),
-        ];
+        let of = |values: &[Vec<f64>]| -> Vec<Complex64> {
+            values.get(n).into_iter().flatten().map(|value| Complex64::from(*value)).collect()
+        };
+        let deflection = of(&self.modes.deflection);
+        let shape = between(&deflection, [&of(&self.modes.slope), &of(&self.modes.slope_across)], [force, response]);
         let omega = self.modes.angular_frequency[n];
-        let deflection = [force, response].map(|port| deflection[port].into());
-        ModeInRecord { omega, zeta, deflection, shape: shape.map(Complex64::from), core: None }
+        ModeInRecord { omega, zeta, deflection: [force, response].map(|port| deflection[port]), shape, core: None }
     }
 
     /// A mode's accelerance over the product of deflections, as the channel shows it, at a frequency of the remainder; and that product.
@@ -87,13 +87,13 @@ impl View {
         (n, ports): (usize, [usize; 2]),
         (number, s): (usize, Complex64),
         channel: &Channel,
-    ) -> (Complex64, [Complex64; 3]) {
+    ) -> (Complex64, [Complex64; PARTS]) {
         let s = s + channel.decay;
         let factor = channel.at(s) * s * s;
         match (&self.relaxing, mode.core) {
             (Some(relaxing), Some((damping, _))) => {
                 let line = &relaxing.lines[number];
-                let shape = between(&line.deflection[n], &line.slope[n], ports);
+                let shape = between(&line.deflection[n], [&line.slope[n], &[]], ports);
                 (factor / (s * s + damping * s + line.lambda[n]), shape)
             }
             _ => {
@@ -104,10 +104,12 @@ impl View {
     }
 }
 
-/// The product of deflections at force and response, and how that follows either place.
-fn between(deflection: &[Complex64], slope: &[Complex64], [force, response]: [usize; 2]) -> [Complex64; 3] {
-    let slope = |port: usize| slope.get(port).copied().unwrap_or(Complex64::ZERO);
-    [deflection[force] * deflection[response], slope(force) * deflection[response], deflection[force] * slope(response)]
+/// The product of deflections at force and response, and how that follows either place, along x and along y.
+fn between(deflection: &[Complex64], slopes: [&[Complex64]; 2], [force, response]: [usize; 2]) -> [Complex64; PARTS] {
+    let slope = |axis: usize, port: usize| slopes[axis].get(port).copied().unwrap_or(Complex64::ZERO);
+    let by = |axis: usize| [slope(axis, force) * deflection[response], deflection[force] * slope(axis, response)];
+    let ([force_x, response_x], [force_y, response_y]) = (by(0), by(1));
+    [deflection[force] * deflection[response], force_x, response_x, force_y, response_y]
 }
 
 /// Modes of a panel whose core depends on frequency.
@@ -148,6 +150,7 @@ impl Relaxing {
             damping_ratio: modes.iter().map(RelaxingMode::core_damping).collect(),
             deflection: modes.iter().map(|mode| real(&mode.deflection)).collect(),
             slope: modes.iter().map(|mode| real(&mode.slope)).collect(),
+            slope_across: vec![],
         }
     }
 }
@@ -158,7 +161,7 @@ pub(crate) struct ModeInRecord {
     pub zeta: f64,
     /// At the force and at the response.
     pub deflection: [Complex64; 2],
-    pub shape: [Complex64; 3],
+    pub shape: [Complex64; PARTS],
     /// With a core that depends on frequency what damps it beside that, and the derivative of its dynamic stiffness at the pole.
     pub core: Option<(f64, Complex64)>,
 }

@@ -64,7 +64,7 @@ pub use residual_modes::Attachments;
 pub use response::{CubicForces, ForceRecord, ModalStepper, cubic_support_forces};
 pub use ritz_modes::{modes_below, ritz_modes, ritz_modes_near};
 pub use skyline::SymmetricMatrix;
-pub use structure::{Block, Motion, RitzMode, Structure};
+pub use structure::{Block, Motion, RitzMode, ShearMoment, Structure};
 pub use time_model::TimeModel;
 pub use timoshenko_beam::{
     BEAM_CONSTANTS, BeamConstants, BeamElements, BeamMode, BeamTerms, ExactBeam, SHEAR_COEFFICIENT, ShearLoss,

@@ -168,6 +168,7 @@ impl PanelModel {
         }
         let values = match self.structure {
             StructureKind::TimoshenkoBeam => {
+                effects.iter().try_for_each(EffectState::on_centre_line)?;
                 let constants = BeamConstants { e_x: self.constant("e_x")?, g_zx: self.constant("g_zx")? }.checked()?;
                 vec![constants.e_x, constants.g_zx]
             }

@@ -72,16 +72,32 @@ pub trait Structure {
 }
 
 /// What moves at a place. A force works on a deflection, a couple on a rotation.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Motion {
     /// $w$ \[m\].
     Deflection,
     /// $\partial w/\partial x$ \[1\]: how the deflection changes when its place moves.
     Slope,
+    /// $\partial w/\partial y$ \[1\]; zero of a beam.
+    SlopeAcross,
     /// $\psi$ \[rad\], counted so that $\psi = -w'$ without shear.
     Rotation,
     /// $\partial\psi/\partial x$ \[1/m\]: how the rotation changes when its place moves.
     Curvature,
+    /// A moment of a plate's shear strain over a square about the place; zero of a beam.
+    Shear(ShearMoment),
+}
+
+/// $\int p_i(x)\,p_j(y)\,\gamma\,dx\,dy$ \[m\] of a shear strain over a square, as far as that lies on the plate, with Legendre polynomials that are
+/// orthonormal there: the squares of all moments sum to $\int\gamma^2dx\,dy$.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ShearMoment {
+    /// Whether the strain is $\partial w/\partial y+\psi_y$; else $\partial w/\partial x+\psi_x$.
+    pub across: bool,
+    /// Side of the square \[m\].
+    pub span: f64,
+    /// $i$ and $j$.
+    pub degrees: [usize; 2],
 }
 
 /// Coordinates that only couple among themselves.

@@ -18,7 +18,7 @@ fn rows(heading: &str) -> Vec<&'static str> {
 fn is_told(row: &str, parameter: &EffectParameter) -> bool {
     let Some(from) = row.find(&format!("`{}` {}", parameter.name, parameter.unit)) else { return false };
     // Anywhere on the piece, and a record's number, want no range.
-    if parameter.scale == Scale::Index || parameter.name == "x" {
+    if parameter.scale == Scale::Index || ["x", "y"].contains(&parameter.name) {
         return true;
     }
     let told = row[from..].split([';', '|']).next().unwrap_or_default();

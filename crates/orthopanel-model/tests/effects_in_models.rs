@@ -176,8 +176,8 @@ fn what_is_no_effect_of_the_panel_is_refused_with_its_reason() {
         (r#"{"id":"local-mass","owner":"rig","mass":0.01,"x":0}"#, "effect local-mass: owner = \"rig\""),
         (r#"{"id":"local-mass","owner":"panel","mass":0.01}"#, "effect local-mass: x is missing"),
         (
-            r#"{"id":"local-mass","owner":"panel","mass":0.01,"x":0,"y":0}"#,
-            "effect local-mass: y is no parameter of it",
+            r#"{"id":"local-mass","owner":"panel","mass":0.01,"x":0,"y":0.01}"#,
+            "effect local-mass: y = 0.01: a beam has its effects on its centre line",
         ),
         (
             r#"{"id":"local-mass","owner":"panel","mass":-0.2,"x":0}"#,

@@ -1,6 +1,6 @@
 //! The parts of a panel that are parameters of its FMU.
 
-use orthopanel_model::{EffectParameter, Estimate, effect};
+use orthopanel_model::{EffectParameter, Estimate, StructureKind, effect};
 
 use super::Panel;
 use crate::PortNames;
@@ -99,7 +99,13 @@ impl Panel {
         parts.extend(self.model.constants.keys().cloned().map(Part::Constant));
         for (number, entry) in self.model.effects.iter().enumerate() {
             let known = effect(&entry.id).map(|effect| effect.parameters()).unwrap_or_default();
-            parts.extend(known.iter().map(|parameter| Part::Effect(number, parameter)));
+            // A beam has no place across, and what reaches across a whole plate has none either.
+            let is_beam = self.model.structure == StructureKind::TimoshenkoBeam;
+            let has = |of: &&EffectParameter| {
+                let is_told = entry.parameters.contains_key(of.name) || of.held_at.is_some_and(|held| !held.is_nan());
+                !of.across || (!is_beam && is_told)
+            };
+            parts.extend(known.iter().filter(has).map(|parameter| Part::Effect(number, parameter)));
         }
         parts.extend((0..self.flexible_modes).map(Part::Damping));
         parts.extend(self.residual.is_some().then_some(Part::ResidualDamping));

@@ -22,6 +22,10 @@ impl Estimates {
         let effects = hypothesis.parts.iter().map(|part| {
             let mut parameters: Vec<TracedParameter> = Vec::new();
             for (parameter, value) in part.parameters().zip(values.by_ref()) {
+                // On the centre line, or across the whole width.
+                if parameter.across && value.std.is_none() && (value.value == 0.0 || value.value.is_nan()) {
+                    continue;
+                }
                 match parameters.last_mut() {
                     // A value more of a parameter that each record has of its own.
                     Some(last) if last.name == parameter.name => last.values.push(value),

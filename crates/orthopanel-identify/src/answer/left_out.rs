@@ -65,7 +65,7 @@ impl Linear<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::posterior::Whitening;
+    use crate::whitening::Whitening;
 
     const DATA: usize = 9;
     const PARAMETERS: usize = 3;

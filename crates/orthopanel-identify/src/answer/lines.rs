@@ -1,5 +1,6 @@
 //! The records' lines beside what a hypothesis predicts of them.
 
+use num_complex::Complex64;
 use orthopanel_data::{Accelerance, Estimation, ImpactTest, TimeHistory};
 use orthopanel_model::{
     BeamConstants, BeamMode, Damping, EffectState, ExactBeam, Place, ReceptanceSetup, RecordSetting, SuspensionMotion,
@@ -7,9 +8,11 @@ use orthopanel_model::{
 use rayon::prelude::*;
 
 use super::damping::TracedDamping;
+use crate::accelerance_fit::told_variance;
 use crate::curves::curves;
 use crate::measured::MeasuredModes;
-use crate::{AcceleranceFit, IdentifyError};
+use crate::stacked::Block;
+use crate::{AcceleranceFit, IdentifyError, MeasuredRecord};
 
 /// Lines sum the modes up to so many times the highest.
 const SUMMED: f64 = 2.5;
@@ -60,6 +63,43 @@ impl Lines {
     /// All that is said of the records, a sentence each.
     pub(super) fn notes_of_records(&self) -> Vec<String> {
         self.accelerances.iter().flat_map(|(_, record)| record.notes.iter().cloned()).collect()
+    }
+
+    /// Of a plate, by its modes as each record sees them. Damping is left out.
+    ///
+    /// # Errors
+    /// What the model refuses.
+    pub(super) fn drawn_by_modes(
+        &self,
+        block: &Block,
+        state: (&[f64], &[EffectState]),
+    ) -> Result<Drawn, IdentifyError> {
+        let measured = block.comparison().measured;
+        let own = self.accelerances.iter().filter(|(piece, _)| *piece == measured.piece);
+        let placed = own.filter_map(|(_, of)| {
+            let is_it =
+                |record: &MeasuredRecord| (record.force_at, record.response_at) == (of.force_at, of.response_at);
+            Some((measured.records.iter().position(is_it)?, of))
+        });
+        let placed: Vec<(usize, &Accelerance)> = placed.collect();
+        let curve = |(number, record): (usize, &Accelerance)| {
+            let lines = record.frequency.partition_point(|&frequency| frequency <= measured.band[1]);
+            let frequency = record.frequency[..lines].to_vec();
+            let at = |f: &f64| Complex64::new(record.decay_rate, std::f64::consts::TAU * f);
+            let s: Vec<Complex64> = frequency.iter().map(at).collect();
+            Ok(AcceleranceFit {
+                piece: measured.piece,
+                force_at: record.force_at,
+                response_at: record.response_at,
+                model: block.predictor.accelerance(number, state, &s)?,
+                measured: record.value[..lines].to_vec(),
+                decay_rate: record.decay_rate,
+                variance: told_variance(record).map(|variance| variance[..lines].to_vec()),
+                frequency,
+            })
+        };
+        let curves = placed.into_par_iter().map(curve).collect::<Result<Vec<_>, IdentifyError>>()?;
+        Ok(Drawn { curves, damping: TracedDamping { damping: Damping::default(), std: vec![] } })
     }
 
     /// Of the piece of these modes, at these constants with these effects; `of_effects` as in [`TracedDamping::of`].

@@ -6,8 +6,9 @@ use faer::Mat;
 
 use crate::comparison::Comparison;
 use crate::outcome::FittedError;
-use crate::posterior::{Judged, Point, Posterior, Problem, Whitening};
+use crate::posterior::{Judged, Point, Posterior, Problem};
 use crate::stacked::Block;
+use crate::whitening::Whitening;
 
 use super::left_out::{LeftOut, Linear};
 
@@ -18,7 +19,7 @@ const GAIN: f64 = 0.05;
 /// The covariance of the chosen hypothesis, with which all are judged, and what is left out together.
 pub(super) struct Yardstick {
     by: Whitening,
-    /// $L^{-1}$ of $C = LL^T$.
+    /// $W$ with $C^{-1} = W^TW$.
     inverse_factor: Mat<f64>,
     groups: Vec<Vec<usize>>,
 }

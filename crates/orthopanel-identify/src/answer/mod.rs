@@ -23,6 +23,7 @@ use lists::refuse_many;
 pub(crate) use lists::{answer_of_lists, without_repeats};
 
 use orthopanel_data::{Estimation, ImpactTest};
+use orthopanel_model::StructureKind;
 
 use crate::hit_strength::HitStrength;
 use crate::inference::from_base;
@@ -168,6 +169,9 @@ fn drawn(
 ) -> Result<Vec<Drawn>, IdentifyError> {
     let of_hit = |(number, hit): (usize, &Block)| {
         let (constants, effects) = hit.values(&judged.hypothesis, &judged.posterior.point.z)?;
+        if hit.predictor.structure == StructureKind::MindlinPlate {
+            return lines.drawn_by_modes(hit, (&constants, &effects));
+        }
         let of_effects = &judged.posterior.point.at.blocks[number].damping_of_effects;
         lines.drawn(test, hit.comparison().measured, (&constants, &effects, of_effects))
     };

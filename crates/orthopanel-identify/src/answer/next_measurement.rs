@@ -10,13 +10,14 @@ use crate::comparison::Comparison;
 use crate::measured::{MeasuredModes, MeasuredRecord};
 use crate::model_error::{ErrorColumns, waves};
 use crate::outcome::Verdict;
-use crate::posterior::{Judged, Whitening};
+use crate::posterior::Judged;
 use crate::predicted::Predictor;
 use crate::search::Inquiry;
 use crate::to_check::to_check;
 
-/// Places tried along the piece.
+/// Places tried along a beam, and along either side of a plate.
 const PLACES: usize = 17;
+const PLACES_EACH_WAY: usize = 7;
 /// Mass that a tester has at hand, in parts of the piece's \[1\].
 const ADDED: f64 = 0.01;
 /// Times noise and model error from which a measurement parts two hypotheses.
@@ -92,19 +93,38 @@ fn proposals(predictor: &Predictor) -> Vec<Proposal> {
         response_at,
         added_mass,
     }];
-    for step in 0..PLACES {
-        // Places that a tester can find again: whole centimetres.
-        let x = (100.0 * piece.length * (0.96 * step as f64 / (PLACES - 1) as f64 - 0.48)).round() / 100.0;
+    // Places that a tester can find again: whole centimetres.
+    let net = |size: f64, count: usize| -> Vec<f64> {
+        let part = |step: usize| 0.96 * step as f64 / (count - 1) as f64 - 0.48;
+        (0..count).map(|step| (100.0 * size * part(step)).round() / 100.0).collect()
+    };
+    let places: Vec<Place> = match predictor.structure {
+        StructureKind::TimoshenkoBeam => {
+            net(piece.length, PLACES).into_iter().map(|x| Place { x, ..force_at }).collect()
+        }
+        StructureKind::MindlinPlate => {
+            let across = net(piece.width, PLACES_EACH_WAY);
+            let along = net(piece.length, PLACES_EACH_WAY).into_iter();
+            along.flat_map(|x| across.iter().map(move |&y| Place { x, y })).collect()
+        }
+    };
+    let said = |at: Place, digits: usize| match predictor.structure {
+        StructureKind::TimoshenkoBeam => format!("x = {:.digits$} m", at.x),
+        StructureKind::MindlinPlate => format!("x = {:.digits$}, y = {:.digits$} m", at.x, at.y),
+    };
+    for at in places {
         proposals.push(Proposal {
-            words: format!("hit at x = {x:.2} m, with the sensor where it is"),
-            force_at: Place { x, ..force_at },
+            words: format!("hit at {}, with the sensor where it is", said(at, 2)),
+            force_at: at,
             response_at,
             added_mass: 0.0,
         });
+        let sensor_at =
+            if predictor.structure == StructureKind::TimoshenkoBeam { Place { y: response_at.y, ..at } } else { at };
         proposals.push(Proposal {
-            words: format!("move the sensor to x = {x:.2} m, and hit at x = {:.3} m", force_at.x),
+            words: format!("move the sensor to {}, and hit at {}", said(sensor_at, 2), said(force_at, 3)),
             force_at,
-            response_at: Place { x, ..response_at },
+            response_at: sensor_at,
             added_mass: 0.0,
         });
     }
@@ -149,7 +169,7 @@ impl<'a> Further<'a> {
         let comparison = Comparison::new(&self.measured, self.of.piece().mass());
         let mut setting = self.of.setting(0);
         setting.record = RecordSetting { response_at: Some(self.measured.records[0].response_at), ..setting.record };
-        let predictor = Predictor::new(&comparison, StructureKind::TimoshenkoBeam, &setting)?;
+        let predictor = Predictor::new(&comparison, self.of.structure, &setting)?;
         let predicted = |judged: &Judged| -> Result<_, ModelError> {
             let (constants, effects) =
                 (judged.hypothesis.constants_of(self.measured.piece, &judged.posterior.point.z), self.effects(judged)?);
@@ -158,7 +178,7 @@ impl<'a> Further<'a> {
         let ((at, constants, effects), (other, ..)) = (predicted(one)?, predicted(other)?);
         let uneven = waves(&predictor, &constants, &effects)?;
         let errors = ErrorColumns::about(&comparison, &at, &uneven);
-        let by = Whitening::new(&errors.covariance(&comparison.noise, &one.posterior.log_sizes));
+        let by = errors.whitening((&comparison.noise, None), &one.posterior.log_sizes, &[]);
         let apart: Vec<f64> = at.values.iter().zip(&other.values).map(|(one, other)| one - other).collect();
         Ok(by.map(|by| by.whitened(&apart).iter().map(|value| value * value).sum::<f64>().sqrt()))
     }

@@ -5,8 +5,8 @@ use std::f64::consts::TAU;
 
 use orthopanel_data::{ImpactTest, NamedPiece};
 use orthopanel_model::{
-    BEAM_CONSTANTS, Boundary, Damping, Estimate, MODEL_SCHEMA, ModeRange, ModelError, Owner, PanelModel, Piece, Place,
-    Ports, StructureKind,
+    Boundary, Damping, Estimate, MODEL_SCHEMA, ModeRange, ModelError, Owner, PanelModel, Piece, Place, Ports,
+    StructureKind,
 };
 
 use super::damping::TracedDamping;
@@ -18,6 +18,7 @@ use crate::plate_of_ratios::widen;
 use crate::posterior::Judged;
 use crate::predicted::distinct;
 use crate::search::Inquiry;
+use crate::structures;
 
 /// Key of a model's provenance under which the standard deviations of its damping ratios stand.
 const DAMPING_STD: &str = "damping_std";
@@ -38,14 +39,16 @@ pub(super) fn panel(
 ) -> Result<PanelModel, ModelError> {
     let places = |at: fn(&crate::MeasuredRecord) -> Place| distinct(measured.records.iter().map(at));
     let (own, _) = own_and_others(estimates, plate);
-    let constants = constants(judged, estimates, measured.piece);
+    let structure = structures::of_test(test).kind();
+    let constants = constants(structure, (judged, estimates), measured.piece);
     let ports = Ports { forces: places(|record| record.force_at), responses: places(|record| record.response_at) };
-    let mut panel = bare((test.pieces[measured.piece].piece, test.boundary), constants, ports);
+    let mut panel = bare(structure, (test.pieces[measured.piece].piece, test.boundary), constants, ports);
     let damping = match plate.and_then(|number| estimates.effects.get(number)) {
         Some((ratios, _)) => {
             widen(&mut panel, ratios);
             damping_of_plate(&panel, (measured, of_effects))?
         }
+        None if structure == StructureKind::MindlinPlate => damping_of_plate(&panel, (measured, of_effects))?,
         None => damping,
     };
     panel.damping = damping.damping;
@@ -62,12 +65,14 @@ pub(super) fn panels_of_lists(
     judged: &Judged,
     estimates: &Estimates,
 ) -> (Vec<PanelModel>, Vec<Removed>) {
+    let structure = structures::of_test(test).kind();
     let plate = judged.hypothesis.parts.iter().position(|part| part.replaces_structure(inquiry.predictor()));
     let hit: Vec<usize> = inquiry.stacked.hit().map(|(_, hit)| hit.piece).collect();
     let (own, others) = own_and_others(estimates, plate);
     let of_piece = |(piece, named): (usize, &NamedPiece)| {
         let ports = Ports { forces: vec![], responses: vec![] };
-        let mut panel = bare((named.piece, test.boundary), constants(judged, estimates, piece), ports);
+        let mut panel =
+            bare(structure, (named.piece, test.boundary), constants(structure, (judged, estimates), piece), ports);
         if let Some((ratios, _)) = plate.and_then(|number| estimates.effects.get(number)) {
             widen(&mut panel, ratios);
         }
@@ -79,7 +84,11 @@ pub(super) fn panels_of_lists(
 }
 
 /// The constants of a piece.
-fn constants(judged: &Judged, estimates: &Estimates, piece: usize) -> BTreeMap<String, Estimate> {
+fn constants(
+    structure: StructureKind,
+    (judged, estimates): (&Judged, &Estimates),
+    piece: usize,
+) -> BTreeMap<String, Estimate> {
     let of = |(constant, of): (usize, &orthopanel_model::Constant)| {
         let found = |own: Option<usize>| {
             let place = judged.hypothesis.constant_numbers().position(|number| number == (constant, own))?;
@@ -87,7 +96,7 @@ fn constants(judged: &Judged, estimates: &Estimates, piece: usize) -> BTreeMap<S
         };
         Some((of.name.to_owned(), found(Some(piece)).or_else(|| found(None))?))
     };
-    BEAM_CONSTANTS.iter().enumerate().filter_map(of).collect()
+    structure.constants().iter().enumerate().filter_map(of).collect()
 }
 
 type Parts<'a> = Vec<&'a (TracedEffect, Role)>;
@@ -103,14 +112,19 @@ fn removed(others: &Parts) -> Vec<Removed> {
     others.map(|(effect, role)| Removed::of(effect, *role == Role::Declared)).collect()
 }
 
-/// A beam without damping and effects.
-fn bare((piece, boundary): (Piece, Boundary), constants: BTreeMap<String, Estimate>, ports: Ports) -> PanelModel {
+/// A structure without damping and effects.
+fn bare(
+    structure: StructureKind,
+    (piece, boundary): (Piece, Boundary),
+    constants: BTreeMap<String, Estimate>,
+    ports: Ports,
+) -> PanelModel {
     PanelModel {
         name: None,
         schema: MODEL_SCHEMA.to_owned(),
         piece,
         boundary,
-        structure: StructureKind::TimoshenkoBeam,
+        structure,
         constants,
         damping: Damping { ratios: vec![], beyond: 0.0 },
         effects: vec![],

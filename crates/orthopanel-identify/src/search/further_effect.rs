@@ -2,11 +2,13 @@
 
 use std::f64::consts::TAU;
 
-use faer::Mat;
-use orthopanel_model::Effect;
+use faer::linalg::solvers::Llt;
+use faer::prelude::Solve;
+use faer::{Mat, Side};
+use orthopanel_model::{Effect, Place, StructureKind};
 use rayon::prelude::*;
 
-use super::{FOLLOWED, Inquiry, LOOSE, NEAR, SMALL, log_prior, logs, starting_constants};
+use super::{FOLLOWED, Inquiry, LOOSE, NEAR, SMALL, constants_of_beam, log_prior, logs};
 use crate::hypothesis::{Hypothesis, Role};
 use crate::judge::{ODDS, most_frequency};
 use crate::measured::Pole;
@@ -14,6 +16,40 @@ use crate::model_error::{KINDS, Kind};
 use crate::posterior::{Judged, Point, Posterior, Projection};
 use crate::predicted::Prediction;
 use crate::stacked::Block;
+use crate::whitening::Whitening;
+
+/// Starts on a plate that are followed: it has many places.
+const FOLLOWED_ON_PLATES: usize = 5;
+
+/// A base, with what its coordinates make good to first order.
+struct Score {
+    by: Whitening,
+    /// $WJ$, and $J^TC^{-1}J + P$.
+    derivatives: Mat<f64>,
+    curvature: Llt<f64>,
+    /// $Wr$.
+    missed: Vec<f64>,
+}
+
+impl Score {
+    /// By how much the misfit falls along the way from the base's values to others, as far as it serves best, beside what the base's coordinates
+    /// make good; `None` where there is no way.
+    fn towards(&self, from: &[f64], to: &[f64]) -> Option<f64> {
+        let way: Vec<f64> = to.iter().zip(from).map(|(to, from)| to - from).collect();
+        let way = self.by.whitened(&way);
+        let along = |values: &[f64]| {
+            let of_column = |i: usize, _| self.derivatives.col_as_slice(i).iter().zip(values).map(|(a, b)| a * b).sum();
+            Mat::from_fn(self.derivatives.ncols(), 1, of_column)
+        };
+        let dot = |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(a, b)| a * b).sum() };
+        let (of_way, of_missed): (Mat<f64>, Mat<f64>) = (along(&way), along(&self.missed));
+        let solved = self.curvature.solve(&of_way);
+        let free = dot(&way, &way) - dot(of_way.col_as_slice(0), solved.col_as_slice(0));
+        let told = dot(&way, &self.missed) - dot(of_missed.col_as_slice(0), solved.col_as_slice(0));
+        // It acts one way alone: a mass that is missing is another start.
+        (free > 0.0).then(|| told.max(0.0).powi(2) / free)
+    }
+}
 
 /// So many times wider where no start is followed yet: a net is coarse.
 const NET: f64 = 4.0;
@@ -61,11 +97,11 @@ impl Inquiry<'_> {
         poles.into_iter().take(MISSED).map(|(_, pole)| pole).collect()
     }
 
-    /// Frequencies \[Hz\] of a mass on a spring at $x$ with which the panel has a mode at each of these poles: with $\alpha$ the receptance
+    /// Frequencies \[Hz\] of a mass on a spring at a place with which the panel has a mode at each of these poles: with $\alpha$ the receptance
     /// of the panel there, $\omega_r^2 = \omega^2/(1-\omega^2m\,\alpha(\omega))$; and frequencies beside each pole, for the panel is not known well.
-    fn tuned(&self, base: &Judged, poles: &[Pole], mass: f64, x: f64) -> Vec<f64> {
+    fn tuned(&self, base: &Judged, poles: &[Pole], mass: f64, at: Place) -> Vec<f64> {
         let values = self.stacked.first().values(&base.hypothesis, &base.posterior.point.z);
-        let seen = values.and_then(|(constants, effects)| self.predictor().seen_at(x, &constants, &effects));
+        let seen = values.and_then(|(constants, effects)| self.predictor().seen_at(at, &constants, &effects));
         let Ok(seen) = seen else { return vec![] };
         let tuned = |pole: &Pole| {
             let square = pole.angular_frequency.powi(2);
@@ -93,11 +129,12 @@ impl Inquiry<'_> {
             nets
         };
         let mut bases = vec![base.posterior.point.z.clone()];
-        if base.posterior.log_sizes[Kind::Frequency as usize].exp() > most_frequency(&self.stacked) {
+        let is_beam = self.predictor().structure == StructureKind::TimoshenkoBeam;
+        if is_beam && base.posterior.log_sizes[Kind::Frequency as usize].exp() > most_frequency(&self.stacked) {
             let replaces = with.parts.last().is_some_and(|part| part.replaces_structure(self.predictor()));
             let lowest = if replaces { &LOWEST_POLES[..] } else { &[usize::MAX] };
             for &lowest in lowest {
-                let constants = starting_constants(self.stacked.longest(), lowest).unwrap_or_default();
+                let constants = constants_of_beam(self.stacked.longest(), lowest).unwrap_or_default();
                 bases.extend(constants.into_iter().take(2).flat_map(at));
             }
         }
@@ -114,6 +151,7 @@ impl Inquiry<'_> {
         let errors = of_base.errors(&at_base.at).with_every_partner();
         let coarse = logs(LOOSE.map(|size| NET * size));
         let loose = of_base.whitening(&errors, &coarse)?;
+        let is_plate = self.predictor().structure == StructureKind::MindlinPlate;
         let ways: Vec<Hypothesis> = self.ways(effect).into_iter().map(|part| base.hypothesis.with(part)).collect();
         let missed = self.most_missed(base);
         // What the base's own coordinates make good of a start, to first order.
@@ -127,10 +165,11 @@ impl Inquiry<'_> {
             return None;
         }
         let exact_from = if replaces { usize::MAX } else { at_base.z.len() };
+        let score = if is_plate { Some(self.score(base)?) } else { None };
         let starts = |(way, hypothesis): (usize, &Hypothesis)| {
             let problem = self.problem(hypothesis);
             let starts = match hypothesis.parts.last() {
-                Some(part) => part.starts(|mass, x| self.tuned(base, &missed, mass, x)),
+                Some(part) => part.starts(|mass, at| self.tuned(base, &missed, mass, at)),
                 None => vec![],
             };
             let point = |(of_base, start): (&Vec<f64>, &Vec<f64>)| -> Option<Point> {
@@ -142,6 +181,10 @@ impl Inquiry<'_> {
                 }
                 if bases.len() > 1 {
                     return Some(point);
+                }
+                // Of a plate's many places the right one stands out under narrow sizes alone.
+                if let Some(score) = &score {
+                    return Some(Point { cost: -score.towards(&at_base.at.values, &point.at.values)?, ..point });
                 }
                 let (shift, gain) = projection.of(&problem.missed(&point.at), &at_base.z);
                 let mut z = point.z.clone();
@@ -187,11 +230,12 @@ impl Inquiry<'_> {
             };
             points.into_par_iter().filter_map(on).collect()
         };
-        let points = best(ways.par_iter().enumerate().flat_map_iter(starts).collect(), 4 * FOLLOWED);
+        let kept = if is_plate { FOLLOWED_ON_PLATES } else { FOLLOWED };
+        let points = best(ways.par_iter().enumerate().flat_map_iter(starts).collect(), 4 * kept);
         let points = if bases.len() > 1 {
             best(follow(points, &coarse, 5), 2 * FOLLOWED)
         } else {
-            match self.promising(base, &ways, &points) {
+            match self.promising(base, &ways, &points, kept) {
                 Some(promising) if !promising.is_empty() => promising,
                 // Where it ends is told, and how likely it is there, but it is not looked for further.
                 Some(_) if base.names().is_empty() => {
@@ -226,9 +270,28 @@ impl Inquiry<'_> {
         Some((judged(best), true))
     }
 
+    /// What ranks starts by their difference from the base.
+    fn score(&self, base: &Judged) -> Option<Score> {
+        let (at_base, of_base) = (&base.posterior.point, self.problem(&base.hypothesis));
+        let sizes: [f64; KINDS] = std::array::from_fn(|kind| base.posterior.log_sizes[kind].min(SMALL[kind].ln()));
+        let by = of_base.whitening(&of_base.errors(&at_base.at).with_every_partner(), &sizes)?;
+        let mut derivatives = at_base.derivatives.clone();
+        by.whiten(&mut derivatives);
+        let mut curvature = derivatives.transpose() * &derivatives;
+        of_base.hypothesis.precision().iter().enumerate().for_each(|(i, precision)| curvature[(i, i)] += precision);
+        let missed = by.whitened(&of_base.missed(&at_base.at));
+        Some(Score { curvature: curvature.llt(Side::Lower).ok()?, by, derivatives, missed })
+    }
+
     /// The starts from which an effect may come to the odds that count, the best few; `None` where the base's curvature is singular. By a score test:
     /// what its coordinates and its starts make good of the base's misfit to first order, under sizes of model error that are no wider than small ones.
-    fn promising(&self, base: &Judged, ways: &[Hypothesis], starts: &[(usize, Point)]) -> Option<Vec<(usize, Point)>> {
+    fn promising(
+        &self,
+        base: &Judged,
+        ways: &[Hypothesis],
+        starts: &[(usize, Point)],
+        kept: usize,
+    ) -> Option<Vec<(usize, Point)>> {
         let at_base = &base.posterior.point;
         let of_base = self.problem(&base.hypothesis);
         let sizes: [f64; KINDS] = std::array::from_fn(|kind| base.posterior.log_sizes[kind].min(SMALL[kind].ln()));
@@ -254,7 +317,7 @@ impl Inquiry<'_> {
         let gains = starts.iter().filter_map(|(way, start)| Some((gain(*way, start)?, (*way, start.clone()))));
         let mut promising: Vec<_> = gains.filter(|(gain, _)| *gain > 2.0 * ODDS.ln()).collect();
         promising.sort_by(|a, b| b.0.total_cmp(&a.0));
-        promising.truncate(FOLLOWED);
+        promising.truncate(kept);
         Some(promising.into_iter().map(|(_, start)| start).collect())
     }
 }

@@ -1,7 +1,7 @@
 //! What an effect does: the few kinds of change that a prediction knows.
 
 use super::{ChannelFactor, CoreModulus, PointElement};
-use crate::{ShearLoss, Support};
+use crate::{Place, ShearLoss, Support};
 
 /// One change of a prediction.
 #[derive(Debug, Clone, PartialEq)]
@@ -25,15 +25,28 @@ pub enum Action {
     Plate([f64; 4]),
 }
 
-/// A term of stiffness or mass of the beam.
+/// A term of stiffness or mass that is spread over the structure.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum FieldTerm {
     /// Factor on the rotary inertia $\rho t^3/12$.
     RotaryFactor(f64),
     /// Shear stiffness lost over a span.
     ShearLoss(ShearLoss),
+    /// Both shear stiffnesses of a plate lost over a square.
+    ShearPatch(ShearPatch),
     /// Clamped ends that yield.
     Support(Support),
+}
+
+/// Both shear stiffnesses of a plate times $1-\text{loss}$ over a square, as far as that lies on the plate.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ShearPatch {
+    /// The part lost \[1\], below 1.
+    pub loss: f64,
+    /// Side of the square \[m\].
+    pub span: f64,
+    /// Its middle.
+    pub at: Place,
 }
 
 /// An offset along x of a place of the record.

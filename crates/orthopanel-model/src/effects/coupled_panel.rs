@@ -1,17 +1,18 @@
 //! A panel with effects, and the coordinates in which its modes are found.
 
-use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::sync::{Arc, Mutex, OnceLock};
 
 use super::beam_base::BeamBase;
 use super::coupled_system::{FoundMode, System};
+use super::known::{Known, known_or};
 use super::low_modes::{FarAnswers, LowModes};
 use super::row::{Row, SharedStructure};
 use super::spread_effects::SpreadEffects;
-use super::wide_plate::{Summed, WidePlate, WidePlates};
-use super::{Action, CoreModulus, EffectSetting, EffectState, ElementLaw, PointElement, Seat};
+use super::wide_plate::{Summed, WidePlates};
+use super::{Action, CoreModulus, EffectSetting, EffectState, ElementLaw, PointElement, Seat, ShearPatch};
 use crate::mindlin_plate::PlateTerms;
 use crate::panel_mode::crossings;
-use crate::structure::Motion;
+use crate::structure::{Motion, ShearMoment, Structure};
 use crate::{BeamTerms, Boundary, Damping, MindlinPlate, ModeName, ModelError, Piece, Place, RitzMode, TimoshenkoBeam};
 
 /// Modes of the bare structure beyond those asked for.
@@ -71,33 +72,6 @@ pub(crate) struct EvenBeam {
     known: Known<(Vec<f64>, usize), LowModes>,
     /// Its exact modes, by constants, rotary factor and number, and by the ends.
     bases: Known<([f64; 4], Boundary), BeamBase>,
-}
-
-/// What was found last, the last used first.
-type Known<K, V> = Mutex<Vec<(K, Arc<V>)>>;
-
-/// So many are kept: each of some threads goes back and forth between a few.
-const KEPT: usize = 64;
-
-/// What is known by a key, else found and kept.
-fn known_or<K: PartialEq, V>(
-    known: &Known<K, V>,
-    key: K,
-    find: impl FnOnce() -> Result<V, ModelError>,
-) -> Result<Arc<V>, ModelError> {
-    let lock = || known.lock().unwrap_or_else(PoisonError::into_inner);
-    let mut kept = lock();
-    if let Some(place) = kept.iter().position(|known| known.0 == key) {
-        kept[..=place].rotate_right(1);
-        return Ok(Arc::clone(&kept[0].1));
-    }
-    // Others need not wait.
-    drop(kept);
-    let found = Arc::new(find()?);
-    let mut kept = lock();
-    kept.truncate(KEPT - 1);
-    kept.insert(0, (key, Arc::clone(&found)));
-    Ok(found)
 }
 
 impl EvenBeam {
@@ -173,9 +147,12 @@ impl ModifiedStructure {
             return Err(ModelError::Unsupported("width-coupling beside another effect spread over the panel".into()));
         }
         let values = [values, &ratios].concat();
-        let WidePlate { structure, summed } = plates.near(&values, Summed::To(highest))?;
-        let low = Arc::new(LowModes::new(structure.as_ref(), &values, summed)?);
-        let elements = elements(others, setting)?;
+        let plate = plates.near(&values, Summed::To(highest))?;
+        let mut elements = elements(others, setting)?;
+        add_patches(&mut elements, &spread.patches, plate.whole.as_ref(), &values)?;
+        let is_known = elements.iter().filter_map(row).all(|row| plates.know(row));
+        let low = plates.low_modes(&plate, &values, is_known)?;
+        let structure = if is_known { plate.structure } else { plate.whole };
         Ok(Self { structure, plate: None, is_even: true, piece: setting.piece, values, low, elements, core: None })
     }
 
@@ -203,6 +180,7 @@ impl ModifiedStructure {
                 let terms = PlateTerms { spread: terms.unwrap_or_default(), edge_mass };
                 let plate = MindlinPlate::uneven_with_basis_for((&piece, boundary), values, summed, &terms)?;
                 let plate = Arc::new(plate);
+                add_patches(&mut elements, &spread.patches, plate.as_ref(), values)?;
                 (Arc::<MindlinPlate>::clone(&plate), Some(plate))
             }
         };
@@ -234,13 +212,14 @@ impl ModifiedStructure {
 
     /// What the modes beyond the lowest do at the elements and at `ports`.
     pub(super) fn far_answers(&self, ports: &[Place]) -> Result<FarAnswers, ModelError> {
-        self.far_answers_in(&ports.iter().map(|&port| (Motion::Deflection, port)).collect::<Vec<_>>())
+        self.far_answers_in(&ports.iter().map(|&port| (Motion::Deflection, port)).collect::<Vec<_>>(), &[])
     }
 
-    /// The same in any rows.
-    pub(super) fn far_answers_in(&self, rows: &[Row]) -> Result<FarAnswers, ModelError> {
-        let rows: Vec<Row> = self.elements.iter().filter_map(row).chain(rows.iter().copied()).collect();
-        self.low.far_answers(self.structure.as_ref(), &self.values, &rows)
+    /// The same in any rows, and in others where no force acts.
+    pub(super) fn far_answers_in(&self, rows: &[Row], watched: &[Row]) -> Result<FarAnswers, ModelError> {
+        let pushed: Vec<Row> = self.elements.iter().filter_map(row).chain(rows.iter().copied()).collect();
+        let rows = [&pushed, watched].concat();
+        self.low.far_answers(self.structure.as_ref(), &self.values, &rows, pushed.len())
     }
 
     /// With the residual shapes of all elements and of `ports`, where elements without mass stand: the panel and its matrices.
@@ -393,6 +372,30 @@ pub(crate) fn elements(effects: &[EffectState], setting: &EffectSetting) -> Resu
         }
     }
     Ok(elements)
+}
+
+/// Degrees of the strains of a patch, both ways together, at most: over a few centimetres no mode has more.
+const PATCH_DEGREES: usize = 3;
+
+/// Adds what patches take from a plate's shear stiffnesses: springs that push on the moments of the strain,
+/// $-\text{loss}\,A\int\gamma^2dx\,dy$ in all.
+fn add_patches(
+    elements: &mut Vec<PointElement>,
+    patches: &[ShearPatch],
+    plate: &dyn Structure,
+    values: &[f64],
+) -> Result<(), ModelError> {
+    for &ShearPatch { loss, span, at } in patches {
+        for (across, shear) in [false, true].into_iter().zip(plate.coefficients(values)?.split_off(4)) {
+            let all = (0..=PATCH_DEGREES).flat_map(|i| (0..=PATCH_DEGREES - i).map(move |j| [i, j]));
+            elements.extend(all.map(|degrees| PointElement {
+                law: ElementLaw::Spring { stiffness: -loss * shear, damping: 0.0 },
+                seat: Seat::At(at),
+                motion: Motion::Shear(ShearMoment { across, span, degrees }),
+            }));
+        }
+    }
+    Ok(())
 }
 
 /// Takes the masses along edges from the list: what each of the two edges carries, for they carry the same.

@@ -22,7 +22,8 @@ pub(crate) struct LowModes {
 pub(super) struct FarAnswers {
     /// $\phi_m(p)$ of the low modes: a row a mode, a column a row $p$.
     pub near: Mat<f64>,
-    /// $C_0 = \sum\phi_m(p)\phi_m(q)/\omega_m^2$ over the modes beyond, and $C_1$ with $\omega_m^4$.
+    /// $C_0 = \sum\phi_m(p)\phi_m(q)/\omega_m^2$ over the modes beyond, a row a row $p$ and a column one that forces act in, and $C_1$ with
+    /// $\omega_m^4$ between the latter.
     pub series: [Mat<f64>; 2],
     /// $\sum\phi_m\phi_m(p)/\omega_m^2$ of each row, in the coordinates of each block.
     pub shapes: Vec<Vec<Vec<f64>>>,
@@ -31,26 +32,31 @@ pub(super) struct FarAnswers {
 impl LowModes {
     /// The rigid modes and `count` flexible ones.
     pub(super) fn new(structure: &dyn Structure, values: &[f64], count: usize) -> Result<Self, ModelError> {
-        let modes = ritz_modes(structure, values, count)?;
-        let rigid = modes.iter().take_while(|mode| mode.angular_frequency == 0.0).count();
-        let kept = |RitzMode { block, coordinates, angular_frequency }| (block, coordinates, angular_frequency.powi(2));
-        Ok(Self { modes: modes.into_iter().map(kept).collect(), rigid })
+        Ok(Self::of(ritz_modes(structure, values, count)?))
     }
 
-    /// What the modes beyond these do in some rows: without them, by the structure's stiffness and these modes alone. What the
-    /// basis is known to lack of $C_0$ and $C_1$ is added.
+    /// These modes, which are the lowest, rigid ones first.
+    pub(super) fn of(modes: Vec<RitzMode>) -> Self {
+        let rigid = modes.iter().take_while(|mode| mode.angular_frequency == 0.0).count();
+        let kept = |RitzMode { block, coordinates, angular_frequency }| (block, coordinates, angular_frequency.powi(2));
+        Self { modes: modes.into_iter().map(kept).collect(), rigid }
+    }
+
+    /// What the modes beyond these do in some rows, under forces in the first of them, so many as are `pushed`: without them, by the structure's
+    /// stiffness and these modes alone. What the basis is known to lack of $C_0$ and $C_1$ is added.
     pub(super) fn far_answers(
         &self,
         structure: &dyn Structure,
         values: &[f64],
         rows: &[Row],
+        pushed: usize,
     ) -> Result<FarAnswers, ModelError> {
         let coefficients = checked_coefficients(structure, values)?;
         let (modes, count) = (self.modes.len(), rows.len());
         let mut answers = FarAnswers {
             near: Mat::zeros(modes, count),
-            series: [Mat::zeros(count, count), Mat::zeros(count, count)],
-            shapes: vec![vec![]; count],
+            series: [Mat::zeros(count, pushed), Mat::zeros(pushed, pushed)],
+            shapes: vec![vec![]; pushed],
         };
         for (index, block) in structure.blocks().iter().enumerate() {
             let own: Vec<usize> = (0..modes).filter(|&m| self.modes[m].0 == index).collect();
@@ -60,10 +66,10 @@ impl LowModes {
             for (i, &m) in own.iter().enumerate() {
                 (0..count).for_each(|p| answers.near[(m, p)] = seen[(i, p)]);
             }
-            if count == 0 {
+            if pushed == 0 {
                 continue;
             }
-            let moved = beyond(block, &coefficients, &shapes, &forces)?;
+            let moved = beyond(block, &coefficients, &shapes, &forces.subcols(0, pushed).to_owned())?;
             answers.series[0] += product(forces.transpose(), moved.as_ref());
             answers.series[1] += product(moved.transpose(), block.mass.times(&moved).as_ref());
             for (p, shapes) in answers.shapes.iter_mut().enumerate() {
@@ -79,15 +85,16 @@ impl LowModes {
     fn close(&self, structure: &dyn Structure, values: &[f64], rows: &[Row], answers: &mut FarAnswers) {
         let near = &answers.near;
         let [far, inertia] = &mut answers.series;
-        if let Some(lacking) = structure.inertial_remainders(values, rows) {
+        let pushed = far.ncols();
+        if let Some(lacking) = structure.inertial_remainders(values, &rows[..pushed]) {
             *inertia += lacking;
         }
         if let Some(lacking) = structure.static_remainders(values, rows) {
-            *far += lacking;
+            *far += lacking.subcols(0, pushed);
             return;
         }
         for (p, &first) in rows.iter().enumerate() {
-            for (q, &second) in rows.iter().enumerate() {
+            for (q, &second) in rows[..pushed].iter().enumerate() {
                 if let Some(whole) = structure.static_flexibility(values, [first, second]) {
                     let flexible = self.modes.iter().enumerate().skip(self.rigid);
                     let summed: f64 = flexible.map(|(m, mode)| near[(m, p)] * near[(m, q)] / mode.2).sum();

@@ -13,6 +13,7 @@ mod coupled_flexibility;
 mod coupled_modes;
 mod coupled_panel;
 mod coupled_system;
+mod known;
 mod low_modes;
 mod modified_panel;
 mod parameter;
@@ -48,7 +49,7 @@ mod suspension;
 mod viscoelastic_core;
 mod width_coupling;
 
-pub use action::{Action, FieldTerm, Shift};
+pub use action::{Action, FieldTerm, ShearPatch, Shift};
 pub use catalogue::{catalogue, effect};
 pub use channel_factor::ChannelFactor;
 pub use core_fit::CoreFit;
@@ -133,6 +134,9 @@ pub trait Effect: Sync {
             return Err(ModelError::EffectValues { effect: self.id(), found: values.len(), expected });
         }
         self.parameters().iter().zip(values).try_for_each(|(parameter, &value)| {
+            if value.is_nan() && parameter.held_at.is_some_and(f64::is_nan) {
+                return Ok(());
+            }
             let (low, high) = parameter.range(piece);
             if (low..=high).contains(&value) {
                 return Ok(());

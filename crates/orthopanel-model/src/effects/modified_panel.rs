@@ -35,7 +35,7 @@ pub struct ModifiedPanel {
 }
 
 /// Modes of a [`ModifiedPanel`] at places, rigid ones first.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct SeenModes {
     /// $\omega_n$ \[rad/s\].
     pub angular_frequency: Vec<f64>,
@@ -45,6 +45,8 @@ pub struct SeenModes {
     pub deflection: Vec<Vec<f64>>,
     /// $\partial W_n/\partial x$ \[kg^-1/2/m\], alike, where that was asked for.
     pub slope: Vec<Vec<f64>>,
+    /// $\partial W_n/\partial y$ \[kg^-1/2/m\], alike, of a plate.
+    pub slope_across: Vec<Vec<f64>>,
 }
 
 impl ModifiedPanel {
@@ -63,7 +65,8 @@ impl ModifiedPanel {
     /// A plate, or a beam that may turn out one: seen from about these places, with its modes up to a frequency \[Hz\].
     #[must_use]
     pub fn perhaps_wide(self, setting: &EffectSetting, places: &[Place], highest: f64) -> Self {
-        let plates = WidePlates::new(setting.piece, setting.boundary, places.to_vec());
+        let touched_anywhere = matches!(self.even, Even::Plate);
+        let plates = WidePlates::new(setting.piece, setting.boundary, places.to_vec(), touched_anywhere);
         Self { wide: Some(Arc::new((plates, highest))), ..self }
     }
 
@@ -113,7 +116,7 @@ impl ModifiedPanel {
         effects: &[EffectState],
     ) -> Result<Option<OnBase>, ModelError> {
         let (Even::Beam(beam), &[e_x, g_zx]) = (&self.even, values) else { return Ok(None) };
-        let SpreadEffects { terms, core, plate } = SpreadEffects::of(effects, setting)?;
+        let SpreadEffects { terms, core, plate, .. } = SpreadEffects::of(effects, setting)?;
         let terms = terms.unwrap_or_default();
         if core.is_some() || plate.is_some() {
             return Ok(None);
@@ -163,7 +166,7 @@ impl ModifiedPanel {
         let ports = elements.len()..elements.len() + places.len();
         Ok(SeenModes::of(system.solve()?, |shares| {
             let row = |row: usize| seen(row, shares);
-            (ports.clone().map(row).collect(), (ports.end..rows.len()).map(row).collect())
+            [ports.clone().map(row).collect(), (ports.end..rows.len()).map(row).collect(), vec![]]
         }))
     }
 
@@ -220,9 +223,10 @@ impl ModifiedPanel {
             return Err(ModelError::Unsupported("viscoelastic-core in a model of modes".into()));
         }
         let ports: Vec<Row> = places.iter().map(|&place| (Motion::Deflection, place)).collect();
-        let slopes: Vec<Row> = places.iter().map(|&place| (Motion::Slope, place)).collect();
-        let asked = if with_slopes { &slopes[..] } else { &[] };
-        let answers = modified.far_answers_in(&[&ports[..], asked].concat())?;
+        let slopes = |motion: Motion| places.iter().filter(|_| with_slopes).map(move |&place| (motion, place));
+        let across = slopes(Motion::SlopeAcross).filter(|_| matches!(self.even, Even::Plate));
+        let asked: Vec<Row> = slopes(Motion::Slope).chain(across).collect();
+        let answers = modified.far_answers_in(&ports, &asked)?;
         let (_, system) = modified.with_residuals(&answers, places, damping);
         // Elements stand before the ports among the answers, and no coordinates belong to slopes.
         let elements = answers.near.ncols() - ports.len() - asked.len();
@@ -233,7 +237,9 @@ impl ModifiedPanel {
         };
         Ok(SeenModes::of(system.solve()?, |shares| {
             let row = |number: usize| row(number, shares);
-            ((elements..residuals).map(row).collect(), (residuals..residuals + asked.len()).map(row).collect())
+            let mut slopes: Vec<f64> = (residuals..residuals + asked.len()).map(row).collect();
+            let across = slopes.split_off(asked.len().min(places.len()));
+            [(elements..residuals).map(row).collect(), slopes, across]
         }))
     }
 }
@@ -246,14 +252,15 @@ fn spread_over(setting: &EffectSetting, effects: &[EffectState]) -> Result<bool,
 
 impl SeenModes {
     /// Of modes with their deflections and slopes by coordinates.
-    fn of(found: Vec<FoundMode>, seen: impl Fn(&[f64]) -> (Vec<f64>, Vec<f64>)) -> Self {
-        let mut all = Self { angular_frequency: vec![], damping_ratio: vec![], deflection: vec![], slope: vec![] };
+    fn of(found: Vec<FoundMode>, seen: impl Fn(&[f64]) -> [Vec<f64>; 3]) -> Self {
+        let mut all = Self::default();
         for (omega, zeta, shares) in found {
             all.angular_frequency.push(omega);
             all.damping_ratio.push(zeta);
-            let (deflection, slope) = seen(&shares);
+            let [deflection, slope, across] = seen(&shares);
             all.deflection.push(deflection);
             all.slope.push(slope);
+            all.slope_across.push(across);
         }
         all
     }
@@ -345,6 +352,61 @@ mod tests {
             met += 1;
         }
         assert!(met >= 8, "{met} modes");
+    }
+
+    /// A plate with a mass and a patch anywhere, as identification sees it, is what the model file of the same plate says; its slopes both ways are those of
+    /// differences.
+    #[test]
+    fn val_a_plate_with_effects_anywhere_is_that_of_the_model_file() {
+        let piece = Piece { length: 0.8, width: 0.5, thickness: 0.03, mass_per_area: 6.88 };
+        let setting = EffectSetting { piece, ..setting() };
+        let places = [(-0.33, 0.11), (0.05, -0.2), (0.31, 0.07)].map(|(x, y)| Place { x, y });
+        let values = [1.07e10, 8.56e9, 0.3, 3.745e9, 3.2178e8, 5.363e8];
+        let mass = r#"{"id": "local-mass", "owner": "panel", "mass": 0.03, "x": 0.21, "y": -0.13}"#;
+        let patch = r#"{"id": "stiffness-loss", "owner": "panel", "loss": 0.7, "span": 0.1, "x": -0.12, "y": 0.08}"#;
+        for on in [String::new(), mass.to_owned(), patch.to_owned(), format!("{mass}, {patch}")] {
+            let text = format!(
+                r#"{{"schema": "orthopanel.model/1", "structure": "mindlin-plate",
+                "piece": {{"length": 0.8, "width": 0.5, "thickness": 0.03, "mass_per_area": 6.88}},
+                "constants": {{"e_x": 1.07e10, "e_y": 8.56e9, "nu_xy": 0.3, "g_xy": 3.745e9, "g_yz": 3.2178e8, "g_zx": 5.363e8}},
+                "effects": [{on}]}}"#
+            );
+            let model = PanelModel::from_json(&text).expect("a model");
+            let (_, effects) = model.with_effects().expect("effects");
+            let panel = ModifiedPanel::new(StructureKind::MindlinPlate, &setting, 20).expect("a plate");
+            let panel = panel.perhaps_wide(&setting, &places, 2500.0);
+            let seen = panel.seen_from(&setting, &places, true, &values, &effects).expect("modes");
+            let modes = model.modal_model(ModeRange::Count(20), &places, &places).expect("modes");
+            let told = modes.flexible().take_while(|mode| mode.angular_frequency < TAU * 2000.0);
+            for (n, mode) in told.enumerate() {
+                let own = seen.angular_frequency[n + 3];
+                let apart = own / mode.angular_frequency - 1.0;
+                // Each basis cuts off the logarithm under a point elsewhere, and follows the edges of a patch as far as it can.
+                let least = match (on.contains("local-mass"), on.contains("stiffness-loss")) {
+                    (true, _) => 5e-3,
+                    (_, true) => 1e-3,
+                    _ => 1e-6,
+                };
+                assert!(apart.abs() < least, "{on} mode {n}: {} Hz, {apart:e}", own / TAU);
+                let product = |port: usize| seen.deflection[n + 3][port] * seen.deflection[n + 3][0];
+                for (port, deflection) in mode.at_forces.iter().enumerate() {
+                    let whole = deflection * mode.at_forces[0];
+                    let apart = product(port) - whole;
+                    assert!(apart.abs() < 2e-2 * whole.abs().max(2.0), "{on} mode {n} at {port}: {apart:e} of {whole}");
+                }
+            }
+            let step = 1e-4;
+            let beside = places.map(|place| Place { y: place.y + step, ..place });
+            let moved = panel.seen_from(&setting, &[places, beside].concat(), false, &values, &effects).expect("modes");
+            for n in 3..15 {
+                let sense = (seen.deflection[n][0] * moved.deflection[n][0]).signum();
+                for port in 0..3 {
+                    let slope = sense * (moved.deflection[n][3 + port] - moved.deflection[n][port]) / step;
+                    let own = seen.slope_across[n][port];
+                    assert!((slope - own).abs() < 0.1 * own.abs().max(2.0), "{on} mode {n} at {port}: {own} {slope}");
+                }
+            }
+        }
     }
 
     #[test]

@@ -23,6 +23,8 @@ pub struct EffectParameter {
     pub held_at: Option<f64>,
     /// What is thought of it before a test.
     pub prior: Prior,
+    /// Whether it is a place across the panel: a plate has it, and on a beam it stays on the centre line.
+    pub across: bool,
 }
 
 /// What is thought of a parameter before a test: an honest range over panels, sensors and rigs, in the parameter's own unit.
@@ -66,6 +68,8 @@ pub(super) enum Reference {
     Unit,
     /// The piece's length.
     Length,
+    /// The piece's width.
+    Width,
     /// The piece's mass.
     Mass,
 }
@@ -90,6 +94,7 @@ impl EffectParameter {
             each_record: false,
             held_at: None,
             prior: Prior::Even,
+            across: false,
         }
     }
 
@@ -142,6 +147,12 @@ impl EffectParameter {
         Self::linear("x", "m", [-0.5, 0.5], GRID).of(Reference::Length)
     }
 
+    /// A place along y, anywhere on a plate.
+    pub(super) const fn place_across() -> Self {
+        let place = Self::linear("y", "m", [-0.5, 0.5], &[0.0]).of(Reference::Width).held_at(0.0);
+        Self { across: true, ..place }
+    }
+
     /// Least and greatest value for a piece.
     pub fn range(&self, piece: &Piece) -> (f64, f64) {
         let scale = self.relative_to.of(piece);
@@ -166,6 +177,7 @@ impl Reference {
         match self {
             Self::Unit => 1.0,
             Self::Length => piece.length,
+            Self::Width => piece.width,
             Self::Mass => piece.mass(),
         }
     }

@@ -1,13 +1,14 @@
 //! What the effects of a test do to the structure itself, the same in every record.
 
-use super::{Action, CoreModulus, EffectSetting, EffectState, FieldTerm};
+use super::{Action, CoreModulus, EffectSetting, EffectState, FieldTerm, ShearPatch};
 use crate::{BeamTerms, ModelError};
 
 /// Terms spread over the beam, and a core that depends on frequency.
 #[derive(Default)]
 pub(crate) struct SpreadEffects {
-    /// None where the beam is even.
+    /// None where none of it is spread along x.
     pub terms: Option<BeamTerms>,
+    pub patches: Vec<ShearPatch>,
     pub core: Option<CoreModulus>,
     /// A plate in place of the beam: its ratios.
     pub plate: Option<[f64; 4]>,
@@ -20,12 +21,14 @@ impl SpreadEffects {
         for effect in effects {
             for action in effect.acting_in(setting)? {
                 match action {
+                    Action::Field(FieldTerm::ShearPatch(patch)) => spread.patches.push(patch),
                     Action::Field(term) => {
                         let terms = spread.terms.get_or_insert_default();
                         match term {
                             FieldTerm::RotaryFactor(factor) => terms.rotary_factor = factor,
                             FieldTerm::ShearLoss(loss) => terms.losses.push(loss),
                             FieldTerm::Support(springs) => terms.support = Some(springs),
+                            FieldTerm::ShearPatch(_) => {}
                         }
                     }
                     Action::Core(core) => spread.core = Some(core),

@@ -14,13 +14,15 @@ pub struct EffectState {
 }
 
 impl EffectState {
-    /// An effect in a test of so many records.
+    /// An effect in a test of so many records. Values that are missing at the end are those at which their parameters are held.
     ///
     /// # Errors
     /// [`ModelError::EffectValues`] for another number of values than the parameters want.
-    pub fn new(effect: &'static dyn Effect, values: Vec<f64>, records: usize) -> Result<Self, ModelError> {
+    pub fn new(effect: &'static dyn Effect, mut values: Vec<f64>, records: usize) -> Result<Self, ModelError> {
         let each = effect.parameters().iter().map(|parameter| if parameter.each_record { records } else { 1 });
-        let expected = each.sum();
+        let expected: usize = each.sum();
+        let missing = effect.parameters().len().min(expected.saturating_sub(values.len()));
+        values.extend(effect.parameters().iter().rev().take(missing).rev().map_while(|parameter| parameter.held_at));
         if values.len() != expected {
             return Err(ModelError::EffectValues { effect: effect.id(), found: values.len(), expected });
         }
@@ -52,6 +54,18 @@ impl EffectState {
     /// As [`Effect::act`].
     pub fn acting_in(&self, setting: &EffectSetting) -> Result<Vec<Action>, ModelError> {
         self.effect.act(&self.values_in(setting.record.number)?, setting)
+    }
+
+    /// Refuses an effect off the centre line, which no beam can have.
+    ///
+    /// # Errors
+    /// [`ModelError::EffectText`].
+    pub(crate) fn on_centre_line(&self) -> Result<(), ModelError> {
+        let off = self.effect.parameters().iter().zip(&self.values).find(|(of, value)| of.across && value.abs() > 0.0);
+        off.map_or(Ok(()), |(parameter, value)| {
+            let what = format!("{} = {value}: a beam has its effects on its centre line, leave it out", parameter.name);
+            Err(ModelError::EffectText { effect: self.effect.id(), what })
+        })
     }
 
     /// From an entry of a model file; a parameter that the file leaves out keeps the value it is held at.

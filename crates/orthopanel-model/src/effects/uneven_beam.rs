@@ -93,7 +93,7 @@ impl ModifiedPanel {
                 angular_frequency: (0..size).map(derivative).collect(),
                 damping_ratio: vec![],
                 deflection: (0..size).map(moved).collect(),
-                slope: vec![],
+                ..SeenModes::default()
             }
         };
         Ok((0..waves).map(wave).collect())
@@ -167,7 +167,7 @@ mod tests {
                 angular_frequency: modes.iter().map(|mode| mode.angular_frequency).collect(),
                 damping_ratio: vec![],
                 deflection: modes.iter().map(|mode| PLACES.map(|at| mode.deflection(&beam, at)).to_vec()).collect(),
-                slope: vec![],
+                ..SeenModes::default()
             }
         });
     }

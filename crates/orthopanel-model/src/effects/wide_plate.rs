@@ -4,7 +4,9 @@ use std::sync::{Arc, Mutex};
 
 use faer::Mat;
 
-use super::row::SharedStructure;
+use super::known::{Known, known_or};
+use super::low_modes::LowModes;
+use super::row::{Row, SharedStructure};
 use crate::mindlin_plate::Membrane;
 use crate::ritz_modes::ritz_modes;
 use crate::structure::{Block, Motion, Structure};
@@ -79,6 +81,9 @@ impl Structure for RatioPlate {
 #[derive(Clone)]
 pub(super) struct WidePlate {
     pub structure: SharedStructure,
+    reduced: Arc<ReducedStructure<RatioPlate>>,
+    /// The plate on its whole basis, with what it does at any place.
+    pub whole: SharedStructure,
     /// Flexible modes that every line sums.
     pub summed: usize,
 }
@@ -98,7 +103,11 @@ pub(super) struct WidePlates {
     boundary: Boundary,
     /// Where forces act and responses are seen.
     places: Vec<Place>,
+    /// Whether nothing else is of interest than what is seen on the centre line.
+    is_on_centre_line: bool,
     known: Mutex<Vec<(Cell, WidePlate)>>,
+    /// By the values, and whether they are those of the whole basis.
+    low: Known<(Vec<f64>, bool), LowModes>,
 }
 
 /// A neighbourhood of values.
@@ -119,8 +128,31 @@ const SUMMED: f64 = 0.8;
 const HELD: f64 = 1.0;
 
 impl WidePlates {
-    pub(super) fn new(piece: Piece, boundary: Boundary, places: Vec<Place>) -> Self {
-        Self { piece, boundary, places, known: Mutex::new(vec![]) }
+    /// On the centre line nothing is seen of what is odd across: of a plate that nothing off it touches that is left out.
+    pub(super) fn new(piece: Piece, boundary: Boundary, places: Vec<Place>, touched_anywhere: bool) -> Self {
+        let is_on_centre_line = !touched_anywhere && places.iter().all(|place| place.y == 0.0);
+        Self { piece, boundary, places, is_on_centre_line, known: Mutex::new(vec![]), low: Mutex::default() }
+    }
+
+    /// Whether the shapes of these plates hold what a force on a row does.
+    pub(super) fn know(&self, (motion, place): Row) -> bool {
+        motion == Motion::Deflection && self.places.contains(&place)
+    }
+
+    /// The lowest modes of a plate, on its few shapes or on its whole basis.
+    pub(super) fn low_modes(
+        &self,
+        plate: &WidePlate,
+        values: &[f64],
+        on_few: bool,
+    ) -> Result<Arc<LowModes>, ModelError> {
+        known_or(&self.low, (values.to_vec(), on_few), || {
+            if on_few {
+                return LowModes::new(plate.structure.as_ref(), values, plate.summed);
+            }
+            let modes = ritz_modes(plate.reduced.as_ref(), values, plate.summed)?;
+            Ok(LowModes::of(modes.iter().map(|mode| plate.reduced.in_whole(mode)).collect()))
+        })
     }
 
     /// The plate for values near these.
@@ -175,22 +207,23 @@ impl WidePlates {
             }
             plate => plate?,
         };
-        // On the centre line nothing is seen of what is odd across.
-        if boundary.front == boundary.back && self.places.iter().all(|place| place.y == 0.0) {
+        if boundary.front == boundary.back && self.is_on_centre_line {
             plate = plate.only_with_nodes(&[[0, 0], [1, 0]]);
             nodes.retain(|[_, across]| across % 2 == 0);
         }
         let count = nodes.len().clamp(1, plate.resolved_modes().max(1));
-        let reduced = ReducedStructure::answering(
-            Arc::new(RatioPlate { membrane: plate.membrane(), plate }),
-            &values,
-            count,
-            &self.places,
-        )?;
+        let whole = Arc::new(RatioPlate { membrane: plate.membrane(), plate });
+        let reduced = ReducedStructure::answering(Arc::clone(&whole), &values, count, &self.places)?;
         let modes = ritz_modes(&reduced, &values, count)?;
         let limit = SUMMED * top * std::f64::consts::TAU;
         let below = modes.iter().filter(|mode| (f64::MIN_POSITIVE..limit).contains(&mode.angular_frequency)).count();
-        Ok(WidePlate { structure: Arc::new(reduced), summed: below.max(1) })
+        let reduced = Arc::new(reduced);
+        Ok(WidePlate {
+            structure: Arc::<ReducedStructure<RatioPlate>>::clone(&reduced),
+            reduced,
+            whole,
+            summed: below.max(1),
+        })
     }
 }
 

@@ -14,7 +14,7 @@ use super::Field;
 use super::span_edges::{Kink, Spans};
 use crate::End;
 use crate::dense::Cholesky;
-use crate::legendre::{legendre, norm};
+use crate::legendre::{gauss_legendre, legendre, norm};
 
 /// A function of $t$ by its Legendre coefficients, and its derivative by $t$ likewise.
 #[derive(Debug, Clone)]
@@ -225,6 +225,23 @@ impl EdgeBasis {
         self.sums_at(field, place, 1).into_iter().map(|slope| slope / self.half_length).collect()
     }
 
+    /// The integral of each function of a field, or of its slope, times an orthonormal polynomial of Legendre over a stretch.
+    pub(super) fn moments(&self, field: Field, order: usize, ([low, high], degree): ([f64; 2], usize)) -> Vec<f64> {
+        let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
+        let mut sum = vec![0.0; self.count(field)];
+        if half <= 0.0 {
+            return sum;
+        }
+        let scale = (half * (degree as f64 + 0.5)).sqrt();
+        for (t, weight) in gauss_legendre(MOMENT_POINTS).iter() {
+            let place = middle + half * t;
+            let values = if order == 0 { self.values_at(field, place) } else { self.slopes_at(field, place) };
+            let by = scale * weight * legendre(degree + 1, *t)[degree];
+            sum.iter_mut().zip(values).for_each(|(sum, value)| *sum += by * value);
+        }
+        sum
+    }
+
     fn sums_at(&self, field: Field, place: f64, order: usize) -> Vec<f64> {
         let t = place / self.half_length;
         let polynomials = legendre(self.terms, t);
@@ -328,6 +345,8 @@ const SHEAR_ACROSS: [(Field, usize); 2] = [(Field::Deflection, 0), (Field::Rotat
 
 /// Degrees that a function without kinks has: its highest, and two below.
 const SPAN: usize = 3;
+/// Points of a moment's integral.
+const MOMENT_POINTS: usize = 10;
 
 /// Part of a kink's size that is no function of its own.
 const FOLLOWED: f64 = 1e-7;

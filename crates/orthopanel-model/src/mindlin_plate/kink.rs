@@ -139,7 +139,7 @@ impl Membrane {
         let (order, values) = match motion {
             Motion::Deflection => (0, x.values_at(Field::Deflection, place.x)),
             Motion::Slope => (1, x.slopes_at(Field::Deflection, place.x)),
-            Motion::Rotation | Motion::Curvature => return None,
+            Motion::SlopeAcross | Motion::Rotation | Motion::Curvature | Motion::Shear(_) => return None,
         };
         Some(Seen {
             side: (order, place.x),

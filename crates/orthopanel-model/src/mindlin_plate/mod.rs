@@ -30,7 +30,7 @@ use faer::Mat;
 pub use law::PLATE_CONSTANTS;
 pub use mode_names::{ModeKind, ModeName};
 
-use crate::structure::{Block, Motion, Structure};
+use crate::structure::{Block, Motion, ShearMoment, Structure};
 use crate::{BeamTerms, Boundary, Constant, ModelError, Piece, Place};
 use assembly::{Coordinate, Products, assemble};
 use edge_basis::EdgeBasis;
@@ -216,12 +216,37 @@ impl MindlinPlate {
 }
 
 impl MindlinPlate {
-    /// A field of each coordinate of a block at a place, or its slope along x.
-    fn row(&self, block: usize, field: Field, is_slope: bool, place: Place) -> Vec<f64> {
+    /// A moment of a shear strain of each coordinate of a block.
+    fn shear_moment(&self, block: usize, moment: ShearMoment, at: Place) -> Vec<f64> {
         let Some(coordinates) = self.coordinates.get(block) else { return vec![] };
         let [x, y] = &self.along;
-        let at_x = if is_slope { x.slopes_at(field, place.x) } else { x.values_at(field, place.x) };
-        let at_y = y.values_at(field, place.y);
+        let ends = |middle: f64, half: f64| [-0.5, 0.5].map(|side| (middle + side * moment.span).clamp(-half, half));
+        let [along, across] = [ends(at.x, 0.5 * self.piece.length), ends(at.y, 0.5 * self.piece.width)];
+        let orders = if moment.across { [0, 1] } else { [1, 0] };
+        let rotation = if moment.across { Field::RotationY } else { Field::RotationX };
+        let integral = |field: Field, orders: [usize; 2]| {
+            [
+                x.moments(field, orders[0], (along, moment.degrees[0])),
+                y.moments(field, orders[1], (across, moment.degrees[1])),
+            ]
+        };
+        let (slope, rotated) = (integral(Field::Deflection, orders), integral(rotation, [0, 0]));
+        let value = |own: &Coordinate| match own.field {
+            Field::Deflection => slope[0][own.x] * slope[1][own.y],
+            field if field == rotation => rotated[0][own.x] * rotated[1][own.y],
+            _ => 0.0,
+        };
+        coordinates.iter().map(value).collect()
+    }
+
+    /// A field of each coordinate of a block at a place, or its slope along x or y.
+    fn row(&self, block: usize, field: Field, orders: [usize; 2], place: Place) -> Vec<f64> {
+        let Some(coordinates) = self.coordinates.get(block) else { return vec![] };
+        let [x, y] = &self.along;
+        let at = |basis: &EdgeBasis, order: usize, place: f64| {
+            if order == 0 { basis.values_at(field, place) } else { basis.slopes_at(field, place) }
+        };
+        let (at_x, at_y) = (at(x, orders[0], place.x), at(y, orders[1], place.y));
         let value = |own: &Coordinate| if own.field == field { at_x[own.x] * at_y[own.y] } else { 0.0 };
         coordinates.iter().map(value).collect()
     }
@@ -275,17 +300,18 @@ impl Structure for MindlinPlate {
     }
 
     fn shape_row(&self, block: usize, place: Place) -> Vec<f64> {
-        self.row(block, Field::Deflection, false, place)
+        self.row(block, Field::Deflection, [0, 0], place)
     }
 
     fn motion_row(&self, block: usize, motion: Motion, place: Place) -> Option<Vec<f64>> {
-        let (field, is_slope) = match motion {
-            Motion::Deflection => (Field::Deflection, false),
-            Motion::Slope => (Field::Deflection, true),
-            Motion::Rotation => (Field::RotationX, false),
-            Motion::Curvature => (Field::RotationX, true),
-        };
-        Some(self.row(block, field, is_slope, place))
+        Some(match motion {
+            Motion::Deflection => self.row(block, Field::Deflection, [0, 0], place),
+            Motion::Slope => self.row(block, Field::Deflection, [1, 0], place),
+            Motion::SlopeAcross => self.row(block, Field::Deflection, [0, 1], place),
+            Motion::Rotation => self.row(block, Field::RotationX, [0, 0], place),
+            Motion::Curvature => self.row(block, Field::RotationX, [1, 0], place),
+            Motion::Shear(moment) => self.shear_moment(block, moment, place),
+        })
     }
 
     /// The kinks, of an even plate.

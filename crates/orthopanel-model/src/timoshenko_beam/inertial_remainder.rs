@@ -106,7 +106,7 @@ impl InertialRemainder {
         let g = |n: usize| match motion {
             Motion::Deflection => Some(0.5 * (values[n + 1] - values[n - 1])),
             Motion::Slope => Some((n as f64 + 0.5) * values[n] / self.half_length),
-            Motion::Rotation | Motion::Curvature => None,
+            Motion::Rotation | Motion::Curvature | Motion::SlopeAcross | Motion::Shear(_) => None,
         };
         let lost: f64 = self.losses.iter().filter(|loss| loss.holds(x, self.half_length)).map(|loss| loss.loss).sum();
         let stiffness = self.section.shear_area * (1.0 - lost);

@@ -30,6 +30,7 @@ impl StaticField {
             Motion::Slope => ([1.0, 0.0], [0.0, 1.0]),
             Motion::Rotation => ([-1.0, 0.0], [0.0; 2]),
             Motion::Curvature => ([0.0; 2], [1.0, 0.0]),
+            Motion::SlopeAcross | Motion::Shear(_) => ([0.0; 2], [0.0; 2]),
         };
         Self { moment: [0.0; 4], shear: [0.0; 3], at, step, peak }
     }

@@ -95,7 +95,7 @@ impl StaticFlexibility {
             Motion::Deflection => (1.0, at),
             Motion::Slope => (0.0, 1.0),
             Motion::Rotation => (0.0, -1.0),
-            Motion::Curvature => (0.0, 0.0),
+            Motion::Curvature | Motion::SlopeAcross | Motion::Shear(_) => (0.0, 0.0),
         };
         // Rigid acceleration ẅ = p + q x, ψ̈ = −q.
         let (p, q) = match (self.boundary.left, self.boundary.right) {

@@ -293,7 +293,7 @@ impl Grid {
             Motion::Deflection => w,
             Motion::Slope => strain - psi,
             Motion::Rotation => psi,
-            Motion::Curvature => 0.0,
+            Motion::Curvature | Motion::SlopeAcross | Motion::Shear(_) => 0.0,
         }
     }
 }

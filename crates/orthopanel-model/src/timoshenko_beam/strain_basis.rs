@@ -49,6 +49,7 @@ impl StrainFunction {
             Motion::Slope => sum(&self.shear) + shear - sum(&self.rotation),
             Motion::Rotation => sum(&self.rotation),
             Motion::Curvature => sum(&self.curvature),
+            Motion::SlopeAcross | Motion::Shear(_) => 0.0,
         }
     }
 }

@@ -45,7 +45,7 @@ impl ReceptanceSetup {
         let records: Vec<_> = records.to_vec();
         let records = records.into_iter().enumerate().map(|(i, record)| record.numbered(i + 1)).collect();
         let beam = Arc::new(TimoshenkoBeam::new(&piece, boundary, basis_terms(summed))?);
-        let plates = WidePlates::new(piece, boundary, places);
+        let plates = WidePlates::new(piece, boundary, places, false);
         Ok(Self { piece, boundary, suspension: suspension.to_vec(), records, summed, beam, plates })
     }
 
@@ -115,7 +115,7 @@ impl ReceptanceSetup {
     /// The modes with what effects spread over the piece, and how many flexible ones every line sums.
     fn bases(&self, values: &[f64], effects: &[EffectState]) -> Result<(Bases, usize), ModelError> {
         let setting = self.setting_of(self.records.first().cloned().unwrap_or_default());
-        let SpreadEffects { terms, core, plate } = SpreadEffects::of(effects, &setting)?;
+        let SpreadEffects { terms, core, plate, .. } = SpreadEffects::of(effects, &setting)?;
         if let Some(ratios) = plate {
             let values: Vec<f64> = values.iter().chain(&ratios).copied().collect();
             let plate = self.plates.near(&values, Summed::Beam(self.summed))?;

@@ -224,6 +224,7 @@ impl BeamMode {
             Motion::Slope => strain - rotation,
             Motion::Rotation => rotation,
             Motion::Curvature => curvature,
+            Motion::SlopeAcross | Motion::Shear(_) => 0.0,
         }
     }
 

@@ -1,0 +1,32 @@
+//! What was found last is kept: a search goes back and forth between a few.
+
+use std::sync::{Arc, Mutex, PoisonError};
+
+use crate::ModelError;
+
+/// What was found last, the last used first.
+pub(super) type Known<K, V> = Mutex<Vec<(K, Arc<V>)>>;
+
+/// So many are kept: each of some threads goes back and forth between a few.
+const KEPT: usize = 64;
+
+/// What is known by a key, else found and kept.
+pub(super) fn known_or<K: PartialEq, V>(
+    known: &Known<K, V>,
+    key: K,
+    find: impl FnOnce() -> Result<V, ModelError>,
+) -> Result<Arc<V>, ModelError> {
+    let lock = || known.lock().unwrap_or_else(PoisonError::into_inner);
+    let mut kept = lock();
+    if let Some(place) = kept.iter().position(|known| known.0 == key) {
+        kept[..=place].rotate_right(1);
+        return Ok(Arc::clone(&kept[0].1));
+    }
+    // Others need not wait.
+    drop(kept);
+    let found = Arc::new(find()?);
+    let mut kept = lock();
+    kept.truncate(KEPT - 1);
+    kept.insert(0, (key, Arc::clone(&found)));
+    Ok(found)
+}
