@@ -6,6 +6,7 @@ use orthopanel_model::{
 };
 
 use crate::free_constants::FreeConstants;
+use crate::plate_start::PlateFit;
 use crate::predicted::Predictor;
 
 /// Largest size of a coordinate with a Gaussian prior.
@@ -326,8 +327,6 @@ struct ConstantSlot {
 
 /// Factor within which two of three constants lie of where a search begins: any start serves, and all hypotheses share it.
 const CONSTANTS: f64 = 2.0;
-/// Deviation of Poisson's ratio from there.
-const RATIO: f64 = 0.15;
 
 impl Hypothesis {
     /// Constants about these values, where the test does not hold them.
@@ -339,7 +338,10 @@ impl Hypothesis {
                 let map = Map::Size { median: *about, log_factor: CONSTANTS.ln(), sign: 1.0 };
                 Coordinate { map, range: (0.0, f64::MAX) }
             } else {
-                Coordinate { map: Map::Gaussian { mean: *about, std: RATIO }, range: (of.low, of.high) }
+                Coordinate {
+                    map: Map::Gaussian { mean: *about, std: PlateFit::prior(constant) },
+                    range: (of.low, of.high),
+                }
             });
             match held {
                 Some(value) => slots.push(ConstantSlot { constant, piece: None, slot: Slot::Held(*value) }),

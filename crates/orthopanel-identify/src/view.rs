@@ -66,18 +66,20 @@ impl View {
     pub(crate) fn mode(&self, (n, [force, response]): (usize, [usize; 2]), zeta: f64) -> ModeInRecord {
         if let Some(relaxing) = &self.relaxing {
             let mode = relaxing.mode(n, zeta);
-            let shape = between(&mode.deflection, [&mode.slope, &[]], [force, response]);
+            let shape =
+                between(|port| mode.deflection[port], |axis, port| along_x(&mode.slope, axis, port), [force, response]);
             let deflection = [force, response].map(|port| mode.deflection[port]);
             let core = Some((mode.damping, mode.by_s));
             return ModeInRecord { omega: mode.angular_frequency, zeta, deflection, shape, core };
         }
-        let of = |values: &[Vec<f64>]| -> Vec<Complex64> {
-            values.get(n).into_iter().flatten().map(|value| Complex64::from(*value)).collect()
+        let deflection = |port: usize| Complex64::from(self.modes.deflection[n][port]);
+        let slopes = [&self.modes.slope, &self.modes.slope_across];
+        let slope = |axis: usize, port: usize| {
+            slopes[axis].get(n).and_then(|of| of.get(port)).map_or(Complex64::ZERO, |slope| (*slope).into())
         };
-        let deflection = of(&self.modes.deflection);
-        let shape = between(&deflection, [&of(&self.modes.slope), &of(&self.modes.slope_across)], [force, response]);
+        let shape = between(deflection, slope, [force, response]);
         let omega = self.modes.angular_frequency[n];
-        ModeInRecord { omega, zeta, deflection: [force, response].map(|port| deflection[port]), shape, core: None }
+        ModeInRecord { omega, zeta, deflection: [force, response].map(deflection), shape, core: None }
     }
 
     /// A mode's accelerance over the product of deflections, as the channel shows it, at a frequency of the remainder; and that product.
@@ -93,7 +95,8 @@ impl View {
         match (&self.relaxing, mode.core) {
             (Some(relaxing), Some((damping, _))) => {
                 let line = &relaxing.lines[number];
-                let shape = between(&line.deflection[n], [&line.slope[n], &[]], ports);
+                let slope = |axis: usize, port: usize| along_x(&line.slope[n], axis, port);
+                let shape = between(|port| line.deflection[n][port], slope, ports);
                 (factor / (s * s + damping * s + line.lambda[n]), shape)
             }
             _ => {
@@ -105,11 +108,19 @@ impl View {
 }
 
 /// The product of deflections at force and response, and how that follows either place, along x and along y.
-fn between(deflection: &[Complex64], slopes: [&[Complex64]; 2], [force, response]: [usize; 2]) -> [Complex64; PARTS] {
-    let slope = |axis: usize, port: usize| slopes[axis].get(port).copied().unwrap_or(Complex64::ZERO);
-    let by = |axis: usize| [slope(axis, force) * deflection[response], deflection[force] * slope(axis, response)];
+fn between(
+    deflection: impl Fn(usize) -> Complex64,
+    slope: impl Fn(usize, usize) -> Complex64,
+    [force, response]: [usize; 2],
+) -> [Complex64; PARTS] {
+    let by = |axis: usize| [slope(axis, force) * deflection(response), deflection(force) * slope(axis, response)];
     let ([force_x, response_x], [force_y, response_y]) = (by(0), by(1));
-    [deflection[force] * deflection[response], force_x, response_x, force_y, response_y]
+    [deflection(force) * deflection(response), force_x, response_x, force_y, response_y]
+}
+
+/// The slope of what is known along x alone, if slopes were asked for.
+fn along_x(slope: &[Complex64], axis: usize, port: usize) -> Complex64 {
+    if axis == 0 { slope.get(port).copied().unwrap_or(Complex64::ZERO) } else { Complex64::ZERO }
 }
 
 /// Modes of a panel whose core depends on frequency.

@@ -270,11 +270,17 @@ impl Inquiry<'_> {
         Some((judged(best), true))
     }
 
+    /// The covariance about a base under sizes of model error that are no wider than small ones.
+    fn narrow(&self, base: &Judged) -> Option<Whitening> {
+        let of_base = self.problem(&base.hypothesis);
+        let sizes: [f64; KINDS] = std::array::from_fn(|kind| base.posterior.log_sizes[kind].min(SMALL[kind].ln()));
+        of_base.whitening(&of_base.errors(&base.posterior.point.at).with_every_partner(), &sizes)
+    }
+
     /// What ranks starts by their difference from the base.
     fn score(&self, base: &Judged) -> Option<Score> {
         let (at_base, of_base) = (&base.posterior.point, self.problem(&base.hypothesis));
-        let sizes: [f64; KINDS] = std::array::from_fn(|kind| base.posterior.log_sizes[kind].min(SMALL[kind].ln()));
-        let by = of_base.whitening(&of_base.errors(&at_base.at).with_every_partner(), &sizes)?;
+        let by = self.narrow(base)?;
         let mut derivatives = at_base.derivatives.clone();
         by.whiten(&mut derivatives);
         let mut curvature = derivatives.transpose() * &derivatives;
@@ -294,8 +300,7 @@ impl Inquiry<'_> {
     ) -> Option<Vec<(usize, Point)>> {
         let at_base = &base.posterior.point;
         let of_base = self.problem(&base.hypothesis);
-        let sizes: [f64; KINDS] = std::array::from_fn(|kind| base.posterior.log_sizes[kind].min(SMALL[kind].ln()));
-        let by = of_base.whitening(&of_base.errors(&at_base.at).with_every_partner(), &sizes)?;
+        let by = self.narrow(base)?;
         let precision = of_base.hypothesis.precision();
         let missed = of_base.missed(&at_base.at);
         let before = Projection::new(&at_base.derivatives, &precision, &by)?.of(&missed, &at_base.z).1;

@@ -22,14 +22,14 @@ impl SpreadEffects {
             for action in effect.acting_in(setting)? {
                 match action {
                     Action::Field(FieldTerm::ShearPatch(patch)) => spread.patches.push(patch),
-                    Action::Field(term) => {
-                        let terms = spread.terms.get_or_insert_default();
-                        match term {
-                            FieldTerm::RotaryFactor(factor) => terms.rotary_factor = factor,
-                            FieldTerm::ShearLoss(loss) => terms.losses.push(loss),
-                            FieldTerm::Support(springs) => terms.support = Some(springs),
-                            FieldTerm::ShearPatch(_) => {}
-                        }
+                    Action::Field(FieldTerm::RotaryFactor(factor)) => {
+                        spread.terms.get_or_insert_default().rotary_factor = factor;
+                    }
+                    Action::Field(FieldTerm::ShearLoss(loss)) => {
+                        spread.terms.get_or_insert_default().losses.push(loss);
+                    }
+                    Action::Field(FieldTerm::Support(springs)) => {
+                        spread.terms.get_or_insert_default().support = Some(springs);
                     }
                     Action::Core(core) => spread.core = Some(core),
                     Action::Plate(ratios) => spread.plate = Some(ratios),
