@@ -34,8 +34,11 @@ fn main() -> Result<(), Box<dyn Error>> {
         println!("cargo:rerun-if-changed={}", source.join("Cargo.toml").display());
     }
     println!("cargo:rerun-if-changed=build.rs");
-    for workspace_file in ["Cargo.toml", "Cargo.lock"] {
-        println!("cargo:rerun-if-changed={}", crates.join("..").join(workspace_file).display());
+    let workspace = crates.join("..");
+    // What is not there counts as changed at every build: of a published crate no workspace is watched.
+    let is_workspace = workspace.join("Cargo.lock").exists();
+    for workspace_file in ["Cargo.toml", "Cargo.lock"].iter().filter(|_| is_workspace) {
+        println!("cargo:rerun-if-changed={}", workspace.join(workspace_file).display());
     }
 
     let library = match env::var_os(READY) {
@@ -48,13 +51,21 @@ fn main() -> Result<(), Box<dyn Error>> {
         None => build(&runtime.join("Cargo.toml"))?,
     };
     println!("cargo:rustc-env=ORTHOPANEL_FMU_LIBRARY={}", library.display());
-    ready_for_others(&crates.join("../target/fmu-libraries"), &crates)
+    let others = workspace.join("target/fmu-libraries");
+    // An empty one is put there to be watched, older than this build.
+    if is_workspace && !others.exists() && std::fs::create_dir_all(&others).is_ok() {
+        let folder = std::fs::File::open(&others);
+        folder.and_then(|folder| folder.set_modified(std::time::SystemTime::UNIX_EPOCH)).ok();
+    }
+    ready_for_others(&others, &crates)
 }
 
 /// Names the libraries that `build-linux` and `build-windows` left in a folder, so that they are embedded beside this platform's own. One
 /// that is older than a source is left out: an FMU whose platforms differ would be worse than one of fewer.
 fn ready_for_others(folder: &Path, crates: &Path) -> Result<(), Box<dyn Error>> {
-    println!("cargo:rerun-if-changed={}", folder.display());
+    if folder.exists() {
+        println!("cargo:rerun-if-changed={}", folder.display());
+    }
     let newest = ["orthopanel-fmu/src", "orthopanel-model/src"].map(|source| newest(&crates.join(source)));
     let newest = newest.into_iter().collect::<Result<Vec<_>, _>>()?.into_iter().max();
     let mut list = String::from("&[");

@@ -17,12 +17,12 @@ KINDS = {
     "clean": None,
     "further": None,
     "none": None,
-    "outside": ["spring-to-ground", "mains-hum", "tension"],
-    "rough": ["sensor-mass", "record-gain", "channel-delay"],
-    "single-place": ["edge-mass", "suspension", "resonator", "high-pass", "position-error"],
+    "outside": ["spring-to-ground", "mains-hum"],
+    "rough": ["sensor-mass", "record-gain"],
+    "single-place": ["edge-mass", "resonator", "high-pass"],
     "pairs": ["edge-mass + high-pass", "resonator + position-error"],
-    "accelerances": ["record-gain", "support-compliance", "resonator", "stiffness-loss", "none"],
-    "lists": ["local-mass", "stiffness-loss", "support-compliance", "none"],
+    "accelerances": ["record-gain", "stiffness-loss", "none"],
+    "lists": ["local-mass", "support-compliance", "none"],
 }
 # s a case; the dearest takes about 60 s of one processor.
 TIMEOUT = 300.0
@@ -140,11 +140,10 @@ def test_val_a_sensor_on_a_strip_on_cords_is_explained(tmp_path):
 
 
 def test_val_what_the_catalogue_lacks_is_not_explained(scored):
-    """Of 100 cases ten may be. Tension of 1.5 kN lifts a strip's modes as springs of 18 kN/m at its cords do, within 6e-5 of their frequencies:
-    real panels miss by more."""
+    """Of 100 cases ten may be."""
     cases = _cases(scored("outside"))
     assert len(cases) == len(KINDS["outside"])
-    assert {kind: case["ids"] for kind, case in cases.items() if case["explained"] and kind != "tension"} == {}
+    assert {kind: case["ids"] for kind, case in cases.items() if case["explained"]} == {}
 
 
 def test_val_every_case_has_an_answer(scored):

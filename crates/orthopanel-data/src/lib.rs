@@ -17,7 +17,7 @@ pub use listing::ListedRecord;
 pub use records::{Axis, ColumnName, ColumnRole, DeclaredColumns, Port, Record, RecordFile, RecordKind, Samples};
 pub use spectra::{
     Accelerance, Channel, ChannelNoise, Cut, Estimation, Estimator, ForceNoise, Hit, HitFault, HitVerdict, ReadAs,
-    TimeHistory, Window,
+    TimeHistory, Transforms, Window,
 };
 pub use test_file::{
     ChannelName, DeclaredEffect, Direction, ImpactTest, KnownConstant, Measurement, MeasurementData, NamedPiece,

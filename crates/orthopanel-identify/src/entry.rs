@@ -49,7 +49,7 @@ fn of_data(test: &ImpactTest, settings: Settings) -> Result<Identification, Iden
 /// The same where each list stands once; `lists` is their number.
 fn of_once(test: &ImpactTest, lists: usize, settings: Settings) -> Result<Identification, IdentifyError> {
     if !test.effects.is_empty() || (lists > 0 && lists < test.measurements.len()) {
-        return by_modes_of_beams(test, lists, settings);
+        return by_modes_alone(test, lists, settings);
     }
     let of_held = |error| of_held_constants(test, error);
     if lists == test.measurements.len() {
@@ -88,11 +88,11 @@ fn of_once(test: &ImpactTest, lists: usize, settings: Settings) -> Result<Identi
 }
 
 /// A test that declares effects, or has lists of natural frequencies beside records.
-fn by_modes_of_beams(test: &ImpactTest, lists: usize, settings: Settings) -> Result<Identification, IdentifyError> {
+fn by_modes_alone(test: &ImpactTest, lists: usize, settings: Settings) -> Result<Identification, IdentifyError> {
     let what =
         if test.effects.is_empty() { "natural frequencies beside records" } else { "declared effects ([[effect]])" };
     let refused = |message: &str| Err(IdentifyError::Unsupported(format!("{what}{message}")));
-    if test.structure == Some(StructureKind::MindlinPlate) {
+    if test.structure == Some(StructureKind::MindlinPlate) && lists > 0 {
         return refused(" are for beams: leave them out, or structure = \"mindlin-plate\"");
     }
     if settings.search == Search::Simplex || settings.damping_law == DampingLaw::Hysteretic {

@@ -55,12 +55,15 @@ pub(crate) enum Kind {
     ShortestMass,
 }
 
+/// Median of damping between two modes over the geometric mean of their own.
+const COUPLING: f64 = 3e-2;
+
 /// Median of a kind's size before any test, and the factor within which two of three lie.
 const PRIORS: [(Kind, f64, f64); 22] = [
     (Kind::Frequency, 5e-4, 4.0),
     (Kind::Residue, 3e-3, 4.0),
     (Kind::Quadrature, 1e-3, 4.0),
-    (Kind::Coupling, 3e-2, 5.0),
+    (Kind::Coupling, COUPLING, 5.0),
     (Kind::ForcePlace, 8e-4, 1.6),
     (Kind::RecordGain, 3e-3, 1.6),
     (Kind::ResponsePlace, 4e-4, 1.3),
@@ -89,6 +92,8 @@ const QUADRATURE: f64 = 0.3;
 /// Modes that are many, and the distance in widths up to which damping between two of them counts.
 const MANY: usize = 16;
 const NEAR: f64 = 10.0;
+/// Root mean square of the square of a normal number.
+const OF_SQUARE: f64 = 1.732_050_807_568_877_2;
 /// Waves of unevenness along the panel.
 const WAVES: usize = 20;
 /// Shortest length \[m\] of waves of each size but the last: cells are stretched, and adhesive is spread, alike over some 50 to 200 mm, so that
@@ -102,8 +107,8 @@ pub(crate) struct ErrorColumns {
     size: usize,
     /// Places and values that are not zero.
     columns: Vec<Vec<(usize, f64)>>,
-    /// Of each column its kind, as a number below [`KINDS`].
-    kinds: Vec<usize>,
+    /// Of each column its kind, as a number below [`KINDS`], and the power of its size that it goes with.
+    kinds: Vec<(usize, Power)>,
     /// Of columns that are of the piece, not of one measurement of it, the number of the mode or of the wave.
     of_piece: Vec<Option<usize>>,
     /// Values that tell no more than their size, with their variance: near motions of the piece as a whole,
@@ -111,6 +116,9 @@ pub(crate) struct ErrorColumns {
     /// and residues of poles that are no modes of the model, which may be false.
     without_partner: Vec<(usize, f64)>,
 }
+
+/// The power of $\tau_k$ that a column goes with: one, or two where it is of second order.
+type Power = u8;
 
 /// $\ln\tau_k$ of every kind at its median.
 pub(crate) fn medians() -> [f64; KINDS] {
@@ -156,10 +164,13 @@ pub(crate) fn waves(predictor: &Predictor, constants: &[f64], effects: &[EffectS
 }
 
 /// What damping between two modes of each pair does, to first order. With $c_{nm}$ the damping matrix in the real modes $\phi$,
-/// $$\delta\psi_n = \frac{\lambda_nc_{nm}}{\lambda_n^2-\lambda_m\bar\lambda_m}\phi_m\ ,\qquad
+/// $$\delta\psi_n = -\frac{\lambda_nc_{nm}}{(\lambda_n-\lambda_m)(\lambda_n-\bar\lambda_m)}\phi_m\ ,\qquad
 /// \delta H(s) = -\frac{c_{nm}s^3}{D_n(s)D_m(s)}(\phi_n\phi_m^T+\phi_m\phi_n^T)\ ,$$
-/// which is small below the band: what the residues there gain, the remainder loses.
-fn couplings(comparison: &Comparison, at: &Prediction) -> Vec<(usize, Vec<(usize, f64)>)> {
+/// which is small below the band: what the residues there gain, the remainder loses. Of modes that run together the second order counts too, with
+/// $\theta$ the share of $\phi_m$ in $\delta\psi_n$:
+/// $$\frac{\delta\lambda_n}{\lambda_n} = \frac{\lambda_nc_{nm}^2}{(\lambda_n-\bar\lambda_n)(\lambda_n-\lambda_m)(\lambda_n-\bar\lambda_m)}\ ,\qquad
+/// \delta(\psi_n\psi_n^T) = \theta^2(\phi_m\phi_m^T-\phi_n\phi_n^T) .$$
+fn couplings(comparison: &Comparison, at: &Prediction) -> Vec<((usize, Power), Vec<(usize, f64)>)> {
     let measured = comparison.measured;
     let pole = |n: usize| at.partners.iter().find_map(|record| record[n]).map(|partner| partner.pole);
     let flexible: Vec<usize> = (0..measured.poles.len()).filter(|&n| !at.hangs[n] && pole(n).is_some()).collect();
@@ -169,19 +180,33 @@ fn couplings(comparison: &Comparison, at: &Prediction) -> Vec<(usize, Vec<(usize
             let (Some(of_n), Some(of_m)) = (pole(n), pole(m)) else { continue };
             let own = 2.0 * (of_n.re * of_m.re).sqrt();
             // What damping does between modes far from each other is below what residues miss by themselves; of many modes most are.
-            if flexible.len() > MANY && (of_n - of_m).norm() > NEAR * own {
+            let are_near = (of_n - of_m).norm() < NEAR * own;
+            if flexible.len() > MANY && !are_near {
                 continue;
+            }
+            let share = |own_pole, other| coupled(own, own_pole, other)[0];
+            if are_near {
+                let shift = |own_pole, other| coupled(own, own_pole, other)[1];
+                let mut column = vec![(n, OF_SQUARE * shift(of_n, of_m).re), (m, OF_SQUARE * shift(of_m, of_n).re)];
+                for (record, partners) in at.partners.iter().enumerate() {
+                    let (Some(a), Some(b)) = (partners[n], partners[m]) else { continue };
+                    let [of_a, of_b] = [a, b].map(|partner| partner.deflection[0] * partner.deflection[1]);
+                    let first = share(of_n, of_m).powi(2) * (of_b - of_a) * a.unit;
+                    let second = share(of_m, of_n).powi(2) * (of_a - of_b) * b.unit;
+                    for (pole, residue) in [(n, first), (m, second)] {
+                        let value = OF_SQUARE * residue / comparison.residue[pole];
+                        let place = comparison.residue_place(record, pole);
+                        column.extend([(place, value.re), (place + 1, value.im)]);
+                    }
+                }
+                columns.push(((Kind::Coupling as usize, 2), column));
             }
             let mut column = Vec::new();
             for (record, partners) in at.partners.iter().enumerate() {
                 let (Some(a), Some(b)) = (partners[n], partners[m]) else { continue };
                 let product = a.deflection[0] * b.deflection[1] + a.deflection[1] * b.deflection[0];
-                let gained = |own_pole: Complex64, other: Complex64, unit: Complex64| {
-                    // Beside the pole itself, $D_m(\lambda_n)$.
-                    let beside = (own_pole - other) * (own_pole - other.conj());
-                    -own * own_pole * product * unit / beside
-                };
-                let ends = [(n, of_n, gained(of_n, of_m, a.unit)), (m, of_m, gained(of_m, of_n, b.unit))];
+                let gained = [share(of_n, of_m) * product * a.unit, share(of_m, of_n) * product * b.unit];
+                let ends = [(n, of_n, gained[0]), (m, of_m, gained[1])];
                 for (pole, _, residue) in ends {
                     let value = residue / comparison.residue[pole];
                     let place = comparison.residue_place(record, pole);
@@ -197,23 +222,35 @@ fn couplings(comparison: &Comparison, at: &Prediction) -> Vec<(usize, Vec<(usize
                     column.extend([(place, value.re), (place + 1, value.im)]);
                 }
             }
-            columns.push((Kind::Coupling as usize, column));
+            columns.push(((Kind::Coupling as usize, 1), column));
         }
     }
     columns
 }
 
+/// The share $\theta$ of another mode in that of a pole, by damping $c$ between the two, and the pole's shift $\delta\lambda/\lambda$.
+fn coupled(damping: f64, pole: Complex64, other: Complex64) -> [Complex64; 2] {
+    // Nearer to each other than the damping between them moves poles, modes mix wholly.
+    let least = 0.5 * COUPLING * damping;
+    let apart = pole - other;
+    let apart = if apart.norm() < least { Complex64::new(0.0, least) } else { apart };
+    // Beside the pole itself, $D_m(\lambda_n)$.
+    let share = -damping * pole / (apart * (pole - other.conj()));
+    [share, -damping * share / (pole - pole.conj())]
+}
+
 impl ErrorColumns {
     /// About a prediction; `waves` as [`waves()`] finds them.
     pub(crate) fn about(comparison: &Comparison, at: &Prediction, waves: &Waves) -> Self {
-        let mut columns: Vec<(usize, Vec<(usize, f64)>)> = Vec::new();
+        let mut columns: Vec<((usize, Power), Vec<(usize, f64)>)> = Vec::new();
+        let first_order = |kind: Kind| (kind as usize, 1);
         let measured = comparison.measured;
         // A list that tells no noise has it in the same size.
         let of_mode = |pole: usize| at.flexible_of_poles[pole].filter(|_| measured.covariance[(pole, pole)] > 0.0);
         let mut of_piece: Vec<Option<usize>> = (0..measured.poles.len()).map(of_mode).collect();
         for pole in 0..measured.poles.len() {
             let times = if at.hangs[pole] { HANGING } else { 1.0 };
-            columns.push((Kind::Frequency as usize, vec![(pole, times)]));
+            columns.push((first_order(Kind::Frequency), vec![(pole, times)]));
         }
         for record in 0..measured.records.len() {
             for pole in 0..measured.poles.len() {
@@ -228,7 +265,7 @@ impl ErrorColumns {
                         let place = comparison.remainder_place(record, number);
                         column.extend([(place, value.re), (place + 1, value.im)]);
                     }
-                    columns.push((kind as usize, column));
+                    columns.push((first_order(kind), column));
                 }
             }
             // Modes below the band and above: on springs, as masses, and as springs.
@@ -240,7 +277,7 @@ impl ErrorColumns {
                     (comparison.remainder_place(record, number) + part, times * (frequency / end(power)).powi(power))
                 };
                 let column = frequencies.iter().enumerate().skip(at.near_hanging).map(value);
-                columns.push((kind as usize, column.collect()));
+                columns.push((first_order(kind), column.collect()));
             };
             along(Kind::Remainder, 0, 0, 1.0);
             along(Kind::Remainder, 0, 2, 1.0);
@@ -260,7 +297,7 @@ impl ErrorColumns {
         let unseen = comparison.unseen().start;
         let is_told = |along: &[f64]| along.iter().any(|value| *value != 0.0);
         let dense = |kind: Kind, from: &[f64], range: std::ops::Range<usize>| {
-            (kind as usize, range.map(|place| (place, from[place])).collect::<Vec<_>>())
+            (first_order(kind), range.map(|place| (place, from[place])).collect::<Vec<_>>())
         };
         for record in 0..measured.records.len() {
             let range = comparison.block_of(record);
@@ -271,8 +308,9 @@ impl ErrorColumns {
         }
         of_piece.resize(columns.len(), None);
         of_piece.extend((0..waves.len()).map(Some));
-        columns
-            .extend(waves.iter().map(|(kind, wave)| (*kind, wave.iter().copied().enumerate().take(unseen).collect())));
+        columns.extend(
+            waves.iter().map(|(kind, wave)| ((*kind, 1), wave.iter().copied().enumerate().take(unseen).collect())),
+        );
         if !measured.records.is_empty() {
             let residues = comparison.residue_place(0, 0)..unseen;
             columns.push(dense(Kind::Gain, &at.values, residues));
@@ -316,7 +354,7 @@ impl ErrorColumns {
         let (mut kinds, mut keys) = (vec![], vec![]);
         let mut places: Vec<Vec<usize>> = Vec::new();
         for (piece, own) in &all {
-            let place = |(kind, number): (&usize, &Option<usize>)| {
+            let place = |(kind, number): (&(usize, Power), &Option<usize>)| {
                 let key = number.map(|number| (*piece, *kind, number));
                 let known = key.is_some().then(|| keys.iter().position(|known| *known == key)).flatten();
                 known.unwrap_or_else(|| {
@@ -357,7 +395,8 @@ impl ErrorColumns {
     fn scaled(&self, numbers: &[usize], range: &Range<usize>, log_sizes: &[f64; KINDS]) -> Mat<f64> {
         let mut scaled = Mat::zeros(range.len(), numbers.len());
         for (column, &number) in numbers.iter().enumerate() {
-            let size = log_sizes[self.kinds[number]].exp();
+            let (kind, power) = self.kinds[number];
+            let size = (f64::from(power) * log_sizes[kind]).exp();
             self.columns[number].iter().for_each(|(place, value)| scaled[(place - range.start, column)] = size * value);
         }
         scaled
@@ -426,9 +465,12 @@ impl ErrorColumns {
         let (mut slope, mut curvature) = (Mat::<f64>::zeros(KINDS, 1), Mat::<f64>::zeros(KINDS, KINDS));
         let mut add = |numbers: &[usize], products: Mat<f64>, crossed: &[f64]| {
             for (j, &of_j) in numbers.iter().enumerate() {
-                slope[(self.kinds[of_j], 0)] += products[(j, j)] - crossed[j].powi(2);
+                let (kind_of_j, power_of_j) = self.kinds[of_j];
+                slope[(kind_of_j, 0)] += f64::from(power_of_j) * (products[(j, j)] - crossed[j].powi(2));
                 for (i, &of_i) in numbers.iter().enumerate() {
-                    curvature[(self.kinds[of_i], self.kinds[of_j])] += 2.0 * products[(i, j)].powi(2);
+                    let (kind_of_i, power_of_i) = self.kinds[of_i];
+                    let powers = f64::from(power_of_i * power_of_j);
+                    curvature[(kind_of_i, kind_of_j)] += 2.0 * powers * products[(i, j)].powi(2);
                 }
             }
         };
@@ -450,5 +492,58 @@ impl ErrorColumns {
         let crossed: Vec<f64> = (0..common.len()).map(along).collect();
         add(&common, columns.transpose() * &columns, &crossed);
         (slope, curvature)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{Complex, Matrix4};
+
+    use super::*;
+
+    /// Two modes 6 Hz apart with half-widths of 6 and 4 Hz and a small part of that as damping between them: their poles, by the eigenvalues of the whole,
+    /// and how much of the other each has, by the null vector there.
+    #[test]
+    fn val_poles_and_shapes_of_modes_that_run_together_are_those_of_the_pair() {
+        let [first, second] = [(755.0, 8e-3), (761.0, 5e-3)].map(|(hertz, zeta)| (std::f64::consts::TAU * hertz, zeta));
+        let pole = |(omega, zeta): (f64, f64)| omega * Complex64::new(-zeta, (1.0 - zeta * zeta).sqrt());
+        let damping = [2.0 * first.0 * first.1, 2.0 * second.0 * second.1];
+        for part in [0.05, 0.15] {
+            let between = part * (damping[0] * damping[1]).sqrt();
+            let whole = Matrix4::new(
+                0.0,
+                0.0,
+                1.0,
+                0.0, //
+                0.0,
+                0.0,
+                0.0,
+                1.0, //
+                -first.0.powi(2),
+                0.0,
+                -damping[0],
+                -between, //
+                0.0,
+                -second.0.powi(2),
+                -between,
+                -damping[1],
+            );
+            let exact = whole.complex_eigenvalues();
+            let modes = [first, second];
+            for number in [0, 1] {
+                let (own, other) = (pole(modes[number]), pole(modes[1 - number]));
+                let [share, shift] = coupled(between, own, other);
+                let near = |a: &&Complex<f64>, b: &&Complex<f64>| (**a - own).norm().total_cmp(&(**b - own).norm());
+                let found = *exact.iter().min_by(near).unwrap();
+                let moved = found / own - 1.0;
+                assert!(
+                    moved.norm() > 1e-5 && (moved - shift).norm() < 3.0 * part.powi(2) * moved.norm(),
+                    "{moved} {shift}"
+                );
+                // The row of the pole's own mode at the null vector gives the other's share.
+                let exact = -(found * found + damping[number] * found + modes[number].0.powi(2)) / (between * found);
+                assert!((exact - share).norm() < 3.0 * part.powi(2) * share.norm(), "{exact} {share}");
+            }
+        }
     }
 }

@@ -43,6 +43,8 @@ const FOLLOWED: usize = 3;
 const NEAR: f64 = 2.0;
 /// and for more effects to be looked for in what it has left.
 const BESIDE: f64 = 1.0;
+/// Limit of rounds for a posterior followed to convergence: where an effect explains much, sizes of model error fall by orders of magnitude.
+const TO_THE_END: usize = 40;
 /// Effects at most, beside those declared.
 const MOST_EFFECTS: usize = 3;
 
@@ -185,7 +187,7 @@ impl<'a> Inquiry<'a> {
         let errors = problem.errors(&point.at);
         let sizes = problem.sizes(&point.at, &errors, logs(SMALL), 12).map_or(logs(LOOSE), |(sizes, ..)| sizes);
         let from = [sizes, logs(SMALL), medians()];
-        let posteriors = from.into_iter().filter_map(|sizes| problem.posterior(point.clone(), sizes, 4));
+        let posteriors = from.into_iter().filter_map(|sizes| problem.posterior(point.clone(), sizes, TO_THE_END));
         let posterior = posteriors.max_by(|a, b| a.log_evidence.total_cmp(&b.log_evidence))?;
         let log_odds = posterior.log_evidence;
         Some((self, Judged { hypothesis, posterior, log_odds }))
@@ -218,7 +220,9 @@ impl<'a> Inquiry<'a> {
         let problem = self.problem(&judged.hypothesis);
         let mut closer = judged.clone();
         for sizes in [judged.posterior.log_sizes, *best] {
-            let Some(posterior) = problem.posterior(judged.posterior.point.clone(), sizes, 4) else { continue };
+            let Some(posterior) = problem.posterior(judged.posterior.point.clone(), sizes, TO_THE_END) else {
+                continue;
+            };
             if posterior.log_evidence > closer.posterior.log_evidence {
                 closer.log_odds += posterior.log_evidence - closer.posterior.log_evidence;
                 closer.posterior = posterior;
@@ -310,7 +314,7 @@ impl<'a> Inquiry<'a> {
         let left_out = |part: usize| {
             let (hypothesis, z) = of.hypothesis.without(part, &of.posterior.point.z);
             let problem = self.problem(&hypothesis);
-            let posterior = problem.posterior(problem.unjudged(z)?, of.posterior.log_sizes, 4)?;
+            let posterior = problem.posterior(problem.unjudged(z)?, of.posterior.log_sizes, TO_THE_END)?;
             let log_odds = of.log_odds - of.posterior.log_evidence + posterior.log_evidence
                 - log_prior(self.ways(of.hypothesis.parts[part].effect).len());
             Some(Judged { hypothesis, posterior, log_odds })

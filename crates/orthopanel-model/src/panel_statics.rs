@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::effects::{CoupledPanel, FarModes, Flexibilities, MOST_SUMMED, SPARE_MODES};
+use crate::effects::{CoupledPanel, FarModes, Flexibilities, MOST_SUMMED, SPARE_MODES, Seat, point_elements};
 use crate::mindlin_plate::FixedPlate;
 use crate::static_deflection::static_deflections;
 use crate::{
@@ -92,8 +92,15 @@ impl PanelModel {
             || MindlinPlate::with_basis_for(&self.piece, self.boundary, values, count + SPARE_MODES).map(Arc::new);
         let small = small.map_or_else(made, Ok)?;
         let own = static_deflections(small.as_ref(), values, forces, responses)?;
+        let (_, effects) = self.with_effects()?;
+        let elements = point_elements(&effects, &EffectSetting::of_panel(&self.piece, self.boundary))?;
+        // Under a foot the few functions have the whole answer.
+        let is_foot = |place: Place| elements.iter().any(|element| element.seat == Seat::At(place));
         for (r, (row, (bare, own))) in modified.iter_mut().zip(bare.into_iter().zip(own)).enumerate() {
             for (f, (sum, (bare, own))) in row.iter_mut().zip(bare.into_iter().zip(own)).enumerate() {
+                if responses[r] == forces[f] && is_foot(forces[f]) {
+                    continue;
+                }
                 let motions = [responses[r], forces[f]].map(|place| (Motion::Deflection, place));
                 let kink = small.static_remainder(values, motions).unwrap_or_default();
                 *sum += bare - own - kink;

@@ -22,6 +22,27 @@ pub struct ReducedStructure<S> {
     /// $V$ of each block, a column a shape: $V^TMV = I$.
     shapes: Vec<Mat<f64>>,
     blocks: Vec<Block>,
+    /// What moves at the places that it answers, of each block: asked for at every step of a search.
+    rows: Vec<KnownRow>,
+}
+
+/// What moves, where, and the row of each block.
+pub(crate) type KnownRow = ((Motion, Place), Vec<Vec<f64>>);
+
+/// Rows of a structure that are asked for again and again.
+pub(crate) fn rows_at(structure: &dyn Structure, places: &[Place]) -> Vec<KnownRow> {
+    let motions = [Motion::Deflection, Motion::Foot, Motion::Slope, Motion::SlopeAcross];
+    let all = places.iter().flat_map(|place| motions.map(|motion| (motion, *place)));
+    let row = |(motion, place): (Motion, Place)| {
+        let rows = (0..structure.blocks().len()).map(|block| structure.motion_row(block, motion, place));
+        Some(((motion, place), rows.collect::<Option<Vec<_>>>()?))
+    };
+    all.filter_map(row).collect()
+}
+
+/// One of them.
+pub(crate) fn known_row(rows: &[KnownRow], block: usize, row: (Motion, Place)) -> Option<Vec<f64>> {
+    rows.iter().find(|(known, _)| *known == row).and_then(|(_, rows)| rows.get(block).cloned())
 }
 
 /// Changes of a shape below this, for a coefficient that doubles, are left out: they move frequencies by their square.
@@ -54,12 +75,12 @@ impl<S: Structure + Send + Sync> ReducedStructure<S> {
         Self::on_modes(whole, values, modes, &[])
     }
 
-    fn on_modes(whole: Arc<S>, values: &[f64], modes: &[RitzMode], forces: &[Place]) -> Result<Self, ModelError> {
+    fn on_modes(whole: Arc<S>, values: &[f64], modes: &[RitzMode], places: &[Place]) -> Result<Self, ModelError> {
         let coefficients = checked_coefficients(whole.as_ref(), values)?;
         let numbered: Vec<(usize, &Block)> = whole.blocks().iter().enumerate().collect();
         let reduced = side_by_side::map(&numbered, |&(index, block)| {
             let own: Vec<&RitzMode> = modes.iter().filter(|mode| mode.block == index).collect();
-            let rows: Vec<Vec<f64>> = forces.iter().map(|&place| whole.shape_row(index, place)).collect();
+            let rows: Vec<Vec<f64>> = places.iter().map(|&place| whole.shape_row(index, place)).collect();
             let forces = Mat::from_fn(block.size(), rows.len(), |i, force| rows[force][i]);
             let shapes = shapes(block, &coefficients, &own, forces)?;
             let project = |matrix: &SymmetricMatrix| between(&shapes, matrix, &shapes).into();
@@ -73,7 +94,9 @@ impl<S: Structure + Send + Sync> ReducedStructure<S> {
             Ok((shapes, block))
         });
         let (shapes, blocks) = reduced.into_iter().collect::<Result<Vec<_>, ModelError>>()?.into_iter().unzip();
-        Ok(Self { whole, shapes, blocks })
+        let mut reduced = Self { whole, shapes, blocks, rows: vec![] };
+        reduced.rows = rows_at(&reduced, places);
+        Ok(reduced)
     }
 
     /// Its modes, as many as it has shapes: the rigid ones, then the flexible ones, rising.
@@ -222,7 +245,8 @@ impl<S: Structure> Structure for ReducedStructure<S> {
     }
 
     fn motion_row(&self, block: usize, motion: Motion, place: Place) -> Option<Vec<f64>> {
-        Some(self.seen(block, &self.whole.motion_row(block, motion, place)?))
+        let known = known_row(&self.rows, block, (motion, place));
+        known.or_else(|| Some(self.seen(block, &self.whole.motion_row(block, motion, place)?)))
     }
 
     fn static_remainder(&self, values: &[f64], motions: [(Motion, Place); 2]) -> Option<f64> {

@@ -76,6 +76,9 @@ pub trait Structure {
 pub enum Motion {
     /// $w$ \[m\].
     Deflection,
+    /// Mean of $w$ \[m\] over a square foot of 10 mm, on which something stands on a plate: under a force at a point a plate that shears
+    /// gives way without limit. A beam's deflection.
+    Foot,
     /// $\partial w/\partial x$ \[1\]: how the deflection changes when its place moves.
     Slope,
     /// $\partial w/\partial y$ \[1\]; zero of a beam.

@@ -189,3 +189,33 @@ fn what_is_no_effect_of_the_panel_is_refused_with_its_reason() {
         assert!(said(effects).starts_with(start), "{}", said(effects));
     }
 }
+
+/// A mass on its foot is the same mass on any basis, at an edge too, and the same where the plate is turned by a right angle.
+#[test]
+fn val_a_mass_on_a_plate_is_the_same_on_any_basis() {
+    let frequencies = |turned: bool, place: [f64; 2], count: usize| -> Vec<f64> {
+        let (mut sides, mut moduli, mut shear, mut at) = ([0.9, 0.6], [1.1e10, 8e9], [4e8, 2.5e8], place);
+        let mut nu = 0.3;
+        if turned {
+            nu *= moduli[1] / moduli[0];
+            [&mut sides, &mut moduli, &mut shear, &mut at].into_iter().for_each(|pair| pair.reverse());
+        }
+        let model = format!(
+            r#"{{"schema":"orthopanel.model/1","structure":"mindlin-plate",
+            "piece":{{"length":{},"width":{},"thickness":0.02,"mass_per_area":5.0}},
+            "constants":{{"e_x":{{"value":{}}},"e_y":{{"value":{}}},"nu_xy":{{"value":{nu}}},"g_xy":{{"value":3e9}},
+            "g_zx":{{"value":{}}},"g_yz":{{"value":{}}}}},"damping":{{"beyond":0.0}},
+            "effects":[{{"id":"local-mass","owner":"panel","mass":0.08,"x":{},"y":{}}}]}}"#,
+            sides[0], sides[1], moduli[0], moduli[1], shear[0], shear[1], at[0], at[1]
+        );
+        let modes = PanelModel::from_json(&model).unwrap().modes(ModeRange::Count(count)).unwrap();
+        modes.iter().filter(|mode| !mode.is_rigid()).take(12).map(PanelMode::frequency).collect()
+    };
+    let worst = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a / b - 1.0).abs()).fold(0.0, f64::max);
+    for place in [[0.21, -0.13], [0.445, 0.1]] {
+        let few = frequencies(false, place, 12);
+        let by_basis = worst(&few, &frequencies(false, place, 90));
+        let by_turn = worst(&few, &frequencies(true, place, 12));
+        assert!(by_basis < 1.5e-3 && by_turn < 1.5e-3, "{place:?}: {by_basis:e}, turned {by_turn:e}");
+    }
+}

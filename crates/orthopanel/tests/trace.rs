@@ -176,13 +176,16 @@ fn what_stays_in_several_pieces_is_said_once() {
     assert_eq!(page.matches("with effects [Hz]").count(), 2);
 }
 
-/// A trace is of beams: a test that declares a plate gets the plate, and is told that nothing was traced.
+/// Lists of a plate's frequencies are not traced: they give the plate, and it is said that nothing was traced.
 #[test]
 fn a_declared_plate_is_written_as_the_plate_that_was_identified() {
     let bench = Bench::new();
     let answer = bench.json("run examples/pieces-1-2-plate/test.toml -o out");
     assert!(answer["trace"].is_null() && !bench.path("out/trace.json").exists());
-    assert!(answer["not_traced"].as_str().expect("a reason").contains("plate's data are not traced"), "{answer}");
+    assert!(
+        answer["not_traced"].as_str().expect("a reason").contains("natural frequencies are not traced"),
+        "{answer}"
+    );
     for piece in ["1", "2"] {
         let model = bench.read_json(&format!("out/model-{piece}.json"));
         assert_eq!(model["structure"], "mindlin-plate");

@@ -1,9 +1,8 @@
 //! Spectra of one hit, and their sums over hits.
 
 use num_complex::Complex64;
-use realfft::RealFftPlanner;
 
-use super::{blow::Blow, hit::Hit, scatter::NoisePower, window::Window};
+use super::{blow::Blow, hit::Hit, scatter::NoisePower, transforms::Transforms, window::Window};
 
 /// Sums over hits of $|F|^2$, $|A|^2$ and $\bar F A$, line by line from 0 to half the rate.
 pub(super) struct Sums {
@@ -55,11 +54,8 @@ const MOST_SAMPLED: usize = 2048;
 
 /// Sums the spectra of `hits`, all of length `samples`.
 pub(super) fn sums(hits: &[&Hit], samples: usize, window: Window, rate: f64) -> Sums {
-    let mut planner = RealFftPlanner::<f64>::new();
-    let transform = planner.plan_fft_forward(samples);
-    let (mut force_spectrum, mut motion_spectrum) = (transform.make_output_vec(), transform.make_output_vec());
-    let mut scratch = transform.make_scratch_vec();
-    let lines = force_spectrum.len();
+    let mut transforms = Transforms::default();
+    let lines = samples / 2 + 1;
     let mut sums = Sums {
         force: vec![0.0; lines],
         motion: vec![0.0; lines],
@@ -80,12 +76,7 @@ pub(super) fn sums(hits: &[&Hit], samples: usize, window: Window, rate: f64) -> 
         let mut force: Vec<f64> = hit.force.iter().map(|value| value - blow.offset).collect();
         let mut motion: Vec<f64> = hit.acceleration.iter().map(|value| value - rest).collect();
         window.apply(&mut force, &mut motion, &blow, rate);
-        let transformed = transform
-            .process_with_scratch(&mut force, &mut force_spectrum, &mut scratch)
-            .and_then(|()| transform.process_with_scratch(&mut motion, &mut motion_spectrum, &mut scratch));
-        // It fails for other lengths than planned only; the caller has checked that all hits are of one length.
-        debug_assert!(transformed.is_ok());
-        sums.add(&force_spectrum, &motion_spectrum);
+        sums.add(&transforms.lines(force), &transforms.lines(motion));
         noise.push(hit.noise_before(&blow));
     }
     if let [first, ..] = hits {

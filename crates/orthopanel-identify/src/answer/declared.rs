@@ -23,7 +23,7 @@ use super::lines::{Drawn, Lines};
 use super::lists::{notes_on_hidden, percent};
 use super::{curves_of, drawn, lists_beside, not_finite};
 
-/// Identifies the constants of beams from records, with the effects that the test declares, a parameter that it leaves out too, and with lists of natural
+/// Identifies constants from records, with the effects that the test declares, a parameter that it leaves out too, and with lists of natural
 /// frequencies beside them.
 ///
 /// # Errors

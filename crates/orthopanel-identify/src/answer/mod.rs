@@ -52,7 +52,7 @@ const MEASURE: &str = "misfit of the measured modes over noise and model error, 
 /// Force lost over the band that is drawn \[dB\].
 const FORCE_DROP: f64 = 20.0;
 
-/// What the measured modes of records of beams say, and of lists beside them.
+/// What the measured modes of records say, and of lists beside them.
 ///
 /// # Errors
 /// As [`from_base`], and [`IdentifyError::TooManyFrequencies`] for lists beside the records.

@@ -386,13 +386,13 @@ pub enum IdentifyError {
         /// $W_G$.
         magnitude: f64,
     },
-    /// A trace of a test whose structure is a plate.
+    /// A trace of natural frequencies of a plate.
     #[error(
-        "a plate's data are not traced yet: the trace looks for what a beam lacks, and this test declares \
-         structure = \"mindlin-plate\"; `orthopanel identify` finds the plate's constants, and without that line the trace \
+        "a plate's natural frequencies are not traced yet: record hits (kind = \"time-history\" or \"accelerance\") and leave the lists \
+         out; `orthopanel identify` finds the plate's constants from lists, and without structure = \"mindlin-plate\" the trace \
          judges the beam, the plate (width-coupling) among its effects"
     )]
-    PlateNotTraced,
+    PlateListNotTraced,
     /// A test that this version cannot evaluate.
     #[error("{0}")]
     Unsupported(String),

@@ -3,8 +3,7 @@
 use std::f64::consts::{LN_2, TAU};
 
 use num_complex::Complex64;
-use orthopanel_data::{Hit, TimeHistory};
-use realfft::RealFftPlanner;
+use orthopanel_data::{Hit, TimeHistory, Transforms};
 
 use super::lines::{RecordLines, TruncatedHit, Truncations};
 use super::medians::median;
@@ -172,11 +171,7 @@ impl HitSpectra {
 }
 
 /// Some lines of a transform times the sampling step.
-pub(crate) fn transform(mut samples: Vec<f64>, lines: std::ops::Range<usize>, step: f64) -> Vec<Complex64> {
-    let plan = RealFftPlanner::<f64>::new().plan_fft_forward(samples.len());
-    let mut spectrum = plan.make_output_vec();
-    // The lengths are the plan's own: it has nothing to refuse.
-    let done = plan.process(&mut samples, &mut spectrum);
-    debug_assert!(done.is_ok());
+pub(crate) fn transform(samples: Vec<f64>, lines: std::ops::Range<usize>, step: f64) -> Vec<Complex64> {
+    let spectrum = Transforms::default().lines(samples);
     spectrum.get(lines).map_or_else(Vec::new, |lines| lines.iter().map(|line| line * step).collect())
 }

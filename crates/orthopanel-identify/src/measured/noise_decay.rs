@@ -2,9 +2,8 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use orthopanel_data::TimeHistory;
+use orthopanel_data::{TimeHistory, Transforms};
 use rayon::prelude::*;
-use realfft::RealFftPlanner;
 
 use super::records::FLAT;
 
@@ -70,18 +69,11 @@ fn decay_above(motion: &[f64], rate: f64, sigma: f64) -> f64 {
         let from_end = n.min(samples - 1 - n) as f64 / end;
         *value *= (FRAC_PI_2 * from_end.min(1.0)).sin().powi(2);
     }
-    let mut plans = RealFftPlanner::<f64>::new();
-    let (forward, back) = (plans.plan_fft_forward(samples), plans.plan_fft_inverse(samples));
-    let mut spectrum = forward.make_output_vec();
-    // The lengths are the plans' own: they have nothing to refuse.
-    let mut done = forward.process(&mut motion, &mut spectrum).is_ok();
+    let mut transforms = Transforms::default();
+    let mut spectrum = transforms.lines(motion);
     let lowest = (FLAT * samples as f64) as usize;
     spectrum.iter_mut().take(lowest).for_each(|line| *line = 0.0.into());
-    if let Some(last) = spectrum.last_mut() {
-        last.im = 0.0;
-    }
-    done &= back.process(&mut spectrum, &mut motion).is_ok();
-    debug_assert!(done);
+    let motion = transforms.samples(spectrum, samples);
     let place = |part: f64| (part * samples as f64) as usize;
     let length = (place(LOOKED_AT[1]) - place(LOOKED_AT[0])) / PIECES;
     let mut slope = [0.0, 0.0];

@@ -144,7 +144,19 @@ fn inside(found: &Found, scale: f64, band: [f64; 2]) -> (Vec<usize>, Mat<f64>) {
         let sure = is_sure(2 * pole, MOST_UNSURE) && is_sure(2 * pole + 1, MOST_UNSURE_DAMPING);
         frequency - skirt > band[0] && frequency + skirt < band[1] && zeta < MOST_ZETA && sure
     };
-    ((0..found.poles.len()).filter(stands).collect(), root)
+    let mut kept: Vec<usize> = (0..found.poles.len()).filter(stands).collect();
+    // Of two resonances that run together at an end of the band none stands: what one has of them is what the other leaves.
+    let reaches_over = |&pole: &usize| {
+        let [frequency, zeta] = [found.poles[pole][0].exp() / TAU, found.poles[pole][1].exp()];
+        let skirt = SKIRT * zeta * frequency;
+        zeta < MOST_ZETA && (frequency - skirt <= band[0] || frequency + skirt >= band[1])
+    };
+    let others: Vec<usize> = (0..found.poles.len()).filter(reaches_over).collect();
+    let half_width = |pole: usize| found.poles[pole].iter().sum::<f64>().exp();
+    let together =
+        |a: usize, b: usize| (found.poles[a][0].exp() - found.poles[b][0].exp()).abs() < half_width(a) + half_width(b);
+    kept.retain(|pole| !others.iter().any(|other| together(*pole, *other)));
+    (kept, root)
 }
 
 /// The fit in the terms of [`MeasuredModes`]; the poles that do not stand by themselves go to the remainders.

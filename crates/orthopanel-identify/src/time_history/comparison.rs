@@ -2,12 +2,12 @@
 
 use std::ops::RangeInclusive;
 
-use orthopanel_data::{Hit, TimeHistory};
+use orthopanel_data::{Hit, TimeHistory, Transforms};
 use orthopanel_model::{ModalModel, ModelError};
 
 use super::{
     force_between_samples::{ForceBetweenSamples, Stepping},
-    spectrum::Transforms,
+    spectrum,
 };
 use crate::IdentifyError;
 
@@ -109,7 +109,7 @@ pub fn compare_time_history(
             return Err(IdentifyError::HistoryBand { from, to, half_rate });
         }
     }
-    let mut transforms = Transforms::new();
+    let mut transforms = Transforms::default();
     let hits = history.hits.iter().enumerate();
     hits.map(|(index, hit)| compare_hit(model, index + 1, hit, history.rate, settings, &mut transforms)).collect()
 }
@@ -132,7 +132,7 @@ fn compare_hit(
     let at_rest = median(&hit.force);
     let force: Vec<f64> = hit.force.iter().map(|value| value - at_rest).collect();
     let beyond = settings.static_flexibility.map(|all| left_out(model, all)).transpose()?;
-    let beyond = beyond.map(|flexibility| (flexibility, transforms.second_derivative(&force, rate)));
+    let beyond = beyond.map(|flexibility| (flexibility, spectrum::second_derivative(transforms, &force, rate)));
     let mut calculated = settings.between_samples.acceleration(model, force, rate, settings.stepping, transforms)?;
     if let Some((flexibility, derivative)) = beyond {
         calculated.iter_mut().zip(derivative).for_each(|(sum, value)| *sum += flexibility * value);
@@ -146,7 +146,8 @@ fn compare_hit(
     let in_band = match &settings.band {
         None => None,
         Some(band) => {
-            let [measured, calculated] = [&measured, &calculated].map(|values| transforms.within(values, rate, band));
+            let [measured, calculated] =
+                [&measured, &calculated].map(|values| spectrum::within(transforms, values, rate, band));
             Some(signals(measured, calculated)?)
         }
     };

@@ -1,8 +1,9 @@
 //! How a force that is known at its samples runs between them.
 
+use orthopanel_data::Transforms;
 use orthopanel_model::{ForceRecord, ModalModel, ModelError};
 
-use super::spectrum::Transforms;
+use super::spectrum;
 
 /// Steps from one sample to the next under a band-limited force: what straight lines between them add above half the
 /// rate is below $1/31^2$, a thousandth of the line it mirrors.
@@ -41,12 +42,12 @@ impl ForceBetweenSamples {
     /// The samples are even in time. Band-limited, the record is taken to repeat, so it should end as it begins; and the
     /// new values at the samples are not the old ones, since what straight lines lose is made up for.
     pub fn straight_lines(self, force: &[f64]) -> (Vec<f64>, usize) {
-        if force.is_empty() { (Vec::new(), 1) } else { self.lines(force.to_vec(), &mut Transforms::new()) }
+        if force.is_empty() { (Vec::new(), 1) } else { self.lines(force.to_vec(), &mut Transforms::default()) }
     }
 
     fn lines(self, force: Vec<f64>, transforms: &mut Transforms) -> (Vec<f64>, usize) {
         match self {
-            Self::BandLimited => (transforms.finer(&force, FINER), FINER),
+            Self::BandLimited => (spectrum::finer(transforms, &force, FINER), FINER),
             Self::Linear => (force, 1),
         }
     }

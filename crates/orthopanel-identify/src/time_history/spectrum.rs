@@ -2,92 +2,55 @@
 
 use std::ops::RangeInclusive;
 
-use realfft::{RealFftPlanner, num_complex::Complex64};
+use num_complex::Complex64;
+use orthopanel_data::Transforms;
 
-/// Transforms of real records, with their plans kept.
-pub(super) struct Transforms {
-    planner: RealFftPlanner<f64>,
+/// The record without its lines outside `band` \[Hz\]; `rate` is its sampling rate \[Hz\].
+pub(super) fn within(transforms: &mut Transforms, values: &[f64], rate: f64, band: &RangeInclusive<f64>) -> Vec<f64> {
+    let count = values.len();
+    let mut lines = transforms.lines(values.to_vec());
+    for (k, line) in lines.iter_mut().enumerate() {
+        let inside = band.contains(&(k as f64 * rate / count as f64));
+        *line = if inside { *line / count as f64 } else { Complex64::default() };
+    }
+    transforms.samples(lines, count)
 }
 
-impl Transforms {
-    pub(super) fn new() -> Self {
-        Self { planner: RealFftPlanner::new() }
+/// The second derivative of the band-limited function through the samples, at the samples.
+pub(super) fn second_derivative(transforms: &mut Transforms, values: &[f64], rate: f64) -> Vec<f64> {
+    let count = values.len();
+    let mut lines = transforms.lines(values.to_vec());
+    for (k, line) in lines.iter_mut().enumerate() {
+        let omega = std::f64::consts::TAU * k as f64 * rate / count as f64;
+        *line *= -omega * omega / count as f64;
     }
+    transforms.samples(lines, count)
+}
 
-    /// Lines $X_k = \sum_n x_n e^{-2\pi jkn/N}$ for $0 \le k \le N/2$.
-    fn lines(&mut self, mut values: Vec<f64>) -> Vec<Complex64> {
-        let transform = self.planner.plan_fft_forward(values.len());
-        let mut lines = transform.make_output_vec();
-        let done = transform.process(&mut values, &mut lines);
-        // It fails for other lengths than planned only.
-        debug_assert!(done.is_ok());
-        lines
+/// The band-limited function through the samples, `finer` times as densely sampled, such that straight lines
+/// between the new samples have its spectrum.
+///
+/// Straight lines over a step $h$ act as the filter $\mathrm{sinc}^2(fh)$; its inverse, $1.013$ at most for 8 steps
+/// or more a sample, is put on the new samples. The record is taken to be periodic: it should end as it begins.
+pub(super) fn finer(transforms: &mut Transforms, values: &[f64], finer: usize) -> Vec<f64> {
+    let count = values.len();
+    let fine_count = finer * count;
+    let mut lines = transforms.lines(values.to_vec());
+    for (k, line) in lines.iter_mut().enumerate() {
+        let phase = std::f64::consts::PI * k as f64 / fine_count as f64;
+        let sinc = if k == 0 { 1.0 } else { phase.sin() / phase };
+        *line /= count as f64 * sinc * sinc;
     }
-
-    /// $\sum_k X_k e^{2\pi jkn/N}$ over positive and negative lines, for `count` $= N$ samples.
-    fn samples(&mut self, mut lines: Vec<Complex64>, count: usize) -> Vec<f64> {
-        let transform = self.planner.plan_fft_inverse(count);
-        lines.resize(count / 2 + 1, Complex64::default());
-        // Lines that are their own mirror image are real; rounding must not say otherwise.
-        let highest = if count.is_multiple_of(2) { count / 2 } else { 0 };
-        for own_mirror in [0, highest] {
-            if let Some(line) = lines.get_mut(own_mirror) {
-                line.im = 0.0;
-            }
-        }
-        let mut values = transform.make_output_vec();
-        let done = transform.process(&mut lines, &mut values);
-        debug_assert!(done.is_ok());
-        values
+    if let Some(line) = lines.get_mut(count / 2)
+        && count.is_multiple_of(2)
+        && finer > 1
+    {
+        // The line at half the rate stood for itself and its mirror image, which now are two.
+        *line /= 2.0;
     }
-
-    /// The record without its lines outside `band` \[Hz\]; `rate` is its sampling rate \[Hz\].
-    pub(super) fn within(&mut self, values: &[f64], rate: f64, band: &RangeInclusive<f64>) -> Vec<f64> {
-        let count = values.len();
-        let mut lines = self.lines(values.to_vec());
-        for (k, line) in lines.iter_mut().enumerate() {
-            let inside = band.contains(&(k as f64 * rate / count as f64));
-            *line = if inside { *line / count as f64 } else { Complex64::default() };
-        }
-        self.samples(lines, count)
-    }
-
-    /// The second derivative of the band-limited function through the samples, at the samples.
-    pub(super) fn second_derivative(&mut self, values: &[f64], rate: f64) -> Vec<f64> {
-        let count = values.len();
-        let mut lines = self.lines(values.to_vec());
-        for (k, line) in lines.iter_mut().enumerate() {
-            let omega = std::f64::consts::TAU * k as f64 * rate / count as f64;
-            *line *= -omega * omega / count as f64;
-        }
-        self.samples(lines, count)
-    }
-
-    /// The band-limited function through the samples, `finer` times as densely sampled, such that straight lines
-    /// between the new samples have its spectrum.
-    ///
-    /// Straight lines over a step $h$ act as the filter $\mathrm{sinc}^2(fh)$; its inverse, $1.013$ at most for 8 steps
-    /// or more a sample, is put on the new samples. The record is taken to be periodic: it should end as it begins.
-    pub(super) fn finer(&mut self, values: &[f64], finer: usize) -> Vec<f64> {
-        let count = values.len();
-        let fine_count = finer * count;
-        let mut lines = self.lines(values.to_vec());
-        for (k, line) in lines.iter_mut().enumerate() {
-            let phase = std::f64::consts::PI * k as f64 / fine_count as f64;
-            let sinc = if k == 0 { 1.0 } else { phase.sin() / phase };
-            *line /= count as f64 * sinc * sinc;
-        }
-        if let Some(line) = lines.get_mut(count / 2)
-            && count.is_multiple_of(2)
-            && finer > 1
-        {
-            // The line at half the rate stood for itself and its mirror image, which now are two.
-            *line /= 2.0;
-        }
-        let mut fine = self.samples(lines, fine_count);
-        fine.truncate(fine_count + 1 - finer);
-        fine
-    }
+    let mut fine = transforms.samples(lines, fine_count);
+    fine.truncate(fine_count + 1 - finer);
+    fine
 }
 
 #[cfg(test)]
@@ -106,7 +69,7 @@ mod tests {
             let (low, high) = (cosine(count, 5.0, count), cosine(count, 20.0, count));
             let both: Vec<f64> = low.iter().zip(&high).map(|(a, b)| a + b + 2.0).collect();
             // One cycle a record is 1 Hz at a rate of as many samples.
-            let kept = |band| Transforms::new().within(&both, count as f64, &band);
+            let kept = |band| within(&mut Transforms::default(), &both, count as f64, &band);
             for (expected, found) in [(&low, kept(1.0..=10.0)), (&high, kept(10.0..=50.0))] {
                 let worst = expected.iter().zip(found).fold(0.0_f64, |worst, (a, b)| worst.max((a - b).abs()));
                 assert!(worst < 1e-13, "{worst}");
@@ -118,7 +81,7 @@ mod tests {
     fn val_a_cosine_s_second_derivative_is_its_own() {
         for (count, cycles) in [(100, 7.0), (101, 50.0), (64, 0.0)] {
             let values = cosine(count, cycles, count);
-            let derivative = Transforms::new().second_derivative(&values, count as f64);
+            let derivative = second_derivative(&mut Transforms::default(), &values, count as f64);
             let square = (TAU * cycles).powi(2);
             let errors = values.iter().zip(derivative).map(|(value, found)| (found + square * value).abs());
             assert!(errors.fold(0.0, f64::max) < 1e-12 * (square + 1.0), "{cycles} of {count}");
@@ -129,12 +92,12 @@ mod tests {
     #[test]
     fn val_straight_lines_between_finer_samples_have_the_cosine_s_line() {
         for (count, cycles) in [(64, 0.0), (64, 7.0), (64, 31.0), (65, 32.0)] {
-            let finer = 16;
-            let fine = Transforms::new().finer(&cosine(count, cycles, count), finer);
-            assert_eq!(fine.len(), finer * (count - 1) + 1);
+            let times = 16;
+            let fine = finer(&mut Transforms::default(), &cosine(count, cycles, count), times);
+            assert_eq!(fine.len(), times * (count - 1) + 1);
             let sinc = |x: f64| if x == 0.0 { 1.0 } else { (x * TAU / 2.0).sin() / (x * TAU / 2.0) };
-            let loss = sinc(cycles / (finer * count) as f64).powi(2);
-            let exact = cosine(fine.len(), cycles, finer * count);
+            let loss = sinc(cycles / (times * count) as f64).powi(2);
+            let exact = cosine(fine.len(), cycles, times * count);
             let worst = fine.iter().zip(exact).fold(0.0_f64, |worst, (a, b)| worst.max((a * loss - b).abs()));
             assert!(worst < 1e-12, "{cycles} cycles: {worst}");
         }

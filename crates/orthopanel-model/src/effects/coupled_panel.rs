@@ -148,7 +148,7 @@ impl ModifiedStructure {
         }
         let values = [values, &ratios].concat();
         let plate = plates.near(&values, Summed::To(highest))?;
-        let mut elements = elements(others, setting)?;
+        let mut elements = on_feet(elements(others, setting)?);
         add_patches(&mut elements, &spread.patches, plate.whole.as_ref(), &values)?;
         let is_known = elements.iter().filter_map(row).all(|row| plates.know(row));
         let low = plates.low_modes(&plate, &values, is_known)?;
@@ -177,6 +177,7 @@ impl ModifiedStructure {
             (Even::Plate, terms) => {
                 let edge_mass = take_edge_mass(&mut elements);
                 is_even &= edge_mass == 0.0;
+                elements = on_feet(elements);
                 let terms = PlateTerms { spread: terms.unwrap_or_default(), edge_mass };
                 let plate = MindlinPlate::uneven_with_basis_for((&piece, boundary), values, summed, &terms)?;
                 let plate = Arc::new(plate);
@@ -212,7 +213,13 @@ impl ModifiedStructure {
 
     /// What the modes beyond the lowest do at the elements and at `ports`.
     pub(super) fn far_answers(&self, ports: &[Place]) -> Result<FarAnswers, ModelError> {
-        self.far_answers_in(&ports.iter().map(|&port| (Motion::Deflection, port)).collect::<Vec<_>>(), &[])
+        self.far_answers_in(&self.ports(ports), &[])
+    }
+
+    /// What moves at each of some places: where an element stands, its foot.
+    pub(super) fn ports(&self, places: &[Place]) -> Vec<Row> {
+        let standing: Vec<Row> = self.elements.iter().filter_map(row).collect();
+        places.iter().map(|&place| port(place, &standing)).collect()
     }
 
     /// The same in any rows, and in others where no force acts.
@@ -231,8 +238,12 @@ impl ModifiedStructure {
         damping: &Damping,
     ) -> (CoupledPanel, System) {
         let mut panel = self.panel();
-        let without_mass = |&port| PointElement::on_deflection(ElementLaw::Mass { mass: 0.0 }, Seat::At(port));
-        let elements: Vec<PointElement> = self.elements.iter().cloned().chain(ports.iter().map(without_mass)).collect();
+        let without_mass = |(motion, place)| {
+            let law = ElementLaw::Mass { mass: 0.0 };
+            PointElement { law, seat: Seat::At(place), motion }
+        };
+        let ports = self.ports(ports).into_iter().map(without_mass);
+        let elements: Vec<PointElement> = self.elements.iter().copied().chain(ports).collect();
         for (number, row) in elements.iter().filter_map(row).enumerate() {
             let share = |(m, mode): (usize, &(usize, Vec<f64>, f64))| {
                 if mode.2 > 0.0 { answers.near[(m, number)] / mode.2 } else { 0.0 }
@@ -297,13 +308,19 @@ impl CoupledPanel {
     pub(super) fn deflections(&self, place: Place) -> Vec<f64> {
         let rows: Vec<_> =
             (0..self.structure.blocks().len()).map(|block| self.structure.shape_row(block, place)).collect();
+        let port = self.port(place);
         let bare: Vec<f64> = self.bare.iter().map(|(block, shape, _)| seen(&rows, *block, shape)).collect();
         let residual = |residual: &Residual| -> f64 {
             let shape = residual.shape.iter().enumerate().map(|(block, shape)| seen(&rows, block, shape)).sum::<f64>();
-            shape + self.beyond_basis((Motion::Deflection, place), &bare, residual)
+            shape + self.beyond_basis(port, &bare, residual)
         };
         let residuals: Vec<f64> = self.residuals.iter().map(residual).collect();
         bare.into_iter().chain(residuals).collect()
+    }
+
+    /// What moves at a place: where an element stands, its foot.
+    pub(super) fn port(&self, place: Place) -> Row {
+        port(place, &self.residuals.iter().map(|residual| residual.row).collect::<Vec<_>>())
     }
 
     /// What the basis lacks of a residual shape in a row where the bare coordinates have these values.
@@ -372,6 +389,22 @@ pub(crate) fn elements(effects: &[EffectState], setting: &EffectSetting) -> Resu
         }
     }
     Ok(elements)
+}
+
+/// What moves at a place: the foot of what stands there.
+fn port(place: Place, standing: &[Row]) -> Row {
+    let foot = (Motion::Foot, place);
+    if standing.contains(&foot) { foot } else { (Motion::Deflection, place) }
+}
+
+/// Elements as they stand on a plate.
+fn on_feet(mut elements: Vec<PointElement>) -> Vec<PointElement> {
+    for element in &mut elements {
+        if let (Seat::At(_), Motion::Deflection) = (element.seat, element.motion) {
+            element.motion = Motion::Foot;
+        }
+    }
+    elements
 }
 
 /// Degrees of the strains of a patch, both ways together, at most: over a few centimetres no mode has more.

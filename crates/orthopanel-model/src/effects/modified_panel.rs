@@ -222,7 +222,7 @@ impl ModifiedPanel {
         if modified.core.is_some() {
             return Err(ModelError::Unsupported("viscoelastic-core in a model of modes".into()));
         }
-        let ports: Vec<Row> = places.iter().map(|&place| (Motion::Deflection, place)).collect();
+        let ports = modified.ports(places);
         let slopes = |motion: Motion| places.iter().filter(|_| with_slopes).map(move |&place| (motion, place));
         let across = slopes(Motion::SlopeAcross).filter(|_| matches!(self.even, Even::Plate));
         let asked: Vec<Row> = slopes(Motion::Slope).chain(across).collect();

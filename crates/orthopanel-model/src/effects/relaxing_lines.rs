@@ -6,7 +6,6 @@ use num_complex::Complex64;
 
 use super::relaxing_panel::Relaxing;
 use super::{CoreModulus, PanelWithEffects};
-use crate::structure::Motion;
 use crate::{ModelError, Place};
 
 /// From forces at some places to the accelerations at others.
@@ -53,7 +52,7 @@ impl RelaxingLines {
             if inside(i) && inside(j) { shear[(i - rigid, j - rigid)] } else { 0.0 }
         });
         let seen = |place: &Place| -> Result<Vec<f64>, ModelError> {
-            let row = panel.values_in((Motion::Deflection, *place))?;
+            let row = panel.values_in(panel.port(*place))?;
             Ok(kept.iter().map(|&i| row.get(i).map_or(0.0, |value| scale(i) * value)).collect())
         };
         let pushed = forces.iter().map(seen).collect::<Result<Vec<Vec<f64>>, ModelError>>()?;

@@ -11,7 +11,7 @@ use super::{CoreFit, CoreModulus, CoupledMode, ElementLaw};
 use crate::block_pencil::BlockPencil;
 use crate::dense::{Cholesky, dot, product, symmetric_eigen};
 use crate::order::sorted;
-use crate::structure::{Motion, Structure};
+use crate::structure::Structure;
 use crate::{ModelError, Place, SymmetricMatrix};
 
 /// A panel on shapes that stay good while its core relaxes, at its low modulus.
@@ -37,7 +37,7 @@ impl Relaxing {
         let mut system = System::without_elements(&modified.low, parts.damping);
         let of_elements: Vec<Row> = elements.iter().filter_map(row).collect();
         let mut seats: Vec<Row> = Vec::new();
-        for seat in of_elements.iter().copied().chain(ports.iter().map(|port| (Motion::Deflection, *port))) {
+        for seat in of_elements.iter().copied().chain(modified.ports(ports)) {
             seats.extend((!seats.contains(&seat)).then_some(seat));
         }
         let rigid = panel.rigid();

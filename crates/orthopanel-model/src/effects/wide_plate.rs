@@ -1,6 +1,6 @@
 //! The plate in place of the beam, on a few shapes of its own.
 
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use faer::Mat;
 
@@ -8,6 +8,7 @@ use super::known::{Known, known_or};
 use super::low_modes::LowModes;
 use super::row::{Row, SharedStructure};
 use crate::mindlin_plate::Membrane;
+use crate::reduced_structure::{KnownRow, known_row, rows_at};
 use crate::ritz_modes::ritz_modes;
 use crate::structure::{Block, Motion, Structure};
 use crate::{BeamConstants, Boundary, Constant, ExactBeam, MindlinPlate, ModelError, Piece, Place, ReducedStructure};
@@ -19,6 +20,7 @@ type Ratios = [f64; 6];
 struct RatioPlate {
     plate: MindlinPlate,
     membrane: Option<Membrane>,
+    rows: Vec<KnownRow>,
 }
 
 const RATIO_CONSTANTS: [Constant; 6] = [
@@ -61,7 +63,7 @@ impl Structure for RatioPlate {
     }
 
     fn motion_row(&self, block: usize, motion: Motion, place: Place) -> Option<Vec<f64>> {
-        self.plate.motion_row(block, motion, place)
+        known_row(&self.rows, block, (motion, place)).or_else(|| self.plate.motion_row(block, motion, place))
     }
 
     fn static_remainder(&self, values: &[f64], motions: [(Motion, Place); 2]) -> Option<f64> {
@@ -106,6 +108,8 @@ pub(super) struct WidePlates {
     /// Whether nothing else is of interest than what is seen on the centre line.
     is_on_centre_line: bool,
     known: Mutex<Vec<(Cell, WidePlate)>>,
+    /// Whole bases, each of another size.
+    wholes: Mutex<Vec<Arc<RatioPlate>>>,
     /// By the values, and whether they are those of the whole basis.
     low: Known<(Vec<f64>, bool), LowModes>,
 }
@@ -119,8 +123,10 @@ type Cell = [i32; 6];
 const CELL: f64 = 0.05;
 /// Its width in the logarithm of $E_x$: where all moduli rise alike, shapes stay.
 const SCALE: f64 = 0.3;
-/// Plates that are kept.
-const KEPT: usize = 24;
+/// Plates that are kept: what each has of its own is a tenth of the whole basis, which they share.
+const KEPT: usize = 256;
+/// Sizes of whole bases that are kept.
+const SIZES: usize = 4;
 /// Parts of the beam's highest summed frequency (2.5 times the highest line): modes below the first are summed, those below
 /// the second stand in the space besides, the rest as what forces at the places do. With modes to 1.5 times the highest line summed
 /// (0.6, 0.8), lines of little noise (0.1 %) were missed by up to twice it; with those to 2.25 and 3 times no less is missed than so.
@@ -131,12 +137,20 @@ impl WidePlates {
     /// On the centre line nothing is seen of what is odd across: of a plate that nothing off it touches that is left out.
     pub(super) fn new(piece: Piece, boundary: Boundary, places: Vec<Place>, touched_anywhere: bool) -> Self {
         let is_on_centre_line = !touched_anywhere && places.iter().all(|place| place.y == 0.0);
-        Self { piece, boundary, places, is_on_centre_line, known: Mutex::new(vec![]), low: Mutex::default() }
+        Self {
+            piece,
+            boundary,
+            places,
+            is_on_centre_line,
+            known: Mutex::default(),
+            wholes: Mutex::default(),
+            low: Mutex::default(),
+        }
     }
 
     /// Whether the shapes of these plates hold what a force on a row does.
     pub(super) fn know(&self, (motion, place): Row) -> bool {
-        motion == Motion::Deflection && self.places.contains(&place)
+        matches!(motion, Motion::Deflection | Motion::Foot) && self.places.contains(&place)
     }
 
     /// The lowest modes of a plate, on its few shapes or on its whole basis.
@@ -187,6 +201,20 @@ impl WidePlates {
         Ok(plate)
     }
 
+    /// A plate on a basis, the same for all that have one of its size.
+    fn shared(&self, plate: MindlinPlate) -> Arc<RatioPlate> {
+        let size = |plate: &MindlinPlate| (plate.terms(), plate.resolved_modes());
+        let mut wholes = self.wholes.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(whole) = wholes.iter().find(|whole| size(&whole.plate) == size(&plate)) {
+            return Arc::clone(whole);
+        }
+        let rows = rows_at(&plate, &self.places);
+        let whole = Arc::new(RatioPlate { membrane: plate.membrane(), plate, rows });
+        wholes.truncate(SIZES - 1);
+        wholes.insert(0, Arc::clone(&whole));
+        whole
+    }
+
     fn at(&self, values: Ratios, summed: Summed) -> Result<WidePlate, ModelError> {
         let Self { piece, boundary, .. } = self;
         let [e_x, g_zx, ..] = values;
@@ -211,8 +239,8 @@ impl WidePlates {
             plate = plate.only_with_nodes(&[[0, 0], [1, 0]]);
             nodes.retain(|[_, across]| across % 2 == 0);
         }
-        let count = nodes.len().clamp(1, plate.resolved_modes().max(1));
-        let whole = Arc::new(RatioPlate { membrane: plate.membrane(), plate });
+        let whole = self.shared(plate);
+        let count = nodes.len().clamp(1, whole.resolved_modes().max(1));
         let reduced = ReducedStructure::answering(Arc::clone(&whole), &values, count, &self.places)?;
         let modes = ritz_modes(&reduced, &values, count)?;
         let limit = SUMMED * top * std::f64::consts::TAU;

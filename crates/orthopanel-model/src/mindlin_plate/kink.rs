@@ -9,6 +9,14 @@
 //! $$\Delta R = \sum_mv_m(y)v_m(y')\big[G(x,x';a_m)-G_n(x,x';a_m)\big]$$
 //! with $G$ its exact answer, a product of hyperbolic functions, and $G_n$ that of the series along x.
 //!
+//! Under the force itself the sum over $m$ has no end: a point on a membrane gives way without limit, with the logarithm of the number of functions
+//! across. What stands on a panel has a foot. With the exact functions across, $\sqrt{2/b}\cos k_my$ and the like, a force on a square of side $d$
+//! moves the mean deflection there by
+//! $$R(0) = \sum_m\frac{v_m^2(y)}{2A_{55}\kappa_m}\left(\frac{\sin k_md/2}{k_md/2}\right)^2f(\kappa_md),\qquad
+//! f(u) = 2\,\frac{u-1+e^{-u}}{u^2},\qquad\kappa_m = \sqrt{a_m/A_{55}},$$
+//! which replaces what the basis has of this sum where both motions are the same [`Motion::Foot`], with what comes back once from either end. A force of a hammer keeps its point: ports are seen from
+//! afar.
+//!
 //! Limits: the rotation $\psi_x$ is taken as held in the waves that the series lacks, which leaves
 //! $A_{55}/D_{11}k_x^2$ of $\Delta R$.
 
@@ -32,6 +40,9 @@ pub(crate) struct Membrane {
     /// Which of these each mode across has.
     along_of: Vec<usize>,
     across: Modes,
+    /// Half the width \[m\], and what holds the edges at either end of it.
+    half_width: f64,
+    sides: [End; 2],
 }
 
 /// $\int f'g'$ and $\int fg$ made diagonal.
@@ -86,13 +97,19 @@ type Side = (usize, f64);
 impl Membrane {
     /// `None` where the basis has no such modes. `lengths` is how many functions along x each one across has: rising modes across
     /// are taken to have those of its functions in order.
-    pub(super) fn new([x, y]: &[EdgeBasis; 2], half_length: f64, ends: [End; 2], lengths: &[usize]) -> Option<Self> {
+    pub(super) fn new(
+        [x, y]: &[EdgeBasis; 2],
+        [half_length, half_width]: [f64; 2],
+        [ends, sides]: [[End; 2]; 2],
+        lengths: &[usize],
+    ) -> Option<Self> {
         let returned = ends.map(|end| if end == End::Free { 1.0 } else { -1.0 });
         let mut counts = sorted(lengths.to_vec(), |&count| count as f64);
         counts.dedup();
         let along = counts.iter().map(|&count| Modes::of(x, count)).collect::<Option<Vec<_>>>()?;
         let along_of = lengths.iter().map(|length| counts.partition_point(|count| count < length)).collect();
-        Some(Self { half_length, returned, along, along_of, across: Modes::of(y, y.count(Field::Deflection))? })
+        let across = Modes::of(y, y.count(Field::Deflection))?;
+        Some(Self { half_length, returned, along, along_of, across, half_width, sides })
     }
 
     /// $\Delta R$ between two motions; `None` for a rotation, which has no kink.
@@ -102,7 +119,8 @@ impl Membrane {
         stiffnesses: [f64; 3],
         [first, second]: [(Motion, crate::Place); 2],
     ) -> Option<f64> {
-        Some(self.between(stiffnesses, &self.end(bases, first)?, &self.end(bases, second)?))
+        let kink = self.between(stiffnesses, &self.end(bases, first)?, &self.end(bases, second)?);
+        Some(if is_foot(first, second) { kink + self.under_foot(bases, stiffnesses, first.1) } else { kink })
     }
 
     /// The same between any two motions of a list; zero for a rotation.
@@ -118,6 +136,9 @@ impl Membrane {
             for (q, second) in ends.iter().enumerate().skip(p) {
                 let (Some(first), Some(second)) = (first, second) else { continue };
                 kinks[(p, q)] = self.between(stiffnesses, first, second);
+                if is_foot(motions[p], motions[q]) {
+                    kinks[(p, q)] += self.under_foot(bases, stiffnesses, motions[p].1);
+                }
                 kinks[(q, p)] = kinks[(p, q)];
             }
         }
@@ -134,10 +155,44 @@ impl Membrane {
         self.across.slopes.iter().enumerate().map(lacking).sum()
     }
 
+    /// What the functions across lack under a foot at a place.
+    fn under_foot(&self, bases: &[EdgeBasis; 2], stiffnesses: [f64; 3], place: crate::Place) -> f64 {
+        let [_, a_55, _] = stiffnesses;
+        let kappa = |nu: f64| (self.foundation(nu, stiffnesses) / a_55).sqrt();
+        // What comes back from either end doubles the answer at a free one, and takes it away at a held one.
+        let returned = |kappa: f64| {
+            let [left, right] = self.returned;
+            let h = self.half_length;
+            1.0 + left * (-2.0 * kappa * (h + place.x)).exp() + right * (-2.0 * kappa * (h - place.x)).exp()
+        };
+        let seen = self.across.at(&bases[1].values_at(Field::Deflection, place.y));
+        let basis =
+            seen.iter().zip(&self.across.slopes).map(|(value, nu)| value * value / kappa(*nu) * returned(kappa(*nu)));
+        let held = self.sides.map(|end| end != End::Free);
+        // Half-waves of the first function across.
+        let first = match held {
+            [false, false] => 0.0,
+            [true, true] => 1.0,
+            _ => 0.5,
+        };
+        let width = 2.0 * self.half_width;
+        let from_edge = place.y + self.half_width;
+        let count = (FINEST * width / FOOT).ceil() as usize;
+        let exact = (0..count).map(|m| {
+            let wave_number = std::f64::consts::PI * (m as f64 + first) / width;
+            let shape = if held[0] { (wave_number * from_edge).sin() } else { (wave_number * from_edge).cos() };
+            let square = if wave_number == 0.0 { 1.0 / width } else { 2.0 / width * shape * shape };
+            let (half, kappa) = (0.5 * wave_number * FOOT, kappa(wave_number * wave_number));
+            let mean = if half > 0.0 { (half.sin() / half).powi(2) } else { 1.0 };
+            square * mean * mean_of_decay(kappa * FOOT) / kappa * returned(kappa)
+        });
+        (exact.sum::<f64>() - basis.sum::<f64>()) / (2.0 * a_55)
+    }
+
     /// A motion as the membrane's modes see it.
     fn end(&self, [x, y]: &[EdgeBasis; 2], (motion, place): (Motion, crate::Place)) -> Option<Seen> {
         let (order, values) = match motion {
-            Motion::Deflection => (0, x.values_at(Field::Deflection, place.x)),
+            Motion::Deflection | Motion::Foot => (0, x.values_at(Field::Deflection, place.x)),
             Motion::Slope => (1, x.slopes_at(Field::Deflection, place.x)),
             Motion::SlopeAcross | Motion::Rotation | Motion::Curvature | Motion::Shear(_) => return None,
         };
@@ -186,6 +241,21 @@ impl Membrane {
         let both = if left.1 == right.1 { 0.5 * (value(left, right) + value(right, left)) } else { value(left, right) };
         both / (2.0 * a_55 * kappa * (1.0 - from_left * from_right * (-4.0 * kappa * h).exp()))
     }
+}
+
+/// Side of what stands on a panel \[m\]: a stud, an accelerometer. Twice as much changes $R(0)$ by $\ln2/2\pi\sqrt{A_{44}A_{55}}$.
+const FOOT: f64 = 0.01;
+/// Half-waves over a foot up to which functions across count.
+const FINEST: f64 = 6.0;
+
+/// Whether both are the mean deflection of one foot.
+fn is_foot(first: (Motion, crate::Place), second: (Motion, crate::Place)) -> bool {
+    first == second && first.0 == Motion::Foot
+}
+
+/// Mean of $e^{-|x-x'|\kappa}$ over a stretch of $u/\kappa$ for both.
+fn mean_of_decay(u: f64) -> f64 {
+    if u < 1e-3 { 1.0 - u / 3.0 } else { 2.0 * (u - 1.0 + (-u).exp()) / (u * u) }
 }
 
 /// Foundation of the membrane at least, beside $A_{55}/h^2$.

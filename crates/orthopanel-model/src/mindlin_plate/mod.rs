@@ -255,11 +255,12 @@ impl MindlinPlate {
 impl MindlinPlate {
     /// What tells the kinks that this basis lacks; `None` where its functions cannot be told apart.
     pub(crate) fn membrane(&self) -> Option<Membrane> {
-        let Boundary { left, right, .. } = self.boundary;
+        let Boundary { left, right, front, back } = self.boundary;
         let counts = [0, 1].map(|axis| self.along[axis].count(Field::Deflection));
         let length = |j: usize| (0..counts[0]).filter(|&i| self.products.hold([i, j], counts)).count();
         let lengths: Vec<usize> = (0..counts[1]).map(length).collect();
-        Membrane::new(&self.along, 0.5 * self.piece.length, [left, right], &lengths)
+        let Piece { length, width, .. } = self.piece;
+        Membrane::new(&self.along, [0.5 * length, 0.5 * width], [[left, right], [front, back]], &lengths)
     }
 
     /// What the basis lacks of the static flexibility between two motions; `None` for a rotation, which has no kink.
@@ -305,7 +306,7 @@ impl Structure for MindlinPlate {
 
     fn motion_row(&self, block: usize, motion: Motion, place: Place) -> Option<Vec<f64>> {
         Some(match motion {
-            Motion::Deflection => self.row(block, Field::Deflection, [0, 0], place),
+            Motion::Deflection | Motion::Foot => self.row(block, Field::Deflection, [0, 0], place),
             Motion::Slope => self.row(block, Field::Deflection, [1, 0], place),
             Motion::SlopeAcross => self.row(block, Field::Deflection, [0, 1], place),
             Motion::Rotation => self.row(block, Field::RotationX, [0, 0], place),

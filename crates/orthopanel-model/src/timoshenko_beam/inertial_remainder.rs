@@ -104,7 +104,7 @@ impl InertialRemainder {
         let t = x / self.half_length;
         let values = legendre(self.last() + 2, t);
         let g = |n: usize| match motion {
-            Motion::Deflection => Some(0.5 * (values[n + 1] - values[n - 1])),
+            Motion::Deflection | Motion::Foot => Some(0.5 * (values[n + 1] - values[n - 1])),
             Motion::Slope => Some((n as f64 + 0.5) * values[n] / self.half_length),
             Motion::Rotation | Motion::Curvature | Motion::SlopeAcross | Motion::Shear(_) => None,
         };

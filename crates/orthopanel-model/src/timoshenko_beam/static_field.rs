@@ -26,7 +26,7 @@ impl StaticField {
     /// of slope and curvature are the derivatives of these two by the place.
     pub(super) fn of_load(motion: Motion, at: f64) -> Self {
         let (step, peak) = match motion {
-            Motion::Deflection => ([0.0, -1.0], [0.0; 2]),
+            Motion::Deflection | Motion::Foot => ([0.0, -1.0], [0.0; 2]),
             Motion::Slope => ([1.0, 0.0], [0.0, 1.0]),
             Motion::Rotation => ([-1.0, 0.0], [0.0; 2]),
             Motion::Curvature => ([0.0; 2], [1.0, 0.0]),

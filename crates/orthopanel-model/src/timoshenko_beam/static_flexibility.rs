@@ -92,7 +92,7 @@ impl StaticFlexibility {
         let turning_inertia = |pivot: f64| 2.0 * h * (mass * (h * h / 3.0 + pivot * pivot) + rotary_inertia);
         // Work of the load on w = 1 and on the turning w = x, ψ = −1.
         let (pushes, turns) = match motion {
-            Motion::Deflection => (1.0, at),
+            Motion::Deflection | Motion::Foot => (1.0, at),
             Motion::Slope => (0.0, 1.0),
             Motion::Rotation => (0.0, -1.0),
             Motion::Curvature | Motion::SlopeAcross | Motion::Shear(_) => (0.0, 0.0),

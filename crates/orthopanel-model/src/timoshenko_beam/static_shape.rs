@@ -290,7 +290,7 @@ impl Grid {
             .unwrap_or_else(|next| next.min(self.joints.len() - 1));
         let [w, psi, strain] = shape.at_joints[joint];
         match motion {
-            Motion::Deflection => w,
+            Motion::Deflection | Motion::Foot => w,
             Motion::Slope => strain - psi,
             Motion::Rotation => psi,
             Motion::Curvature | Motion::SlopeAcross | Motion::Shear(_) => 0.0,

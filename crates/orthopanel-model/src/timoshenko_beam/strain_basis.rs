@@ -45,7 +45,7 @@ impl StrainFunction {
         let sum = |series: &[f64]| dot_of_common(series, polynomials);
         let [shear, deflection] = self.step.map_or([0.0; 2], |step| step.at(t, half_length));
         match motion {
-            Motion::Deflection => sum(&self.deflection) + deflection,
+            Motion::Deflection | Motion::Foot => sum(&self.deflection) + deflection,
             Motion::Slope => sum(&self.shear) + shear - sum(&self.rotation),
             Motion::Rotation => sum(&self.rotation),
             Motion::Curvature => sum(&self.curvature),

@@ -4,10 +4,9 @@
 //! window has them, $A(s) = H(s)F(s)$ on every line of the record. What else the record holds is left out of all alike.
 
 use num_complex::Complex64;
-use orthopanel_data::{Hit, TimeHistory};
+use orthopanel_data::{Hit, TimeHistory, Transforms};
 use orthopanel_identify::AcceleranceFit;
 use orthopanel_model::Place;
-use realfft::RealFftPlanner;
 
 /// A line stands at a whole multiple of the record's resolution, to this part of it.
 const ON_LINE: f64 = 1e-3;
@@ -48,13 +47,12 @@ impl HitsWithEffects {
         };
         let (base_lines, with_lines) = (lines(base)?, lines(with)?);
         let hits = history.hits.iter().zip(kept).filter(|(_, kept)| **kept);
-        let misfits: Option<Vec<[f64; 2]>> = hits
+        let misfits: Vec<[f64; 2]> = hits
             .map(|(hit, _)| {
-                let [force, motion] = spectra(hit, with.decay_rate / history.rate)?;
-                Some([&base_lines, &with_lines].map(|model| misfit(&force, &motion, model, samples)))
+                let [force, motion] = spectra(hit, with.decay_rate / history.rate);
+                [&base_lines, &with_lines].map(|model| misfit(&force, &motion, model, samples))
             })
             .collect();
-        let misfits = misfits?;
         let rms = |of: usize| {
             (misfits.iter().map(|misfit| misfit[of] * misfit[of]).sum::<f64>() / misfits.len().max(1) as f64).sqrt()
         };
@@ -72,15 +70,12 @@ impl HitsWithEffects {
 }
 
 /// Transforms of force and acceleration, both faded by this much a sample.
-fn spectra(hit: &Hit, fading: f64) -> Option<[Vec<Complex64>; 2]> {
-    let transform = RealFftPlanner::<f64>::new().plan_fft_forward(hit.force.len());
-    let of = |samples: &[f64]| {
+fn spectra(hit: &Hit, fading: f64) -> [Vec<Complex64>; 2] {
+    let mut transforms = Transforms::default();
+    [&hit.force, &hit.acceleration].map(|samples| {
         let faded = samples.iter().enumerate().map(|(n, value)| value * (-fading * n as f64).exp());
-        let (mut faded, mut lines) = (faded.collect::<Vec<_>>(), transform.make_output_vec());
-        transform.process(&mut faded, &mut lines).ok()?;
-        Some(lines)
-    };
-    Some([of(&hit.force)?, of(&hit.acceleration)?])
+        transforms.lines(faded.collect())
+    })
 }
 
 /// Rms of what the model leaves of the acceleration on its lines, over the peak of that \[%\].
@@ -95,12 +90,7 @@ fn misfit(force: &[Complex64], motion: &[Complex64], model: &[(usize, Complex64)
         *measured = motion;
         left += 2.0 * (motion - value * force).norm_sqr();
     }
-    let back = RealFftPlanner::<f64>::new().plan_fft_inverse(samples);
-    let mut signal = back.make_output_vec();
-    // The first and the last line of a real signal are real; the trace uses neither.
-    if back.process(&mut measured, &mut signal).is_err() {
-        return f64::NAN;
-    }
+    let signal = Transforms::default().samples(measured, samples);
     let peak = signal.iter().fold(0.0_f64, |peak, value| peak.max(value.abs()));
     // Parseval: the mean square of a signal is that of its lines over the samples, and both stand unscaled.
     100.0 * left.sqrt() / peak

@@ -220,7 +220,7 @@ impl BeamMode {
     pub(crate) fn motion(&self, (motion, x): (Motion, f64)) -> f64 {
         let [deflection, rotation, curvature, strain] = self.field(x);
         match motion {
-            Motion::Deflection => deflection,
+            Motion::Deflection | Motion::Foot => deflection,
             Motion::Slope => strain - rotation,
             Motion::Rotation => rotation,
             Motion::Curvature => curvature,
