@@ -120,6 +120,9 @@ pub(crate) struct ErrorColumns {
 /// The power of $\tau_k$ that a column goes with: one, or two where it is of second order.
 type Power = u8;
 
+/// A column with its kind: places and values that are not zero.
+type Column = ((usize, Power), Vec<(usize, f64)>);
+
 /// $\ln\tau_k$ of every kind at its median.
 pub(crate) fn medians() -> [f64; KINDS] {
     PRIORS.map(|(_, median, _)| median.ln())
@@ -170,7 +173,7 @@ pub(crate) fn waves(predictor: &Predictor, constants: &[f64], effects: &[EffectS
 /// $\theta$ the share of $\phi_m$ in $\delta\psi_n$:
 /// $$\frac{\delta\lambda_n}{\lambda_n} = \frac{\lambda_nc_{nm}^2}{(\lambda_n-\bar\lambda_n)(\lambda_n-\lambda_m)(\lambda_n-\bar\lambda_m)}\ ,\qquad
 /// \delta(\psi_n\psi_n^T) = \theta^2(\phi_m\phi_m^T-\phi_n\phi_n^T) .$$
-fn couplings(comparison: &Comparison, at: &Prediction) -> Vec<((usize, Power), Vec<(usize, f64)>)> {
+fn couplings(comparison: &Comparison, at: &Prediction) -> Vec<Column> {
     let measured = comparison.measured;
     let pole = |n: usize| at.partners.iter().find_map(|record| record[n]).map(|partner| partner.pole);
     let flexible: Vec<usize> = (0..measured.poles.len()).filter(|&n| !at.hangs[n] && pole(n).is_some()).collect();
@@ -242,7 +245,7 @@ fn coupled(damping: f64, pole: Complex64, other: Complex64) -> [Complex64; 2] {
 impl ErrorColumns {
     /// About a prediction; `waves` as [`waves()`] finds them.
     pub(crate) fn about(comparison: &Comparison, at: &Prediction, waves: &Waves) -> Self {
-        let mut columns: Vec<((usize, Power), Vec<(usize, f64)>)> = Vec::new();
+        let mut columns: Vec<Column> = Vec::new();
         let first_order = |kind: Kind| (kind as usize, 1);
         let measured = comparison.measured;
         // A list that tells no noise has it in the same size.
