@@ -8,7 +8,7 @@ use crate::answer::{answer, answer_of_lists, without_repeats};
 use crate::entry::records_alone;
 use crate::inference::{is_record, refuse_several};
 use crate::outcome::{Progress, Tracing, Verdict};
-use crate::to_check::to_check;
+use crate::to_check::{times_the_noise, to_check};
 use crate::{IdentifyError, Settings, identify};
 
 /// Names the effect that the base model of a test lacks, from its records or its natural frequencies. Effects that the test
@@ -121,7 +121,7 @@ fn beside_identify(
             found.error.after = found.error.before;
             found.chi_square = found.error.after.fitted.powi(2);
             found.accelerances.clone_from(&found.base_accelerances);
-            found.next_experiment = to_check(test, found.error.after.fitted);
+            found.next_experiment = to_check(test, &times_the_noise(found.error.after.fitted));
         }
         found.effects.clear();
         found.removed.clear();

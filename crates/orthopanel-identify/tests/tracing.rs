@@ -113,8 +113,9 @@ fn val_what_no_effect_makes_stays_unexplained() {
     let Some((test, _)) = made_with(&folder.path().join("set"), "outside", "softening-core", 1000) else { return };
     let found = trace(&test).unwrap();
     assert_eq!(found.verdict, Verdict::Unexplained, "{:?}", found.effects);
-    let misses = found.model_error.expect("modes");
-    assert!(misses.frequency > 1e-2, "no more than real panels miss: {misses:?}");
+    assert!(found.effects.is_empty() && found.alternatives.is_empty(), "{:?}", found.effects);
+    // The plate of a wide panel meets all resonances but one, which is none of its modes.
+    assert!(found.next_experiment.contains(" Hz is no mode of this model"), "{}", found.next_experiment);
     // No place or mass parts what does not fit: what may be wrong is to be looked at.
     assert!(found.next_experiment.contains("check the sizes and their units"), "{}", found.next_experiment);
 }

@@ -6,14 +6,16 @@ use orthopanel_model::{EffectState, ModelError, Place, RecordSetting, SENSOR_MAS
 use rayon::prelude::*;
 
 use super::estimates::id;
+use super::weighed::no_mode;
 use crate::comparison::Comparison;
+use crate::judge::without_mode;
 use crate::measured::{MeasuredModes, MeasuredRecord};
 use crate::model_error::{ErrorColumns, waves};
 use crate::outcome::Verdict;
 use crate::posterior::Judged;
 use crate::predicted::Predictor;
 use crate::search::Inquiry;
-use crate::to_check::to_check;
+use crate::to_check::{times_the_noise, to_check};
 
 /// Places tried along a beam, and along either side of a plate.
 const PLACES: usize = 17;
@@ -45,7 +47,10 @@ pub(super) fn next_measurement(
     };
     match verdict {
         Verdict::NothingMissing => "none: the base model meets the measured modes".to_owned(),
-        Verdict::Unexplained => to_check(test, left),
+        Verdict::Unexplained => match without_mode(chosen, &inquiry.stacked).first() {
+            Some(stranger) => to_check(test, &no_mode(test, stranger)),
+            None => to_check(test, &times_the_noise(left)),
+        },
         _ if !rivals.is_empty() => parting(inquiry, chosen, rivals),
         _ => match all.iter().find(is_other) {
             Some(nearest) => format!("to be surer still: {}", parting(inquiry, chosen, &[nearest])),

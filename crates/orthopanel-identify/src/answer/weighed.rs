@@ -32,6 +32,12 @@ fn of_piece(test: &ImpactTest, piece: usize) -> String {
     if test.pieces.len() > 1 { format!(" of piece {}", test.pieces[piece].name) } else { String::new() }
 }
 
+/// What is said of a pole that no mode of the model is.
+pub(super) fn no_mode(test: &ImpactTest, (piece, pole): &(usize, Pole)) -> String {
+    let of = of_piece(test, *piece);
+    format!("the resonance at {:.1} Hz{of} is no mode of this model", pole.angular_frequency / TAU)
+}
+
 impl<'a> Weighed<'a> {
     /// # Errors
     /// [`IdentifyError::TooFewResonances`] where there is no hypothesis.
@@ -77,13 +83,8 @@ impl<'a> Weighed<'a> {
 
     pub(super) fn notes(&self, inquiry: &Inquiry, test: &ImpactTest, estimates: &Estimates) -> Vec<String> {
         let measured = inquiry.measured();
-        let is_no_mode = |(piece, pole): (usize, Pole)| {
-            let frequency = pole.angular_frequency / TAU;
-            let of = of_piece(test, piece);
-            format!(
-                "the resonance at {frequency:.1} Hz{of} is no mode of this model: something swings there that it does not hold"
-            )
-        };
+        let is_no_mode =
+            |of: (usize, Pole)| format!("{}: something swings there that it does not hold", no_mode(test, &of));
         let mut notes: Vec<String> = without_mode(self.chosen, &inquiry.stacked).into_iter().map(is_no_mode).collect();
         notes.extend(self.doubts.iter().map(|doubt| doubt.sentence.clone()));
         notes.extend(self.near.iter().map(|rival| self.standing(rival)));
