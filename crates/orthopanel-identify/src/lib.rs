@@ -51,7 +51,7 @@ pub use known_beforehand::PriorContradiction;
 pub use matching::ModeMatch;
 pub use measured::{MeasuredModes, MeasuredRecord, Pole, measured_modes};
 pub use outcome::{
-    Candidate, EstimatedModelError, FittedError, NotTested, Progress, Removed, TracedEffect, TracedError,
+    Candidate, Detectable, EstimatedModelError, FittedError, NotTested, Progress, Removed, TracedEffect, TracedError,
     TracedParameter, Tracing, Verdict,
 };
 pub use settings::{PaperWeights, Search, Settings};

@@ -50,6 +50,8 @@ pub struct Tracing {
     pub not_tested: Vec<NotTested>,
     /// The measurement that would part the alternatives best, with what it is expected to show.
     pub next_experiment: String,
+    /// The smallest disbond that the test would show; `None` where none is looked for, and where one was found.
+    pub detectable: Option<Detectable>,
     /// Misfit per datum of the model with the effects, in units of the noise: near 1 where nothing is left.
     pub chi_square: f64,
     /// Each piece with the effects that belong to it, without those of rig and measuring chain.
@@ -174,6 +176,23 @@ pub struct Candidate {
     pub held_out: f64,
     /// What was found of the effects.
     pub effects: Vec<TracedEffect>,
+}
+
+/// From which size on a disbond would be named, to first order about the model with the effects.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Detectable {
+    /// Its id in the catalogue.
+    pub effect: &'static str,
+    /// Part of the shear stiffness that it loses \[1\].
+    pub loss: f64,
+    /// Side \[m\] from which on it shows at half of the places that were looked at, on a beam its length; `None` where it does at fewer.
+    pub at_half_of_the_places: Option<f64>,
+    /// The same at all of them.
+    pub anywhere: Option<f64>,
+    /// How many places were looked at.
+    pub places: usize,
+    /// Largest side that was looked at \[m\].
+    pub most: f64,
 }
 
 /// An effect that was not tested.

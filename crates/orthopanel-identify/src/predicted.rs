@@ -22,8 +22,8 @@ const ABOVE: f64 = 1.3;
 const APART: [f64; 2] = [0.06, 0.015];
 /// The same of the piece as a whole on its suspension.
 const HANGING_APART: f64 = 0.25;
-/// Amplitude of a wave of unevenness from which its derivative is taken.
-const WAVE_STEP: f64 = 1e-5;
+/// Step along a change of modes from which its derivative is taken: of a wave of unevenness, of a foot.
+const SHIFT: f64 = 1e-5;
 /// Times the highest frequency of the piece as a whole from which on a remainder is that of a free piece but for small terms.
 const CLEAR_OF_HANGING: f64 = 3.0;
 /// Sets of modes that are kept.
@@ -63,6 +63,8 @@ pub(crate) struct Prediction {
     /// The same by the place of the force of all records, and of the response \[1/m\], along x and along y: zeros where no record tells.
     pub by_force: [Vec<f64>; 2],
     pub by_response: [Vec<f64>; 2],
+    /// The same by the logarithm of the side of the feet on which masses stand on a plate; `None` without any.
+    pub by_foot: Option<Vec<f64>>,
     /// Direction of each pole's residues in the complex plane, where all differ by sign alone.
     pub phase: Vec<Complex64>,
     /// Of each record and pole what a residue of size one, along the phase, brings to the remainder at each of its frequencies.
@@ -314,7 +316,22 @@ impl<'a> Predictor<'a> {
             let places = if is_plate { across(self.piece()) } else { vec![] };
             views.push(self.view(&self.setting, &places, false, constants, effects)?);
         }
-        Ok(self.compared(&channels, &Views { places, views }))
+        let seen = Views { places, views };
+        let mut at = self.compared(&channels, &seen);
+        at.by_foot = self.by_foot(&channels, &seen, &at.values);
+        Ok(at)
+    }
+
+    fn by_foot(&self, channels: &[Channel], seen: &Views, values: &[f64]) -> Option<Vec<f64>> {
+        if seen.views.iter().all(|view| view.modes.by_foot.is_none()) {
+            return None;
+        }
+        let moved = |View { of, ports, modes, .. }: &View| {
+            let modes = modes.by_foot.as_ref().map_or_else(|| Arc::clone(modes), |by| Arc::new(shifted(modes, by)));
+            View { of: *of, ports: ports.clone(), modes, relaxing: None }
+        };
+        let moved = Views { places: seen.places.clone(), views: seen.views.iter().map(moved).collect() };
+        Some(by_shift(&self.compared(channels, &moved).values, values))
     }
 
     /// Derivatives of all values by the amplitudes of waves of a field that is uneven along the panel, at these constants, of effects with those of the
@@ -339,15 +356,7 @@ impl<'a> Predictor<'a> {
             self.compared(&channels, &Views { places: places.clone(), views: vec![view] }).values
         };
         let at = values_of(even.clone());
-        let derivative = |by: SeenModes| {
-            let mut moved = even.clone();
-            let shift = |value: &mut f64, by: &f64| *value += WAVE_STEP * by;
-            moved.angular_frequency.iter_mut().zip(&by.angular_frequency).for_each(|(value, by)| shift(value, by));
-            for (mode, by) in moved.deflection.iter_mut().zip(&by.deflection) {
-                mode.iter_mut().zip(by).for_each(|(value, by)| shift(value, by));
-            }
-            values_of(moved).iter().zip(&at).map(|(moved, at)| (moved - at) / WAVE_STEP).collect()
-        };
+        let derivative = |by: SeenModes| by_shift(&values_of(shifted(&even, &by)), &at);
         let by_waves = self.panel.uneven(&setting, &self.places, constants, (field, waves))?;
         Ok(by_waves.into_iter().map(derivative).collect())
     }
@@ -500,6 +509,7 @@ impl<'a> Predictor<'a> {
             values,
             by_force: [force_x, force_y],
             by_response: [response_x, response_y],
+            by_foot: None,
             phase,
             brings,
             partners: in_records,
@@ -512,6 +522,20 @@ impl<'a> Predictor<'a> {
             near_hanging,
         }
     }
+}
+
+/// Modes a step on along a change.
+fn shifted(modes: &SeenModes, by: &SeenModes) -> SeenModes {
+    let mut moved = modes.clone();
+    let shift = |values: &mut [f64], by: &[f64]| values.iter_mut().zip(by).for_each(|(value, by)| *value += SHIFT * by);
+    shift(&mut moved.angular_frequency, &by.angular_frequency);
+    moved.deflection.iter_mut().zip(&by.deflection).for_each(|(mode, by)| shift(mode, by));
+    moved
+}
+
+/// What values follow along that change.
+fn by_shift(moved: &[f64], at: &[f64]) -> Vec<f64> {
+    moved.iter().zip(at).map(|(moved, at)| (moved - at) / SHIFT).collect()
 }
 
 /// Places on the centre line, each before the one beside it on an edge: a mode that bends across or twists has not the same sign in both.

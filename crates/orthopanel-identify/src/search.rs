@@ -1,5 +1,6 @@
 //! Hypotheses: nothing missing, each effect, and more while the evidence grows.
 
+mod detectable;
 mod further_effect;
 mod in_lists;
 
@@ -12,13 +13,15 @@ use orthopanel_model::{
 };
 use rayon::prelude::*;
 
+use further_effect::Ranked;
+
 use crate::comparison::Comparison;
 use crate::free_constants::FreeConstants;
 use crate::hit_strength::{HitStrength, Springs};
 use crate::hypothesis::{Hypothesis, OF_PIECE, OF_RECORD, Part, Role, has_place, is_of_record};
 use crate::judge::ODDS;
 use crate::measured::MeasuredModes;
-use crate::model_error::{KINDS, medians, waves};
+use crate::model_error::{FOOT, KINDS, medians, waves};
 use crate::plate_start::PlateStart;
 use crate::posterior::{Judged, Point, Posterior, Problem};
 use crate::predicted::{Prediction, Predictor};
@@ -28,12 +31,12 @@ use crate::stacked::{Block, Stacked};
 /// $\ln\tau_k$ with which starts are judged: wide, so that far ones have a slope to follow.
 const LOOSE: [f64; KINDS] = [
     5e-3, 5e-2, 2e-2, 0.1, 1e-3, 5e-3, 5e-4, 5e-3, 5e-2, 0.2, 1e-2, 1e-2, 5e-3, 5e-3, 5e-3, 5e-3, 5e-3, 5e-3, 5e-3,
-    5e-3, 5e-3, 5e-3,
+    5e-3, 5e-3, 5e-3, FOOT,
 ];
 /// and from which the sizes are estimated: from the sizes of too poor a hypothesis effects drown.
 const SMALL: [f64; KINDS] = [
     3e-4, 2e-3, 1e-3, 3e-2, 8e-4, 3e-3, 4e-4, 3e-3, 1e-2, 5e-2, 4e-3, 4e-3, 3e-3, 1e-3, 2e-3, 2e-3, 1e-3, 5e-4, 1e-3,
-    1e-3, 5e-4, 3e-4,
+    1e-3, 5e-4, 3e-4, FOOT,
 ];
 /// Ratios $E/G$ at which the constants are looked for.
 const RATIOS: usize = 28;
@@ -288,12 +291,16 @@ impl<'a> Inquiry<'a> {
             .filter(|effect| !has(effect.id()) && is_new(effect.id()))
             .collect();
         self.progress.more(effects.len());
-        let added = |effect: &'static dyn Effect| {
-            let judged = self.with_effect(base, effect);
+        let ranked = |effect: &'static dyn Effect| (effect, self.ranked(base, effect));
+        let ranked: Vec<_> = effects.into_par_iter().map(ranked).collect();
+        let gains = ranked.iter().filter_map(|(_, ranked)| Some(ranked.as_ref()?.gain()));
+        let most = if self.is_plate() { gains.fold(0.0, f64::max) } else { 0.0 };
+        let added = |(effect, ranked): (&'static dyn Effect, Option<Ranked>)| {
+            let judged = ranked.and_then(|ranked| self.followed(base, ranked.without_minor(most)));
             self.progress.tried(effect.id());
             judged
         };
-        let mut judged: Vec<(Judged, bool)> = effects.into_par_iter().filter_map(added).collect();
+        let mut judged: Vec<(Judged, bool)> = ranked.into_par_iter().filter_map(added).collect();
         judged.sort_by(|(a, _), (b, _)| b.log_odds.total_cmp(&a.log_odds));
         let Some((best, _)) = judged.first() else { return vec![] };
         let best = (best.log_odds, best.posterior.log_sizes);

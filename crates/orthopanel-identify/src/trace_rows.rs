@@ -20,6 +20,8 @@ struct Rows<'a> {
     model_error: Option<ModelErrorRow>,
     candidates: Vec<CandidateRow<'a>>,
     not_tested: Vec<NotTestedRow<'a>>,
+    /// `null` where no disbond is looked for, and where one was found.
+    detectable: Option<DetectableRow>,
     removed: Vec<RemovedRow<'a>>,
     next_experiment: &'a str,
     notes: &'a [String],
@@ -67,6 +69,17 @@ struct ModelErrorRow {
 struct PairRow {
     fitted: f64,
     held_out: f64,
+}
+
+/// Sides \[m\], `null` where no disbond of the largest side shows.
+#[derive(Serialize)]
+struct DetectableRow {
+    effect: &'static str,
+    loss: f64,
+    at_half_of_the_places: Option<f64>,
+    anywhere: Option<f64>,
+    places: usize,
+    largest: f64,
 }
 
 #[derive(Serialize)]
@@ -121,6 +134,14 @@ impl Serialize for Tracing {
                 })
                 .collect(),
             not_tested: self.not_tested.iter().map(|row| NotTestedRow { id: row.id, reason: &row.reason }).collect(),
+            detectable: self.detectable.map(|of| DetectableRow {
+                effect: of.effect,
+                loss: of.loss,
+                at_half_of_the_places: of.at_half_of_the_places,
+                anywhere: of.anywhere,
+                places: of.places,
+                largest: of.most,
+            }),
             removed: self
                 .removed
                 .iter()

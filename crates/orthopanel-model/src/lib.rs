@@ -46,7 +46,7 @@ pub use effects::{
     Action, CUBIC_STIFFNESS, ChannelFactor, CoreFit, CoreModulus, EXPONENTIAL_WINDOW, Effect, EffectParameter,
     EffectSetting, EffectState, ElementLaw, Field, FieldTerm, GAIN, ModesAtLine, ModifiedPanel, Owner, PointElement,
     Prior, RECORD_GAIN, ReceptanceModel, ReceptanceSetup, RecordSetting, RelaxingLines, RelaxingMode, RelaxingModes,
-    SENSOR_MASS, Scale, Seat, SeenModes, Shift, SuspensionMotion, VISCOELASTIC_CORE, catalogue, effect,
+    SENSOR_MASS, STIFFNESS_LOSS, Scale, Seat, SeenModes, Shift, SuspensionMotion, VISCOELASTIC_CORE, catalogue, effect,
     natural_frequencies,
 };
 pub use error::{ModelError, Readable};

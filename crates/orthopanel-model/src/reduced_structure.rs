@@ -45,7 +45,8 @@ pub(crate) fn known_row(rows: &[KnownRow], block: usize, row: (Motion, Place)) -
     rows.iter().find(|(known, _)| *known == row).and_then(|(_, rows)| rows.get(block).cloned())
 }
 
-/// Changes of a shape below this, for a coefficient that doubles, are left out: they move frequencies by their square.
+/// Changes of a shape below this, for a coefficient that doubles, are left out: root of their energy over the mode's. They move frequencies by half
+/// their square.
 const SMALL_CHANGE: f64 = 2e-3;
 
 impl<S: Structure + Send + Sync> ReducedStructure<S> {
@@ -173,13 +174,18 @@ fn flexible_stiffness(block: &Block, coefficients: &[f64]) -> Mat<f64> {
 }
 
 /// The modes of a block, rigid ones first, and the directions of their changes; orthonormal in the mass.
+///
+/// A change $v$ of a mode that is left out moves $\omega_n^2$ by $v^TKv$, so that changes are weighed by their energy beside that of the mode, which is
+/// $\omega_n^2$: by its mass one of a low mode in shapes far above would seem small.
 fn shapes(block: &Block, coefficients: &[f64], modes: &[&RitzMode], forces: Mat<f64>) -> Result<Mat<f64>, ModelError> {
     let own = Mat::from_fn(block.size(), modes.len(), |i, m| modes[m].coordinates[i]);
     let rigid = modes.iter().filter(|mode| mode.angular_frequency == 0.0).count();
     let flexible = own.subcols(rigid, modes.len() - rigid).to_owned();
     let images: Vec<Mat<f64>> = block.stiffness.iter().map(|stiffness| stiffness.times(&flexible)).collect();
     let count = flexible.ncols();
-    let load = |i: usize, j: usize| coefficients[j / count] * images[j / count][(i, j % count)];
+    let load = |i: usize, j: usize| {
+        coefficients[j / count] * images[j / count][(i, j % count)] / modes[rigid + j % count].angular_frequency
+    };
     let loads = Mat::from_fn(block.size(), count * images.len(), load);
     let pencil = BlockPencil::new(block, coefficients)?;
     let mut changes = pencil.solve(loads);
@@ -191,26 +197,31 @@ fn shapes(block: &Block, coefficients: &[f64], modes: &[&RitzMode], forces: Mat<
         }
     };
     without_modes(&mut changes);
+    let stiffness = block.stiffness_at(coefficients);
     if forces.ncols() > 0 {
         let mut answers = pencil.solve(forces);
         without_modes(&mut answers);
         let mut again = pencil.solve(block.mass.times(&answers));
         without_modes(&mut again);
-        [&mut answers, &mut again].into_iter().for_each(|vectors| to_unit_mass(vectors, &block.mass));
+        [&mut answers, &mut again].into_iter().for_each(|vectors| to_unit_energy(vectors, &stiffness));
         changes = faer::concat![[changes, answers, again]];
     }
     // The principal directions of all changes together.
-    let gram = between(&changes, &block.mass, &changes);
-    let (sizes, directions) = symmetric_eigen(&gram).ok_or(ModelError::Eigenproblem)?;
-    let kept: Vec<usize> = (0..gram.nrows()).filter(|&k| sizes[k] > SMALL_CHANGE.powi(2)).collect();
-    let directions = Mat::from_fn(gram.nrows(), kept.len(), |i, k| directions[(i, kept[k])] / sizes[kept[k]].sqrt());
+    let (sizes, directions) =
+        symmetric_eigen(&between(&changes, &stiffness, &changes)).ok_or(ModelError::Eigenproblem)?;
+    let kept: Vec<usize> = (0..changes.ncols()).filter(|&k| sizes[k] > SMALL_CHANGE.powi(2)).collect();
+    let directions = Mat::from_fn(changes.ncols(), kept.len(), |i, k| directions[(i, kept[k])] / sizes[kept[k]].sqrt());
     let added = product(changes.as_ref(), directions.as_ref());
-    Ok(faer::concat![[own, added]])
+    // Of unit energy so far.
+    let (masses, directions) =
+        symmetric_eigen(&between(&added, &block.mass, &added)).ok_or(ModelError::Eigenproblem)?;
+    let to_unit_mass = Mat::from_fn(kept.len(), kept.len(), |i, k| directions[(i, k)] / masses[k].sqrt());
+    Ok(faer::concat![[own, product(added.as_ref(), to_unit_mass.as_ref())]])
 }
 
-/// Scales each column to $v^TMv = 1$.
-fn to_unit_mass(vectors: &mut Mat<f64>, mass: &SymmetricMatrix) {
-    let images = mass.times(vectors);
+/// Scales each column to $v^TKv = 1$.
+fn to_unit_energy(vectors: &mut Mat<f64>, stiffness: &SymmetricMatrix) {
+    let images = stiffness.times(vectors);
     for column in 0..vectors.ncols() {
         let square: f64 = (0..vectors.nrows()).map(|i| vectors[(i, column)] * images[(i, column)]).sum();
         let scale = if square > 0.0 { square.sqrt().recip() } else { 0.0 };

@@ -178,6 +178,7 @@ fn tracing_of(test: &ImpactTest, inquiry: &Inquiry, all: &[Judged]) -> Result<Tr
         model_error: Some(EstimatedModelError { frequency: model_error, residue: None }),
         candidates: all.iter().map(candidate).collect(),
         not_tested: not_tested(inquiry, all),
+        detectable: None,
         next_experiment,
         chi_square: yardstick.fitted(&problem, &chosen.posterior.point).powi(2),
         panels,

@@ -148,6 +148,7 @@ fn tracing_of(test: &ImpactTest, inquiry: &Inquiry, all: &[Judged]) -> Result<Tr
         model_error: Some(EstimatedModelError { frequency: size(Kind::Frequency), residue: Some(size(Kind::Residue)) }),
         candidates: all.par_iter().map(candidate).collect(),
         not_tested: not_tested(inquiry, all),
+        detectable: inquiry.detectable(chosen),
         next_experiment,
         chi_square: after.fitted.powi(2),
         panels,

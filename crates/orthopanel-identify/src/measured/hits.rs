@@ -8,9 +8,13 @@ use orthopanel_data::{Hit, TimeHistory, Transforms};
 use super::lines::{RecordLines, TruncatedHit, Truncations};
 use super::medians::median;
 
-/// Half the width of the window over the force \[s\], and of its edges: the hammer has left the panel, the noise of its channel stays out.
+/// Half the width of the window over the force \[s\], and the part of it that its edges take: the hammer has left the panel, the noise of its channel
+/// stays out.
 const FORCE_WINDOW: f64 = 10e-3;
-const WINDOW_EDGE: f64 = 2e-3;
+const WINDOW_EDGE: f64 = 0.2;
+/// Samples on either side of a blow that a filter before the converter rings, and that the window holds too: it passes [`FLAT`](super::records::FLAT) of
+/// the sampling rate and nothing above its half, and what falls off over a band rings some seven times as long as its reciprocal.
+const RINGS: f64 = 7.0 / (0.5 - super::records::FLAT);
 
 /// One hit's transforms on the lines of the band, times the sampling step.
 pub(crate) struct HitSpectra {
@@ -123,8 +127,9 @@ impl HitSpectra {
         let offset = median(hit.force.iter().copied());
         let away = |n: &usize| (hit.force[*n] - offset).abs();
         let peak = (0..samples).max_by(|a, b| away(a).total_cmp(&away(b))).unwrap_or(0);
+        let half = FORCE_WINDOW.max(RINGS * step);
         let window = |n: usize| {
-            let inside = (FORCE_WINDOW - n.abs_diff(peak) as f64 * step) / WINDOW_EDGE;
+            let inside = (1.0 - n.abs_diff(peak) as f64 * step / half) / WINDOW_EDGE;
             0.5 - 0.5 * (std::f64::consts::PI * inside.clamp(0.0, 1.0)).cos()
         };
         let windows: Vec<f64> = (0..samples).map(window).collect();

@@ -5,7 +5,7 @@ use super::modal_fit::{Fitted, ModalFit, PoleParameters};
 
 /// Misfit per datum from which no noise leaves it: poles are missing, or the records hold what no pole is, a force that is not linear or a panel
 /// that changed, which many poles would mimic.
-const SYSTEMATIC: f64 = 2.0;
+pub(super) const SYSTEMATIC: f64 = 2.0;
 
 /// Part of the misfit by less than which it falls where the last fit ends: of tens of thousands of data the logarithm of the likelihood is then told to
 /// 1e-4.

@@ -6,7 +6,7 @@ use num_complex::Complex64;
 use rayon::prelude::*;
 
 use super::drift::Drift;
-use super::joint_fit::{Found, LAST, fit};
+use super::joint_fit::{Found, LAST, SYSTEMATIC, fit};
 use super::lines::RecordLines;
 use super::modal_fit::{FittedRecord, ModalFit, PoleParameters, lambda};
 use super::stabilisation::stable_poles;
@@ -20,6 +20,10 @@ const ON_THE_WAY: f64 = 1e-5;
 const WIDTHS: [usize; 3] = [5, 21, 81];
 /// Places without success after which the search ends.
 const PATIENCE: usize = 2;
+/// Where a pole beyond the band begins, over its end: as near as its skirt is seen from there.
+const BEYOND: f64 = 1.01;
+/// Of so many lines of the band one counts to its end.
+const LAST_LINES: usize = 16;
 /// A pole closer than this to one that was tried is the same.
 const SAME: f64 = 5e-3;
 
@@ -114,10 +118,41 @@ impl Part {
     }
 }
 
-/// The poles of all parts of a band together, found one by one where these do not explain the records.
-pub(super) fn joined(records: &[RecordLines], start: PoleParameters) -> Option<Found> {
+/// The poles of all parts of a band together, found one by one where these do not explain the records; where their noise is told, with poles beyond.
+pub(super) fn joined(records: &[RecordLines], start: PoleParameters, is_told: bool) -> Option<Found> {
     let found = pruned(records, fit(records, start, LAST)?);
-    if found.by_noise() { fit(records, found.poles.clone(), LAST).or(Some(found)) } else { poles(records, found.poles) }
+    let found = if found.by_noise() { found } else { poles(records, found.poles)? };
+    let found = if is_told { with_poles_beyond(records, found) } else { found };
+    fit(records, found.poles.clone(), LAST).or(Some(found))
+}
+
+/// With poles beyond the end of the band, as many as pay: resonances there of which no line shows more than a skirt, which powers of $s$ follow slowly.
+fn with_poles_beyond(records: &[RecordLines], mut found: Found) -> Found {
+    let end = |record: &RecordLines| record.s.last().map_or(0.0, |s| s.im / TAU);
+    let end = records.iter().map(end).fold(0.0, f64::max);
+    let within = |found: &Found| found.poles.iter().filter(|pole| pole[0].exp() < TAU * end).count();
+    loop {
+        let left = ModalFit::new(records, &found.poles).residuals(&found.poles, &found.fitted);
+        if at_end(records, &left) < SYSTEMATIC {
+            return found;
+        }
+        match with_another(records, &found, (&left, BEYOND * end)) {
+            // What ends within the band was looked for there.
+            Some(more) if within(&more) == within(&found) && is_worth(records, &found, &more) => found = more,
+            _ => return found,
+        }
+    }
+}
+
+/// Misfit per datum over the last lines of the band.
+fn at_end(records: &[RecordLines], left: &[Vec<Complex64>]) -> f64 {
+    let of_record = |(record, left): (&RecordLines, &Vec<Complex64>)| {
+        let last = &left[left.len() - left.len() / LAST_LINES..];
+        (0.5 * record.per_datum * last.iter().map(Complex64::norm_sqr).sum::<f64>(), last.len())
+    };
+    let sums = records.iter().zip(left).map(of_record);
+    let (sum, count) = sums.fold((0.0, 0), |(sum, count), (own, lines)| (sum + own, count + lines));
+    sum / count.max(1) as f64
 }
 
 /// The poles of all records in common, from a start.
@@ -215,6 +250,14 @@ fn is_worth(records: &[RecordLines], without: &Found, with: &Found) -> bool {
     }
     let is_new = |pole: &&[f64; 2]| without.poles.iter().all(|other| (other[0] - pole[0]).abs() > pole[1].exp());
     let Some(new) = with.poles.iter().find(is_new) else { return true };
+    // Beyond the band it is no mode that is told, and as good as any power of s.
+    let is_outside = |record: &RecordLines| {
+        let [from, to] = around(record, *new);
+        from == to
+    };
+    if records.iter().all(is_outside) {
+        return true;
+    }
     let around = |left: &[Vec<Complex64>]| -> f64 {
         let of_record = |(record, left): (&RecordLines, &Vec<Complex64>)| {
             let [from, to] = around(record, *new);

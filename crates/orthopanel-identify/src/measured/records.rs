@@ -100,12 +100,12 @@ impl MeasuredModes {
         let band = [band[0], highest.min(band[1])];
         records.iter_mut().for_each(|record| *record = record.between(band));
         scatter.cut(&records);
-        let mut found = joined(&records, start)?;
+        let mut found = joined(&records, start, is_told)?;
         for _ in 0..SCATTERS {
             if !scatter.follows(&mut records, &found) {
                 break;
             }
-            found = joined(&records, found.poles)?;
+            found = joined(&records, found.poles, is_told)?;
         }
         let mut drift = Drift::none();
         if !is_told {
@@ -137,20 +137,20 @@ fn inside(found: &Found, scale: f64, band: [f64; 2]) -> (Vec<usize>, Mat<f64>) {
         }),
         Err(_) => Mat::from_fn(size, size, |i, j| if i == j { UNTOLD_PARAMETER } else { 0.0 }),
     };
-    let stands = |&pole: &usize| {
+    let has_skirt_inside = |pole: usize| {
         let [frequency, zeta] = [found.poles[pole][0].exp() / TAU, found.poles[pole][1].exp()];
         let skirt = SKIRT * zeta * frequency;
+        frequency - skirt > band[0] && frequency + skirt < band[1]
+    };
+    let resonates = |pole: usize| found.poles[pole][1].exp() < MOST_ZETA;
+    let stands = |&pole: &usize| {
         let is_sure = |parameter: usize, most: f64| root.col(parameter).norm_l2() < most;
         let sure = is_sure(2 * pole, MOST_UNSURE) && is_sure(2 * pole + 1, MOST_UNSURE_DAMPING);
-        frequency - skirt > band[0] && frequency + skirt < band[1] && zeta < MOST_ZETA && sure
+        has_skirt_inside(pole) && resonates(pole) && sure
     };
     let mut kept: Vec<usize> = (0..found.poles.len()).filter(stands).collect();
     // Of two resonances that run together at an end of the band none stands: what one has of them is what the other leaves.
-    let reaches_over = |&pole: &usize| {
-        let [frequency, zeta] = [found.poles[pole][0].exp() / TAU, found.poles[pole][1].exp()];
-        let skirt = SKIRT * zeta * frequency;
-        zeta < MOST_ZETA && (frequency - skirt <= band[0] || frequency + skirt >= band[1])
-    };
+    let reaches_over = |&pole: &usize| resonates(pole) && !has_skirt_inside(pole);
     let others: Vec<usize> = (0..found.poles.len()).filter(reaches_over).collect();
     let half_width = |pole: usize| found.poles[pole].iter().sum::<f64>().exp();
     let together =

@@ -385,3 +385,75 @@ fn val_noise_under_an_exponential_window_is_no_pole() {
         assert!(off.abs() < 3.5 * deviation && deviation < 1e-4, "{found:?}: {off:e} off, {deviation:e} stated");
     }
 }
+
+/// Of a plate whose modes lie close the band's end falls among them: of those just beyond it lines show skirts alone.
+#[test]
+fn val_resonances_beyond_the_band_spoil_none_within() {
+    let modes =
+        [(310.0, 4e-3), (560.0, 3e-3), (741.0, 5e-3), (762.0, 4e-3), (812.0, 5e-3), (817.0, 9e-3), (925.0, 6e-3)];
+    let shapes: Vec<Vec<f64>> = (0..6)
+        .map(|record| (0..modes.len()).map(|n| (1.7 * (record + 1) as f64 * (n + 1) as f64).sin()).collect())
+        .collect();
+    let rows: Vec<&[f64]> = shapes.iter().map(Vec::as_slice).collect();
+    let made = Made::new(&modes, &rows);
+    let measured = MeasuredModes::of_hits(0, &made.histories(2, 1e-4, 5), 800.0).expect("resonances");
+    let chi_square = measured.chi_square.expect("of hits");
+    assert!((0.7..1.2).contains(&chi_square), "{chi_square}");
+    assert_eq!(measured.poles.len(), 4, "{:?}", measured.poles);
+    for (m, (found, expected)) in measured.poles.iter().zip(&made.poles).enumerate() {
+        let apart = (found.angular_frequency / expected.norm()).ln();
+        let std = measured.covariance[(m, m)].sqrt();
+        assert!(apart.abs() < 4.0 * std && std < 1e-5, "pole {m}: {apart:e} of {std:e}");
+    }
+}
+
+/// A filter before the converter rings for longer than the hammer touches, the longer the lower the rate: what a window cuts of it moves every line.
+#[test]
+fn val_a_filter_that_rings_at_a_low_rate_is_no_misfit() {
+    const EVERY: usize = 8;
+    let rate = RATE / EVERY as f64;
+    // Off at 0.435 of the rate within 0.016 of it, as an error function: a Gaussian over what rings.
+    let (end, within) = (0.435 * rate, 0.0156 * rate);
+    let reach = (4.5 / (std::f64::consts::PI * within) * RATE) as isize;
+    let kernel: Vec<f64> = (-reach..=reach)
+        .map(|n| {
+            let t = n as f64 / RATE;
+            let turn = TAU * end * t;
+            let sinc = if n == 0 { 1.0 } else { turn.sin() / turn };
+            2.0 * end / RATE * sinc * (-(std::f64::consts::PI * within * t).powi(2)).exp()
+        })
+        .collect();
+    let filtered = |channel: &[f64]| -> Vec<f64> {
+        let at = |n: usize| {
+            let sample = |(k, h): (usize, &f64)| {
+                let from = n as isize + k as isize - reach;
+                usize::try_from(from).ok().and_then(|from| channel.get(from)).map_or(0.0, |value| h * value)
+            };
+            kernel.iter().enumerate().map(sample).sum()
+        };
+        (0..channel.len()).step_by(EVERY).map(at).collect()
+    };
+    let made = Made::new(&[(210.0, 6e-3), (415.0, 5e-3), (640.0, 8e-3)], &[&[0.8, -0.5, 0.3], &[-0.4, 0.7, 0.6]]);
+    let mut deviates = Noise(11);
+    let history = |record: usize| {
+        let hit = |index: usize| {
+            let Hit { force, acceleration } = made.hit(record, 60.0 + 20.0 * index as f64, 0.1);
+            let [force, acceleration] = [force, acceleration].map(|channel| filtered(&channel));
+            Hit { force, acceleration }
+        };
+        let mut hits: Vec<Hit> = (0..2).map(hit).collect();
+        for hit in &mut hits {
+            for (channel, noise) in [(&mut hit.force, 1e-5), (&mut hit.acceleration, 1e-4)] {
+                let rms = (channel.iter().map(|v| v * v).sum::<f64>() / channel.len() as f64).sqrt();
+                channel.iter_mut().for_each(|v| *v += noise * rms * deviates.normal());
+            }
+        }
+        let places = [Place { x: -0.3 + 0.1 * record as f64, y: 0.0 }, Place { x: 0.3, y: 0.0 }];
+        TimeHistory::new(format!("made-{record}"), places, rate, hits)
+    };
+    let histories: Vec<TimeHistory> = (0..2).map(history).collect();
+    let measured = MeasuredModes::of_hits(0, &histories, 4000.0).expect("resonances");
+    let chi_square = measured.chi_square.expect("of hits");
+    assert!((0.7..1.3).contains(&chi_square), "{chi_square}");
+    assert_eq!(measured.poles.len(), 3, "{:?}", measured.poles);
+}

@@ -13,16 +13,21 @@ use crate::hypothesis::{Hypothesis, Role};
 use crate::judge::{ODDS, most_frequency};
 use crate::measured::Pole;
 use crate::model_error::{KINDS, Kind};
-use crate::posterior::{Judged, Point, Posterior, Projection};
+use crate::posterior::{Judged, Point, Posterior, Problem, Projection};
 use crate::predicted::Prediction;
 use crate::stacked::Block;
 use crate::whitening::Whitening;
+
+/// How far a start may be behind, twice in the logarithm: under wide sizes no hypothesis is far behind that comes out ahead under narrow ones.
+fn behind() -> f64 {
+    2.0 * NEAR * ODDS.ln()
+}
 
 /// Starts on a plate that are followed: it has many places.
 const FOLLOWED_ON_PLATES: usize = 5;
 
 /// A base, with what its coordinates make good to first order.
-struct Score {
+pub(super) struct Score {
     by: Whitening,
     /// $WJ$, and $J^TC^{-1}J + P$.
     derivatives: Mat<f64>,
@@ -32,9 +37,30 @@ struct Score {
 }
 
 impl Score {
+    /// About a point with these derivatives, under a covariance.
+    pub(super) fn about(problem: &Problem, at: &Point, mut derivatives: Mat<f64>, by: Whitening) -> Option<Self> {
+        by.whiten(&mut derivatives);
+        let mut curvature = derivatives.transpose() * &derivatives;
+        problem.hypothesis.precision().iter().enumerate().for_each(|(i, precision)| curvature[(i, i)] += precision);
+        let missed = by.whitened(&problem.missed(&at.at));
+        Some(Self { curvature: curvature.llt(Side::Lower).ok()?, by, derivatives, missed })
+    }
+
     /// By how much the misfit falls along the way from the base's values to others, as far as it serves best, beside what the base's coordinates
     /// make good; `None` where there is no way.
     fn towards(&self, from: &[f64], to: &[f64]) -> Option<f64> {
+        let [free, told] = self.along(from, to);
+        // It acts one way alone: a mass that is missing is another start.
+        (free > 0.0).then(|| told.max(0.0).powi(2) / free)
+    }
+
+    /// The square of the way from the base's values to others, beside what the base's coordinates follow of it.
+    pub(super) fn told_apart(&self, from: &[f64], to: &[f64]) -> f64 {
+        self.along(from, to)[0]
+    }
+
+    /// The square of that way, and what it has of what is missed.
+    fn along(&self, from: &[f64], to: &[f64]) -> [f64; 2] {
         let way: Vec<f64> = to.iter().zip(from).map(|(to, from)| to - from).collect();
         let way = self.by.whitened(&way);
         let along = |values: &[f64]| {
@@ -44,13 +70,43 @@ impl Score {
         let dot = |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(a, b)| a * b).sum() };
         let (of_way, of_missed): (Mat<f64>, Mat<f64>) = (along(&way), along(&self.missed));
         let solved = self.curvature.solve(&of_way);
-        let free = dot(&way, &way) - dot(of_way.col_as_slice(0), solved.col_as_slice(0));
-        let told = dot(&way, &self.missed) - dot(of_missed.col_as_slice(0), solved.col_as_slice(0));
-        // It acts one way alone: a mass that is missing is another start.
-        (free > 0.0).then(|| told.max(0.0).powi(2) / free)
+        [(&way, &way, &of_way), (&way, &self.missed, &of_missed)]
+            .map(|(a, b, other)| dot(a, b) - dot(other.col_as_slice(0), solved.col_as_slice(0)))
     }
 }
 
+/// A start with its way, and what it makes good.
+type Promise = (f64, (usize, Point));
+
+/// An effect beside a base: its ways, and where to begin.
+pub(super) struct Ranked {
+    ways: Vec<Hypothesis>,
+    /// Of all starts the best, by their cost under wide sizes of model error, each with its way.
+    points: Vec<(usize, Point)>,
+    /// Those that may come to the odds that count, each with what it makes good of the misfit to first order; `None` where that is not known.
+    promising: Option<Vec<Promise>>,
+    /// Whether the base's own coordinates begin in several places.
+    of_several: bool,
+}
+
+impl Ranked {
+    /// What the best start makes good of the misfit, to first order.
+    pub(super) fn gain(&self) -> f64 {
+        self.promising.iter().flatten().map(|(gain, _)| *gain).filter(|gain| gain.is_finite()).fold(0.0, f64::max)
+    }
+
+    /// Leaves out what makes good much less than another effect does.
+    pub(super) fn without_minor(mut self, most: f64) -> Self {
+        if let Some(promising) = &mut self.promising {
+            promising.retain(|(gain, _)| *gain > MINOR * most);
+        }
+        self
+    }
+}
+
+/// Part of what the best effect makes good of a plate's misfit, below which an effect is not followed: a plate has places without number, and most
+/// effects make good a little of what another does.
+const MINOR: f64 = 0.1;
 /// So many times wider where no start is followed yet: a net is coarse.
 const NET: f64 = 4.0;
 /// Poles at which something that vibrates by itself is looked for,
@@ -143,29 +199,23 @@ impl Inquiry<'_> {
         bases
     }
 
-    /// An effect more, in the way and from the start that serve best: a net of starts of all ways is ranked, the best are followed with
-    /// wide sizes of model error, the best of these to the posterior. With it whether it may come to the odds that count, as far as is known.
-    pub(super) fn with_effect(&self, base: &Judged, effect: &'static dyn Effect) -> Option<(Judged, bool)> {
+    /// Where an effect begins: a net of starts of all its ways, ranked with wide sizes of model error. `None` where it cannot act.
+    pub(super) fn ranked(&self, base: &Judged, effect: &'static dyn Effect) -> Option<Ranked> {
         let of_base = self.problem(&base.hypothesis);
         let at_base = &base.posterior.point;
-        let errors = of_base.errors(&at_base.at).with_every_partner();
         let coarse = logs(LOOSE.map(|size| NET * size));
-        let loose = of_base.whitening(&errors, &coarse)?;
-        let is_plate = self.predictor().structure == StructureKind::MindlinPlate;
+        let loose = of_base.whitening(&of_base.errors(&at_base.at).with_every_partner(), &coarse)?;
         let ways: Vec<Hypothesis> = self.ways(effect).into_iter().map(|part| base.hypothesis.with(part)).collect();
         let missed = self.most_missed(base);
         // What the base's own coordinates make good of a start, to first order.
         let projection = Projection::new(&at_base.derivatives, &of_base.hypothesis.precision(), &loose)?;
         let bases = self.bases(base, &ways[0]);
-        // Another structure is too dear for more than one set of derivatives.
-        let replaces = ways[0].parts.last().is_some_and(|part| part.replaces_structure(self.predictor()));
         // Modes of a plate that bend along lie near those of the beam.
         let is_far = base.posterior.log_sizes[Kind::Frequency as usize].exp() > PLATE_BESIDE;
-        if replaces && (is_far || self.reaches_beyond(base)) {
+        if self.replaces(&ways) && (is_far || self.reaches_beyond(base)) {
             return None;
         }
-        let exact_from = if replaces { usize::MAX } else { at_base.z.len() };
-        let score = if is_plate { Some(self.score(base)?) } else { None };
+        let score = if self.is_plate() { Some(self.score(base)?) } else { None };
         let starts = |(way, hypothesis): (usize, &Hypothesis)| {
             let problem = self.problem(hypothesis);
             let starts = match hypothesis.parts.last() {
@@ -196,25 +246,36 @@ impl Inquiry<'_> {
             let starts: Vec<(&Vec<f64>, &Vec<f64>)> = starts.collect();
             starts.into_par_iter().filter_map(point).map(|point| (way, point)).collect::<Vec<_>>()
         };
+        let kept = if self.is_plate() { FOLLOWED_ON_PLATES } else { FOLLOWED };
+        // A score is no likelihood: far behind the best may lie what leads to the end.
+        let behind = if self.is_plate() { f64::INFINITY } else { behind() };
+        let points = best(ways.par_iter().enumerate().flat_map_iter(starts).collect(), (4 * kept, behind));
+        let promising = if bases.len() > 1 { None } else { self.promising(base, &ways, &points, kept) };
+        Some(Ranked { ways, points, promising, of_several: bases.len() > 1 })
+    }
+
+    pub(super) fn is_plate(&self) -> bool {
+        self.predictor().structure == StructureKind::MindlinPlate
+    }
+
+    /// Whether another structure takes the place of the first: that is too dear for more than one set of derivatives.
+    fn replaces(&self, ways: &[Hypothesis]) -> bool {
+        ways[0].parts.last().is_some_and(|part| part.replaces_structure(self.predictor()))
+    }
+
+    /// An effect more, in the way and from the start that serve best: the best starts are followed with wide sizes of model error, the best of
+    /// these to the posterior. With it whether it may come to the odds that count, as far as is known.
+    pub(super) fn followed(&self, base: &Judged, ranked: Ranked) -> Option<(Judged, bool)> {
+        let Ranked { ways, points, promising, of_several } = ranked;
+        let of_base = self.problem(&base.hypothesis);
+        let at_base = &base.posterior.point;
+        let errors = of_base.errors(&at_base.at).with_every_partner();
+        let coarse = logs(LOOSE.map(|size| NET * size));
+        let by = of_base.whitening(&errors, &coarse)?;
+        let exact_from = if self.replaces(&ways) { usize::MAX } else { at_base.z.len() };
         let judged = |(way, posterior): (usize, Posterior)| {
             let log_odds = base.log_odds - base.posterior.log_evidence + posterior.log_evidence + log_prior(ways.len());
             Judged { hypothesis: ways[way].clone(), posterior, log_odds }
-        };
-        // Under wide sizes no hypothesis is far behind that comes out ahead under narrow ones.
-        let behind = 2.0 * NEAR * ODDS.ln();
-        let best = |mut points: Vec<(usize, Point)>, most: usize| {
-            points.sort_by(|a, b| a.1.cost.total_cmp(&b.1.cost));
-            let mut apart: Vec<(usize, Point)> = Vec::new();
-            for (way, point) in points {
-                let near = |(other, of): &(usize, Point)| {
-                    *other == way && of.z.iter().zip(&point.z).all(|(a, b)| (a - b).abs() < 0.05)
-                };
-                let is_behind = apart.first().is_some_and(|(_, best)| point.cost > best.cost + behind);
-                if apart.len() < most && !is_behind && !apart.iter().any(near) {
-                    apart.push((way, point));
-                }
-            }
-            apart
         };
         let follow = |points: Vec<(usize, Point)>, sizes: &[f64; KINDS], most: usize| -> Vec<(usize, Point)> {
             let on = |(way, mut point): (usize, Point)| {
@@ -222,7 +283,7 @@ impl Inquiry<'_> {
                 if point.derivatives.ncols() == 0 {
                     // The shift is of first order about the base: where it leads nowhere, it is left out.
                     let unshifted = [&at_base.z[..], &point.z[at_base.z.len()..]].concat();
-                    let both = [point.z, unshifted].into_iter().filter_map(|z| problem.point(z, &loose));
+                    let both = [point.z, unshifted].into_iter().filter_map(|z| problem.point(z, &by));
                     point = both.min_by(|a, b| a.misfit.total_cmp(&b.misfit))?;
                 }
                 let by = problem.whitening(&problem.errors(&point.at).with_every_partner(), sizes)?;
@@ -230,37 +291,37 @@ impl Inquiry<'_> {
             };
             points.into_par_iter().filter_map(on).collect()
         };
-        let kept = if is_plate { FOLLOWED_ON_PLATES } else { FOLLOWED };
-        let points = best(ways.par_iter().enumerate().flat_map_iter(starts).collect(), 4 * kept);
-        let points = if bases.len() > 1 {
-            best(follow(points, &coarse, 5), 2 * FOLLOWED)
-        } else {
-            match self.promising(base, &ways, &points, kept) {
-                Some(promising) if !promising.is_empty() => promising,
-                // Where it ends is told, and how likely it is there, but it is not looked for further.
-                Some(_) if base.names().is_empty() => {
-                    let (way, point) = points.into_iter().next()?;
-                    let posterior = self.problem(&ways[way]).posterior(point, base.posterior.log_sizes, 4)?;
-                    return Some((judged((way, posterior)), false));
-                }
-                Some(_) => return None,
-                None => points,
+        let (few, one) = ((FOLLOWED, behind()), (1, behind()));
+        let points = match promising {
+            Some(promising) if !promising.is_empty() => promising.into_iter().map(|(_, start)| start).collect(),
+            // Where it ends is told, and how likely it is there, but it is not looked for further.
+            Some(_) if base.names().is_empty() => {
+                let (way, point) = points.into_iter().next()?;
+                let posterior = self.problem(&ways[way]).posterior(
+                    point,
+                    base.posterior.log_sizes,
+                    if self.is_plate() { 1 } else { 4 },
+                )?;
+                return Some((judged((way, posterior)), false));
             }
+            Some(_) => return None,
+            None if of_several => best(follow(points, &coarse, 5), (2 * FOLLOWED, behind())),
+            None => points,
         };
-        let points = best(follow(points, &logs(LOOSE), 5), FOLLOWED);
+        let points = best(follow(points, &logs(LOOSE), 5), few);
         let cost = of_base.judged_by(at_base.clone(), &of_base.whitening(&errors, &logs(LOOSE))?)?.cost;
-        if points.first().is_some_and(|(_, best)| best.cost > cost + behind) {
+        if points.first().is_some_and(|(_, best)| best.cost > cost + behind()) {
             let (way, point) = points.into_iter().next()?;
             let posterior = self.problem(&ways[way]).posterior(point, logs(LOOSE), 1)?;
             return Some((judged((way, posterior)), false));
         }
-        let points = best(follow(points, &std::array::from_fn(|k| 0.5 * (LOOSE[k] * SMALL[k]).ln()), 4), FOLLOWED);
+        let points = best(follow(points, &std::array::from_fn(|k| 0.5 * (LOOSE[k] * SMALL[k]).ln()), 4), few);
         // From small sizes, since an effect drowns in those of too poor a hypothesis; and from those, since it need not be all that lacks.
         let from = [logs(SMALL), base.posterior.log_sizes];
         let ends: Vec<(usize, Posterior)> = from
             .into_par_iter()
             .filter_map(|sizes| {
-                let all = best(follow(best(follow(points.clone(), &sizes, 4), 1), &sizes, 8), 1);
+                let all = best(follow(best(follow(points.clone(), &sizes, 4), one), &sizes, 8), one);
                 let (way, point) = all.into_iter().next()?;
                 let posterior = self.problem(&ways[way]).posterior(point, sizes, 2)?;
                 Some((way, posterior))
@@ -279,14 +340,8 @@ impl Inquiry<'_> {
 
     /// What ranks starts by their difference from the base.
     fn score(&self, base: &Judged) -> Option<Score> {
-        let (at_base, of_base) = (&base.posterior.point, self.problem(&base.hypothesis));
-        let by = self.narrow(base)?;
-        let mut derivatives = at_base.derivatives.clone();
-        by.whiten(&mut derivatives);
-        let mut curvature = derivatives.transpose() * &derivatives;
-        of_base.hypothesis.precision().iter().enumerate().for_each(|(i, precision)| curvature[(i, i)] += precision);
-        let missed = by.whitened(&of_base.missed(&at_base.at));
-        Some(Score { curvature: curvature.llt(Side::Lower).ok()?, by, derivatives, missed })
+        let at_base = &base.posterior.point;
+        Score::about(&self.problem(&base.hypothesis), at_base, at_base.derivatives.clone(), self.narrow(base)?)
     }
 
     /// The starts from which an effect may come to the odds that count, the best few; `None` where the base's curvature is singular. By a score test:
@@ -297,7 +352,7 @@ impl Inquiry<'_> {
         ways: &[Hypothesis],
         starts: &[(usize, Point)],
         kept: usize,
-    ) -> Option<Vec<(usize, Point)>> {
+    ) -> Option<Vec<Promise>> {
         let at_base = &base.posterior.point;
         let of_base = self.problem(&base.hypothesis);
         let by = self.narrow(base)?;
@@ -323,6 +378,22 @@ impl Inquiry<'_> {
         let mut promising: Vec<_> = gains.filter(|(gain, _)| *gain > 2.0 * ODDS.ln()).collect();
         promising.sort_by(|a, b| b.0.total_cmp(&a.0));
         promising.truncate(kept);
-        Some(promising.into_iter().map(|(_, start)| start).collect())
+        Some(promising)
     }
+}
+
+/// Of starts, each with its way, the best few that lie apart.
+fn best(mut points: Vec<(usize, Point)>, (most, behind): (usize, f64)) -> Vec<(usize, Point)> {
+    points.sort_by(|a, b| a.1.cost.total_cmp(&b.1.cost));
+    let mut apart: Vec<(usize, Point)> = Vec::new();
+    for (way, point) in points {
+        let near = |(other, of): &(usize, Point)| {
+            *other == way && of.z.iter().zip(&point.z).all(|(a, b)| (a - b).abs() < 0.05)
+        };
+        let is_behind = apart.first().is_some_and(|(_, best)| point.cost > best.cost + behind);
+        if apart.len() < most && !is_behind && !apart.iter().any(near) {
+            apart.push((way, point));
+        }
+    }
+    apart
 }

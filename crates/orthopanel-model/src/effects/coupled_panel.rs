@@ -4,6 +4,7 @@ use std::sync::{Arc, Mutex, OnceLock};
 
 use super::beam_base::BeamBase;
 use super::coupled_system::{FoundMode, System};
+use super::foot::{on_feet, port};
 use super::known::{Known, known_or};
 use super::low_modes::{FarAnswers, LowModes};
 use super::row::{Row, SharedStructure};
@@ -192,6 +193,11 @@ impl ModifiedStructure {
         Ok(Self { structure, plate, is_even, piece, values: values.to_vec(), low, elements, core: spread.core })
     }
 
+    /// $A_{55}$ and $A_{44}$ \[N/m\] of a plate.
+    pub(super) fn shear_stiffnesses(&self) -> Result<[f64; 2], ModelError> {
+        shear_stiffnesses(self.structure.as_ref(), &self.values)
+    }
+
     /// The plate, where it is one and nothing is spread over it.
     pub(super) fn even_plate(&self) -> Option<Arc<MindlinPlate>> {
         self.plate.clone().filter(|_| self.is_even)
@@ -213,7 +219,7 @@ impl ModifiedStructure {
 
     /// What the modes beyond the lowest do at the elements and at `ports`.
     pub(super) fn far_answers(&self, ports: &[Place]) -> Result<FarAnswers, ModelError> {
-        self.far_answers_in(&self.ports(ports), &[])
+        self.far_answers_in(&self.ports(ports), &[], 0)
     }
 
     /// What moves at each of some places: where an element stands, its foot.
@@ -222,11 +228,11 @@ impl ModifiedStructure {
         places.iter().map(|&place| port(place, &standing)).collect()
     }
 
-    /// The same in any rows, and in others where no force acts.
-    pub(super) fn far_answers_in(&self, rows: &[Row], watched: &[Row]) -> Result<FarAnswers, ModelError> {
+    /// The same in any rows, and in others where no force acts, with second shapes of the first `twice` elements.
+    pub(super) fn far_answers_in(&self, rows: &[Row], watched: &[Row], twice: usize) -> Result<FarAnswers, ModelError> {
         let pushed: Vec<Row> = self.elements.iter().filter_map(row).chain(rows.iter().copied()).collect();
         let rows = [&pushed, watched].concat();
-        self.low.far_answers(self.structure.as_ref(), &self.values, &rows, pushed.len())
+        self.low.far_answers(self.structure.as_ref(), &self.values, &rows, [pushed.len(), twice])
     }
 
     /// With the residual shapes of all elements and of `ports`, where elements without mass stand: the panel and its matrices.
@@ -391,24 +397,13 @@ pub(crate) fn elements(effects: &[EffectState], setting: &EffectSetting) -> Resu
     Ok(elements)
 }
 
-/// What moves at a place: the foot of what stands there.
-fn port(place: Place, standing: &[Row]) -> Row {
-    let foot = (Motion::Foot, place);
-    if standing.contains(&foot) { foot } else { (Motion::Deflection, place) }
-}
-
-/// Elements as they stand on a plate.
-fn on_feet(mut elements: Vec<PointElement>) -> Vec<PointElement> {
-    for element in &mut elements {
-        if let (Seat::At(_), Motion::Deflection) = (element.seat, element.motion) {
-            element.motion = Motion::Foot;
-        }
-    }
-    elements
-}
-
 /// Degrees of the strains of a patch, both ways together, at most: over a few centimetres no mode has more.
 const PATCH_DEGREES: usize = 3;
+
+fn shear_stiffnesses(plate: &dyn Structure, values: &[f64]) -> Result<[f64; 2], ModelError> {
+    let [.., a_55, a_44] = plate.coefficients(values)?[..] else { return Ok([f64::INFINITY; 2]) };
+    Ok([a_55, a_44])
+}
 
 /// Adds what patches take from a plate's shear stiffnesses: springs that push on the moments of the strain,
 /// $-\text{loss}\,A\int\gamma^2dx\,dy$ in all.
@@ -419,7 +414,7 @@ fn add_patches(
     values: &[f64],
 ) -> Result<(), ModelError> {
     for &ShearPatch { loss, span, at } in patches {
-        for (across, shear) in [false, true].into_iter().zip(plate.coefficients(values)?.split_off(4)) {
+        for (across, shear) in [false, true].into_iter().zip(shear_stiffnesses(plate, values)?) {
             let all = (0..=PATCH_DEGREES).flat_map(|i| (0..=PATCH_DEGREES - i).map(move |j| [i, j]));
             elements.extend(all.map(|degrees| PointElement {
                 law: ElementLaw::Spring { stiffness: -loss * shear, damping: 0.0 },

@@ -47,10 +47,24 @@ impl System {
 
     /// With these elements, which the first rows of `answers` belong to.
     pub(super) fn new(low: &LowModes, answers: &FarAnswers, elements: &[PointElement], damping: &Damping) -> Self {
-        let [first, second] = &answers.series;
-        let count = elements.len();
-        let far = |element: usize| (0..count).map(|b| first[(element, b)]).collect();
-        Self::beyond(low, (count, first, second, None), (elements, &answers.near, far), damping)
+        let ([first, second], again) = (&answers.series, &answers.second);
+        let (count, twice) = (elements.len(), again.mass.nrows());
+        let size = count + twice;
+        let symmetric = |once: &Mat<f64>, mixed: &Mat<f64>, both: &dyn Fn(usize, usize) -> f64| {
+            Mat::from_fn(size, size, |i, j| match (i.checked_sub(count), j.checked_sub(count)) {
+                (None, None) => once[(i, j)],
+                (None, Some(j)) => mixed[(i, j)],
+                (Some(i), None) => mixed[(j, i)],
+                (Some(i), Some(j)) => both(i, j),
+            })
+        };
+        let stiffness = symmetric(first, &again.seen, &|i, j| again.coupled[(i, j)]);
+        let mass = symmetric(second, &again.coupled, &|i, j| again.mass[(i, j)]);
+        let far = |element: usize| {
+            let once = (0..count).map(|b| first[(element, b)]);
+            once.chain((0..twice).map(|b| again.seen[(element, b)])).collect()
+        };
+        Self::beyond(low, (size, &stiffness, &mass, None), (elements, &answers.near, far), damping)
     }
 
     /// With shapes beyond the modes, and these elements, which their first rows belong to.

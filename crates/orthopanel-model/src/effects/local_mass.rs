@@ -25,6 +25,10 @@ impl Effect for LocalMass {
         Owner::Panel
     }
 
+    fn in_words(&self) -> &'static str {
+        "a mass"
+    }
+
     fn parameters(&self) -> &'static [EffectParameter] {
         &PARAMETERS
     }

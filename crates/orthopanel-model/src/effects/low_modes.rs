@@ -27,6 +27,19 @@ pub(super) struct FarAnswers {
     pub series: [Mat<f64>; 2],
     /// $\sum\phi_m\phi_m(p)/\omega_m^2$ of each row, in the coordinates of each block.
     pub shapes: Vec<Vec<Vec<f64>>>,
+    /// What follows where something swings in the first of these rows; none where nothing does.
+    pub second: SecondShapes,
+}
+
+/// The shapes $\sum\phi_m\phi_m(p)/\omega_m^4$ of a few rows, by which forces at $s$ are answered to $s^4$: with $C_k =
+/// \sum\phi_m(p)\phi_m(q)/\omega_m^{2+2k}$.
+pub(super) struct SecondShapes {
+    /// $C_1$: a row a row, a column one of the few.
+    pub seen: Mat<f64>,
+    /// $C_2$ between the rows that forces act in and the few.
+    pub coupled: Mat<f64>,
+    /// $C_3$ between the few.
+    pub mass: Mat<f64>,
 }
 
 impl LowModes {
@@ -42,14 +55,14 @@ impl LowModes {
         Self { modes: modes.into_iter().map(kept).collect(), rigid }
     }
 
-    /// What the modes beyond these do in some rows, under forces in the first of them, so many as are `pushed`: without them, by the structure's
-    /// stiffness and these modes alone. What the basis is known to lack of $C_0$ and $C_1$ is added.
+    /// What the modes beyond these do in some rows, under forces in the first of them, so many as are `pushed`, with second shapes of the first
+    /// `twice`: without them, by the structure's stiffness and these modes alone. What the basis is known to lack of $C_0$ and $C_1$ is added.
     pub(super) fn far_answers(
         &self,
         structure: &dyn Structure,
         values: &[f64],
         rows: &[Row],
-        pushed: usize,
+        [pushed, twice]: [usize; 2],
     ) -> Result<FarAnswers, ModelError> {
         let coefficients = checked_coefficients(structure, values)?;
         let (modes, count) = (self.modes.len(), rows.len());
@@ -57,6 +70,11 @@ impl LowModes {
             near: Mat::zeros(modes, count),
             series: [Mat::zeros(count, pushed), Mat::zeros(pushed, pushed)],
             shapes: vec![vec![]; pushed],
+            second: SecondShapes {
+                seen: Mat::zeros(count, twice),
+                coupled: Mat::zeros(pushed, twice),
+                mass: Mat::zeros(twice, twice),
+            },
         };
         for (index, block) in structure.blocks().iter().enumerate() {
             let own: Vec<usize> = (0..modes).filter(|&m| self.modes[m].0 == index).collect();
@@ -71,7 +89,15 @@ impl LowModes {
             }
             let moved = beyond(block, &coefficients, &shapes, &forces.subcols(0, pushed).to_owned())?;
             answers.series[0] += product(forces.transpose(), moved.as_ref());
-            answers.series[1] += product(moved.transpose(), block.mass.times(&moved).as_ref());
+            let swinging = block.mass.times(&moved);
+            answers.series[1] += product(moved.transpose(), swinging.as_ref());
+            if twice > 0 {
+                let again = beyond(block, &coefficients, &shapes, &swinging.subcols(0, twice).to_owned())?;
+                let second = &mut answers.second;
+                second.seen += product(forces.transpose(), again.as_ref());
+                second.coupled += product(swinging.transpose(), again.as_ref());
+                second.mass += product(again.transpose(), block.mass.times(&again).as_ref());
+            }
             for (p, shapes) in answers.shapes.iter_mut().enumerate() {
                 shapes.push(moved.col_as_slice(p).to_vec());
             }

@@ -13,6 +13,7 @@ mod coupled_flexibility;
 mod coupled_modes;
 mod coupled_panel;
 mod coupled_system;
+mod foot;
 mod known;
 mod low_modes;
 mod modified_panel;
@@ -73,6 +74,7 @@ pub use sensor_mass::SENSOR_MASS;
 pub use setting::{EffectSetting, RecordSetting, SuspensionMotion};
 pub(crate) use spread_effects::SpreadEffects;
 pub use state::EffectState;
+pub use stiffness_loss::STIFFNESS_LOSS;
 pub use uneven_beam::Field;
 pub use viscoelastic_core::VISCOELASTIC_CORE;
 
@@ -107,6 +109,11 @@ pub trait Effect: Sync {
 
     /// Who it belongs to.
     fn owner(&self) -> Owner;
+
+    /// What it is, in words that a place may follow.
+    fn in_words(&self) -> &'static str {
+        self.id()
+    }
 
     /// Its parameters; all lists of values stand in this order.
     fn parameters(&self) -> &'static [EffectParameter];

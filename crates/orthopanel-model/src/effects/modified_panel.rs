@@ -3,8 +3,9 @@
 use std::sync::Arc;
 
 use super::beam_base::BeamBase;
-use super::coupled_panel::{Even, ModifiedStructure, PanelWithEffects, elements, row};
+use super::coupled_panel::{Even, ModifiedStructure, PanelWithEffects, elements, row as at_row};
 use super::coupled_system::{FoundMode, System};
+use super::foot::{StandingMass, by_foot};
 use super::row::Row;
 use super::spread_effects::SpreadEffects;
 use super::wide_plate::WidePlates;
@@ -47,6 +48,8 @@ pub struct SeenModes {
     pub slope: Vec<Vec<f64>>,
     /// $\partial W_n/\partial y$ \[kg^-1/2/m\], alike, of a plate.
     pub slope_across: Vec<Vec<f64>>,
+    /// Derivatives of all these by the logarithm of the side of the feet on which masses stand on a plate.
+    pub by_foot: Option<Box<SeenModes>>,
 }
 
 impl ModifiedPanel {
@@ -157,7 +160,7 @@ impl ModifiedPanel {
     ) -> Result<SeenModes, ModelError> {
         let ports = places.iter().map(|&place| (Motion::Deflection, place));
         let slopes = places.iter().filter(|_| with_slopes).map(|&place| (Motion::Slope, place));
-        let rows: Vec<Row> = elements.iter().filter_map(row).chain(ports).chain(slopes).collect();
+        let rows: Vec<Row> = elements.iter().filter_map(at_row).chain(ports).chain(slopes).collect();
         let shapes = base.in_shapes(&rows, (elements.len(), places.len()), losses);
         let system = System::in_shapes(&base.low, &shapes, elements, &self.damping);
         let all = faer::concat![[shapes.near], [shapes.far]];
@@ -226,21 +229,35 @@ impl ModifiedPanel {
         let slopes = |motion: Motion| places.iter().filter(|_| with_slopes).map(move |&place| (motion, place));
         let across = slopes(Motion::SlopeAcross).filter(|_| matches!(self.even, Even::Plate));
         let asked: Vec<Row> = slopes(Motion::Slope).chain(across).collect();
-        let answers = modified.far_answers_in(&ports, &asked)?;
+        // What stands on a foot swings with the panel far above what it is asked for.
+        let twice = modified.elements.iter().take_while(|element| element.motion == Motion::Foot).count();
+        let answers = modified.far_answers_in(&ports, &asked, twice)?;
         let (_, system) = modified.with_residuals(&answers, places, damping);
         // Elements stand before the ports among the answers, and no coordinates belong to slopes.
         let elements = answers.near.ncols() - ports.len() - asked.len();
         let (low, residuals) = (answers.near.nrows(), elements + ports.len());
         let row = |row: usize, shares: &[f64]| -> f64 {
             let near: f64 = (0..low).map(|m| answers.near[(m, row)] * shares[m]).sum();
-            near + (0..residuals).map(|q| answers.series[0][(row, q)] * shares[low + q]).sum::<f64>()
+            let once = (0..residuals).map(|q| answers.series[0][(row, q)] * shares[low + q]);
+            let again = (0..twice).map(|q| answers.second.seen[(row, q)] * shares[low + residuals + q]);
+            near + once.chain(again).sum::<f64>()
         };
-        Ok(SeenModes::of(system.solve()?, |shares| {
+        let found = system.solve()?;
+        let standing = modified.elements.iter().filter(|element| at_row(element).is_some());
+        let standing = standing.enumerate().filter_map(|(number, element)| {
+            StandingMass::of(element, || found.iter().map(|(.., shares)| row(number, shares)).collect())
+        });
+        let standing: Vec<StandingMass> = standing.collect();
+        let mut seen = SeenModes::of(found, |shares| {
             let row = |number: usize| row(number, shares);
             let mut slopes: Vec<f64> = (residuals..residuals + asked.len()).map(row).collect();
             let across = slopes.split_off(asked.len().min(places.len()));
             [(elements..residuals).map(row).collect(), slopes, across]
-        }))
+        });
+        if !standing.is_empty() {
+            seen.by_foot = Some(Box::new(by_foot(&seen, &standing, &ports, modified.shear_stiffnesses()?)));
+        }
+        Ok(seen)
     }
 }
 

@@ -29,6 +29,10 @@ impl Effect for Resonator {
         Owner::Panel
     }
 
+    fn in_words(&self) -> &'static str {
+        "a mass on a spring"
+    }
+
     fn parameters(&self) -> &'static [EffectParameter] {
         &PARAMETERS
     }

@@ -13,6 +13,9 @@ use crate::{ModelError, Place, ShearLoss};
 #[derive(Debug, Clone, Copy)]
 pub(super) struct StiffnessLoss;
 
+/// Its id.
+pub const STIFFNESS_LOSS: &str = "stiffness-loss";
+
 const PARAMETERS: [EffectParameter; 4] = [
     EffectParameter::linear("loss", "1", [-0.5, 0.98], &[0.3, 0.8]).sized(0.4, 1.7),
     EffectParameter::linear("span", "m", [0.01, 1.0], &[0.1, 0.3, 0.04]).sized(0.06, 1.5).of(Reference::Length),
@@ -23,11 +26,15 @@ const PARAMETERS: [EffectParameter; 4] = [
 
 impl Effect for StiffnessLoss {
     fn id(&self) -> &'static str {
-        "stiffness-loss"
+        STIFFNESS_LOSS
     }
 
     fn owner(&self) -> Owner {
         Owner::Panel
+    }
+
+    fn in_words(&self) -> &'static str {
+        "shear stiffness lost"
     }
 
     fn parameters(&self) -> &'static [EffectParameter] {

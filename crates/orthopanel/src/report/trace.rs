@@ -1,7 +1,7 @@
 //! What the model lacks: the verdict, the errors before and after, and the ranking.
 
 use orthopanel_identify::{AcceleranceFit, FittedError, TracedEffect, Tracing};
-use orthopanel_model::{Estimate, Readable};
+use orthopanel_model::{Estimate, Readable, StructureKind};
 
 use super::Figure;
 use super::constants::interval;
@@ -10,18 +10,23 @@ use super::table::Table;
 use crate::error::CommandError;
 use crate::evidence::{HitsWithEffects, PairResidual};
 use crate::measured_pairs::place_text;
-use crate::traced::{RANKING_HEADINGS, Traced, comparison, effect_rows, ranking_rows};
+use crate::traced::{RANKING_HEADINGS, Traced, comparison, effect_rows, found_places, ranking_rows};
 use crate::{notes, pictures};
 
 pub struct TraceSection {
     pub verdict: String,
     pub effects: Option<Table>,
+    /// Where they sit, in words, and on a plate in a picture.
+    pub places: Vec<String>,
+    pub map: Option<Figure>,
     /// Those of the panel beside the effects.
     pub constants: Option<Table>,
     pub measure: String,
     pub comparison: Table,
     /// By how much the model misses beside noise.
     pub model_error: Option<String>,
+    /// From which size on a disbond would have been named.
+    pub detectable: Option<String>,
     /// Where most is left of records that no effect explains.
     pub left: Option<String>,
     /// Why what was held out may be met better than what was fitted, where it is.
@@ -53,10 +58,13 @@ impl TraceSection {
         Ok(Self {
             verdict: traced.verdict(),
             effects: effects(&tracing.effects),
+            places: traced.places().collect(),
+            map: map(traced)?,
             constants: constants_with_it(traced),
             measure: tracing.error.measure.clone(),
             comparison: Table::new(&headings, rows),
             model_error: traced.model_error(),
+            detectable: traced.detectable(),
             left: traced.left(),
             about_held_out: about_held_out(tracing),
             about_ranking: BY_EVIDENCE,
@@ -127,6 +135,22 @@ fn gallery(name: &str, fitted: &[AcceleranceFit]) -> Result<Option<Gallery>, Com
         "Measured in orange, calculated with the effects in blue.",
         &pictures,
     ))
+}
+
+/// Where a plate was hit and seen, with what is left there and where the effects sit.
+fn map(traced: &Traced) -> Result<Option<Figure>, CommandError> {
+    let tracing = &traced.tracing;
+    let (Some(panel), Some(first)) = (tracing.panels.first(), tracing.accelerances.first()) else { return Ok(None) };
+    if panel.structure != StructureKind::MindlinPlate {
+        return Ok(None);
+    }
+    let of_piece = tracing.accelerances.iter().filter(|pair| pair.piece == first.piece);
+    let residuals: Vec<PairResidual> = of_piece.map(PairResidual::of).collect();
+    let picture = pictures::plate_map(&panel.piece, &residuals, &found_places(&tracing.effects))?;
+    Ok(Some(Figure::new(
+        &picture,
+        "The plate from above: the more a circle covers, the less the model meets the hits there.",
+    )))
 }
 
 /// Against frequency, place and level, where these are told.

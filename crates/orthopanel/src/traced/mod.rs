@@ -2,6 +2,7 @@
 
 mod left;
 mod lists;
+mod places;
 mod sentences;
 mod tables;
 
@@ -14,6 +15,7 @@ use serde_json::Value;
 
 use crate::identified::{ASSUMED_DAMPING, base_models, to_digits};
 use crate::{console, notes, progress};
+pub use places::found_places;
 pub use tables::{RANKING_HEADINGS, comparison, effect_rows, ranking_rows};
 
 /// What a mode's entry in a model's provenance tells of the test alone.

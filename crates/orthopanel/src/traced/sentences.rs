@@ -1,6 +1,6 @@
 //! What a trace found, in sentences.
 
-use orthopanel_identify::{TracedEffect, Verdict};
+use orthopanel_identify::{Detectable, TracedEffect, Verdict};
 
 use super::Traced;
 use crate::identified::to_digits;
@@ -48,6 +48,29 @@ impl Traced {
         let percent = |part: f64| format!("{} %", to_digits(100.0 * part, 2));
         let residues = of.residue.map_or(String::new(), |residue| format!(" and residues by {}", percent(residue)));
         Some(format!("Beside noise the model misses frequencies by {}{residues}.", percent(of.frequency)))
+    }
+
+    /// From which size on a disbond would have been named.
+    pub fn detectable(&self) -> Option<String> {
+        let Detectable { loss, at_half_of_the_places, anywhere, places, most, .. } = self.tracing.detectable?;
+        let whole = format!("A disbond that loses {:.0} % of the shear stiffness", 100.0 * loss);
+        let millimetres = |side: f64| format!("{:.0} mm", 1e3 * side);
+        Some(match (at_half_of_the_places, anywhere) {
+            (None, _) => format!(
+                "{whole} would show at fewer than half of {places} places looked at, up to {} wide.",
+                millimetres(most)
+            ),
+            (Some(half), None) => format!(
+                "{whole} would be named from {} on at half of {places} places looked at, and at some not even where it is {} wide.",
+                millimetres(half),
+                millimetres(most)
+            ),
+            (Some(half), Some(all)) => format!(
+                "{whole} would be named from {} on at half of {places} places looked at, from {} on at all of them.",
+                millimetres(half),
+                millimetres(all)
+            ),
+        })
     }
 
     fn alternatives(&self) -> String {

@@ -96,6 +96,7 @@ impl Traced {
             let headings = ["effect", "owner", "parameter", "value", "std", "unit"];
             text += &format!("\n{}", aligned(&headings, &effect_rows(&tracing.effects)));
         }
+        text.extend(self.places().map(|place| place + "\n"));
         let constants = self.constant_rows();
         if !constants.is_empty() {
             text += &format!("\n{}", aligned(&["constant with it", "value", "std", "unit"], &constants));
@@ -115,6 +116,7 @@ impl Traced {
         for of in &tracing.not_tested {
             text += &format!("not tested: {}: {}\n", of.id, of.reason);
         }
+        text.extend(self.detectable().map(|told| told + "\n"));
         text += "\n";
         for sentence in self.ownership() {
             text += &(sentence + "\n");
