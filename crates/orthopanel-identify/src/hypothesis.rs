@@ -282,7 +282,8 @@ impl Part {
     }
 }
 
-fn even_net(count: usize, to: f64) -> Vec<f64> {
+/// Numbers that lie evenly from $-$`to` to `to`.
+pub(crate) fn even_net(count: usize, to: f64) -> Vec<f64> {
     (0..count).map(|i| to * (2.0 * i as f64 / (count - 1) as f64 - 1.0)).collect()
 }
 

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use super::further_effect::Score;
 use super::{Inquiry, log_prior};
-use crate::hypothesis::Role;
+use crate::hypothesis::{Role, even_net};
 use crate::judge::ODDS;
 use crate::outcome::Detectable;
 use crate::posterior::Judged;
@@ -66,9 +66,7 @@ impl Inquiry<'_> {
             }
             Some(high.exp())
         };
-        let net = |size: f64, count: usize| {
-            (0..count).map(move |i| 0.5 * size * TO * (2.0 * i as f64 / (count - 1) as f64 - 1.0)).collect::<Vec<f64>>()
-        };
+        let net = |size: f64, count: usize| even_net(count, 0.5 * size * TO);
         let places: Vec<Place> = if is_plate {
             let across = net(piece.width, PLACES_EACH_WAY);
             let along = net(piece.length, PLACES_EACH_WAY).into_iter();
