@@ -1,6 +1,6 @@
 //! What is said of a test: one threshold, in odds.
 
-use crate::measured::Pole;
+use crate::measured::{MeasuredModes, Pole};
 use crate::model_error::Kind;
 use crate::outcome::Verdict;
 use crate::posterior::Judged;
@@ -44,6 +44,15 @@ pub(crate) fn without_mode(judged: &Judged, stacked: &Stacked) -> Vec<(usize, Po
     found
 }
 
+/// What was measured where poles and noise do not make the records: the modes that they show may be met by a model, the rest of the records is
+/// explained by none, except where the hypothesis holds what is not linear.
+pub(crate) fn not_modal<'a>(judged: &Judged, stacked: &'a Stacked) -> Option<&'a MeasuredModes> {
+    if judged.hypothesis.parts.iter().any(|part| part.effect.linearised().is_some()) {
+        return None;
+    }
+    stacked.recorded().map(|(_, block)| block.comparison().measured).find(|measured| measured.is_not_modal())
+}
+
 /// Of hypotheses in order, the likeliest first, the simplest that is not clearly behind; the verdict; and where that is ambiguous the hypotheses that
 /// are not clearly behind and lack one of its effects, or of nothing missing those that are ahead of it, the likeliest first.
 pub(crate) fn judged<'a>(all: &'a [Judged], stacked: &Stacked) -> Option<(&'a Judged, Verdict, Vec<&'a Judged>)> {
@@ -52,7 +61,7 @@ pub(crate) fn judged<'a>(all: &'a [Judged], stacked: &Stacked) -> Option<(&'a Ju
     let chosen = near().min_by_key(|judged| judged.names().len())?;
     let size = |kind: Kind| chosen.posterior.log_sizes[kind as usize].exp();
     let misses_most = size(Kind::Frequency) > most_frequency(stacked) || size(Kind::Residue) > MOST_RESIDUE;
-    if misses_most || !without_mode(chosen, stacked).is_empty() {
+    if misses_most || !without_mode(chosen, stacked).is_empty() || not_modal(chosen, stacked).is_some() {
         return Some((chosen, Verdict::Unexplained, vec![]));
     }
     let names = chosen.names();

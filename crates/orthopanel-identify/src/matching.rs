@@ -178,6 +178,7 @@ mod tests {
             band: [5.0, 6000.0],
             covariance: Mat::zeros(0, 0),
             chi_square: None,
+            missed_most: None,
             undone_decay: 0.0,
         };
         let matched = measured.matched(&modes);

@@ -6,9 +6,9 @@ use orthopanel_model::{EffectState, ModelError, Place, RecordSetting, SENSOR_MAS
 use rayon::prelude::*;
 
 use super::estimates::id;
-use super::weighed::no_mode;
+use super::weighed::{no_mode, no_resonance};
 use crate::comparison::Comparison;
-use crate::judge::without_mode;
+use crate::judge::{not_modal, without_mode};
 use crate::measured::{MeasuredModes, MeasuredRecord};
 use crate::model_error::{ErrorColumns, waves};
 use crate::outcome::Verdict;
@@ -47,10 +47,14 @@ pub(super) fn next_measurement(
     };
     match verdict {
         Verdict::NothingMissing => "none: the base model meets the measured modes".to_owned(),
-        Verdict::Unexplained => match without_mode(chosen, &inquiry.stacked).first() {
-            Some(stranger) => to_check(test, &no_mode(test, stranger)),
-            None => to_check(test, &times_the_noise(left)),
-        },
+        Verdict::Unexplained => {
+            let (strangers, other) = (without_mode(chosen, &inquiry.stacked), not_modal(chosen, &inquiry.stacked));
+            match (strangers.first(), other) {
+                (Some(stranger), _) => to_check(test, &no_mode(test, stranger)),
+                (None, Some(measured)) => to_check(test, &no_resonance(test, measured)),
+                (None, None) => to_check(test, &times_the_noise(left)),
+            }
+        }
         _ if !rivals.is_empty() => parting(inquiry, chosen, rivals),
         _ => match all.iter().find(is_other) {
             Some(nearest) => format!("to be surer still: {}", parting(inquiry, chosen, &[nearest])),

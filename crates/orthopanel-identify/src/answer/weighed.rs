@@ -6,8 +6,8 @@ use orthopanel_data::ImpactTest;
 use orthopanel_model::Readable;
 
 use crate::IdentifyError;
-use crate::judge::{judged, without_mode};
-use crate::measured::Pole;
+use crate::judge::{judged, not_modal, without_mode};
+use crate::measured::{MeasuredModes, Pole};
 use crate::outcome::Verdict;
 use crate::posterior::Judged;
 use crate::search::Inquiry;
@@ -36,6 +36,17 @@ fn of_piece(test: &ImpactTest, piece: usize) -> String {
 pub(super) fn no_mode(test: &ImpactTest, (piece, pole): &(usize, Pole)) -> String {
     let of = of_piece(test, *piece);
     format!("the resonance at {:.1} Hz{of} is no mode of this model", pole.angular_frequency / TAU)
+}
+
+/// What is said of records that poles and noise do not make.
+pub(super) fn no_resonance(test: &ImpactTest, measured: &MeasuredModes) -> String {
+    let of = of_piece(test, measured.piece);
+    let at = measured.missed_most.map_or(String::new(), |at| format!(", most at {at:.1} Hz"));
+    format!(
+        "the records{of} hold what is neither resonance nor noise{at} (chi-square per datum of the modal fit {:.2}): a tone such as mains hum, a cable \
+         that rubs, a force that is not linear",
+        Readable(measured.chi_square.unwrap_or(f64::NAN))
+    )
 }
 
 impl<'a> Weighed<'a> {
@@ -86,6 +97,7 @@ impl<'a> Weighed<'a> {
         let is_no_mode =
             |of: (usize, Pole)| format!("{}: something swings there that it does not hold", no_mode(test, &of));
         let mut notes: Vec<String> = without_mode(self.chosen, &inquiry.stacked).into_iter().map(is_no_mode).collect();
+        notes.extend(not_modal(self.chosen, &inquiry.stacked).map(|measured| no_resonance(test, measured)));
         notes.extend(self.doubts.iter().map(|doubt| doubt.sentence.clone()));
         notes.extend(self.near.iter().map(|rival| self.standing(rival)));
         notes.extend(notes_on_not_shown(inquiry, self.base));

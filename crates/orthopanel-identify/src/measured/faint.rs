@@ -89,6 +89,7 @@ mod tests {
             band: [10.0, 1000.0],
             covariance: faer::Mat::from_fn(14, 14, |i, j| if i == j { i as f64 } else { 0.0 }),
             chi_square: Some(1.0),
+            missed_most: None,
             undone_decay: 0.0,
         };
         let left = measured.without_faint();

@@ -29,6 +29,7 @@ impl MeasuredModes {
             band: ends,
             covariance: Mat::from_fn(modes, modes, |i, j| if i == j { variance(i) } else { 0.0 }),
             chi_square: None,
+            missed_most: None,
             undone_decay: 0.0,
         }
     }

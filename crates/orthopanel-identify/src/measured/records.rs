@@ -258,8 +258,19 @@ fn told(
         band,
         covariance,
         chi_square: Some(chi_square),
+        missed_most: missed_most(records, &fit.residuals(&found.poles, &found.fitted)),
         undone_decay: 0.0,
     }
+}
+
+/// The line that is missed by most, of all records \[Hz\].
+fn missed_most(records: &[RecordLines], left: &[Vec<Complex64>]) -> Option<f64> {
+    let of_record = |(record, left): (&RecordLines, &Vec<Complex64>)| {
+        let line = (0..left.len()).max_by(|a, b| left[*a].norm_sqr().total_cmp(&left[*b].norm_sqr()))?;
+        Some((record.per_datum * left[line].norm_sqr(), record.s[line].im / TAU))
+    };
+    let lines = records.iter().zip(left).filter_map(of_record);
+    lines.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, frequency)| frequency)
 }
 
 /// Evenly in the logarithm, from the band's end to where modes alone carry the accelerance.
