@@ -127,21 +127,18 @@ pub(super) fn joined(records: &[RecordLines], start: PoleParameters, is_told: bo
 }
 
 /// With poles beyond the end of the band, as many as pay: resonances there of which no line shows more than a skirt, which powers of $s$ follow slowly.
-/// They are told where noise explains the band's end with them, and no other cause of what is missed is left.
-fn with_poles_beyond(records: &[RecordLines], found: Found) -> Found {
+fn with_poles_beyond(records: &[RecordLines], mut found: Found) -> Found {
     let end = |record: &RecordLines| record.s.last().map_or(0.0, |s| s.im / TAU);
     let end = records.iter().map(end).fold(0.0, f64::max);
     let within = |found: &Found| found.poles.iter().filter(|pole| pole[0].exp() < TAU * end).count();
-    let mut last: Option<Found> = None;
     loop {
-        let now = last.as_ref().unwrap_or(&found);
-        let left = ModalFit::new(records, &now.poles).residuals(&now.poles, &now.fitted);
+        let left = ModalFit::new(records, &found.poles).residuals(&found.poles, &found.fitted);
         if at_end(records, &left) < SYSTEMATIC {
-            return last.unwrap_or(found);
+            return found;
         }
-        match with_another(records, now, (&left, BEYOND * end)) {
+        match with_another(records, &found, (&left, BEYOND * end)) {
             // What ends within the band was looked for there.
-            Some(more) if within(&more) == within(now) && is_worth(records, now, &more) => last = Some(more),
+            Some(more) if within(&more) == within(&found) && is_worth(records, &found, &more) => found = more,
             _ => return found,
         }
     }
