@@ -68,7 +68,7 @@ pub struct MeasuredModes {
     pub covariance: Mat<f64>,
     /// Misfit of the modal fit per degree of freedom in units of the noise, by which the covariance is scaled already; `None` for lists.
     pub chi_square: Option<f64>,
-    /// Frequency of the line \[Hz\] that the modal fit misses by most over the noise, `None` for lists.
+    /// Frequency of the line \[Hz\] that the modal fit misses most, over its noise; `None` for lists.
     pub missed_most: Option<f64>,
     /// Decay rate \[1/s\] of the noise of the hits, as under an exponential window, which poles, residues and remainders are free of; mostly zero.
     pub undone_decay: f64,
@@ -76,7 +76,7 @@ pub struct MeasuredModes {
 
 impl MeasuredModes {
     /// Whether records hold what neither poles nor noise make, as a tone beside the response or a force that is not linear.
-    pub fn is_not_modal(&self) -> bool {
+    pub(crate) fn is_not_modal(&self) -> bool {
         self.chi_square.is_some_and(|chi_square| chi_square > joint_fit::SYSTEMATIC)
     }
 }

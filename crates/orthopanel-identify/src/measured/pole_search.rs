@@ -36,7 +36,7 @@ const ONE: f64 = 0.3;
 const OVERLAP: f64 = 1.2;
 
 /// Poles from the data alone, part after part of a band \[Hz\], and up to where they explain the records: beyond, modes overlap so far that no pole
-/// stands by itself. The whole band where they do nowhere.
+/// stands by itself. The whole band where they do nowhere, or where no pole stands below.
 ///
 /// What the poles of the other parts show in a part, a free vibration that the record's end cuts off or a skirt, is removed from it, and its own
 /// poles are found anew; those that explain more are kept.
@@ -69,7 +69,8 @@ pub(super) fn in_parts(records: &[RecordLines], (band, is_told): ([f64; 2], bool
         .map(|(alone, again)| if misfit(&again) < misfit(&alone) { again } else { alone })
         .collect();
     let explained = parts.iter().position(|part| part.as_ref().is_some_and(|part| !part.explained));
-    let count = explained.filter(|count| *count > 0).unwrap_or(parts.len());
+    let hold_poles = |count: &usize| parts.iter().take(*count).flatten().any(|part| !part.poles.is_empty());
+    let count = explained.filter(hold_poles).unwrap_or(parts.len());
     let mut poles: PoleParameters = parts.into_iter().take(count).flatten().flat_map(|part| part.poles).collect();
     // A pole at the end of a part may be found from either side.
     poles.sort_by(|a, b| a[0].total_cmp(&b[0]));

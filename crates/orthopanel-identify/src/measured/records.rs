@@ -265,11 +265,9 @@ fn told(
 
 /// The line that is missed by most, of all records \[Hz\].
 fn missed_most(records: &[RecordLines], left: &[Vec<Complex64>]) -> Option<f64> {
-    let of_record = |(record, left): (&RecordLines, &Vec<Complex64>)| {
-        let line = (0..left.len()).max_by(|a, b| left[*a].norm_sqr().total_cmp(&left[*b].norm_sqr()))?;
-        Some((record.per_datum * left[line].norm_sqr(), record.s[line].im / TAU))
-    };
-    let lines = records.iter().zip(left).filter_map(of_record);
+    let lines = records.iter().zip(left).flat_map(|(record, left)| {
+        record.s.iter().zip(left).map(|(s, left)| (record.per_datum * left.norm_sqr(), s.im / TAU))
+    });
     lines.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, frequency)| frequency)
 }
 
