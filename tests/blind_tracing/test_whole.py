@@ -1,5 +1,8 @@
 """The whole panel's plate against Navier's solution, published frequencies and finer meshes; its tests as they are played."""
 
+import json
+import os
+import subprocess
 import tomllib
 from dataclasses import replace
 
@@ -15,6 +18,7 @@ from .contour import Sampling, half_sine
 from .draw import Draw
 from .whole_plate import CONSTANTS, Foot, Mesh, WholePanel
 
+ORTHOPANEL = os.environ.get("ORTHOPANEL")
 PANEL = WholePanel(1.1, 0.7, 0.02, 5.0, 1.0e10, 8.0e9, 0.31, 3.7e9, 2.0e8, 3.5e8)
 SMALL = replace(PANEL, length=0.5, width=0.35)
 COARSE = {"degree": 6, "element": 0.12}
@@ -121,6 +125,30 @@ def test_a_mass_by_receptances_is_one_in_the_mass_matrix():
     inner = lambda omega: 1.0 - mass * omega**2 * modes.receptance(1.0j * omega[..., None], [0], [0])[..., 0, 0, 0].real  # noqa: E731
     low, high = (np.array([inner(np.array(one)) for one in wanted * (1.0 + step)]) for step in (-1e-6, 1e-6))
     assert np.all(low * high < 0.0), (low, high)
+
+
+@pytest.mark.skipif(ORTHOPANEL is None, reason="ORTHOPANEL names no binary")
+def test_val_a_mass_on_a_plate_of_the_command_is_this_one(tmp_path):
+    """Twelve modes of a model file's plate with a mass on its foot of 10 mm, to a tenth of what two millimetres more change."""
+    x, y, mass = 0.12, 0.05, 0.03
+
+    def loaded(side):
+        mesh = Mesh(SMALL, [Foot(x, y, side)], degree=6)
+        row = sparse.csr_matrix(mesh.deflection(Foot(x, y, side)))
+        square = eigsh(mesh.stiffness, k=15, M=(mesh.mass + mass * row.T @ row).tocsc(), sigma=-1e4, return_eigenvectors=False)
+        return np.sqrt(np.sort(square)[3:]) / 2.0 / np.pi
+
+    model = tmp_path / "loaded.json"
+    piece = {name: getattr(SMALL, name) for name in ("length", "width", "thickness", "mass_per_area")}
+    fields = {"schema": "orthopanel.model/1", "piece": piece, "structure": "mindlin-plate", "constants": SMALL.constants}
+    fields |= {"damping": {"beyond": 0.003}, "ports": {"forces": [[0.2, 0.1]], "responses": [[-0.2, 0.1]]}}
+    effects = [{"id": "local-mass", "owner": "panel", "mass": mass, "x": x, "y": y}]
+    model.write_text(json.dumps(fields | {"effects": effects}))
+    told = subprocess.run([ORTHOPANEL, "modes", model, "--count", "12", "--json"], capture_output=True, check=True)
+    found = np.array([mode["frequency_hz"] for mode in json.loads(told.stdout)["modes"]])
+    exact, wider = loaded(0.010), loaded(0.012)
+    assert np.max(wider / exact - 1.0) > 1e-5
+    assert np.all(np.abs(found / exact - 1.0) < 0.1 * (wider / exact - 1.0) + 2e-7), (found / exact - 1.0, wider / exact - 1.0)
 
 
 def test_a_spring_on_a_point_needs_no_foot():

@@ -3,6 +3,7 @@
 mod accelerance_fit;
 mod answer;
 mod comparison;
+mod coupled_damping;
 mod curves;
 mod declared_doubt;
 mod declared_effects;

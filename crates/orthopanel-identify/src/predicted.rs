@@ -11,6 +11,7 @@ use orthopanel_model::{
 };
 
 use crate::comparison::{Comparison, UNSEEN};
+use crate::coupled_damping::CoupledModes;
 use crate::measured::{Pole, SKIRT};
 use crate::view::{Channel, PARTS, Relaxing, View, Views};
 
@@ -28,8 +29,8 @@ const SHIFT: f64 = 1e-5;
 const CLEAR_OF_HANGING: f64 = 3.0;
 /// Sets of modes that are kept.
 const KEPT: usize = 48;
-/// Modes of a plate are told up to so many times the highest pole.
-const WIDE: f64 = 1.25;
+/// Modes of a plate are told up to so many times the highest pole: of what a beam may be, and of a declared plate, whose highest modes masses move most.
+const WIDE: [f64; 2] = [1.25, 1.6];
 /// Part of the lowest pole's frequency, from which on a predicted mode may be its partner.
 const LOWEST: f64 = 0.4;
 /// Part of the band up to which a mode of some strength is seen.
@@ -110,11 +111,12 @@ impl<'a> Predictor<'a> {
         let top = measured.poles.last().map_or(measured.band[1], |pole| pole.angular_frequency / TAU);
         let of_plate =
             if places.is_empty() { vec![Place { x: 0.5 * setting.piece.length, y: 0.0 }] } else { places.clone() };
-        let panel = panel.perhaps_wide(setting, &of_plate, WIDE * top);
+        let number = usize::from(structure == StructureKind::MindlinPlate);
+        let panel = panel.perhaps_wide(setting, &of_plate, WIDE[number] * top);
         // What is not linear shows between hits, not in modes.
         let record = RecordSetting { suspension_motion: SuspensionMotion::InTime, ..setting.record.clone() };
         let setting = EffectSetting { record, ..setting.clone() };
-        let apart = APART[usize::from(structure == StructureKind::MindlinPlate)];
+        let apart = APART[number];
         Ok(Self { comparison, structure, panel, setting, places, hanging: None, apart, found: Mutex::default() })
     }
 
@@ -404,6 +406,14 @@ impl<'a> Predictor<'a> {
         own.clamp(0.0, MOST_DAMPING)
     }
 
+    /// Modes of a plate with what stands on it as the damping of the plate couples them.
+    fn coupled(&self, view: &View, partners: &[Option<usize>], channel: Option<&Channel>) -> Option<CoupledModes> {
+        channel?;
+        let pole = |n: usize| partners.iter().position(|partner| *partner == Some(n));
+        let zeta: Vec<f64> = (0..view.near()).map(|n| self.damping(view, n, pole(n), channel)).collect();
+        CoupledModes::new(&view.modes, &zeta)
+    }
+
     /// In the order of the comparison.
     fn compared(&self, channels: &[Channel], seen: &Views) -> Prediction {
         let (comparison, measured) = (self.comparison, self.comparison.measured);
@@ -414,6 +424,8 @@ impl<'a> Predictor<'a> {
         let beside = measured.poles.iter().rev().take(BESIDE).filter_map(|pole| pole.damping_ratio);
         let top = MOSTLY_SEEN * TAU * measured.band[1] / (1.0 + SKIRT * beside.fold(0.0, f64::max));
         let partners = self.partners(channels, seen, omega, bottom);
+        let coupled: Vec<Option<CoupledModes>> =
+            seen.views.iter().map(|view| self.coupled(view, &partners, channels.first())).collect();
         let size = comparison.size();
         let mut parts = [(); PARTS].map(|()| vec![0.0; size]);
         let mut phase = vec![Complex64::I; measured.poles.len()];
@@ -423,7 +435,10 @@ impl<'a> Predictor<'a> {
                 Some(relaxing) => {
                     relaxing.mode(n, self.damping(first, n, Some(pole), channels.first())).angular_frequency
                 }
-                None => omega[n],
+                None => {
+                    let coupled = coupled[0].as_ref().and_then(|coupled| coupled.angular_frequency.get(n).copied());
+                    coupled.unwrap_or(omega[n])
+                }
             };
             parts[0][pole] = partner.map_or(measured.poles[pole].angular_frequency, own).ln();
         }
@@ -437,9 +452,10 @@ impl<'a> Predictor<'a> {
             };
             let mut remainder = vec![[Complex64::ZERO; PARTS]; remainders];
             let (view, ports) = seen.of_record(record);
+            let coupled = coupled[seen.number_of(record)].as_ref();
             for n in 0..view.near() {
                 let pole = partners.iter().position(|partner| *partner == Some(n));
-                let mode = view.mode((n, ports), self.damping(view, n, pole, Some(channel)));
+                let mode = view.mode((n, ports), self.damping(view, n, pole, Some(channel)), coupled);
                 let stands = mode.omega > 0.0 && (pole.is_some() || (mode.omega > bottom && mode.omega < top));
                 let unit = if stands { mode.residue(channel) } else { Complex64::ZERO };
                 match pole {

@@ -6,6 +6,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use num_complex::Complex64;
 use orthopanel_model::{ChannelFactor, ModesAtLine, Place, RelaxingMode, RelaxingModes, SeenModes};
 
+use crate::coupled_damping::CoupledModes;
 use crate::measured::MeasuredModes;
 
 /// Of what a record sees: the value, and how it follows the place of the force along x, that of the response, and both along y.
@@ -37,11 +38,16 @@ pub(crate) struct Views {
 }
 
 impl Views {
+    /// Number of the modes that a record sees.
+    pub(crate) fn number_of(&self, record: usize) -> usize {
+        let own = |view: &View| view.of.is_none_or(|of| of == self.places[record][1]);
+        self.views.iter().position(own).unwrap_or(0)
+    }
+
     /// The modes that a record sees, and its ports of force and response.
     pub(crate) fn of_record(&self, record: usize) -> (&View, [usize; 2]) {
         let places = self.places[record];
-        let own = |view: &&View| view.of.is_none_or(|of| of == places[1]);
-        let view = self.views.iter().find(own).unwrap_or(&self.views[0]);
+        let view = &self.views[self.number_of(record)];
         (view, places.map(|place| view.ports.iter().position(|port| *port == place).unwrap_or(0)))
     }
 }
@@ -62,8 +68,13 @@ impl View {
         self.modes.angular_frequency.len()
     }
 
-    /// A mode between two ports, with this damping ratio.
-    pub(crate) fn mode(&self, (n, [force, response]): (usize, [usize; 2]), zeta: f64) -> ModeInRecord {
+    /// A mode between two ports, with this damping ratio, and with what it has of others that damping couples it with.
+    pub(crate) fn mode(
+        &self,
+        (n, [force, response]): (usize, [usize; 2]),
+        zeta: f64,
+        coupled: Option<&CoupledModes>,
+    ) -> ModeInRecord {
         if let Some(relaxing) = &self.relaxing {
             let mode = relaxing.mode(n, zeta);
             let shape =
@@ -72,13 +83,18 @@ impl View {
             let core = Some((mode.damping, mode.by_s));
             return ModeInRecord { omega: mode.angular_frequency, zeta, deflection, shape, core };
         }
-        let deflection = |port: usize| Complex64::from(self.modes.deflection[n][port]);
-        let slopes = [&self.modes.slope, &self.modes.slope_across];
-        let slope = |axis: usize, port: usize| {
-            slopes[axis].get(n).and_then(|of| of.get(port)).map_or(Complex64::ZERO, |slope| (*slope).into())
+        let of_mode = |values: &[Vec<f64>], n: usize, port: usize| {
+            values.get(n).and_then(|of| of.get(port)).copied().unwrap_or(0.0)
         };
-        let shape = between(deflection, slope, [force, response]);
-        let omega = self.modes.angular_frequency[n];
+        let seen = |values: &[Vec<f64>], port: usize| {
+            let of = |n: usize| of_mode(values, n, port);
+            coupled.and_then(|coupled| coupled.seen(n, of)).unwrap_or_else(|| of(n).into())
+        };
+        let slopes = [&self.modes.slope, &self.modes.slope_across];
+        let deflection = |port: usize| seen(&self.modes.deflection, port);
+        let shape = between(deflection, |axis, port| seen(slopes[axis], port), [force, response]);
+        let omega = coupled.and_then(|coupled| coupled.angular_frequency.get(n).copied());
+        let omega = omega.unwrap_or(self.modes.angular_frequency[n]);
         ModeInRecord { omega, zeta, deflection: [force, response].map(deflection), shape, core: None }
     }
 

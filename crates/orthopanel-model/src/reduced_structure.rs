@@ -268,6 +268,10 @@ impl<S: Structure> Structure for ReducedStructure<S> {
         self.whole.static_remainders(values, motions)
     }
 
+    fn inertial_remainders(&self, values: &[f64], motions: &[(Motion, Place)]) -> Vec<Mat<f64>> {
+        self.whole.inertial_remainders(values, motions)
+    }
+
     /// All of its coordinates: most are modes.
     fn resolved_modes(&self) -> usize {
         self.blocks.iter().map(|block| block.size() - block.rigid.len()).sum()

@@ -142,7 +142,7 @@ mod tests {
         assert!(moved > 5, "{moved}");
     }
 
-    /// On the few shapes of a search, as on a fine basis: as much as the latter lacks of a foot's give is left, a tenth of what a foot of e times the
+    /// On the few shapes of a search, as on a fine basis: as much as the latter lacks of a foot's give is left, a twentieth of what a foot of e times the
     /// side changes. Low modes were 8e-6 off while their changes were weighed by mass, high ones a fifth of that change before a mass had second
     /// shapes.
     #[test]
@@ -174,7 +174,7 @@ mod tests {
                 let omega = few.angular_frequency[n];
                 let by_foot = few.by_foot.as_ref().map_or(0.0, |by| by.angular_frequency[n] / omega);
                 let apart = omega / fine.angular_frequency[n] - 1.0;
-                assert!(apart.abs() < 0.1 * by_foot + 5e-7, "mode {n} with {mass:?}: {apart:e}, {by_foot:e}");
+                assert!(apart.abs() < 0.06 * by_foot + 5e-7, "mode {n} with {mass:?}: {apart:e}, {by_foot:e}");
                 greatest = greatest.max(by_foot);
             }
             assert_eq!(greatest > 5e-4, mass.is_some(), "{greatest}");

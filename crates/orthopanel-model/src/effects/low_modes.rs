@@ -112,8 +112,19 @@ impl LowModes {
         let near = &answers.near;
         let [far, inertia] = &mut answers.series;
         let pushed = far.ncols();
-        if let Some(lacking) = structure.inertial_remainders(values, &rows[..pushed]) {
-            *inertia += lacking;
+        let second = &mut answers.second;
+        let twice = second.mass.ncols();
+        for (power, lacking) in structure.inertial_remainders(values, &rows[..pushed]).iter().enumerate() {
+            let of_few = lacking.subcols(0, twice);
+            match power {
+                0 => {
+                    *inertia += lacking;
+                    let mut seen = second.seen.subrows_mut(0, pushed);
+                    seen += of_few;
+                }
+                1 => second.coupled += of_few,
+                _ => second.mass += of_few.subrows(0, twice),
+            }
         }
         if let Some(lacking) = structure.static_remainders(values, rows) {
             *far += lacking.subcols(0, pushed);

@@ -48,6 +48,8 @@ pub struct SeenModes {
     pub slope: Vec<Vec<f64>>,
     /// $\partial W_n/\partial y$ \[kg^-1/2/m\], alike, of a plate.
     pub slope_across: Vec<Vec<f64>>,
+    /// Shares of the modes of a plate without what stands on it in each of these, where there is anything: with what its damping couples them.
+    pub shares: Vec<Vec<f64>>,
     /// Derivatives of all these by the logarithm of the side of the feet on which masses stand on a plate.
     pub by_foot: Option<Box<SeenModes>>,
 }
@@ -248,12 +250,16 @@ impl ModifiedPanel {
             StandingMass::of(element, || found.iter().map(|(.., shares)| row(number, shares)).collect())
         });
         let standing: Vec<StandingMass> = standing.collect();
+        let own = |(.., shares): &FoundMode| shares[..low].to_vec();
+        let is_modified = matches!(self.even, Even::Plate) && !modified.elements.is_empty();
+        let own: Vec<Vec<f64>> = if is_modified { found.iter().map(own).collect() } else { vec![] };
         let mut seen = SeenModes::of(found, |shares| {
             let row = |number: usize| row(number, shares);
             let mut slopes: Vec<f64> = (residuals..residuals + asked.len()).map(row).collect();
             let across = slopes.split_off(asked.len().min(places.len()));
             [(elements..residuals).map(row).collect(), slopes, across]
         });
+        seen.shares = own;
         if !standing.is_empty() {
             seen.by_foot = Some(Box::new(by_foot(&seen, &standing, &ports, modified.shear_stiffnesses()?)));
         }

@@ -74,6 +74,11 @@ impl Structure for RatioPlate {
         self.plate.kinks(self.membrane.as_ref()?, &plate_constants(six(values).ok()?), motions)
     }
 
+    fn inertial_remainders(&self, values: &[f64], motions: &[(Motion, Place)]) -> Vec<Mat<f64>> {
+        let (Some(membrane), Ok(values)) = (&self.membrane, six(values)) else { return vec![] };
+        self.plate.inertia(membrane, &plate_constants(values), motions)
+    }
+
     fn resolved_modes(&self) -> usize {
         self.plate.resolved_modes()
     }

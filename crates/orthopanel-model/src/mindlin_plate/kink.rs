@@ -17,8 +17,12 @@
 //! which replaces what the basis has of this sum where both motions are the same [`Motion::Foot`], with what comes back once from either end. A force of a hammer keeps its point: ports are seen from
 //! afar.
 //!
-//! Limits: the rotation $\psi_x$ is taken as held in the waves that the series lacks, which leaves
-//! $A_{55}/D_{11}k_x^2$ of $\Delta R$.
+//! In $R$ the rotation $\psi_x$ is taken as held in the waves that the series lacks, which leaves $A_{55}/D_{11}k_x^2$ of $\Delta R$. Under a foot that
+//! is made good: a wave $\cos k_xx\cos k_yy$ gives way by
+//! $$c = \frac1{A_{55}k_x^2+A_{44}k_y^2}+\frac1{D_{11}k_x^4+2(D_{12}+2D_{66})k_x^2k_y^2+D_{22}k_y^4}$$
+//! (exact where both shear stiffnesses are one), and swings with the mass per area $\rho$, so that the waves that the basis lacks answer with $c +
+//! \omega^2\rho c^2 + \omega^4\rho^2c^3 + \dots$ Sums over waves less those over the basis' own functions are what it lacks; the lower half of these functions are such waves to
+//! all digits, and need no part in it.
 
 use faer::{Mat, MatRef};
 
@@ -91,6 +95,12 @@ struct Seen {
     across: Vec<f64>,
 }
 
+/// $D_{11}, D_{22}, D_{12}, D_{66}$ \[N m\], $A_{55}, A_{44}$ \[N/m\].
+type Stiffnesses = [f64; 6];
+
+/// $k^2$ \[1/m2\] of a wave along one direction, and the square of its value at a place.
+type Wave = (f64, f64);
+
 /// A place along one direction with the order of the derivative that is asked there.
 type Side = (usize, f64);
 
@@ -116,18 +126,20 @@ impl Membrane {
     pub(super) fn kink(
         &self,
         bases: &[EdgeBasis; 2],
-        stiffnesses: [f64; 3],
-        [first, second]: [(Motion, crate::Place); 2],
+        stiffnesses: Stiffnesses,
+        motions: [(Motion, crate::Place); 2],
     ) -> Option<f64> {
-        let kink = self.between(stiffnesses, &self.end(bases, first)?, &self.end(bases, second)?);
-        Some(if is_foot(first, second) { kink + self.under_foot(bases, stiffnesses, first.1) } else { kink })
+        let [first, second] = motions.map(|motion| self.end(bases, motion));
+        let kink = self.between(stiffnesses, &first?, &second?);
+        let foot = is_foot(motions[0], motions[1]).then(|| self.under_foot(bases, stiffnesses, motions[0].1));
+        Some(kink + foot.unwrap_or(0.0))
     }
 
     /// The same between any two motions of a list; zero for a rotation.
     pub(super) fn kinks(
         &self,
         bases: &[EdgeBasis; 2],
-        stiffnesses: [f64; 3],
+        stiffnesses: Stiffnesses,
         motions: &[(Motion, crate::Place)],
     ) -> Mat<f64> {
         let ends: Vec<Option<Seen>> = motions.iter().map(|motion| self.end(bases, *motion)).collect();
@@ -145,10 +157,26 @@ impl Membrane {
         kinks
     }
 
-    /// $\Delta R$ with $D_{22}$, $A_{55}$, $A_{44}$.
-    fn between(&self, stiffnesses: [f64; 3], first: &Seen, second: &Seen) -> f64 {
+    /// What the basis lacks of $\sum\phi_{1m}\phi_{2m}/\omega_m^{2+2k}$ between any two motions of a list, on a mass per area \[kg/m2\]: told under a
+    /// foot alone.
+    pub(super) fn inertia(
+        &self,
+        bases: &[EdgeBasis; 2],
+        stiffnesses: Stiffnesses,
+        (mass_per_area, power): (f64, i32),
+        motions: &[(Motion, crate::Place)],
+    ) -> Mat<f64> {
+        Mat::from_fn(motions.len(), motions.len(), |p, q| {
+            let squares = |c: f64, _| c * (mass_per_area * c).powi(power);
+            let foot = is_foot(motions[p], motions[q]);
+            if foot { self.by_waves(bases, stiffnesses, motions[p].1, squares) } else { 0.0 }
+        })
+    }
+
+    /// $\Delta R$.
+    fn between(&self, stiffnesses: Stiffnesses, first: &Seen, second: &Seen) -> f64 {
         let lacking = |(m, &nu): (usize, &f64)| {
-            let stiffness = [stiffnesses[1], self.foundation(nu, stiffnesses)];
+            let stiffness = [stiffnesses[4], self.foundation(nu, stiffnesses)];
             let terms: f64 = self.terms(m, [first, second], stiffness).sum();
             first.across[m] * second.across[m] * (self.green(stiffness, first.side, second.side) - terms)
         };
@@ -156,55 +184,93 @@ impl Membrane {
     }
 
     /// What the functions across lack under a foot at a place.
-    fn under_foot(&self, bases: &[EdgeBasis; 2], stiffnesses: [f64; 3], place: crate::Place) -> f64 {
-        let [_, a_55, _] = stiffnesses;
+    fn under_foot(&self, bases: &[EdgeBasis; 2], stiffnesses: Stiffnesses, place: crate::Place) -> f64 {
+        let a_55 = stiffnesses[4];
         let kappa = |nu: f64| (self.foundation(nu, stiffnesses) / a_55).sqrt();
         // What comes back from either end doubles the answer at a free one, and takes it away at a held one.
         let returned = |kappa: f64| {
             let [left, right] = self.returned;
             let h = self.half_length;
-            1.0 + left * (-2.0 * kappa * (h + place.x)).exp() + right * (-2.0 * kappa * (h - place.x)).exp()
+            left * (-2.0 * kappa * (h + place.x)).exp() + right * (-2.0 * kappa * (h - place.x)).exp()
         };
-        let seen = self.across.at(&bases[1].values_at(Field::Deflection, place.y));
-        let basis =
-            seen.iter().zip(&self.across.slopes).map(|(value, nu)| value * value / kappa(*nu) * returned(kappa(*nu)));
-        let held = self.sides.map(|end| end != End::Free);
-        // Half-waves of the first function across.
-        let first = match held {
-            [false, false] => 0.0,
-            [true, true] => 1.0,
-            _ => 0.5,
-        };
-        let width = 2.0 * self.half_width;
-        let from_edge = place.y + self.half_width;
-        let count = (FINEST * width / FOOT).ceil() as usize;
-        let exact = (0..count).map(|m| {
-            let wave_number = std::f64::consts::PI * (m as f64 + first) / width;
-            let shape = if held[0] { (wave_number * from_edge).sin() } else { (wave_number * from_edge).cos() };
-            let square = if wave_number == 0.0 { 1.0 / width } else { 2.0 / width * shape * shape };
-            let (half, kappa) = (0.5 * wave_number * FOOT, kappa(wave_number * wave_number));
-            let mean = if half > 0.0 { (half.sin() / half).powi(2) } else { 1.0 };
-            square * mean * mean_of_decay(kappa * FOOT) / kappa * returned(kappa)
+        let seen = self.across.at(&mean_over_foot(&bases[1], (place.y, self.half_width)));
+        let basis = seen
+            .iter()
+            .zip(&self.across.slopes)
+            .map(|(value, nu)| value * value / kappa(*nu) * (1.0 + returned(kappa(*nu))));
+        let count = (FINEST * 2.0 * self.half_width / FOOT).ceil() as usize;
+        let exact = self.waves_across(place.y, count).into_iter().map(|(square, seen)| {
+            let kappa = kappa(square);
+            // What comes back has no kink, and its mean over the foot is its value in the middle.
+            seen * (mean_of_decay(kappa * FOOT) + returned(kappa)) / kappa
         });
-        (exact.sum::<f64>() - basis.sum::<f64>()) / (2.0 * a_55)
+        let bends =
+            |c: f64, [along, across]: [f64; 2]| c - (a_55 * along + self.foundation(across, stiffnesses)).recip();
+        (exact.sum::<f64>() - basis.sum::<f64>()) / (2.0 * a_55) + self.by_waves(bases, stiffnesses, place, bends)
+    }
+
+    /// Waves less functions of the basis under a foot, each with a value of $c$, $k_x^2$ and $k_y^2$.
+    fn by_waves(
+        &self,
+        bases: &[EdgeBasis; 2],
+        [d_11, d_22, d_12, d_66, a_55, a_44]: Stiffnesses,
+        place: crate::Place,
+        value: impl Fn(f64, [f64; 2]) -> f64,
+    ) -> f64 {
+        let term = |(x, seen_x): Wave, (y, seen_y): Wave| {
+            let bending = d_11 * x * x + 2.0 * (d_12 + 2.0 * d_66) * x * y + d_22 * y * y;
+            let c = (a_55 * x + a_44 * y).recip() + bending.recip();
+            seen_x * seen_y * value(c, [x, y])
+        };
+        let seen = |modes: &Modes, values: &[f64]| -> Vec<Wave> {
+            let values = modes.at(values);
+            modes.slopes.iter().zip(values).map(|(square, value)| (*square, value * value)).collect()
+        };
+        let across = seen(&self.across, &mean_over_foot(&bases[1], (place.y, self.half_width)));
+        let values = mean_over_foot(&bases[0], (place.x, self.half_length));
+        let along: Vec<Vec<Wave>> = self.along.iter().map(|modes| seen(modes, &values)).collect();
+        let longest = along.iter().map(Vec::len).max().unwrap_or(0);
+        let counts = [longest, across.len()];
+        let is_low = |i: usize, j: usize| 2 * i < counts[0] && 2 * j < counts[1];
+        let sum = |across: &[Wave], (along, of): (&[Vec<Wave>], &dyn Fn(usize) -> usize)| -> f64 {
+            let of_line = |(j, &y): (usize, &Wave)| -> f64 {
+                along[of(j)].iter().enumerate().filter(|(i, _)| !is_low(*i, j)).map(|(_, &x)| term(x, y)).sum()
+            };
+            across.iter().enumerate().map(of_line).sum()
+        };
+        let waves = self.waves_across(place.y, WAVES * counts[1]);
+        sum(&waves, (&[self.waves_along(place.x, WAVES * counts[0])], &|_| 0))
+            - sum(&across, (&along, &|j| self.along_of[j]))
+    }
+
+    fn waves_along(&self, x: f64, count: usize) -> Vec<Wave> {
+        waves((2.0 * self.half_length, x + self.half_length), self.returned.map(|sign| sign < 0.0), count)
+    }
+
+    fn waves_across(&self, y: f64, count: usize) -> Vec<Wave> {
+        waves((2.0 * self.half_width, y + self.half_width), self.sides.map(|end| end != End::Free), count)
     }
 
     /// A motion as the membrane's modes see it.
     fn end(&self, [x, y]: &[EdgeBasis; 2], (motion, place): (Motion, crate::Place)) -> Option<Seen> {
-        let (order, values) = match motion {
-            Motion::Deflection | Motion::Foot => (0, x.values_at(Field::Deflection, place.x)),
-            Motion::Slope => (1, x.slopes_at(Field::Deflection, place.x)),
+        let values_across = || y.values_at(Field::Deflection, place.y);
+        let (order, values, across) = match motion {
+            Motion::Deflection => (0, x.values_at(Field::Deflection, place.x), values_across()),
+            Motion::Foot => {
+                (0, mean_over_foot(x, (place.x, self.half_length)), mean_over_foot(y, (place.y, self.half_width)))
+            }
+            Motion::Slope => (1, x.slopes_at(Field::Deflection, place.x), values_across()),
             Motion::SlopeAcross | Motion::Rotation | Motion::Curvature | Motion::Shear(_) => return None,
         };
         Some(Seen {
             side: (order, place.x),
             along: self.along.iter().map(|modes| modes.at(&values)).collect(),
-            across: self.across.at(&y.values_at(Field::Deflection, place.y)),
+            across: self.across.at(&across),
         })
     }
 
     /// $a_m$ of a mode across.
-    fn foundation(&self, nu: f64, [d_22, a_55, a_44]: [f64; 3]) -> f64 {
+    fn foundation(&self, nu: f64, [_, d_22, _, _, a_55, a_44]: Stiffnesses) -> f64 {
         // A membrane that nothing holds answers a force without end; what its series lacks is finite.
         let least = LOOSE * a_55 / (self.half_length * self.half_length);
         let bending = d_22 * nu;
@@ -245,8 +311,42 @@ impl Membrane {
 
 /// Side of what stands on a panel \[m\]: a stud, an accelerometer. Twice as much changes $R(0)$ by $\ln2/2\pi\sqrt{A_{44}A_{55}}$.
 const FOOT: f64 = 0.01;
+/// Values of the functions of deflection along one side, in the mean over a foot about a place, between edges half a side from the middle: by Gauss'
+/// two points, exact to the third degree.
+fn mean_over_foot(basis: &EdgeBasis, (place, half): (f64, f64)) -> Vec<f64> {
+    let [before, after] = gauss_points(place, half).map(|place| basis.values_at(Field::Deflection, place));
+    before.iter().zip(after).map(|(before, after)| 0.5 * (before + after)).collect()
+}
+
+/// Gauss' two points of a foot along one side.
+pub(super) fn gauss_points(place: f64, half: f64) -> [f64; 2] {
+    [-1.0, 1.0].map(|side| (place + side * 0.5 * FOOT / 3.0_f64.sqrt()).clamp(-half, half))
+}
+
 /// Half-waves over a foot up to which functions across count.
 const FINEST: f64 = 6.0;
+
+/// Waves along either side, over the functions that a basis has: what they answer with falls with the fourth power of theirs.
+const WAVES: usize = 8;
+
+/// $k^2$ of the first waves between two edges, and the square of their mean over a foot, where the integral of their square is one.
+fn waves((size, from_edge): (f64, f64), held: [bool; 2], count: usize) -> Vec<Wave> {
+    // Half-waves of the first.
+    let first = match held {
+        [false, false] => 0.0,
+        [true, true] => 1.0,
+        _ => 0.5,
+    };
+    let wave = |m: usize| {
+        let wave_number = std::f64::consts::PI * (m as f64 + first) / size;
+        let shape = if held[0] { (wave_number * from_edge).sin() } else { (wave_number * from_edge).cos() };
+        let square = if wave_number == 0.0 { 1.0 / size } else { 2.0 / size * shape * shape };
+        let half = 0.5 * wave_number * FOOT;
+        let mean = if half > 0.0 { (half.sin() / half).powi(2) } else { 1.0 };
+        (wave_number * wave_number, square * mean)
+    };
+    (0..count).map(wave).collect()
+}
 
 /// Whether both are the mean deflection of one foot.
 fn is_foot(first: (Motion, crate::Place), second: (Motion, crate::Place)) -> bool {

@@ -239,6 +239,15 @@ impl MindlinPlate {
         coordinates.iter().map(value).collect()
     }
 
+    /// The mean deflection of each coordinate of a block over a foot.
+    fn mean_over_foot(&self, block: usize, place: Place) -> Vec<f64> {
+        let [along, across] = [(place.x, self.piece.length), (place.y, self.piece.width)]
+            .map(|(place, side)| kink::gauss_points(place, 0.5 * side));
+        let rows = along.into_iter().flat_map(|x| across.map(|y| Place { x, y }));
+        let rows: Vec<Vec<f64>> = rows.map(|place| self.row(block, Field::Deflection, [0, 0], place)).collect();
+        (0..rows[0].len()).map(|i| 0.25 * rows.iter().map(|row| row[i]).sum::<f64>()).collect()
+    }
+
     /// A field of each coordinate of a block at a place, or its slope along x or y.
     fn row(&self, block: usize, field: Field, orders: [usize; 2], place: Place) -> Vec<f64> {
         let Some(coordinates) = self.coordinates.get(block) else { return vec![] };
@@ -251,6 +260,9 @@ impl MindlinPlate {
         coordinates.iter().map(value).collect()
     }
 }
+
+/// Powers of $\omega^2$ to which the waves that a basis lacks answer.
+const INERTIAL: i32 = 3;
 
 impl MindlinPlate {
     /// What tells the kinks that this basis lacks; `None` where its functions cannot be told apart.
@@ -265,8 +277,7 @@ impl MindlinPlate {
 
     /// What the basis lacks of the static flexibility between two motions; `None` for a rotation, which has no kink.
     pub(crate) fn kink(&self, membrane: &Membrane, values: &[f64], motions: [(Motion, Place); 2]) -> Option<f64> {
-        let [_, d_22, _, _, a_55, a_44] = plate_stiffnesses(self.piece.thickness, values).ok()?;
-        membrane.kink(&self.along, [d_22, a_55, a_44], motions)
+        membrane.kink(&self.along, plate_stiffnesses(self.piece.thickness, values).ok()?, motions)
     }
 
     /// The membrane of a plate without terms of its own, made once.
@@ -276,8 +287,14 @@ impl MindlinPlate {
 
     /// What the basis lacks of the static flexibility between any two motions of a list.
     pub(crate) fn kinks(&self, membrane: &Membrane, values: &[f64], motions: &[(Motion, Place)]) -> Option<Mat<f64>> {
-        let [_, d_22, _, _, a_55, a_44] = plate_stiffnesses(self.piece.thickness, values).ok()?;
-        Some(membrane.kinks(&self.along, [d_22, a_55, a_44], motions))
+        Some(membrane.kinks(&self.along, plate_stiffnesses(self.piece.thickness, values).ok()?, motions))
+    }
+
+    /// [`Structure::inertial_remainders`], as many as there are.
+    pub(crate) fn inertia(&self, membrane: &Membrane, values: &[f64], motions: &[(Motion, Place)]) -> Vec<Mat<f64>> {
+        let Ok(stiffnesses) = plate_stiffnesses(self.piece.thickness, values) else { return vec![] };
+        let of = |power| membrane.inertia(&self.along, stiffnesses, (self.piece.mass_per_area, power), motions);
+        (1..=INERTIAL).map(of).collect()
     }
 }
 
@@ -306,7 +323,8 @@ impl Structure for MindlinPlate {
 
     fn motion_row(&self, block: usize, motion: Motion, place: Place) -> Option<Vec<f64>> {
         Some(match motion {
-            Motion::Deflection | Motion::Foot => self.row(block, Field::Deflection, [0, 0], place),
+            Motion::Deflection => self.row(block, Field::Deflection, [0, 0], place),
+            Motion::Foot => self.mean_over_foot(block, place),
             Motion::Slope => self.row(block, Field::Deflection, [1, 0], place),
             Motion::SlopeAcross => self.row(block, Field::Deflection, [0, 1], place),
             Motion::Rotation => self.row(block, Field::RotationX, [0, 0], place),
@@ -322,6 +340,10 @@ impl Structure for MindlinPlate {
 
     fn static_remainders(&self, values: &[f64], motions: &[(Motion, Place)]) -> Option<Mat<f64>> {
         self.kinks(self.even_membrane()?, values, motions)
+    }
+
+    fn inertial_remainders(&self, values: &[f64], motions: &[(Motion, Place)]) -> Vec<Mat<f64>> {
+        self.even_membrane().map_or_else(Vec::new, |membrane| self.inertia(membrane, values, motions))
     }
 
     fn resolved_modes(&self) -> usize {

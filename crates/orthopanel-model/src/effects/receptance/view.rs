@@ -101,12 +101,11 @@ impl View {
     }
 
     /// Puts the exact static flexibility in place of the basis' own, where the structure knows it, else adds what the basis
-    /// is known to lack; adds what it lacks of the series' second term: most at a driving point, where the strain jumps.
+    /// is known to lack; adds what it lacks of the series' further terms: most at a driving point, where the strain jumps.
     fn close(&mut self, base: &ModalBase, rows: &[Row]) {
         let (layout, structure) = (self.layout, &base.structure);
-        if let Some(lacking) = structure.inertial_remainders(&base.values, rows) {
-            self.add_to_series(1, &lacking);
-        }
+        let further = structure.inertial_remainders(&base.values, rows);
+        (1..SERIES_TERMS).zip(&further).for_each(|(term, lacking)| self.add_to_series(term, lacking));
         if let Some(lacking) = structure.static_remainders(&base.values, rows) {
             return self.add_to_series(0, &lacking);
         }

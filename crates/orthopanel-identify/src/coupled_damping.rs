@@ -1,0 +1,157 @@
+//! Modes of a modified structure, which the damping of the panel couples.
+//!
+//! The damping of a panel is spread over it as its stiffness is: its own modes have a damping ratio each and do not couple. Those of the panel with a
+//! mass do. With $V$ the shares of the panel's modes in the modified ones, and $c_m = 2\zeta_m\omega_m$,
+//! $$\big(s^2 + sC + \Omega^2\big)q = 0\ ,\qquad C = V^T\mathrm{diag}(c)\,V\ .$$
+//! Of $C$ the records show the diagonal, the damping of the modified modes, by which $c$ is found: $\sum_mV_{mn}^2c_m = C_{nn}$. Two modes that lie
+//! a hundredth apart move by some $10^{-4}$ of their frequency, and each sees a tenth of the other in quadrature.
+
+use num_complex::Complex64;
+use orthopanel_model::SeenModes;
+
+/// Rounds in which the damping of the panel's own modes is found.
+const ROUNDS: usize = 30;
+/// and those in which a mode is found.
+const STEPS: usize = 8;
+/// Share of another mode that counts, to first order.
+const LEAST: f64 = 1e-5;
+/// Largest share of another mode: those that run together altogether are not told apart.
+const MOST: f64 = 1.0;
+
+/// Modes with what each has of the others.
+pub(crate) struct CoupledModes {
+    /// $|\lambda|$ \[rad/s\].
+    pub angular_frequency: Vec<f64>,
+    /// Shares of the modes without coupling, so that the residue of a receptance is $\phi\phi^T/(\lambda-\bar\lambda)$.
+    shares: Vec<Vec<Complex64>>,
+}
+
+impl CoupledModes {
+    /// Of modes with these damping ratios, of which the effects' dashpots bring their own; `None` where shares of the panel's own modes are not known.
+    pub(crate) fn new(modes: &SeenModes, zeta: &[f64]) -> Option<Self> {
+        let count = modes.shares.first()?.len().min(zeta.len());
+        let omega = &modes.angular_frequency[..count];
+        let of_panel = |n: usize| 2.0 * (zeta[n] - modes.damping_ratio[n]).max(0.0) * omega[n];
+        let seen: Vec<f64> = (0..count).map(of_panel).collect();
+        let shares = &modes.shares[..count];
+        let mut panel = seen.clone();
+        for _ in 0..ROUNDS {
+            let missed: Vec<f64> = shares
+                .iter()
+                .zip(&seen)
+                .map(|(own, seen)| seen - own.iter().zip(&panel).map(|(share, c)| share * share * c).sum::<f64>())
+                .collect();
+            for (m, c) in panel.iter_mut().enumerate() {
+                *c += shares.iter().zip(&missed).map(|(own, missed)| own[m] * own[m] * missed).sum::<f64>();
+            }
+        }
+        let coupling = |i: usize, j: usize| -> f64 {
+            shares[i].iter().zip(&shares[j]).zip(&panel).map(|((a, b), c)| a * b * c).sum()
+        };
+        let damping: Vec<Vec<f64>> = (0..count).map(|i| (0..count).map(|j| coupling(i, j)).collect()).collect();
+        let modes = (0..count).map(|n| coupled(n, (omega, zeta[n]), &damping));
+        let (angular_frequency, shares) = modes.unzip();
+        Some(Self { angular_frequency, shares })
+    }
+
+    /// What a mode has of something that each mode without coupling has some of.
+    pub(crate) fn seen(&self, n: usize, of: impl Fn(usize) -> f64) -> Option<Complex64> {
+        Some(self.shares.get(n)?.iter().enumerate().map(|(j, share)| share * of(j)).sum())
+    }
+}
+
+/// $|\lambda|$ and the shares of a mode: row by row, the row of the mode itself for its pole, whose damping is known.
+fn coupled(n: usize, (omega, zeta): (&[f64], f64), damping: &[Vec<f64>]) -> (f64, Vec<Complex64>) {
+    let count = omega.len();
+    let mut shares = vec![Complex64::ZERO; count];
+    shares[n] = Complex64::ONE;
+    if omega[n] <= 0.0 {
+        return (omega[n], shares);
+    }
+    let own = 2.0 * zeta * omega[n];
+    let first = |j: usize| damping[n][j] * omega[n] / (omega[j] * omega[j] - omega[n] * omega[n]);
+    let others: Vec<usize> = (0..count).filter(|j| *j != n && omega[*j] > 0.0 && !(first(*j).abs() < LEAST)).collect();
+    let mut s = Complex64::new(-0.5 * own, (omega[n].powi(2) - 0.25 * own * own).max(0.0).sqrt());
+    for _ in 0..STEPS {
+        for &j in &others {
+            let beside = others.iter().filter(|k| **k != j).map(|&k| damping[j][k] * shares[k]).sum::<Complex64>();
+            let share = -s * (beside + damping[j][n]) / (s * s + s * damping[j][j] + omega[j] * omega[j]);
+            shares[j] = share / (share.norm() / MOST).max(1.0);
+        }
+        let by_others: Complex64 = others.iter().map(|&j| damping[n][j] * shares[j]).sum();
+        let half = 0.5 * Complex64::new(own, by_others.im);
+        s = -half + Complex64::I * (omega[n] * omega[n] - half * half).sqrt();
+    }
+    let masses: Complex64 = shares.iter().map(|share| share * share).sum();
+    let dampers: Complex64 =
+        (0..count).map(|i| shares[i] * (0..count).map(|j| damping[i][j] * shares[j]).sum::<Complex64>()).sum();
+    let size = s.norm();
+    let lambda = size * Complex64::new(-zeta, (1.0 - zeta * zeta).max(0.0).sqrt());
+    let scale = ((lambda - lambda.conj()) / (2.0 * s * masses + dampers)).sqrt();
+    // Either root: a shape has no sign.
+    let scale = if scale.re < 0.0 { -scale } else { scale };
+    (size, shares.into_iter().map(|share| scale * share).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The receptance of three modes of which two lie 0.8 % apart is the sum over the coupled ones.
+    #[test]
+    fn val_coupled_modes_make_the_receptance() {
+        let omega = [1000.0, 1008.0, 1500.0];
+        let own: [f64; 3] = [16.0, 9.0, 20.0];
+        let (sin, cos) = 0.45_f64.sin_cos();
+        // The modified modes, each in shares of the panel's own.
+        let turned = [[cos, sin, 0.0], [-sin, cos, 0.0], [0.0, 0.0, 1.0]];
+        let (sin, cos) = 0.2_f64.sin_cos();
+        let shares: Vec<Vec<f64>> =
+            turned.iter().map(|[a, b, c]| vec![*a, cos * b - sin * c, sin * b + cos * c]).collect();
+        let coupling = |i: usize, j: usize| -> f64 { (0..3).map(|m| shares[i][m] * shares[j][m] * own[m]).sum() };
+        // What a record would show: damping as the coupled modes have it, found by fixed points.
+        let modes = SeenModes {
+            angular_frequency: omega.to_vec(),
+            damping_ratio: vec![0.0; 3],
+            shares: shares.clone(),
+            ..SeenModes::default()
+        };
+        let zeta: Vec<f64> = (0..3).map(|n| coupling(n, n) / (2.0 * omega[n])).collect();
+        let found = CoupledModes::new(&modes, &zeta).expect("shares");
+        let by_modes = |s: Complex64, i: usize, j: usize| -> Complex64 {
+            let term = |n: usize| {
+                let size = found.angular_frequency[n];
+                let lambda = size * Complex64::new(-zeta[n], (1.0 - zeta[n] * zeta[n]).sqrt());
+                let of = |row: usize| found.seen(n, |k| f64::from(u8::from(k == row))).expect("a mode");
+                let residue = of(i) * of(j) / (lambda - lambda.conj());
+                residue / (s - lambda) + residue.conj() / (s - lambda.conj())
+            };
+            (0..3).map(term).sum()
+        };
+        let exact = |s: Complex64| -> faer::Mat<Complex64> {
+            let entry = |i: usize, j: usize| {
+                s * coupling(i, j) + if i == j { s * s + omega[i] * omega[i] } else { Complex64::ZERO }
+            };
+            let matrix = faer::Mat::from_fn(3, 3, entry);
+            faer::linalg::solvers::DenseSolveCore::inverse(&matrix.partial_piv_lu())
+        };
+        let worst = |with: &dyn Fn(Complex64, usize, usize) -> Complex64| {
+            let mut worst = 0.0_f64;
+            for frequency in [950.0, 1000.0, 1004.0, 1008.0, 1040.0, 1500.0] {
+                let s = Complex64::new(0.0, frequency);
+                let exact = exact(s);
+                for (i, j) in [(0, 0), (0, 1), (1, 1), (0, 2), (2, 2)] {
+                    let size = (exact[(i, i)] * exact[(j, j)]).norm().sqrt();
+                    worst = worst.max((with(s, i, j) - exact[(i, j)]).norm() / size);
+                }
+            }
+            worst
+        };
+        let uncoupled = |s: Complex64, i: usize, j: usize| {
+            let line = s * s + 2.0 * zeta[i] * omega[i] * s + omega[i] * omega[i];
+            if i == j { line.inv() } else { Complex64::ZERO }
+        };
+        let (coupled, alone) = (worst(&by_modes), worst(&uncoupled));
+        assert!(alone > 0.1 && coupled < 0.03, "{coupled} {alone}");
+    }
+}
