@@ -17,7 +17,7 @@ const UNSEEN_DEVIATION: f64 = 0.01;
 const CARRIER: f64 = 2e-6;
 
 /// Deviation of the logarithm of what damps a mode beside effects: damping ratios of a panel lie within a factor of three of each other.
-const OWN_DAMPING: f64 = 1.1;
+pub(crate) const OWN_DAMPING: f64 = 1.1;
 /// Least part of the usual damping ratio that the logarithm is taken of: a hypothesis may leave a mode less than none, as far from where it ends.
 const LEAST_DAMPING: f64 = 0.05;
 

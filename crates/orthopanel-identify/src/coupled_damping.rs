@@ -3,15 +3,19 @@
 //! The damping of a panel is spread over it as its stiffness is: its own modes have a damping ratio each and do not couple. Those of the panel with a
 //! mass do. With $V$ the shares of the panel's modes in the modified ones, and $c_m = 2\zeta_m\omega_m$,
 //! $$\big(s^2 + sC + \Omega^2\big)q = 0\ ,\qquad C = V^T\mathrm{diag}(c)\,V\ .$$
-//! Of $C$ the records show the diagonal, the damping of the modified modes, by which $c$ is found: $\sum_mV_{mn}^2c_m = C_{nn}$. Two modes that lie
-//! a hundredth apart move by some $10^{-4}$ of their frequency, and each sees a tenth of the other in quadrature.
+//! Of $C$ the records show the diagonal, the damping of the modified modes that are poles: $\sum_mV_{mn}^2c_m = C_{nn}$. With $A$ of these rows, $N$ the
+//! variances of the measured $C_{nn}$, and $c$ beforehand about $c_0 = 2\bar\zeta\omega_m$, $\bar\zeta$ the median, with variances $S$,
+//! $$c = c_0 + SA^T(ASA^T + N)^{-1}(C_{nn} - Ac_0) .$$
+//! Two modes that lie a hundredth apart move by some $10^{-4}$ of their frequency, and each sees a tenth of the other in quadrature.
 
+use faer::prelude::Solve;
+use faer::{Mat, Side};
 use num_complex::Complex64;
 use orthopanel_model::SeenModes;
 
-/// Rounds in which the damping of the panel's own modes is found.
-const ROUNDS: usize = 30;
-/// and those in which a mode is found.
+use crate::comparison::OWN_DAMPING;
+
+/// Rounds in which a mode is found.
 const STEPS: usize = 8;
 /// Share of another mode that counts, to first order.
 const LEAST: f64 = 1e-5;
@@ -27,24 +31,13 @@ pub(crate) struct CoupledModes {
 }
 
 impl CoupledModes {
-    /// Of modes with these damping ratios, of which the effects' dashpots bring their own; `None` where shares of the panel's own modes are not known.
-    pub(crate) fn new(modes: &SeenModes, zeta: &[f64]) -> Option<Self> {
+    /// Of modes with these damping ratios, of which the effects' dashpots bring their own, and the deviations of their logarithms where they are measured;
+    /// `None` where shares of the panel's own modes are not known.
+    pub(crate) fn new(modes: &SeenModes, zeta: &[f64], deviations: &[Option<f64>]) -> Option<Self> {
         let count = modes.shares.first()?.len().min(zeta.len());
         let omega = &modes.angular_frequency[..count];
-        let of_panel = |n: usize| 2.0 * (zeta[n] - modes.damping_ratio[n]).max(0.0) * omega[n];
-        let seen: Vec<f64> = (0..count).map(of_panel).collect();
         let shares = &modes.shares[..count];
-        let mut panel = seen.clone();
-        for _ in 0..ROUNDS {
-            let missed: Vec<f64> = shares
-                .iter()
-                .zip(&seen)
-                .map(|(own, seen)| seen - own.iter().zip(&panel).map(|(share, c)| share * share * c).sum::<f64>())
-                .collect();
-            for (m, c) in panel.iter_mut().enumerate() {
-                *c += shares.iter().zip(&missed).map(|(own, missed)| own[m] * own[m] * missed).sum::<f64>();
-            }
-        }
+        let panel = of_panel(shares, omega, (zeta, deviations, &modes.damping_ratio))?;
         let coupling = |i: usize, j: usize| -> f64 {
             shares[i].iter().zip(&shares[j]).zip(&panel).map(|((a, b), c)| a * b * c).sum()
         };
@@ -60,6 +53,37 @@ impl CoupledModes {
     }
 }
 
+/// $c$ of the panel's own modes, about which nothing but their shares in the modified ones is known, whose damping ratios are the panel's and the effects'.
+fn of_panel(
+    shares: &[Vec<f64>],
+    omega: &[f64],
+    (zeta, deviations, of_effects): (&[f64], &[Option<f64>], &[f64]),
+) -> Option<Vec<f64>> {
+    let count = omega.len();
+    let own = |n: usize| (zeta[n] - of_effects[n]).max(0.0);
+    let measured: Vec<(usize, f64)> = (0..count).filter_map(|n| Some((n, deviations[n]?))).collect();
+    let mut ratios: Vec<f64> = measured.iter().map(|(n, _)| own(*n)).collect();
+    ratios.sort_by(f64::total_cmp);
+    let usual = ratios.get(ratios.len() / 2).copied().unwrap_or(0.0);
+    // Modes of the panel lie about where the modified ones do.
+    let before: Vec<f64> = omega.iter().map(|omega| 2.0 * usual * omega).collect();
+    let variance = |m: usize| (OWN_DAMPING * before[m]).powi(2);
+    let rows = Mat::from_fn(measured.len(), count, |row, m| shares[measured[row].0][m].powi(2));
+    let spread = Mat::from_fn(count, measured.len(), |m, row| variance(m) * rows[(row, m)]);
+    let mut whole = &rows * &spread;
+    let missed = Mat::from_fn(measured.len(), 1, |row, _| {
+        let n = measured[row].0;
+        2.0 * own(n) * omega[n] - (0..count).map(|m| rows[(row, m)] * before[m]).sum::<f64>()
+    });
+    for (row, (n, deviation)) in measured.iter().enumerate() {
+        let noise = deviation * 2.0 * zeta[*n] * omega[*n];
+        whole[(row, row)] += noise * noise + f64::EPSILON * whole[(row, row)] + f64::MIN_POSITIVE.sqrt();
+    }
+    let weights = whole.llt(Side::Lower).ok()?.solve(&missed);
+    let found = &spread * weights;
+    Some((0..count).map(|m| (before[m] + found[(m, 0)]).max(0.0)).collect())
+}
+
 /// $|\lambda|$ and the shares of a mode: row by row, the row of the mode itself for its pole, whose damping is known.
 fn coupled(n: usize, (omega, zeta): (&[f64], f64), damping: &[Vec<f64>]) -> (f64, Vec<Complex64>) {
     let count = omega.len();
@@ -70,7 +94,7 @@ fn coupled(n: usize, (omega, zeta): (&[f64], f64), damping: &[Vec<f64>]) -> (f64
     }
     let own = 2.0 * zeta * omega[n];
     let first = |j: usize| damping[n][j] * omega[n] / (omega[j] * omega[j] - omega[n] * omega[n]);
-    let others: Vec<usize> = (0..count).filter(|j| *j != n && omega[*j] > 0.0 && !(first(*j).abs() < LEAST)).collect();
+    let others: Vec<usize> = (0..count).filter(|j| *j != n && omega[*j] > 0.0 && first(*j).abs() >= LEAST).collect();
     let mut s = Complex64::new(-0.5 * own, (omega[n].powi(2) - 0.25 * own * own).max(0.0).sqrt());
     for _ in 0..STEPS {
         for &j in &others {
@@ -117,7 +141,7 @@ mod tests {
             ..SeenModes::default()
         };
         let zeta: Vec<f64> = (0..3).map(|n| coupling(n, n) / (2.0 * omega[n])).collect();
-        let found = CoupledModes::new(&modes, &zeta).expect("shares");
+        let found = CoupledModes::new(&modes, &zeta, &[Some(1e-4); 3]).expect("shares");
         let by_modes = |s: Complex64, i: usize, j: usize| -> Complex64 {
             let term = |n: usize| {
                 let size = found.angular_frequency[n];

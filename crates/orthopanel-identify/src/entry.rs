@@ -68,6 +68,9 @@ fn of_once(test: &ImpactTest, lists: usize, settings: Settings) -> Result<Identi
         found.map_err(of_held)?.determined()
     } else {
         let plate = plate_by_modes(test);
+        if let Some(plate) = &plate {
+            plate.refuse_other_places(test)?;
+        }
         // A plate whose modes are right and whose lines a factor explains is refused for that factor.
         let by_modes = || {
             let found = plate.as_ref()?.identification(test, settings).ok()?.determined().ok()?;

@@ -200,6 +200,26 @@ impl Part {
         values(&self.slots, z)
     }
 
+    /// The same by the names of the parameters.
+    pub(crate) fn named(&self, z: &[f64]) -> Vec<(&'static str, f64)> {
+        self.parameters().map(|parameter| parameter.name).zip(self.values(z)).collect()
+    }
+
+    /// Where a search begins at values known by name: what is not known begins in its middle, a size on either side of it.
+    pub(crate) fn starts_at(&self, known: &[(&str, f64)]) -> Vec<Vec<f64>> {
+        let mut starts: Vec<Vec<f64>> = vec![vec![]];
+        for (slot, parameter) in self.slots.iter().zip(self.parameters()) {
+            let Some(coordinate) = slot.coordinate() else { continue };
+            let net = match (known.iter().find(|(name, _)| *name == parameter.name), coordinate.map) {
+                (Some((_, value)), _) => vec![coordinate.of_value(*value)],
+                (None, Map::Size { .. }) => vec![-0.8, 0.8],
+                (None, _) => vec![0.0],
+            };
+            starts = starts.iter().flat_map(|start| net.iter().map(|z| [&start[..], &[*z]].concat())).collect();
+        }
+        starts
+    }
+
     /// Of each coordinate, the derivative of the value that follows it.
     pub(crate) fn slopes(&self, z: &[f64]) -> Vec<f64> {
         self.coordinates().zip(z).map(|(coordinate, z)| coordinate.slope(*z)).collect()
@@ -236,6 +256,28 @@ impl Part {
         self.effect.act(&values, &predictor.setting(record)).ok()?.into_iter().map(shift).collect()
     }
 
+    /// Its place at these coordinates.
+    pub(crate) fn place(&self, z: &[f64]) -> Option<Place> {
+        let named = self.named(z);
+        let of = |wanted: &str| named.iter().find(|(name, _)| *name == wanted).map(|(_, value)| *value);
+        Some(Place { x: of("x")?, y: of("y").unwrap_or(0.0) })
+    }
+
+    /// Whether it vibrates by itself at a place.
+    pub(crate) fn is_tuned(&self) -> bool {
+        has_place(self.effect) && self.effect.parameters().iter().any(|parameter| parameter.unit == "Hz")
+    }
+
+    /// So many times as much of the effect, where its first coordinate says how much.
+    pub(crate) fn scale(&self, z: &mut [f64], times: f64) {
+        if let (Some(coordinate), Some(z)) = (self.coordinates().next(), z.first_mut())
+            && matches!(coordinate.map, Map::Size { .. })
+            && times > 0.0
+        {
+            *z = coordinate.of_value(times * coordinate.value(*z));
+        }
+    }
+
     /// Where a search begins: a net over the prior, the finer the fewer the coordinates. What vibrates by itself at a place begins where the
     /// panel with it has a mode at each of the measured frequencies, as `tuned(mass, place)` finds them \[Hz\].
     pub(crate) fn starts(&self, tuned: impl Fn(f64, Place) -> Vec<f64>) -> Vec<Vec<f64>> {
@@ -253,6 +295,8 @@ impl Part {
                     Map::Size { .. } if units.len() == 1 => even_net(9, 2.0),
                     // Frequencies are many there.
                     Map::Size { .. } if units.contains(&"Hz") && places == PLACES_EACH_WAY => vec![0.0],
+                    // How much of it there is on a plate follows from what a little does.
+                    Map::Size { .. } if index == 0 && places == PLACES_EACH_WAY => vec![-0.8],
                     Map::Size { .. } if index == 0 || each_size => vec![-0.8, 0.8],
                     Map::Size { .. } | Map::Gaussian { .. } => vec![0.0],
                 };

@@ -1,7 +1,7 @@
 //! From a test to the hypotheses that are held against its measured modes.
 
 use orthopanel_data::{ImpactTest, Measurement};
-use orthopanel_model::{EffectSetting, RecordSetting, effect};
+use orthopanel_model::{EffectSetting, RecordSetting, StructureKind, effect};
 
 use crate::IdentifyError;
 use crate::comparison::Comparison;
@@ -10,10 +10,12 @@ use crate::free_constants::FreeConstants;
 use crate::hypothesis::{OF_PIECE, OF_RECORD, has_place, is_of_record};
 use crate::measured::{MeasuredModes, measured_modes};
 use crate::outcome::Progress;
+use crate::place_readings::refuse_other_places;
 use crate::posterior::Judged;
 use crate::predicted::Predictor;
 use crate::search::Inquiry;
 use crate::search_progress::SearchProgress;
+use crate::shared_error::SharedError;
 use crate::stacked::{Block, Stacked};
 use crate::structures;
 
@@ -49,6 +51,9 @@ pub(crate) fn is_record(measurement: &Measurement) -> bool {
     measurement.data.recorded().is_some()
 }
 
+/// Removes from what was measured of a test's only block what its model is known to miss.
+pub(crate) type Correct<'a> = &'a dyn Fn(&mut Comparison) -> Result<SharedError, IdentifyError>;
+
 /// What is said from the base of a test, the structure with the effects that the file declares, held against the measured modes, while all that it is held
 /// against is at hand.
 ///
@@ -56,6 +61,7 @@ pub(crate) fn is_record(measurement: &Measurement) -> bool {
 /// As [`refuse_several`] and [`measured_modes`], and what is said; [`IdentifyError::Model`] for a piece or an effect that has no meaning.
 pub(crate) fn from_base<T>(
     test: &ImpactTest,
+    correct: Option<Correct>,
     progress: &(dyn Fn(Progress) + Sync),
     say: impl FnOnce(Inquiry, Judged) -> Result<T, IdentifyError>,
 ) -> Result<T, IdentifyError> {
@@ -71,13 +77,18 @@ pub(crate) fn from_base<T>(
     let mut all: Vec<MeasuredModes> = measured_modes(test)?.into_iter().map(MeasuredModes::without_faint).collect();
     all.sort_by_key(|of| of.records.is_empty());
     let measured = all.first().ok_or_else(|| too_few(0))?;
-    let comparisons: Vec<Comparison> =
+    let mut comparisons: Vec<Comparison> =
         all.iter().map(|of| Comparison::new(of, test.pieces[of.piece].piece.mass())).collect();
     let of_piece = |of: &MeasuredModes| EffectSetting {
         piece: test.pieces[of.piece].piece,
         boundary: test.boundary,
         suspension: test.suspension.clone(),
         record: RecordSetting { response_at: of.sensor_at, ..RecordSetting::default() },
+    };
+    let shared_error = match (correct, &mut comparisons[..]) {
+        (None, _) => None,
+        (Some(correct), [first]) => Some(correct(first)?),
+        (Some(_), _) => return Err(IdentifyError::OtherPanel("the suspect has records and lists".to_owned())),
     };
     let mut blocks = Vec::new();
     for comparison in &comparisons {
@@ -91,6 +102,11 @@ pub(crate) fn from_base<T>(
         found @ 0..2 => too_few(found),
         _ => IdentifyError::NotFinite { what: "likelihood of the measured modes on any such piece".to_owned() },
     })?;
+    if structure == StructureKind::MindlinPlate && !measured.records.is_empty() {
+        let (constants, _) = inquiry.stacked.first().values(&base.hypothesis, &base.posterior.point.z)?;
+        refuse_other_places(measured, (inquiry.predictor().piece(), test.boundary), &constants)?;
+    }
     inquiry.progress = SearchProgress::telling(progress);
+    inquiry.shared_error = shared_error;
     say(inquiry, base)
 }

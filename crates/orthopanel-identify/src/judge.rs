@@ -14,7 +14,7 @@ pub(crate) const ODDS: f64 = 1000.0;
 const TOLD: f64 = 3.0;
 /// Largest model errors that real panels have: of the logarithm of a frequency, and of a residue along its phase.
 const MOST_FREQUENCY: f64 = 1e-2;
-const MOST_RESIDUE: f64 = 3e-2;
+pub(crate) const MOST_RESIDUE: f64 = 3e-2;
 /// The same where a list does not tell its noise, which then is part of it: how well its frequencies were read.
 const MOST_READ: f64 = 2e-2;
 

@@ -23,14 +23,17 @@ mod matching;
 mod measured;
 mod model_error;
 mod outcome;
+mod place_readings;
 mod plate_of_ratios;
 mod plate_start;
 mod posterior;
 mod predicted;
+mod reference;
 mod search;
 mod search_progress;
 mod settings;
 mod shapes_of_list;
+mod shared_error;
 mod stacked;
 mod starting_constants;
 mod structures;
@@ -52,12 +55,12 @@ pub use known_beforehand::PriorContradiction;
 pub use matching::ModeMatch;
 pub use measured::{MeasuredModes, MeasuredRecord, Pole, measured_modes};
 pub use outcome::{
-    Candidate, Detectable, EstimatedModelError, FittedError, NotTested, Progress, Removed, TracedEffect, TracedError,
-    TracedParameter, Tracing, Verdict,
+    Candidate, Detectable, EstimatedModelError, FittedError, NotTested, Progress, Removed, SharedModelError,
+    TracedEffect, TracedError, TracedParameter, Tracing, Verdict,
 };
 pub use settings::{PaperWeights, Search, Settings};
 pub use time_history::{
     ComparedSignals, ForceBetweenSamples, HistorySettings, HitComparison, Misfit, Stepping, compare_time_history,
 };
-pub use trace::{trace, trace_with};
+pub use trace::{trace, trace_against, trace_with};
 pub use trace_rows::TRACE_SCHEMA;

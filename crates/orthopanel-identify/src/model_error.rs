@@ -12,7 +12,6 @@ use faer::Mat;
 use num_complex::Complex64;
 use orthopanel_model::{EffectState, Field, ModelError, StructureKind};
 
-use crate::comparison::Comparison;
 use crate::predicted::{Prediction, Predictor, distinct};
 use crate::whitening::{Split, Whitening};
 
@@ -170,7 +169,8 @@ pub(crate) fn waves(predictor: &Predictor, constants: &[f64], effects: &[EffectS
 
 impl ErrorColumns {
     /// About a prediction; `waves` as [`waves()`] finds them.
-    pub(crate) fn about(comparison: &Comparison, at: &Prediction, waves: &Waves) -> Self {
+    pub(crate) fn about(predictor: &Predictor, at: &Prediction, waves: &Waves) -> Self {
+        let comparison = predictor.comparison;
         let mut columns: Vec<Column> = Vec::new();
         let first_order = |kind: Kind| (kind as usize, 1);
         let measured = comparison.measured;
@@ -240,7 +240,7 @@ impl ErrorColumns {
         columns.extend(
             waves.iter().map(|(kind, wave)| ((*kind, 1), wave.iter().copied().enumerate().take(unseen).collect())),
         );
-        columns.extend(at.by_foot.iter().map(|by_foot| dense(Kind::Foot, by_foot, 0..unseen)));
+        columns.extend(predictor.by_foot(at).iter().map(|by_foot| dense(Kind::Foot, by_foot, 0..unseen)));
         if !measured.records.is_empty() {
             let residues = comparison.residue_place(0, 0)..unseen;
             columns.push(dense(Kind::Gain, &at.values, residues));

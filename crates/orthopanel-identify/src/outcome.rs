@@ -52,6 +52,8 @@ pub struct Tracing {
     pub next_experiment: String,
     /// The smallest disbond that the test would show; `None` where none is looked for, and where one was found.
     pub detectable: Option<Detectable>,
+    /// What a reference of the same make shows of the model's error; `None` where none was given.
+    pub shared_model_error: Option<SharedModelError>,
     /// Misfit per datum of the model with the effects, in units of the noise: near 1 where nothing is left.
     pub chi_square: f64,
     /// Each piece with the effects that belong to it, without those of rig and measuring chain.
@@ -176,6 +178,19 @@ pub struct Candidate {
     pub held_out: f64,
     /// What was found of the effects.
     pub effects: Vec<TracedEffect>,
+}
+
+/// What the model misses of the modes that a reference and the suspect share, rms of the logarithms of their frequencies \[1\].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SharedModelError {
+    /// How many modes both show.
+    pub modes: usize,
+    /// Of the reference beside its own constants.
+    pub reference: f64,
+    /// Of the suspect beside what was found.
+    pub suspect: f64,
+    /// The same less what is missed of the reference: smaller, where the two share their error.
+    pub suspect_less_reference: f64,
 }
 
 /// From which size on a disbond would be named, to first order about the model with the effects.

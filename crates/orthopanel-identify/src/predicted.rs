@@ -41,6 +41,11 @@ const MOST_DAMPING: f64 = 0.9;
 /// Damping ratio of modes that no pole belongs to.
 const USUAL_DAMPING: f64 = 0.003;
 
+/// Deviation of the logarithm of the frequency of a mode that is to be matched.
+pub(crate) fn apart(structure: StructureKind) -> f64 {
+    APART[usize::from(structure == StructureKind::MindlinPlate)]
+}
+
 /// A structure with the places of a test, in which effects act.
 pub(crate) struct Predictor<'a> {
     pub comparison: &'a Comparison<'a>,
@@ -64,8 +69,8 @@ pub(crate) struct Prediction {
     /// The same by the place of the force of all records, and of the response \[1/m\], along x and along y: zeros where no record tells.
     pub by_force: [Vec<f64>; 2],
     pub by_response: [Vec<f64>; 2],
-    /// The same by the logarithm of the side of the feet on which masses stand on a plate; `None` without any.
-    pub by_foot: Option<Vec<f64>>,
+    /// What was compared, where masses stand on feet: for the derivative by their side.
+    on_feet: Option<(Vec<Channel>, Views)>,
     /// Direction of each pole's residues in the complex plane, where all differ by sign alone.
     pub phase: Vec<Complex64>,
     /// Of each record and pole what a residue of size one, along the phase, brings to the remainder at each of its frequencies.
@@ -116,8 +121,8 @@ impl<'a> Predictor<'a> {
         // What is not linear shows between hits, not in modes.
         let record = RecordSetting { suspension_motion: SuspensionMotion::InTime, ..setting.record.clone() };
         let setting = EffectSetting { record, ..setting.clone() };
-        let apart = APART[number];
-        Ok(Self { comparison, structure, panel, setting, places, hanging: None, apart, found: Mutex::default() })
+        let (apart, found) = (apart(structure), Mutex::default());
+        Ok(Self { comparison, structure, panel, setting, places, hanging: None, apart, found })
     }
 
     /// The piece.
@@ -180,6 +185,21 @@ impl<'a> Predictor<'a> {
         effects: &[EffectState],
     ) -> Result<Arc<SeenModes>, ModelError> {
         self.modes(&self.setting(0), &[at], false, constants, effects)
+    }
+
+    /// Of each flexible mode the products of its deflections at pairs of places.
+    ///
+    /// # Errors
+    /// As [`ModifiedPanel::seen_from`].
+    pub(crate) fn flexible_shapes(
+        &self,
+        pairs: &[[Place; 2]],
+        constants: &[f64],
+        effects: &[EffectState],
+    ) -> Result<Vec<Vec<f64>>, ModelError> {
+        let seen = self.modes(&self.setting(0), pairs.as_flattened(), false, constants, effects)?;
+        let flexible = seen.deflection.iter().skip(self.panel.rigid_modes(self.setting.boundary));
+        Ok(flexible.map(|mode| mode.chunks_exact(2).map(|pair| pair[0] * pair[1]).collect()).collect())
     }
 
     /// The modes of the structure in a record as seen from these ports, as damped as the poles beside them, and what the channel makes of a line.
@@ -320,20 +340,19 @@ impl<'a> Predictor<'a> {
         }
         let seen = Views { places, views };
         let mut at = self.compared(&channels, &seen);
-        at.by_foot = self.by_foot(&channels, &seen, &at.values);
+        at.on_feet = seen.views.iter().any(|view| view.modes.by_foot.is_some()).then_some((channels, seen));
         Ok(at)
     }
 
-    fn by_foot(&self, channels: &[Channel], seen: &Views, values: &[f64]) -> Option<Vec<f64>> {
-        if seen.views.iter().all(|view| view.modes.by_foot.is_none()) {
-            return None;
-        }
+    /// Derivatives of the values by the logarithm of the side of the feet on which masses stand on a plate; `None` without any.
+    pub(crate) fn by_foot(&self, at: &Prediction) -> Option<Vec<f64>> {
+        let (channels, seen) = at.on_feet.as_ref()?;
         let moved = |View { of, ports, modes, .. }: &View| {
             let modes = modes.by_foot.as_ref().map_or_else(|| Arc::clone(modes), |by| Arc::new(shifted(modes, by)));
             View { of: *of, ports: ports.clone(), modes, relaxing: None }
         };
         let moved = Views { places: seen.places.clone(), views: seen.views.iter().map(moved).collect() };
-        Some(by_shift(&self.compared(channels, &moved).values, values))
+        Some(by_shift(&self.compared(channels, &moved).values, &at.values))
     }
 
     /// Derivatives of all values by the amplitudes of waves of a field that is uneven along the panel, at these constants, of effects with those of the
@@ -411,7 +430,13 @@ impl<'a> Predictor<'a> {
         channel?;
         let pole = |n: usize| partners.iter().position(|partner| *partner == Some(n));
         let zeta: Vec<f64> = (0..view.near()).map(|n| self.damping(view, n, pole(n), channel)).collect();
-        CoupledModes::new(&view.modes, &zeta)
+        let measured = self.comparison.measured;
+        let deviation = |pole: usize| {
+            let place = measured.poles.len() + pole;
+            measured.poles[pole].damping_ratio.map(|_| measured.covariance[(place, place)].sqrt())
+        };
+        let deviations: Vec<Option<f64>> = (0..view.near()).map(|n| deviation(pole(n)?)).collect();
+        CoupledModes::new(&view.modes, &zeta, &deviations)
     }
 
     /// In the order of the comparison.
@@ -440,7 +465,7 @@ impl<'a> Predictor<'a> {
                     coupled.unwrap_or(omega[n])
                 }
             };
-            parts[0][pole] = partner.map_or(measured.poles[pole].angular_frequency, own).ln();
+            parts[0][pole] = partner.map_or(comparison.values[pole], |n| own(n).ln());
         }
         let remainders = measured.remainder_frequencies.len();
         let mut brings = vec![vec![vec![Complex64::ZERO; remainders]; measured.poles.len()]; measured.records.len()];
@@ -525,7 +550,7 @@ impl<'a> Predictor<'a> {
             values,
             by_force: [force_x, force_y],
             by_response: [response_x, response_y],
-            by_foot: None,
+            on_feet: None,
             phase,
             brings,
             partners: in_records,

@@ -3,7 +3,10 @@
 mod detectable;
 mod further_effect;
 mod in_lists;
+mod net_on_plate;
+mod shared_place;
 
+use std::collections::HashSet;
 use std::f64::consts::TAU;
 
 use faer::Mat;
@@ -26,6 +29,7 @@ use crate::plate_start::PlateStart;
 use crate::posterior::{Judged, Point, Posterior, Problem};
 use crate::predicted::{Prediction, Predictor};
 use crate::search_progress::SearchProgress;
+use crate::shared_error::SharedError;
 use crate::stacked::{Block, Stacked};
 
 /// $\ln\tau_k$ with which starts are judged: wide, so that far ones have a slope to follow.
@@ -60,6 +64,8 @@ pub(crate) struct Inquiry<'a> {
     pub stacked: Stacked<'a>,
     /// The hits, where the test has any.
     pub hits: Option<HitStrength>,
+    /// What a panel of the same make shows of the model's error.
+    pub shared_error: Option<SharedError>,
     /// How far it is.
     pub progress: SearchProgress<'a>,
 }
@@ -142,7 +148,7 @@ impl<'a> Inquiry<'a> {
         constants: &FreeConstants,
         declared: &[Part],
     ) -> Result<Option<(Self, Judged)>, ModelError> {
-        let mut inquiry = Self { stacked, hits: None, progress: SearchProgress::default() };
+        let mut inquiry = Self { stacked, hits: None, shared_error: None, progress: SearchProgress::default() };
         let starts = starting_constants(inquiry.stacked.longest(), constants)?;
         let poles = inquiry.stacked.longest().comparison().measured.poles.iter();
         let hertz: Vec<f64> = poles.map(|pole| pole.angular_frequency / TAU).collect();
@@ -291,8 +297,8 @@ impl<'a> Inquiry<'a> {
             .filter(|effect| !has(effect.id()) && is_new(effect.id()))
             .collect();
         self.progress.more(effects.len());
-        let ranked = |effect: &'static dyn Effect| (effect, self.ranked(base, effect));
-        let ranked: Vec<_> = effects.into_par_iter().map(ranked).collect();
+        let ranked = |effect: &&'static dyn Effect| (*effect, self.ranked(base, *effect));
+        let ranked: Vec<_> = effects.par_iter().map(ranked).collect();
         let gains = ranked.iter().filter_map(|(_, ranked)| Some(ranked.as_ref()?.gain()));
         let most = if self.is_plate() { gains.fold(0.0, f64::max) } else { 0.0 };
         let added = |(effect, ranked): (&'static dyn Effect, Option<Ranked>)| {
@@ -301,7 +307,10 @@ impl<'a> Inquiry<'a> {
             judged
         };
         let mut judged: Vec<(Judged, bool)> = ranked.into_par_iter().filter_map(added).collect();
+        judged.extend(self.at_found_place(base, &effects, &judged));
         judged.sort_by(|(a, _), (b, _)| b.log_odds.total_cmp(&a.log_odds));
+        let mut ids = HashSet::new();
+        judged.retain(|(judged, _)| judged.names().last().is_none_or(|id| ids.insert(*id)));
         let Some((best, _)) = judged.first() else { return vec![] };
         let best = (best.log_odds, best.posterior.log_sizes);
         let closer = |(one, is_promising): (Judged, bool)| {

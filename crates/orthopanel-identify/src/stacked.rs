@@ -147,9 +147,8 @@ impl<'a> Stacked<'a> {
     }
 
     pub(crate) fn errors(&self, at: &Predictions) -> ErrorColumns {
-        let about = |(block, at): (&Block, &Prediction)| {
-            (block.piece, ErrorColumns::about(block.comparison(), at, &block.waves))
-        };
+        let about =
+            |(block, at): (&Block, &Prediction)| (block.piece, ErrorColumns::about(&block.predictor, at, &block.waves));
         ErrorColumns::stacked(self.blocks.iter().zip(&at.blocks).map(about).collect())
     }
 }

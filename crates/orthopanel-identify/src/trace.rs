@@ -6,8 +6,9 @@ use orthopanel_model::{EXPONENTIAL_WINDOW, StructureKind};
 use crate::accelerance_fit::{has_record_apart, question_of_window, refuse_missed, refuse_records};
 use crate::answer::{answer, answer_of_lists, without_repeats};
 use crate::entry::records_alone;
-use crate::inference::{is_record, refuse_several};
+use crate::inference::{Correct, is_record, refuse_several};
 use crate::outcome::{Progress, Tracing, Verdict};
+use crate::reference::without_shared_error;
 use crate::to_check::{times_the_noise, to_check};
 use crate::{IdentifyError, Settings, identify};
 
@@ -54,18 +55,45 @@ pub fn trace(test: &ImpactTest) -> Result<Tracing, IdentifyError> {
 /// # Errors
 /// As [`trace`].
 pub fn trace_with(test: &ImpactTest, progress: &(dyn Fn(Progress) + Sync)) -> Result<Tracing, IdentifyError> {
+    trace_corrected(test, None, progress)
+}
+
+/// What a suspect panel has that a sound one of the same make has not: [`trace_with`], with what the model misses of the natural frequencies of the
+/// `reference` removed from those of the suspect, mode by mode.
+///
+/// With $y$ the logarithms of the measured frequencies, $f$ the model, $\theta$ its constants and $\delta$ what the suspect alone has,
+/// $$y - \big(y_\text{ref} - f(\hat\theta_\text{ref}, 0)\big) = f(\theta, \delta) + e'$$
+/// holds the error $e'$ alone that the two do not share, whose size is estimated as ever. [`Tracing::shared_model_error`] tells how much that took off.
+/// Poles are matched by frequency and shape, so that the places of the two tests may differ; those of lists by their number.
+///
+/// # Errors
+/// As [`trace`]; [`IdentifyError::OfReference`] for what the reference's own test refuses, [`IdentifyError::OtherPanel`] for a reference of another
+/// structure or boundary, of several pieces, or with fewer than three of the suspect's modes.
+pub fn trace_against(
+    test: &ImpactTest,
+    reference: &ImpactTest,
+    progress: &(dyn Fn(Progress) + Sync),
+) -> Result<Tracing, IdentifyError> {
+    trace_corrected(test, Some(&|comparison| without_shared_error(reference, test, comparison)), progress)
+}
+
+fn trace_corrected(
+    test: &ImpactTest,
+    correct: Option<Correct>,
+    progress: &(dyn Fn(Progress) + Sync),
+) -> Result<Tracing, IdentifyError> {
     // Modes of lists are matched by number, not by the shapes that a plate's lists name.
     if test.structure == Some(StructureKind::MindlinPlate) && !test.measurements.iter().all(is_record) {
         return Err(IdentifyError::PlateListNotTraced);
     }
     if !test.measurements.iter().any(is_record) {
-        return answer_of_lists(test, progress)?.finite();
+        return answer_of_lists(test, correct, progress)?.finite();
     }
     refuse_several(test)?;
     let records = records_alone(test);
     refuse_records(&records)?;
     let (once, repeated) = without_repeats(test);
-    let traced = answer(&once, progress).and_then(Tracing::finite);
+    let traced = answer(&once, correct, progress).and_then(Tracing::finite);
     let mut found = beside_identify(test, &records, traced)?;
     found.notes.extend(repeated);
     Ok(match question_of_window(&records) {

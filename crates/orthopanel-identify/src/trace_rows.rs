@@ -22,6 +22,8 @@ struct Rows<'a> {
     not_tested: Vec<NotTestedRow<'a>>,
     /// `null` where no disbond is looked for, and where one was found.
     detectable: Option<DetectableRow>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    shared_model_error: Option<SharedErrorRow>,
     removed: Vec<RemovedRow<'a>>,
     next_experiment: &'a str,
     notes: &'a [String],
@@ -83,6 +85,14 @@ struct DetectableRow {
 }
 
 #[derive(Serialize)]
+struct SharedErrorRow {
+    modes: usize,
+    reference: f64,
+    suspect: f64,
+    suspect_less_reference: f64,
+}
+
+#[derive(Serialize)]
 struct CandidateRow<'a> {
     id: &'a str,
     log_evidence: f64,
@@ -141,6 +151,12 @@ impl Serialize for Tracing {
                 anywhere: of.anywhere,
                 places: of.places,
                 largest: of.most,
+            }),
+            shared_model_error: self.shared_model_error.map(|of| SharedErrorRow {
+                modes: of.modes,
+                reference: of.reference,
+                suspect: of.suspect,
+                suspect_less_reference: of.suspect_less_reference,
             }),
             removed: self
                 .removed

@@ -128,8 +128,8 @@ pub enum ModelError {
     },
     /// A place outside the piece.
     #[error(
-        "place ({}, {}) m lies off the piece: |x| <= {} m and |y| <= {} m, from its centre",
-        Readable(*.x), Readable(*.y), Readable(*.x_limit), Readable(*.y_limit)
+        "place ({}, {}) m lies off the piece: |x| <= {} m and |y| <= {} m, from its centre{}",
+        Readable(*.x), Readable(*.y), Readable(*.x_limit), Readable(*.y_limit), from_corner([*.x, *.y], [*.x_limit, *.y_limit])
     )]
     OffPiece {
         /// x of the place.
@@ -407,6 +407,17 @@ impl std::fmt::Display for Readable {
         let plain = size == 0.0 || !size.is_finite() || (1e-6..1e9).contains(&size);
         if plain { write!(f, "{}", self.0) } else { write!(f, "{:e}", self.0) }
     }
+}
+
+/// What a place off the piece is from a corner, where it lies on the piece so.
+fn from_corner(place: [f64; 2], half: [f64; 2]) -> String {
+    if place.iter().zip(half).any(|(at, half)| !(-1e-9..=2.0 * half).contains(at)) {
+        return String::new();
+    }
+    let [x, y] = [place[0] - half[0], place[1] - half[1]].map(|at| Readable((1e9 * at).round() / 1e9));
+    format!(
+        "; counted from the corner at the lower left it is ({x}, {y}): subtract half the length and half the width from every place"
+    )
 }
 
 /// A unit behind its number; pure numbers have none.

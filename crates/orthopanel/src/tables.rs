@@ -2,6 +2,9 @@
 
 use crate::console::harmless_line;
 
+/// Half the width of a 95 % interval, over the standard deviation.
+pub const HALF_95: f64 = 1.96;
+
 /// Text rows under a heading; columns are set right-aligned, two blanks apart, the first left-aligned.
 pub fn aligned(heading: &[&str], rows: &[Vec<String>]) -> String {
     set(heading, rows, |column| column == 0)

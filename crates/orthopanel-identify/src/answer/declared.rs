@@ -32,7 +32,7 @@ pub(crate) fn identify_with_effects(
     test: &ImpactTest,
     estimation: Estimation,
 ) -> Result<Identification, IdentifyError> {
-    from_base(test, &|_| {}, |inquiry, base| identification(test, (&inquiry, &base), estimation))
+    from_base(test, None, &|_| {}, |inquiry, base| identification(test, (&inquiry, &base), estimation))
 }
 
 /// The same from lists of natural frequencies, of one piece or several.
@@ -40,7 +40,7 @@ pub(crate) fn identify_with_effects(
 /// # Errors
 /// As [`from_base`], [`IdentifyError::OnBound`], and [`IdentifyError::Unsupported`] for an effect that no frequency shows.
 pub(crate) fn identify_lists_with_effects(test: &ImpactTest) -> Result<Identification, IdentifyError> {
-    from_base(test, &|_| {}, |inquiry, base| {
+    from_base(test, None, &|_| {}, |inquiry, base| {
         let mut notes = notes_on_hidden(test, &inquiry)?;
         let (found, needed) = (inquiry.frequencies(), base.posterior.point.z.len());
         if found < needed {

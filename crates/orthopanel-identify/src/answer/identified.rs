@@ -8,10 +8,12 @@ use orthopanel_model::{
 };
 
 use crate::accelerance_fit::told_variance;
+use crate::free_constants::HALF_95;
 use crate::measured::{MeasuredModes, measured_modes};
+use crate::place_readings::refuse_other_places;
 use crate::plate_start::{PlateFit, PlateStart, held};
 use crate::settings::Settings;
-use crate::structures;
+use crate::structures::{self, SeenMode};
 use crate::{
     AcceleranceFit, Correlation, HiddenMode, Identification, IdentifiedConstant, IdentifyError, ModeFit, NotIdentified,
     PieceFit,
@@ -27,7 +29,6 @@ const SMALL: f64 = 0.1;
 const ALL_OVER: usize = 10;
 /// Frequencies that a plate misses by less are those of an ideal one.
 const IDEAL: f64 = 1e-4;
-const HALF_95: f64 = 1.96;
 /// Lines sum modes up to so many times the band.
 const SUMMED: f64 = 1.6;
 /// Poles that stay alone, of those that stand out, beyond which the records are not those of this plate.
@@ -73,6 +74,12 @@ impl PlateByModes {
             fit = PlateStart::new(&measured, (piece, test.boundary), held).fit(values)?;
         }
         Ok(Some(Self { measured, piece, fit, not_identified }))
+    }
+
+    /// # Errors
+    /// As [`refuse_other_places`].
+    pub(crate) fn refuse_other_places(&self, test: &ImpactTest) -> Result<(), IdentifyError> {
+        refuse_other_places(&self.measured, (&self.piece, test.boundary), &self.fit.values)
     }
 
     /// Whether the modes lie where those of an ideal plate do.
@@ -179,6 +186,7 @@ impl PlateByModes {
              deviation, estimated with the constants and part of theirs)",
             100.0 * self.fit.missed
         )];
+        notes.extend(too_few_places(&modes, &fit.damping, measured.records.len()));
         if !alone.is_empty() {
             notes.push(format!("resonances that are no mode of the plate: {}", alone.join(", ")));
         }
@@ -281,6 +289,32 @@ impl PlateByModes {
         };
         Ok(records.iter().enumerate().map(curve).collect())
     }
+}
+
+/// Where more modes overlap than there are places, these do not tell them apart: a mode each half-power bandwidth $2\zeta f$ of the next is one of a
+/// group, and records of $R$ places are sums of at most $R$ shapes.
+fn too_few_places(modes: &[SeenMode], damping: &[Estimate], places: usize) -> Option<String> {
+    let half = |(mode, ratio): (&SeenMode, &Estimate)| (mode.frequency, ratio.value * mode.frequency);
+    let (mut largest, mut group): (Vec<f64>, Vec<(f64, f64)>) = (vec![], vec![]);
+    for (frequency, width) in modes.iter().zip(damping).map(half) {
+        if group.last().is_some_and(|(last, other)| frequency - last > other + width) {
+            group.clear();
+        }
+        group.push((frequency, width));
+        if group.len() > largest.len() {
+            largest = group.iter().map(|(frequency, _)| *frequency).collect();
+        }
+    }
+    let (first, last) = (largest.first()?, largest.last()?);
+    (largest.len() > places).then(|| {
+        format!(
+            "{} modes of the plate overlap from {first:.1} to {last:.1} Hz, and records of {places} pair{} of places tell no more than {places} apart: hit \
+             {} places at least, off the lines of symmetry",
+            largest.len(),
+            if places == 1 { "" } else { "s" },
+            largest.len()
+        )
+    })
 }
 
 /// A constant that the data leave open, number `place` of the free ones.

@@ -7,7 +7,7 @@ use orthopanel_model::Owner;
 use crate::IdentifyError;
 use crate::declared_effects::{Declared, declared};
 use crate::hypothesis::has_place;
-use crate::inference::from_base;
+use crate::inference::{Correct, from_base};
 use crate::model_error::Kind;
 use crate::outcome::{Candidate, EstimatedModelError, FittedError, Progress, TracedError, Tracing, Verdict};
 use crate::posterior::{Judged, Point};
@@ -19,7 +19,7 @@ use super::misfit::Yardstick;
 use super::next_list::next_list;
 use super::not_tested::not_tested;
 use super::panel::panels_of_lists;
-use super::{Weighed, not_finite};
+use super::{Weighed, not_finite, shared_model_error};
 
 const MEASURE: &str = "natural frequencies, % rms; held out: each predicted from the others";
 const MIRRORED: &str = "frequencies of a piece held alike at both ends are the same with an effect at x and at -x: places are given \
@@ -36,11 +36,12 @@ const WRITTEN: usize = 12;
 /// that no frequency shows.
 pub(crate) fn answer_of_lists(
     test: &ImpactTest,
+    correct: Option<Correct>,
     progress: &(dyn Fn(Progress) + Sync),
 ) -> Result<Tracing, IdentifyError> {
     let (test, repeated) = &without_repeats(test);
     refuse_many(test)?;
-    from_base(test, progress, |inquiry, base| {
+    from_base(test, correct, progress, |inquiry, base| {
         let hidden = notes_on_hidden(test, &inquiry)?;
         let unknowns = base.posterior.point.z.len();
         let found = inquiry.frequencies();
@@ -179,6 +180,7 @@ fn tracing_of(test: &ImpactTest, inquiry: &Inquiry, all: &[Judged]) -> Result<Tr
         candidates: all.iter().map(candidate).collect(),
         not_tested: not_tested(inquiry, all),
         detectable: None,
+        shared_model_error: shared_model_error(inquiry, chosen),
         next_experiment,
         chi_square: yardstick.fitted(&problem, &chosen.posterior.point).powi(2),
         panels,

@@ -26,9 +26,9 @@ use orthopanel_data::{Estimation, ImpactTest};
 use orthopanel_model::StructureKind;
 
 use crate::hit_strength::HitStrength;
-use crate::inference::from_base;
+use crate::inference::{Correct, from_base};
 use crate::model_error::Kind;
-use crate::outcome::{Candidate, EstimatedModelError, Progress, Removed, TracedError, Tracing};
+use crate::outcome::{Candidate, EstimatedModelError, Progress, Removed, SharedModelError, TracedError, Tracing};
 use crate::posterior::Judged;
 use crate::search::Inquiry;
 use crate::stacked::Block;
@@ -56,9 +56,13 @@ const FORCE_DROP: f64 = 20.0;
 ///
 /// # Errors
 /// As [`from_base`], and [`IdentifyError::TooManyFrequencies`] for lists beside the records.
-pub(crate) fn answer(test: &ImpactTest, progress: &(dyn Fn(Progress) + Sync)) -> Result<Tracing, IdentifyError> {
+pub(crate) fn answer(
+    test: &ImpactTest,
+    correct: Option<Correct>,
+    progress: &(dyn Fn(Progress) + Sync),
+) -> Result<Tracing, IdentifyError> {
     refuse_many(test)?;
-    from_base(test, progress, |mut inquiry, base| {
+    from_base(test, correct, progress, |mut inquiry, base| {
         if !inquiry.stacked.is_of_several_pieces() {
             inquiry.hits = HitStrength::new(test, inquiry.measured().band)?;
         }
@@ -149,6 +153,7 @@ fn tracing_of(test: &ImpactTest, inquiry: &Inquiry, all: &[Judged]) -> Result<Tr
         candidates: all.par_iter().map(candidate).collect(),
         not_tested: not_tested(inquiry, all),
         detectable: inquiry.detectable(chosen),
+        shared_model_error: shared_model_error(inquiry, chosen),
         next_experiment,
         chi_square: after.fitted.powi(2),
         panels,
@@ -177,6 +182,11 @@ fn drawn(
         lines.drawn(test, hit.comparison().measured, (&constants, &effects, of_effects))
     };
     inquiry.stacked.hit().map(of_hit).collect()
+}
+
+fn shared_model_error(inquiry: &Inquiry, chosen: &Judged) -> Option<SharedModelError> {
+    let comparison = inquiry.stacked.first().comparison();
+    Some(inquiry.shared_error.as_ref()?.beside(comparison, &chosen.posterior.point.at))
 }
 
 fn curves_of(drawn: &[Drawn]) -> Vec<AcceleranceFit> {

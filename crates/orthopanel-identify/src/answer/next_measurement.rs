@@ -186,7 +186,7 @@ impl<'a> Further<'a> {
         };
         let ((at, constants, effects), (other, ..)) = (predicted(one)?, predicted(other)?);
         let uneven = waves(&predictor, &constants, &effects)?;
-        let errors = ErrorColumns::about(&comparison, &at, &uneven);
+        let errors = ErrorColumns::about(&predictor, &at, &uneven);
         let by = errors.whitening((&comparison.noise, None), &one.posterior.log_sizes, &[]);
         let apart: Vec<f64> = at.values.iter().zip(&other.values).map(|(one, other)| one - other).collect();
         Ok(by.map(|by| by.whitened(&apart).iter().map(|value| value * value).sum::<f64>().sqrt()))

@@ -386,6 +386,26 @@ pub enum IdentifyError {
         /// $W_G$.
         magnitude: f64,
     },
+    /// Places or signs of records that are not those of the test.
+    #[error(
+        "write {write}: half of the modes' shapes miss those of the plate by more than {:.0} % as it stands, and than {:.0} % so; where that is not it, look at \
+         each record's file, force_at and response_at",
+        Readable(.percent[0]), Readable(.percent[1])
+    )]
+    OtherPlaces {
+        /// What to write, and what it means.
+        write: String,
+        /// What half of the modes miss at least over all records as the test file stands, and so \[% rms\].
+        percent: [f64; 2],
+    },
+    /// What the test of a reference refuses.
+    #[error("the reference: {0}")]
+    OfReference(#[source] Box<IdentifyError>),
+    /// A reference that is no panel of the suspect's make.
+    #[error(
+        "{0}: a reference is one panel of the suspect's make, of the same structure and edges, measured up to about the same frequency"
+    )]
+    OtherPanel(String),
     /// A trace of natural frequencies of a plate.
     #[error(
         "a plate's natural frequencies are not traced yet: record hits (kind = \"time-history\" or \"accelerance\") and leave the lists \
@@ -431,6 +451,7 @@ impl IdentifyError {
         matches!(
             self,
             Self::Data(_)
+                | Self::OtherPlaces { .. }
                 | Self::OtherUnits { .. }
                 | Self::TooFewResonances { .. }
                 | Self::BandTooLow { .. }
@@ -475,6 +496,7 @@ impl IdentifyError {
                 | Self::OnBound { .. }
                 | Self::NotDetermined { .. }
                 | Self::Contradiction { .. }
+                | Self::OtherPlaces { .. }
                 | Self::OtherUnits { .. }
                 | Self::PriorContradicted { .. }
                 | Self::PlateContradiction { .. }

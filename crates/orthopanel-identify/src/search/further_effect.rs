@@ -47,11 +47,11 @@ impl Score {
     }
 
     /// By how much the misfit falls along the way from the base's values to others, as far as it serves best, beside what the base's coordinates
-    /// make good; `None` where there is no way.
-    fn towards(&self, from: &[f64], to: &[f64]) -> Option<f64> {
+    /// make good, and how far along that is; `None` where there is no way.
+    pub(super) fn towards(&self, from: &[f64], to: &[f64]) -> Option<(f64, f64)> {
         let [free, told] = self.along(from, to);
         // It acts one way alone: a mass that is missing is another start.
-        (free > 0.0).then(|| told.max(0.0).powi(2) / free)
+        (free > 0.0).then(|| (told.max(0.0).powi(2) / free, told / free))
     }
 
     /// The square of the way from the base's values to others, beside what the base's coordinates follow of it.
@@ -155,7 +155,7 @@ impl Inquiry<'_> {
 
     /// Frequencies \[Hz\] of a mass on a spring at a place with which the panel has a mode at each of these poles: with $\alpha$ the receptance
     /// of the panel there, $\omega_r^2 = \omega^2/(1-\omega^2m\,\alpha(\omega))$; and frequencies beside each pole, for the panel is not known well.
-    fn tuned(&self, base: &Judged, poles: &[Pole], mass: f64, at: Place) -> Vec<f64> {
+    pub(super) fn tuned(&self, base: &Judged, poles: &[Pole], mass: f64, at: Place) -> Vec<f64> {
         let values = self.stacked.first().values(&base.hypothesis, &base.posterior.point.z);
         let seen = values.and_then(|(constants, effects)| self.predictor().seen_at(at, &constants, &effects));
         let Ok(seen) = seen else { return vec![] };
@@ -215,9 +215,12 @@ impl Inquiry<'_> {
         if self.replaces(&ways) && (is_far || self.reaches_beyond(base)) {
             return None;
         }
-        let score = if self.is_plate() { Some(self.score(base)?) } else { None };
+        let on_plate = if self.is_plate() { Some(self.net_on_plate(base, &missed)?) } else { None };
         let starts = |(way, hypothesis): (usize, &Hypothesis)| {
             let problem = self.problem(hypothesis);
+            if let Some(net) = &on_plate {
+                return net.starts(&problem).into_iter().map(|point| (way, point)).collect::<Vec<_>>();
+            }
             let starts = match hypothesis.parts.last() {
                 Some(part) => part.starts(|mass, at| self.tuned(base, &missed, mass, at)),
                 None => vec![],
@@ -231,10 +234,6 @@ impl Inquiry<'_> {
                 }
                 if bases.len() > 1 {
                     return Some(point);
-                }
-                // Of a plate's many places the right one stands out under narrow sizes alone.
-                if let Some(score) = &score {
-                    return Some(Point { cost: -score.towards(&at_base.at.values, &point.at.values)?, ..point });
                 }
                 let (shift, gain) = projection.of(&problem.missed(&point.at), &at_base.z);
                 let mut z = point.z.clone();
@@ -297,11 +296,11 @@ impl Inquiry<'_> {
             // Where it ends is told, and how likely it is there, but it is not looked for further.
             Some(_) if base.names().is_empty() => {
                 let (way, point) = points.into_iter().next()?;
-                let posterior = self.problem(&ways[way]).posterior(
-                    point,
-                    base.posterior.log_sizes,
-                    if self.is_plate() { 1 } else { 4 },
-                )?;
+                let problem = self.problem(&ways[way]);
+                // On plates how much of the effect there is followed from its score, and is not what was predicted.
+                let point = if self.is_plate() { problem.unjudged(point.z)? } else { point };
+                let posterior =
+                    problem.posterior(point, base.posterior.log_sizes, if self.is_plate() { 1 } else { 4 })?;
                 return Some((judged((way, posterior)), false));
             }
             Some(_) => return None,
@@ -331,21 +330,24 @@ impl Inquiry<'_> {
         Some((judged(best), true))
     }
 
-    /// The covariance about a base under sizes of model error that are no wider than small ones.
-    fn narrow(&self, base: &Judged) -> Option<Whitening> {
+    /// The covariance about a base by which starts are ranked: of a beam under sizes of model error that are no wider than small ones, of a plate under
+    /// its own. Where the base lacks much, a plate's many modes mix, and under small sizes the few that are moved most drown the others.
+    fn ranking(&self, base: &Judged) -> Option<Whitening> {
         let of_base = self.problem(&base.hypothesis);
-        let sizes: [f64; KINDS] = std::array::from_fn(|kind| base.posterior.log_sizes[kind].min(SMALL[kind].ln()));
+        let own = base.posterior.log_sizes;
+        let small = |kind: usize| if self.is_plate() { own[kind] } else { own[kind].min(SMALL[kind].ln()) };
+        let sizes: [f64; KINDS] = std::array::from_fn(small);
         of_base.whitening(&of_base.errors(&base.posterior.point.at).with_every_partner(), &sizes)
     }
 
     /// What ranks starts by their difference from the base.
-    fn score(&self, base: &Judged) -> Option<Score> {
+    pub(super) fn score(&self, base: &Judged) -> Option<Score> {
         let at_base = &base.posterior.point;
-        Score::about(&self.problem(&base.hypothesis), at_base, at_base.derivatives.clone(), self.narrow(base)?)
+        Score::about(&self.problem(&base.hypothesis), at_base, at_base.derivatives.clone(), self.ranking(base)?)
     }
 
     /// The starts from which an effect may come to the odds that count, the best few; `None` where the base's curvature is singular. By a score test:
-    /// what its coordinates and its starts make good of the base's misfit to first order, under sizes of model error that are no wider than small ones.
+    /// what its coordinates and its starts make good of the base's misfit to first order.
     fn promising(
         &self,
         base: &Judged,
@@ -355,7 +357,7 @@ impl Inquiry<'_> {
     ) -> Option<Vec<Promise>> {
         let at_base = &base.posterior.point;
         let of_base = self.problem(&base.hypothesis);
-        let by = self.narrow(base)?;
+        let by = self.ranking(base)?;
         let precision = of_base.hypothesis.precision();
         let missed = of_base.missed(&at_base.at);
         let before = Projection::new(&at_base.derivatives, &precision, &by)?.of(&missed, &at_base.z).1;

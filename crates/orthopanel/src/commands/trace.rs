@@ -28,12 +28,20 @@ use crate::{console, model_file};
 /// No real panel is the ideal model: of records the modes that they show are compared, and by how much a sound model of this panel misses
 /// them is estimated with the rest.
 ///
-/// Example: orthopanel trace examples/misplaced-hit/test.toml -o traced.json
+/// With --reference, a sound panel of the same make is measured alike, and what both miss of the model is no news of the suspect: smaller
+/// faults show. The line that begins with "Against the reference" tells how much of the model's error the two share.
+///
+/// Examples: orthopanel trace examples/misplaced-hit/test.toml -o traced.json
+///           orthopanel trace suspect/test.toml --reference good/test.toml
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
 pub struct Arguments {
     /// Test file (test.toml), or the folder that holds it
     test: PathBuf,
+    /// Test file of a sound panel of the same make: what the model misses of its natural frequencies is removed from those of TEST, and what
+    /// is found is what differs between the two
+    #[arg(long, value_name = "GOOD.toml")]
+    reference: Option<PathBuf>,
     /// Model file to write (orthopanel.model/1, JSON)
     #[arg(short, long, value_name = "MODEL.json")]
     output: Option<PathBuf>,
@@ -43,10 +51,22 @@ pub struct Arguments {
 }
 
 pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
-    let Arguments { test: path, output, json } = arguments;
-    let (inputs, test) = Inputs::reading_test(path)?;
+    let Arguments { test: path, reference, output, json } = arguments;
+    let (mut inputs, test) = Inputs::reading_test(path)?;
+    let reference = match reference {
+        Some(reference) => {
+            let (more, reference) = Inputs::reading_test(reference)?;
+            inputs = inputs.and_all(more);
+            Some(reference)
+        }
+        None => None,
+    };
     let outputs = model_file::planned_each(Outputs::of(inputs)?, output.as_deref(), &test)?;
-    let traced = Traced::from_test(&test).map_err(|source| CommandError::Identify { path: path.clone(), source })?;
+    let traced = match &reference {
+        Some(reference) => Traced::against(&test, reference),
+        None => Traced::from_test(&test),
+    };
+    let traced = traced.map_err(|source| CommandError::Identify { path: path.clone(), source })?;
     let written = match output {
         Some(output) => write_models(outputs, output, &test, path, &traced),
         None => Ok(()),

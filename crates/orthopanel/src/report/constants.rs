@@ -5,10 +5,7 @@ use orthopanel_model::Readable;
 
 use super::table::Table;
 use crate::identified::called;
-use crate::tables::{shown_unit, with_unit};
-
-/// Half the width of a 95 % interval, over the standard deviation.
-const INTERVAL: f64 = 1.96;
+use crate::tables::{HALF_95, shown_unit, with_unit};
 
 /// A number with as many digits as tell it from another a tenth of `std` away.
 fn to_std(value: f64, std: f64) -> String {
@@ -19,7 +16,7 @@ fn to_std(value: f64, std: f64) -> String {
 
 /// The 95 % interval about an estimate.
 pub fn interval(value: f64, std: f64) -> String {
-    let [low, high] = [-INTERVAL, INTERVAL].map(|widths| to_std(value + widths * std, std));
+    let [low, high] = [-HALF_95, HALF_95].map(|widths| to_std(value + widths * std, std));
     format!("{low} to {high}")
 }
 

@@ -9,7 +9,9 @@ mod tables;
 use std::path::Path;
 
 use orthopanel_data::{ImpactTest, KnownConstant};
-use orthopanel_identify::{AcceleranceFit, IdentifyError, Progress, Removed, Settings, Tracing, Verdict, trace_with};
+use orthopanel_identify::{
+    AcceleranceFit, IdentifyError, Progress, Removed, Settings, Tracing, Verdict, trace_against, trace_with,
+};
 use orthopanel_model::{CUBIC_STIFFNESS, Damping, PanelModel, Place};
 use serde_json::Value;
 
@@ -34,10 +36,21 @@ pub struct Traced {
 impl Traced {
     /// Traces; shows on standard error how far it is, and says what was noted.
     pub fn from_test(test: &ImpactTest) -> Result<Self, IdentifyError> {
+        Self::of(test, |tell| trace_with(test, tell))
+    }
+
+    /// The same against a sound panel of the same make.
+    pub fn against(test: &ImpactTest, reference: &ImpactTest) -> Result<Self, IdentifyError> {
+        Self::of(test, |tell| trace_against(test, reference, tell))
+    }
+
+    fn of(
+        test: &ImpactTest,
+        trace: impl FnOnce(&(dyn Fn(Progress) + Sync)) -> Result<Tracing, IdentifyError>,
+    ) -> Result<Self, IdentifyError> {
         let mut tracing = {
             let shown = progress::counted("tracing what the model lacks");
-            let tell = |at: Progress| shown.at(at.done, at.of, at.effect);
-            trace_with(test, &tell)?
+            trace(&|at: Progress| shown.at(at.done, at.of, at.effect))?
         };
         for panel in tracing.panels.iter_mut().filter(|panel| panel.damping == Damping::default()) {
             // Lists tell no damping, and a panel without any would ring for ever.

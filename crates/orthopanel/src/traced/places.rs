@@ -5,9 +5,9 @@ use orthopanel_model::{Estimate, Place, effect};
 
 use super::Traced;
 use crate::pictures::FoundPlace;
+use crate::tables::HALF_95;
 
-/// Deviations on either side of an interval of 95 %, and half axes of a region of 95 % in two directions: $\sqrt{-2\ln0.05}$.
-const INTERVAL: f64 = 1.96;
+/// Half axes of a region of 95 % in two directions, in deviations: $\sqrt{-2\ln0.05}$.
 const REGION: f64 = 2.448;
 
 impl Traced {
@@ -35,7 +35,7 @@ fn sentence(found: &TracedEffect) -> Option<String> {
     let at: Vec<String> = places.iter().map(|(name, of)| format!("{name} = {}", metres(of.value, of.std))).collect();
     let within = |(name, of): &(&str, Estimate)| {
         let std = of.std?;
-        let [low, high] = [-INTERVAL, INTERVAL].map(|widths| metres(of.value + widths * std, of.std));
+        let [low, high] = [-HALF_95, HALF_95].map(|widths| metres(of.value + widths * std, of.std));
         Some(format!("{name} from {low} to {high}"))
     };
     let within: Vec<String> = places.iter().filter_map(within).collect();

@@ -1,6 +1,6 @@
 //! What a trace found, in sentences.
 
-use orthopanel_identify::{Detectable, TracedEffect, Verdict};
+use orthopanel_identify::{Detectable, SharedModelError, TracedEffect, Verdict};
 
 use super::Traced;
 use crate::identified::to_digits;
@@ -48,6 +48,24 @@ impl Traced {
         let percent = |part: f64| format!("{} %", to_digits(100.0 * part, 2));
         let residues = of.residue.map_or(String::new(), |residue| format!(" and residues by {}", percent(residue)));
         Some(format!("Beside noise the model misses frequencies by {}{residues}.", percent(of.frequency)))
+    }
+
+    /// What a reference took off the model's error.
+    pub fn shared_model_error(&self) -> Option<String> {
+        let SharedModelError { modes, reference, suspect, suspect_less_reference } = self.tracing.shared_model_error?;
+        let percent = |part: f64| format!("{} %", to_digits(100.0 * part, 2));
+        let verdict = if suspect_less_reference < suspect {
+            "the two panels share this error"
+        } else {
+            "the two panels do not share this error: trace without the reference"
+        };
+        Some(format!(
+            "Against the reference: the model misses {modes} frequencies that both show by {} rms in the reference, by {} in the suspect, and by {} \
+             once the former is removed from the latter: {verdict}.",
+            percent(reference),
+            percent(suspect),
+            percent(suspect_less_reference)
+        ))
     }
 
     /// From which size on a disbond would have been named.

@@ -105,6 +105,7 @@ impl Traced {
         let (headings, rows) = comparison(tracing);
         text += &aligned(&headings, &rows);
         text.extend(self.model_error().map(|told| told + "\n"));
+        text.extend(self.shared_model_error().map(|told| told + "\n"));
         text.extend(self.left().map(|left| left + ".\n"));
         let [hypothesis, evidence, held_out] = RANKING_HEADINGS;
         let headings = [hypothesis, evidence, held_out, "parameters"];
