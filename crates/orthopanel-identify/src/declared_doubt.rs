@@ -3,7 +3,7 @@
 use crate::hypothesis::{Hypothesis, Part, Role};
 use crate::model_error::medians;
 use crate::posterior::{Judged, Point};
-use crate::search::{Inquiry, log_prior};
+use crate::search::{Inquiry, with_one_more};
 
 /// Starts that are followed to the end.
 const FOLLOWED: usize = 2;
@@ -66,7 +66,6 @@ impl Inquiry<'_> {
             problem.posterior(point, medians(), ROUNDS)
         });
         let posterior = ends.max_by(|a, b| a.log_evidence.total_cmp(&b.log_evidence))?;
-        let log_odds = base.log_odds - base.posterior.log_evidence + posterior.log_evidence + log_prior(1);
-        Some(Judged { hypothesis, posterior, log_odds })
+        Some(with_one_more(base, hypothesis, posterior, 1))
     }
 }

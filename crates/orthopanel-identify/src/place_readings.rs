@@ -13,10 +13,9 @@ use orthopanel_model::{Boundary, Piece, Place, StructureKind};
 use crate::IdentifyError;
 use crate::judge::{MOST_RESIDUE, ODDS};
 use crate::measured::MeasuredModes;
+use crate::predicted::apart;
 use crate::structures;
 
-/// How far modes may lie from their poles, in logarithms of frequencies.
-const APART: f64 = 0.015;
 /// Modes are told up to so many times the highest pole.
 const ABOVE: f64 = 1.05;
 /// Fewer records than this have no odd one.
@@ -60,7 +59,7 @@ struct Shapes<'a> {
 impl Shapes<'_> {
     /// Of each pole and record what is measured and what the partner has there, over the size; a pole without one has a zero.
     fn beside(&self, modes: &[(f64, Vec<f64>)]) -> Vec<Vec<[f64; 2]>> {
-        let partners = self.measured.partners(modes, |_| APART);
+        let partners = self.measured.partners(modes, |_| apart(StructureKind::MindlinPlate));
         let records = self.measured.records.len();
         let of = |(pole, partner): (usize, &Option<(usize, Option<f64>)>)| {
             let value = |record: usize| {

@@ -75,6 +75,12 @@ pub(crate) fn log_prior(ways: usize) -> f64 {
     -((ways * catalogue().len()) as f64).ln()
 }
 
+/// A base with one effect more, which lacks in one of so many ways alike.
+pub(crate) fn with_one_more(base: &Judged, hypothesis: Hypothesis, posterior: Posterior, ways: usize) -> Judged {
+    let log_odds = base.log_odds - base.posterior.log_evidence + posterior.log_evidence + log_prior(ways);
+    Judged { hypothesis, posterior, log_odds }
+}
+
 fn logs(sizes: [f64; KINDS]) -> [f64; KINDS] {
     sizes.map(f64::ln)
 }

@@ -8,7 +8,7 @@ use faer::{Mat, Side};
 use orthopanel_model::{Effect, Place, StructureKind};
 use rayon::prelude::*;
 
-use super::{FOLLOWED, Inquiry, LOOSE, NEAR, SMALL, constants_of_beam, log_prior, logs};
+use super::{FOLLOWED, Inquiry, LOOSE, NEAR, SMALL, constants_of_beam, logs, with_one_more};
 use crate::hypothesis::{Hypothesis, Role};
 use crate::judge::{ODDS, most_frequency};
 use crate::measured::Pole;
@@ -272,10 +272,8 @@ impl Inquiry<'_> {
         let coarse = logs(LOOSE.map(|size| NET * size));
         let by = of_base.whitening(&errors, &coarse)?;
         let exact_from = if self.replaces(&ways) { usize::MAX } else { at_base.z.len() };
-        let judged = |(way, posterior): (usize, Posterior)| {
-            let log_odds = base.log_odds - base.posterior.log_evidence + posterior.log_evidence + log_prior(ways.len());
-            Judged { hypothesis: ways[way].clone(), posterior, log_odds }
-        };
+        let judged =
+            |(way, posterior): (usize, Posterior)| with_one_more(base, ways[way].clone(), posterior, ways.len());
         let follow = |points: Vec<(usize, Point)>, sizes: &[f64; KINDS], most: usize| -> Vec<(usize, Point)> {
             let on = |(way, mut point): (usize, Point)| {
                 let problem = self.problem(&ways[way]);

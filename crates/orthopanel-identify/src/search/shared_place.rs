@@ -3,7 +3,7 @@
 use orthopanel_model::Effect;
 use rayon::prelude::*;
 
-use super::{Inquiry, log_prior};
+use super::{Inquiry, with_one_more};
 use crate::hypothesis::{Part, has_place};
 use crate::posterior::{Judged, Point};
 
@@ -68,8 +68,7 @@ impl Inquiry<'_> {
             let points = starts.filter_map(|start| problem.point([&end.z[..own], &start].concat(), &by));
             let point: Point = points.min_by(|a, b| a.misfit.total_cmp(&b.misfit))?;
             let posterior = problem.posterior(point, *sizes, ROUNDS)?;
-            let log_odds = base.log_odds - base.posterior.log_evidence + posterior.log_evidence + log_prior(ways.len());
-            Some(Judged { hypothesis, posterior, log_odds })
+            Some(with_one_more(base, hypothesis, posterior, ways.len()))
         };
         ways.iter().filter_map(start).max_by(|a, b| a.log_odds.total_cmp(&b.log_odds))
     }
