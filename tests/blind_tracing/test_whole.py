@@ -319,3 +319,8 @@ def test_val_places_that_are_wrong_are_told(tmp_path, few):
         path.write_text(text, encoding="utf-8")
         told = subprocess.run([ORTHOPANEL, "identify", path], capture_output=True, text=True, check=False)
         assert (told.returncode == 0) == (not wanted) and wanted in told.stderr, (wanted, told.returncode, told.stderr)
+
+    path.write_text(written + '\n[[effect]]\nid = "local-mass"\nmass = 1e-5\nx = 0.1\ny = 0.05\n', encoding="utf-8")
+    told = subprocess.run([ORTHOPANEL, "identify", path, "--json"], capture_output=True, text=True, check=True)
+    found = json.loads(told.stdout)["constants"]
+    assert {name: found[name]["value"] for name in SMALL.constants} == pytest.approx(SMALL.constants, rel=0.01)

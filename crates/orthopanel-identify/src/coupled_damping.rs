@@ -19,6 +19,8 @@ use crate::comparison::OWN_DAMPING;
 const STEPS: usize = 8;
 /// Share of another mode that counts, to first order.
 const LEAST: f64 = 1e-5;
+/// Share of another mode to first order from which on it brings others with it.
+const LARGE: f64 = 1e-3;
 /// Largest share of another mode: those that run together altogether are not told apart.
 const MOST: f64 = 1.0;
 
@@ -38,10 +40,9 @@ impl CoupledModes {
         let omega = &modes.angular_frequency[..count];
         let shares = &modes.shares[..count];
         let panel = of_panel(shares, omega, (zeta, deviations, &modes.damping_ratio))?;
-        let coupling = |i: usize, j: usize| -> f64 {
-            shares[i].iter().zip(&shares[j]).zip(&panel).map(|((a, b), c)| a * b * c).sum()
-        };
-        let damping: Vec<Vec<f64>> = (0..count).map(|i| (0..count).map(|j| coupling(i, j)).collect()).collect();
+        let of_panel = Mat::from_fn(panel.len(), count, |m, n| shares[n][m]);
+        let damped = Mat::from_fn(panel.len(), count, |m, n| panel[m] * shares[n][m]);
+        let damping = of_panel.transpose() * damped;
         let modes = (0..count).map(|n| coupled(n, (omega, zeta[n]), &damping));
         let (angular_frequency, shares) = modes.unzip();
         Some(Self { angular_frequency, shares })
@@ -84,8 +85,9 @@ fn of_panel(
     Some((0..count).map(|m| (before[m] + found[(m, 0)]).max(0.0)).collect())
 }
 
-/// $|\lambda|$ and the shares of a mode: row by row, the row of the mode itself for its pole, whose damping is known.
-fn coupled(n: usize, (omega, zeta): (&[f64], f64), damping: &[Vec<f64>]) -> (f64, Vec<Complex64>) {
+/// $|\lambda|$ and the shares of a mode: row by row, the row of the mode itself for its pole, whose damping is known. Modes that have a small share have
+/// it of this mode and of those with large ones alone.
+fn coupled(n: usize, (omega, zeta): (&[f64], f64), damping: &Mat<f64>) -> (f64, Vec<Complex64>) {
     let count = omega.len();
     let mut shares = vec![Complex64::ZERO; count];
     shares[n] = Complex64::ONE;
@@ -93,22 +95,35 @@ fn coupled(n: usize, (omega, zeta): (&[f64], f64), damping: &[Vec<f64>]) -> (f64
         return (omega[n], shares);
     }
     let own = 2.0 * zeta * omega[n];
-    let first = |j: usize| damping[n][j] * omega[n] / (omega[j] * omega[j] - omega[n] * omega[n]);
-    let others: Vec<usize> = (0..count).filter(|j| *j != n && omega[*j] > 0.0 && first(*j).abs() >= LEAST).collect();
+    let of_mode = damping.col_as_slice(n);
+    let first = |j: usize| (of_mode[j] * omega[n] / (omega[j] * omega[j] - omega[n] * omega[n])).abs();
+    let others: Vec<usize> = (0..count).filter(|j| *j != n && omega[*j] > 0.0 && first(*j) >= LEAST).collect();
+    let large: Vec<usize> = others.iter().copied().filter(|j| first(*j) >= LARGE).collect();
     let mut s = Complex64::new(-0.5 * own, (omega[n].powi(2) - 0.25 * own * own).max(0.0).sqrt());
     for _ in 0..STEPS {
         for &j in &others {
-            let beside = others.iter().filter(|k| **k != j).map(|&k| damping[j][k] * shares[k]).sum::<Complex64>();
-            let share = -s * (beside + damping[j][n]) / (s * s + s * damping[j][j] + omega[j] * omega[j]);
+            let column = damping.col_as_slice(j);
+            let beside = large.iter().filter(|k| **k != j).map(|&k| column[k] * shares[k]).sum::<Complex64>();
+            let share = -s * (beside + of_mode[j]) / (s * s + s * column[j] + omega[j] * omega[j]);
             shares[j] = share / (share.norm() / MOST).max(1.0);
         }
-        let by_others: Complex64 = others.iter().map(|&j| damping[n][j] * shares[j]).sum();
+        let by_others: Complex64 = others.iter().map(|&j| of_mode[j] * shares[j]).sum();
         let half = 0.5 * Complex64::new(own, by_others.im);
-        s = -half + Complex64::I * (omega[n] * omega[n] - half * half).sqrt();
+        let next = -half + Complex64::I * (omega[n] * omega[n] - half * half).sqrt();
+        let is_there = (next - s).norm() < f64::EPSILON * next.norm();
+        s = next;
+        if is_there {
+            break;
+        }
     }
     let masses: Complex64 = shares.iter().map(|share| share * share).sum();
-    let dampers: Complex64 =
-        (0..count).map(|i| shares[i] * (0..count).map(|j| damping[i][j] * shares[j]).sum::<Complex64>()).sum();
+    let twice = |j: usize| -> Complex64 {
+        let column = damping.col_as_slice(j);
+        let beside: Complex64 = large.iter().map(|&k| column[k] * shares[k]).sum();
+        let small = if first(j) < LARGE { 2.0 } else { 1.0 };
+        shares[j] * (2.0 * of_mode[j] + small * beside)
+    };
+    let dampers: Complex64 = of_mode[n] + others.iter().map(|&j| twice(j)).sum::<Complex64>();
     let size = s.norm();
     let lambda = size * Complex64::new(-zeta, (1.0 - zeta * zeta).max(0.0).sqrt());
     let scale = ((lambda - lambda.conj()) / (2.0 * s * masses + dampers)).sqrt();

@@ -11,9 +11,11 @@ use crate::predicted::Predictor;
 
 /// Largest size of a coordinate with a Gaussian prior.
 const FARTHEST: f64 = 5.0;
-/// Places along a beam at which a search begins, and along either side of a plate.
+/// Places along a beam at which a search begins,
 const PLACES: usize = 15;
-const PLACES_EACH_WAY: usize = 9;
+/// along and across a plate, two to a half-wave of its high modes, and of what vibrates by itself there, which has frequencies to begin from as well.
+const EACH_WAY: [usize; 2] = [17, 13];
+const EACH_WAY_TUNED: [usize; 2] = [9, 9];
 
 /// From a coordinate to a value.
 #[derive(Debug, Clone, Copy)]
@@ -286,17 +288,20 @@ impl Part {
         let units: Vec<&str> = free().map(|(number, _)| unit(number)).collect();
         let has_place = has_place(self.effect);
         let is_even = |of: &&Coordinate| matches!(of.map, Map::Even { .. });
-        let places = if self.coordinates().filter(is_even).count() > 1 { PLACES_EACH_WAY } else { PLACES };
+        let is_on_plate = self.coordinates().filter(is_even).count() > 1;
+        let each_way = if units.contains(&"Hz") { EACH_WAY_TUNED } else { EACH_WAY };
         let net = |each_size: bool| {
             let mut starts: Vec<Vec<f64>> = vec![vec![]];
+            let mut directions = each_way.into_iter();
             for (index, (_, coordinate)) in free().enumerate() {
                 let net: Vec<f64> = match coordinate.map {
-                    Map::Even { .. } => even_net(places, 0.95),
+                    Map::Even { .. } if is_on_plate => even_net(directions.next().unwrap_or(PLACES), 0.95),
+                    Map::Even { .. } => even_net(PLACES, 0.95),
                     Map::Size { .. } if units.len() == 1 => even_net(9, 2.0),
                     // Frequencies are many there.
-                    Map::Size { .. } if units.contains(&"Hz") && places == PLACES_EACH_WAY => vec![0.0],
+                    Map::Size { .. } if units.contains(&"Hz") && is_on_plate => vec![0.0],
                     // How much of it there is on a plate follows from what a little does.
-                    Map::Size { .. } if index == 0 && places == PLACES_EACH_WAY => vec![-0.8],
+                    Map::Size { .. } if index == 0 && is_on_plate => vec![-0.8],
                     Map::Size { .. } if index == 0 || each_size => vec![-0.8, 0.8],
                     Map::Size { .. } | Map::Gaussian { .. } => vec![0.0],
                 };

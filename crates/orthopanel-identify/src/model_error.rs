@@ -5,6 +5,7 @@
 //! where each kind $k$ of error has its columns $F_k$ and a size $\tau_k$, which is estimated with the rest and has a log-normal prior.
 
 mod coupling;
+mod mixing;
 
 use std::ops::Range;
 
@@ -18,7 +19,7 @@ use crate::whitening::{Split, Whitening};
 /// A kind of model error.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Kind {
-    /// Of the logarithm of each frequency, by itself.
+    /// Of the logarithm of each frequency, by itself; of a plate with what mixes its modes.
     Frequency,
     /// Of each residue along its predicted phase.
     Residue,
@@ -223,6 +224,10 @@ impl ErrorColumns {
             }
         }
         columns.extend(coupling::columns(comparison, at));
+        // Modes of a beam lie far apart.
+        if predictor.structure == StructureKind::MindlinPlate {
+            columns.extend(mixing::columns(comparison, at));
+        }
         let unseen = comparison.unseen().start;
         let is_told = |along: &[f64]| along.iter().any(|value| *value != 0.0);
         let dense = |kind: Kind, from: &[f64], range: std::ops::Range<usize>| {

@@ -27,6 +27,7 @@ pub(crate) struct BlockPencil<'a> {
 }
 
 /// $LL^T$ by rows where few entries are not zero, else by blocks.
+#[derive(Debug)]
 pub(crate) enum Factor {
     Thin(SkylineCholesky),
     Dense(Cholesky),

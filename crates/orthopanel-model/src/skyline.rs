@@ -266,6 +266,7 @@ impl SymmetricMatrix {
 }
 
 /// $LL^T$ of a positive definite [`SymmetricMatrix`].
+#[derive(Debug)]
 pub(crate) struct SkylineCholesky {
     /// $L$, its diagonal inverted.
     lower: SymmetricMatrix,

@@ -39,33 +39,56 @@ pub(crate) fn static_deflections(
 }
 
 /// $u$ of one block, a column a force.
-pub(crate) fn deflected(block: &Block, coefficients: &[f64], mut loads: Mat<f64>) -> Result<Mat<f64>, ModelError> {
-    let size = block.size();
+pub(crate) fn deflected(block: &Block, coefficients: &[f64], loads: Mat<f64>) -> Result<Mat<f64>, ModelError> {
     // A force on a line of symmetry moves nothing that is odd about it.
     if (0..loads.ncols()).all(|force| loads.col_as_slice(force).iter().all(|value| *value == 0.0)) {
         return Ok(loads);
     }
-    let mut stiffness = block.stiffness_at(coefficients);
-    let rigid = Mat::from_fn(size, block.rigid.len(), |i, n| block.rigid[n][i]);
-    let momentum = block.mass.times(&rigid);
-    let shares = product(rigid.transpose(), loads.as_ref());
-    loads -= product(momentum.as_ref(), shares.as_ref());
-    // Springs that just hold the rigid motions: the loads do no work on these, so no spring yields.
-    let held = shift(&stiffness, &block.mass);
-    for coordinate in held_coordinates(block) {
-        stiffness.add_to_diagonal(coordinate, held * block.mass[(coordinate, coordinate)]);
+    Ok(StaticSolution::new(block, coefficients)?.of(loads))
+}
+
+/// The stiffness of a block, ready to be solved.
+#[derive(Debug)]
+pub(crate) struct StaticSolution {
+    factor: Factor,
+    scale: Vec<f64>,
+    rigid: Mat<f64>,
+    /// $MR$.
+    momentum: Mat<f64>,
+}
+
+impl StaticSolution {
+    /// # Errors
+    /// [`ModelError::Eigenproblem`] where the stiffness is not positive.
+    pub(crate) fn new(block: &Block, coefficients: &[f64]) -> Result<Self, ModelError> {
+        let size = block.size();
+        let mut stiffness = block.stiffness_at(coefficients);
+        let rigid = Mat::from_fn(size, block.rigid.len(), |i, n| block.rigid[n][i]);
+        let momentum = block.mass.times(&rigid);
+        // Springs that just hold the rigid motions: the loads do no work on these, so no spring yields.
+        let held = shift(&stiffness, &block.mass);
+        for coordinate in held_coordinates(block) {
+            stiffness.add_to_diagonal(coordinate, held * block.mass[(coordinate, coordinate)]);
+        }
+        let scale: Vec<f64> = (0..size).map(|i| stiffness[(i, i)].sqrt().recip()).collect();
+        let factor = Factor::new(&stiffness.scaled(&scale)).ok_or(ModelError::Eigenproblem)?;
+        Ok(Self { factor, scale, rigid, momentum })
     }
-    let scale: Vec<f64> = (0..size).map(|i| stiffness[(i, i)].sqrt().recip()).collect();
-    let factor = Factor::new(&stiffness.scaled(&scale)).ok_or(ModelError::Eigenproblem)?;
-    for force in 0..loads.ncols() {
-        let load = loads.col_as_slice_mut(force);
-        load.iter_mut().zip(&scale).for_each(|(value, scale)| *value *= scale);
-        factor.solve_lower(load);
-        factor.solve_upper(load);
-        load.iter_mut().zip(&scale).for_each(|(value, scale)| *value *= scale);
+
+    /// $u$, a column a force.
+    pub(crate) fn of(&self, mut loads: Mat<f64>) -> Mat<f64> {
+        let shares = product(self.rigid.transpose(), loads.as_ref());
+        loads -= product(self.momentum.as_ref(), shares.as_ref());
+        for force in 0..loads.ncols() {
+            let load = loads.col_as_slice_mut(force);
+            load.iter_mut().zip(&self.scale).for_each(|(value, scale)| *value *= scale);
+            self.factor.solve_lower(load);
+            self.factor.solve_upper(load);
+            load.iter_mut().zip(&self.scale).for_each(|(value, scale)| *value *= scale);
+        }
+        let moved = product(self.momentum.transpose(), loads.as_ref());
+        loads - product(self.rigid.as_ref(), moved.as_ref())
     }
-    let moved = product(momentum.transpose(), loads.as_ref());
-    Ok(loads - product(rigid.as_ref(), moved.as_ref()))
 }
 
 /// As many coordinates as there are rigid motions, none of which they all leave free.

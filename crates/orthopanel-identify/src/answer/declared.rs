@@ -1,9 +1,9 @@
-//! A beam with the effects that its test file declares, from its measured modes, as an identification.
+//! A beam or a plate with the effects that its test file declares, from its measured modes, as an identification.
 
 use std::f64::consts::TAU;
 
 use orthopanel_data::{Estimation, ImpactTest};
-use orthopanel_model::{BEAM_CONSTANTS, Estimate, Readable, StructureKind};
+use orthopanel_model::{Estimate, Readable};
 
 use crate::free_constants::{FreeConstant, FreeConstants};
 use crate::frequency_fit::identified_constants;
@@ -53,9 +53,9 @@ pub(crate) fn identify_lists_with_effects(test: &ImpactTest) -> Result<Identific
         let pieces = pieces_of_lists(test, &inquiry, &base);
         let error = percent(&inquiry, &base).ok_or_else(|| not_finite("error of the frequencies"))?;
         let is_judged = inquiry.frequencies() > base.posterior.point.z.len();
-        let constants = FreeConstants::of(test, &BEAM_CONSTANTS)?;
+        let constants = FreeConstants::of(test, inquiry.predictor().structure.constants())?;
         Ok(Identification {
-            structure: StructureKind::TimoshenkoBeam,
+            structure: inquiry.predictor().structure,
             constants: constants_of(test, (&constants, &base), &estimates)?,
             not_identified: vec![],
             correlations: constants.correlations(&base.posterior.covariance),
@@ -119,7 +119,7 @@ fn identification(
     estimation: Estimation,
 ) -> Result<Identification, IdentifyError> {
     let estimates = Estimates::of(base);
-    let constants = FreeConstants::of(test, &BEAM_CONSTANTS)?;
+    let constants = FreeConstants::of(test, inquiry.predictor().structure.constants())?;
     let identified = constants_of(test, (&constants, base), &estimates)?;
     let lines = Lines::of(test, estimation)?;
     let drawn = drawn(test, (inquiry, base), &lines)?;
@@ -147,7 +147,7 @@ fn identification(
     notes.extend(notes_on_prior_alone(base, &estimates));
     notes.extend(notes_on_bound(&estimates, inquiry.predictor().piece()));
     Ok(Identification {
-        structure: StructureKind::TimoshenkoBeam,
+        structure: inquiry.predictor().structure,
         constants: identified,
         not_identified: vec![],
         // Coordinates go with the logarithms of the constants, which come first.

@@ -282,6 +282,9 @@ impl Inquiry<'_> {
                     let unshifted = [&at_base.z[..], &point.z[at_base.z.len()..]].concat();
                     let both = [point.z, unshifted].into_iter().filter_map(|z| problem.point(z, &by));
                     point = both.min_by(|a, b| a.misfit.total_cmp(&b.misfit))?;
+                    if self.is_plate() {
+                        point = with_derivatives_of(at_base, &problem, point)?;
+                    }
                 }
                 let by = problem.whitening(&problem.errors(&point.at).with_every_partner(), sizes)?;
                 problem.follow(point, &by, most, (1.0, exact_from)).map(|(point, _)| (way, point))
@@ -296,7 +299,11 @@ impl Inquiry<'_> {
                 let (way, point) = points.into_iter().next()?;
                 let problem = self.problem(&ways[way]);
                 // On plates how much of the effect there is followed from its score, and is not what was predicted.
-                let point = if self.is_plate() { problem.unjudged(point.z)? } else { point };
+                let point = if self.is_plate() {
+                    with_derivatives_of(at_base, &problem, problem.unjudged(point.z)?)?
+                } else {
+                    point
+                };
                 let posterior =
                     problem.posterior(point, base.posterior.log_sizes, if self.is_plate() { 1 } else { 4 })?;
                 return Some((judged((way, posterior)), false));
@@ -305,14 +312,17 @@ impl Inquiry<'_> {
             None if of_several => best(follow(points, &coarse, 5), (2 * FOLLOWED, behind())),
             None => points,
         };
-        let points = best(follow(points, &logs(LOOSE), 5), few);
-        let cost = of_base.judged_by(at_base.clone(), &of_base.whitening(&errors, &logs(LOOSE))?)?.cost;
+        // On a plate starts are scaled to what is missed: under the base's own sizes they are near where they lead.
+        let first = if self.is_plate() { base.posterior.log_sizes } else { logs(LOOSE) };
+        let points = best(follow(points, &first, 5), few);
+        let cost = of_base.judged_by(at_base.clone(), &of_base.whitening(&errors, &first)?)?.cost;
         if points.first().is_some_and(|(_, best)| best.cost > cost + behind()) {
             let (way, point) = points.into_iter().next()?;
-            let posterior = self.problem(&ways[way]).posterior(point, logs(LOOSE), 1)?;
+            let posterior = self.problem(&ways[way]).posterior(point, first, 1)?;
             return Some((judged((way, posterior)), false));
         }
-        let points = best(follow(points, &std::array::from_fn(|k| 0.5 * (LOOSE[k] * SMALL[k]).ln()), 4), few);
+        let between = std::array::from_fn(|k| 0.5 * (LOOSE[k] * SMALL[k]).ln());
+        let points = if self.is_plate() { points } else { best(follow(points, &between, 4), few) };
         // From small sizes, since an effect drowns in those of too poor a hypothesis; and from those, since it need not be all that lacks.
         let from = [logs(SMALL), base.posterior.log_sizes];
         let ends: Vec<(usize, Posterior)> = from
@@ -380,6 +390,15 @@ impl Inquiry<'_> {
         promising.truncate(kept);
         Some(promising)
     }
+}
+
+/// A point near a base with the derivatives by the base's coordinates that are known there: on a plate they are dear, and change little.
+fn with_derivatives_of(base: &Point, problem: &Problem, point: Point) -> Option<Point> {
+    if base.derivatives.ncols() != base.z.len() {
+        return Some(point);
+    }
+    let own = problem.derivatives(&point, base.z.len())?;
+    Some(Point { derivatives: faer::concat![[base.derivatives, own]], ..point })
 }
 
 /// Of starts, each with its way, the best few that lie apart.

@@ -9,11 +9,15 @@ use rayon::prelude::*;
 
 use super::Inquiry;
 use super::further_effect::Score;
+use crate::hypothesis::Part;
 use crate::measured::Pole;
 use crate::posterior::{Judged, Point, Problem};
 
 /// Places at which what vibrates by itself is tuned to all of the missed poles.
 const TUNED: usize = 9;
+
+/// Places that lie no further apart than this part of a side, one and a half spaces of the net, are beside each other.
+const BESIDE: f64 = 0.1;
 
 /// The net about a base.
 pub(super) struct NetOnPlate<'a> {
@@ -37,11 +41,11 @@ impl NetOnPlate<'_> {
         let tuned = |poles: &[Pole], mass: f64, at: Place| self.inquiry.tuned(self.base, poles, mass, at);
         let first = self.missed.get(..1).unwrap_or_default();
         let mut coarse = self.scored(problem, part.starts(|mass, at| tuned(first, mass, at)));
-        if !part.is_tuned() {
-            return coarse;
-        }
         coarse.sort_by(|a, b| a.cost.total_cmp(&b.cost));
         let own = self.base.posterior.point.z.len();
+        if !part.is_tuned() {
+            return self.peaks(part, coarse);
+        }
         let mut places: Vec<Place> = Vec::new();
         for point in &coarse {
             let place = part.place(&point.z[own..]).filter(|place| !places.contains(place));
@@ -51,6 +55,25 @@ impl NetOnPlate<'_> {
         let at_places = part.starts(|mass, at| if places.contains(&at) { tuned(others, mass, at) } else { vec![] });
         coarse.extend(self.scored(problem, at_places));
         coarse
+    }
+
+    /// Of starts, the best first, those that no better one lies beside: one peak of the score is one place.
+    fn peaks(&self, part: &Part, starts: Vec<Point>) -> Vec<Point> {
+        let own = self.base.posterior.point.z.len();
+        let piece = self.inquiry.predictor().piece();
+        let sides = [piece.length, piece.width].map(|side| BESIDE * side);
+        let mut peaks: Vec<(Option<Place>, Point)> = Vec::new();
+        for start in starts {
+            let place = part.place(&start.z[own..]);
+            let beside = |(other, _): &(Option<Place>, Point)| match (place, *other) {
+                (Some(a), Some(b)) => (a.x - b.x).abs() < sides[0] && (a.y - b.y).abs() < sides[1],
+                _ => false,
+            };
+            if !peaks.iter().any(beside) {
+                peaks.push((place, start));
+            }
+        }
+        peaks.into_iter().map(|(_, start)| start).collect()
     }
 
     fn scored(&self, problem: &Problem, starts: Vec<Vec<f64>>) -> Vec<Point> {

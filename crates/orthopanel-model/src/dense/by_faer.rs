@@ -13,6 +13,7 @@ pub(crate) fn product(left: MatRef<'_, f64>, right: MatRef<'_, f64>) -> Mat<f64>
 }
 
 /// $LL^T$ of a symmetric positive definite matrix.
+#[derive(Debug)]
 pub(crate) struct Cholesky(Llt<f64>);
 
 impl Cholesky {

@@ -75,7 +75,7 @@ impl BeamBase {
         let rigid = modes.iter().take_while(|mode| mode.angular_frequency() == 0.0).count();
         let statics = StaticShapes::new((piece, boundary), [e_x, g_zx], &terms, &modes[..rigid])?;
         let low = modes.iter().map(|mode| (0, vec![], mode.angular_frequency().powi(2))).collect();
-        Ok(Self { modes, low: LowModes { modes: low, rigid }, statics })
+        Ok(Self { modes, low: LowModes::sorted(low, rigid), statics })
     }
 
     /// With losses of shear stiffness, seen in `rows`, the first of which belong to elements and then to ports: these bring shapes, and follow a

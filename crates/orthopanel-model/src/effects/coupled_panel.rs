@@ -6,7 +6,7 @@ use super::beam_base::BeamBase;
 use super::coupled_system::{FoundMode, System};
 use super::foot::{on_feet, port};
 use super::known::{Known, known_or};
-use super::low_modes::{FarAnswers, LowModes};
+use super::low_modes::{Asked, FarAnswers, LowModes};
 use super::row::{Row, SharedStructure};
 use super::spread_effects::SpreadEffects;
 use super::wide_plate::{Summed, WidePlates};
@@ -229,10 +229,15 @@ impl ModifiedStructure {
     }
 
     /// The same in any rows, and in others where no force acts, with second shapes of the first `twice` elements.
-    pub(super) fn far_answers_in(&self, rows: &[Row], watched: &[Row], twice: usize) -> Result<FarAnswers, ModelError> {
-        let pushed: Vec<Row> = self.elements.iter().filter_map(row).chain(rows.iter().copied()).collect();
-        let rows = [&pushed, watched].concat();
-        self.low.far_answers(self.structure.as_ref(), &self.values, &rows, [pushed.len(), twice])
+    pub(super) fn far_answers_in(
+        &self,
+        ports: &[Row],
+        watched: &[Row],
+        twice: usize,
+    ) -> Result<FarAnswers, ModelError> {
+        let elements: Vec<Row> = self.elements.iter().filter_map(row).collect();
+        let asked = Asked { elements: &elements, ports, watched, twice };
+        self.low.far_answers(self.structure.as_ref(), &self.values, asked)
     }
 
     /// With the residual shapes of all elements and of `ports`, where elements without mass stand: the panel and its matrices.
@@ -255,7 +260,7 @@ impl ModifiedStructure {
                 if mode.2 > 0.0 { answers.near[(m, number)] / mode.2 } else { 0.0 }
             };
             let image = panel.bare.iter().enumerate().map(share).collect();
-            let shape = if self.plate.is_some() { answers.shapes[number].clone() } else { vec![] };
+            let shape = if self.plate.is_some() { answers.shape(number) } else { vec![] };
             panel.residuals.push(Residual { row, image, shape });
         }
         let system = System::new(&self.low, answers, &elements, damping);

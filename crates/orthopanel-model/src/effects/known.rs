@@ -8,7 +8,7 @@ use crate::ModelError;
 pub(super) type Known<K, V> = Mutex<Vec<(K, Arc<V>)>>;
 
 /// So many are kept: each of some threads goes back and forth between a few.
-const KEPT: usize = 64;
+const KEPT: usize = 16;
 
 /// What is known by a key, else found and kept.
 pub(super) fn known_or<K: PartialEq, V>(

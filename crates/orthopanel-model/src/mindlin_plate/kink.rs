@@ -129,10 +129,8 @@ impl Membrane {
         stiffnesses: Stiffnesses,
         motions: [(Motion, crate::Place); 2],
     ) -> Option<f64> {
-        let [first, second] = motions.map(|motion| self.end(bases, motion));
-        let kink = self.between(stiffnesses, &first?, &second?);
-        let foot = is_foot(motions[0], motions[1]).then(|| self.under_foot(bases, stiffnesses, motions[0].1));
-        Some(kink + foot.unwrap_or(0.0))
+        let has_kink = motions.iter().all(|motion| self.end(bases, *motion).is_some());
+        has_kink.then(|| self.kinks(bases, stiffnesses, &motions)[(0, 1)])
     }
 
     /// The same between any two motions of a list; zero for a rotation.
@@ -143,12 +141,36 @@ impl Membrane {
         motions: &[(Motion, crate::Place)],
     ) -> Mat<f64> {
         let ends: Vec<Option<Seen>> = motions.iter().map(|motion| self.end(bases, *motion)).collect();
-        let mut kinks = Mat::zeros(ends.len(), ends.len());
-        for (p, first) in ends.iter().enumerate() {
-            for (q, second) in ends.iter().enumerate().skip(p) {
-                let (Some(first), Some(second)) = (first, second) else { continue };
-                kinks[(p, q)] = self.between(stiffnesses, first, second);
-                if is_foot(motions[p], motions[q]) {
+        let a_55 = stiffnesses[4];
+        let foundations: Vec<f64> = self.across.slopes.iter().map(|nu| self.foundation(*nu, stiffnesses)).collect();
+        // What the series have is a sum over products of one factor a motion.
+        let in_series = |end: &Seen| -> Vec<f64> {
+            let of_mode = |(m, a): (usize, &f64)| {
+                let (along, across, a) = (self.along_of[m], end.across[m], *a);
+                let stiffness = self.along[along].slopes.iter().map(move |sigma| a_55 * sigma + a);
+                stiffness.zip(&end.along[along]).map(move |(stiffness, u)| across * u / stiffness.sqrt())
+            };
+            foundations.iter().enumerate().flat_map(of_mode).collect()
+        };
+        let columns: Vec<Vec<f64>> = ends.iter().map(|end| end.as_ref().map_or_else(Vec::new, in_series)).collect();
+        let factors = columns.iter().map(Vec::len).max().unwrap_or(0);
+        let factors = Mat::from_fn(factors, columns.len(), |i, p| columns[p].get(i).copied().unwrap_or(0.0));
+        let mut kinks = -product(factors.transpose(), factors.as_ref());
+        for (m, &a) in foundations.iter().enumerate() {
+            let answer = Answer::of((a_55, a), (self.half_length, self.returned));
+            let near = |end: &Option<Seen>| end.as_ref().map(|end| (end.across[m], end.side.1, answer.near(end.side)));
+            let near: Vec<_> = ends.iter().map(near).collect();
+            for (q, second) in near.iter().enumerate() {
+                for (p, first) in near[..=q].iter().enumerate() {
+                    if let (Some(first), Some(second)) = (first, second) {
+                        kinks[(p, q)] += first.0 * second.0 * answer.between((first.1, first.2), (second.1, second.2));
+                    }
+                }
+            }
+        }
+        for q in 0..ends.len() {
+            for p in 0..=q {
+                if ends[p].is_some() && is_foot(motions[p], motions[q]) {
                     kinks[(p, q)] += self.under_foot(bases, stiffnesses, motions[p].1);
                 }
                 kinks[(q, p)] = kinks[(p, q)];
@@ -171,16 +193,6 @@ impl Membrane {
             let foot = is_foot(motions[p], motions[q]);
             if foot { self.by_waves(bases, stiffnesses, motions[p].1, squares) } else { 0.0 }
         })
-    }
-
-    /// $\Delta R$.
-    fn between(&self, stiffnesses: Stiffnesses, first: &Seen, second: &Seen) -> f64 {
-        let lacking = |(m, &nu): (usize, &f64)| {
-            let stiffness = [stiffnesses[4], self.foundation(nu, stiffnesses)];
-            let terms: f64 = self.terms(m, [first, second], stiffness).sum();
-            first.across[m] * second.across[m] * (self.green(stiffness, first.side, second.side) - terms)
-        };
-        self.across.slopes.iter().enumerate().map(lacking).sum()
     }
 
     /// What the functions across lack under a foot at a place.
@@ -276,36 +288,43 @@ impl Membrane {
         let bending = d_22 * nu;
         (a_44 * nu * bending / (a_44 + bending)).max(least)
     }
+}
 
-    /// What each mode along x brings to $G_n$.
-    fn terms<'a>(
-        &'a self,
-        across: usize,
-        [first, second]: [&'a Seen; 2],
-        [a_55, a]: [f64; 2],
-    ) -> impl Iterator<Item = f64> + 'a {
-        let along = self.along_of[across];
-        let products = first.along[along].iter().zip(&second.along[along]).map(|(u, other)| u * other);
-        self.along[along].slopes.iter().zip(products).map(move |(sigma, product)| product / (a_55 * sigma + a))
+/// $G$ of $A_{55}G'' - aG = -\delta$: $e^{-\kappa|x-x'|}$ with what comes back from the ends.
+struct Answer {
+    kappa: f64,
+    half_length: f64,
+    returned: [f64; 2],
+    /// $2A_{55}\kappa$, less what comes back twice.
+    stiffness: f64,
+}
+
+impl Answer {
+    fn of((a_55, a): (f64, f64), (half_length, returned): (f64, [f64; 2])) -> Self {
+        let kappa = (a / a_55).sqrt();
+        let twice = returned[0] * returned[1] * (-4.0 * kappa * half_length).exp();
+        Self { kappa, half_length, returned, stiffness: 2.0 * a_55 * kappa * (1.0 - twice) }
     }
 
-    /// $A_{55}G'' - aG = -\delta$: $e^{-\kappa|x-x'|}$ with what comes back from the ends.
-    fn green(&self, [a_55, a]: [f64; 2], first: Side, second: Side) -> f64 {
-        let kappa = (a / a_55).sqrt();
-        let h = self.half_length;
-        let (left, right) = if first.1 <= second.1 { (first, second) } else { (second, first) };
-        let [from_left, from_right] = self.returned;
-        let value = |left: Side, right: Side| {
-            // A derivative turns the sign of the returned wave.
-            let turned = |order: usize| if order == 0 { 1.0 } else { -1.0 };
-            let near_left =
-                kappa.powi(left.0 as i32) * (1.0 + turned(left.0) * from_left * (-2.0 * kappa * (h + left.1)).exp());
-            let near_right = (-kappa).powi(right.0 as i32)
-                * (1.0 + turned(right.0) * from_right * (-2.0 * kappa * (h - right.1)).exp());
-            near_left * near_right * (-kappa * (right.1 - left.1)).exp()
+    /// At a place what is there and what comes back from the left end, and the same from the right end.
+    fn near(&self, (order, x): Side) -> [f64; 2] {
+        // A derivative turns the sign of the returned wave.
+        let turned = if order == 0 { 1.0 } else { -1.0 };
+        let sides = [(self.kappa, self.half_length + x), (-self.kappa, self.half_length - x)];
+        [0, 1].map(|side| {
+            let (slope, away) = sides[side];
+            slope.powi(order as i32) * (1.0 + turned * self.returned[side] * (-2.0 * self.kappa * away).exp())
+        })
+    }
+
+    fn between(&self, first: (f64, [f64; 2]), second: (f64, [f64; 2])) -> f64 {
+        let (left, right) = if first.0 <= second.0 { (first, second) } else { (second, first) };
+        let ends = if left.0 == right.0 {
+            0.5 * (left.1[0] * right.1[1] + right.1[0] * left.1[1])
+        } else {
+            left.1[0] * right.1[1]
         };
-        let both = if left.1 == right.1 { 0.5 * (value(left, right) + value(right, left)) } else { value(left, right) };
-        both / (2.0 * a_55 * kappa * (1.0 - from_left * from_right * (-4.0 * kappa * h).exp()))
+        ends * (-self.kappa * (right.0 - left.0)).exp() / self.stiffness
     }
 }
 
