@@ -3,7 +3,8 @@
 //! The damping of a panel is spread over it as its stiffness is: its own modes have a damping ratio each and do not couple. Those of the panel with a
 //! mass do. With $V$ the shares of the panel's modes in the modified ones, and $c_m = 2\zeta_m\omega_m$,
 //! $$\big(s^2 + sC + \Omega^2\big)q = 0\ ,\qquad C = V^T\mathrm{diag}(c)\,V\ .$$
-//! Of $C$ the records show the diagonal, the damping of the modified modes that are poles: $\sum_mV_{mn}^2c_m = C_{nn}$. With $A$ of these rows, $N$ the
+//! Of $C$ the records show the diagonal, the damping of the modified modes that are poles, with what other modes bring:
+//! $\sum_mV_{mn}^2c_m = C_{nn} = 2\zeta_n\omega_n - \mathrm{Re}\sum_jC_{nj}q_j$. With $A$ of these rows, $N$ the
 //! variances of the measured $C_{nn}$, and $c$ beforehand about $c_0 = 2\bar\zeta\omega_m$, $\bar\zeta$ the median, with variances $S$,
 //! $$c = c_0 + SA^T(ASA^T + N)^{-1}(C_{nn} - Ac_0) .$$
 //! Two modes that lie a hundredth apart move by some $10^{-4}$ of their frequency, and each sees a tenth of the other in quadrature.
@@ -15,6 +16,10 @@ use orthopanel_model::SeenModes;
 
 use crate::comparison::OWN_DAMPING;
 
+/// Rounds in which the panel's damping is found: what a mode shows of it is what all that it is coupled with does,
+const ROUNDS: usize = 2;
+/// of which others bring no more than this part, for modes that run together wholly do not tell whose damping it is.
+const BY_OTHERS: f64 = 0.5;
 /// Rounds in which a mode is found.
 const STEPS: usize = 8;
 /// Share of another mode that counts, to first order.
@@ -39,13 +44,24 @@ impl CoupledModes {
         let count = modes.shares.first()?.len().min(zeta.len());
         let omega = &modes.angular_frequency[..count];
         let shares = &modes.shares[..count];
-        let panel = of_panel(shares, omega, (zeta, deviations, &modes.damping_ratio))?;
-        let of_panel = Mat::from_fn(panel.len(), count, |m, n| shares[n][m]);
-        let damped = Mat::from_fn(panel.len(), count, |m, n| panel[m] * shares[n][m]);
-        let damping = of_panel.transpose() * damped;
-        let modes = (0..count).map(|n| coupled(n, (omega, zeta[n]), &damping));
-        let (angular_frequency, shares) = modes.unzip();
-        Some(Self { angular_frequency, shares })
+        let of_panel = Mat::from_fn(count, count, |m, n| shares[n][m]);
+        let mut by_others = vec![0.0; count];
+        let mut found = Self { angular_frequency: vec![], shares: vec![] };
+        for _ in 0..ROUNDS {
+            let panel = damping_of_panel(shares, omega, (zeta, deviations, &modes.damping_ratio), &by_others)?;
+            let damped = Mat::from_fn(count, count, |m, n| panel[m] * shares[n][m]);
+            let damping = of_panel.transpose() * damped;
+            let coupled = (0..count).map(|n| coupled(n, (omega, zeta[n]), &damping));
+            let (mut angular_frequency, mut shares) = (vec![], vec![]);
+            for (n, (size, share, by)) in coupled.enumerate() {
+                angular_frequency.push(size);
+                shares.push(share);
+                let most = BY_OTHERS * 2.0 * zeta[n] * omega[n];
+                by_others[n] = if most > 0.0 { most * (by / most).tanh() } else { 0.0 };
+            }
+            found = Self { angular_frequency, shares };
+        }
+        Some(found)
     }
 
     /// What a mode has of something that each mode without coupling has some of.
@@ -54,11 +70,13 @@ impl CoupledModes {
     }
 }
 
-/// $c$ of the panel's own modes, about which nothing but their shares in the modified ones is known, whose damping ratios are the panel's and the effects'.
-fn of_panel(
+/// $c$ of the panel's own modes, about which nothing but their shares in the modified ones is known, whose damping ratios are the panel's and the effects',
+/// and of which those that damping couples them with bring some.
+fn damping_of_panel(
     shares: &[Vec<f64>],
     omega: &[f64],
     (zeta, deviations, of_effects): (&[f64], &[Option<f64>], &[f64]),
+    by_others: &[f64],
 ) -> Option<Vec<f64>> {
     let count = omega.len();
     let own = |n: usize| (zeta[n] - of_effects[n]).max(0.0);
@@ -74,7 +92,7 @@ fn of_panel(
     let mut whole = &rows * &spread;
     let missed = Mat::from_fn(measured.len(), 1, |row, _| {
         let n = measured[row].0;
-        2.0 * own(n) * omega[n] - (0..count).map(|m| rows[(row, m)] * before[m]).sum::<f64>()
+        2.0 * own(n) * omega[n] - by_others[n] - (0..count).map(|m| rows[(row, m)] * before[m]).sum::<f64>()
     });
     for (row, (n, deviation)) in measured.iter().enumerate() {
         let noise = deviation * 2.0 * zeta[*n] * omega[*n];
@@ -85,14 +103,14 @@ fn of_panel(
     Some((0..count).map(|m| (before[m] + found[(m, 0)]).max(0.0)).collect())
 }
 
-/// $|\lambda|$ and the shares of a mode: row by row, the row of the mode itself for its pole, whose damping is known. Modes that have a small share have
-/// it of this mode and of those with large ones alone.
-fn coupled(n: usize, (omega, zeta): (&[f64], f64), damping: &Mat<f64>) -> (f64, Vec<Complex64>) {
+/// $|\lambda|$ and the shares of a mode, and what the others bring of its damping, $\mathrm{Re}\sum_jC_{nj}q_j$: row by row, the row of the mode itself for its
+/// pole, whose damping is known. Modes that have a small share have it of this mode and of those with large ones alone.
+fn coupled(n: usize, (omega, zeta): (&[f64], f64), damping: &Mat<f64>) -> (f64, Vec<Complex64>, f64) {
     let count = omega.len();
     let mut shares = vec![Complex64::ZERO; count];
     shares[n] = Complex64::ONE;
     if omega[n] <= 0.0 {
-        return (omega[n], shares);
+        return (omega[n], shares, 0.0);
     }
     let own = 2.0 * zeta * omega[n];
     let of_mode = damping.col_as_slice(n);
@@ -100,6 +118,7 @@ fn coupled(n: usize, (omega, zeta): (&[f64], f64), damping: &Mat<f64>) -> (f64, 
     let others: Vec<usize> = (0..count).filter(|j| *j != n && omega[*j] > 0.0 && first(*j) >= LEAST).collect();
     let large: Vec<usize> = others.iter().copied().filter(|j| first(*j) >= LARGE).collect();
     let mut s = Complex64::new(-0.5 * own, (omega[n].powi(2) - 0.25 * own * own).max(0.0).sqrt());
+    let mut by_others = Complex64::ZERO;
     for _ in 0..STEPS {
         for &j in &others {
             let column = damping.col_as_slice(j);
@@ -107,7 +126,7 @@ fn coupled(n: usize, (omega, zeta): (&[f64], f64), damping: &Mat<f64>) -> (f64, 
             let share = -s * (beside + of_mode[j]) / (s * s + s * column[j] + omega[j] * omega[j]);
             shares[j] = share / (share.norm() / MOST).max(1.0);
         }
-        let by_others: Complex64 = others.iter().map(|&j| of_mode[j] * shares[j]).sum();
+        by_others = others.iter().map(|&j| of_mode[j] * shares[j]).sum();
         let half = 0.5 * Complex64::new(own, by_others.im);
         let next = -half + Complex64::I * (omega[n] * omega[n] - half * half).sqrt();
         let is_there = (next - s).norm() < f64::EPSILON * next.norm();
@@ -129,7 +148,7 @@ fn coupled(n: usize, (omega, zeta): (&[f64], f64), damping: &Mat<f64>) -> (f64, 
     let scale = ((lambda - lambda.conj()) / (2.0 * s * masses + dampers)).sqrt();
     // Either root: a shape has no sign.
     let scale = if scale.re < 0.0 { -scale } else { scale };
-    (size, shares.into_iter().map(|share| scale * share).collect())
+    (size, shares.into_iter().map(|share| scale * share).collect(), by_others.re)
 }
 
 #[cfg(test)]
@@ -148,14 +167,27 @@ mod tests {
         let shares: Vec<Vec<f64>> =
             turned.iter().map(|[a, b, c]| vec![*a, cos * b - sin * c, sin * b + cos * c]).collect();
         let coupling = |i: usize, j: usize| -> f64 { (0..3).map(|m| shares[i][m] * shares[j][m] * own[m]).sum() };
-        // What a record would show: damping as the coupled modes have it, found by fixed points.
+        // What a record would show: damping as the coupled modes have it.
+        let whole = nalgebra::DMatrix::from_fn(6, 6, |i, j| match (i, j) {
+            (0..3, _) => f64::from(u8::from(j == i + 3)),
+            (_, 0..3) => {
+                if i == j + 3 {
+                    -omega[j] * omega[j]
+                } else {
+                    0.0
+                }
+            }
+            _ => -coupling(i - 3, j - 3),
+        });
+        let mut poles: Vec<_> = whole.complex_eigenvalues().iter().copied().filter(|pole| pole.im > 0.0).collect();
+        poles.sort_by(|a, b| a.im.total_cmp(&b.im));
         let modes = SeenModes {
             angular_frequency: omega.to_vec(),
             damping_ratio: vec![0.0; 3],
             shares: shares.clone(),
             ..SeenModes::default()
         };
-        let zeta: Vec<f64> = (0..3).map(|n| coupling(n, n) / (2.0 * omega[n])).collect();
+        let zeta: Vec<f64> = poles.iter().map(|pole| -pole.re / pole.norm()).collect();
         let found = CoupledModes::new(&modes, &zeta, &[Some(1e-4); 3]).expect("shares");
         let by_modes = |s: Complex64, i: usize, j: usize| -> Complex64 {
             let term = |n: usize| {
@@ -191,6 +223,9 @@ mod tests {
             if i == j { line.inv() } else { Complex64::ZERO }
         };
         let (coupled, alone) = (worst(&by_modes), worst(&uncoupled));
-        assert!(alone > 0.1 && coupled < 0.03, "{coupled} {alone}");
+        for (pole, size) in poles.iter().zip(&found.angular_frequency) {
+            assert!((pole.norm() / size - 1.0).abs() < 1e-5, "{pole} {size}");
+        }
+        assert!(alone > 0.1 && coupled < 3e-3, "{coupled} {alone}");
     }
 }

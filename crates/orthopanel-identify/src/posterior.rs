@@ -9,7 +9,7 @@ use faer::{Mat, Side};
 use orthopanel_model::ModelError;
 
 use crate::hypothesis::Hypothesis;
-use crate::model_error::{ErrorColumns, KINDS, deviations, medians};
+use crate::model_error::{ErrorColumns, KINDS, deviations, least_sizes, medians};
 use crate::stacked::{Predictions, Stacked};
 use crate::whitening::Whitening;
 
@@ -20,8 +20,8 @@ const LONGEST: f64 = 0.7;
 const LONGEST_SIZE: f64 = 1.0;
 /// A step this long, in coordinates, may bend.
 const CURVED: f64 = 0.01;
-/// Bounds of a size of model error.
-const SIZES: [f64; 2] = [1e-6, 0.5];
+/// Largest size of model error.
+const LARGEST_SIZE: f64 = 0.5;
 
 /// A hypothesis held against the measured modes.
 pub(crate) struct Problem<'a> {
@@ -343,6 +343,8 @@ impl Problem<'_> {
     ) -> Option<([f64; KINDS], Mat<f64>, f64)> {
         let missed = self.missed(at);
         let (medians, deviations) = (medians(), deviations());
+        let least = least_sizes(self.stacked.first().predictor.structure);
+        log_sizes.iter_mut().zip(&least).for_each(|(size, least)| *size = size.max(*least));
         let cost = |log_sizes: &[f64; KINDS]| {
             let by = self.whitening(errors, log_sizes)?;
             let prior: f64 = (0..KINDS).map(|k| ((log_sizes[k] - medians[k]) / deviations[k]).powi(2)).sum();
@@ -364,13 +366,23 @@ impl Problem<'_> {
             if round > most {
                 break;
             }
-            let step = curvature.llt(Side::Lower).ok()?.solve(&slope);
+            // A size that would fall below its least stays there, and the others move as if it were held.
+            let mut held = curvature.clone();
+            let falls = |k: &usize| log_sizes[*k] <= least[*k] && slope[(*k, 0)] > 0.0;
+            for k in (0..KINDS).filter(falls).collect::<Vec<_>>() {
+                slope[(k, 0)] = 0.0;
+                (0..KINDS).filter(|&other| other != k).for_each(|other| {
+                    held[(k, other)] = 0.0;
+                    held[(other, k)] = 0.0;
+                });
+            }
+            let step = held.llt(Side::Lower).ok()?.solve(&slope);
             let mut share = 1.0;
             let next = loop {
                 let mut next = log_sizes;
                 for k in 0..KINDS {
                     let moved = log_sizes[k] - share * step[(k, 0)].clamp(-LONGEST_SIZE, LONGEST_SIZE);
-                    next[k] = moved.clamp(SIZES[0].ln(), SIZES[1].ln());
+                    next[k] = moved.clamp(least[k], LARGEST_SIZE.ln());
                 }
                 match cost(&next) {
                     Some((lower, by)) if lower < value => break Some((next, lower, by)),

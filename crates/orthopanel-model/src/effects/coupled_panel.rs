@@ -2,6 +2,8 @@
 
 use std::sync::{Arc, Mutex, OnceLock};
 
+use faer::Mat;
+
 use super::beam_base::BeamBase;
 use super::coupled_system::{FoundMode, System};
 use super::foot::{on_feet, port};
@@ -11,6 +13,7 @@ use super::row::{Row, SharedStructure};
 use super::spread_effects::SpreadEffects;
 use super::wide_plate::{Summed, WidePlates};
 use super::{Action, CoreModulus, EffectSetting, EffectState, ElementLaw, PointElement, Seat, ShearPatch};
+use crate::dense::dot;
 use crate::mindlin_plate::PlateTerms;
 use crate::panel_mode::crossings;
 use crate::structure::{Motion, ShearMoment, Structure};
@@ -265,6 +268,40 @@ impl ModifiedStructure {
         }
         let system = System::new(&self.low, answers, &elements, damping);
         (panel, system)
+    }
+
+    /// Shares of the modes of the panel itself, with its patches, in modes with all that stands on it; none where nothing does.
+    pub(super) fn shares(
+        &self,
+        answers: &FarAnswers,
+        damping: &Damping,
+        modes: &[FoundMode],
+    ) -> Result<Vec<Vec<f64>>, ModelError> {
+        let bare = self.low.modes.len();
+        let is_of_panel = |element: &PointElement| matches!(element.motion, Motion::Shear(_));
+        let standing = self.elements.iter().filter(|element| !is_of_panel(element)).count();
+        if standing == 0 {
+            return Ok(vec![]);
+        }
+        if standing == self.elements.len() {
+            return Ok(modes.iter().map(|(.., shares)| shares[..bare].to_vec()).collect());
+        }
+        let nothing = ElementLaw::Mass { mass: 0.0 };
+        let alone = |element: &PointElement| PointElement {
+            law: if is_of_panel(element) { element.law } else { nothing },
+            ..*element
+        };
+        let mut patches: Vec<PointElement> = self.elements.iter().map(alone).collect();
+        // The ports stand behind the elements, with nothing on them.
+        patches.resize(answers.series[1].ncols(), PointElement { law: nothing, ..self.elements[0] });
+        let system = System::new(&self.low, answers, &patches, damping);
+        let size = system.panel;
+        let own = system.solve()?;
+        let of_mode = |(.., mode): &FoundMode| {
+            let image = &system.mass * Mat::from_fn(size, 1, |i, _| mode[i]);
+            own.iter().take(bare).map(|(.., own)| dot(&own[..size], image.col_as_slice(0))).collect()
+        };
+        Ok(modes.iter().map(of_mode).collect())
     }
 }
 

@@ -48,7 +48,8 @@ pub struct SeenModes {
     pub slope: Vec<Vec<f64>>,
     /// $\partial W_n/\partial y$ \[kg^-1/2/m\], alike, of a plate.
     pub slope_across: Vec<Vec<f64>>,
-    /// Shares of the modes of a plate without what stands on it in each of these, where there is anything: with what its damping couples them.
+    /// Shares of the modes of a plate without what stands on it, but with its patches, in each of these, where anything stands there: with what its
+    /// damping couples them. A patch has lost the damping that goes with its stiffness, so that the modes of a plate with patches do not couple.
     pub shares: Vec<Vec<f64>>,
     /// Derivatives of all these by the logarithm of the side of the feet on which masses stand on a plate.
     pub by_foot: Option<Box<SeenModes>>,
@@ -250,9 +251,7 @@ impl ModifiedPanel {
             StandingMass::of(element, || found.iter().map(|(.., shares)| row(number, shares)).collect())
         });
         let standing: Vec<StandingMass> = standing.collect();
-        let own = |(.., shares): &FoundMode| shares[..low].to_vec();
-        let is_modified = matches!(self.even, Even::Plate) && !modified.elements.is_empty();
-        let own: Vec<Vec<f64>> = if is_modified { found.iter().map(own).collect() } else { vec![] };
+        let own = if matches!(self.even, Even::Plate) { modified.shares(&answers, damping, &found)? } else { vec![] };
         let mut seen = SeenModes::of(found, |shares| {
             let row = |number: usize| row(number, shares);
             let mut slopes: Vec<f64> = (residuals..residuals + asked.len()).map(row).collect();
@@ -428,6 +427,40 @@ mod tests {
                     let own = seen.slope_across[n][port];
                     assert!((slope - own).abs() < 0.1 * own.abs().max(2.0), "{on} mode {n} at {port}: {own} {slope}");
                 }
+            }
+        }
+    }
+
+    /// A mass takes no stiffness: with the shares $V$ of the plate's own modes in those with it, $V^T\mathrm{diag}(\Omega^2)V$ has $\omega^2$ on its diagonal, and
+    /// the plate's own modes are those with its patches, which alone do not couple.
+    #[test]
+    fn val_shares_are_those_of_the_plate_with_its_patches() {
+        let setting = EffectSetting {
+            piece: Piece { length: 0.8, width: 0.5, thickness: 0.03, mass_per_area: 6.88 },
+            ..setting()
+        };
+        let state =
+            |id: &str, values: &[f64]| EffectState::new(effect(id).expect("known"), values.to_vec(), 1).expect("valid");
+        let patch = state("stiffness-loss", &[0.7, 0.2, -0.12, 0.08]);
+        let mass = state("local-mass", &[0.005, 0.21, -0.13]);
+        let places = [Place { x: 0.31, y: 0.07 }];
+        let panel = ModifiedPanel::new(StructureKind::MindlinPlate, &setting, 20).expect("a plate");
+        let panel = panel.perhaps_wide(&setting, &places, 2500.0);
+        let seen = |effects: &[EffectState]| {
+            let values = [1.07e10, 8.56e9, 0.3, 3.745e9, 3.2178e8, 5.363e8];
+            panel.seen_from(&setting, &places, false, &values, effects).expect("modes")
+        };
+        let (bare, patched) = (seen(&[]), seen(std::slice::from_ref(&patch)));
+        assert!(bare.shares.is_empty() && patched.shares.is_empty());
+        for (own, effects) in [(&bare, vec![mass.clone()]), (&patched, vec![patch.clone(), mass])] {
+            let loaded = seen(&effects);
+            for n in 3..18 {
+                let omega = |of: &SeenModes, n: usize| of.angular_frequency[n];
+                let terms = loaded.shares[n].iter().enumerate().map(|(m, share)| (share * omega(own, m)).powi(2));
+                let apart = terms.sum::<f64>().sqrt() / omega(&loaded, n) - 1.0;
+                // What the foot's own shape holds is no share of a mode; taken of the other plate, all that the patch does would be missing.
+                let by_patch = omega(&patched, n) / omega(&bare, n) - 1.0;
+                assert!(apart.abs() < 0.15 * by_patch.abs(), "{} effects, mode {n}: {apart:e}", effects.len());
             }
         }
     }
