@@ -287,15 +287,36 @@ def test_an_effect_shows_by_what_it_moves_beyond_constants():
     assert seen.amplitude(SMALL, [(foot, mass)]) == pytest.approx(wanted, rel=0.1)
 
 
+def bench_with_places(count, highest, random):
+    bench = bench_of(SMALL)
+    bench.hits, bench.noise, bench.sampling = 2, 1e-3, Sampling(2.56 * highest, 8192)
+    bench.forces = whole._spread(SMALL, bench.response, count, random)
+    bench.__post_init__()
+    return bench
+
+
+@pytest.mark.skipif(ORTHOPANEL is None, reason="ORTHOPANEL names no binary")
+def test_val_a_disbond_is_named_at_its_place(tmp_path, monkeypatch):
+    """A square of 80 mm that has lost 60 % of its shear stiffness, in records of eight places."""
+    monkeypatch.setattr(whole_plate, "FLEXIBLE", 50)
+    random = np.random.default_rng(12)
+    bench = bench_with_places(8, 2000.0, random)
+    x, y = 0.13, -0.07
+    bench.panel = whole.disbonded(bench.panel, 0.6, 0.08, x, y)
+    files.write_case(tmp_path / "case", bench, records.play(bench, random))
+    told = subprocess.run([ORTHOPANEL, "trace", tmp_path / "case" / "test.toml", "--json"], capture_output=True, text=True, check=True)
+    found = json.loads(told.stdout)
+    assert (found["verdict"], [effect["id"] for effect in found["effects"]]) == ("explained", ["stiffness-loss"])
+    values = {name: of["value"] for name, of in found["effects"][0]["parameters"].items()}
+    assert np.hypot(values["x"] - x, values["y"] - y) < 0.005, values
+
+
 @pytest.mark.skipif(ORTHOPANEL is None, reason="ORTHOPANEL names no binary")
 def test_val_places_that_are_wrong_are_told(tmp_path, few):
     """Of records of twelve places: as they are written constants are given; sensor and hammer mirrored against each other, a grid counted
     from a corner, two records exchanged and one turned round are each refused with what to write."""
     random = np.random.default_rng(11)
-    bench = bench_of(SMALL)
-    bench.hits, bench.noise, bench.sampling = 2, 1e-3, Sampling(2.56 * 3150.0, 8192)
-    bench.forces = whole._spread(SMALL, bench.response, 12, random)
-    bench.__post_init__()
+    bench = bench_with_places(12, 3150.0, random)
     files.write_case(tmp_path / "case", bench, records.play(bench, random))
     path = tmp_path / "case" / "test.toml"
     written = path.read_text(encoding="utf-8")

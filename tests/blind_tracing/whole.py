@@ -287,18 +287,22 @@ def _sensor_mass(bench, draw):
 
 
 def _stiffness_loss(bench, draw):
-    """A disbond under a square of the faces."""
     loss, span = draw.rising(0.3, 0.8), draw.rising(0.06, 0.16)
     x, y = _somewhere(bench, draw, span / 2.0)
-    before = bench.panel.core or (lambda x, y: 1.0)
+    bench.panel = disbonded(bench.panel, loss, span, x, y)
+    return {"loss": loss, "span": span, "x": x, "y": y}
+
+
+def disbonded(panel, loss, span, x, y):
+    """A panel with a disbond under a square of the faces."""
+    before = panel.core or (lambda x, y: 1.0)
     sides = [(at - span / 2.0, at + span / 2.0) for at in (x, y)]
 
     def weakened(x, y):
         inside = (x > sides[0][0]) & (x < sides[0][1]) & (y > sides[1][0]) & (y < sides[1][1])
         return before(x, y) * np.where(inside, 1.0 - loss, 1.0)
 
-    bench.panel = replace(bench.panel, core=weakened, lines_x=sides[0], lines_y=sides[1])
-    return {"loss": loss, "span": span, "x": x, "y": y}
+    return replace(panel, core=weakened, lines_x=sides[0], lines_y=sides[1])
 
 
 def _suspension(bench, draw):
