@@ -301,6 +301,7 @@ def test_val_a_disbond_is_named_at_its_place(tmp_path, monkeypatch):
     monkeypatch.setattr(whole_plate, "FLEXIBLE", 50)
     random = np.random.default_rng(12)
     bench = bench_with_places(8, 2000.0, random)
+    bench.zeta = np.exp(random.uniform(*np.log(whole.DAMPING), 50))
     x, y = 0.13, -0.07
     bench.panel = whole.disbonded(bench.panel, 0.6, 0.08, x, y)
     files.write_case(tmp_path / "case", bench, records.play(bench, random))
