@@ -288,6 +288,7 @@ def test_an_effect_shows_by_what_it_moves_beyond_constants():
 
 
 def bench_with_places(count, highest, random):
+    """A test of the small panel at so many places, up to a frequency in Hz."""
     bench = bench_of(SMALL)
     bench.hits, bench.noise, bench.sampling = 2, 1e-3, Sampling(2.56 * highest, 8192)
     bench.forces = whole._spread(SMALL, bench.response, count, random)
@@ -301,7 +302,7 @@ def test_val_a_disbond_is_named_at_its_place(tmp_path, monkeypatch):
     monkeypatch.setattr(whole_plate, "FLEXIBLE", 50)
     random = np.random.default_rng(12)
     bench = bench_with_places(8, 2000.0, random)
-    bench.zeta = np.exp(random.uniform(*np.log(whole.DAMPING), 50))
+    bench.zeta = np.exp(random.uniform(*np.log(whole.DAMPING), whole_plate.FLEXIBLE))
     x, y = 0.13, -0.07
     bench.panel = whole.disbonded(bench.panel, 0.6, 0.08, x, y)
     files.write_case(tmp_path / "case", bench, records.play(bench, random))

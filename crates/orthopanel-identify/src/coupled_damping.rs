@@ -46,22 +46,17 @@ impl CoupledModes {
         let shares = &modes.shares[..count];
         let of_panel = Mat::from_fn(count, count, |m, n| shares[n][m]);
         let mut by_others = vec![0.0; count];
-        let mut found = Self { angular_frequency: vec![], shares: vec![] };
+        let mut modes_with_damping = vec![];
         for _ in 0..ROUNDS {
             let panel = damping_of_panel(shares, omega, (zeta, deviations, &modes.damping_ratio), &by_others)?;
             let damped = Mat::from_fn(count, count, |m, n| panel[m] * shares[n][m]);
             let damping = of_panel.transpose() * damped;
-            let coupled = (0..count).map(|n| coupled(n, (omega, zeta[n]), &damping));
-            let (mut angular_frequency, mut shares) = (vec![], vec![]);
-            for (n, (size, share, by)) in coupled.enumerate() {
-                angular_frequency.push(size);
-                shares.push(share);
-                let most = BY_OTHERS * 2.0 * zeta[n] * omega[n];
-                by_others[n] = if most > 0.0 { most * (by / most).tanh() } else { 0.0 };
-            }
-            found = Self { angular_frequency, shares };
+            modes_with_damping = (0..count).map(|n| coupled(n, (omega, zeta[n]), &damping)).collect();
+            by_others = modes_with_damping.iter().map(|(.., by_others)| *by_others).collect();
         }
-        Some(found)
+        let (angular_frequency, shares) =
+            modes_with_damping.into_iter().map(|(size, shares, _)| (size, shares)).unzip();
+        Some(Self { angular_frequency, shares })
     }
 
     /// What a mode has of something that each mode without coupling has some of.
@@ -103,7 +98,7 @@ fn damping_of_panel(
     Some((0..count).map(|m| (before[m] + found[(m, 0)]).max(0.0)).collect())
 }
 
-/// $|\lambda|$ and the shares of a mode, and what the others bring of its damping, $\mathrm{Re}\sum_jC_{nj}q_j$: row by row, the row of the mode itself for its
+/// $|\lambda|$ and the shares of a mode, and what the others bring of its damping, $\mathrm{Re}\sum_jC_{nj}q_j$, up to [`BY_OTHERS`]: row by row, the row of the mode itself for its
 /// pole, whose damping is known. Modes that have a small share have it of this mode and of those with large ones alone.
 fn coupled(n: usize, (omega, zeta): (&[f64], f64), damping: &Mat<f64>) -> (f64, Vec<Complex64>, f64) {
     let count = omega.len();
@@ -148,7 +143,9 @@ fn coupled(n: usize, (omega, zeta): (&[f64], f64), damping: &Mat<f64>) -> (f64, 
     let scale = ((lambda - lambda.conj()) / (2.0 * s * masses + dampers)).sqrt();
     // Either root: a shape has no sign.
     let scale = if scale.re < 0.0 { -scale } else { scale };
-    (size, shares.into_iter().map(|share| scale * share).collect(), by_others.re)
+    let most = BY_OTHERS * own;
+    let by_others = if most > 0.0 { most * (by_others.re / most).tanh() } else { 0.0 };
+    (size, shares.into_iter().map(|share| scale * share).collect(), by_others)
 }
 
 #[cfg(test)]
@@ -170,13 +167,8 @@ mod tests {
         // What a record would show: damping as the coupled modes have it.
         let whole = nalgebra::DMatrix::from_fn(6, 6, |i, j| match (i, j) {
             (0..3, _) => f64::from(u8::from(j == i + 3)),
-            (_, 0..3) => {
-                if i == j + 3 {
-                    -omega[j] * omega[j]
-                } else {
-                    0.0
-                }
-            }
+            (_, 0..3) if i == j + 3 => -omega[j] * omega[j],
+            (_, 0..3) => 0.0,
             _ => -coupling(i - 3, j - 3),
         });
         let mut poles: Vec<_> = whole.complex_eigenvalues().iter().copied().filter(|pole| pole.im > 0.0).collect();

@@ -21,6 +21,9 @@ use crate::{BeamTerms, Boundary, Damping, MindlinPlate, ModeName, ModelError, Pi
 
 /// Modes of the bare structure beyond those asked for.
 pub(crate) const SPARE_MODES: usize = 10;
+/// What stands where nothing does: its place has a residual shape all the same.
+const NOTHING: ElementLaw = ElementLaw::Mass { mass: 0.0 };
+
 /// A panel with effects, in coordinates of its bare modes, of the static residual shape under each element, and of each
 /// resonator's own mass (Rubin, AIAA J. 13 (1975) 995).
 ///
@@ -252,10 +255,7 @@ impl ModifiedStructure {
         damping: &Damping,
     ) -> (CoupledPanel, System) {
         let mut panel = self.panel();
-        let without_mass = |(motion, place)| {
-            let law = ElementLaw::Mass { mass: 0.0 };
-            PointElement { law, seat: Seat::At(place), motion }
-        };
+        let without_mass = |(motion, place)| PointElement { law: NOTHING, seat: Seat::At(place), motion };
         let ports = self.ports(ports).into_iter().map(without_mass);
         let elements: Vec<PointElement> = self.elements.iter().copied().chain(ports).collect();
         for (number, row) in elements.iter().filter_map(row).enumerate() {
@@ -286,14 +286,13 @@ impl ModifiedStructure {
         if standing == self.elements.len() {
             return Ok(modes.iter().map(|(.., shares)| shares[..bare].to_vec()).collect());
         }
-        let nothing = ElementLaw::Mass { mass: 0.0 };
         let alone = |element: &PointElement| PointElement {
-            law: if is_of_panel(element) { element.law } else { nothing },
+            law: if is_of_panel(element) { element.law } else { NOTHING },
             ..*element
         };
         let mut patches: Vec<PointElement> = self.elements.iter().map(alone).collect();
         // The ports stand behind the elements, with nothing on them.
-        patches.resize(answers.series[1].ncols(), PointElement { law: nothing, ..self.elements[0] });
+        patches.resize(answers.series[1].ncols(), PointElement { law: NOTHING, ..self.elements[0] });
         let system = System::new(&self.low, answers, &patches, damping);
         let size = system.panel;
         let own = system.solve()?;
