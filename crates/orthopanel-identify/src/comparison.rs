@@ -124,6 +124,12 @@ impl<'a> Comparison<'a> {
         self.residue_place(record, self.measured.poles.len() + number)
     }
 
+    /// The record that a value is of; `None` of what all have together.
+    pub(crate) fn record_of(&self, place: usize) -> Option<usize> {
+        let record = place.checked_sub(self.measured.poles.len())? / self.block().max(1);
+        (record < self.measured.records.len()).then_some(record)
+    }
+
     /// Where the modes without a pole stand.
     pub(crate) fn unseen(&self) -> Range<usize> {
         let from = self.measured.poles.len() + self.measured.records.len() * self.block();

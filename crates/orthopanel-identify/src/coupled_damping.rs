@@ -5,14 +5,14 @@
 //! $$\big(s^2 + sC + \Omega^2\big)q = 0\ ,\qquad C = V^T\mathrm{diag}(c)\,V\ .$$
 //! Of $C$ the records show the diagonal, the damping of the modified modes that are poles, with what other modes bring:
 //! $\sum_mV_{mn}^2c_m = C_{nn} = 2\zeta_n\omega_n - \mathrm{Re}\sum_jC_{nj}q_j$. With $A$ of these rows, $N$ the
-//! variances of the measured $C_{nn}$, and $c$ beforehand about $c_0 = 2\bar\zeta\omega_m$, $\bar\zeta$ the median, with variances $S$,
+//! variances of the measured $C_{nn}$, and $c$ beforehand about $c_0 = 2\bar\zeta\Omega_m$, $\bar\zeta$ the median, with variances $S$,
 //! $$c = c_0 + SA^T(ASA^T + N)^{-1}(C_{nn} - Ac_0) .$$
 //! Two modes that lie a hundredth apart move by some $10^{-4}$ of their frequency, and each sees a tenth of the other in quadrature.
 
 use faer::prelude::Solve;
 use faer::{Mat, Side};
 use num_complex::Complex64;
-use orthopanel_model::SeenModes;
+use orthopanel_model::{OwnModes, SeenModes};
 
 use crate::comparison::OWN_DAMPING;
 
@@ -33,61 +33,80 @@ const MOST: f64 = 1.0;
 pub(crate) struct CoupledModes {
     /// $|\lambda|$ \[rad/s\].
     pub angular_frequency: Vec<f64>,
-    /// Shares of the modes without coupling, so that the residue of a receptance is $\phi\phi^T/(\lambda-\bar\lambda)$.
-    shares: Vec<Vec<Complex64>>,
+    /// Of each mode the deflection at every port, the slope along and the slope across, so that the residue of a receptance is
+    /// $\phi\phi^T/(\lambda-\bar\lambda)$.
+    shapes: [Vec<Vec<Complex64>>; 3],
 }
 
 impl CoupledModes {
     /// Of modes with these damping ratios, of which the effects' dashpots bring their own, and the deviations of their logarithms where they are measured;
     /// `None` where shares of the panel's own modes are not known.
     pub(crate) fn new(modes: &SeenModes, zeta: &[f64], deviations: &[Option<f64>]) -> Option<Self> {
-        let count = modes.shares.first()?.len().min(zeta.len());
+        let count = modes.own.shares.first()?.len().min(zeta.len());
         let omega = &modes.angular_frequency[..count];
-        let shares = &modes.shares[..count];
+        let shares = &modes.own.shares[..count];
         let of_panel = Mat::from_fn(count, count, |m, n| shares[n][m]);
         let mut by_others = vec![0.0; count];
         let mut modes_with_damping = vec![];
         for _ in 0..ROUNDS {
-            let panel = damping_of_panel(shares, omega, (zeta, deviations, &modes.damping_ratio), &by_others)?;
+            let panel = damping_of_panel(&modes.own, omega, (zeta, deviations, &modes.damping_ratio), &by_others)?;
             let damped = Mat::from_fn(count, count, |m, n| panel[m] * shares[n][m]);
             let damping = of_panel.transpose() * damped;
             modes_with_damping = (0..count).map(|n| coupled(n, (omega, zeta[n]), &damping)).collect();
             by_others = modes_with_damping.iter().map(|(.., by_others)| *by_others).collect();
         }
-        let (angular_frequency, shares) =
+        let (angular_frequency, shares): (Vec<f64>, Vec<_>) =
             modes_with_damping.into_iter().map(|(size, shares, _)| (size, shares)).unzip();
-        Some(Self { angular_frequency, shares })
+        let shapes = [&modes.deflection, &modes.slope, &modes.slope_across].map(|of| mixed(&shares, of));
+        Some(Self { angular_frequency, shapes })
     }
 
-    /// What a mode has of something that each mode without coupling has some of.
-    pub(crate) fn seen(&self, n: usize, of: impl Fn(usize) -> f64) -> Option<Complex64> {
-        Some(self.shares.get(n)?.iter().enumerate().map(|(j, share)| share * of(j)).sum())
+    /// The deflection of a mode at a port; `None` of one that is not coupled.
+    pub(crate) fn deflection(&self, n: usize, port: usize) -> Option<Complex64> {
+        self.shapes[0].get(n)?.get(port).copied()
     }
+
+    /// Its slope along, or across, at a port.
+    pub(crate) fn slope(&self, axis: usize, n: usize, port: usize) -> Option<Complex64> {
+        self.shapes[1 + axis].get(n)?.get(port).copied()
+    }
+}
+
+/// What each mode has at every port of what the modes without coupling have there.
+fn mixed(shares: &[Vec<Complex64>], of: &[Vec<f64>]) -> Vec<Vec<Complex64>> {
+    let ports = of.first().map_or(0, Vec::len);
+    let mixed = |shares: &Vec<Complex64>| {
+        let mut sum = vec![Complex64::ZERO; ports];
+        for (share, own) in shares.iter().zip(of).filter(|(share, _)| **share != Complex64::ZERO) {
+            sum.iter_mut().zip(own).for_each(|(sum, own)| *sum += share * own);
+        }
+        sum
+    };
+    shares.iter().map(mixed).collect()
 }
 
 /// $c$ of the panel's own modes, about which nothing but their shares in the modified ones is known, whose damping ratios are the panel's and the effects',
 /// and of which those that damping couples them with bring some.
 fn damping_of_panel(
-    shares: &[Vec<f64>],
+    own: &OwnModes,
     omega: &[f64],
     (zeta, deviations, of_effects): (&[f64], &[Option<f64>], &[f64]),
     by_others: &[f64],
 ) -> Option<Vec<f64>> {
     let count = omega.len();
-    let own = |n: usize| (zeta[n] - of_effects[n]).max(0.0);
+    let shown = |n: usize| (zeta[n] - of_effects[n]).max(0.0);
     let measured: Vec<(usize, f64)> = (0..count).filter_map(|n| Some((n, deviations[n]?))).collect();
-    let mut ratios: Vec<f64> = measured.iter().map(|(n, _)| own(*n)).collect();
+    let mut ratios: Vec<f64> = measured.iter().map(|(n, _)| shown(*n)).collect();
     ratios.sort_by(f64::total_cmp);
     let usual = ratios.get(ratios.len() / 2).copied().unwrap_or(0.0);
-    // Modes of the panel lie about where the modified ones do.
-    let before: Vec<f64> = omega.iter().map(|omega| 2.0 * usual * omega).collect();
+    let before: Vec<f64> = own.angular_frequency[..count].iter().map(|omega| 2.0 * usual * omega).collect();
     let variance = |m: usize| (OWN_DAMPING * before[m]).powi(2);
-    let rows = Mat::from_fn(measured.len(), count, |row, m| shares[measured[row].0][m].powi(2));
+    let rows = Mat::from_fn(measured.len(), count, |row, m| own.shares[measured[row].0][m].powi(2));
     let spread = Mat::from_fn(count, measured.len(), |m, row| variance(m) * rows[(row, m)]);
     let mut whole = &rows * &spread;
     let missed = Mat::from_fn(measured.len(), 1, |row, _| {
         let n = measured[row].0;
-        2.0 * own(n) * omega[n] - by_others[n] - (0..count).map(|m| rows[(row, m)] * before[m]).sum::<f64>()
+        2.0 * shown(n) * omega[n] - by_others[n] - (0..count).map(|m| rows[(row, m)] * before[m]).sum::<f64>()
     });
     for (row, (n, deviation)) in measured.iter().enumerate() {
         let noise = deviation * 2.0 * zeta[*n] * omega[*n];
@@ -176,7 +195,9 @@ mod tests {
         let modes = SeenModes {
             angular_frequency: omega.to_vec(),
             damping_ratio: vec![0.0; 3],
-            shares: shares.clone(),
+            // As many ports as modes, each on one of them alone.
+            deflection: (0..3).map(|n| (0..3).map(|port| f64::from(u8::from(port == n))).collect()).collect(),
+            own: OwnModes { angular_frequency: omega.to_vec(), shares: shares.clone() },
             ..SeenModes::default()
         };
         let zeta: Vec<f64> = poles.iter().map(|pole| -pole.re / pole.norm()).collect();
@@ -185,7 +206,7 @@ mod tests {
             let term = |n: usize| {
                 let size = found.angular_frequency[n];
                 let lambda = size * Complex64::new(-zeta[n], (1.0 - zeta[n] * zeta[n]).sqrt());
-                let of = |row: usize| found.seen(n, |k| f64::from(u8::from(k == row))).expect("a mode");
+                let of = |row: usize| found.deflection(n, row).expect("a mode");
                 let residue = of(i) * of(j) / (lambda - lambda.conj());
                 residue / (s - lambda) + residue.conj() / (s - lambda.conj())
             };

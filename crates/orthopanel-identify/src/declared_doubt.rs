@@ -2,7 +2,7 @@
 
 use crate::hypothesis::{Hypothesis, Part, Role};
 use crate::model_error::medians;
-use crate::posterior::{Judged, Point};
+use crate::posterior::{Following, Judged, Point};
 use crate::search::{Inquiry, with_one_more};
 
 /// Starts that are followed to the end.
@@ -62,7 +62,7 @@ impl Inquiry<'_> {
         points.sort_by(|a, b| a.misfit.total_cmp(&b.misfit));
         points.truncate(FOLLOWED);
         let ends = points.into_iter().filter_map(|point| {
-            let (point, _) = problem.follow(point, &by, 8, (0.1, usize::MAX))?;
+            let (point, _) = problem.follow(point, &by, Following::to_the_end(8, 0.1))?;
             problem.posterior(point, medians(), ROUNDS)
         });
         let posterior = ends.max_by(|a, b| a.log_evidence.total_cmp(&b.log_evidence))?;

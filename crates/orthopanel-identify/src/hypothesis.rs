@@ -270,13 +270,15 @@ impl Part {
         has_place(self.effect) && self.effect.parameters().iter().any(|parameter| parameter.unit == "Hz")
     }
 
-    /// So many times as much of the effect, where its first coordinate says how much.
+    /// So many times as much of the effect, where its first coordinate says how much: of a factor, beside one.
     pub(crate) fn scale(&self, z: &mut [f64], times: f64) {
         if let (Some(coordinate), Some(z)) = (self.coordinates().next(), z.first_mut())
-            && matches!(coordinate.map, Map::Size { .. })
+            && let Map::Size { median, .. } = coordinate.map
             && times > 0.0
         {
-            *z = coordinate.of_value(times * coordinate.value(*z));
+            let is_factor = self.effect.parameters().first().is_some_and(|first| first.unit == "1") && median == 1.0;
+            let none = if is_factor { 1.0 } else { 0.0 };
+            *z = coordinate.of_value(none + times * (coordinate.value(*z) - none));
         }
     }
 

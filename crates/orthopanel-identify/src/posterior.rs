@@ -6,7 +6,7 @@ use std::sync::Arc;
 use faer::linalg::solvers::Llt;
 use faer::prelude::Solve;
 use faer::{Mat, Side};
-use orthopanel_model::ModelError;
+use orthopanel_model::{ModelError, StructureKind};
 
 use crate::hypothesis::Hypothesis;
 use crate::model_error::{ErrorColumns, KINDS, deviations, least_sizes, medians};
@@ -20,6 +20,12 @@ const LONGEST: f64 = 0.7;
 const LONGEST_SIZE: f64 = 1.0;
 /// A step this long, in coordinates, may bend.
 const CURVED: f64 = 0.01;
+/// Least fall of the logarithm of the posterior that is followed further.
+const LEAST_FALL: f64 = 0.05;
+/// Least damping of a step, in parts of the curvature.
+const LEAST_DAMPING: f64 = 1e-7;
+/// Part of the least gain of a step that is not worth trying it.
+const NO_GAIN: f64 = 0.02;
 /// Largest size of model error.
 const LARGEST_SIZE: f64 = 0.5;
 
@@ -40,6 +46,37 @@ pub(crate) struct Point {
     pub at: Arc<Predictions>,
     /// $\partial f/\partial z$ there or not far from there; empty where it is not known.
     pub derivatives: Mat<f64>,
+    /// Whether they are those at this very point.
+    pub is_exact: bool,
+}
+
+/// How far a point is followed.
+#[derive(Clone, Copy)]
+pub(crate) struct Following {
+    /// Steps at most.
+    pub most: usize,
+    /// A step that lowers the misfit by less is the last.
+    pub least_gain: f64,
+    /// Derivatives by the coordinates before this that the point brings are kept up by its steps, and those by the others found anew at each.
+    pub exact_from: usize,
+    /// Whether derivatives that were kept up are found anew where they lead nowhere, before that is believed.
+    pub exactly: bool,
+}
+
+impl Following {
+    /// To where exact derivatives lead no further.
+    pub(crate) fn to_the_end(most: usize, least_gain: f64) -> Self {
+        Self { most, least_gain, exact_from: usize::MAX, exactly: true }
+    }
+}
+
+/// A point with the most probable sizes of model error there.
+struct Weighed {
+    point: Point,
+    errors: ErrorColumns,
+    log_sizes: [f64; KINDS],
+    /// The logarithm of the posterior of both, negative.
+    value: f64,
 }
 
 /// The posterior about its mode.
@@ -159,7 +196,7 @@ impl Problem<'_> {
     /// A point whose misfit is not asked for.
     pub(crate) fn unjudged(&self, z: Vec<f64>) -> Option<Point> {
         let at = Arc::new(self.at(&z).ok()?);
-        Some(Point { z, misfit: 0.0, cost: 0.0, at, derivatives: Mat::new() })
+        Some(Point { z, misfit: 0.0, cost: 0.0, at, derivatives: Mat::new(), is_exact: false })
     }
 
     /// The same point with its misfit by another covariance.
@@ -236,22 +273,18 @@ impl Problem<'_> {
     }
 
     /// Down from a point (Levenberg and Marquardt, with geodesic acceleration along curved valleys: Transtrum and Sethna,
-    /// arXiv:1201.5885), with the curvature $J^TJ + P$ where it ends. Derivatives by the coordinates before `exact_from` that the point
-    /// brings are kept up by its steps, and found anew where they lead nowhere.
-    pub(crate) fn follow(
-        &self,
-        from: Point,
-        by: &Whitening,
-        most: usize,
-        (least_gain, exact_from): (f64, usize),
-    ) -> Option<(Point, Mat<f64>)> {
+    /// arXiv:1201.5885), with the curvature $J^TJ + P$ where it ends.
+    pub(crate) fn follow(&self, from: Point, by: &Whitening, how: Following) -> Option<(Point, Mat<f64>)> {
+        let Following { most, least_gain, exact_from, exactly } = how;
+        let is_plate = self.stacked.first().predictor.structure == StructureKind::MindlinPlate;
+        let worth_a_step = if is_plate { NO_GAIN * least_gain } else { f64::NEG_INFINITY };
         let precision = self.hypothesis.precision();
         let size = from.z.len();
         let mut point = self.judged_by(from, by)?;
+        point.is_exact &= is_plate;
         let known = (point.derivatives.nrows(), point.derivatives.ncols());
-        let mut fresh = known != (point.at.values.len(), size);
-        if fresh {
-            point.derivatives = self.derivatives(&point, 0)?;
+        if known != (point.at.values.len(), size) {
+            self.find_derivatives(&mut point)?;
         }
         let (mut damping, mut round) = (1e-3, 0);
         loop {
@@ -268,13 +301,18 @@ impl Problem<'_> {
             };
             let mut descent: Mat<f64> = along(&self.missed(&point.at));
             (0..size).for_each(|i| descent[(i, 0)] -= precision[i] * point.z[i]);
-            let mut lower = None;
-            let steepest = if fresh { 1e6 } else { 1.0 };
-            while damping < steepest {
-                let damped = Mat::from_fn(size, size, |i, j| {
+            let damped = |damping: f64| {
+                let entry = |i: usize, j: usize| {
                     curvature[(i, j)] + if i == j { damping * (curvature[(i, i)] + 1e-6) } else { 0.0 }
-                });
-                let solved = damped.llt(Side::Lower).ok()?;
+                };
+                Mat::from_fn(size, size, entry).llt(Side::Lower).ok()
+            };
+            let whole = damped(LEAST_DAMPING)?.solve(&descent);
+            let foretold: f64 = (0..size).map(|i| whole[(i, 0)] * descent[(i, 0)]).sum();
+            let mut lower = None;
+            let steepest = if point.is_exact { 1e6 } else { 1.0 };
+            while damping < steepest && foretold > worth_a_step {
+                let solved = damped(damping)?;
                 let mut step = solved.solve(&descent);
                 let size_of = |step: &Mat<f64>| (0..size).map(|i| step[(i, 0)].abs()).fold(0.0, f64::max);
                 if size_of(&step) > CURVED
@@ -297,24 +335,38 @@ impl Problem<'_> {
             if let Some(next) = lower {
                 let derivatives = self.moved_derivatives(&point, &next);
                 point = Point { derivatives, ..next };
-                damping = (damping / 8.0).max(1e-7);
+                damping = (damping / 8.0).max(LEAST_DAMPING);
             }
             round += 1;
             if gain >= least_gain {
-                fresh = exact_from == 0;
+                point.is_exact = exact_from == 0;
                 let exact_from = exact_from.min(size);
                 let own = self.derivatives(&point, exact_from)?;
                 (exact_from..size).for_each(|i| {
                     point.derivatives.col_as_slice_mut(i).copy_from_slice(own.col_as_slice(i - exact_from));
                 });
-            } else if fresh {
+            } else if point.is_exact || !exactly {
                 round = most;
             } else {
-                point.derivatives = self.derivatives(&point, 0)?;
+                self.find_derivatives(&mut point)?;
                 damping = 1e-3;
-                fresh = true;
             }
         }
+    }
+
+    /// A part of the way from a point to another.
+    fn between(&self, from: &Point, to: &Point, part: f64) -> Option<Point> {
+        let z = from.z.iter().zip(&to.z).map(|(from, to)| from + part * (to - from)).collect();
+        let between = self.unjudged(z)?;
+        let derivatives = self.moved_derivatives(from, &between);
+        Some(Point { derivatives, ..between })
+    }
+
+    /// All derivatives at a point.
+    fn find_derivatives(&self, point: &mut Point) -> Option<()> {
+        point.derivatives = self.derivatives(point, 0)?;
+        point.is_exact = true;
+        Some(())
     }
 
     /// $-\tfrac12\,\partial^2f/\partial\delta^2$ along a step $\delta$, what is predicted less by the way's bend.
@@ -400,27 +452,55 @@ impl Problem<'_> {
         Some((log_sizes, curvature, value))
     }
 
+    /// A point with the most probable sizes of model error there, found from others.
+    fn weighed(&self, point: Point, log_sizes: &[f64; KINDS]) -> Option<Weighed> {
+        let errors = self.errors(&point.at);
+        let (log_sizes, _, cost) = self.sizes(&point.at, &errors, *log_sizes, 6)?;
+        let value = cost - self.hypothesis.log_prior(&point.z);
+        Some(Weighed { point, errors, log_sizes, value })
+    }
+
     /// Parameters and sizes of model error in turn, then the marginal likelihood by Laplace's approximation over both.
-    pub(crate) fn posterior(&self, from: Point, mut log_sizes: [f64; KINDS], rounds: usize) -> Option<Posterior> {
-        let mut point = from;
-        let mut errors = self.errors(&point.at);
-        let mut last = f64::INFINITY;
+    pub(crate) fn posterior(&self, from: Point, log_sizes: [f64; KINDS], rounds: usize) -> Option<Posterior> {
+        let errors = self.errors(&from.at);
+        let mut here = Weighed { point: from, errors, log_sizes, value: f64::INFINITY };
+        // On a plate exact derivatives are dear: only once sizes and parameters stand still are they asked whether they do. Those of a beam are not.
+        let is_plate = self.stacked.first().predictor.structure == StructureKind::MindlinPlate;
+        let mut exactly = !is_plate;
         for round in 0..rounds {
-            let by = self.whitening(&errors, &log_sizes)?;
+            let by = self.whitening(&here.errors, &here.log_sizes)?;
             // A few steps before the sizes are what they are to be.
-            (point, _) = self.follow(point, &by, if round == 0 { 4 } else { 8 }, (0.05, usize::MAX))?;
-            errors = self.errors(&point.at);
-            let (next, _, cost) = self.sizes(&point.at, &errors, log_sizes, 6)?;
-            log_sizes = next;
-            let value = cost - self.hypothesis.log_prior(&point.z);
-            if (last - value).abs() < 0.05 {
+            let most = if round == 0 { 4 } else { 8 };
+            let how = Following { exactly, ..Following::to_the_end(most, 0.05) };
+            let (next, _) = self.follow(here.point.clone(), &by, how)?;
+            let is_exact = next.is_exact;
+            let mut there = self.weighed(next, &here.log_sizes)?;
+            // The covariance is that about a point, and goes with it, which steps do not foresee: too long a way is taken in part.
+            let is_lower = |there: &Weighed| there.value < here.value - LEAST_FALL;
+            let mut part = 1.0;
+            while is_plate && !is_lower(&there) && part > 0.25 && there.point.z != here.point.z {
+                part *= 0.5;
+                let between = self.between(&here.point, &there.point, 0.5)?;
+                there = self.weighed(between, &here.log_sizes)?;
+            }
+            let falls = is_lower(&there);
+            let stands = (there.value - here.value).abs() < LEAST_FALL;
+            // Modes of a beam lie far apart, and its covariance hardly moves.
+            if there.value < here.value || !is_plate {
+                here = there;
+            }
+            if if is_plate { !falls && (exactly || is_exact) } else { stands } {
                 break;
             }
-            last = value;
+            exactly = !is_plate || !falls;
         }
+        let Weighed { mut point, errors, log_sizes, .. } = here;
         let by = self.whitening(&errors, &log_sizes)?;
-        point.derivatives = Mat::new();
-        let (point, mut curvature) = self.follow(point, &by, 3, (0.01, usize::MAX))?;
+        if !(is_plate && point.is_exact) {
+            point.derivatives = Mat::new();
+        }
+        let last = if is_plate { Following::to_the_end(0, 0.0) } else { Following::to_the_end(3, 0.01) };
+        let (point, mut curvature) = self.follow(point, &by, last)?;
         // No direction is wider than its prior: over an even one, from -1 to 1, a Gaussian of this curvature has the same integral.
         let even = self.hypothesis.precision().into_iter().enumerate().filter(|(_, precision)| *precision == 0.0);
         even.for_each(|(i, _)| curvature[(i, i)] += FRAC_PI_2);

@@ -13,7 +13,7 @@ use orthopanel_model::{
 use crate::comparison::{Comparison, UNSEEN};
 use crate::coupled_damping::CoupledModes;
 use crate::measured::{Pole, SKIRT};
-use crate::view::{Channel, PARTS, Relaxing, View, Views};
+use crate::view::{Channel, ModeInRecord, PARTS, Relaxing, View, Views};
 
 /// Predicted modes beyond the number of poles that take part.
 const SPARE: usize = 6;
@@ -110,19 +110,30 @@ impl<'a> Predictor<'a> {
         structure: StructureKind,
         setting: &EffectSetting,
     ) -> Result<Self, ModelError> {
-        let measured = comparison.measured;
-        let places = distinct(measured.records.iter().flat_map(|record| [record.force_at, record.response_at]));
-        let panel = ModifiedPanel::new(structure, setting, measured.poles.len() + SPARE)?;
-        let top = measured.poles.last().map_or(measured.band[1], |pole| pole.angular_frequency / TAU);
-        let of_plate =
-            if places.is_empty() { vec![Place { x: 0.5 * setting.piece.length, y: 0.0 }] } else { places.clone() };
-        let number = usize::from(structure == StructureKind::MindlinPlate);
-        let panel = panel.perhaps_wide(setting, &of_plate, WIDE[number] * top);
+        let panel = panel_at(&places_of(comparison), comparison, (structure, setting))?;
+        Ok(Self::on(panel, comparison, (structure, setting)))
+    }
+
+    /// On a panel that [`Predictor::panel_at`] made for these places and others.
+    pub(crate) fn on(
+        panel: ModifiedPanel,
+        comparison: &'a Comparison<'a>,
+        (structure, setting): (StructureKind, &EffectSetting),
+    ) -> Self {
+        let places = places_of(comparison);
         // What is not linear shows between hits, not in modes.
         let record = RecordSetting { suspension_motion: SuspensionMotion::InTime, ..setting.record.clone() };
         let setting = EffectSetting { record, ..setting.clone() };
         let (apart, found) = (apart(structure), Mutex::default());
-        Ok(Self { comparison, structure, panel, setting, places, hanging: None, apart, found })
+        Self { comparison, structure, panel, setting, places, hanging: None, apart, found }
+    }
+
+    /// The panel with as many modes, seen from any of these places.
+    ///
+    /// # Errors
+    /// As [`ModifiedPanel::new`].
+    pub(crate) fn panel_at(&self, places: &[Place]) -> Result<ModifiedPanel, ModelError> {
+        panel_at(places, self.comparison, (self.structure, &self.setting))
     }
 
     /// The piece.
@@ -439,6 +450,30 @@ impl<'a> Predictor<'a> {
         CoupledModes::new(&view.modes, &zeta, &deviations)
     }
 
+    /// The modes of a view through a channel; those without a partner stand by themselves where `stands` says so of their frequency.
+    fn through(
+        &self,
+        view: &View,
+        channel: &Channel,
+        (coupled, partners): (Option<&CoupledModes>, &[Option<usize>]),
+        stands: impl Fn(f64) -> bool,
+    ) -> Vec<ModeInRecord> {
+        let frequencies = &self.comparison.measured.remainder_frequencies;
+        let mode = |n: usize| {
+            let pole = partners.iter().position(|partner| *partner == Some(n));
+            let mode = view.mode(n, self.damping(view, n, pole, Some(channel)), coupled);
+            let stands = mode.omega > 0.0 && (pole.is_some() || stands(mode.omega));
+            let unit = if stands { mode.residue(channel) } else { Complex64::ZERO };
+            let line = |(number, frequency): (usize, &f64)| {
+                let s = Complex64::new(0.0, TAU * frequency);
+                (view.line(&mode, n, (number, s), channel), mode.apart(unit, s, channel))
+            };
+            let lines = frequencies.iter().enumerate().map(line).collect();
+            ModeInRecord { mode, pole, unit, lines }
+        };
+        (0..view.near()).map(mode).collect()
+    }
+
     /// In the order of the comparison.
     fn compared(&self, channels: &[Channel], seen: &Views) -> Prediction {
         let (comparison, measured) = (self.comparison, self.comparison.measured);
@@ -471,37 +506,40 @@ impl<'a> Predictor<'a> {
         let mut brings = vec![vec![vec![Complex64::ZERO; remainders]; measured.poles.len()]; measured.records.len()];
         let mut in_records = vec![vec![None; measured.poles.len()]; measured.records.len()];
         let mut strength = vec![0.0; omega.len()];
+        let mut through: Option<((usize, usize), Vec<ModeInRecord>)> = None;
         for (record, channel) in channels.iter().enumerate() {
             let mut put = |place: usize, of: [Complex64; PARTS]| {
                 parts.iter_mut().zip(of).for_each(|(part, value)| comparison.put(part, place, value));
             };
             let mut remainder = vec![[Complex64::ZERO; PARTS]; remainders];
             let (view, ports) = seen.of_record(record);
-            let coupled = coupled[seen.number_of(record)].as_ref();
-            for n in 0..view.near() {
-                let pole = partners.iter().position(|partner| *partner == Some(n));
-                let mode = view.mode((n, ports), self.damping(view, n, pole, Some(channel)), coupled);
-                let stands = mode.omega > 0.0 && (pole.is_some() || (mode.omega > bottom && mode.omega < top));
-                let unit = if stands { mode.residue(channel) } else { Complex64::ZERO };
-                match pole {
+            let number_of_view = seen.number_of(record);
+            let coupled = coupled[number_of_view].as_ref();
+            let is_known = |(number, of): &(usize, usize)| *number == number_of_view && channels[*of] == *channel;
+            if !through.as_ref().is_some_and(|(known, _)| is_known(known)) {
+                let stands = |omega: f64| omega > bottom && omega < top;
+                through = Some(((number_of_view, record), self.through(view, channel, (coupled, &partners), stands)));
+            }
+            let modes = through.iter().flat_map(|(_, modes)| modes).enumerate();
+            for (n, ModeInRecord { mode, pole, unit, lines }) in modes {
+                let (deflection, shape) = view.shape((n, ports), mode.zeta, coupled);
+                match *pole {
                     Some(pole) => {
                         phase[pole] = unit / unit.norm();
                         let pole_of = mode.pole() - channel.decay;
-                        in_records[record][pole] =
-                            Some(PartnerInRecord { deflection: mode.deflection, pole: pole_of, unit });
-                        put(comparison.residue_place(record, pole), mode.shape.map(|shape| shape * unit));
+                        in_records[record][pole] = Some(PartnerInRecord { deflection, pole: pole_of, unit: *unit });
+                        put(comparison.residue_place(record, pole), shape.map(|shape| shape * unit));
                     }
-                    None => strength.get_mut(n).into_iter().for_each(|sum| *sum += (mode.shape[0] * unit).norm_sqr()),
+                    None => strength.get_mut(n).into_iter().for_each(|sum| *sum += (shape[0] * unit).norm_sqr()),
                 }
                 // What stands by itself is no part of the remainder.
-                for (number, frequency) in measured.remainder_frequencies.iter().enumerate() {
-                    let s = Complex64::new(0.0, TAU * frequency);
-                    let (line, shape) = view.line(&mode, (n, ports), (number, s), channel);
+                for (number, (line, apart)) in lines.iter().enumerate() {
+                    let whole = view.shape_at_line((n, ports), number).unwrap_or(shape);
                     for (part, sum) in remainder[number].iter_mut().enumerate() {
-                        *sum += shape[part] * line - mode.apart(mode.shape[part] * unit, s, channel);
+                        *sum += whole[part] * line - shape[part] * apart[0] - shape[part].conj() * apart[1];
                     }
-                    if let Some(pole) = pole {
-                        brings[record][pole][number] = (line - mode.apart(unit, s, channel)) / unit.norm();
+                    if let Some(pole) = *pole {
+                        brings[record][pole][number] = (line - apart[0] - apart[1]) / unit.norm();
                     }
                 }
             }
@@ -563,6 +601,23 @@ impl<'a> Predictor<'a> {
             near_hanging,
         }
     }
+}
+
+fn places_of(comparison: &Comparison) -> Vec<Place> {
+    distinct(comparison.measured.records.iter().flat_map(|record| [record.force_at, record.response_at]))
+}
+
+fn panel_at(
+    places: &[Place],
+    comparison: &Comparison,
+    (structure, setting): (StructureKind, &EffectSetting),
+) -> Result<ModifiedPanel, ModelError> {
+    let measured = comparison.measured;
+    let panel = ModifiedPanel::new(structure, setting, measured.poles.len() + SPARE)?;
+    let top = measured.poles.last().map_or(measured.band[1], |pole| pole.angular_frequency / TAU);
+    let end = [Place { x: 0.5 * setting.piece.length, y: 0.0 }];
+    let number = usize::from(structure == StructureKind::MindlinPlate);
+    Ok(panel.perhaps_wide(setting, if places.is_empty() { &end } else { places }, WIDE[number] * top))
 }
 
 /// Modes a step on along a change.

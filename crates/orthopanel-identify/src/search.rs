@@ -16,7 +16,7 @@ use orthopanel_model::{
 };
 use rayon::prelude::*;
 
-use further_effect::Ranked;
+use further_effect::{Approach, Ranked};
 
 use crate::comparison::Comparison;
 use crate::free_constants::FreeConstants;
@@ -26,7 +26,7 @@ use crate::judge::ODDS;
 use crate::measured::MeasuredModes;
 use crate::model_error::{FOOT, KINDS, medians, waves};
 use crate::plate_start::PlateStart;
-use crate::posterior::{Judged, Point, Posterior, Problem};
+use crate::posterior::{Following, Judged, Point, Posterior, Problem};
 use crate::predicted::{Prediction, Predictor};
 use crate::search_progress::SearchProgress;
 use crate::shared_error::SharedError;
@@ -178,7 +178,7 @@ impl<'a> Inquiry<'a> {
             let Some(modes) = problem.whitening_of_modes(&errors, &logs(LOOSE)) else { continue };
             let points = nets.into_iter().filter_map(|net| problem.point(net, &modes));
             let Some(point) = points.min_by(|a, b| a.misfit.total_cmp(&b.misfit)) else { continue };
-            let Some((point, _)) = problem.follow(point, &modes, 12, (0.1, usize::MAX)) else { continue };
+            let Some((point, _)) = problem.follow(point, &modes, Following::to_the_end(12, 0.1)) else { continue };
             let misfit = point.misfit + modes.log_determinant;
             if best.as_ref().is_none_or(|(least, ..)| misfit < *least) {
                 best = Some((misfit, hypothesis, point));
@@ -234,7 +234,8 @@ impl<'a> Inquiry<'a> {
     fn closer(&self, judged: &Judged, best: &[f64; KINDS]) -> Judged {
         let problem = self.problem(&judged.hypothesis);
         let mut closer = judged.clone();
-        for sizes in [judged.posterior.log_sizes, *best] {
+        let own = judged.posterior.log_sizes;
+        for sizes in std::iter::once(own).chain((*best != own).then_some(*best)) {
             let Some(posterior) = problem.posterior(judged.posterior.point.clone(), sizes, TO_THE_END) else {
                 continue;
             };
@@ -307,12 +308,17 @@ impl<'a> Inquiry<'a> {
         let ranked: Vec<_> = effects.par_iter().map(ranked).collect();
         let gains = ranked.iter().filter_map(|(_, ranked)| Some(ranked.as_ref()?.gain()));
         let most = if self.is_plate() { gains.fold(0.0, f64::max) } else { 0.0 };
-        let added = |(effect, ranked): (&'static dyn Effect, Option<Ranked>)| {
-            let judged = ranked.and_then(|ranked| self.followed(base, ranked.without_minor(most)));
+        let approached = |(effect, ranked): (&'static dyn Effect, Option<Ranked>)| {
+            (effect, ranked.and_then(|ranked| self.approached(base, ranked.without_minor(most))))
+        };
+        let approached: Vec<(&'static dyn Effect, Option<Approach>)> = ranked.into_par_iter().map(approached).collect();
+        let most = approached.iter().filter_map(|(_, approach)| Some(approach.as_ref()?.gain())).fold(0.0, f64::max);
+        let added = |(effect, approach): (&'static dyn Effect, Option<Approach>)| {
+            let judged = approach.and_then(|approach| self.followed(base, approach, most));
             self.progress.tried(effect.id());
             judged
         };
-        let mut judged: Vec<(Judged, bool)> = ranked.into_par_iter().filter_map(added).collect();
+        let mut judged: Vec<(Judged, bool)> = approached.into_par_iter().filter_map(added).collect();
         judged.extend(self.at_found_place(base, &effects, &judged));
         judged.sort_by(|(a, _), (b, _)| b.log_odds.total_cmp(&a.log_odds));
         let mut ids = HashSet::new();

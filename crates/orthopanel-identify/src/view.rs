@@ -13,7 +13,7 @@ use crate::measured::MeasuredModes;
 pub(crate) const PARTS: usize = 5;
 
 /// What acts on one record besides the structure.
-#[derive(Default)]
+#[derive(Default, PartialEq)]
 pub(crate) struct Channel {
     pub factors: Vec<ChannelFactor>,
     pub force_offset: f64,
@@ -68,58 +68,65 @@ impl View {
         self.modes.angular_frequency.len()
     }
 
-    /// A mode between two ports, with this damping ratio, and with what it has of others that damping couples it with.
-    pub(crate) fn mode(
+    /// A mode with this damping ratio, and with what it has of others that damping couples it with.
+    pub(crate) fn mode(&self, n: usize, zeta: f64, coupled: Option<&CoupledModes>) -> ModeOfView {
+        if let Some(relaxing) = &self.relaxing {
+            let mode = relaxing.mode(n, zeta);
+            return ModeOfView { omega: mode.angular_frequency, zeta, core: Some((mode.damping, mode.by_s)) };
+        }
+        let omega = coupled.and_then(|coupled| coupled.angular_frequency.get(n).copied());
+        ModeOfView { omega: omega.unwrap_or(self.modes.angular_frequency[n]), zeta, core: None }
+    }
+
+    /// The deflections of a mode at the ports of force and response, and their product.
+    pub(crate) fn shape(
         &self,
         (n, [force, response]): (usize, [usize; 2]),
         zeta: f64,
         coupled: Option<&CoupledModes>,
-    ) -> ModeInRecord {
+    ) -> ([Complex64; 2], [Complex64; PARTS]) {
         if let Some(relaxing) = &self.relaxing {
             let mode = relaxing.mode(n, zeta);
             let shape =
                 between(|port| mode.deflection[port], |axis, port| along_x(&mode.slope, axis, port), [force, response]);
-            let deflection = [force, response].map(|port| mode.deflection[port]);
-            let core = Some((mode.damping, mode.by_s));
-            return ModeInRecord { omega: mode.angular_frequency, zeta, deflection, shape, core };
+            return ([force, response].map(|port| mode.deflection[port]), shape);
         }
-        let of_mode = |values: &[Vec<f64>], n: usize, port: usize| {
-            values.get(n).and_then(|of| of.get(port)).copied().unwrap_or(0.0)
-        };
-        let seen = |values: &[Vec<f64>], port: usize| {
-            let of = |n: usize| of_mode(values, n, port);
-            coupled.and_then(|coupled| coupled.seen(n, of)).unwrap_or_else(|| of(n).into())
+        let of_mode = |values: &[Vec<f64>], port: usize| {
+            Complex64::from(values.get(n).and_then(|of| of.get(port)).copied().unwrap_or(0.0))
         };
         let slopes = [&self.modes.slope, &self.modes.slope_across];
-        let deflection = |port: usize| seen(&self.modes.deflection, port);
-        let shape = between(deflection, |axis, port| seen(slopes[axis], port), [force, response]);
-        let omega = coupled.and_then(|coupled| coupled.angular_frequency.get(n).copied());
-        let omega = omega.unwrap_or(self.modes.angular_frequency[n]);
-        ModeInRecord { omega, zeta, deflection: [force, response].map(deflection), shape, core: None }
+        let deflection = |port: usize| {
+            let mixed = coupled.and_then(|coupled| coupled.deflection(n, port));
+            mixed.unwrap_or_else(|| of_mode(&self.modes.deflection, port))
+        };
+        let slope = |axis: usize, port: usize| {
+            let mixed = coupled.and_then(|coupled| coupled.slope(axis, n, port));
+            mixed.unwrap_or_else(|| of_mode(slopes[axis], port))
+        };
+        ([force, response].map(deflection), between(deflection, slope, [force, response]))
     }
 
-    /// A mode's accelerance over the product of deflections, as the channel shows it, at a frequency of the remainder; and that product.
+    /// A mode's accelerance over the product of deflections, as the channel shows it, at a frequency of the remainder.
     pub(crate) fn line(
         &self,
-        mode: &ModeInRecord,
-        (n, ports): (usize, [usize; 2]),
+        mode: &ModeOfView,
+        n: usize,
         (number, s): (usize, Complex64),
         channel: &Channel,
-    ) -> (Complex64, [Complex64; PARTS]) {
+    ) -> Complex64 {
         let s = s + channel.decay;
         let factor = channel.at(s) * s * s;
         match (&self.relaxing, mode.core) {
-            (Some(relaxing), Some((damping, _))) => {
-                let line = &relaxing.lines[number];
-                let slope = |axis: usize, port: usize| along_x(&line.slope[n], axis, port);
-                let shape = between(|port| line.deflection[n][port], slope, ports);
-                (factor / (s * s + damping * s + line.lambda[n]), shape)
-            }
-            _ => {
-                let stiffness = 2.0 * mode.zeta * mode.omega * s + mode.omega * mode.omega;
-                (factor / (s * s + stiffness), mode.shape)
-            }
+            (Some(relaxing), Some((damping, _))) => factor / (s * s + damping * s + relaxing.lines[number].lambda[n]),
+            _ => factor / (s * s + 2.0 * mode.zeta * mode.omega * s + mode.omega * mode.omega),
         }
+    }
+
+    /// The product of deflections there, where it is another than at the pole: with a core that depends on frequency.
+    pub(crate) fn shape_at_line(&self, (n, ports): (usize, [usize; 2]), number: usize) -> Option<[Complex64; PARTS]> {
+        let line = &self.relaxing.as_ref()?.lines[number];
+        let slope = |axis: usize, port: usize| along_x(&line.slope[n], axis, port);
+        Some(between(|port| line.deflection[n][port], slope, ports))
     }
 }
 
@@ -182,18 +189,15 @@ impl Relaxing {
     }
 }
 
-/// A mode in a record: $\omega$, $\zeta$, the product of its deflections at force and response, and how that follows either place.
-pub(crate) struct ModeInRecord {
+/// A mode: $\omega$ and $\zeta$.
+pub(crate) struct ModeOfView {
     pub omega: f64,
     pub zeta: f64,
-    /// At the force and at the response.
-    pub deflection: [Complex64; 2],
-    pub shape: [Complex64; PARTS],
     /// With a core that depends on frequency what damps it beside that, and the derivative of its dynamic stiffness at the pole.
     pub core: Option<(f64, Complex64)>,
 }
 
-impl ModeInRecord {
+impl ModeOfView {
     /// $\lambda$.
     pub(crate) fn pole(&self) -> Complex64 {
         self.omega * Complex64::new(-self.zeta, (1.0 - self.zeta * self.zeta).sqrt())
@@ -206,9 +210,20 @@ impl ModeInRecord {
         channel.at(lambda) * lambda * lambda / by_s
     }
 
-    /// The two terms of a residue, which stand by themselves.
-    pub(crate) fn apart(&self, residue: Complex64, s: Complex64, channel: &Channel) -> Complex64 {
+    /// The two terms of a residue over the product of deflections and over its conjugate, which stand by themselves.
+    pub(crate) fn apart(&self, residue: Complex64, s: Complex64, channel: &Channel) -> [Complex64; 2] {
         let lambda = self.pole() - channel.decay;
-        residue / (s - lambda) + residue.conj() / (s - lambda.conj())
+        [residue / (s - lambda), residue.conj() / (s - lambda.conj())]
     }
+}
+
+/// A mode through a channel.
+pub(crate) struct ModeInRecord {
+    pub mode: ModeOfView,
+    /// The pole that is its partner.
+    pub pole: Option<usize>,
+    /// Its residue over the product of deflections; zero of a mode that does not stand by itself.
+    pub unit: Complex64,
+    /// At each frequency of the remainder [`View::line`] and [`ModeOfView::apart`].
+    pub lines: Vec<(Complex64, [Complex64; 2])>,
 }

@@ -264,7 +264,7 @@ impl<S: Structure> Structure for ReducedStructure<S> {
         self.whole.static_remainder(values, motions)
     }
 
-    fn static_remainders(&self, values: &[f64], motions: &[(Motion, Place)]) -> Option<Mat<f64>> {
+    fn static_remainders(&self, values: &[f64], motions: [&[(Motion, Place)]; 2]) -> Option<Mat<f64>> {
         self.whole.static_remainders(values, motions)
     }
 

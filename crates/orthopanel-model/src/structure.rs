@@ -58,8 +58,9 @@ pub trait Structure {
         None
     }
 
-    /// [`Structure::static_remainder`] between any two motions of a list, zero where one has none; `None` where nothing is known.
-    fn static_remainders(&self, _values: &[f64], _motions: &[(Motion, Place)]) -> Option<Mat<f64>> {
+    /// [`Structure::static_remainder`] between the motions of two lists, a row each of the first, zero where one has none; `None` where nothing is
+    /// known.
+    fn static_remainders(&self, _values: &[f64], _motions: [&[(Motion, Place)]; 2]) -> Option<Mat<f64>> {
         None
     }
 

@@ -6,7 +6,7 @@ use faer::Mat;
 
 use crate::comparison::Comparison;
 use crate::outcome::FittedError;
-use crate::posterior::{Judged, Point, Posterior, Problem};
+use crate::posterior::{Following, Judged, Point, Posterior, Problem};
 use crate::stacked::Block;
 use crate::whitening::Whitening;
 
@@ -43,7 +43,8 @@ impl Yardstick {
 
     /// The error of a hypothesis as near as it comes under this covariance, which need not be its own.
     pub(super) fn nearest(&self, problem: &Problem, judged: &Judged) -> Option<FittedError> {
-        let (point, _) = problem.follow(judged.posterior.point.clone(), &self.by, STEPS, (GAIN, usize::MAX))?;
+        let (point, _) =
+            problem.follow(judged.posterior.point.clone(), &self.by, Following::to_the_end(STEPS, GAIN))?;
         self.error(problem, &point)
     }
 

@@ -2,7 +2,9 @@
 
 use faer::Mat;
 use orthopanel_data::ImpactTest;
-use orthopanel_model::{EffectState, ModelError, Place, RecordSetting, SENSOR_MASS, Scale, StructureKind, effect};
+use orthopanel_model::{
+    EffectState, ModelError, ModifiedPanel, Place, RecordSetting, SENSOR_MASS, Scale, StructureKind, effect,
+};
 use rayon::prelude::*;
 
 use super::estimates::id;
@@ -13,7 +15,7 @@ use crate::measured::{MeasuredModes, MeasuredRecord};
 use crate::model_error::{ErrorColumns, waves};
 use crate::outcome::Verdict;
 use crate::posterior::Judged;
-use crate::predicted::Predictor;
+use crate::predicted::{Predictor, distinct};
 use crate::search::Inquiry;
 use crate::to_check::{times_the_noise, to_check};
 
@@ -66,13 +68,17 @@ pub(super) fn next_measurement(
 /// The proposal whose least difference is the greatest.
 fn parting(inquiry: &Inquiry, chosen: &Judged, rivals: &[&Judged]) -> String {
     let predictor = inquiry.predictor();
+    let proposals = proposals(predictor);
+    // One panel for all: its modes are the same wherever it is hit.
+    let places = distinct(proposals.iter().flat_map(|proposal| [proposal.force_at, proposal.response_at]));
+    let panel = predictor.panel_at(&places);
     let told = |proposal: Proposal| {
-        let further = Further::new(predictor, &proposal)?;
+        let further = Further::new((predictor, panel.as_ref().ok()?), &proposal)?;
         let apart: Option<Vec<f64>> = rivals.iter().map(|rival| further.difference(chosen, rival).ok()?).collect();
         let least = apart?.into_iter().enumerate().min_by(|a, b| a.1.total_cmp(&b.1))?;
         Some((proposal.words, least))
     };
-    let all: Vec<(String, (usize, f64))> = proposals(predictor).into_par_iter().filter_map(told).collect();
+    let all: Vec<(String, (usize, f64))> = proposals.into_par_iter().filter_map(told).collect();
     let names: Vec<String> = rivals.iter().map(|rival| id(rival)).collect();
     let (of, others) = (id(chosen), names.join(", "));
     let best = all.into_iter().max_by(|a, b| a.1.1.total_cmp(&b.1.1));
@@ -145,12 +151,13 @@ fn proposals(predictor: &Predictor) -> Vec<Proposal> {
 /// A record that was not taken, as sure as the first of those that were.
 struct Further<'a> {
     of: &'a Predictor<'a>,
+    panel: &'a ModifiedPanel,
     measured: MeasuredModes,
     added_mass: f64,
 }
 
 impl<'a> Further<'a> {
-    fn new(of: &'a Predictor<'a>, proposal: &Proposal) -> Option<Self> {
+    fn new((of, panel): (&'a Predictor<'a>, &'a ModifiedPanel), proposal: &Proposal) -> Option<Self> {
         let taken = of.comparison.measured;
         let first = taken.records.first()?;
         let record = MeasuredRecord {
@@ -167,7 +174,7 @@ impl<'a> Further<'a> {
             covariance: Mat::from_fn(size, size, |i, j| taken.covariance[(i, j)]),
             ..taken.clone()
         };
-        Some(Self { of, measured, added_mass: proposal.added_mass })
+        Some(Self { of, panel, measured, added_mass: proposal.added_mass })
     }
 
     /// $\sqrt{d^TC^{-1}d}$ of the difference $d$ of what two hypotheses predict; `None` where one predicts nothing.
@@ -178,7 +185,7 @@ impl<'a> Further<'a> {
         let comparison = Comparison::new(&self.measured, self.of.piece().mass());
         let mut setting = self.of.setting(0);
         setting.record = RecordSetting { response_at: Some(self.measured.records[0].response_at), ..setting.record };
-        let predictor = Predictor::new(&comparison, self.of.structure, &setting)?;
+        let predictor = Predictor::on(self.panel.clone(), &comparison, (self.of.structure, &setting));
         let predicted = |judged: &Judged| -> Result<_, ModelError> {
             let (constants, effects) =
                 (judged.hypothesis.constants_of(self.measured.piece, &judged.posterior.point.z), self.effects(judged)?);

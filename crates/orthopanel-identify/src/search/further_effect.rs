@@ -13,7 +13,7 @@ use crate::hypothesis::{Hypothesis, Role};
 use crate::judge::{ODDS, most_frequency};
 use crate::measured::Pole;
 use crate::model_error::{KINDS, Kind};
-use crate::posterior::{Judged, Point, Posterior, Problem, Projection};
+use crate::posterior::{Following, Judged, Point, Posterior, Problem, Projection};
 use crate::predicted::Prediction;
 use crate::stacked::Block;
 use crate::whitening::Whitening;
@@ -89,6 +89,23 @@ pub(super) struct Ranked {
     of_several: bool,
 }
 
+/// An effect beside a base, near where its starts lead.
+pub(super) struct Approach {
+    ways: Vec<Hypothesis>,
+    /// The best first, each with its way.
+    points: Vec<(usize, Point)>,
+    /// $\ln\tau_k$ under which they are the best.
+    sizes: [f64; KINDS],
+    /// By how much the best is better than the base; $-\infty$ where it was not followed.
+    gain: f64,
+}
+
+impl Approach {
+    pub(super) fn gain(&self) -> f64 {
+        self.gain
+    }
+}
+
 impl Ranked {
     /// What the best start makes good of the misfit, to first order.
     pub(super) fn gain(&self) -> f64 {
@@ -107,6 +124,8 @@ impl Ranked {
 /// Part of what the best effect makes good of a plate's misfit, below which an effect is not followed: a plate has places without number, and most
 /// effects make good a little of what another does.
 const MINOR: f64 = 0.1;
+/// The same of what the best effect makes good once both are followed.
+const HALF: f64 = 0.5;
 /// So many times wider where no start is followed yet: a net is coarse.
 const NET: f64 = 4.0;
 /// Poles at which something that vibrates by itself is looked for,
@@ -262,65 +281,59 @@ impl Inquiry<'_> {
         ways[0].parts.last().is_some_and(|part| part.replaces_structure(self.predictor()))
     }
 
-    /// An effect more, in the way and from the start that serve best: the best starts are followed with wide sizes of model error, the best of
-    /// these to the posterior. With it whether it may come to the odds that count, as far as is known.
-    pub(super) fn followed(&self, base: &Judged, ranked: Ranked) -> Option<(Judged, bool)> {
+    /// The starts of an effect, the best of them followed with wide sizes of model error.
+    pub(super) fn approached(&self, base: &Judged, ranked: Ranked) -> Option<Approach> {
         let Ranked { ways, points, promising, of_several } = ranked;
-        let of_base = self.problem(&base.hypothesis);
-        let at_base = &base.posterior.point;
-        let errors = of_base.errors(&at_base.at).with_every_partner();
-        let coarse = logs(LOOSE.map(|size| NET * size));
-        let by = of_base.whitening(&errors, &coarse)?;
-        let exact_from = if self.replaces(&ways) { usize::MAX } else { at_base.z.len() };
-        let judged =
-            |(way, posterior): (usize, Posterior)| with_one_more(base, ways[way].clone(), posterior, ways.len());
-        let follow = |points: Vec<(usize, Point)>, sizes: &[f64; KINDS], most: usize| -> Vec<(usize, Point)> {
-            let on = |(way, mut point): (usize, Point)| {
-                let problem = self.problem(&ways[way]);
-                if point.derivatives.ncols() == 0 {
-                    // The shift is of first order about the base: where it leads nowhere, it is left out.
-                    let unshifted = [&at_base.z[..], &point.z[at_base.z.len()..]].concat();
-                    let both = [point.z, unshifted].into_iter().filter_map(|z| problem.point(z, &by));
-                    point = both.min_by(|a, b| a.misfit.total_cmp(&b.misfit))?;
-                    if self.is_plate() {
-                        point = with_derivatives_of(at_base, &problem, point)?;
-                    }
-                }
-                let by = problem.whitening(&problem.errors(&point.at).with_every_partner(), sizes)?;
-                problem.follow(point, &by, most, (1.0, exact_from)).map(|(point, _)| (way, point))
-            };
-            points.into_par_iter().filter_map(on).collect()
-        };
-        let (few, one) = ((FOLLOWED, behind()), (1, behind()));
         let points = match promising {
             Some(promising) if !promising.is_empty() => promising.into_iter().map(|(_, start)| start).collect(),
             // Where it ends is told, and how likely it is there, but it is not looked for further.
             Some(_) if base.names().is_empty() => {
                 let (way, point) = points.into_iter().next()?;
-                let problem = self.problem(&ways[way]);
                 // On plates how much of the effect there is followed from its score, and is not what was predicted.
                 let point = if self.is_plate() {
-                    with_derivatives_of(at_base, &problem, problem.unjudged(point.z)?)?
+                    let problem = self.problem(&ways[way]);
+                    with_derivatives_of(&base.posterior.point, &problem, problem.unjudged(point.z)?)?
                 } else {
                     point
                 };
-                let posterior =
-                    problem.posterior(point, base.posterior.log_sizes, if self.is_plate() { 1 } else { 4 })?;
-                return Some((judged((way, posterior)), false));
+                let sizes = base.posterior.log_sizes;
+                return Some(Approach { ways, points: vec![(way, point)], sizes, gain: f64::NEG_INFINITY });
             }
             Some(_) => return None,
-            None if of_several => best(follow(points, &coarse, 5), (2 * FOLLOWED, behind())),
+            None if of_several => {
+                let coarse = logs(LOOSE.map(|size| NET * size));
+                best(self.each_followed(base, (&ways, points), &coarse, 5), (2 * FOLLOWED, behind()))
+            }
             None => points,
         };
         // On a plate starts are scaled to what is missed: under the base's own sizes they are near where they lead.
-        let first = if self.is_plate() { base.posterior.log_sizes } else { logs(LOOSE) };
-        let points = best(follow(points, &first, 5), few);
-        let cost = of_base.judged_by(at_base.clone(), &of_base.whitening(&errors, &first)?)?.cost;
-        if points.first().is_some_and(|(_, best)| best.cost > cost + behind()) {
+        let sizes = if self.is_plate() { base.posterior.log_sizes } else { logs(LOOSE) };
+        let points = best(self.each_followed(base, (&ways, points), &sizes, 5), (FOLLOWED, behind()));
+        let of_base = self.problem(&base.hypothesis);
+        let errors = of_base.errors(&base.posterior.point.at).with_every_partner();
+        let at_base = of_base.judged_by(base.posterior.point.clone(), &of_base.whitening(&errors, &sizes)?)?;
+        let gain = at_base.cost - points.first().map_or(at_base.cost, |(_, best)| best.cost);
+        Some(Approach { ways, points, sizes, gain })
+    }
+
+    /// An effect more, in the way and from the start that serve best: the best of the starts that were followed with wide sizes of model error are
+    /// followed to the posterior, where no other effect's made good more than twice as much, which is `most`. With it whether it may come to the odds that count, as far
+    /// as is known.
+    pub(super) fn followed(&self, base: &Judged, approach: Approach, most: f64) -> Option<(Judged, bool)> {
+        let Approach { ways, points, sizes, gain } = approach;
+        let judged =
+            |(way, posterior): (usize, Posterior)| with_one_more(base, ways[way].clone(), posterior, ways.len());
+        let is_minor = self.is_plate() && gain < HALF * most;
+        if gain < -behind() || is_minor {
             let (way, point) = points.into_iter().next()?;
-            let posterior = self.problem(&ways[way]).posterior(point, first, 1)?;
+            let rounds = if gain.is_finite() || self.is_plate() { 1 } else { 4 };
+            let posterior = self.problem(&ways[way]).posterior(point, sizes, rounds)?;
             return Some((judged((way, posterior)), false));
         }
+        let follow = |points: Vec<(usize, Point)>, sizes: &[f64; KINDS], most: usize| {
+            self.each_followed(base, (&ways, points), sizes, most)
+        };
+        let (few, one) = ((FOLLOWED, behind()), (1, behind()));
         let between = std::array::from_fn(|k| 0.5 * (LOOSE[k] * SMALL[k]).ln());
         let points = if self.is_plate() { points } else { best(follow(points, &between, 4), few) };
         // From small sizes, since an effect drowns in those of too poor a hypothesis; and from those, since it need not be all that lacks.
@@ -336,6 +349,38 @@ impl Inquiry<'_> {
             .collect();
         let best = ends.into_iter().max_by(|a, b| a.1.log_evidence.total_cmp(&b.1.log_evidence))?;
         Some((judged(best), true))
+    }
+
+    /// Points, each of its way, followed under these sizes of model error.
+    fn each_followed(
+        &self,
+        base: &Judged,
+        (ways, points): (&[Hypothesis], Vec<(usize, Point)>),
+        sizes: &[f64; KINDS],
+        most: usize,
+    ) -> Vec<(usize, Point)> {
+        let of_base = self.problem(&base.hypothesis);
+        let at_base = &base.posterior.point;
+        let errors = of_base.errors(&at_base.at).with_every_partner();
+        let Some(coarse) = of_base.whitening(&errors, &logs(LOOSE.map(|size| NET * size))) else { return vec![] };
+        let exact_from = if self.replaces(ways) { usize::MAX } else { at_base.z.len() };
+        let on = |(way, mut point): (usize, Point)| {
+            let problem = self.problem(&ways[way]);
+            if point.derivatives.ncols() == 0 {
+                // The shift is of first order about the base: where it leads nowhere, it is left out.
+                let unshifted = [&at_base.z[..], &point.z[at_base.z.len()..]].concat();
+                let both = [point.z, unshifted].into_iter().filter_map(|z| problem.point(z, &coarse));
+                point = both.min_by(|a, b| a.misfit.total_cmp(&b.misfit))?;
+                if self.is_plate() {
+                    point = with_derivatives_of(at_base, &problem, point)?;
+                }
+            }
+            let by = problem.whitening(&problem.errors(&point.at).with_every_partner(), sizes)?;
+            // On a plate derivatives by the base's coordinates are dear, and the posterior asks for them.
+            let how = Following { most, least_gain: 1.0, exact_from, exactly: !self.is_plate() };
+            problem.follow(point, &by, how).map(|(point, _)| (way, point))
+        };
+        points.into_par_iter().filter_map(on).collect()
     }
 
     /// The covariance about a base by which starts are ranked: of a beam under sizes of model error that are no wider than small ones, of a plate under

@@ -9,11 +9,12 @@ use super::coupled_system::{FoundMode, System};
 use super::foot::{on_feet, port};
 use super::known::{Known, known_or};
 use super::low_modes::{Asked, FarAnswers, LowModes};
+use super::modified_panel::OwnModes;
 use super::row::{Row, SharedStructure};
 use super::spread_effects::SpreadEffects;
 use super::wide_plate::{Summed, WidePlates};
 use super::{Action, CoreModulus, EffectSetting, EffectState, ElementLaw, PointElement, Seat, ShearPatch};
-use crate::dense::dot;
+use crate::dense::product;
 use crate::mindlin_plate::PlateTerms;
 use crate::panel_mode::crossings;
 use crate::structure::{Motion, ShearMoment, Structure};
@@ -270,21 +271,24 @@ impl ModifiedStructure {
         (panel, system)
     }
 
-    /// Shares of the modes of the panel itself, with its patches, in modes with all that stands on it; none where nothing does.
-    pub(super) fn shares(
+    /// The modes of the panel itself, with its patches, and their shares in modes with all that stands on it; none where nothing does.
+    pub(super) fn own_modes(
         &self,
         answers: &FarAnswers,
         damping: &Damping,
         modes: &[FoundMode],
-    ) -> Result<Vec<Vec<f64>>, ModelError> {
+    ) -> Result<OwnModes, ModelError> {
         let bare = self.low.modes.len();
         let is_of_panel = |element: &PointElement| matches!(element.motion, Motion::Shear(_));
         let standing = self.elements.iter().filter(|element| !is_of_panel(element)).count();
         if standing == 0 {
-            return Ok(vec![]);
+            return Ok(OwnModes::default());
         }
         if standing == self.elements.len() {
-            return Ok(modes.iter().map(|(.., shares)| shares[..bare].to_vec()).collect());
+            return Ok(OwnModes {
+                angular_frequency: self.low.modes.iter().map(|(.., square)| square.sqrt()).collect(),
+                shares: modes.iter().map(|(.., shares)| shares[..bare].to_vec()).collect(),
+            });
         }
         let alone = |element: &PointElement| PointElement {
             law: if is_of_panel(element) { element.law } else { NOTHING },
@@ -295,12 +299,15 @@ impl ModifiedStructure {
         patches.resize(answers.series[1].ncols(), PointElement { law: NOTHING, ..self.elements[0] });
         let system = System::new(&self.low, answers, &patches, damping);
         let size = system.panel;
-        let own = system.solve()?;
-        let of_mode = |(.., mode): &FoundMode| {
-            let image = &system.mass * Mat::from_fn(size, 1, |i, _| mode[i]);
-            own.iter().take(bare).map(|(.., own)| dot(&own[..size], image.col_as_slice(0))).collect()
-        };
-        Ok(modes.iter().map(of_mode).collect())
+        let mut own = system.solve()?;
+        own.truncate(bare);
+        let shapes = |modes: &[FoundMode]| Mat::from_fn(size, modes.len(), |i, n| modes[n].2[i]);
+        let images = product(system.mass.submatrix(0, 0, size, size), shapes(modes).as_ref());
+        let shares = product(shapes(&own).transpose(), images.as_ref());
+        Ok(OwnModes {
+            angular_frequency: own.iter().map(|(omega, ..)| *omega).collect(),
+            shares: (0..modes.len()).map(|n| shares.col_as_slice(n).to_vec()).collect(),
+        })
     }
 }
 

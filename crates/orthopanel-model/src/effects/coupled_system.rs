@@ -109,6 +109,7 @@ impl System {
     /// Adds an element that sits where the coordinates have these values; a resonator takes the next of its coordinates.
     pub(super) fn join(&mut self, law: ElementLaw, mut row: Vec<f64>, resonators: &mut impl Iterator<Item = usize>) {
         match law {
+            ElementLaw::Mass { mass: 0.0 } => {}
             ElementLaw::Mass { mass } => add(&mut self.mass, mass, &row),
             ElementLaw::Spring { stiffness, damping } => {
                 add(&mut self.stiffness, stiffness, &row);

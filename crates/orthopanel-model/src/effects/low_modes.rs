@@ -121,14 +121,17 @@ impl LowModes {
     ) -> Result<FarAnswers, ModelError> {
         let pushed = asked.elements.len() + asked.ports.len();
         let beyond = if pushed > 0 { self.beyond(structure, values)? } else { &[] };
-        let standing = Arc::new(self.answered(structure, (asked.elements, asked.elements.len()), beyond)?);
-        let seen = self.at_ports(structure, asked, beyond)?;
+        let standing = Arc::new(self.answered((structure, values), (asked.elements, asked.elements.len()), beyond)?);
+        let seen = self.at_ports((structure, values), asked, beyond)?;
         let sum = |one: &[Mat<f64>], other: &[Mat<f64>]| -> Option<Mat<f64>> {
             let products = one.iter().zip(other).map(|(a, b)| product(a.transpose(), b.as_ref()));
             products.reduce(|sum, product| sum + product)
         };
         let none = || Mat::zeros(seen.rows.len(), asked.elements.len());
-        let across = sum(&seen.forces, &standing.moved).unwrap_or_else(none);
+        let mut across = sum(&seen.forces, &standing.moved).unwrap_or_else(none);
+        if let Some(lacking) = structure.static_remainders(values, [&seen.rows, asked.elements]) {
+            across += lacking;
+        }
         let swung = sum(&seen.swinging, &standing.moved).unwrap_or_else(|| Mat::zeros(seen.pushed, standing.pushed));
         let of_ports = across.subrows(0, seen.pushed);
         let mut answers = FarAnswers {
@@ -182,7 +185,7 @@ impl LowModes {
     /// At the ports, and where no force acts: kept for when they are asked for again.
     fn at_ports(
         &self,
-        structure: &dyn Structure,
+        of: (&dyn Structure, &[f64]),
         asked: Asked,
         beyond: &[Beyond],
     ) -> Result<Arc<Answered>, ModelError> {
@@ -192,7 +195,7 @@ impl LowModes {
         if let Some(answered) = lock().iter().find(is_asked) {
             return Ok(Arc::clone(answered));
         }
-        let answered = Arc::new(self.answered(structure, (&rows, asked.ports.len()), beyond)?);
+        let answered = Arc::new(self.answered(of, (&rows, asked.ports.len()), beyond)?);
         let mut kept = lock();
         kept.truncate(KEPT - 1);
         kept.insert(0, Arc::clone(&answered));
@@ -202,7 +205,7 @@ impl LowModes {
     /// In rows, in the first of which forces act.
     fn answered(
         &self,
-        structure: &dyn Structure,
+        (structure, values): (&dyn Structure, &[f64]),
         (rows, pushed): (&[Row], usize),
         beyond: &[Beyond],
     ) -> Result<Answered, ModelError> {
@@ -235,11 +238,14 @@ impl LowModes {
             answered.moved.push(moved);
             answered.swinging.push(swinging);
         }
+        if let Some(lacking) = structure.static_remainders(values, [rows, &rows[..pushed]]) {
+            answered.series[0] += lacking;
+        }
         Ok(answered)
     }
 
-    /// Puts the exact static flexibility in place of the basis' own, where the structure knows it, else adds what the basis
-    /// is known to lack; adds what it lacks of $C_1$.
+    /// Puts the exact static flexibility in place of the basis' own, where the structure knows it; adds what the basis is known to lack of $C_1$ and
+    /// the further terms.
     fn close(&self, structure: &dyn Structure, values: &[f64], rows: &[Row], answers: &mut FarAnswers) {
         let near = &answers.near;
         let [far, inertia] = &mut answers.series;
@@ -257,10 +263,6 @@ impl LowModes {
                 1 => second.coupled += of_few,
                 _ => second.mass += of_few.subrows(0, twice),
             }
-        }
-        if let Some(lacking) = structure.static_remainders(values, rows) {
-            *far += lacking.subcols(0, pushed);
-            return;
         }
         for (p, &first) in rows.iter().enumerate() {
             for (q, &second) in rows[..pushed].iter().enumerate() {

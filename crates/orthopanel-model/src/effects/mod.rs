@@ -62,7 +62,7 @@ pub(crate) use coupled_panel::{CoupledPanel, Even, PanelWithEffects, SPARE_MODES
 pub use cubic_stiffness::CUBIC_STIFFNESS;
 pub use exponential_window::EXPONENTIAL_WINDOW;
 pub use gain::GAIN;
-pub use modified_panel::{ModifiedPanel, SeenModes};
+pub use modified_panel::{ModifiedPanel, OwnModes, SeenModes};
 use parameter::Reference;
 pub use parameter::{EffectParameter, Prior, Scale};
 pub use point_element::{ElementLaw, PointElement, Seat};

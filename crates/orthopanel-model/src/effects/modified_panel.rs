@@ -1,6 +1,9 @@
 //! What a test sees of a panel with effects of panel and rig: its modes at places, and what all further modes add.
 
+use std::ops::Range;
 use std::sync::Arc;
+
+use faer::Mat;
 
 use super::beam_base::BeamBase;
 use super::coupled_panel::{Even, ModifiedStructure, PanelWithEffects, elements, row as at_row};
@@ -10,6 +13,7 @@ use super::row::Row;
 use super::spread_effects::SpreadEffects;
 use super::wide_plate::WidePlates;
 use super::{Action, EffectSetting, EffectState, ElementLaw, PointElement, Seat};
+use crate::dense::product;
 use crate::timoshenko_beam::Section;
 use crate::{
     BEAM_CONSTANTS, Boundary, Constant, Damping, End, ModelError, Motion, PLATE_CONSTANTS, Place, ShearLoss,
@@ -48,11 +52,19 @@ pub struct SeenModes {
     pub slope: Vec<Vec<f64>>,
     /// $\partial W_n/\partial y$ \[kg^-1/2/m\], alike, of a plate.
     pub slope_across: Vec<Vec<f64>>,
-    /// Shares of the modes of a plate without what stands on it, but with its patches, in each of these, where anything stands there: with what its
-    /// damping couples them. A patch has lost the damping that goes with its stiffness, so that the modes of a plate with patches do not couple.
-    pub shares: Vec<Vec<f64>>,
+    /// What these have of the modes of a plate without what stands on it, where anything stands there: with what its damping couples them.
+    pub own: OwnModes,
     /// Derivatives of all these by the logarithm of the side of the feet on which masses stand on a plate.
     pub by_foot: Option<Box<SeenModes>>,
+}
+
+/// Modes of a plate without what stands on it, but with its patches: a patch has lost the damping that goes with its stiffness, so that these do not couple.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct OwnModes {
+    /// $\Omega_m$ \[rad/s\]; none where nothing stands on the plate.
+    pub angular_frequency: Vec<f64>,
+    /// Of each mode with what stands there its shares of these.
+    pub shares: Vec<Vec<f64>>,
 }
 
 impl ModifiedPanel {
@@ -166,14 +178,10 @@ impl ModifiedPanel {
         let rows: Vec<Row> = elements.iter().filter_map(at_row).chain(ports).chain(slopes).collect();
         let shapes = base.in_shapes(&rows, (elements.len(), places.len()), losses);
         let system = System::in_shapes(&base.low, &shapes, elements, &self.damping);
-        let all = faer::concat![[shapes.near], [shapes.far]];
-        let seen =
-            |row: usize, shares: &[f64]| all.col_as_slice(row).iter().zip(shares).map(|(a, b)| a * b).sum::<f64>();
-        let ports = elements.len()..elements.len() + places.len();
-        Ok(SeenModes::of(system.solve()?, |shares| {
-            let row = |row: usize| seen(row, shares);
-            [ports.clone().map(row).collect(), (ports.end..rows.len()).map(row).collect(), vec![]]
-        }))
+        let found = system.solve()?;
+        let seen = in_rows(&found, &faer::concat![[shapes.near], [shapes.far]]);
+        let ports = elements.len() + places.len();
+        Ok(SeenModes::of(found, &seen, [elements.len()..ports, ports..rows.len(), 0..0]))
     }
 
     /// Constants of which those of the core are multiplied.
@@ -238,27 +246,21 @@ impl ModifiedPanel {
         let (_, system) = modified.with_residuals(&answers, places, damping);
         // Elements stand before the ports among the answers, and no coordinates belong to slopes.
         let elements = answers.near.ncols() - ports.len() - asked.len();
-        let (low, residuals) = (answers.near.nrows(), elements + ports.len());
-        let row = |row: usize, shares: &[f64]| -> f64 {
-            let near: f64 = (0..low).map(|m| answers.near[(m, row)] * shares[m]).sum();
-            let once = (0..residuals).map(|q| answers.series[0][(row, q)] * shares[low + q]);
-            let again = (0..twice).map(|q| answers.second.seen[(row, q)] * shares[low + residuals + q]);
-            near + once.chain(again).sum::<f64>()
-        };
+        let slopes = elements + ports.len();
         let found = system.solve()?;
+        let [far, _] = &answers.series;
+        let rows = faer::concat![[answers.near], [far.transpose()], [answers.second.seen.transpose()]];
+        let seen = in_rows(&found, &rows);
         let standing = modified.elements.iter().filter(|element| at_row(element).is_some());
         let standing = standing.enumerate().filter_map(|(number, element)| {
-            StandingMass::of(element, || found.iter().map(|(.., shares)| row(number, shares)).collect())
+            StandingMass::of(element, || (0..found.len()).map(|n| seen[(number, n)]).collect())
         });
         let standing: Vec<StandingMass> = standing.collect();
-        let own = if matches!(self.even, Even::Plate) { modified.shares(&answers, damping, &found)? } else { vec![] };
-        let mut seen = SeenModes::of(found, |shares| {
-            let row = |number: usize| row(number, shares);
-            let mut slopes: Vec<f64> = (residuals..residuals + asked.len()).map(row).collect();
-            let across = slopes.split_off(asked.len().min(places.len()));
-            [(elements..residuals).map(row).collect(), slopes, across]
-        });
-        seen.shares = own;
+        let is_plate = matches!(self.even, Even::Plate);
+        let own = if is_plate { modified.own_modes(&answers, damping, &found)? } else { OwnModes::default() };
+        let across = slopes + asked.len().min(places.len());
+        let mut seen = SeenModes::of(found, &seen, [elements..slopes, slopes..across, across..slopes + asked.len()]);
+        seen.own = own;
         if !standing.is_empty() {
             seen.by_foot = Some(Box::new(by_foot(&seen, &standing, &ports, modified.shear_stiffnesses()?)));
         }
@@ -273,19 +275,25 @@ fn spread_over(setting: &EffectSetting, effects: &[EffectState]) -> Result<bool,
 }
 
 impl SeenModes {
-    /// Of modes with their deflections and slopes by coordinates.
-    fn of(found: Vec<FoundMode>, seen: impl Fn(&[f64]) -> [Vec<f64>; 3]) -> Self {
+    /// Of modes, seen in rows, a column a mode: of the rows those of deflections, of slopes along and of slopes across.
+    fn of(found: Vec<FoundMode>, seen: &Mat<f64>, rows: [Range<usize>; 3]) -> Self {
         let mut all = Self::default();
-        for (omega, zeta, shares) in found {
+        for (n, (omega, zeta, _)) in found.into_iter().enumerate() {
             all.angular_frequency.push(omega);
             all.damping_ratio.push(zeta);
-            let [deflection, slope, across] = seen(&shares);
+            let [deflection, slope, across] = rows.clone().map(|rows| seen.col_as_slice(n)[rows].to_vec());
             all.deflection.push(deflection);
             all.slope.push(slope);
             all.slope_across.push(across);
         }
         all
     }
+}
+
+/// Modes in rows, a column a mode, of which `rows` has a column each with the values of the coordinates.
+fn in_rows(found: &[FoundMode], rows: &Mat<f64>) -> Mat<f64> {
+    let shares = Mat::from_fn(rows.nrows(), found.len(), |i, n| found[n].2[i]);
+    product(rows.transpose(), shares.as_ref())
 }
 
 #[cfg(test)]
@@ -451,12 +459,14 @@ mod tests {
             panel.seen_from(&setting, &places, false, &values, effects).expect("modes")
         };
         let (bare, patched) = (seen(&[]), seen(std::slice::from_ref(&patch)));
-        assert!(bare.shares.is_empty() && patched.shares.is_empty());
+        assert!(bare.own.shares.is_empty() && patched.own.shares.is_empty());
         for (own, effects) in [(&bare, vec![mass.clone()]), (&patched, vec![patch.clone(), mass])] {
             let loaded = seen(&effects);
             for n in 3..18 {
                 let omega = |of: &SeenModes, n: usize| of.angular_frequency[n];
-                let terms = loaded.shares[n].iter().enumerate().map(|(m, share)| (share * omega(own, m)).powi(2));
+                let terms = loaded.own.shares[n].iter().enumerate().map(|(m, share)| (share * omega(own, m)).powi(2));
+                let own_frequency = loaded.own.angular_frequency[n];
+                assert!((own_frequency / omega(own, n) - 1.0).abs() < 1e-3, "mode {n}: {own_frequency}");
                 let apart = terms.sum::<f64>().sqrt() / omega(&loaded, n) - 1.0;
                 // What the foot's own shape holds is no share of a mode; taken of the other plate, all that the patch does would be missing.
                 let by_patch = omega(&patched, n) / omega(&bare, n) - 1.0;

@@ -70,7 +70,7 @@ impl Structure for RatioPlate {
         self.plate.kink(self.membrane.as_ref()?, &plate_constants(six(values).ok()?), motions)
     }
 
-    fn static_remainders(&self, values: &[f64], motions: &[(Motion, Place)]) -> Option<Mat<f64>> {
+    fn static_remainders(&self, values: &[f64], motions: [&[(Motion, Place)]; 2]) -> Option<Mat<f64>> {
         self.plate.kinks(self.membrane.as_ref()?, &plate_constants(six(values).ok()?), motions)
     }
 

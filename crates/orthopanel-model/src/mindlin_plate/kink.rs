@@ -24,6 +24,8 @@
 //! \omega^2\rho c^2 + \omega^4\rho^2c^3 + \dots$ Sums over waves less those over the basis' own functions are what it lacks; the lower half of these functions are such waves to
 //! all digits, and need no part in it.
 
+use std::cell::OnceCell;
+
 use faer::{Mat, MatRef};
 
 use super::Field;
@@ -130,69 +132,80 @@ impl Membrane {
         motions: [(Motion, crate::Place); 2],
     ) -> Option<f64> {
         let has_kink = motions.iter().all(|motion| self.end(bases, *motion).is_some());
-        has_kink.then(|| self.kinks(bases, stiffnesses, &motions)[(0, 1)])
+        let [first, second] = motions.each_ref().map(std::slice::from_ref);
+        has_kink.then(|| self.kinks(bases, stiffnesses, [first, second])[(0, 0)])
     }
 
-    /// The same between any two motions of a list; zero for a rotation.
+    /// The same between the motions of two lists, a row each of the first; zero for a rotation.
     pub(super) fn kinks(
         &self,
         bases: &[EdgeBasis; 2],
         stiffnesses: Stiffnesses,
-        motions: &[(Motion, crate::Place)],
+        motions: [&[(Motion, crate::Place)]; 2],
     ) -> Mat<f64> {
-        let ends: Vec<Option<Seen>> = motions.iter().map(|motion| self.end(bases, *motion)).collect();
+        let ends = motions.map(|motions| motions.iter().map(|motion| self.end(bases, *motion)).collect::<Vec<_>>());
         let a_55 = stiffnesses[4];
         let foundations: Vec<f64> = self.across.slopes.iter().map(|nu| self.foundation(*nu, stiffnesses)).collect();
+        let root = |(m, a): (usize, &f64)| -> Vec<f64> {
+            self.along[self.along_of[m]].slopes.iter().map(|sigma| (a_55 * sigma + a).sqrt().recip()).collect()
+        };
+        let roots: Vec<Vec<f64>> = foundations.iter().enumerate().map(root).collect();
         // What the series have is a sum over products of one factor a motion.
         let in_series = |end: &Seen| -> Vec<f64> {
-            let of_mode = |(m, a): (usize, &f64)| {
-                let (along, across, a) = (self.along_of[m], end.across[m], *a);
-                let stiffness = self.along[along].slopes.iter().map(move |sigma| a_55 * sigma + a);
-                stiffness.zip(&end.along[along]).map(move |(stiffness, u)| across * u / stiffness.sqrt())
+            let of_mode = |(m, roots): (usize, &Vec<f64>)| {
+                let (along, across) = (&end.along[self.along_of[m]], end.across[m]);
+                roots.iter().zip(along).map(move |(root, u)| across * u * root).collect::<Vec<_>>()
             };
-            foundations.iter().enumerate().flat_map(of_mode).collect()
+            roots.iter().enumerate().flat_map(of_mode).collect()
         };
-        let columns: Vec<Vec<f64>> = ends.iter().map(|end| end.as_ref().map_or_else(Vec::new, in_series)).collect();
-        let factors = columns.iter().map(Vec::len).max().unwrap_or(0);
-        let factors = Mat::from_fn(factors, columns.len(), |i, p| columns[p].get(i).copied().unwrap_or(0.0));
-        let mut kinks = -product(factors.transpose(), factors.as_ref());
+        let [rows, columns] = ends.each_ref().map(|ends| {
+            let columns: Vec<Vec<f64>> = ends.iter().map(|end| end.as_ref().map_or_else(Vec::new, in_series)).collect();
+            let factors = roots.iter().map(Vec::len).sum();
+            Mat::from_fn(factors, columns.len(), |i, p| columns[p].get(i).copied().unwrap_or(0.0))
+        });
+        let mut kinks = -product(rows.transpose(), columns.as_ref());
         for (m, &a) in foundations.iter().enumerate() {
             let answer = Answer::of((a_55, a), (self.half_length, self.returned));
             let near = |end: &Option<Seen>| end.as_ref().map(|end| (end.across[m], end.side.1, answer.near(end.side)));
-            let near: Vec<_> = ends.iter().map(near).collect();
-            for (q, second) in near.iter().enumerate() {
-                for (p, first) in near[..=q].iter().enumerate() {
+            let [rows, columns] = ends.each_ref().map(|ends| ends.iter().map(near).collect::<Vec<_>>());
+            for (q, second) in columns.iter().enumerate() {
+                for (p, first) in rows.iter().enumerate() {
                     if let (Some(first), Some(second)) = (first, second) {
                         kinks[(p, q)] += first.0 * second.0 * answer.between((first.1, first.2), (second.1, second.2));
                     }
                 }
             }
         }
-        for q in 0..ends.len() {
-            for p in 0..=q {
-                if ends[p].is_some() && is_foot(motions[p], motions[q]) {
-                    kinks[(p, q)] += self.under_foot(bases, stiffnesses, motions[p].1);
-                }
-                kinks[(q, p)] = kinks[(p, q)];
+        let [rows, columns] = motions;
+        for (q, column) in columns.iter().enumerate().filter(|(_, column)| column.0 == Motion::Foot) {
+            let under = OnceCell::new();
+            for (p, _) in rows.iter().enumerate().filter(|(_, row)| *row == column) {
+                kinks[(p, q)] += under.get_or_init(|| self.under_foot(bases, stiffnesses, column.1));
             }
         }
         kinks
     }
 
-    /// What the basis lacks of $\sum\phi_{1m}\phi_{2m}/\omega_m^{2+2k}$ between any two motions of a list, on a mass per area \[kg/m2\]: told under a
-    /// foot alone.
+    /// What the basis lacks of $\sum\phi_{1m}\phi_{2m}/\omega_m^{2+2k}$ between any two motions of a list, on a mass per area \[kg/m2\], from $k = 1$ on:
+    /// told under a foot alone.
     pub(super) fn inertia(
         &self,
         bases: &[EdgeBasis; 2],
         stiffnesses: Stiffnesses,
-        (mass_per_area, power): (f64, i32),
+        mass_per_area: f64,
         motions: &[(Motion, crate::Place)],
-    ) -> Mat<f64> {
-        Mat::from_fn(motions.len(), motions.len(), |p, q| {
-            let squares = |c: f64, _| c * (mass_per_area * c).powi(power);
-            let foot = is_foot(motions[p], motions[q]);
-            if foot { self.by_waves(bases, stiffnesses, motions[p].1, squares) } else { 0.0 }
-        })
+    ) -> [Mat<f64>; INERTIAL] {
+        let mut lacking = [(); INERTIAL].map(|()| Mat::zeros(motions.len(), motions.len()));
+        for (q, column) in motions.iter().enumerate().filter(|(_, column)| column.0 == Motion::Foot) {
+            let by_waves = OnceCell::new();
+            for (p, _) in motions.iter().enumerate().filter(|(_, row)| *row == column) {
+                let [_, squares @ ..] = by_waves.get_or_init(|| self.by_waves(bases, stiffnesses, column.1));
+                for ((power, lacking), square) in (1..).zip(&mut lacking).zip(squares) {
+                    lacking[(p, q)] = square * mass_per_area.powi(power);
+                }
+            }
+        }
+        lacking
     }
 
     /// What the functions across lack under a foot at a place.
@@ -216,24 +229,13 @@ impl Membrane {
             // What comes back has no kink, and its mean over the foot is its value in the middle.
             seen * (mean_of_decay(kappa * FOOT) + returned(kappa)) / kappa
         });
-        let bends =
-            |c: f64, [along, across]: [f64; 2]| c - (a_55 * along + self.foundation(across, stiffnesses)).recip();
-        (exact.sum::<f64>() - basis.sum::<f64>()) / (2.0 * a_55) + self.by_waves(bases, stiffnesses, place, bends)
+        let [bends, ..] = self.by_waves(bases, stiffnesses, place);
+        (exact.sum::<f64>() - basis.sum::<f64>()) / (2.0 * a_55) + bends
     }
 
-    /// Waves less functions of the basis under a foot, each with a value of $c$, $k_x^2$ and $k_y^2$.
-    fn by_waves(
-        &self,
-        bases: &[EdgeBasis; 2],
-        [d_11, d_22, d_12, d_66, a_55, a_44]: Stiffnesses,
-        place: crate::Place,
-        value: impl Fn(f64, [f64; 2]) -> f64,
-    ) -> f64 {
-        let term = |(x, seen_x): Wave, (y, seen_y): Wave| {
-            let bending = d_11 * x * x + 2.0 * (d_12 + 2.0 * d_66) * x * y + d_22 * y * y;
-            let c = (a_55 * x + a_44 * y).recip() + bending.recip();
-            seen_x * seen_y * value(c, [x, y])
-        };
+    /// Waves less functions of the basis under a foot: of $c$ what it has beside the answer of the membrane, then of $c^2$, $c^3$ and $c^4$.
+    fn by_waves(&self, bases: &[EdgeBasis; 2], stiffnesses: Stiffnesses, place: crate::Place) -> [f64; 1 + INERTIAL] {
+        let [d_11, d_22, d_12, d_66, a_55, a_44] = stiffnesses;
         let seen = |modes: &Modes, values: &[f64]| -> Vec<Wave> {
             let values = modes.at(values);
             modes.slopes.iter().zip(values).map(|(square, value)| (*square, value * value)).collect()
@@ -243,16 +245,30 @@ impl Membrane {
         let along: Vec<Vec<Wave>> = self.along.iter().map(|modes| seen(modes, &values)).collect();
         let longest = along.iter().map(Vec::len).max().unwrap_or(0);
         let counts = [longest, across.len()];
-        let is_low = |i: usize, j: usize| 2 * i < counts[0] && 2 * j < counts[1];
-        let sum = |across: &[Wave], (along, of): (&[Vec<Wave>], &dyn Fn(usize) -> usize)| -> f64 {
-            let of_line = |(j, &y): (usize, &Wave)| -> f64 {
-                along[of(j)].iter().enumerate().filter(|(i, _)| !is_low(*i, j)).map(|(_, &x)| term(x, y)).sum()
-            };
-            across.iter().enumerate().map(of_line).sum()
+        let sum = |across: &[Wave], (along, of): (&[Vec<Wave>], &dyn Fn(usize) -> usize)| {
+            let mut sums = [0.0; 1 + INERTIAL];
+            for (j, &(y, seen_y)) in across.iter().enumerate() {
+                let foundation = self.foundation(y, stiffnesses);
+                // The lower half are such waves to all digits.
+                let low = if 2 * j < counts[1] { counts[0].div_ceil(2) } else { 0 };
+                for &(x, seen_x) in along[of(j)].iter().skip(low) {
+                    let bending = d_11 * x * x + 2.0 * (d_12 + 2.0 * d_66) * x * y + d_22 * y * y;
+                    let (shear, membrane) = (a_55 * x + a_44 * y, a_55 * x + foundation);
+                    // One division for all three.
+                    let share = (shear * bending * membrane).recip();
+                    let (c, of_membrane) = ((shear + bending) * membrane * share, shear * bending * share);
+                    let seen = seen_x * seen_y;
+                    let square = seen * c * c;
+                    let terms = [seen * (c - of_membrane), square, square * c, square * c * c];
+                    sums.iter_mut().zip(terms).for_each(|(sum, term)| *sum += term);
+                }
+            }
+            sums
         };
         let waves = self.waves_across(place.y, WAVES * counts[1]);
-        sum(&waves, (&[self.waves_along(place.x, WAVES * counts[0])], &|_| 0))
-            - sum(&across, (&along, &|j| self.along_of[j]))
+        let exact = sum(&waves, (&[self.waves_along(place.x, WAVES * counts[0])], &|_| 0));
+        let in_basis = sum(&across, (&along, &|j| self.along_of[j]));
+        std::array::from_fn(|k| exact[k] - in_basis[k])
     }
 
     fn waves_along(&self, x: f64, count: usize) -> Vec<Wave> {
@@ -345,6 +361,9 @@ pub(super) fn gauss_points(place: f64, half: f64) -> [f64; 2] {
 /// Half-waves over a foot up to which functions across count.
 const FINEST: f64 = 6.0;
 
+/// Powers of $\omega^2$ to which the waves that a basis lacks answer.
+pub(super) const INERTIAL: usize = 3;
+
 /// Waves along either side, over the functions that a basis has: what they answer with falls with the fourth power of theirs.
 const WAVES: usize = 8;
 
@@ -365,11 +384,6 @@ fn waves((size, from_edge): (f64, f64), held: [bool; 2], count: usize) -> Vec<Wa
         (wave_number * wave_number, square * mean)
     };
     (0..count).map(wave).collect()
-}
-
-/// Whether both are the mean deflection of one foot.
-fn is_foot(first: (Motion, crate::Place), second: (Motion, crate::Place)) -> bool {
-    first == second && first.0 == Motion::Foot
 }
 
 /// Mean of $e^{-|x-x'|\kappa}$ over a stretch of $u/\kappa$ for both.

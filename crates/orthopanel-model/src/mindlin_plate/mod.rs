@@ -261,9 +261,6 @@ impl MindlinPlate {
     }
 }
 
-/// Powers of $\omega^2$ to which the waves that a basis lacks answer.
-const INERTIAL: i32 = 3;
-
 impl MindlinPlate {
     /// What tells the kinks that this basis lacks; `None` where its functions cannot be told apart.
     pub(crate) fn membrane(&self) -> Option<Membrane> {
@@ -285,16 +282,20 @@ impl MindlinPlate {
         self.membrane.get_or_init(|| if self.is_even { self.membrane() } else { None }).as_ref()
     }
 
-    /// What the basis lacks of the static flexibility between any two motions of a list.
-    pub(crate) fn kinks(&self, membrane: &Membrane, values: &[f64], motions: &[(Motion, Place)]) -> Option<Mat<f64>> {
+    /// What the basis lacks of the static flexibility between the motions of two lists.
+    pub(crate) fn kinks(
+        &self,
+        membrane: &Membrane,
+        values: &[f64],
+        motions: [&[(Motion, Place)]; 2],
+    ) -> Option<Mat<f64>> {
         Some(membrane.kinks(&self.along, plate_stiffnesses(self.piece.thickness, values).ok()?, motions))
     }
 
     /// [`Structure::inertial_remainders`], as many as there are.
     pub(crate) fn inertia(&self, membrane: &Membrane, values: &[f64], motions: &[(Motion, Place)]) -> Vec<Mat<f64>> {
         let Ok(stiffnesses) = plate_stiffnesses(self.piece.thickness, values) else { return vec![] };
-        let of = |power| membrane.inertia(&self.along, stiffnesses, (self.piece.mass_per_area, power), motions);
-        (1..=INERTIAL).map(of).collect()
+        membrane.inertia(&self.along, stiffnesses, self.piece.mass_per_area, motions).into()
     }
 }
 
@@ -338,7 +339,7 @@ impl Structure for MindlinPlate {
         self.kink(self.even_membrane()?, values, motions)
     }
 
-    fn static_remainders(&self, values: &[f64], motions: &[(Motion, Place)]) -> Option<Mat<f64>> {
+    fn static_remainders(&self, values: &[f64], motions: [&[(Motion, Place)]; 2]) -> Option<Mat<f64>> {
         self.kinks(self.even_membrane()?, values, motions)
     }
 

@@ -106,7 +106,7 @@ impl View {
         let (layout, structure) = (self.layout, &base.structure);
         let further = structure.inertial_remainders(&base.values, rows);
         (1..SERIES_TERMS).zip(&further).for_each(|(term, lacking)| self.add_to_series(term, lacking));
-        if let Some(lacking) = structure.static_remainders(&base.values, rows) {
+        if let Some(lacking) = structure.static_remainders(&base.values, [rows; 2]) {
             return self.add_to_series(0, &lacking);
         }
         for (row, &first) in rows.iter().enumerate() {
