@@ -316,7 +316,7 @@ impl ErrorColumns {
             }
         }
         of_piece.resize(columns.len(), None);
-        // On beams a smaller prediction has seldom won by that, and their rates were judged without.
+        // Rates of beams were judged without.
         if predictor.structure == StructureKind::MindlinPlate {
             as_measured(&mut columns, comparison, at);
         }

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use faer::linalg::solvers::Llt;
 use faer::prelude::Solve;
 use faer::{Mat, Side};
-use orthopanel_model::{ModelError, StructureKind};
+use orthopanel_model::ModelError;
 
 use crate::hypothesis::Hypothesis;
 use crate::model_error::{ErrorColumns, KINDS, deviations, least_sizes, medians};
@@ -276,7 +276,7 @@ impl Problem<'_> {
     /// arXiv:1201.5885), with the curvature $J^TJ + P$ where it ends.
     pub(crate) fn follow(&self, from: Point, by: &Whitening, how: Following) -> Option<(Point, Mat<f64>)> {
         let Following { most, least_gain, exact_from, exactly } = how;
-        let is_plate = self.stacked.first().predictor.structure == StructureKind::MindlinPlate;
+        let is_plate = self.stacked.is_of_plates();
         let worth_a_step = if is_plate { NO_GAIN * least_gain } else { f64::NEG_INFINITY };
         let precision = self.hypothesis.precision();
         let size = from.z.len();
@@ -354,9 +354,9 @@ impl Problem<'_> {
         }
     }
 
-    /// A part of the way from a point to another.
-    fn between(&self, from: &Point, to: &Point, part: f64) -> Option<Point> {
-        let z = from.z.iter().zip(&to.z).map(|(from, to)| from + part * (to - from)).collect();
+    /// Half of the way from a point to another.
+    fn halfway(&self, from: &Point, to: &Point) -> Option<Point> {
+        let z = from.z.iter().zip(&to.z).map(|(from, to)| from + 0.5 * (to - from)).collect();
         let between = self.unjudged(z)?;
         let derivatives = self.moved_derivatives(from, &between);
         Some(Point { derivatives, ..between })
@@ -465,7 +465,7 @@ impl Problem<'_> {
         let errors = self.errors(&from.at);
         let mut here = Weighed { point: from, errors, log_sizes, value: f64::INFINITY };
         // On a plate exact derivatives are dear: only once sizes and parameters stand still are they asked whether they do. Those of a beam are not.
-        let is_plate = self.stacked.first().predictor.structure == StructureKind::MindlinPlate;
+        let is_plate = self.stacked.is_of_plates();
         let mut exactly = !is_plate;
         for round in 0..rounds {
             let by = self.whitening(&here.errors, &here.log_sizes)?;
@@ -480,7 +480,7 @@ impl Problem<'_> {
             let mut part = 1.0;
             while is_plate && !is_lower(&there) && part > 0.25 && there.point.z != here.point.z {
                 part *= 0.5;
-                let between = self.between(&here.point, &there.point, 0.5)?;
+                let between = self.halfway(&here.point, &there.point)?;
                 there = self.weighed(between, &here.log_sizes)?;
             }
             let falls = is_lower(&there);

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use faer::Mat;
-use orthopanel_model::{Effect, EffectState, ModelError, Owner};
+use orthopanel_model::{Effect, EffectState, ModelError, Owner, StructureKind};
 
 use crate::comparison::Comparison;
 use crate::hypothesis::{Hypothesis, has_place};
@@ -84,6 +84,11 @@ impl<'a> Stacked<'a> {
     /// The records, where there are any.
     pub(crate) fn first(&self) -> &Block<'a> {
         &self.blocks[0]
+    }
+
+    /// Whether the pieces are plates.
+    pub(crate) fn is_of_plates(&self) -> bool {
+        self.first().predictor.structure == StructureKind::MindlinPlate
     }
 
     /// The blocks of records, each with its number.

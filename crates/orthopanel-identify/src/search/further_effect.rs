@@ -1,6 +1,7 @@
 //! One effect more: from a net of starts to the posterior.
 
 use std::f64::consts::TAU;
+use std::sync::LazyLock;
 
 use faer::linalg::solvers::Llt;
 use faer::prelude::Solve;
@@ -273,7 +274,7 @@ impl Inquiry<'_> {
     }
 
     pub(super) fn is_plate(&self) -> bool {
-        self.predictor().structure == StructureKind::MindlinPlate
+        self.stacked.is_of_plates()
     }
 
     /// Whether another structure takes the place of the first: that is too dear for more than one set of derivatives.
@@ -361,15 +362,19 @@ impl Inquiry<'_> {
     ) -> Vec<(usize, Point)> {
         let of_base = self.problem(&base.hypothesis);
         let at_base = &base.posterior.point;
-        let errors = of_base.errors(&at_base.at).with_every_partner();
-        let Some(coarse) = of_base.whitening(&errors, &logs(LOOSE.map(|size| NET * size))) else { return vec![] };
+        // Asked for by starts alone: what was followed before brings derivatives.
+        let coarse = LazyLock::new(|| {
+            let errors = of_base.errors(&at_base.at).with_every_partner();
+            of_base.whitening(&errors, &logs(LOOSE.map(|size| NET * size)))
+        });
         let exact_from = if self.replaces(ways) { usize::MAX } else { at_base.z.len() };
         let on = |(way, mut point): (usize, Point)| {
             let problem = self.problem(&ways[way]);
             if point.derivatives.ncols() == 0 {
                 // The shift is of first order about the base: where it leads nowhere, it is left out.
                 let unshifted = [&at_base.z[..], &point.z[at_base.z.len()..]].concat();
-                let both = [point.z, unshifted].into_iter().filter_map(|z| problem.point(z, &coarse));
+                let coarse = coarse.as_ref()?;
+                let both = [point.z, unshifted].into_iter().filter_map(|z| problem.point(z, coarse));
                 point = both.min_by(|a, b| a.misfit.total_cmp(&b.misfit))?;
                 if self.is_plate() {
                     point = with_derivatives_of(at_base, &problem, point)?;
