@@ -215,10 +215,21 @@ impl Problem<'_> {
                 columns.col_as_slice_mut(column).copy_from_slice(of_places);
                 continue;
             }
-            let step = if point.z[number] + STEP < farthest[number] { STEP } else { -STEP };
-            let mut moved = point.z.clone();
-            moved[number] += step;
-            let moved = self.at(&moved).ok()?;
+            let by = |step: f64| -> Option<(f64, Predictions)> {
+                let mut moved = point.z.clone();
+                moved[number] += step;
+                Some((step, self.at(&moved).ok()?))
+            };
+            let inwards = if point.z[number] + STEP < farthest[number] { STEP } else { -STEP };
+            let mut moved = by(inwards)?;
+            // Where a pole takes another mode for its partner, what is predicted jumps: the other side has the slope.
+            if !moved.1.pairs_as(&point.at) && point.z[number] - inwards < farthest[number] {
+                let size = |(_, moved): &(f64, Predictions)| -> f64 {
+                    moved.values.iter().zip(&point.at.values).map(|(moved, at)| (moved - at).powi(2)).sum()
+                };
+                moved = by(-inwards).filter(|other| size(other) < size(&moved)).unwrap_or(moved);
+            }
+            let (step, moved) = moved;
             for (row, (moved, at)) in moved.values.iter().zip(&point.at.values).enumerate() {
                 columns[(row, column)] = (moved - at) / step;
             }
@@ -231,7 +242,8 @@ impl Problem<'_> {
         let mut derivatives = from.derivatives.clone();
         let step: Vec<f64> = to.z.iter().zip(&from.z).map(|(to, from)| to - from).collect();
         let length = square(&step);
-        if length > 0.0 {
+        // Over less than the step of a difference it would be rounding.
+        if length > STEP * STEP {
             for row in 0..derivatives.nrows() {
                 let foretold: f64 =
                     step.iter().enumerate().map(|(column, step)| derivatives[(row, column)] * step).sum();
@@ -281,7 +293,6 @@ impl Problem<'_> {
         let precision = self.hypothesis.precision();
         let size = from.z.len();
         let mut point = self.judged_by(from, by)?;
-        point.is_exact &= is_plate;
         let known = (point.derivatives.nrows(), point.derivatives.ncols());
         if known != (point.at.values.len(), size) {
             self.find_derivatives(&mut point)?;
@@ -496,11 +507,14 @@ impl Problem<'_> {
         }
         let Weighed { mut point, errors, log_sizes, .. } = here;
         let by = self.whitening(&errors, &log_sizes)?;
-        if !(is_plate && point.is_exact) {
+        if !is_plate {
+            point.derivatives = Mat::new();
+            (point, _) = self.follow(point, &by, Following::to_the_end(3, 0.01))?;
+        }
+        if !point.is_exact {
             point.derivatives = Mat::new();
         }
-        let last = if is_plate { Following::to_the_end(0, 0.0) } else { Following::to_the_end(3, 0.01) };
-        let (point, mut curvature) = self.follow(point, &by, last)?;
+        let (point, mut curvature) = self.follow(point, &by, Following::to_the_end(0, 0.0))?;
         // No direction is wider than its prior: over an even one, from -1 to 1, a Gaussian of this curvature has the same integral.
         let even = self.hypothesis.precision().into_iter().enumerate().filter(|(_, precision)| *precision == 0.0);
         even.for_each(|(i, _)| curvature[(i, i)] += FRAC_PI_2);

@@ -111,9 +111,8 @@ fn constants_of_beam(block: &Block, lowest: usize) -> Result<Vec<[f64; 2]>, Mode
         let ratio = 2.0 * (step as f64 / (RATIOS - 1) as f64 * 300f64.ln()).exp();
         let values = [1e10, 1e10 / ratio];
         let modes = natural_frequencies(&setting, &values, &[], poles.len() + 6)?;
-        for (pole, mode) in
-            (0..poles.len().min(5)).flat_map(|pole| (0..modes.len().min(3)).map(move |mode| (pole, mode)))
-        {
+        // Below the first mode may lie any number of poles: springs that are not linear have several where a linear one has one.
+        for (pole, mode) in (0..poles.len()).flat_map(|pole| (0..modes.len().min(3)).map(move |mode| (pole, mode))) {
             let scale = poles[pole] / modes[mode];
             let apart = |pole: &f64| modes.iter().map(|mode| (pole / (scale * mode)).ln().powi(2)).fold(0.01, f64::min);
             let missed: f64 = poles.iter().filter(|pole| **pole > 0.5 * scale * modes[0]).map(apart).sum();

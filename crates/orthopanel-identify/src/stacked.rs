@@ -65,6 +65,11 @@ impl Predictions {
     pub(crate) fn hangs_as(&self, other: &Self) -> bool {
         self.blocks.iter().zip(&other.blocks).all(|(own, other)| own.hangs == other.hangs)
     }
+
+    /// Whether every pole has the same mode for its partner.
+    pub(crate) fn pairs_as(&self, other: &Self) -> bool {
+        self.blocks.iter().zip(&other.blocks).all(|(own, other)| own.flexible_of_poles == other.flexible_of_poles)
+    }
 }
 
 impl<'a> Stacked<'a> {
