@@ -20,12 +20,11 @@ use crate::comparison::OWN_DAMPING;
 const ROUNDS: usize = 2;
 /// of which others bring no more than this part, for modes that run together wholly do not tell whose damping it is.
 const BY_OTHERS: f64 = 0.5;
-/// Rounds in which a mode is found.
+/// Rounds in which a pole's mode is found.
 const STEPS: usize = 8;
-/// Share of another mode that counts, to first order.
-const LEAST: f64 = 1e-5;
-/// Share of another mode to first order from which on it brings others with it.
-const LARGE: f64 = 1e-3;
+/// Share of another mode to first order from which on it brings others with it: what a mode at this limit brings is next to nothing, or derivatives by
+/// differences would see it come and go.
+const LARGE: f64 = 1e-4;
 /// Largest share of another mode: those that run together altogether are not told apart.
 const MOST: f64 = 1.0;
 
@@ -36,34 +35,75 @@ pub(crate) struct CoupledModes {
     /// Of each mode the deflection at every port, the slope along and the slope across, so that the residue of a receptance is
     /// $\phi\phi^T/(\lambda-\bar\lambda)$.
     shapes: [Vec<Vec<Complex64>>; 3],
+    /// Shares $V$ of the panel's own modes, a row each, in the modes without coupling.
+    of_panel: Mat<f64>,
+    /// Deviation of each $c_m$ from what is found.
+    deviations: Vec<f64>,
+    /// $C_{nn}$.
+    own: Vec<f64>,
 }
 
 impl CoupledModes {
     /// Of modes with these damping ratios, of which the effects' dashpots bring their own, and the deviations of their logarithms where they are measured;
     /// `None` where shares of the panel's own modes are not known.
     pub(crate) fn new(modes: &SeenModes, zeta: &[f64], deviations: &[Option<f64>]) -> Option<Self> {
-        let count = modes.own.shares.first()?.len().min(zeta.len());
+        let panel_modes = modes.own.shares.first()?.len();
+        let count = modes.own.shares.len().min(zeta.len());
         let omega = &modes.angular_frequency[..count];
-        let shares = &modes.own.shares[..count];
-        let of_panel = Mat::from_fn(count, count, |m, n| shares[n][m]);
+        let of_panel = Mat::from_fn(panel_modes, count, |m, n| modes.own.shares[n][m]);
+        let is_measured: Vec<bool> = deviations.iter().map(Option::is_some).collect();
         let mut by_others = vec![0.0; count];
-        let mut modes_with_damping = vec![];
+        let mut found = None;
         for _ in 0..ROUNDS {
-            let panel = damping_of_panel(&modes.own, omega, (zeta, deviations, &modes.damping_ratio), &by_others)?;
-            let damped = Mat::from_fn(count, count, |m, n| panel[m] * shares[n][m]);
+            let (panel, deviations) =
+                damping_of_panel((&modes.own, &of_panel), omega, (zeta, deviations, &modes.damping_ratio), &by_others)?;
+            let damped = Mat::from_fn(panel_modes, count, |m, n| panel[m] * of_panel[(m, n)]);
             let damping = of_panel.transpose() * damped;
-            modes_with_damping = (0..count).map(|n| coupled(n, (omega, zeta[n]), &damping)).collect();
-            by_others = modes_with_damping.iter().map(|(.., by_others)| *by_others).collect();
+            // What is no pole counts in the remainder alone.
+            let rounds = |n: usize| if is_measured[n] { STEPS } else { 1 };
+            let modes: Vec<_> = (0..count).map(|n| coupled(n, (omega, zeta[n]), &damping, rounds(n))).collect();
+            by_others = modes.iter().map(|(.., by_others)| *by_others).collect();
+            found = Some((modes, deviations, (0..count).map(|n| damping[(n, n)]).collect()));
         }
+        let (modes_with_damping, deviations, own) = found?;
         let (angular_frequency, shares): (Vec<f64>, Vec<_>) =
             modes_with_damping.into_iter().map(|(size, shares, _)| (size, shares)).unzip();
         let shapes = [&modes.deflection, &modes.slope, &modes.slope_across].map(|of| mixed(&shares, of));
-        Some(Self { angular_frequency, shapes })
+        Some(Self { angular_frequency, shapes, of_panel, deviations, own })
     }
 
     /// The deflection of a mode at a port; `None` of one that is not coupled.
     pub(crate) fn deflection(&self, n: usize, port: usize) -> Option<Complex64> {
         self.shapes[0].get(n)?.get(port).copied()
+    }
+
+    /// Deviations of what damps the panel's own modes, $c_m$.
+    pub(crate) fn deviations(&self) -> &[f64] {
+        &self.deviations
+    }
+
+    /// The share of one of the panel's own modes in a mode without coupling.
+    pub(crate) fn share(&self, m: usize, n: usize) -> f64 {
+        self.of_panel[(m, n)]
+    }
+
+    /// $s^2 + sC_{nn} + \omega_n^2$.
+    pub(crate) fn stiffness(&self, modes: &SeenModes, n: usize, s: Complex64) -> Complex64 {
+        s * s + s * self.own[n] + modes.angular_frequency[n].powi(2)
+    }
+
+    /// What each of the panel's own modes sees at $s$ of a force at every port, $\sum_jV_{mj}\phi_j/(s^2+sC_{jj}+\omega_j^2)$, without the mode `but`: real and
+    /// imaginary part, a row a mode.
+    pub(crate) fn seen_by_panel(&self, modes: &SeenModes, s: Complex64, but: Option<usize>) -> [Mat<f64>; 2] {
+        let ports = modes.deflection.first().map_or(0, Vec::len);
+        let answers: Vec<Complex64> = (0..self.own.len())
+            .map(|n| if but == Some(n) { Complex64::ZERO } else { self.stiffness(modes, n, s).inv() })
+            .collect();
+        let along = |part: fn(&Complex64) -> f64| {
+            let moved = Mat::from_fn(answers.len(), ports, |n, port| part(&answers[n]) * modes.deflection[n][port]);
+            &self.of_panel * moved
+        };
+        [along(|answer| answer.re), along(|answer| answer.im)]
     }
 
     /// Its slope along, or across, at a port.
@@ -86,22 +126,22 @@ fn mixed(shares: &[Vec<Complex64>], of: &[Vec<f64>]) -> Vec<Vec<Complex64>> {
 }
 
 /// $c$ of the panel's own modes, about which nothing but their shares in the modified ones is known, whose damping ratios are the panel's and the effects',
-/// and of which those that damping couples them with bring some.
+/// and of which those that damping couples them with bring some; and the deviations of these.
 fn damping_of_panel(
-    own: &OwnModes,
+    (own, shares): (&OwnModes, &Mat<f64>),
     omega: &[f64],
     (zeta, deviations, of_effects): (&[f64], &[Option<f64>], &[f64]),
     by_others: &[f64],
-) -> Option<Vec<f64>> {
-    let count = omega.len();
+) -> Option<(Vec<f64>, Vec<f64>)> {
+    let count = own.angular_frequency.len();
     let shown = |n: usize| (zeta[n] - of_effects[n]).max(0.0);
-    let measured: Vec<(usize, f64)> = (0..count).filter_map(|n| Some((n, deviations[n]?))).collect();
+    let measured: Vec<(usize, f64)> = (0..omega.len()).filter_map(|n| Some((n, deviations[n]?))).collect();
     let mut ratios: Vec<f64> = measured.iter().map(|(n, _)| shown(*n)).collect();
     ratios.sort_by(f64::total_cmp);
     let usual = ratios.get(ratios.len() / 2).copied().unwrap_or(0.0);
-    let before: Vec<f64> = own.angular_frequency[..count].iter().map(|omega| 2.0 * usual * omega).collect();
+    let before: Vec<f64> = own.angular_frequency.iter().map(|omega| 2.0 * usual * omega).collect();
     let variance = |m: usize| (OWN_DAMPING * before[m]).powi(2);
-    let rows = Mat::from_fn(measured.len(), count, |row, m| own.shares[measured[row].0][m].powi(2));
+    let rows = Mat::from_fn(measured.len(), count, |row, m| shares[(m, measured[row].0)].powi(2));
     let spread = Mat::from_fn(count, measured.len(), |m, row| variance(m) * rows[(row, m)]);
     let mut whole = &rows * &spread;
     let missed = Mat::from_fn(measured.len(), 1, |row, _| {
@@ -112,14 +152,20 @@ fn damping_of_panel(
         let noise = deviation * 2.0 * zeta[*n] * omega[*n];
         whole[(row, row)] += noise * noise + f64::EPSILON * whole[(row, row)] + f64::MIN_POSITIVE.sqrt();
     }
-    let weights = whole.llt(Side::Lower).ok()?.solve(&missed);
-    let found = &spread * weights;
-    Some((0..count).map(|m| (before[m] + found[(m, 0)]).max(0.0)).collect())
+    let factor = whole.llt(Side::Lower).ok()?;
+    let found = &spread * factor.solve(&missed);
+    let told = factor.solve(spread.transpose());
+    let deviation = |m: usize| {
+        let told: f64 = (0..measured.len()).map(|row| spread[(m, row)] * told[(row, m)]).sum();
+        (variance(m) - told).max(0.0).sqrt()
+    };
+    let damping = (0..count).map(|m| (before[m] + found[(m, 0)]).max(0.0)).collect();
+    Some((damping, (0..count).map(deviation).collect()))
 }
 
 /// $|\lambda|$ and the shares of a mode, and what the others bring of its damping, $\mathrm{Re}\sum_jC_{nj}q_j$, up to [`BY_OTHERS`]: row by row, the row of the mode itself for its
-/// pole, whose damping is known. Modes that have a small share have it of this mode and of those with large ones alone.
-fn coupled(n: usize, (omega, zeta): (&[f64], f64), damping: &Mat<f64>) -> (f64, Vec<Complex64>, f64) {
+/// pole, whose damping is known, in so many rounds: one is the first order. Modes that have a small share have it of this mode and of those with large ones alone.
+fn coupled(n: usize, (omega, zeta): (&[f64], f64), damping: &Mat<f64>, rounds: usize) -> (f64, Vec<Complex64>, f64) {
     let count = omega.len();
     let mut shares = vec![Complex64::ZERO; count];
     shares[n] = Complex64::ONE;
@@ -129,11 +175,11 @@ fn coupled(n: usize, (omega, zeta): (&[f64], f64), damping: &Mat<f64>) -> (f64, 
     let own = 2.0 * zeta * omega[n];
     let of_mode = damping.col_as_slice(n);
     let first = |j: usize| (of_mode[j] * omega[n] / (omega[j] * omega[j] - omega[n] * omega[n])).abs();
-    let others: Vec<usize> = (0..count).filter(|j| *j != n && omega[*j] > 0.0 && first(*j) >= LEAST).collect();
-    let large: Vec<usize> = others.iter().copied().filter(|j| first(*j) >= LARGE).collect();
+    let others: Vec<usize> = (0..count).filter(|j| *j != n && omega[*j] > 0.0).collect();
+    let large: Vec<usize> = others.iter().copied().filter(|j| rounds > 1 && first(*j) >= LARGE).collect();
     let mut s = Complex64::new(-0.5 * own, (omega[n].powi(2) - 0.25 * own * own).max(0.0).sqrt());
     let mut by_others = Complex64::ZERO;
-    for _ in 0..STEPS {
+    for _ in 0..rounds {
         for &j in &others {
             let column = damping.col_as_slice(j);
             let beside = large.iter().filter(|k| **k != j).map(|&k| column[k] * shares[k]).sum::<Complex64>();
@@ -240,5 +286,49 @@ mod tests {
             assert!((pole.norm() / size - 1.0).abs() < 1e-5, "{pole} {size}");
         }
         assert!(alone > 0.1 && coupled < 3e-3, "{coupled} {alone}");
+    }
+
+    /// What one of the panel's own modes damps more changes modes as [`CoupledModes::seen_by_panel`] has it, to first order.
+    #[test]
+    fn val_modes_change_with_the_damping_of_the_panel() {
+        let omega = [1000.0, 1040.0, 1500.0];
+        let (sin, cos) = 0.45_f64.sin_cos();
+        let turned = [[cos, sin, 0.0], [-sin, cos, 0.0], [0.0, 0.0, 1.0]];
+        let (sin, cos) = 0.3_f64.sin_cos();
+        let shares = turned.map(|[a, b, c]| vec![a, cos * b - sin * c, sin * b + cos * c]);
+        let of_panel = Mat::from_fn(3, 3, |m, n| shares[n][m]);
+        let damping = |own: [f64; 3]| {
+            Mat::from_fn(3, 3, |i, j| (0..3).map(|m| of_panel[(m, i)] * own[m] * of_panel[(m, j)]).sum())
+        };
+        let (before, more) = (damping([16.0, 9.0, 20.0]), 0.2);
+        let after = damping([16.0, 9.0, 20.0 + more]);
+        let modes = SeenModes {
+            angular_frequency: omega.to_vec(),
+            deflection: (0..3).map(|n| (0..3).map(|port| f64::from(u8::from(port == n))).collect()).collect(),
+            ..SeenModes::default()
+        };
+        for n in 0..3 {
+            let zeta = 0.5 * before[(n, n)] / omega[n];
+            let [(size, of_before, _), (_, of_after, _)] =
+                [&before, &after].map(|damping| coupled(n, (&omega, zeta), damping, STEPS));
+            let lambda = size * Complex64::new(-zeta, (1.0 - zeta * zeta).sqrt());
+            let found = CoupledModes {
+                angular_frequency: omega.to_vec(),
+                shapes: Default::default(),
+                of_panel: of_panel.clone(),
+                deviations: vec![0.0, 0.0, more],
+                own: (0..3).map(|n| before[(n, n)]).collect(),
+            };
+            let [re, im] = found.seen_by_panel(&modes, lambda, Some(n));
+            let share = -lambda * found.deviations()[2] * found.share(2, n);
+            let exact: Vec<Complex64> = of_after.iter().zip(&of_before).map(|(after, before)| after - before).collect();
+            let others = exact.iter().enumerate().filter(|(j, _)| *j != n);
+            let largest = others.map(|(_, change)| change.norm()).fold(0.0, f64::max);
+            // Its own share is one, but for what makes all of one size.
+            for (j, exact) in exact.iter().enumerate().filter(|(j, _)| *j != n) {
+                let first = share * Complex64::new(re[(2, j)], im[(2, j)]);
+                assert!((first - exact).norm() < 0.1 * largest, "mode {n} in {j}: {first} {exact}");
+            }
+        }
     }
 }

@@ -270,14 +270,28 @@ impl Part {
         has_place(self.effect) && self.effect.parameters().iter().any(|parameter| parameter.unit == "Hz")
     }
 
+    /// Whether the first coordinate says how much of the effect there is, and says the least that is looked for.
+    pub(crate) fn is_least(&self, z: &[f64]) -> bool {
+        let first = self.coordinates().next().zip(z.first());
+        first.is_some_and(|(coordinate, z)| {
+            matches!(coordinate.map, Map::Size { .. }) && !self.is_factor() && *z <= -coordinate.farthest()
+        })
+    }
+
+    /// Whether one is none of the effect.
+    fn is_factor(&self) -> bool {
+        let is_of_one = |coordinate: &Coordinate| matches!(coordinate.map, Map::Size { median, .. } if median == 1.0);
+        self.effect.parameters().first().is_some_and(|first| first.unit == "1")
+            && self.coordinates().next().is_some_and(is_of_one)
+    }
+
     /// So many times as much of the effect, where its first coordinate says how much: of a factor, beside one.
     pub(crate) fn scale(&self, z: &mut [f64], times: f64) {
         if let (Some(coordinate), Some(z)) = (self.coordinates().next(), z.first_mut())
-            && let Map::Size { median, .. } = coordinate.map
+            && matches!(coordinate.map, Map::Size { .. })
             && times > 0.0
         {
-            let is_factor = self.effect.parameters().first().is_some_and(|first| first.unit == "1") && median == 1.0;
-            let none = if is_factor { 1.0 } else { 0.0 };
+            let none = if self.is_factor() { 1.0 } else { 0.0 };
             *z = coordinate.of_value(none + times * (coordinate.value(*z) - none));
         }
     }

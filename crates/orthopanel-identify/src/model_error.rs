@@ -6,6 +6,7 @@
 
 mod coupling;
 mod mixing;
+mod panel_damping;
 
 use std::ops::Range;
 
@@ -125,7 +126,7 @@ pub(crate) struct ErrorColumns {
     without_partner: Vec<(usize, f64)>,
 }
 
-/// The power of $\tau_k$ that a column goes with: one, or two where it is of second order.
+/// The power of $\tau_k$ that a column goes with: one, two where it is of second order, or none where its size is known.
 type Power = u8;
 
 /// A column with its kind: places and values that are not zero.
@@ -149,6 +150,11 @@ pub(crate) fn least_sizes(structure: StructureKind) -> [f64; KINDS] {
         StructureKind::MindlinPlate if of_plate.contains(&kind) => (COMPUTED * PRIORS[kind].1).ln(),
         _ => LEAST.ln(),
     })
+}
+
+/// Least error of a residue of a plate in quadrature.
+fn least_quadrature() -> f64 {
+    COMPUTED * PRIORS[Kind::Quadrature as usize].1
 }
 
 /// Standard deviation of $\ln\tau_k$ of every kind.
@@ -267,6 +273,7 @@ impl ErrorColumns {
         // Modes of a beam lie far apart.
         if predictor.structure == StructureKind::MindlinPlate {
             columns.extend(mixing::columns(comparison, at));
+            columns.extend(panel_damping::columns(predictor, at));
         }
         let unseen = comparison.unseen().start;
         let is_told = |along: &[f64]| along.iter().any(|value| *value != 0.0);

@@ -288,8 +288,7 @@ impl Problem<'_> {
     /// arXiv:1201.5885), with the curvature $J^TJ + P$ where it ends.
     pub(crate) fn follow(&self, from: Point, by: &Whitening, how: Following) -> Option<(Point, Mat<f64>)> {
         let Following { most, least_gain, exact_from, exactly } = how;
-        let is_plate = self.stacked.is_of_plates();
-        let worth_a_step = if is_plate { NO_GAIN * least_gain } else { f64::NEG_INFINITY };
+        let worth_a_step = NO_GAIN * least_gain;
         let precision = self.hypothesis.precision();
         let size = from.z.len();
         let mut point = self.judged_by(from, by)?;
@@ -475,9 +474,8 @@ impl Problem<'_> {
     pub(crate) fn posterior(&self, from: Point, log_sizes: [f64; KINDS], rounds: usize) -> Option<Posterior> {
         let errors = self.errors(&from.at);
         let mut here = Weighed { point: from, errors, log_sizes, value: f64::INFINITY };
-        // On a plate exact derivatives are dear: only once sizes and parameters stand still are they asked whether they do. Those of a beam are not.
-        let is_plate = self.stacked.is_of_plates();
-        let mut exactly = !is_plate;
+        // Exact derivatives are dear: only once sizes and parameters stand still are they asked whether they do.
+        let mut exactly = false;
         for round in 0..rounds {
             let by = self.whitening(&here.errors, &here.log_sizes)?;
             // A few steps before the sizes are what they are to be.
@@ -489,28 +487,22 @@ impl Problem<'_> {
             // The covariance is that about a point, and goes with it, which steps do not foresee: too long a way is taken in part.
             let is_lower = |there: &Weighed| there.value < here.value - LEAST_FALL;
             let mut part = 1.0;
-            while is_plate && !is_lower(&there) && part > 0.25 && there.point.z != here.point.z {
+            while !is_lower(&there) && part > 0.25 && there.point.z != here.point.z {
                 part *= 0.5;
                 let between = self.halfway(&here.point, &there.point)?;
                 there = self.weighed(between, &here.log_sizes)?;
             }
             let falls = is_lower(&there);
-            let stands = (there.value - here.value).abs() < LEAST_FALL;
-            // Modes of a beam lie far apart, and its covariance hardly moves.
-            if there.value < here.value || !is_plate {
+            if there.value < here.value {
                 here = there;
             }
-            if if is_plate { !falls && (exactly || is_exact) } else { stands } {
+            if !falls && (exactly || is_exact) {
                 break;
             }
-            exactly = !is_plate || !falls;
+            exactly = !falls;
         }
         let Weighed { mut point, errors, log_sizes, .. } = here;
         let by = self.whitening(&errors, &log_sizes)?;
-        if !is_plate {
-            point.derivatives = Mat::new();
-            (point, _) = self.follow(point, &by, Following::to_the_end(3, 0.01))?;
-        }
         if !point.is_exact {
             point.derivatives = Mat::new();
         }

@@ -69,8 +69,8 @@ pub(crate) struct Prediction {
     /// The same by the place of the force of all records, and of the response \[1/m\], along x and along y: zeros where no record tells.
     pub by_force: [Vec<f64>; 2],
     pub by_response: [Vec<f64>; 2],
-    /// What was compared, where masses stand on feet: for the derivative by their side.
-    on_feet: Option<(Vec<Channel>, Views)>,
+    /// What was compared, where anything stands on a plate: for the derivatives by the side of its feet and by the damping of the plate.
+    pub standing: Option<(Vec<Channel>, Views)>,
     /// Direction of each pole's residues in the complex plane, where all differ by sign alone.
     pub phase: Vec<Complex64>,
     /// Of each record and pole what a residue of size one, along the phase, brings to the remainder at each of its frequencies.
@@ -351,13 +351,20 @@ impl<'a> Predictor<'a> {
         }
         let seen = Views { places, views };
         let mut at = self.compared(&channels, &seen);
-        at.on_feet = seen.views.iter().any(|view| view.modes.by_foot.is_some()).then_some((channels, seen));
+        at.standing = seen.views.iter().any(|view| !view.modes.own.shares.is_empty()).then_some((channels, seen));
         Ok(at)
+    }
+
+    /// The partner of each pole among the modes, from the rigid ones on.
+    pub(crate) fn partners_of(&self, at: &Prediction) -> Vec<Option<usize>> {
+        let rigid = self.panel.rigid_modes(self.setting.boundary);
+        at.flexible_of_poles.iter().map(|flexible| flexible.map(|n| rigid + n)).collect()
     }
 
     /// Derivatives of the values by the logarithm of the side of the feet on which masses stand on a plate; `None` without any.
     pub(crate) fn by_foot(&self, at: &Prediction) -> Option<Vec<f64>> {
-        let (channels, seen) = at.on_feet.as_ref()?;
+        let (channels, seen) = at.standing.as_ref()?;
+        seen.views.iter().find(|view| view.modes.by_foot.is_some())?;
         let moved = |View { of, ports, modes, .. }: &View| {
             let modes = modes.by_foot.as_ref().map_or_else(|| Arc::clone(modes), |by| Arc::new(shifted(modes, by)));
             View { of: *of, ports: ports.clone(), modes, relaxing: None }
@@ -437,7 +444,12 @@ impl<'a> Predictor<'a> {
     }
 
     /// Modes of a plate with what stands on it as the damping of the plate couples them.
-    fn coupled(&self, view: &View, partners: &[Option<usize>], channel: Option<&Channel>) -> Option<CoupledModes> {
+    pub(crate) fn coupled(
+        &self,
+        view: &View,
+        partners: &[Option<usize>],
+        channel: Option<&Channel>,
+    ) -> Option<CoupledModes> {
         channel?;
         let pole = |n: usize| partners.iter().position(|partner| *partner == Some(n));
         let zeta: Vec<f64> = (0..view.near()).map(|n| self.damping(view, n, pole(n), channel)).collect();
@@ -588,7 +600,7 @@ impl<'a> Predictor<'a> {
             values,
             by_force: [force_x, force_y],
             by_response: [response_x, response_y],
-            on_feet: None,
+            standing: None,
             phase,
             brings,
             partners: in_records,

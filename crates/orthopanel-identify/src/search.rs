@@ -75,9 +75,13 @@ pub(crate) fn log_prior(ways: usize) -> f64 {
     -((ways * catalogue().len()) as f64).ln()
 }
 
-/// A base with one effect more, which lacks in one of so many ways alike.
+/// A base with one effect more, which lacks in one of so many ways alike. The least of an effect that is looked for is none: what is gained there is what its
+/// presence adds to the model error.
 pub(crate) fn with_one_more(base: &Judged, hypothesis: Hypothesis, posterior: Posterior, ways: usize) -> Judged {
-    let log_odds = base.log_odds - base.posterior.log_evidence + posterior.log_evidence + log_prior(ways);
+    let last = hypothesis.parts.last().zip(hypothesis.of_parts(&posterior.point.z).last().copied());
+    let is_none = last.is_some_and(|(part, z)| part.is_least(z));
+    let gain = posterior.log_evidence - base.posterior.log_evidence;
+    let log_odds = base.log_odds + if is_none { gain.min(0.0) } else { gain } + log_prior(ways);
     Judged { hypothesis, posterior, log_odds }
 }
 

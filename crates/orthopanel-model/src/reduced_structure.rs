@@ -268,7 +268,7 @@ impl<S: Structure> Structure for ReducedStructure<S> {
         self.whole.static_remainders(values, motions)
     }
 
-    fn inertial_remainders(&self, values: &[f64], motions: &[(Motion, Place)]) -> Vec<Mat<f64>> {
+    fn inertial_remainders(&self, values: &[f64], motions: [&[(Motion, Place)]; 2]) -> Vec<Mat<f64>> {
         self.whole.inertial_remainders(values, motions)
     }
 

@@ -16,7 +16,7 @@
 use faer::Mat;
 
 use crate::dense::{product, symmetric_eigen};
-use crate::effects::{FarMode, FarModes, Flexibilities};
+use crate::effects::{FarMode, FarModes};
 use crate::{Mode, ModelError, PanelModel, Place, TimeModel};
 
 /// Residual modes to be joined to the modes of a [`TimeModel`].
@@ -66,15 +66,10 @@ impl PanelModel {
             self.piece.contains(place)?;
         }
         let ports: Vec<Place> = forces.iter().chain(responses).copied().collect();
-        let (far, lacking) = self.far_modes(flexible, places, &ports)?;
+        let far = self.far_modes(flexible, places, &ports)?;
         let first = far.modes.first().map_or(1.0, |(omega, _)| *omega);
         let unmoved = UNMOVED / (self.piece.mass() * first.powi(4));
-        let mut shapes = Answers::of(&far, &lacking, places.len()).modes(places.len(), unmoved)?;
-        if shapes.iter().any(|(omega, _)| *omega <= far.last_kept) {
-            // Of many modes a plate's own basis, with the kink under a force, has more than the wide one without: then it lacks nothing.
-            let nothing = vec![vec![0.0; places.len()]; lacking.len()];
-            shapes = Answers::of(&far, &nothing, places.len()).modes(places.len(), unmoved)?;
-        }
+        let mut shapes = Answers::of(&far, [places.len(), ports.len()]).modes(places.len(), unmoved)?;
         // What rounding leaves among the modes kept would be no residue.
         shapes.retain(|(omega, _)| *omega > far.last_kept);
         let count = count.unwrap_or(shapes.len());
@@ -119,8 +114,7 @@ struct Answers {
 }
 
 impl Answers {
-    /// `lacking` is a flexibility without mass, as of modes beyond all frequencies.
-    fn of(far: &FarModes, lacking: &Flexibilities, places: usize) -> Self {
+    fn of(far: &FarModes, [places, ports]: [usize; 2]) -> Self {
         let shifts = [0.0, (ANSWERED * far.last_kept).powi(2)];
         // Without a mode kept there is but the one at rest.
         let shifts = if shifts[1] > 0.0 { &shifts[..] } else { &shifts[..1] };
@@ -128,14 +122,10 @@ impl Answers {
         let share =
             |(omega, seen): &FarMode, column: usize| seen[column % places] / (omega * omega - shifts[column / places]);
         let sum = |term: &dyn Fn(&FarMode) -> f64| far.modes.iter().map(term).sum::<f64>();
-        let at =
-            |row: usize, column: usize| lacking[row][column % places] + sum(&|mode| mode.1[row] * share(mode, column));
-        let stiffness = |a: usize, b: usize| {
-            let (p, q) = (a % places, b % places);
-            0.5 * (lacking[p][q] + lacking[q][p]) + sum(&|mode| mode.0 * mode.0 * share(mode, a) * share(mode, b))
-        };
+        let at = |row: usize, column: usize| sum(&|mode| mode.1[row] * share(mode, column));
+        let stiffness = |a: usize, b: usize| sum(&|mode| mode.0 * mode.0 * share(mode, a) * share(mode, b));
         Self {
-            seen: Mat::from_fn(lacking.len(), columns, at),
+            seen: Mat::from_fn(places + ports, columns, at),
             stiffness: Mat::from_fn(columns, columns, stiffness),
             mass: Mat::from_fn(columns, columns, |a, b| sum(&|mode| share(mode, a) * share(mode, b))),
         }

@@ -2,52 +2,13 @@
 
 use faer::Mat;
 
+use crate::ModelError;
 use crate::block_pencil::{Factor, shift};
 use crate::dense::product;
-use crate::ritz_modes::checked_coefficients;
 use crate::structure::Block;
-use crate::{ModelError, Place, Structure};
 
-/// $\sum_m W_m(r)W_m(f)/\omega_m^2$ \[m/N\] over **all** flexible modes of the structure's basis, without solving for them: a
-/// row a response, a column a force.
-///
-/// $Ku = f - MRR^Tf$ with $R$ the rigid modes and $R^TMu = 0$ is the deflection under a unit force that the inertia of the
-/// rigid motion balances.
-///
-/// Converges with the basis, but for one place alone on a plate that shears: a point force there has no finite deflection,
-/// and the sum grows with the logarithm of the number of terms.
-///
-/// # Errors
-/// As [`crate::ritz_modes()`], but for the number of modes.
-pub(crate) fn static_deflections(
-    structure: &dyn Structure,
-    values: &[f64],
-    forces: &[Place],
-    responses: &[Place],
-) -> Result<Vec<Vec<f64>>, ModelError> {
-    let coefficients = checked_coefficients(structure, values)?;
-    let mut sum = Mat::<f64>::zeros(responses.len(), forces.len());
-    for (index, block) in structure.blocks().iter().enumerate() {
-        let rows = |places: &[Place]| {
-            let rows: Vec<Vec<f64>> = places.iter().map(|&place| structure.shape_row(index, place)).collect();
-            Mat::from_fn(block.size(), places.len(), |i, place| rows[place][i])
-        };
-        let deflected = deflected(block, &coefficients, rows(forces))?;
-        sum += product(rows(responses).transpose(), deflected.as_ref());
-    }
-    Ok((0..responses.len()).map(|r| (0..forces.len()).map(|f| sum[(r, f)]).collect()).collect())
-}
-
-/// $u$ of one block, a column a force.
-pub(crate) fn deflected(block: &Block, coefficients: &[f64], loads: Mat<f64>) -> Result<Mat<f64>, ModelError> {
-    // A force on a line of symmetry moves nothing that is odd about it.
-    if (0..loads.ncols()).all(|force| loads.col_as_slice(force).iter().all(|value| *value == 0.0)) {
-        return Ok(loads);
-    }
-    Ok(StaticSolution::new(block, coefficients)?.of(loads))
-}
-
-/// The stiffness of a block, ready to be solved.
+/// The stiffness of a block, ready to be solved. $Ku = f - MRR^Tf$ with $R$ the rigid modes and $R^TMu = 0$ is the deflection under a unit force that the
+/// inertia of the rigid motion balances: the sum over **all** flexible modes of the basis, without solving for them.
 #[derive(Debug)]
 pub(crate) struct StaticSolution {
     factor: Factor,

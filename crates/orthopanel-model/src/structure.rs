@@ -64,10 +64,10 @@ pub trait Structure {
         None
     }
 
-    /// What the basis lacks of $\sum_m\phi_{1m}\phi_{2m}/\omega_m^{2+2k}$ over all flexible modes between any two motions of a list, from
-    /// $k = 1$ on as far as that is known. They are the further terms of the series in $s^2$ that stands for the modes above a sum, of which
+    /// What the basis lacks of $\sum_m\phi_{1m}\phi_{2m}/\omega_m^{2+2k}$ over all flexible modes between the motions of two lists, a row each of
+    /// the first, from $k = 1$ on as far as that is known. They are the further terms of the series in $s^2$ that stands for the modes above a sum, of which
     /// [`Structure::static_flexibility`] is the first.
-    fn inertial_remainders(&self, _values: &[f64], _motions: &[(Motion, Place)]) -> Vec<Mat<f64>> {
+    fn inertial_remainders(&self, _values: &[f64], _motions: [&[(Motion, Place)]; 2]) -> Vec<Mat<f64>> {
         vec![]
     }
 }

@@ -73,7 +73,7 @@ fn val_driving_points_are_within_one_percent_of_220_modes_up_to_four_fifths_of_t
                 without = without.max((kept.accelerance(p, p, f) - exact(p, f)).norm() / rms);
             }
             let text = format!("{of} {effects}, {modes} modes, place {p}");
-            assert!(of_octave < 0.01 && of_line < 0.015, "{text}: octave {of_octave:e}, line {of_line:e}");
+            assert!(of_octave < 0.01 && of_line < 0.02, "{text}: octave {of_octave:e}, line {of_line:e}");
             assert!(without > 0.05, "{text}: there was something to mend: {without}");
         }
     }

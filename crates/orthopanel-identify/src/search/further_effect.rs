@@ -10,7 +10,7 @@ use orthopanel_model::{Effect, Place, StructureKind};
 use rayon::prelude::*;
 
 use super::{FOLLOWED, Inquiry, LOOSE, NEAR, SMALL, constants_of_beam, logs, with_one_more};
-use crate::hypothesis::{Hypothesis, Role};
+use crate::hypothesis::{Hypothesis, Role, has_place};
 use crate::judge::{ODDS, most_frequency};
 use crate::measured::Pole;
 use crate::model_error::{KINDS, Kind};
@@ -235,7 +235,9 @@ impl Inquiry<'_> {
         if self.replaces(&ways) && (is_far || self.reaches_beyond(base)) {
             return None;
         }
-        let on_plate = if self.is_plate() { Some(self.net_on_plate(base, &missed)?) } else { None };
+        // Places are without number; what has none is predicted from each start.
+        let on_plate =
+            if self.is_plate() && has_place(effect) { Some(self.net_on_plate(base, &missed)?) } else { None };
         let starts = |(way, hypothesis): (usize, &Hypothesis)| {
             let problem = self.problem(hypothesis);
             if let Some(net) = &on_plate {

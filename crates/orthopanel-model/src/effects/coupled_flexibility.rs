@@ -1,15 +1,13 @@
 //! What all modes of a panel with effects together leave at low frequency.
 
-use std::sync::Arc;
-
 use super::coupled_panel::{CoupledPanel, ModifiedStructure, PanelWithEffects};
 use super::low_modes::FarAnswers;
 use crate::modal_model::add_flexibility;
-use crate::{Damping, MindlinPlate, ModelError, Place};
+use crate::{Damping, ModelError, Place};
 
 /// Bare modes in whose coordinates it is worked out, at most: forces at ports and elements have shapes of their own, so that no
 /// number of modes makes it better but where the panel itself is uneven.
-pub(crate) const MOST_SUMMED: usize = 60;
+const MOST_SUMMED: usize = 60;
 
 /// A row a response, a column a force \[m/N\].
 pub(crate) type Flexibilities = Vec<Vec<f64>>;
@@ -43,8 +41,7 @@ pub(crate) struct FarModes {
 pub(crate) type FarMode = (f64, Vec<f64>);
 
 impl CoupledPanel {
-    /// All modes of the panel with its effects but the first `count` flexible ones, as seen from `places` and `others`. With the plate on
-    /// whose basis they are, where nothing is spread over it.
+    /// All modes of the panel with its effects but the first `count` flexible ones, as seen from `places` and `others`.
     ///
     /// # Errors
     /// As [`CoupledPanel::modes`].
@@ -52,7 +49,7 @@ impl CoupledPanel {
         parts: PanelWithEffects,
         count: usize,
         [places, others]: [&[Place]; 2],
-    ) -> Result<(FarModes, Option<Arc<MindlinPlate>>), ModelError> {
+    ) -> Result<FarModes, ModelError> {
         let modified = match ModifiedStructure::for_modes(parts, count) {
             // At the end of its basis a panel has no modes to spare.
             Err(ModelError::BasisTooSmall { .. }) => ModifiedStructure::new(parts, count)?,
@@ -67,7 +64,7 @@ impl CoupledPanel {
         };
         let last_kept = modes.last().map_or(0.0, |(omega, ..)| *omega);
         let modes = far.iter().filter(|(omega, ..)| *omega > 0.0).map(|(omega, _, shares)| (*omega, seen(shares)));
-        Ok((FarModes { last_kept, modes: modes.collect() }, modified.even_plate()))
+        Ok(FarModes { last_kept, modes: modes.collect() })
     }
 }
 

@@ -21,7 +21,7 @@ use crate::structure::{Motion, ShearMoment, Structure};
 use crate::{BeamTerms, Boundary, Damping, MindlinPlate, ModeName, ModelError, Piece, Place, RitzMode, TimoshenkoBeam};
 
 /// Modes of the bare structure beyond those asked for.
-pub(crate) const SPARE_MODES: usize = 10;
+const SPARE_MODES: usize = 10;
 /// What stands where nothing does: its place has a residual shape all the same.
 const NOTHING: ElementLaw = ElementLaw::Mass { mass: 0.0 };
 
@@ -120,8 +120,6 @@ fn basis_terms(summed: usize) -> usize {
 pub(super) struct ModifiedStructure {
     structure: SharedStructure,
     plate: Option<Arc<MindlinPlate>>,
-    /// Whether no effect is spread over it.
-    is_even: bool,
     piece: Piece,
     values: Vec<f64>,
     pub(super) low: Arc<LowModes>,
@@ -161,7 +159,7 @@ impl ModifiedStructure {
         let is_known = elements.iter().filter_map(row).all(|row| plates.know(row));
         let low = plates.low_modes(&plate, &values, is_known)?;
         let structure = if is_known { plate.structure } else { plate.whole };
-        Ok(Self { structure, plate: None, is_even: true, piece: setting.piece, values, low, elements, core: None })
+        Ok(Self { structure, plate: None, piece: setting.piece, values, low, elements, core: None })
     }
 
     /// On the first `summed` flexible modes of the structure with what effects spread over it.
@@ -175,7 +173,7 @@ impl ModifiedStructure {
             ));
         }
         let mut elements = elements(effects, setting)?;
-        let mut is_even = spread.terms.is_none();
+        let is_even = spread.terms.is_none();
         let (structure, plate): (SharedStructure, _) = match (even, spread.terms) {
             (Even::Beam(even), None) => (Arc::<TimoshenkoBeam>::clone(&even.beam), None),
             (Even::Beam(_), Some(terms)) => {
@@ -184,7 +182,6 @@ impl ModifiedStructure {
             }
             (Even::Plate, terms) => {
                 let edge_mass = take_edge_mass(&mut elements);
-                is_even &= edge_mass == 0.0;
                 elements = on_feet(elements);
                 let terms = PlateTerms { spread: terms.unwrap_or_default(), edge_mass };
                 let plate = MindlinPlate::uneven_with_basis_for((&piece, boundary), values, summed, &terms)?;
@@ -197,17 +194,12 @@ impl ModifiedStructure {
             Even::Beam(even) if is_even => even.low_modes(values, summed)?,
             _ => Arc::new(LowModes::new(structure.as_ref(), values, summed)?),
         };
-        Ok(Self { structure, plate, is_even, piece, values: values.to_vec(), low, elements, core: spread.core })
+        Ok(Self { structure, plate, piece, values: values.to_vec(), low, elements, core: spread.core })
     }
 
     /// $A_{55}$ and $A_{44}$ \[N/m\] of a plate.
     pub(super) fn shear_stiffnesses(&self) -> Result<[f64; 2], ModelError> {
         shear_stiffnesses(self.structure.as_ref(), &self.values)
-    }
-
-    /// The plate, where it is one and nothing is spread over it.
-    pub(super) fn even_plate(&self) -> Option<Arc<MindlinPlate>> {
-        self.plate.clone().filter(|_| self.is_even)
     }
 
     /// The panel without any element.
@@ -278,17 +270,9 @@ impl ModifiedStructure {
         damping: &Damping,
         modes: &[FoundMode],
     ) -> Result<OwnModes, ModelError> {
-        let bare = self.low.modes.len();
         let is_of_panel = |element: &PointElement| matches!(element.motion, Motion::Shear(_));
-        let standing = self.elements.iter().filter(|element| !is_of_panel(element)).count();
-        if standing == 0 {
+        if self.elements.iter().all(is_of_panel) {
             return Ok(OwnModes::default());
-        }
-        if standing == self.elements.len() {
-            return Ok(OwnModes {
-                angular_frequency: self.low.modes.iter().map(|(.., square)| square.sqrt()).collect(),
-                shares: modes.iter().map(|(.., shares)| shares[..bare].to_vec()).collect(),
-            });
         }
         let alone = |element: &PointElement| PointElement {
             law: if is_of_panel(element) { element.law } else { NOTHING },
@@ -299,8 +283,7 @@ impl ModifiedStructure {
         patches.resize(answers.series[1].ncols(), PointElement { law: NOTHING, ..self.elements[0] });
         let system = System::new(&self.low, answers, &patches, damping);
         let size = system.panel;
-        let mut own = system.solve()?;
-        own.truncate(bare);
+        let own = system.solve()?;
         let shapes = |modes: &[FoundMode]| Mat::from_fn(size, modes.len(), |i, n| modes[n].2[i]);
         let images = product(system.mass.submatrix(0, 0, size, size), shapes(modes).as_ref());
         let shares = product(shapes(&own).transpose(), images.as_ref());

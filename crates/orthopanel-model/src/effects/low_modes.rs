@@ -162,7 +162,7 @@ impl LowModes {
             }
         }
         let rows = [asked.elements, asked.ports, asked.watched].concat();
-        self.close(structure, values, &rows, &mut answers);
+        self.close((structure, values), (&rows, asked.elements.len()), &mut answers);
         Ok(answers)
     }
 
@@ -195,7 +195,12 @@ impl LowModes {
         if let Some(answered) = lock().iter().find(is_asked) {
             return Ok(Arc::clone(answered));
         }
-        let answered = Arc::new(self.answered(of, (&rows, asked.ports.len()), beyond)?);
+        let mut answered = self.answered(of, (&rows, asked.ports.len()), beyond)?;
+        let (structure, values) = of;
+        if let Some(lacking) = structure.inertial_remainders(values, [asked.ports; 2]).first() {
+            answered.series[1] += lacking;
+        }
+        let answered = Arc::new(answered);
         let mut kept = lock();
         kept.truncate(KEPT - 1);
         kept.insert(0, Arc::clone(&answered));
@@ -245,22 +250,32 @@ impl LowModes {
     }
 
     /// Puts the exact static flexibility in place of the basis' own, where the structure knows it; adds what the basis is known to lack of $C_1$ and
-    /// the further terms.
-    fn close(&self, structure: &dyn Structure, values: &[f64], rows: &[Row], answers: &mut FarAnswers) {
+    /// the further terms between the first `elements` of the rows and all.
+    fn close(
+        &self,
+        (structure, values): (&dyn Structure, &[f64]),
+        (rows, elements): (&[Row], usize),
+        answers: &mut FarAnswers,
+    ) {
         let near = &answers.near;
         let [far, inertia] = &mut answers.series;
         let pushed = far.ncols();
         let second = &mut answers.second;
         let twice = second.mass.ncols();
-        for (power, lacking) in structure.inertial_remainders(values, &rows[..pushed]).iter().enumerate() {
+        let lacking =
+            if elements > 0 { structure.inertial_remainders(values, [rows, &rows[..elements]]) } else { vec![] };
+        for (power, lacking) in lacking.iter().enumerate() {
             let of_few = lacking.subcols(0, twice);
             match power {
                 0 => {
-                    *inertia += lacking;
-                    let mut seen = second.seen.subrows_mut(0, pushed);
-                    seen += of_few;
+                    let mut along = inertia.subcols_mut(0, elements);
+                    along += lacking.subrows(0, pushed);
+                    let ports = elements..pushed;
+                    let mut across = inertia.submatrix_mut(0, ports.start, elements, ports.len());
+                    across += lacking.subrows(ports.start, ports.len()).transpose();
+                    second.seen += of_few;
                 }
-                1 => second.coupled += of_few,
+                1 => second.coupled += of_few.subrows(0, pushed),
                 _ => second.mass += of_few.subrows(0, twice),
             }
         }

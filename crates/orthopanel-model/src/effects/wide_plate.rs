@@ -4,6 +4,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use faer::Mat;
 
+use super::EffectSetting;
 use super::known::{Known, known_or};
 use super::low_modes::LowModes;
 use super::row::{Row, SharedStructure};
@@ -74,7 +75,7 @@ impl Structure for RatioPlate {
         self.plate.kinks(self.membrane.as_ref()?, &plate_constants(six(values).ok()?), motions)
     }
 
-    fn inertial_remainders(&self, values: &[f64], motions: &[(Motion, Place)]) -> Vec<Mat<f64>> {
+    fn inertial_remainders(&self, values: &[f64], motions: [&[(Motion, Place)]; 2]) -> Vec<Mat<f64>> {
         let (Some(membrane), Ok(values)) = (&self.membrane, six(values)) else { return vec![] };
         self.plate.inertia(membrane, &plate_constants(values), motions)
     }
@@ -204,6 +205,12 @@ impl WidePlates {
             plates.insert(0, (cell, plate.clone()));
         }
         Ok(plate)
+    }
+
+    /// Modes of a plate with these constants that its basis holds, where those up to a frequency \[Hz\] are summed.
+    pub(super) fn held(setting: &EffectSetting, constants: &[f64], frequency: f64) -> Result<usize, ModelError> {
+        let top = HELD / SUMMED * frequency;
+        Ok(MindlinPlate::estimated_nodes(&setting.piece, setting.boundary, constants, top)?.len().max(1))
     }
 
     /// A plate on a basis, the same for all that have one of its size.

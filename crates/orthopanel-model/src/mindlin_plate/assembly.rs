@@ -64,7 +64,6 @@ pub(super) fn assemble(
     rotary_factor: f64,
     edge_mass: f64,
     products: Products,
-    coefficients: Option<[f64; 6]>,
 ) -> (Vec<Vec<Coordinate>>, Vec<Block>) {
     let [x, y] = along;
     let mut coordinates = Vec::new();
@@ -75,7 +74,7 @@ pub(super) fn assemble(
     }
     let meetings = along.each_ref().map(EdgeBasis::meetings);
     let blocks = side_by_side::map(&coordinates, |list| {
-        let mut block = block(piece, along, rotary_factor, (list, &meetings), coefficients);
+        let mut block = block(piece, along, rotary_factor, (list, &meetings));
         if edge_mass != 0.0 {
             add_edge_mass(piece, along, edge_mass, list, &mut block);
         }
@@ -120,14 +119,13 @@ fn block(
     along: &[EdgeBasis; 2],
     rotary_factor: f64,
     (list, meetings): (&[Coordinate], &[Vec<Vec<bool>>; 2]),
-    coefficients: Option<[f64; 6]>,
 ) -> Block {
     let profile = Arc::new(profile(along, list, meetings));
     let sum = |forms: &[Form]| product(along, (list, &profile), forms);
     let plain = |f: &'static [Term], g: &'static [Term]| (1.0, EdgeBasis::integrals as AlongX, f, g);
     let sheared = |f: &'static [Term]| (1.0, EdgeBasis::sheared_integrals as AlongX, f, f);
     // In the order of the coefficients.
-    let mut forms = [
+    let forms = [
         vec![plain(CURVATURE_X, CURVATURE_X)],
         vec![plain(CURVATURE_Y, CURVATURE_Y)],
         vec![plain(CURVATURE_X, CURVATURE_Y), plain(CURVATURE_Y, CURVATURE_X)],
@@ -135,15 +133,7 @@ fn block(
         vec![sheared(SHEAR_X)],
         vec![sheared(SHEAR_Y)],
     ];
-    let stiffness = match coefficients {
-        None => forms.iter().map(|own| sum(own)).collect(),
-        Some(coefficients) => {
-            for (own, coefficient) in forms.iter_mut().zip(coefficients) {
-                own.iter_mut().for_each(|form| form.0 = coefficient);
-            }
-            vec![sum(&forms.concat())]
-        }
-    };
+    let stiffness = forms.iter().map(|own| sum(own)).collect();
     let rotary_inertia = rotary_factor * piece.mass_per_area * piece.thickness * piece.thickness / 12.0;
     let inertias = [(piece.mass_per_area, DEFLECTION), (rotary_inertia, ROTATION_X), (rotary_inertia, ROTATION_Y)];
     let mass = sum(&inertias.map(|(inertia, own)| (inertia, EdgeBasis::integrals as AlongX, own, own)));

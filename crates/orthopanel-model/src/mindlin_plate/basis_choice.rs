@@ -49,7 +49,7 @@ impl MindlinPlate {
     ) -> Result<Self, ModelError> {
         let terms = Self::terms_for_basis(piece, boundary, values, count)?;
         // Frequencies can do without products of many nodes both ways, the motion under a point force cannot.
-        let plate = Self::uneven(piece, boundary, terms, Products::All, own, None)?;
+        let plate = Self::uneven(piece, boundary, terms, Products::All, own)?;
         Ok(Self { resolved_modes: plate.resolved_modes.max(count), ..plate })
     }
 

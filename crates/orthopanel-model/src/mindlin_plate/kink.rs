@@ -10,21 +10,22 @@
 //! with $G$ its exact answer, a product of hyperbolic functions, and $G_n$ that of the series along x.
 //!
 //! Under the force itself the sum over $m$ has no end: a point on a membrane gives way without limit, with the logarithm of the number of functions
-//! across. What stands on a panel has a foot. With the exact functions across, $\sqrt{2/b}\cos k_my$ and the like, a force on a square of side $d$
-//! moves the mean deflection there by
-//! $$R(0) = \sum_m\frac{v_m^2(y)}{2A_{55}\kappa_m}\left(\frac{\sin k_md/2}{k_md/2}\right)^2f(\kappa_md),\qquad
-//! f(u) = 2\,\frac{u-1+e^{-u}}{u^2},\qquad\kappa_m = \sqrt{a_m/A_{55}},$$
-//! which replaces what the basis has of this sum where both motions are the same [`Motion::Foot`], with what comes back once from either end. A force of a hammer keeps its point: ports are seen from
-//! afar.
+//! across. What stands on a panel has a foot, and so have here a hammer's tip and a sensor. With the exact functions across, $\sqrt{2/b}\cos k_my$ and the
+//! like, a force on a square of side $d$ at $x$ moves the mean deflection of one at $x'$ by
+//! $$R = \sum_m\frac{v_m(y)v_m(y')}{2A_{55}\kappa_m}\left(\frac{\sin k_md/2}{k_md/2}\right)^2\big[g(|x-x'|;\kappa_m)+\dots\big],\qquad
+//! \kappa_m = \sqrt{a_m/A_{55}},$$
+//! with $g$ the mean of $e^{-\kappa|x-x'|}$ over both, and what comes back from the ends. It falls off with the distance along x: where two places lie farther apart
+//! along y, the same is done with x and y exchanged. With functions of the basis across in place of waves, what a mass does 12 mm beside a port along x
+//! hung on the basis by 2 % of a residue.
 //!
-//! In $R$ the rotation $\psi_x$ is taken as held in the waves that the series lacks, which leaves $A_{55}/D_{11}k_x^2$ of $\Delta R$. Under a foot that
-//! is made good: a wave $\cos k_xx\cos k_yy$ gives way by
+//! In $R$ the rotation along the exact direction is taken as held in the waves that the series lacks. That is made good: a wave $\cos k_xx\cos k_yy$ gives way by
 //! $$c = \frac1{A_{55}k_x^2+A_{44}k_y^2}+\frac1{D_{11}k_x^4+2(D_{12}+2D_{66})k_x^2k_y^2+D_{22}k_y^4}$$
 //! (exact where both shear stiffnesses are one), and swings with the mass per area $\rho$, so that the waves that the basis lacks answer with $c +
 //! \omega^2\rho c^2 + \omega^4\rho^2c^3 + \dots$ Sums over waves less those over the basis' own functions are what it lacks; the lower half of these functions are such waves to
 //! all digits, and need no part in it.
 
 use std::cell::OnceCell;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use faer::{Mat, MatRef};
 
@@ -39,8 +40,8 @@ use crate::structure::Motion;
 #[derive(Debug, Clone)]
 pub(crate) struct Membrane {
     half_length: f64,
-    /// Sign of the wave that comes back from either end: of a free one as it came, of a held one turned round.
-    returned: [f64; 2],
+    /// What holds either end of it.
+    ends: [End; 2],
     /// Of each length that the series along x have.
     along: Vec<Modes>,
     /// Which of these each mode across has.
@@ -49,6 +50,9 @@ pub(crate) struct Membrane {
     /// Half the width \[m\], and what holds the edges at either end of it.
     half_width: f64,
     sides: [End; 2],
+    /// Waves along x and along y, down to the finest that a foot sees.
+    waves: [Vec<WaveBetween>; 2],
+    seen: Arc<Mutex<KnownMotions>>,
 }
 
 /// $\int f'g'$ and $\int fg$ made diagonal.
@@ -91,11 +95,19 @@ impl Modes {
 const FLAT: f64 = 1e-9;
 
 /// A motion at a place, as the modes along x (of each length of series) and across see it.
+#[derive(Debug)]
 struct Seen {
-    side: Side,
+    place: [f64; 2],
+    /// Of the derivatives along x and y.
+    orders: [usize; 2],
     along: Vec<Vec<f64>>,
     across: Vec<f64>,
+    /// The first waves along x and along y.
+    waves: [Vec<f64>; 2],
 }
+
+/// Motions that were seen last: those at ports are asked for again and again.
+type KnownMotions = Vec<((Motion, crate::Place), Arc<Seen>)>;
 
 /// $D_{11}, D_{22}, D_{12}, D_{66}$ \[N m\], $A_{55}, A_{44}$ \[N/m\].
 type Stiffnesses = [f64; 6];
@@ -106,6 +118,9 @@ type Wave = (f64, f64);
 /// A place along one direction with the order of the derivative that is asked there.
 type Side = (usize, f64);
 
+/// Along x and along y.
+const AXES: [usize; 2] = [0, 1];
+
 impl Membrane {
     /// `None` where the basis has no such modes. `lengths` is how many functions along x each one across has: rising modes across
     /// are taken to have those of its functions in order.
@@ -115,13 +130,17 @@ impl Membrane {
         [ends, sides]: [[End; 2]; 2],
         lengths: &[usize],
     ) -> Option<Self> {
-        let returned = ends.map(|end| if end == End::Free { 1.0 } else { -1.0 });
         let mut counts = sorted(lengths.to_vec(), |&count| count as f64);
         counts.dedup();
         let along = counts.iter().map(|&count| Modes::of(x, count)).collect::<Option<Vec<_>>>()?;
         let along_of = lengths.iter().map(|length| counts.partition_point(|count| count < length)).collect();
         let across = Modes::of(y, y.count(Field::Deflection))?;
-        Some(Self { half_length, returned, along, along_of, across, half_width, sides })
+        let waves = [(half_length, ends), (half_width, sides)].map(|(half, ends)| {
+            let count = (FINEST * 2.0 * half / FOOT).ceil() as usize;
+            (0..count).map(|m| WaveBetween::new(m, 2.0 * half, ends)).collect()
+        });
+        let seen = Arc::default();
+        Some(Self { half_length, ends, along, along_of, across, half_width, sides, waves, seen })
     }
 
     /// $\Delta R$ between two motions; `None` for a rotation, which has no kink.
@@ -144,14 +163,46 @@ impl Membrane {
         motions: [&[(Motion, crate::Place)]; 2],
     ) -> Mat<f64> {
         let ends = motions.map(|motions| motions.iter().map(|motion| self.end(bases, *motion)).collect::<Vec<_>>());
-        let a_55 = stiffnesses[4];
-        let foundations: Vec<f64> = self.across.slopes.iter().map(|nu| self.foundation(*nu, stiffnesses)).collect();
-        let root = |(m, a): (usize, &f64)| -> Vec<f64> {
-            self.along[self.along_of[m]].slopes.iter().map(|sigma| (a_55 * sigma + a).sqrt().recip()).collect()
+        let in_series = AXES.map(|axis| self.in_series(axis, stiffnesses, &ends));
+        let bending = AXES.map(|axis| {
+            self.beyond(&ends, &|wave| {
+                let exact = shear_along(axis, stiffnesses) * wave[axis];
+                compliance(wave, stiffnesses) - (exact + self.foundation(axis, wave[1 - axis], stiffnesses)).recip()
+            })
+        });
+        let answers = AXES.map(|axis| self.answers(axis, stiffnesses));
+        let [rows, columns] = motions;
+        Mat::from_fn(rows.len(), columns.len(), |p, q| {
+            let (Some(first), Some(second)) = (&ends[0][p], &ends[1][q]) else { return 0.0 };
+            let axis = self.axis_between(first.place, second.place, stiffnesses);
+            let kink = self.exact(axis, &answers[axis], [first, second]) - in_series[axis][(p, q)];
+            if is_one_foot(rows[p], columns[q]) {
+                let [bends, ..] = self.by_waves(bases, stiffnesses, rows[p].1);
+                kink + bends
+            } else {
+                kink + bending[axis][(p, q)]
+            }
+        })
+    }
+
+    /// The direction in which two places lie farther apart, for the membrane: along it the answer falls off with the distance.
+    fn axis_between(&self, first: [f64; 2], second: [f64; 2], stiffnesses: Stiffnesses) -> usize {
+        let apart = AXES.map(|axis| (first[axis] - second[axis]).abs() / shear_along(axis, stiffnesses).sqrt());
+        usize::from(apart[1] > apart[0])
+    }
+
+    /// What the series hold of the answer that is exact along an axis, between the motions of two lists: a sum over products of one factor a motion.
+    fn in_series(&self, axis: usize, stiffnesses: Stiffnesses, ends: &[Vec<Option<Arc<Seen>>>; 2]) -> Mat<f64> {
+        let shear = shear_along(axis, stiffnesses);
+        let root = |(m, nu): (usize, &f64)| -> Vec<f64> {
+            let root = |sigma: &f64| {
+                let [exact, other] = if axis == 0 { [*sigma, *nu] } else { [*nu, *sigma] };
+                (shear * exact + self.foundation(axis, other, stiffnesses)).sqrt().recip()
+            };
+            self.along[self.along_of[m]].slopes.iter().map(root).collect()
         };
-        let roots: Vec<Vec<f64>> = foundations.iter().enumerate().map(root).collect();
-        // What the series have is a sum over products of one factor a motion.
-        let in_series = |end: &Seen| -> Vec<f64> {
+        let roots: Vec<Vec<f64>> = self.across.slopes.iter().enumerate().map(root).collect();
+        let factors = |end: &Seen| -> Vec<f64> {
             let of_mode = |(m, roots): (usize, &Vec<f64>)| {
                 let (along, across) = (&end.along[self.along_of[m]], end.across[m]);
                 roots.iter().zip(along).map(move |(root, u)| across * u * root).collect::<Vec<_>>()
@@ -159,46 +210,56 @@ impl Membrane {
             roots.iter().enumerate().flat_map(of_mode).collect()
         };
         let [rows, columns] = ends.each_ref().map(|ends| {
-            let columns: Vec<Vec<f64>> = ends.iter().map(|end| end.as_ref().map_or_else(Vec::new, in_series)).collect();
-            let factors = roots.iter().map(Vec::len).sum();
-            Mat::from_fn(factors, columns.len(), |i, p| columns[p].get(i).copied().unwrap_or(0.0))
+            let columns: Vec<Vec<f64>> = ends.iter().map(|end| end.as_deref().map_or_else(Vec::new, factors)).collect();
+            let count = roots.iter().map(Vec::len).sum();
+            Mat::from_fn(count, columns.len(), |i, p| columns[p].get(i).copied().unwrap_or(0.0))
         });
-        let mut kinks = -product(rows.transpose(), columns.as_ref());
-        for (m, &a) in foundations.iter().enumerate() {
-            let answer = Answer::of((a_55, a), (self.half_length, self.returned));
-            let near = |end: &Option<Seen>| end.as_ref().map(|end| (end.across[m], end.side.1, answer.near(end.side)));
-            let [rows, columns] = ends.each_ref().map(|ends| ends.iter().map(near).collect::<Vec<_>>());
-            for (q, second) in columns.iter().enumerate() {
-                for (p, first) in rows.iter().enumerate() {
-                    if let (Some(first), Some(second)) = (first, second) {
-                        kinks[(p, q)] += first.0 * second.0 * answer.between((first.1, first.2), (second.1, second.2));
-                    }
-                }
-            }
-        }
-        let [rows, columns] = motions;
-        for (q, column) in columns.iter().enumerate().filter(|(_, column)| column.0 == Motion::Foot) {
-            let under = OnceCell::new();
-            for (p, _) in rows.iter().enumerate().filter(|(_, row)| *row == column) {
-                kinks[(p, q)] += under.get_or_init(|| self.under_foot(bases, stiffnesses, column.1));
-            }
-        }
-        kinks
+        product(rows.transpose(), columns.as_ref())
     }
 
-    /// What the basis lacks of $\sum\phi_{1m}\phi_{2m}/\omega_m^{2+2k}$ between any two motions of a list, on a mass per area \[kg/m2\], from $k = 1$ on:
-    /// told under a foot alone.
+    /// What is exact along an axis, of each wave along the other.
+    fn answers(&self, axis: usize, stiffnesses: Stiffnesses) -> Vec<Answer> {
+        let shear = shear_along(axis, stiffnesses);
+        let of_wave = |wave: &WaveBetween| {
+            let a = self.foundation(axis, wave.square(), stiffnesses);
+            Answer::of((shear, a), (self.halves()[axis], self.returned(axis)))
+        };
+        self.waves[1 - axis].iter().map(of_wave).collect()
+    }
+
+    /// The answer of the membrane from foot to foot: exact along an axis, and a sum over waves along the other.
+    fn exact(&self, axis: usize, answers: &[Answer], ends: [&Arc<Seen>; 2]) -> f64 {
+        let other = 1 - axis;
+        let half = self.halves()[other];
+        let along = ends.map(|end| (end.orders[axis], end.place[axis]));
+        let apart = (along[0].1 - along[1].1).abs();
+        let counts = |answer: &&Answer| answer.kappa * (apart - FOOT) <= NEGLIGIBLE;
+        let of_wave = |(m, answer): (usize, &Answer)| {
+            let wave = |end: &Arc<Seen>| {
+                let beyond = || self.waves[other][m].over_foot(end.orders[other], end.place[other] + half);
+                end.waves[other].get(m).copied().unwrap_or_else(beyond)
+            };
+            wave(ends[0]) * wave(ends[1]) * answer.between(along)
+        };
+        answers.iter().take_while(counts).enumerate().map(of_wave).sum()
+    }
+
+    /// What the basis lacks of $\sum\phi_{1m}\phi_{2m}/\omega_m^{2+2k}$ between the motions of two lists, on a mass per area \[kg/m2\], from $k = 1$ on:
+    /// of $k > 1$ under a foot alone.
     pub(super) fn inertia(
         &self,
         bases: &[EdgeBasis; 2],
         stiffnesses: Stiffnesses,
         mass_per_area: f64,
-        motions: &[(Motion, crate::Place)],
+        motions: [&[(Motion, crate::Place)]; 2],
     ) -> [Mat<f64>; INERTIAL] {
-        let mut lacking = [(); INERTIAL].map(|()| Mat::zeros(motions.len(), motions.len()));
-        for (q, column) in motions.iter().enumerate().filter(|(_, column)| column.0 == Motion::Foot) {
+        let ends = motions.map(|motions| motions.iter().map(|motion| self.end(bases, *motion)).collect::<Vec<_>>());
+        let [rows, columns] = motions;
+        let mut lacking = [(); INERTIAL].map(|()| Mat::zeros(rows.len(), columns.len()));
+        lacking[0] = self.beyond(&ends, &|wave| mass_per_area * compliance(wave, stiffnesses).powi(2));
+        for (q, column) in columns.iter().enumerate().filter(|(_, column)| column.0 == Motion::Foot) {
             let by_waves = OnceCell::new();
-            for (p, _) in motions.iter().enumerate().filter(|(_, row)| *row == column) {
+            for (p, _) in rows.iter().enumerate().filter(|(_, row)| *row == column) {
                 let [_, squares @ ..] = by_waves.get_or_init(|| self.by_waves(bases, stiffnesses, column.1));
                 for ((power, lacking), square) in (1..).zip(&mut lacking).zip(squares) {
                     lacking[(p, q)] = square * mass_per_area.powi(power);
@@ -208,29 +269,33 @@ impl Membrane {
         lacking
     }
 
-    /// What the functions across lack under a foot at a place.
-    fn under_foot(&self, bases: &[EdgeBasis; 2], stiffnesses: Stiffnesses, place: crate::Place) -> f64 {
-        let a_55 = stiffnesses[4];
-        let kappa = |nu: f64| (self.foundation(nu, stiffnesses) / a_55).sqrt();
-        // What comes back from either end doubles the answer at a free one, and takes it away at a held one.
-        let returned = |kappa: f64| {
-            let [left, right] = self.returned;
-            let h = self.half_length;
-            left * (-2.0 * kappa * (h + place.x)).exp() + right * (-2.0 * kappa * (h - place.x)).exp()
+    /// Waves less functions of the basis between the motions of two lists, each times what `term` has of its $k_x^2$ and $k_y^2$.
+    fn beyond(&self, ends: &[Vec<Option<Arc<Seen>>>; 2], term: &dyn Fn([f64; 2]) -> f64) -> Mat<f64> {
+        let counts = self.counts();
+        // The lower half are such waves to all digits.
+        let weight = |(i, x): (usize, f64), (j, y): (usize, f64)| {
+            if 2 * i < counts[0] && 2 * j < counts[1] { 0.0 } else { term([x, y]) }
         };
-        let seen = self.across.at(&mean_over_foot(&bases[1], (place.y, self.half_width)));
-        let basis = seen
-            .iter()
-            .zip(&self.across.slopes)
-            .map(|(value, nu)| value * value / kappa(*nu) * (1.0 + returned(kappa(*nu))));
-        let count = (FINEST * 2.0 * self.half_width / FOOT).ceil() as usize;
-        let exact = self.waves_across(place.y, count).into_iter().map(|(square, seen)| {
-            let kappa = kappa(square);
-            // What comes back has no kink, and its mean over the foot is its value in the middle.
-            seen * (mean_of_decay(kappa * FOOT) + returned(kappa)) / kappa
+        let values = |count: usize, value: &dyn Fn(&Seen, usize) -> f64| {
+            ends.each_ref()
+                .map(|ends| Mat::from_fn(count, ends.len(), |i, p| ends[p].as_ref().map_or(0.0, |end| value(end, i))))
+        };
+        let waves = AXES.map(|axis| &self.waves[axis][..self.waves_between(axis)]);
+        let [x, y] = AXES.map(|axis| values(waves[axis].len(), &|end, m| end.waves[axis][m]));
+        let weights = Mat::from_fn(waves[0].len(), waves[1].len(), |i, j| {
+            weight((i, waves[0][i].square()), (j, waves[1][j].square()))
         });
-        let [bends, ..] = self.by_waves(bases, stiffnesses, place);
-        (exact.sum::<f64>() - basis.sum::<f64>()) / (2.0 * a_55) + bends
+        let mut sum = weighted(&weights, [&x[0], &y[0]], [&x[1], &y[1]]);
+        for (number, modes) in self.along.iter().enumerate() {
+            let across: Vec<usize> = (0..self.across.slopes.len()).filter(|j| self.along_of[*j] == number).collect();
+            let x = values(modes.slopes.len(), &|end, i| end.along[number][i]);
+            let y = values(across.len(), &|end, j| end.across[across[j]]);
+            let weights = Mat::from_fn(modes.slopes.len(), across.len(), |i, j| {
+                weight((i, modes.slopes[i]), (across[j], self.across.slopes[across[j]]))
+            });
+            sum -= weighted(&weights, [&x[0], &y[0]], [&x[1], &y[1]]);
+        }
+        sum
     }
 
     /// Waves less functions of the basis under a foot: of $c$ what it has beside the answer of the membrane, then of $c^2$, $c^3$ and $c^4$.
@@ -243,12 +308,11 @@ impl Membrane {
         let across = seen(&self.across, &mean_over_foot(&bases[1], (place.y, self.half_width)));
         let values = mean_over_foot(&bases[0], (place.x, self.half_length));
         let along: Vec<Vec<Wave>> = self.along.iter().map(|modes| seen(modes, &values)).collect();
-        let longest = along.iter().map(Vec::len).max().unwrap_or(0);
-        let counts = [longest, across.len()];
+        let counts = self.counts();
         let sum = |across: &[Wave], (along, of): (&[Vec<Wave>], &dyn Fn(usize) -> usize)| {
             let mut sums = [0.0; 1 + INERTIAL];
             for (j, &(y, seen_y)) in across.iter().enumerate() {
-                let foundation = self.foundation(y, stiffnesses);
+                let foundation = self.foundation(0, y, stiffnesses);
                 // The lower half are such waves to all digits.
                 let low = if 2 * j < counts[1] { counts[0].div_ceil(2) } else { 0 };
                 for &(x, seen_x) in along[of(j)].iter().skip(low) {
@@ -265,82 +329,196 @@ impl Membrane {
             }
             sums
         };
-        let waves = self.waves_across(place.y, WAVES * counts[1]);
-        let exact = sum(&waves, (&[self.waves_along(place.x, WAVES * counts[0])], &|_| 0));
+        let waves = self.waves(1, place.y, WAVES * counts[1]);
+        let exact = sum(&waves, (&[self.waves(0, place.x, WAVES * counts[0])], &|_| 0));
         let in_basis = sum(&across, (&along, &|j| self.along_of[j]));
         std::array::from_fn(|k| exact[k] - in_basis[k])
     }
 
-    fn waves_along(&self, x: f64, count: usize) -> Vec<Wave> {
-        waves((2.0 * self.half_length, x + self.half_length), self.returned.map(|sign| sign < 0.0), count)
+    /// $k^2$ of the first waves along an axis, and the square of their mean over a foot there.
+    fn waves(&self, axis: usize, place: f64, count: usize) -> Vec<Wave> {
+        let from_edge = place + self.halves()[axis];
+        self.waves[axis].iter().take(count).map(|wave| (wave.square(), wave.over_foot(0, from_edge).powi(2))).collect()
     }
 
-    fn waves_across(&self, y: f64, count: usize) -> Vec<Wave> {
-        waves((2.0 * self.half_width, y + self.half_width), self.sides.map(|end| end != End::Free), count)
+    fn halves(&self) -> [f64; 2] {
+        [self.half_length, self.half_width]
+    }
+
+    fn edges(&self) -> [[End; 2]; 2] {
+        [self.ends, self.sides]
+    }
+
+    /// Sign of the wave that comes back from either end along an axis: of a free one as it came, of a held one turned round.
+    fn returned(&self, axis: usize) -> [f64; 2] {
+        self.edges()[axis].map(|end| if end == End::Free { 1.0 } else { -1.0 })
+    }
+
+    /// Most functions along x, and those across.
+    fn counts(&self) -> [usize; 2] {
+        [self.along.iter().map(|modes| modes.slopes.len()).max().unwrap_or(0), self.across.slopes.len()]
+    }
+
+    /// Waves along an axis that count between two motions.
+    fn waves_between(&self, axis: usize) -> usize {
+        (WAVES_BETWEEN * self.counts()[axis]).min(self.waves[axis].len())
     }
 
     /// A motion as the membrane's modes see it.
-    fn end(&self, [x, y]: &[EdgeBasis; 2], (motion, place): (Motion, crate::Place)) -> Option<Seen> {
-        let values_across = || y.values_at(Field::Deflection, place.y);
-        let (order, values, across) = match motion {
-            Motion::Deflection => (0, x.values_at(Field::Deflection, place.x), values_across()),
-            Motion::Foot => {
-                (0, mean_over_foot(x, (place.x, self.half_length)), mean_over_foot(y, (place.y, self.half_width)))
-            }
-            Motion::Slope => (1, x.slopes_at(Field::Deflection, place.x), values_across()),
-            Motion::SlopeAcross | Motion::Rotation | Motion::Curvature | Motion::Shear(_) => return None,
+    fn end(&self, bases: &[EdgeBasis; 2], motion: (Motion, crate::Place)) -> Option<Arc<Seen>> {
+        let lock = || self.seen.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((_, seen)) = lock().iter().find(|(known, _)| *known == motion) {
+            return Some(Arc::clone(seen));
+        }
+        let seen = Arc::new(self.seen(bases, motion)?);
+        let mut known = lock();
+        known.truncate(KEPT - 1);
+        known.insert(0, (motion, Arc::clone(&seen)));
+        Some(seen)
+    }
+
+    fn seen(&self, [x, y]: &[EdgeBasis; 2], (motion, place): (Motion, crate::Place)) -> Option<Seen> {
+        let orders = match motion {
+            Motion::Deflection | Motion::Foot => [0, 0],
+            Motion::Slope => [1, 0],
+            Motion::SlopeAcross => [0, 1],
+            Motion::Rotation | Motion::Curvature | Motion::Shear(_) => return None,
         };
+        let values = |basis: &EdgeBasis, order: usize, place: f64, half: f64| match (motion, order) {
+            (Motion::Foot, _) => mean_over_foot(basis, (place, half)),
+            (_, 0) => basis.values_at(Field::Deflection, place),
+            _ => basis.slopes_at(Field::Deflection, place),
+        };
+        let along = values(x, orders[0], place.x, self.half_length);
+        let across = values(y, orders[1], place.y, self.half_width);
+        let from_edge = [place.x + self.half_length, place.y + self.half_width];
+        let waves = AXES.map(|axis| {
+            let waves = self.waves[axis][..self.waves_between(axis)].iter();
+            waves.map(|wave| wave.over_foot(orders[axis], from_edge[axis])).collect()
+        });
         Some(Seen {
-            side: (order, place.x),
-            along: self.along.iter().map(|modes| modes.at(&values)).collect(),
+            place: [place.x, place.y],
+            orders,
+            waves,
+            along: self.along.iter().map(|modes| modes.at(&along)).collect(),
             across: self.across.at(&across),
         })
     }
 
-    /// $a_m$ of a mode across.
-    fn foundation(&self, nu: f64, [_, d_22, _, _, a_55, a_44]: Stiffnesses) -> f64 {
+    /// $a_m$ of a wave across an axis.
+    fn foundation(&self, axis: usize, square: f64, stiffnesses: Stiffnesses) -> f64 {
         // A membrane that nothing holds answers a force without end; what its series lacks is finite.
-        let least = LOOSE * a_55 / (self.half_length * self.half_length);
-        let bending = d_22 * nu;
-        (a_44 * nu * bending / (a_44 + bending)).max(least)
+        let least = LOOSE * shear_along(axis, stiffnesses) / self.halves()[axis].powi(2);
+        let bending = stiffnesses[1 - axis] * square;
+        let shear = shear_along(1 - axis, stiffnesses);
+        (shear * square * bending / (shear + bending)).max(least)
     }
 }
 
-/// $G$ of $A_{55}G'' - aG = -\delta$: $e^{-\kappa|x-x'|}$ with what comes back from the ends.
+fn is_one_foot(first: (Motion, crate::Place), second: (Motion, crate::Place)) -> bool {
+    first == second && first.0 == Motion::Foot
+}
+
+/// $c$ of a wave with these $k_x^2$ and $k_y^2$.
+fn compliance([x, y]: [f64; 2], [d_11, d_22, d_12, d_66, a_55, a_44]: Stiffnesses) -> f64 {
+    let bending = d_11 * x * x + 2.0 * (d_12 + 2.0 * d_66) * x * y + d_22 * y * y;
+    (a_55 * x + a_44 * y).recip() + bending.recip()
+}
+
+/// $\sum_{ij}w_{ij}x_{ip}y_{jp}x'_{iq}y'_{jq}$.
+fn weighted(weights: &Mat<f64>, [x, y]: [&Mat<f64>; 2], [other_x, other_y]: [&Mat<f64>; 2]) -> Mat<f64> {
+    let mut sums = Mat::zeros(x.ncols(), other_x.ncols());
+    for q in 0..other_x.ncols() {
+        let own =
+            Mat::from_fn(weights.nrows(), weights.ncols(), |i, j| weights[(i, j)] * other_x[(i, q)] * other_y[(j, q)]);
+        let along = product(own.as_ref(), y.as_ref());
+        for p in 0..x.ncols() {
+            sums[(p, q)] = x.col_as_slice(p).iter().zip(along.col_as_slice(p)).map(|(a, b)| a * b).sum();
+        }
+    }
+    sums
+}
+
+/// $A_{55}$ along x, $A_{44}$ along y.
+fn shear_along(axis: usize, stiffnesses: Stiffnesses) -> f64 {
+    stiffnesses[4 + axis]
+}
+
+/// $G$ of $A_{55}G'' - aG = -\delta$ from foot to foot: the mean of $e^{-\kappa|x-x'|}$ over both, with what comes back from the ends.
 struct Answer {
     kappa: f64,
     half_length: f64,
     returned: [f64; 2],
-    /// $2A_{55}\kappa$, less what comes back twice.
+    /// What is left of a wave that came back from both ends.
+    twice: f64,
+    /// Of the mean over a foot of what decays beyond it, over its value at the foot's edge.
+    over_foot: f64,
+    /// $2A_{55}\kappa$.
     stiffness: f64,
 }
 
 impl Answer {
     fn of((a_55, a): (f64, f64), (half_length, returned): (f64, [f64; 2])) -> Self {
         let kappa = (a / a_55).sqrt();
-        let twice = returned[0] * returned[1] * (-4.0 * kappa * half_length).exp();
-        Self { kappa, half_length, returned, stiffness: 2.0 * a_55 * kappa * (1.0 - twice) }
+        let u = kappa * FOOT;
+        Self {
+            kappa,
+            half_length,
+            returned,
+            twice: returned[0] * returned[1] * (-4.0 * kappa * half_length).exp(),
+            over_foot: if u > 0.0 { -(-u).exp_m1() / u } else { 1.0 },
+            stiffness: 2.0 * a_55 * kappa,
+        }
     }
 
-    /// At a place what is there and what comes back from the left end, and the same from the right end.
-    fn near(&self, (order, x): Side) -> [f64; 2] {
-        // A derivative turns the sign of the returned wave.
-        let turned = if order == 0 { 1.0 } else { -1.0 };
-        let sides = [(self.kappa, self.half_length + x), (-self.kappa, self.half_length - x)];
-        [0, 1].map(|side| {
-            let (slope, away) = sides[side];
-            slope.powi(order as i32) * (1.0 + turned * self.returned[side] * (-2.0 * self.kappa * away).exp())
-        })
-    }
-
-    fn between(&self, first: (f64, [f64; 2]), second: (f64, [f64; 2])) -> f64 {
-        let (left, right) = if first.0 <= second.0 { (first, second) } else { (second, first) };
-        let ends = if left.0 == right.0 {
-            0.5 * (left.1[0] * right.1[1] + right.1[0] * left.1[1])
-        } else {
-            left.1[0] * right.1[1]
+    fn between(&self, [first, second]: [Side; 2]) -> f64 {
+        let (left, right) = if first.1 <= second.1 { (first, second) } else { (second, first) };
+        let apart = right.1 - left.1;
+        // What comes back has no kink, and its mean over a foot is its value in the middle.
+        let back = |order: usize, returned: f64, away: f64| {
+            // A derivative turns the sign of the returned wave.
+            let turned = if order == 0 { 1.0 } else { -1.0 };
+            turned * returned * (-2.0 * self.kappa * away).exp()
         };
-        ends * (-self.kappa * (right.0 - left.0)).exp() / self.stiffness
+        let from_left = back(left.0, self.returned[0], self.half_length + left.1);
+        let from_right = back(right.0, self.returned[1], self.half_length - right.1);
+        let slopes = self.kappa.powi(left.0 as i32) * (-self.kappa).powi(right.0 as i32);
+        let echoes = (1.0 + from_left) * (1.0 + from_right) / (1.0 - self.twice) - 1.0;
+        let decay = self.decay(apart);
+        let direct = match [left.0, right.0] {
+            [0, 0] => decay[0],
+            [0, _] => decay[1],
+            [_, 0] => -decay[1],
+            _ => -decay[2],
+        };
+        (direct + slopes * echoes * (-self.kappa * apart).exp()) / self.stiffness
+    }
+
+    /// Mean $g$ of $e^{-\kappa|x-x'|}$ over two feet whose middles lie $\Delta$ apart, and its first two derivatives by $\Delta$.
+    fn decay(&self, apart: f64) -> [f64; 3] {
+        let kappa = self.kappa;
+        let u = kappa * FOOT;
+        if apart >= FOOT {
+            let value = (-kappa * (apart - FOOT)).exp() * self.over_foot * self.over_foot;
+            return [value, -kappa * value, kappa * kappa * value];
+        }
+        let inside = FOOT - apart;
+        if u < 1e-3 {
+            // $1 - \kappa$ times the mean of the distance.
+            let part = inside / FOOT;
+            return [
+                1.0 - kappa * (apart + inside * part * part / 3.0),
+                -kappa * (1.0 - part * part),
+                -2.0 * kappa * part / FOOT,
+            ];
+        }
+        let [near, far, middle] = [inside, FOOT + apart, apart].map(|distance| (-kappa * distance).exp());
+        let of = |value: f64| value / (u * u);
+        [
+            of(2.0 * kappa * inside + far + near - 2.0 * middle),
+            kappa * of(near - far - 2.0 + 2.0 * middle),
+            kappa * kappa * of(far + near - 2.0 * middle),
+        ]
     }
 }
 
@@ -367,28 +545,55 @@ pub(super) const INERTIAL: usize = 3;
 /// Waves along either side, over the functions that a basis has: what they answer with falls with the fourth power of theirs.
 const WAVES: usize = 8;
 
-/// $k^2$ of the first waves between two edges, and the square of their mean over a foot, where the integral of their square is one.
-fn waves((size, from_edge): (f64, f64), held: [bool; 2], count: usize) -> Vec<Wave> {
-    // Half-waves of the first.
-    let first = match held {
-        [false, false] => 0.0,
-        [true, true] => 1.0,
-        _ => 0.5,
-    };
-    let wave = |m: usize| {
-        let wave_number = std::f64::consts::PI * (m as f64 + first) / size;
-        let shape = if held[0] { (wave_number * from_edge).sin() } else { (wave_number * from_edge).cos() };
-        let square = if wave_number == 0.0 { 1.0 / size } else { 2.0 / size * shape * shape };
-        let half = 0.5 * wave_number * FOOT;
-        let mean = if half > 0.0 { (half.sin() / half).powi(2) } else { 1.0 };
-        (wave_number * wave_number, square * mean)
-    };
-    (0..count).map(wave).collect()
+/// The same between two motions, where waves turn their signs against each other.
+const WAVES_BETWEEN: usize = 3;
+
+/// Motions that are kept: those at ports, and some of what a search moves.
+const KEPT: usize = 256;
+
+/// What decays further than by this power of $e$ is left out.
+const NEGLIGIBLE: f64 = 20.0;
+
+/// A wave between two edges, with one for the integral of its square.
+#[derive(Debug, Clone)]
+struct WaveBetween {
+    /// $k$.
+    number: f64,
+    /// Of its mean over a foot, where its sine or cosine is one.
+    largest: f64,
+    from_held: bool,
 }
 
-/// Mean of $e^{-|x-x'|\kappa}$ over a stretch of $u/\kappa$ for both.
-fn mean_of_decay(u: f64) -> f64 {
-    if u < 1e-3 { 1.0 - u / 3.0 } else { 2.0 * (u - 1.0 + (-u).exp()) / (u * u) }
+impl WaveBetween {
+    fn new(m: usize, size: f64, edges: [End; 2]) -> Self {
+        let held = edges.map(|end| end != End::Free);
+        // Half-waves of the first.
+        let first = match held {
+            [false, false] => 0.0,
+            [true, true] => 1.0,
+            _ => 0.5,
+        };
+        let number = std::f64::consts::PI * (m as f64 + first) / size;
+        let half = 0.5 * number * FOOT;
+        let largest = if number > 0.0 { (2.0 / size).sqrt() * half.sin() / half } else { size.sqrt().recip() };
+        Self { number, largest, from_held: held[0] }
+    }
+
+    fn square(&self) -> f64 {
+        self.number * self.number
+    }
+
+    /// The mean over a foot, or of its first derivative, at a place from the first edge on.
+    fn over_foot(&self, order: usize, from_edge: f64) -> f64 {
+        let (sin, cos) = (self.number * from_edge).sin_cos();
+        let shape = match (order, self.from_held) {
+            (0, true) => sin,
+            (0, false) => cos,
+            (_, true) => self.number * cos,
+            (_, false) => -self.number * sin,
+        };
+        self.largest * shape
+    }
 }
 
 /// Foundation of the membrane at least, beside $A_{55}/h^2$.

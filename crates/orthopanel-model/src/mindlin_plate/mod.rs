@@ -17,7 +17,6 @@
 mod assembly;
 mod basis_choice;
 mod edge_basis;
-mod fixed;
 mod kink;
 mod law;
 mod mode_names;
@@ -34,7 +33,6 @@ use crate::structure::{Block, Motion, ShearMoment, Structure};
 use crate::{BeamTerms, Boundary, Constant, ModelError, Piece, Place};
 use assembly::{Coordinate, Products, assemble};
 use edge_basis::EdgeBasis;
-pub(crate) use fixed::FixedPlate;
 pub(crate) use kink::Membrane;
 use law::{plate_stiffness_derivatives, plate_stiffnesses};
 use span_edges::Spans;
@@ -98,7 +96,7 @@ impl MindlinPlate {
     /// [`ModelError::Size`] where the piece has no physical meaning, [`ModelError::TermCount`] for other numbers of
     /// terms.
     pub fn new(piece: &Piece, boundary: Boundary, terms: [usize; 2]) -> Result<Self, ModelError> {
-        Self::uneven(piece, boundary, terms, Products::All, &PlateTerms::default(), None)
+        Self::uneven(piece, boundary, terms, Products::All, &PlateTerms::default())
     }
 
     /// The same without those products of two polynomials that have many nodes both ways: three quarters of the coordinates, with
@@ -107,17 +105,16 @@ impl MindlinPlate {
     /// # Errors
     /// As [`MindlinPlate::new`].
     pub fn within_ellipse(piece: &Piece, boundary: Boundary, terms: [usize; 2]) -> Result<Self, ModelError> {
-        Self::uneven(piece, boundary, terms, Products::WithinEllipse, &PlateTerms::default(), None)
+        Self::uneven(piece, boundary, terms, Products::WithinEllipse, &PlateTerms::default())
     }
 
-    /// With `coefficients` their weighted sum is the only stiffness: see [`FixedPlate`].
+    /// With terms of its own.
     fn uneven(
         piece: &Piece,
         boundary: Boundary,
         terms: [usize; 2],
         products: Products,
         own: &PlateTerms,
-        coefficients: Option<[f64; 6]>,
     ) -> Result<Self, ModelError> {
         let piece = piece.checked()?;
         let PlateTerms { spread: own, edge_mass } = own;
@@ -136,7 +133,7 @@ impl MindlinPlate {
         }
         let y = EdgeBasis::new(0.5 * piece.width, [front, back], Field::RotationY, terms[1]);
         let (along, is_even) = ([x, y], own.losses.is_empty());
-        let (coordinates, blocks) = assemble(&piece, &along, own.rotary_factor, *edge_mass, products, coefficients);
+        let (coordinates, blocks) = assemble(&piece, &along, own.rotary_factor, *edge_mass, products);
         // In each direction n polynomials follow 2n/π half-waves; some nx ny/3 products lie within the ellipse that both
         // span, and the lower half of these hold 1e-4.
         let resolved_modes = terms[0] * terms[1] / 6;
@@ -293,7 +290,12 @@ impl MindlinPlate {
     }
 
     /// [`Structure::inertial_remainders`], as many as there are.
-    pub(crate) fn inertia(&self, membrane: &Membrane, values: &[f64], motions: &[(Motion, Place)]) -> Vec<Mat<f64>> {
+    pub(crate) fn inertia(
+        &self,
+        membrane: &Membrane,
+        values: &[f64],
+        motions: [&[(Motion, Place)]; 2],
+    ) -> Vec<Mat<f64>> {
         let Ok(stiffnesses) = plate_stiffnesses(self.piece.thickness, values) else { return vec![] };
         membrane.inertia(&self.along, stiffnesses, self.piece.mass_per_area, motions).into()
     }
@@ -343,7 +345,7 @@ impl Structure for MindlinPlate {
         self.kinks(self.even_membrane()?, values, motions)
     }
 
-    fn inertial_remainders(&self, values: &[f64], motions: &[(Motion, Place)]) -> Vec<Mat<f64>> {
+    fn inertial_remainders(&self, values: &[f64], motions: [&[(Motion, Place)]; 2]) -> Vec<Mat<f64>> {
         self.even_membrane().map_or_else(Vec::new, |membrane| self.inertia(membrane, values, motions))
     }
 

@@ -212,7 +212,7 @@ mod tests {
             let small = beam(40);
             let expected = in_basis(&beam(240), at) - in_basis(&small, at);
             let rows = at.map(|x| (Motion::Deflection, Place { x, y: 0.0 }));
-            let lacking = |beam: &TimoshenkoBeam| beam.inertial_remainders(&VALUES, &rows)[0][(0, 1)];
+            let lacking = |beam: &TimoshenkoBeam| beam.inertial_remainders(&VALUES, [&rows; 2])[0][(0, 1)];
             let (found, even) =
                 (lacking(&small), lacking(&TimoshenkoBeam::new(&piece, Boundary::default(), 40).unwrap()));
             // Under a loss the basis projects in the energy of what is left, which the closed form does not follow.
@@ -230,7 +230,7 @@ mod tests {
         let beam = TimoshenkoBeam::new(&piece, Boundary::default(), 40).unwrap();
         let at = |motion: Motion, x: f64| {
             let rows = [(Motion::Deflection, 0.3), (motion, x)].map(|(motion, x)| (motion, Place { x, y: 0.0 }));
-            beam.inertial_remainders(&VALUES, &rows)[0][(1, 0)]
+            beam.inertial_remainders(&VALUES, [&rows; 2])[0][(1, 0)]
         };
         let step = 1e-5;
         let difference = (at(Motion::Deflection, 0.29 + step) - at(Motion::Deflection, 0.29 - step)) / (2.0 * step);

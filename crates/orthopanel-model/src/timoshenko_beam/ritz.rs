@@ -157,10 +157,13 @@ impl Structure for TimoshenkoBeam {
         Some(self.flexibility.between_motions(motions, [e_x, g_zx]).0)
     }
 
-    fn inertial_remainders(&self, values: &[f64], motions: &[(Motion, Place)]) -> Vec<Mat<f64>> {
+    fn inertial_remainders(&self, values: &[f64], motions: [&[(Motion, Place)]; 2]) -> Vec<Mat<f64>> {
         let Some(g_zx) = values.get(1) else { return vec![] };
-        let loads: Vec<_> = motions.iter().map(|(motion, place)| self.inertia.unheld(*motion, place.x)).collect();
-        let between = |row: usize, column: usize| self.inertia.between(&loads[row], &loads[column]) / (g_zx * g_zx);
-        vec![Mat::from_fn(loads.len(), loads.len(), between)]
+        let loads = |motions: &[(Motion, Place)]| -> Vec<_> {
+            motions.iter().map(|(motion, place)| self.inertia.unheld(*motion, place.x)).collect()
+        };
+        let [rows, columns] = motions.map(loads);
+        let between = |row: usize, column: usize| self.inertia.between(&rows[row], &columns[column]) / (g_zx * g_zx);
+        vec![Mat::from_fn(rows.len(), columns.len(), between)]
     }
 }

@@ -104,7 +104,7 @@ impl View {
     /// is known to lack; adds what it lacks of the series' further terms: most at a driving point, where the strain jumps.
     fn close(&mut self, base: &ModalBase, rows: &[Row]) {
         let (layout, structure) = (self.layout, &base.structure);
-        let further = structure.inertial_remainders(&base.values, rows);
+        let further = structure.inertial_remainders(&base.values, [rows; 2]);
         (1..SERIES_TERMS).zip(&further).for_each(|(term, lacking)| self.add_to_series(term, lacking));
         if let Some(lacking) = structure.static_remainders(&base.values, [rows; 2]) {
             return self.add_to_series(0, &lacking);
