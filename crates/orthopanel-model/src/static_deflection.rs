@@ -1,4 +1,4 @@
-//! Deflection of any [`Structure`] under a force that stands still, on its basis.
+//! Deflection of any [`Structure`](crate::Structure) under a force that stands still, on its basis.
 
 use faer::Mat;
 
