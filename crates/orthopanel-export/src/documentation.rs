@@ -169,7 +169,7 @@ td:first-child { overflow-wrap: anywhere; min-width: 7em } }
 const MOUNTING: &str = "<h2>How to mount it</h2>\n<p>Forces, displacements, velocities and accelerations are positive along +z. A spring of \
      stiffness k and a damper c between the panel and a base that moves by u_b and v_b put the force k (u_b - u) + c (v_b - v) on the panel, \
      with u and v the displacement and velocity at the same place; the base gets the opposite. A master that hands motions and forces over \
-     once a step h, the force held over it, is stable at steps up to half the least of sqrt(m/k), m/c and c/k, with m the mass that the place \
+     once a step h, the force held over it, is stable at steps up to half the least of sqrt(m/k), m/c and c/k, and up to half the period of the highest mode, with m the mass that the place \
      shows a sudden force, below: a held force lags by h/2 on the mean, which takes k h/2 from the damper. So at a step h the damper must be from 2 h k up, \
      and k and c at most what stands under h. Then the error falls with the \
      step; with forces predicted to the end of the next step, and force_linear, with its square. A blow of a hammer is no mount: any \
