@@ -300,7 +300,7 @@ impl Membrane {
 
     /// Waves less functions of the basis under a foot: of $c$ what it has beside the answer of the membrane, then of $c^2$, $c^3$ and $c^4$.
     fn by_waves(&self, bases: &[EdgeBasis; 2], stiffnesses: Stiffnesses, place: crate::Place) -> [f64; 1 + INERTIAL] {
-        let [d_11, d_22, d_12, d_66, a_55, a_44] = stiffnesses;
+        let a_55 = shear_along(0, stiffnesses);
         let seen = |modes: &Modes, values: &[f64]| -> Vec<Wave> {
             let values = modes.at(values);
             modes.slopes.iter().zip(values).map(|(square, value)| (*square, value * value)).collect()
@@ -316,8 +316,8 @@ impl Membrane {
                 // The lower half are such waves to all digits.
                 let low = if 2 * j < counts[1] { counts[0].div_ceil(2) } else { 0 };
                 for &(x, seen_x) in along[of(j)].iter().skip(low) {
-                    let bending = d_11 * x * x + 2.0 * (d_12 + 2.0 * d_66) * x * y + d_22 * y * y;
-                    let (shear, membrane) = (a_55 * x + a_44 * y, a_55 * x + foundation);
+                    let [bending, shear] = resistances([x, y], stiffnesses);
+                    let membrane = a_55 * x + foundation;
                     // One division for all three.
                     let share = (shear * bending * membrane).recip();
                     let (c, of_membrane) = ((shear + bending) * membrane * share, shear * bending * share);
@@ -420,9 +420,14 @@ fn is_one_foot(first: (Motion, crate::Place), second: (Motion, crate::Place)) ->
 }
 
 /// $c$ of a wave with these $k_x^2$ and $k_y^2$.
-fn compliance([x, y]: [f64; 2], [d_11, d_22, d_12, d_66, a_55, a_44]: Stiffnesses) -> f64 {
-    let bending = d_11 * x * x + 2.0 * (d_12 + 2.0 * d_66) * x * y + d_22 * y * y;
-    (a_55 * x + a_44 * y).recip() + bending.recip()
+fn compliance(wave: [f64; 2], stiffnesses: Stiffnesses) -> f64 {
+    let [bending, shear] = resistances(wave, stiffnesses);
+    shear.recip() + bending.recip()
+}
+
+/// What a wave with these $k_x^2$ and $k_y^2$ meets in bending and in shear.
+fn resistances([x, y]: [f64; 2], [d_11, d_22, d_12, d_66, a_55, a_44]: Stiffnesses) -> [f64; 2] {
+    [d_11 * x * x + 2.0 * (d_12 + 2.0 * d_66) * x * y + d_22 * y * y, a_55 * x + a_44 * y]
 }
 
 /// $\sum_{ij}w_{ij}x_{ip}y_{jp}x'_{iq}y'_{jq}$.
