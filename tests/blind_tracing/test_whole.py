@@ -296,21 +296,43 @@ def bench_with_places(count, highest, random):
     return bench
 
 
+def traced(folder, disbond=None):
+    """The trace of the small panel's records at eight places, with a disbond (loss, span, x, y) or none."""
+    random = np.random.default_rng(12)
+    bench = bench_with_places(8, 2000.0, random)
+    bench.zeta = np.exp(random.uniform(*np.log(whole.DAMPING), whole_plate.FLEXIBLE))
+    if disbond:
+        bench.panel = whole.disbonded(bench.panel, *disbond)
+    files.write_case(folder, bench, records.play(bench, random))
+    told = subprocess.run([ORTHOPANEL, "trace", folder / "test.toml", "--json"], capture_output=True, text=True, check=True)
+    return json.loads(told.stdout)
+
+
 @pytest.mark.skipif(ORTHOPANEL is None, reason="ORTHOPANEL names no binary")
 def test_val_a_disbond_is_named_at_its_place(tmp_path, monkeypatch):
     """A square of 80 mm that has lost 60 % of its shear stiffness, in records of eight places."""
     monkeypatch.setattr(whole_plate, "FLEXIBLE", 50)
-    random = np.random.default_rng(12)
-    bench = bench_with_places(8, 2000.0, random)
-    bench.zeta = np.exp(random.uniform(*np.log(whole.DAMPING), whole_plate.FLEXIBLE))
     x, y = 0.13, -0.07
-    bench.panel = whole.disbonded(bench.panel, 0.6, 0.08, x, y)
-    files.write_case(tmp_path / "case", bench, records.play(bench, random))
-    told = subprocess.run([ORTHOPANEL, "trace", tmp_path / "case" / "test.toml", "--json"], capture_output=True, text=True, check=True)
-    found = json.loads(told.stdout)
+    found = traced(tmp_path / "case", (0.6, 0.08, x, y))
     assert (found["verdict"], [effect["id"] for effect in found["effects"]]) == ("explained", ["stiffness-loss"])
     values = {name: of["value"] for name, of in found["effects"][0]["parameters"].items()}
     assert np.hypot(values["x"] - x, values["y"] - y) < 0.005, values
+
+
+@pytest.mark.skipif(ORTHOPANEL is None, reason="ORTHOPANEL names no binary")
+def test_val_the_smallest_disbond_that_is_said_is_named_and_half_of_it_is_not(tmp_path, monkeypatch):
+    """From records of a sound panel: of the side said to be named at all places, at two of them, with its place; of half the side said to be
+    named at half of them, nothing."""
+    monkeypatch.setattr(whole_plate, "FLEXIBLE", 50)
+    said = traced(tmp_path / "sound")["detectable"]
+    assert 0.01 < said["at_half_of_the_places"] <= said["anywhere"] < said["largest"], said
+    for name, (x, y) in {"inside": (0.1, -0.07), "corner": (-0.2, 0.14)}.items():
+        found = traced(tmp_path / name, (said["loss"], said["anywhere"], x, y))
+        assert (found["verdict"], [effect["id"] for effect in found["effects"]]) == ("explained", ["stiffness-loss"]), name
+        place = found["effects"][0]["parameters"]
+        assert np.hypot(place["x"]["value"] - x, place["y"]["value"] - y) < said["anywhere"], place
+    small = traced(tmp_path / "small", (said["loss"], said["at_half_of_the_places"] / 2.0, 0.1, -0.07))
+    assert (small["verdict"], small["effects"]) == ("nothing-missing", []), small["candidates"][:3]
 
 
 @pytest.mark.skipif(ORTHOPANEL is None, reason="ORTHOPANEL names no binary")

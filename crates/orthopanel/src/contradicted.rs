@@ -20,11 +20,16 @@ pub struct Contradicted {
 }
 
 impl Contradicted {
-    /// Traces a test, read at `path`, of which identifying was `refused`.
+    /// Traces a test, read at `path`, of which identifying was `refused`, against a reference where there is one.
     ///
     /// # Errors
     /// The refusal itself where it is another than that records contradict a beam; what the trace refuses.
-    pub fn of(test: ImpactTest, path: &Path, refused: CommandError) -> Result<Self, CommandError> {
+    pub fn of(
+        test: ImpactTest,
+        reference: Option<&ImpactTest>,
+        path: &Path,
+        refused: CommandError,
+    ) -> Result<Self, CommandError> {
         if !matches!(refused, CommandError::Identify { source: IdentifyError::Contradiction { .. }, .. }) {
             return Err(refused);
         }
@@ -32,7 +37,8 @@ impl Contradicted {
             return Err(refused);
         }
         console::say(format_args!("not identified: {refused}"));
-        let traced = Traced::from_test(&test).map_err(|source| CommandError::Identify { path: path.into(), source })?;
+        let traced = Traced::from_test(&test, reference)
+            .map_err(|source| CommandError::Identify { path: path.into(), source })?;
         Ok(Self { test, traced, refused })
     }
 

@@ -21,6 +21,7 @@ mod outputs;
 mod pictures;
 mod progress;
 mod record_options;
+mod reference_option;
 mod report;
 mod section_3_5;
 mod tables;

@@ -116,6 +116,21 @@ resolution = 1.25
 
 /// Two widths that one beam cannot follow: the model that is written is the plate.
 #[test]
+fn run_and_report_take_a_reference_as_trace_does() {
+    let bench = Bench::new();
+    let (suspect, good) = ("examples/piece-3/test.toml", "examples/piece-4/test.toml");
+    let traced = bench.json(&format!("trace {suspect} --reference {good}"));
+    let modes = number(&traced, "/shared_model_error/modes");
+    assert_eq!(bench.json(&format!("run {suspect} --reference {good} -o out"))["trace"], traced);
+    let page = std::fs::read_to_string(bench.path("out/report.html")).expect("a page");
+    assert!(page.contains(&format!("Against the reference: the model misses {modes} frequencies")), "{page}");
+    bench.done(&format!("report {suspect} --reference {good} -o page.html"));
+    assert_eq!(std::fs::read_to_string(bench.path("page.html")).expect("a page"), page);
+    let manifest = std::fs::read_to_string(bench.path("out/manifest.json")).expect("a manifest");
+    assert!(manifest.contains(good), "{manifest}");
+}
+
+#[test]
 fn a_width_that_the_beam_lacks_makes_the_model_a_plate() {
     let bench = Bench::new();
     bench.write("two.toml", TWO_WIDTHS);

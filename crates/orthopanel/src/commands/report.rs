@@ -10,6 +10,7 @@ use crate::evidence::Evidence;
 use crate::identified::Identified;
 use crate::outputs::{Inputs, Outputs};
 use crate::record_options::IdentifyOptions;
+use crate::reference_option::ReferenceOption;
 use crate::traced::Traced;
 use crate::{console, report};
 
@@ -19,7 +20,7 @@ use crate::{console, report};
 /// leaves against frequency, place and level of the hit. `run` writes the same page into its folder.
 ///
 /// Records that no beam could give have their page too: what was measured, and what the trace tells of it. Where that explains
-/// nothing, the exit status is 1.
+/// nothing, the exit status is 1. With --reference, the trace is against a sound panel of the same make (see `orthopanel trace --help`).
 ///
 /// Example: orthopanel report examples/made-hits/test.toml -o report.html
 #[derive(clap::Args)]
@@ -32,6 +33,8 @@ pub struct Arguments {
     output: PathBuf,
     #[command(flatten)]
     options: IdentifyOptions,
+    #[command(flatten)]
+    reference: ReferenceOption,
     /// Print one JSON object (orthopanel.report/1) on standard output
     #[arg(long)]
     json: bool,
@@ -49,8 +52,9 @@ struct Answer<'a> {
 }
 
 pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
-    let Arguments { test: path, output, options, json } = arguments;
+    let Arguments { test: path, output, options, reference, json } = arguments;
     let (inputs, test) = Inputs::reading_test(path)?;
+    let (inputs, reference) = reference.read(inputs)?;
     let outputs = Outputs::of(inputs)?;
     let outputs = match output.parent().filter(|folder| !folder.as_os_str().is_empty()) {
         Some(folder) => outputs.making(folder),
@@ -58,10 +62,13 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
     };
     let mut outputs = outputs.planned(output)?;
     let identified = match Identified::from_test(&test, path, options) {
-        Err(refused) => return trace_alone(arguments, outputs, Contradicted::of(test, path, refused)?),
+        Err(refused) => {
+            let contradicted = Contradicted::of(test, reference.as_ref(), path, refused)?;
+            return trace_alone(arguments, outputs, contradicted);
+        }
         Ok(identified) => identified,
     };
-    let traced = Traced::where_possible(&test, path);
+    let traced = Traced::where_possible(&test, reference.as_ref(), path);
     let evidence = Evidence::of(&identified, traced.as_ref().ok(), options.settings()?.estimation, path)?;
     outputs.add(output, report::page(path, &identified, &traced, &evidence)?);
     outputs.write()?;

@@ -18,6 +18,7 @@ use crate::identified::{Answer, Identified, suffixes};
 use crate::measured_pairs::{HitMisfit, misfit_table};
 use crate::outputs::{self, Inputs, Outputs};
 use crate::record_options::IdentifyOptions;
+use crate::reference_option::ReferenceOption;
 use crate::time_response::Hold;
 use crate::traced::Traced;
 use crate::{console, json, pictures, progress, report, time_response};
@@ -42,8 +43,11 @@ use crate::{console, json, pictures, progress, report, time_response};
 /// Of records, each pair of places gets a picture of the accelerance, measured and calculated, and one of a hit with
 /// the accelerations measured and calculated under it; time-histories.json tells how far the model is from every hit.
 ///
+/// With --reference, the trace is against a sound panel of the same make (see `orthopanel trace --help`).
+///
 /// Examples: orthopanel run examples/piece-1/test.toml -o out
 ///           orthopanel run examples/made-hits/test.toml -o out
+///           orthopanel run suspect/test.toml --reference good/test.toml -o out
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
 pub struct Arguments {
@@ -54,6 +58,8 @@ pub struct Arguments {
     output: PathBuf,
     #[command(flatten)]
     options: IdentifyOptions,
+    #[command(flatten)]
+    reference: ReferenceOption,
     /// Print one JSON object (orthopanel.run/1) on standard output
     #[arg(long)]
     json: bool,
@@ -94,18 +100,19 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
 }
 
 fn make(arguments: &Arguments, holds_earlier: bool) -> Result<(), CommandError> {
-    let Arguments { test: path, output, options, json } = arguments;
+    let Arguments { test: path, output, options, reference, json } = arguments;
     let (inputs, test) = Inputs::reading_test(path)?;
+    let (inputs, reference) = reference.read(inputs)?;
     let mut files = Outputs::of(inputs)?.filling(output, MANIFEST).planned_inside(names(&test))?;
     let identified = match Identified::from_test(&test, path, options) {
         Err(refused) => {
-            let contradicted = Contradicted::of(test, path, refused)?;
+            let contradicted = Contradicted::of(test, reference.as_ref(), path, refused)?;
             let files = (contradicted.traced.explains() || !holds_earlier).then_some(files);
             return trace_alone(arguments, files, contradicted);
         }
         Ok(identified) => identified,
     };
-    let traced = Traced::where_possible(&test, path);
+    let traced = Traced::where_possible(&test, reference.as_ref(), path);
     let models =
         traced.as_ref().map_or_else(|_| identified.models.clone(), |traced| traced.applied_to(&identified.models));
     let evidence = Evidence::of(&identified, traced.as_ref().ok(), options.settings()?.estimation, path)?;

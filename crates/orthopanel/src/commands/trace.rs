@@ -7,6 +7,7 @@ use orthopanel_data::ImpactTest;
 use crate::error::CommandError;
 use crate::identified::suffixes;
 use crate::outputs::{Inputs, Outputs};
+use crate::reference_option::ReferenceOption;
 use crate::traced::Traced;
 use crate::{console, model_file};
 
@@ -38,10 +39,8 @@ use crate::{console, model_file};
 pub struct Arguments {
     /// Test file (test.toml), or the folder that holds it
     test: PathBuf,
-    /// Test file of a sound panel of the same make: what the model misses of its natural frequencies is removed from those of TEST, and what
-    /// is found is what differs between the two
-    #[arg(long, value_name = "GOOD.toml")]
-    reference: Option<PathBuf>,
+    #[command(flatten)]
+    reference: ReferenceOption,
     /// Model file to write (orthopanel.model/1, JSON)
     #[arg(short, long, value_name = "MODEL.json")]
     output: Option<PathBuf>,
@@ -52,21 +51,11 @@ pub struct Arguments {
 
 pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
     let Arguments { test: path, reference, output, json } = arguments;
-    let (mut inputs, test) = Inputs::reading_test(path)?;
-    let reference = match reference {
-        Some(reference) => {
-            let (more, reference) = Inputs::reading_test(reference)?;
-            inputs = inputs.and_all(more);
-            Some(reference)
-        }
-        None => None,
-    };
+    let (inputs, test) = Inputs::reading_test(path)?;
+    let (inputs, reference) = reference.read(inputs)?;
     let outputs = model_file::planned_each(Outputs::of(inputs)?, output.as_deref(), &test)?;
-    let traced = match &reference {
-        Some(reference) => Traced::against(&test, reference),
-        None => Traced::from_test(&test),
-    };
-    let traced = traced.map_err(|source| CommandError::Identify { path: path.clone(), source })?;
+    let traced = Traced::from_test(&test, reference.as_ref())
+        .map_err(|source| CommandError::Identify { path: path.clone(), source })?;
     let written = match output {
         Some(output) => write_models(outputs, output, &test, path, &traced),
         None => Ok(()),

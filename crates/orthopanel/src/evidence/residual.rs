@@ -45,6 +45,17 @@ impl PairResidual {
     pub fn rms(&self) -> f64 {
         rms(self.lines.iter().map(|(_, size)| *size))
     }
+
+    /// The same over the lines to which no other of the `modes` \[Hz\] is nearer; `None` where a mode has no line.
+    pub fn by_mode(&self, modes: &[f64]) -> Vec<Option<f64>> {
+        let mut near = vec![Vec::new(); modes.len()];
+        for &(frequency, size) in &self.lines {
+            let apart = |mode: &usize| (modes[*mode] - frequency).abs();
+            let nearest = (0..modes.len()).min_by(|one, other| apart(one).total_cmp(&apart(other)));
+            nearest.into_iter().for_each(|mode| near[mode].push(size));
+        }
+        near.into_iter().map(|sizes| (!sizes.is_empty()).then(|| rms(sizes.into_iter()))).collect()
+    }
 }
 
 /// Root mean square of lines in `bands` bands of even width up to `highest` \[Hz\], at the bands' middles; bands without
@@ -92,6 +103,14 @@ mod tests {
         // Without noise: over the rms of 3 and 4, a tenth of either.
         let relative = PairResidual::of(&pair(None));
         assert!((relative.rms() - 10.0).abs() < 1e-12 && relative.unit == ResidualUnit::Percent);
+    }
+
+    #[test]
+    fn every_line_counts_for_the_nearest_mode() {
+        let at = Place { x: 0.0, y: 0.0 };
+        let lines = vec![(9.0, 3.0), (12.0, 4.0), (19.0, 7.0)];
+        let pair = PairResidual { force: at, response: at, unit: ResidualUnit::Noise, lines };
+        assert_eq!(pair.by_mode(&[10.0, 20.0, 40.0]), [Some(12.5_f64.sqrt()), Some(7.0), None]);
     }
 
     #[test]

@@ -12,6 +12,7 @@ mod measured_accelerance;
 mod plate_map;
 mod plate_mode_shapes;
 mod residual;
+mod residual_by_mode;
 mod response;
 mod time_history;
 
@@ -24,6 +25,7 @@ pub use measured_accelerance::measured_accelerance;
 pub use plate_map::{FoundPlace, plate_map};
 pub use plate_mode_shapes::plate_mode_shapes;
 pub use residual::{residual_by_frequency, residual_by_level, residual_by_place};
+pub use residual_by_mode::residual_by_place_and_mode;
 pub use response::response;
 pub use time_history::time_history;
 

@@ -33,9 +33,12 @@ pub struct FoundPlace {
 /// A circle a place that was hit, the larger the more is left there; a triangle a sensor, a cross an effect.
 pub fn plate_map(piece: &Piece, residuals: &[PairResidual], found: &[FoundPlace]) -> Result<String, CommandError> {
     let (half_x, half_y) = (0.5 * piece.length, 0.5 * piece.width);
-    let across = f64::from(WIDTH - BESIDE - 2 * LAST_LABEL);
+    // Circles at an edge stand over it.
+    let around = 2.0 * RADII[1];
+    let across = f64::from(WIDTH - BESIDE - 2 * LAST_LABEL) - around;
     let scale = (across / piece.length).min(MOST_HIGH / piece.width);
-    let (map_width, map_height) = ((scale * piece.length) as u32, (scale * piece.width) as u32);
+    let [map_width, map_height] = [piece.length, piece.width].map(|side| (scale * side + around) as u32);
+    let shown = |half: f64| -half - 0.5 * around / scale..half + 0.5 * around / scale;
     let spare = (WIDTH - BESIDE).saturating_sub(map_width) / 2;
     let greatest = residuals.iter().map(PairResidual::rms).fold(0.0, f64::max);
     let noise = residuals.iter().all(|pair| pair.unit == ResidualUnit::Noise);
@@ -51,7 +54,7 @@ pub fn plate_map(piece: &Piece, residuals: &[PairResidual], found: &[FoundPlace]
             .margin_right(spare + LAST_LABEL)
             .x_label_area_size(45)
             .y_label_area_size(BESIDE)
-            .build_cartesian_2d(-half_x..half_x, -half_y..half_y)?;
+            .build_cartesian_2d(shown(half_x), shown(half_y))?;
         chart
             .configure_mesh()
             .disable_mesh()
@@ -90,10 +93,15 @@ pub fn plate_map(piece: &Piece, residuals: &[PairResidual], found: &[FoundPlace]
                 chart.draw_series([PathElement::new(outline.collect::<Vec<_>>(), WITH_EFFECTS.stroke_width(2))])?;
             }
             chart.draw_series([Cross::new(at(of.at), 8, WITH_EFFECTS.stroke_width(3))])?;
-            // Away from the nearer end.
-            let (side, beside) = if of.at.x > 0.3 * half_x { (HPos::Right, -14) } else { (HPos::Left, 14) };
-            let style = (FONT, 16).into_font().color(&WITH_EFFECTS).pos(Pos::new(side, VPos::Bottom));
-            chart.draw_series([EmptyElement::at(at(of.at)) + Text::new(of.name.clone(), (beside, -10), style)])?;
+            // Off the square and the region, on the side of the middle.
+            let [region_x, region_y] = of.region.unwrap_or_default();
+            let half_span = 0.5 * of.span.unwrap_or(0.0);
+            let (side, x) = if of.at.x > 0.0 { (HPos::Right, 1.0) } else { (HPos::Left, -1.0) };
+            let (end, y, off) = if of.at.y > 0.0 { (VPos::Top, -1.0, 12) } else { (VPos::Bottom, 1.0, -12) };
+            let corner = (of.at.x + x * region_x.max(half_span), of.at.y + y * region_y.max(half_span));
+            let corner = (corner.0.clamp(-half_x, half_x), corner.1.clamp(-half_y, half_y));
+            let style = (FONT, 16).into_font().color(&WITH_EFFECTS).pos(Pos::new(side, end));
+            chart.draw_series([EmptyElement::at(corner) + Text::new(of.name.clone(), (0, off), style)])?;
         }
         let said = (FONT, 15).into_font().color(&ERROR);
         let line = |row: i32| 4 + 22 * row;

@@ -12,11 +12,14 @@ use crate::error::CommandError;
 use crate::evidence::{PairResidual, ResidualUnit, banded};
 use crate::measured_pairs::place_text;
 
-const WIDTH: u32 = 900;
+pub(super) const WIDTH: u32 = 900;
 /// Bands of frequency over which residuals are averaged.
 const BANDS: usize = 80;
 /// Height of a row of the places \[pixels\].
-const ROW: u32 = 24;
+pub(super) const ROW: u32 = 24;
+/// Width of a letter of the names of rows, and the least of all names \[pixels\].
+const LETTER: u32 = 8;
+const LEAST_NAMES: u32 = 150;
 
 fn unit_text(residuals: &[PairResidual]) -> &'static str {
     match residuals.first().map(|pair| pair.unit) {
@@ -77,30 +80,23 @@ pub fn residual_by_place(residuals: &[PairResidual]) -> Result<String, CommandEr
     let height = 105 + ROW * count.max(1) as u32;
     let title = "Residual of each pair of places, force to response [m]";
     titled("residual by place", title, (WIDTH, height), |area| {
-        // The first pair on top, each one high about its middle.
-        let height_of = |index: usize| (count - 1 - index) as f64 + 0.5;
-        let named = |height: &f64| {
-            let index = (0..count).find(|&index| (height_of(index) - height).abs() < 0.25);
-            let pair = index.and_then(|index| residuals.get(index));
-            pair.map_or(String::new(), |pair| format!("{} to {}", place_text(pair.force), place_text(pair.response)))
-        };
         let mut chart = ChartBuilder::on(&area)
             .margin(12)
             .margin_right(LAST_LABEL)
             .x_label_area_size(45)
-            .y_label_area_size(150)
-            .build_cartesian_2d(0.0..1.05 * highest, Rows { count, range: (0.0..count as f64).into() })?;
+            .y_label_area_size(names_width(residuals))
+            .build_cartesian_2d(0.0..1.05 * highest, Rows::of(count))?;
         chart
             .configure_mesh()
             .disable_y_mesh()
             .light_line_style(TRANSPARENT)
             .bold_line_style(GRID)
-            .y_label_formatter(&named)
+            .y_label_formatter(&place_names(residuals))
             .x_desc(unit_text(residuals))
             .label_style((FONT, 15))
             .draw()?;
         for (index, pair) in residuals.iter().enumerate() {
-            let middle = height_of(index);
+            let middle = (count - 1 - index) as f64 + 0.5;
             let mut bar = Rectangle::new([(0.0, middle - 0.5), (pair.rms(), middle + 0.5)], MODEL.filled());
             bar.set_margin(4, 4, 0, 0);
             chart.draw_series([bar])?;
@@ -112,10 +108,31 @@ pub fn residual_by_place(residuals: &[PairResidual]) -> Result<String, CommandEr
     })
 }
 
+fn name_of(pair: &PairResidual) -> String {
+    format!("{} to {}", place_text(pair.force), place_text(pair.response))
+}
+
+/// The pair of a row about this height: the first on top, each one high.
+pub(super) fn place_names(residuals: &[PairResidual]) -> impl Fn(&f64) -> String {
+    |height| residuals.iter().rev().nth(height.max(0.0) as usize).map_or(String::new(), name_of)
+}
+
+/// What the longest of these names takes \[pixels\].
+pub(super) fn names_width(residuals: &[PairResidual]) -> u32 {
+    let longest = residuals.iter().map(|pair| name_of(pair).len()).max().unwrap_or(0);
+    (LETTER * longest as u32).max(LEAST_NAMES)
+}
+
 /// An axis of so many rows, a tick in the middle of each.
-struct Rows {
+pub(super) struct Rows {
     count: usize,
     range: RangedCoordf64,
+}
+
+impl Rows {
+    pub(super) fn of(count: usize) -> Self {
+        Self { count, range: (0.0..count as f64).into() }
+    }
 }
 
 impl Ranged for Rows {

@@ -81,12 +81,13 @@ pub fn remarks(found: &Identification) -> Vec<String> {
             unseen.direction_text()
         )
     });
-    let correlations = found.correlations.iter();
-    let correlations = correlations.map(|pair| {
+    let correlations = found.correlations.iter().map(|pair| {
         let [first, second] = [(pair.first, pair.first_piece), (pair.second, pair.second_piece)]
             .map(|(name, piece)| called(found, name, piece));
-        format!("The correlation of {first} and {second} is {:+.3}.", pair.value)
+        format!("{first} and {second} {:+.3}", pair.value)
     });
+    let correlations = correlations.collect::<Vec<_>>().join(", ");
+    let correlations = (!correlations.is_empty()).then(|| format!("Correlations: {correlations}."));
     unseen.chain(correlations).collect()
 }
 

@@ -73,13 +73,14 @@ pub fn page(
         about_constants.insert(0, SUPERSEDED.into());
     }
     let hits: Vec<&HitsWithEffects> = evidence.pieces.iter().flat_map(|piece| &piece.hits_with_effects).collect();
+    let modes = found.pieces.first().map(pieces::measured_modes).unwrap_or_default();
     let page = Page {
         title: title(path),
         made_by: MADE_BY.to_owned(),
         lead: constants::lead(found),
         constants: Some(constants::table(found)),
         about_constants,
-        trace: traced.as_ref().ok().map(|traced| TraceSection::of(piece_name, traced, &hits)).transpose()?,
+        trace: traced.as_ref().ok().map(|traced| TraceSection::of(piece_name, traced, &hits, &modes)).transpose()?,
         not_traced: traced.as_ref().err().cloned(),
         pieces: pieces.map(|(fit, shown)| PieceSection::of(fit, shown, has_effects)).collect::<Result<_, _>>()?,
         notes: notes::counted(&found.notes).collect(),
@@ -104,7 +105,7 @@ pub fn page_of_trace(
         lead: vec![format!("No base model was identified: {refused}."), TRACED_ALONE.to_owned()],
         constants: None,
         about_constants: vec![],
-        trace: Some(TraceSection::of(piece_name, traced, &hits)?),
+        trace: Some(TraceSection::of(piece_name, traced, &hits, &[])?),
         not_traced: None,
         pieces: pieces.map(|(named, shown)| PieceSection::of_trace(named, shown)).collect::<Result<_, _>>()?,
         notes: vec![],

@@ -68,7 +68,7 @@ impl PieceSection {
             modes: (!fit.modes.is_empty() || !fit.hidden.is_empty()).then(|| modes(fit, shown.with_effects.as_deref())),
             frequencies: shown.frequencies.as_ref().map(|picture| Figure::new(picture, FREQUENCIES_CAPTION)),
             galleries: galleries.into_iter().flatten().collect(),
-            residual: residual(&shown.residuals, &shown.levels)?,
+            residual: residual(&shown.residuals, &shown.levels, &measured_modes(fit))?,
         })
     }
 
@@ -90,7 +90,7 @@ impl PieceSection {
             .into_iter()
             .flatten()
             .collect(),
-            residual: residual(&shown.residuals, &shown.levels)?,
+            residual: residual(&shown.residuals, &shown.levels, &[])?,
         })
     }
 }
@@ -150,7 +150,14 @@ fn modes(fit: &PieceFit, with_effects: Option<&[f64]>) -> Table {
     Table::new(&headings, rows)
 }
 
-fn residual(residuals: &[PairResidual], levels: &[(f64, f64)]) -> Result<Vec<Figure>, CommandError> {
+/// Their frequencies \[Hz\], rising.
+pub(super) fn measured_modes(fit: &PieceFit) -> Vec<f64> {
+    let mut modes: Vec<f64> = fit.modes.iter().map(|mode| mode.measured).collect();
+    modes.sort_by(f64::total_cmp);
+    modes
+}
+
+fn residual(residuals: &[PairResidual], levels: &[(f64, f64)], modes: &[f64]) -> Result<Vec<Figure>, CommandError> {
     let mut figures = Vec::new();
     if !residuals.is_empty() {
         let unit = match residuals.iter().all(|pair| pair.unit == ResidualUnit::Noise) {
@@ -165,6 +172,12 @@ fn residual(residuals: &[PairResidual], levels: &[(f64, f64)]) -> Result<Vec<Fig
         figures.push(Figure::new(
             &pictures::residual_by_place(residuals)?,
             "A place that stands out points to something at that place, or to its record.",
+        ));
+    }
+    if residuals.len() > 1 && modes.len() > 1 {
+        figures.push(Figure::new(
+            &pictures::residual_by_place_and_mode(residuals, modes)?,
+            "A row that is dark in all modes is a record by itself; what sits at a place shows in the modes that move there.",
         ));
     }
     if levels.len() > 1 {

@@ -25,6 +25,8 @@ pub struct TraceSection {
     pub comparison: Table,
     /// By how much the model misses beside noise.
     pub model_error: Option<String>,
+    /// What a reference took off that.
+    pub shared_model_error: Option<String>,
     /// From which size on a disbond would have been named.
     pub detectable: Option<String>,
     /// Where most is left of records that no effect explains.
@@ -49,7 +51,13 @@ pub struct TraceSection {
 }
 
 impl TraceSection {
-    pub fn of(name: &str, traced: &Traced, compared: &[&HitsWithEffects]) -> Result<Self, CommandError> {
+    /// `modes` are the measured natural frequencies \[Hz\], as far as they are known.
+    pub fn of(
+        name: &str,
+        traced: &Traced,
+        compared: &[&HitsWithEffects],
+        modes: &[f64],
+    ) -> Result<Self, CommandError> {
         let tracing = &traced.tracing;
         let [hypothesis, evidence, held_out] = RANKING_HEADINGS;
         let ranking = [hypothesis, evidence, held_out, "\"parameters"];
@@ -64,6 +72,7 @@ impl TraceSection {
             measure: tracing.error.measure.clone(),
             comparison: Table::new(&headings, rows),
             model_error: traced.model_error(),
+            shared_model_error: traced.shared_model_error(),
             detectable: traced.detectable(),
             left: traced.left(),
             about_held_out: about_held_out(tracing),
@@ -74,7 +83,7 @@ impl TraceSection {
             notes: notes::counted(&tracing.notes).collect(),
             not_tested: tracing.not_tested.iter().map(|of| format!("{}: {}", of.id, of.reason)).collect(),
             fit: gallery(name, fitted)?,
-            residual: residual(fitted, compared)?,
+            residual: residual(fitted, compared, modes)?,
             hits: hits(compared),
         })
     }
@@ -154,7 +163,11 @@ fn map(traced: &Traced) -> Result<Option<Figure>, CommandError> {
 }
 
 /// Against frequency, place and level, where these are told.
-fn residual(fitted: &[AcceleranceFit], compared: &[&HitsWithEffects]) -> Result<Vec<Figure>, CommandError> {
+fn residual(
+    fitted: &[AcceleranceFit],
+    compared: &[&HitsWithEffects],
+    modes: &[f64],
+) -> Result<Vec<Figure>, CommandError> {
     let residuals: Vec<PairResidual> = fitted.iter().map(PairResidual::of).collect();
     let mut figures = Vec::new();
     if !residuals.is_empty() {
@@ -164,6 +177,10 @@ fn residual(fitted: &[AcceleranceFit], compared: &[&HitsWithEffects]) -> Result<
     if residuals.len() > 1 {
         let caption = "The same by place: where an effect at one place, or of one record, is all that was missing, none stands out.";
         figures.push(Figure::new(&pictures::residual_by_place(&residuals)?, caption));
+    }
+    if residuals.len() > 1 && modes.len() > 1 {
+        let caption = "The same by place and mode: where nothing stands out, all that was missing is found.";
+        figures.push(Figure::new(&pictures::residual_by_place_and_mode(&residuals, modes)?, caption));
     }
     let levels: Vec<(f64, f64)> = compared.iter().flat_map(|pair| &pair.levels).copied().collect();
     if levels.len() > 1 {
@@ -187,7 +204,7 @@ mod tests {
     fn val_the_picture_shows_noise_where_nothing_is_missing() {
         let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/made-hits/test.toml");
         let test = ImpactTest::read(Path::new(path)).expect("a test");
-        let traced = Traced::from_test(&test).expect("a trace");
+        let traced = Traced::from_test(&test, None).expect("a trace");
         assert!(!traced.tracing.accelerances.is_empty());
         for pair in &traced.tracing.accelerances {
             let shown = PairResidual::of(pair).rms();

@@ -34,23 +34,15 @@ pub struct Traced {
 }
 
 impl Traced {
-    /// Traces; shows on standard error how far it is, and says what was noted.
-    pub fn from_test(test: &ImpactTest) -> Result<Self, IdentifyError> {
-        Self::of(test, |tell| trace_with(test, tell))
-    }
-
-    /// The same against a sound panel of the same make.
-    pub fn against(test: &ImpactTest, reference: &ImpactTest) -> Result<Self, IdentifyError> {
-        Self::of(test, |tell| trace_against(test, reference, tell))
-    }
-
-    fn of(
-        test: &ImpactTest,
-        trace: impl FnOnce(&(dyn Fn(Progress) + Sync)) -> Result<Tracing, IdentifyError>,
-    ) -> Result<Self, IdentifyError> {
+    /// Traces, against a sound panel of the same make where there is one; shows on standard error how far it is, and says what was noted.
+    pub fn from_test(test: &ImpactTest, reference: Option<&ImpactTest>) -> Result<Self, IdentifyError> {
         let mut tracing = {
             let shown = progress::counted("tracing what the model lacks");
-            trace(&|at: Progress| shown.at(at.done, at.of, at.effect))?
+            let tell = |at: Progress| shown.at(at.done, at.of, at.effect);
+            match reference {
+                Some(reference) => trace_against(test, reference, &tell)?,
+                None => trace_with(test, &tell)?,
+            }
         };
         for panel in tracing.panels.iter_mut().filter(|panel| panel.damping == Damping::default()) {
             // Lists tell no damping, and a panel without any would ring for ever.
@@ -68,8 +60,8 @@ impl Traced {
 
     /// As [`Traced::from_test`] where tracing is not all that was asked for: of a test that it refuses the sentence that
     /// says so, which goes to standard error too.
-    pub fn where_possible(test: &ImpactTest, path: &Path) -> Result<Self, String> {
-        Self::from_test(test).map_err(|error| {
+    pub fn where_possible(test: &ImpactTest, reference: Option<&ImpactTest>, path: &Path) -> Result<Self, String> {
+        Self::from_test(test, reference).map_err(|error| {
             console::say(format_args!("not traced: {}: {error}", path.display()));
             format!("Not traced: {error}.")
         })

@@ -1,0 +1,66 @@
+//! What the model leaves at each place about each mode.
+
+use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
+
+use super::residual::{ROW, Rows, WIDTH, names_width, place_names};
+use super::{ERROR, FONT, LAST_LABEL, MODEL, titled};
+use crate::error::CommandError;
+use crate::evidence::{PairResidual, ResidualUnit};
+
+/// Steps of the scale below.
+const STEPS: usize = 24;
+/// Size of the scale \[pixels\].
+const SCALE: (i32, i32) = (240, 14);
+
+/// A field a pair of places and mode: the darker, the more is left of the lines to which no other of the `modes` \[Hz\] is nearer.
+pub fn residual_by_place_and_mode(residuals: &[PairResidual], modes: &[f64]) -> Result<String, CommandError> {
+    let (count, columns) = (residuals.len(), modes.len());
+    let sizes: Vec<Vec<Option<f64>>> = residuals.iter().map(|pair| pair.by_mode(modes)).collect();
+    let noise = residuals.iter().all(|pair| pair.unit == ResidualUnit::Noise);
+    // Noise is white; beyond it each step multiplies.
+    let least = if noise { 1.0 } else { 0.0 };
+    let most = sizes.iter().flatten().flatten().copied().fold(if noise { 2.0 } else { f64::MIN_POSITIVE }, f64::max);
+    let part = |size: f64| if noise { size.max(1.0).ln() / most.ln() } else { size / most };
+    let unit = if noise { "times the noise" } else { "% of the measured rms" };
+    let names = names_width(residuals);
+    let height = 150 + ROW * count.max(1) as u32;
+    titled("residual by place and mode", "Residual of each pair of places about each mode", (WIDTH, height), |area| {
+        let (area, scale) = area.split_vertically(height as i32 - 75);
+        let mut chart = ChartBuilder::on(&area)
+            .margin(12)
+            .margin_right(LAST_LABEL)
+            .x_label_area_size(45)
+            .y_label_area_size(names)
+            .build_cartesian_2d(0.5..columns as f64 + 0.5, Rows::of(count))?;
+        chart
+            .configure_mesh()
+            .disable_mesh()
+            .x_label_formatter(&|mode| format!("{mode:.0}"))
+            .y_label_formatter(&place_names(residuals))
+            .x_desc("measured mode")
+            .label_style((FONT, 15))
+            .draw()?;
+        for (pair, sizes) in sizes.iter().enumerate() {
+            let low = (count - 1 - pair) as f64;
+            for (mode, size) in (1..).zip(sizes) {
+                let Some(size) = size else { continue };
+                let (left, right) = (f64::from(mode) - 0.5, f64::from(mode) + 0.5);
+                let field = [(left, low), (right, low + 1.0)];
+                chart.draw_series([Rectangle::new(field, MODEL.mix(part(*size)).filled())])?;
+            }
+        }
+        let (left, top) = (names as i32 + 12, 6);
+        for step in 0..STEPS {
+            let at = |step: usize| left + SCALE.0 * step as i32 / STEPS as i32;
+            let shade = MODEL.mix((step as f64 + 0.5) / STEPS as f64);
+            scale.draw(&Rectangle::new([(at(step), top), (at(step + 1), top + SCALE.1)], shade.filled()))?;
+        }
+        scale.draw(&Rectangle::new([(left, top), (left + SCALE.0, top + SCALE.1)], ERROR))?;
+        let said = |side| (FONT, 15).into_font().color(&ERROR).pos(Pos::new(side, VPos::Top));
+        let (before, after) = ((left - 8, top - 1), (left + SCALE.0 + 8, top - 1));
+        scale.draw(&Text::new(format!("{least:.0}"), before, said(HPos::Right)))?;
+        scale.draw(&Text::new(format!("{most:.2} {unit}"), after, said(HPos::Left)))?;
+        Ok(())
+    })
+}
