@@ -82,6 +82,17 @@ fn place(at: Place) -> String {
     format!("[{}, {}]", (1e6 * at.x).round() / 1e6, (1e6 * at.y).round() / 1e6)
 }
 
+/// What is said where there are too few records to tell.
+pub(crate) fn untold(records: usize) -> Option<String> {
+    (records < LEAST_RECORDS).then(|| {
+        format!(
+            "records of {records} pair{} of places do not tell whether an axis is mirrored, a sensor turned round or two records exchanged: hit \
+             {LEAST_RECORDS} places at least to have that checked",
+            if records == 1 { "" } else { "s" }
+        )
+    })
+}
+
 /// # Errors
 /// [`IdentifyError::OtherPlaces`] where another reading of the places is clearly ahead; what the plate refuses.
 pub(crate) fn refuse_other_places(
@@ -157,9 +168,6 @@ pub(crate) fn refuse_other_places(
     if log_odds - f64::from(count).ln() < ODDS.ln() {
         return Ok(());
     }
-    let percent = |mut left: Vec<f64>| {
-        left.sort_by(f64::total_cmp);
-        100.0 * (left[poles / 2] / records as f64).sqrt()
-    };
+    let percent = |left: Vec<f64>| 100.0 * (left.iter().sum::<f64>() / (poles * records) as f64).sqrt();
     Err(IdentifyError::OtherPlaces { write, percent: [percent(own), percent(left)] })
 }

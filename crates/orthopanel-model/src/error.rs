@@ -129,7 +129,7 @@ pub enum ModelError {
     /// A place outside the piece.
     #[error(
         "place ({}, {}) m lies off the piece: |x| <= {} m and |y| <= {} m, from its centre{}",
-        Readable(*.x), Readable(*.y), Readable(*.x_limit), Readable(*.y_limit), from_corner([*.x, *.y], [*.x_limit, *.y_limit])
+        Readable(*.x), Readable(*.y), Readable(*.x_limit), Readable(*.y_limit), other_readings([*.x, *.y], [*.x_limit, *.y_limit])
     )]
     OffPiece {
         /// x of the place.
@@ -409,15 +409,23 @@ impl std::fmt::Display for Readable {
     }
 }
 
-/// What a place off the piece is from a corner, where it lies on the piece so.
-fn from_corner(place: [f64; 2], half: [f64; 2]) -> String {
-    if place.iter().zip(half).any(|(at, half)| !(-1e-9..=2.0 * half).contains(at)) {
-        return String::new();
-    }
-    let [x, y] = [place[0] - half[0], place[1] - half[1]].map(|at| Readable((1e9 * at).round() / 1e9));
-    format!(
-        "; counted from the corner at the lower left it is ({x}, {y}): subtract half the length and half the width from every place"
-    )
+/// How else a place off the piece may be meant, where it lies on the piece so.
+fn other_readings([x, y]: [f64; 2], half: [f64; 2]) -> String {
+    let readings = [
+        (
+            "counted from the corner at the lower left",
+            [x - half[0], y - half[1]],
+            "subtract half the length and half the width from every place",
+        ),
+        ("with x and y exchanged", [y, x], "x runs along the length"),
+        ("in millimetres", [1e-3 * x, 1e-3 * y], "write metres"),
+    ];
+    let lies_on = |place: &[f64; 2]| place.iter().zip(half).all(|(at, half)| at.abs() <= half + 1e-9);
+    let said = |(reading, place, write): &(&str, [f64; 2], &str)| {
+        let [x, y] = place.map(|at| Readable((1e9 * at).round() / 1e9));
+        format!("; {reading} it is ({x}, {y}): {write}")
+    };
+    readings.iter().filter(|(_, place, _)| lies_on(place)).map(said).collect()
 }
 
 /// A unit behind its number; pure numbers have none.
@@ -434,6 +442,24 @@ fn short(bound: &f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_place_off_the_piece_is_told_how_else_it_may_be_meant() {
+        let said = |x, y| ModelError::OffPiece { x, y, x_limit: 0.4, y_limit: 0.3 }.to_string();
+        let corner = said(0.7, 0.1);
+        assert!(
+            corner.ends_with("it is (0.3, -0.2): subtract half the length and half the width from every place"),
+            "{corner}"
+        );
+        let exchanged = said(-0.2, -0.35);
+        assert!(
+            exchanged.ends_with("; with x and y exchanged it is (-0.35, -0.2): x runs along the length"),
+            "{exchanged}"
+        );
+        let millimetres = said(-350.0, 120.0);
+        assert!(millimetres.ends_with("; in millimetres it is (-0.35, 0.12): write metres"), "{millimetres}");
+        assert!(said(0.9, -0.1).ends_with("from its centre"));
+    }
 
     #[test]
     fn no_number_for_people_is_long() {

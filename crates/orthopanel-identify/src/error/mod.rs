@@ -388,14 +388,14 @@ pub enum IdentifyError {
     },
     /// Places or signs of records that are not those of the test.
     #[error(
-        "write {write}: half of the modes' shapes miss those of the plate by more than {:.0} % as it stands, and than {:.0} % so; where that is not it, look at \
+        "write {write}: the modes' shapes miss those of the plate by {:.0} % rms as it stands, and by {:.0} % so; where that is not it, look at \
          each record's file, force_at and response_at",
         Readable(.percent[0]), Readable(.percent[1])
     )]
     OtherPlaces {
         /// What to write, and what it means.
         write: String,
-        /// What half of the modes miss at least over all records as the test file stands, and so \[% rms\].
+        /// What is missed of the residues of all modes, each over its size, as the test file stands, and so \[% rms\].
         percent: [f64; 2],
     },
     /// What the test of a reference refuses.
