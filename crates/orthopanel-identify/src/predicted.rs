@@ -58,6 +58,8 @@ pub(crate) struct Predictor<'a> {
     pub hanging: Option<f64>,
     /// Deviation of the logarithm of the frequency of a mode of the piece itself that is to be matched.
     pub apart: f64,
+    /// The partner of each pole, from the rigid modes on, where no residues were measured to match shapes by.
+    pub told_partners: Option<Vec<Option<usize>>>,
     /// Modes that were found last: what acts on the channel alone asks for the same ones again.
     found: Mutex<VecDeque<(Vec<f64>, Arc<SeenModes>)>>,
 }
@@ -125,7 +127,7 @@ impl<'a> Predictor<'a> {
         let record = RecordSetting { suspension_motion: SuspensionMotion::InTime, ..setting.record.clone() };
         let setting = EffectSetting { record, ..setting.clone() };
         let (apart, found) = (apart(structure), Mutex::default());
-        Self { comparison, structure, panel, setting, places, hanging: None, apart, found }
+        Self { comparison, structure, panel, setting, places, hanging: None, apart, told_partners: None, found }
     }
 
     /// The panel with as many modes, seen from any of these places.
@@ -403,6 +405,9 @@ impl<'a> Predictor<'a> {
     /// The partner of each pole among the modes that the first record sees, each as large as the channels show it.
     fn partners(&self, channels: &[Channel], seen: &Views, omega: &[f64], bottom: f64) -> Vec<Option<usize>> {
         let measured = self.comparison.measured;
+        if let Some(told) = &self.told_partners {
+            return told.iter().map(|partner| partner.filter(|n| *n < omega.len())).collect();
+        }
         if measured.records.is_empty() {
             // A list counts the flexible modes that bend along the piece.
             let bends_along = |n: &usize| {

@@ -29,6 +29,7 @@ use crate::hit_strength::HitStrength;
 use crate::inference::{Correct, from_base};
 use crate::model_error::Kind;
 use crate::outcome::{Candidate, EstimatedModelError, Progress, Removed, SharedModelError, TracedError, Tracing};
+use crate::place_readings::untold;
 use crate::posterior::Judged;
 use crate::search::Inquiry;
 use crate::stacked::Block;
@@ -130,6 +131,9 @@ fn tracing_of(test: &ImpactTest, inquiry: &Inquiry, all: &[Judged]) -> Result<Tr
     notes.extend(lines.notes);
     if lines.hits_are_few {
         notes.push(FEW_HITS.to_owned());
+    }
+    if inquiry.predictor().structure == StructureKind::MindlinPlate {
+        notes.extend(untold(inquiry.stacked.first().comparison().measured.records.len()));
     }
     notes.extend(lists_beside(inquiry));
     notes.extend(weighed.notes(inquiry, test, &estimates));

@@ -185,13 +185,16 @@ impl<'a> Further<'a> {
         let comparison = Comparison::new(&self.measured, self.of.piece().mass());
         let mut setting = self.of.setting(0);
         setting.record = RecordSetting { response_at: Some(self.measured.records[0].response_at), ..setting.record };
-        let predictor = Predictor::on(self.panel.clone(), &comparison, (self.of.structure, &setting));
-        let predicted = |judged: &Judged| -> Result<_, ModelError> {
+        let mut predictor = Predictor::on(self.panel.clone(), &comparison, (self.of.structure, &setting));
+        let mut predicted = |judged: &Judged| -> Result<_, ModelError> {
+            // Its residues are no more than sizes.
+            predictor.told_partners = Some(self.of.partners_of(judged.posterior.point.at.first()));
             let (constants, effects) =
                 (judged.hypothesis.constants_of(self.measured.piece, &judged.posterior.point.z), self.effects(judged)?);
             Ok((predictor.at(&constants, &effects, true)?, constants, effects))
         };
-        let ((at, constants, effects), (other, ..)) = (predicted(one)?, predicted(other)?);
+        let (other, ..) = predicted(other)?;
+        let (at, constants, effects) = predicted(one)?;
         let uneven = waves(&predictor, &constants, &effects)?;
         let errors = ErrorColumns::about(&predictor, &at, &uneven);
         let by = errors.whitening((&comparison.noise, None), &one.posterior.log_sizes, &[]);
