@@ -8,14 +8,15 @@ use super::{ERROR, FONT, LAST_LABEL, MEASURED, MODEL, WITH_EFFECTS, titled};
 use crate::error::CommandError;
 use crate::evidence::{PairResidual, ResidualUnit};
 
-const WIDTH: u32 = 900;
+/// Narrower than other pictures: the page shows it whole on a telephone.
+const WIDTH: u32 = 640;
 /// Greatest height of the map \[pixels\].
-const MOST_HIGH: f64 = 620.0;
+const MOST_HIGH: f64 = 440.0;
 /// What title, labels and legend take below and above the map \[pixels\], and labels beside it.
 const ABOVE: u32 = 165;
 const BESIDE: u32 = 70;
 /// Radii of the circle of the least and of the greatest residual \[pixels\].
-const RADII: [f64; 2] = [4.0, 22.0];
+const RADII: [f64; 2] = [4.0, 18.0];
 /// Corners of a region's outline.
 const CORNERS: usize = 72;
 
@@ -58,7 +59,7 @@ pub fn plate_map(piece: &Piece, residuals: &[PairResidual], found: &[FoundPlace]
         chart
             .configure_mesh()
             .disable_mesh()
-            .x_labels(7)
+            .x_labels(5)
             .y_labels(5)
             .x_label_formatter(&centimetres)
             .y_label_formatter(&centimetres)

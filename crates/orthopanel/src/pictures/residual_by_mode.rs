@@ -64,3 +64,29 @@ pub fn residual_by_place_and_mode(residuals: &[PairResidual], modes: &[f64]) -> 
         Ok(())
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use orthopanel_model::Place;
+
+    use super::*;
+
+    /// Fields are the blue rectangles of which the scale has the others; a name that began left of the picture would be cut off.
+    #[test]
+    fn every_place_and_mode_has_its_field_and_no_name_is_cut_off() {
+        let at = |x: f64| Place { x, y: -0.179 };
+        let pair = |number: u32| PairResidual {
+            force: at(-0.001 * f64::from(300 + number)),
+            response: at(-0.298),
+            unit: ResidualUnit::Noise,
+            lines: vec![(10.0, 2.0), (21.0, 5.0), (29.0, 0.9)],
+        };
+        let pairs: Vec<PairResidual> = (0..7).map(pair).collect();
+        let picture = residual_by_place_and_mode(&pairs, &[10.0, 20.0, 30.0]).expect("a picture");
+        let fields = picture.split("<rect ").filter(|part| part.contains("#005AAA")).count();
+        assert_eq!(fields, 7 * 3 + STEPS, "{picture}");
+        assert_eq!(picture.matches(" to -0.298,-0.179").count(), 7);
+        assert!(names_width(&pairs) >= 7 * "-0.306,-0.179 to -0.298,-0.179".len() as u32);
+        assert!(picture.contains("5.00 times the noise"), "{picture}");
+    }
+}

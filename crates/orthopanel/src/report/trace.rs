@@ -52,12 +52,7 @@ pub struct TraceSection {
 
 impl TraceSection {
     /// `modes` are the measured natural frequencies \[Hz\], as far as they are known.
-    pub fn of(
-        name: &str,
-        traced: &Traced,
-        compared: &[&HitsWithEffects],
-        modes: &[f64],
-    ) -> Result<Self, CommandError> {
+    pub fn of(name: &str, traced: &Traced, compared: &[&HitsWithEffects], modes: &[f64]) -> Result<Self, CommandError> {
         let tracing = &traced.tracing;
         let [hypothesis, evidence, held_out] = RANKING_HEADINGS;
         let ranking = [hypothesis, evidence, held_out, "\"parameters"];
