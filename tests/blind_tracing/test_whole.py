@@ -338,7 +338,8 @@ def test_val_the_smallest_disbond_that_is_said_is_named_and_half_of_it_is_not(tm
 @pytest.mark.skipif(ORTHOPANEL is None, reason="ORTHOPANEL names no binary")
 def test_val_places_that_are_wrong_are_told(tmp_path, few):
     """Of records of twelve places: as they are written constants are given; sensor and hammer mirrored against each other, a grid counted
-    from a corner, two records exchanged and one turned round are each refused with what to write."""
+    from a corner, x and y exchanged, two records exchanged and one turned round are each refused with what to write; of three places it is said
+    that they do not tell."""
     random = np.random.default_rng(11)
     bench = bench_with_places(12, 3150.0, random)
     files.write_case(tmp_path / "case", bench, records.play(bench, random))
@@ -358,12 +359,17 @@ def test_val_places_that_are_wrong_are_told(tmp_path, few):
         "x and y of response_at": written.replace(response, f"response_at = [{-x}, {-y}]"),
         "counted from the corner": moved((SMALL.length / 2.0, SMALL.width / 2.0)),
         "are exchanged": written.replace(force[2], "kept").replace(force[7], force[2]).replace("kept", force[7]),
+        "with x and y exchanged": re.sub(r"_at = \[(.*), (.*)\]", r"_at = [\2, \1]", written),
         "turned round": written.replace(force[4], force[4] + "\ndirection = -1"),
     }
     for wanted, text in readings.items():
         path.write_text(text, encoding="utf-8")
         told = subprocess.run([ORTHOPANEL, "identify", path], capture_output=True, text=True, check=False)
         assert (told.returncode == 0) == (not wanted) and wanted in told.stderr, (wanted, told.returncode, told.stderr)
+
+    path.write_text("[[measurement]]".join(written.split("[[measurement]]")[:4]), encoding="utf-8")
+    told = subprocess.run([ORTHOPANEL, "identify", path], capture_output=True, text=True, check=False)
+    assert "records of 3 pairs of places do not tell whether an axis is mirrored" in told.stderr, told.stderr
 
     path.write_text(written + '\n[[effect]]\nid = "local-mass"\nmass = 1e-5\nx = 0.1\ny = 0.05\n', encoding="utf-8")
     told = subprocess.run([ORTHOPANEL, "identify", path, "--json"], capture_output=True, text=True, check=True)

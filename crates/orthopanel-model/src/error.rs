@@ -421,6 +421,9 @@ fn other_readings([x, y]: [f64; 2], half: [f64; 2]) -> String {
         ("in millimetres", [1e-3 * x, 1e-3 * y], "write metres"),
     ];
     let lies_on = |place: &[f64; 2]| place.iter().zip(half).all(|(at, half)| at.abs() <= half + 1e-9);
+    // A place in metres that is none of the piece's lies on it in millimetres too: by its middle.
+    let is_far = [x, y].iter().zip(half).any(|(at, half)| at.abs() > 10.0 * half);
+    let readings = &readings[..if is_far { 3 } else { 2 }];
     let said = |(reading, place, write): &(&str, [f64; 2], &str)| {
         let [x, y] = place.map(|at| Readable((1e9 * at).round() / 1e9));
         format!("; {reading} it is ({x}, {y}): {write}")
