@@ -5,6 +5,7 @@ use orthopanel_model::{ModelError, StructureKind};
 
 use crate::answer::{PlateByModes, identify_lists_with_effects, identify_with_effects, without_repeats};
 use crate::inference::is_record;
+use crate::place_readings::untold;
 use crate::shapes_of_list::shapes_by_frequency;
 use crate::{
     DampingLaw, Identification, IdentifyError, Search, Settings, accelerance_fit, frequency_fit, known_beforehand,
@@ -30,6 +31,7 @@ pub fn identify(test: &ImpactTest, settings: impl Into<Settings>) -> Result<Iden
     if let Some(gain) = found.common_gain {
         found.notes.insert(0, accelerance_fit::said_of_gain(gain, test));
     }
+    found.notes.extend(untold(test));
     Ok(found)
 }
 

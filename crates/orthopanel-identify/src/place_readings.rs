@@ -8,9 +8,11 @@
 
 use std::f64::consts::TAU;
 
+use orthopanel_data::ImpactTest;
 use orthopanel_model::{Boundary, Piece, Place, StructureKind};
 
 use crate::IdentifyError;
+use crate::declared_effects::pairs_of_places;
 use crate::judge::{MOST_RESIDUE, ODDS};
 use crate::measured::MeasuredModes;
 use crate::predicted::apart;
@@ -82,9 +84,11 @@ fn place(at: Place) -> String {
     format!("[{}, {}]", (1e6 * at.x).round() / 1e6, (1e6 * at.y).round() / 1e6)
 }
 
-/// What is said where there are too few records to tell.
-pub(crate) fn untold(records: usize) -> Option<String> {
-    (records < LEAST_RECORDS).then(|| {
+/// What is said of a plate that was hit at too few places to tell.
+pub(crate) fn untold(test: &ImpactTest) -> Option<String> {
+    let records = pairs_of_places(test);
+    let is_plate = test.structure == Some(StructureKind::MindlinPlate);
+    (is_plate && (1..LEAST_RECORDS).contains(&records)).then(|| {
         format!(
             "records of {records} pair{} of places do not tell whether an axis is mirrored, a sensor turned round or two records exchanged: hit \
              {LEAST_RECORDS} places at least to have that checked",

@@ -10,7 +10,7 @@ use orthopanel_model::{
 use crate::accelerance_fit::told_variance;
 use crate::free_constants::HALF_95;
 use crate::measured::{MeasuredModes, measured_modes};
-use crate::place_readings::{refuse_other_places, untold};
+use crate::place_readings::refuse_other_places;
 use crate::plate_start::{PlateFit, PlateStart, held};
 use crate::settings::Settings;
 use crate::structures::{self, SeenMode};
@@ -187,7 +187,6 @@ impl PlateByModes {
             100.0 * self.fit.missed
         )];
         notes.extend(too_few_places(&modes, &fit.damping, measured.records.len()));
-        notes.extend(untold(measured.records.len()));
         if !alone.is_empty() {
             notes.push(format!("resonances that are no mode of the plate: {}", alone.join(", ")));
         }

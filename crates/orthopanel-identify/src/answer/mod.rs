@@ -132,9 +132,7 @@ fn tracing_of(test: &ImpactTest, inquiry: &Inquiry, all: &[Judged]) -> Result<Tr
     if lines.hits_are_few {
         notes.push(FEW_HITS.to_owned());
     }
-    if inquiry.predictor().structure == StructureKind::MindlinPlate {
-        notes.extend(untold(inquiry.stacked.first().comparison().measured.records.len()));
-    }
+    notes.extend(untold(test));
     notes.extend(lists_beside(inquiry));
     notes.extend(weighed.notes(inquiry, test, &estimates));
     let clear = factor.as_ref().and_then(|factor| factor.next.clone());
