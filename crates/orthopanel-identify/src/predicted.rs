@@ -12,7 +12,7 @@ use orthopanel_model::{
 
 use crate::comparison::{Comparison, UNSEEN};
 use crate::coupled_damping::CoupledModes;
-use crate::measured::{Pole, SKIRT};
+use crate::measured::{MeasuredRecord, Pole, SKIRT};
 use crate::view::{Channel, ModeInRecord, PARTS, Relaxing, View, Views};
 
 /// Predicted modes beyond the number of poles that take part.
@@ -148,9 +148,20 @@ impl<'a> Predictor<'a> {
             number: record + 1,
             force_at: places.map(|record| record.force_at),
             response_at: places.map(|record| record.response_at).or(self.setting.record.response_at),
+            beside: places.map_or(vec![], |record| self.beside(record)),
             ..self.setting.record.clone()
         };
         EffectSetting { record, ..self.setting.clone() }
+    }
+
+    /// The other sensors that sit on a plate while a record is taken: records whose poles are common are those of one panel with all of them.
+    fn beside(&self, record: &MeasuredRecord) -> Vec<Place> {
+        let measured = self.comparison.measured;
+        if self.structure != StructureKind::MindlinPlate || measured.is_not_modal() {
+            return vec![];
+        }
+        let all = distinct(measured.records.iter().map(|record| record.response_at));
+        all.into_iter().filter(|place| *place != record.response_at).collect()
     }
 
     /// The modes of the structure as seen from these ports.
