@@ -141,7 +141,7 @@ pub(crate) fn measured_as_named(test: &ImpactTest, names: &[Names]) -> Result<Ve
     for piece in 0..test.pieces.len() {
         let hits = of_piece(&histories, piece);
         if !hits.is_empty() {
-            measured.push(of_hits(piece, &hits)?);
+            measured.extend(of_sensors(test, piece, &hits)?);
         }
         for (measurement, names) in test.measurements.iter().zip(names).filter(|(of, _)| of.piece == piece) {
             if let MeasurementData::NaturalFrequencies(list) = &measurement.data {
@@ -173,6 +173,27 @@ fn named(test: &ImpactTest, piece: usize, names: &Names) -> Result<NamedShapes, 
 
 fn of_piece<T: Clone>(all: &[(usize, T)], piece: usize) -> Vec<T> {
     all.iter().filter(|(of, _)| *of == piece).map(|(_, record)| record.clone()).collect()
+}
+
+/// Of all hits of a piece together; of a plate whose poles are not those of one panel, apart for each place of the sensor: one that moves, with its
+/// mass, changes them.
+fn of_sensors(test: &ImpactTest, piece: usize, hits: &[TimeHistory]) -> Result<Vec<MeasuredModes>, IdentifyError> {
+    let together = of_hits(piece, hits)?;
+    let mut sensors: Vec<Place> = Vec::new();
+    for place in hits.iter().map(|history| history.response_at) {
+        if !sensors.contains(&place) {
+            sensors.push(place);
+        }
+    }
+    let is_plate = test.structure == Some(StructureKind::MindlinPlate);
+    if !is_plate || sensors.len() < 2 || !together.is_not_modal() {
+        return Ok(vec![together]);
+    }
+    let apart = sensors.iter().map(|sensor| {
+        let own: Vec<TimeHistory> = hits.iter().filter(|history| history.response_at == *sensor).cloned().collect();
+        of_hits(piece, &own).ok().filter(|own| !own.is_not_modal())
+    });
+    Ok(apart.collect::<Option<Vec<_>>>().unwrap_or_else(|| vec![together]))
 }
 
 /// Of the hits that are sound, up to where the force has fallen too far.
