@@ -14,7 +14,7 @@ import scipy.sparse as sparse
 from scipy.linalg import eigh
 from scipy.sparse.linalg import eigsh
 
-from . import beam, files, plate, records, sets, whole, whole_plate, whole_visible
+from . import attachments, beam, files, plate, records, sets, whole, whole_plate, whole_visible
 from .contour import Sampling, half_sine
 from .draw import Draw
 from .whole_plate import CONSTANTS, Foot, Mesh, WholePanel
@@ -333,6 +333,29 @@ def test_val_the_smallest_disbond_that_is_said_is_named_and_half_of_it_is_not(tm
         assert np.hypot(place["x"]["value"] - x, place["y"]["value"] - y) < said["anywhere"], place
     small = traced(tmp_path / "small", (said["loss"], said["at_half_of_the_places"] / 2.0, 0.1, -0.07))
     assert (small["verdict"], small["effects"]) == ("nothing-missing", []), small["candidates"][:3]
+
+
+@pytest.mark.skipif(ORTHOPANEL is None, reason="ORTHOPANEL names no binary")
+def test_val_two_sensors_load_a_panel_together(tmp_path, few):
+    """Two of 6 g, seen one after the other from the same six places: one mass is found for both, with the constants of the panel."""
+    random, kilograms, text = np.random.default_rng(7), 0.006, None
+    sensors = [np.array([-0.21, -0.12]), np.array([0.17, 0.13])]
+    feet = [(Foot(*at, whole.FOOT), attachments.Mass(kilograms)) for at in sensors]
+    forces = None
+    for number, sensor in enumerate(sensors):
+        bench = bench_with_places(6, 2000.0, random)
+        forces = bench.forces if forces is None else forces
+        bench.response, bench.forces, bench.attachments = sensor, forces, feet
+        folder = tmp_path / f"sensor-{number}"
+        files.write_case(folder, bench, records.play(bench, random))
+        own = (folder / "test.toml").read_text(encoding="utf-8").replace('file = "', f'file = "sensor-{number}/')
+        text = own + '\n[[effect]]\nid = "sensor-mass"\n' if text is None else text + own[own.index("[[measurement]]") :]
+    (tmp_path / "test.toml").write_text(text, encoding="utf-8")
+    told = subprocess.run([ORTHOPANEL, "identify", tmp_path / "test.toml", "--json"], capture_output=True, text=True, check=True)
+    found = json.loads(told.stdout)
+    mass = found["effects"][0]["parameters"]["mass"][0]
+    assert abs(mass["value"] - kilograms) < 4.0 * mass["std"] < 0.02 * kilograms, mass
+    assert {name: found["constants"][name]["value"] for name in SMALL.constants} == pytest.approx(SMALL.constants, rel=0.01)
 
 
 @pytest.mark.skipif(ORTHOPANEL is None, reason="ORTHOPANEL names no binary")

@@ -97,9 +97,6 @@ fn by_modes_alone(test: &ImpactTest, lists: usize, settings: Settings) -> Result
     let what =
         if test.effects.is_empty() { "natural frequencies beside records" } else { "declared effects ([[effect]])" };
     let refused = |message: &str| Err(IdentifyError::Unsupported(format!("{what}{message}")));
-    if test.structure == Some(StructureKind::MindlinPlate) && lists > 0 {
-        return refused(" are for beams: leave them out, or structure = \"mindlin-plate\"");
-    }
     if settings.search == Search::Simplex || settings.damping_law == DampingLaw::Hysteretic {
         return refused(" want least squares and viscous damping: leave out --search and --damping");
     }

@@ -489,7 +489,7 @@ impl Hypothesis {
     }
 
     /// Numbers of the coordinates that are places of what the base lacks.
-    pub(crate) fn places(&self) -> Vec<usize> {
+    pub(crate) fn places(&self, axis: &str) -> Vec<usize> {
         let mut places = Vec::new();
         let mut at = self.free_constants();
         for part in &self.parts {
@@ -497,7 +497,7 @@ impl Hypothesis {
                 if slot.coordinate().is_none() {
                     continue;
                 }
-                if part.role == Role::Found && is_place(parameter) {
+                if part.role == Role::Found && has_place(part.effect) && parameter.name == axis {
                     places.push(at);
                 }
                 at += 1;

@@ -8,13 +8,14 @@ use crate::comparison::Comparison;
 use crate::declared_effects::{declared_parts, pairs_of_places};
 use crate::free_constants::FreeConstants;
 use crate::hypothesis::{OF_PIECE, OF_RECORD, has_place, is_of_record};
-use crate::measured::{MeasuredModes, measured_modes};
+use crate::measured::{MeasuredModes, measured_as_named};
 use crate::outcome::Progress;
 use crate::place_readings::refuse_other_places;
 use crate::posterior::Judged;
 use crate::predicted::Predictor;
 use crate::search::Inquiry;
 use crate::search_progress::SearchProgress;
+use crate::shapes_of_list::names_of_lists;
 use crate::shared_error::SharedError;
 use crate::stacked::{Block, Stacked};
 use crate::structures;
@@ -58,7 +59,7 @@ pub(crate) type Correct<'a> = &'a dyn Fn(&mut Comparison) -> Result<SharedError,
 /// against is at hand.
 ///
 /// # Errors
-/// As [`refuse_several`] and [`measured_modes`], and what is said; [`IdentifyError::Model`] for a piece or an effect that has no meaning.
+/// As [`refuse_several`] and [`crate::measured_modes`], lists that no plate meets, and what is said; [`IdentifyError::Model`] for a piece or an effect that has no meaning.
 pub(crate) fn from_base<T>(
     test: &ImpactTest,
     correct: Option<Correct>,
@@ -74,7 +75,9 @@ pub(crate) fn from_base<T>(
     let structure = structures::of_test(test).kind();
     let constants = FreeConstants::of(test, structure.constants())?;
     let declared = declared_parts(test, &piece, pairs_of_places(test))?;
-    let mut all: Vec<MeasuredModes> = measured_modes(test)?.into_iter().map(MeasuredModes::without_faint).collect();
+    let named = names_of_lists(test)?;
+    let mut all: Vec<MeasuredModes> =
+        measured_as_named(test, &named.names)?.into_iter().map(MeasuredModes::without_faint).collect();
     all.sort_by_key(|of| of.records.is_empty());
     let measured = all.first().ok_or_else(|| too_few(0))?;
     let mut comparisons: Vec<Comparison> =
@@ -97,7 +100,7 @@ pub(crate) fn from_base<T>(
         let is_of_other = !hit.is_empty() && !hit.contains(&of.piece);
         blocks.push(Block { piece: of.piece, is_of_other, predictor, waves: vec![] });
     }
-    let begun = Inquiry::begin(Stacked::new(blocks), &constants, &declared)?;
+    let begun = Inquiry::begin(Stacked::new(blocks), &constants, &declared, named)?;
     let (mut inquiry, base) = begun.ok_or_else(|| match measured.poles.len() {
         found @ 0..2 => too_few(found),
         _ => IdentifyError::NotFinite { what: "likelihood of the measured modes on any such piece".to_owned() },

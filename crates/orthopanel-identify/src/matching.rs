@@ -76,7 +76,8 @@ impl MeasuredModes {
         self.assigned(candidates, apart, |_| ALONE).0
     }
 
-    /// The same with what each pole costs that stays alone, and the cost of all.
+    /// The same with what each pole costs that stays alone, and the cost of all. Of a list whose poles have names a candidate's shape is its
+    /// deflection at the places of [`NamedShapes`](orthopanel_model::NamedShapes).
     pub(crate) fn assigned(
         &self,
         candidates: &[(f64, Vec<f64>)],
@@ -87,7 +88,9 @@ impl MeasuredModes {
             let of = |(index, (omega, shape)): (usize, &(f64, Vec<f64>))| {
                 let assurance = self.assurance(pole, shape);
                 let apart = (self.poles[pole].angular_frequency / omega).ln() / apart(index);
-                let of_shape = assurance.map_or_else(|| self.unlikeness(pole, shape), |mac| SHAPE * (1.0 - mac));
+                // What a list names another shape is another mode.
+                let worth = if self.records.is_empty() { alone(pole) } else { SHAPE };
+                let of_shape = assurance.map_or_else(|| self.unlikeness(pole, shape), |mac| worth * (1.0 - mac));
                 (apart * apart + of_shape, assurance)
             };
             candidates.iter().enumerate().map(of).collect::<Vec<_>>()
@@ -123,6 +126,9 @@ impl MeasuredModes {
     }
 
     fn assurance(&self, pole: usize, shape: &[f64]) -> Option<f64> {
+        if self.records.is_empty() {
+            return self.named.share(pole, shape);
+        }
         if self.records.len() < 2 {
             return None;
         }
@@ -180,6 +186,7 @@ mod tests {
             chi_square: None,
             missed_most: None,
             undone_decay: 0.0,
+            named: orthopanel_model::NamedShapes::default(),
         };
         let matched = measured.matched(&modes);
         let numbers: Vec<Option<usize>> = matched.iter().map(|found| found.map(|found| found.mode)).collect();

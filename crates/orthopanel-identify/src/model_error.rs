@@ -322,6 +322,8 @@ impl ErrorColumns {
                 without_partner.extend((record == 0).then_some((pole, anywhere)));
             }
         }
+        let is_alone = |pole: &usize| measured.records.is_empty() && at.flexible_of_poles[*pole].is_none();
+        without_partner.extend((0..measured.poles.len()).filter(is_alone).map(|pole| (pole, anywhere)));
         of_piece.resize(columns.len(), None);
         // Rates of beams were judged without.
         if predictor.structure == StructureKind::MindlinPlate {

@@ -129,7 +129,8 @@ impl<'a> PlateStart<'a> {
             let product = |&(force, response): &(Place, Place)| {
                 mode.deflection(&plate, force) * mode.deflection(&plate, response)
             };
-            let seen = (mode.angular_frequency, self.pairs.iter().map(product).collect());
+            let named = self.measured.named.places().iter().map(|place| mode.deflection(&plate, *place));
+            let seen = (mode.angular_frequency, self.pairs.iter().map(product).chain(named).collect());
             PlateMode { seen, by: std::array::from_fn(by) }
         };
         Ok(flexible.map(mode).collect())
@@ -151,6 +152,10 @@ impl<'a> PlateStart<'a> {
 
     /// What strong modes between the first of the lowest poles and the last cost that no pole is.
     fn lost(&self, lowest: &MeasuredModes, modes: &[(f64, Vec<f64>)], partners: &[Partner]) -> f64 {
+        // A list that names its modes may leave others out.
+        if !self.measured.named.places().is_empty() {
+            return 0.0;
+        }
         let Some((first, last)) = lowest.poles.first().zip(lowest.poles.last()) else { return 0.0 };
         let band = 1.03 * first.angular_frequency..0.97 * last.angular_frequency;
         let taken = |mode: usize| partners.iter().flatten().any(|(partner, _)| *partner == mode);

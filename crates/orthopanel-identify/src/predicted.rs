@@ -12,7 +12,7 @@ use orthopanel_model::{
 
 use crate::comparison::{Comparison, UNSEEN};
 use crate::coupled_damping::CoupledModes;
-use crate::measured::{Pole, SKIRT};
+use crate::measured::{MeasuredRecord, Pole, SKIRT};
 use crate::view::{Channel, ModeInRecord, PARTS, Relaxing, View, Views};
 
 /// Predicted modes beyond the number of poles that take part.
@@ -150,9 +150,20 @@ impl<'a> Predictor<'a> {
             number: record + 1,
             force_at: places.map(|record| record.force_at),
             response_at: places.map(|record| record.response_at).or(self.setting.record.response_at),
+            beside: places.map_or(vec![], |record| self.beside(record)),
             ..self.setting.record.clone()
         };
         EffectSetting { record, ..self.setting.clone() }
+    }
+
+    /// The other sensors that sit on a plate while a record is taken: records whose poles are common are those of one panel with all of them.
+    fn beside(&self, record: &MeasuredRecord) -> Vec<Place> {
+        let measured = self.comparison.measured;
+        if self.structure != StructureKind::MindlinPlate || measured.is_not_modal() {
+            return vec![];
+        }
+        let all = distinct(measured.records.iter().map(|record| record.response_at));
+        all.into_iter().filter(|place| *place != record.response_at).collect()
     }
 
     /// The modes of the structure as seen from these ports.
@@ -164,7 +175,45 @@ impl<'a> Predictor<'a> {
         constants: &[f64],
         effects: &[EffectState],
     ) -> Result<Arc<SeenModes>, ModelError> {
-        let mut key = vec![f64::from(u8::from(with_slopes)), constants.len() as f64, ports.len() as f64];
+        let key = [f64::from(u8::from(with_slopes)), constants.len() as f64, ports.len() as f64];
+        self.known((key, setting, ports), constants, effects, |effects| {
+            self.panel.seen_from(setting, ports, with_slopes, constants, effects)
+        })
+    }
+
+    /// The modes of a plate with their deflections where a list's names are told apart.
+    fn watched(&self, constants: &[f64], effects: &[EffectState]) -> Result<Arc<SeenModes>, ModelError> {
+        let key = [-1.0, constants.len() as f64, 0.0];
+        self.known((key, &self.setting, &[]), constants, effects, |effects| {
+            self.panel.watched_at(&self.setting, self.comparison.measured.named.places(), constants, effects)
+        })
+    }
+
+    /// The first natural frequencies \[Hz\] of a plate in a setting, but those of its motions as a whole.
+    ///
+    /// # Errors
+    /// As [`ModifiedPanel::seen_from`].
+    pub(crate) fn flexible_frequencies(
+        &self,
+        setting: &EffectSetting,
+        constants: &[f64],
+        effects: &[EffectState],
+        count: usize,
+    ) -> Result<Vec<f64>, ModelError> {
+        let modes = self.panel.watched_at(setting, &[], constants, effects)?;
+        let flexible = modes.angular_frequency.iter().skip(self.panel.rigid_modes(setting.boundary));
+        Ok(flexible.take(count).map(|omega| omega / TAU).collect())
+    }
+
+    /// What was found last of these modes, else what finds them with the effects that act on the structure.
+    fn known(
+        &self,
+        (key, setting, ports): ([f64; 3], &EffectSetting, &[Place]),
+        constants: &[f64],
+        effects: &[EffectState],
+        find: impl FnOnce(&[EffectState]) -> Result<SeenModes, ModelError>,
+    ) -> Result<Arc<SeenModes>, ModelError> {
+        let mut key = key.to_vec();
         key.extend(constants);
         key.extend(ports.iter().chain(&setting.record.response_at).flat_map(|place| [place.x, place.y]));
         let mut structural = Vec::new();
@@ -180,7 +229,7 @@ impl<'a> Predictor<'a> {
         if let Some((_, modes)) = lock().iter().find(|(other, _)| *other == key) {
             return Ok(Arc::clone(modes));
         }
-        let modes = Arc::new(self.panel.seen_from(setting, ports, with_slopes, constants, &structural)?);
+        let modes = Arc::new(find(&structural)?);
         let mut found = lock();
         found.truncate(KEPT - 1);
         found.push_front((key, Arc::clone(&modes)));
@@ -345,7 +394,10 @@ impl<'a> Predictor<'a> {
             setting.record.response_at = setting.record.response_at.map(|_| *response);
             views.push(View { of: own, ..self.view(&setting, &ports, with_slopes, constants, effects)? });
         }
-        if views.is_empty() {
+        if views.is_empty() && self.structure == StructureKind::MindlinPlate {
+            let modes = self.watched(constants, effects)?;
+            views.push(View { of: None, ports: vec![], modes, relaxing: None });
+        } else if views.is_empty() {
             let mut acts = effects.iter().map(|state| state.acting_in(&self.setting));
             let is_plate = acts.any(|acts| acts.is_ok_and(|acts| matches!(acts[..], [Action::Plate(_)])));
             let places = if is_plate { across(self.piece()) } else { vec![] };
@@ -407,6 +459,17 @@ impl<'a> Predictor<'a> {
         let measured = self.comparison.measured;
         if let Some(told) = &self.told_partners {
             return told.iter().map(|partner| partner.filter(|n| *n < omega.len())).collect();
+        }
+        if measured.records.is_empty() && self.structure == StructureKind::MindlinPlate {
+            // A list has what bends or twists, by name where it is told.
+            let rigid = self.panel.rigid_modes(self.setting.boundary);
+            let shapes: Vec<(f64, Vec<f64>)> = omega[rigid..]
+                .iter()
+                .zip(&seen.views[0].modes.deflection[rigid..])
+                .map(|(omega, deflection)| (*omega, deflection.clone()))
+                .collect();
+            let found = measured.partners(&shapes, |_| self.apart);
+            return found.into_iter().map(|found| Some(rigid + found?.0)).collect();
         }
         if measured.records.is_empty() {
             // A list counts the flexible modes that bend along the piece.

@@ -29,6 +29,7 @@ use crate::plate_start::PlateStart;
 use crate::posterior::{Following, Judged, Point, Posterior, Problem};
 use crate::predicted::{Prediction, Predictor};
 use crate::search_progress::SearchProgress;
+use crate::shapes_of_list::NamedLists;
 use crate::shared_error::SharedError;
 use crate::stacked::{Block, Stacked};
 
@@ -66,6 +67,8 @@ pub(crate) struct Inquiry<'a> {
     pub hits: Option<HitStrength>,
     /// What a panel of the same make shows of the model's error.
     pub shared_error: Option<SharedError>,
+    /// What is said of the shapes of a plate's lists.
+    pub of_lists: NamedLists,
     /// How far it is.
     pub progress: SearchProgress<'a>,
 }
@@ -156,9 +159,17 @@ impl<'a> Inquiry<'a> {
         stacked: Stacked<'a>,
         constants: &FreeConstants,
         declared: &[Part],
+        of_lists: NamedLists,
     ) -> Result<Option<(Self, Judged)>, ModelError> {
-        let mut inquiry = Self { stacked, hits: None, shared_error: None, progress: SearchProgress::default() };
-        let starts = starting_constants(inquiry.stacked.longest(), constants)?;
+        let progress = SearchProgress::default();
+        let mut inquiry = Self { stacked, hits: None, shared_error: None, of_lists, progress };
+        // Records tell the modes of a plate apart.
+        let is_by_shape = inquiry.stacked.is_of_plates() && !inquiry.measured().records.is_empty();
+        let first = if is_by_shape { inquiry.stacked.first() } else { inquiry.stacked.longest() };
+        let starts = match &inquiry.of_lists.near {
+            Some(near) => vec![near.clone()],
+            None => starting_constants(first, constants)?,
+        };
         let poles = inquiry.stacked.longest().comparison().measured.poles.iter();
         let hertz: Vec<f64> = poles.map(|pole| pole.angular_frequency / TAU).collect();
         let mut best: Option<(f64, Hypothesis, Point)> = None;
@@ -252,11 +263,11 @@ impl<'a> Inquiry<'a> {
 
     /// Why the test cannot show an effect, whatever its numbers; `None` where it can.
     pub(crate) fn hidden(&self, effect: &dyn Effect) -> Option<String> {
-        if self.is_of_lists() {
-            return self.hidden_in_lists(effect);
-        }
         if let Some(why) = self.hidden_on_plates(effect) {
             return Some(why.to_owned());
+        }
+        if self.is_of_lists() {
+            return self.hidden_in_lists(effect);
         }
         let is_of_several_pieces = self.stacked.is_of_several_pieces();
         // The gain of the only record is the gain.

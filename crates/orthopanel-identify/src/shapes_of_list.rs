@@ -1,13 +1,15 @@
 //! Which modes the frequencies of a plate are that a list gives without `shape`: by frequency alone.
 
-use orthopanel_data::{ImpactTest, MeasurementData, NaturalFrequencies};
-use orthopanel_model::{Readable, StructureKind};
+use orthopanel_data::{ImpactTest, Measurement, MeasurementData, NaturalFrequencies};
+use orthopanel_model::{PLATE_CONSTANTS, Readable, StructureKind};
 
-use crate::IdentifyError;
+use crate::frequency_fit::identify_frequencies;
+use crate::inference::is_record;
 use crate::judge::ODDS;
-use crate::measured::MeasuredModes;
+use crate::measured::{MeasuredModes, Names};
 use crate::plate_start::{PlateStart, held};
-use crate::structures;
+use crate::structures::{self, bending_nodes};
+use crate::{Identification, IdentifyError, Search};
 
 /// Fewest frequencies that part readings: with one for each constant any names are met.
 const FEWEST: usize = 6;
@@ -17,10 +19,14 @@ const ABOVE: f64 = 1.1;
 /// A test whose lists have shapes.
 pub(crate) struct Read {
     pub test: ImpactTest,
+    /// Of each measurement the shapes that are clear.
+    pub clear: Vec<Names>,
     /// How each list was read.
     pub notes: Vec<String>,
     /// What is to be asked where another reading is not clearly behind.
     pub question: Option<String>,
+    /// Whether other constants give a list other shapes, not clearly less likely.
+    pub is_open: bool,
 }
 
 /// The nodal lines of a mode along x and along y.
@@ -31,7 +37,7 @@ struct Reading {
     names: Vec<Option<Shape>>,
     cost: f64,
     /// Lines that may have another shape at the same constants, with what that costs.
-    doubts: Vec<(usize, Shape, f64)>,
+    doubts: Vec<Doubt>,
 }
 
 /// The lists of a plate read by frequency alone, where they tell no shapes; `None` where all do, or one has too few frequencies.
@@ -42,8 +48,9 @@ struct Reading {
 /// # Errors
 /// What the plate refuses.
 pub(crate) fn shapes_by_frequency(test: &ImpactTest) -> Result<Option<Read>, IdentifyError> {
-    let mut read = Read { test: test.clone(), notes: vec![], question: None };
-    for measurement in &mut read.test.measurements {
+    let clear = names_told(test);
+    let mut read = Read { test: test.clone(), clear, notes: vec![], question: None, is_open: false };
+    for (measurement, clear) in read.test.measurements.iter_mut().zip(&mut read.clear) {
         let MeasurementData::NaturalFrequencies(list) = &mut measurement.data else { continue };
         if !list.shape.is_empty() {
             continue;
@@ -70,13 +77,80 @@ pub(crate) fn shapes_by_frequency(test: &ImpactTest) -> Result<Option<Read>, Ide
             read.notes
                 .push(format!("piece {piece}: {} is no mode of this plate and was left out", left_out.join(", ")));
         }
-        if let Some(question) = asked(list, piece, &readings) {
+        read.is_open |= readings.get(1).is_some_and(|other| other.cost - best.cost < 2.0 * ODDS.ln());
+        let doubts = doubts(&readings);
+        let is_clear = |line: &usize| doubts.iter().all(|(doubtful, ..)| doubtful != line);
+        let of_line =
+            |line: usize| best.names[line].filter(|_| is_clear(&line)).map(|shape| shape.map(|count| count as usize));
+        *clear = (0..list.values.len()).map(of_line).collect();
+        if let Some(question) = asked(list, piece, &doubts) {
             read.notes.push(question.clone());
             read.question = read.question.or(Some(question));
         }
         name(list, best);
     }
     Ok(Some(read).filter(|read| !read.notes.is_empty()))
+}
+
+/// The names of a plate's lists, one entry a measurement, with what is to be said of them.
+#[derive(Default)]
+pub(crate) struct NamedLists {
+    pub names: Vec<Names>,
+    /// Constants near which the plate lies, those that the lists do not show at what is usual.
+    pub near: Option<Vec<f64>>,
+    pub notes: Vec<String>,
+    pub question: Option<String>,
+    /// Whether other constants give other names, not clearly less likely.
+    pub is_open: bool,
+}
+
+/// The shapes that a test file tells.
+pub(crate) fn names_told(test: &ImpactTest) -> Vec<Names> {
+    let told = |measurement: &Measurement| match &measurement.data {
+        MeasurementData::NaturalFrequencies(list) => {
+            list.shape.iter().map(|shape| Some(shape.map(|count| count as usize))).collect()
+        }
+        _ => vec![],
+    };
+    test.measurements.iter().map(told).collect()
+}
+
+/// What the lists of a test name their modes: as the test file does, else as [`identify_frequencies`] reads them; where that does not meet them, the
+/// shapes that frequencies alone tell clearly. Beside records modes are told by these.
+///
+/// # Errors
+/// What the plate refuses, and lists that no plate meets.
+pub(crate) fn names_of_lists(test: &ImpactTest) -> Result<NamedLists, IdentifyError> {
+    let names = names_told(test);
+    let is_plate = test.structure == Some(StructureKind::MindlinPlate);
+    if !is_plate || test.measurements.iter().any(is_record) {
+        return Ok(NamedLists { names, ..NamedLists::default() });
+    }
+    let identified = |test: &ImpactTest| identify_frequencies(test, Search::LeastSquares);
+    let near = |found: &Identification| {
+        let shared = found.constants.iter().filter(|constant| constant.piece.is_none());
+        Some(shared.map(|constant| constant.value).collect())
+            .filter(|near: &Vec<f64>| near.len() == PLATE_CONSTANTS.len())
+    };
+    let of = |(measurement, told): (&Measurement, Names)| match &measurement.data {
+        MeasurementData::NaturalFrequencies(list) if told.is_empty() => {
+            bending_nodes(test.boundary, list.values.len()).into_iter().map(Some).collect()
+        }
+        _ => told,
+    };
+    match identified(test) {
+        Ok(found) => {
+            let names = test.measurements.iter().zip(names).map(of).collect();
+            Ok(NamedLists { names, near: near(&found), ..NamedLists::default() })
+        }
+        Err(_) if names.iter().all(|names| !names.is_empty()) => Ok(NamedLists { names, ..NamedLists::default() }),
+        Err(refused) => {
+            let read = shapes_by_frequency(test)?.ok_or(refused)?;
+            let near = identified(&read.test).ok().and_then(|found| near(&found));
+            let Read { clear: names, notes, question, is_open, .. } = read;
+            Ok(NamedLists { names, near, notes, question, is_open })
+        }
+    }
 }
 
 /// Every reading that some start leads to, the likeliest first.
@@ -119,9 +193,12 @@ fn text(list: &NaturalFrequencies, reading: &Reading) -> String {
     pairs.filter_map(|(value, name)| Some(format!("{value} Hz {:?}", (*name)?))).collect::<Vec<_>>().join(", ")
 }
 
-/// Which lines to look at: those that other constants give another shape, not clearly less likely, and those that may have another at these.
-fn asked(list: &NaturalFrequencies, piece: &str, readings: &[Reading]) -> Option<String> {
-    let best = readings.first()?;
+/// A line that may have another shape, and what that costs.
+type Doubt = (usize, Shape, f64);
+
+/// The lines that other constants give another shape, not clearly less likely, and those that may have another at these.
+fn doubts(readings: &[Reading]) -> Vec<Doubt> {
+    let Some(best) = readings.first() else { return vec![] };
     let mut doubts = best.doubts.clone();
     for other in &readings[1..] {
         let cost = other.cost - best.cost;
@@ -132,7 +209,12 @@ fn asked(list: &NaturalFrequencies, piece: &str, readings: &[Reading]) -> Option
     }
     doubts.sort_by(|a, b| (a.0, a.1).cmp(&(b.0, b.1)).then(a.2.total_cmp(&b.2)));
     doubts.dedup_by_key(|(line, shape, _)| (*line, *shape));
-    let said = |(line, shape, cost): &(usize, Shape, f64)| {
+    doubts
+}
+
+/// Which lines to look at.
+fn asked(list: &NaturalFrequencies, piece: &str, doubts: &[Doubt]) -> Option<String> {
+    let said = |(line, shape, cost): &Doubt| {
         let less = Readable((0.5 * cost).exp());
         format!("{} Hz may be {shape:?} (odds of 1 to {less:.1})", list.values[*line])
     };

@@ -1,7 +1,7 @@
 //! Closing the loop: the effect that the base model lacks, by name.
 
 use orthopanel_data::ImpactTest;
-use orthopanel_model::{EXPONENTIAL_WINDOW, StructureKind};
+use orthopanel_model::EXPONENTIAL_WINDOW;
 
 use crate::accelerance_fit::{has_record_apart, question_of_window, refuse_missed, refuse_records};
 use crate::answer::{answer, answer_of_lists, without_repeats};
@@ -24,7 +24,8 @@ use crate::{IdentifyError, Settings, identify};
 /// in Laplace's approximation (MacKay, Neural Computation 4, 1992), each effect lacking by itself with the prior odds of one to the size of the
 /// catalogue. What shows between hits alone, `cubic-stiffness`, is held against the best of the other hypotheses.
 ///
-/// Lists of natural frequencies are measured modes without residues: their numbers match them with the modes. Records and lists of one piece or of several
+/// Lists of natural frequencies are measured modes without residues: their numbers match them with the modes of a beam, their shapes or their
+/// frequencies with those of a plate. Records and lists of one piece or of several
 /// are judged together: pieces share effects and the constants that are not their own; beside lists of other pieces an effect at a place is on the piece
 /// that was hit; and what the model misses of a mode of a piece is the same in all that was measured of it.
 ///
@@ -44,8 +45,8 @@ use crate::{IdentifyError, Settings, identify};
 /// ```
 ///
 /// # Errors
-/// [`IdentifyError::PlateListNotTraced`] for natural frequencies of a declared plate; what [`identify`] refuses of the records themselves, such as too few
-/// resonances or [`IdentifyError::OtherUnits`]; and tests that this version cannot trace.
+/// What [`identify`] refuses of the records themselves, such as too few resonances or [`IdentifyError::OtherUnits`]; lists of a plate that no
+/// plate meets; and tests that this version cannot trace.
 pub fn trace(test: &ImpactTest) -> Result<Tracing, IdentifyError> {
     trace_with(test, &|_| {})
 }
@@ -82,10 +83,6 @@ fn trace_corrected(
     correct: Option<Correct>,
     progress: &(dyn Fn(Progress) + Sync),
 ) -> Result<Tracing, IdentifyError> {
-    // Modes of lists are matched by number, not by the shapes that a plate's lists name.
-    if test.structure == Some(StructureKind::MindlinPlate) && !test.measurements.iter().all(is_record) {
-        return Err(IdentifyError::PlateListNotTraced);
-    }
     if !test.measurements.iter().any(is_record) {
         return answer_of_lists(test, correct, progress)?.finite();
     }

@@ -51,7 +51,7 @@ pub use effects::{
 };
 pub use error::{ModelError, Readable};
 pub use identifier::is_identifier;
-pub use mindlin_plate::{MindlinPlate, ModeKind, ModeName, PLATE_CONSTANTS};
+pub use mindlin_plate::{MindlinPlate, ModeKind, ModeName, NamedShapes, PLATE_CONSTANTS};
 pub use modal_model::{ModalModel, Mode};
 pub use modal_sensitivity::{ModeSensitivity, SensitiveModes, sensitive_modes};
 pub use panel_mode::PanelMode;

@@ -191,31 +191,22 @@ fn what_stays_in_several_pieces_is_said_once() {
     assert_eq!(page.matches("with effects [Hz]").count(), 2);
 }
 
-/// Lists of a plate's frequencies are not traced: they give the plate, and it is said that nothing was traced.
+/// Twelve bending modes are too few to judge a plate by: the model is the plate, and how many more would do is said.
 #[test]
 fn a_declared_plate_is_written_as_the_plate_that_was_identified() {
     let bench = Bench::new();
     let answer = bench.json("run examples/pieces-1-2-plate/test.toml -o out");
-    assert!(answer["trace"].is_null() && !bench.path("out/trace.json").exists());
-    assert!(
-        answer["not_traced"].as_str().expect("a reason").contains("natural frequencies are not traced"),
-        "{answer}"
-    );
+    assert_eq!(answer["trace"]["verdict"], "ambiguous");
+    assert!(answer["trace"]["next_experiment"].as_str().expect("words").contains("read 2 more"), "{answer}");
     for piece in ["1", "2"] {
         let model = bench.read_json(&format!("out/model-{piece}.json"));
         assert_eq!(model["structure"], "mindlin-plate");
-        assert_eq!(model["constants"]["e_x"]["value"], answer["identified"]["constants"]["e_x"]["value"]);
-        assert!(model["provenance"].get("trace").is_none(), "{model}");
+        let identified = number(&answer, "/identified/constants/e_x/value");
+        assert!((number(&model, "/constants/e_x/value") / identified - 1.0).abs() < 0.01, "{model}");
         assert_eq!(model["effects"].as_array().map_or(0, Vec::len), 0);
     }
-    let text = bench.done("run examples/pieces-1-2-plate/test.toml -o out");
-    assert!(text.contains("Not traced: ") && !text.contains("The model lacked"), "{text}");
-    for page in ["out/report.html", "page.html"] {
-        bench.done("report examples/pieces-1-2-plate/test.toml -o page.html");
-        let page = std::fs::read_to_string(bench.path(page)).expect("a page");
-        assert!(page.contains("Not traced: ") && !page.contains("The model lacked"), "{page}");
-    }
-    refused(&bench, "trace examples/pieces-1-2-plate/test.toml", 2, &["plate", "not traced", "width-coupling"]);
+    let page = std::fs::read_to_string(bench.path("out/report.html")).expect("a page");
+    assert!(!page.contains("Not traced: ") && !page.contains("The model lacked"), "{page}");
 }
 
 /// Where the file is likelier wrong than the model, no effect is blamed; where a list is too short, the words say what would do.

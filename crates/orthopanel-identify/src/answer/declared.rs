@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use orthopanel_data::{Estimation, ImpactTest};
-use orthopanel_model::{Estimate, Readable};
+use orthopanel_model::{Estimate, ModelError, Readable, StructureKind};
 
 use crate::free_constants::{FreeConstant, FreeConstants};
 use crate::frequency_fit::identified_constants;
@@ -12,7 +12,8 @@ use crate::measured::MeasuredModes;
 use crate::posterior::Judged;
 use crate::predicted::Prediction;
 use crate::search::Inquiry;
-use crate::structures::bending_nodes;
+use crate::stacked::Block;
+use crate::structures::{self, bending_nodes};
 use crate::{AcceleranceFit, HiddenMode, Identification, IdentifiedConstant, IdentifyError, ModeFit, PieceFit};
 
 use super::bounds::{notes_on_bound, notes_on_prior_alone};
@@ -22,6 +23,9 @@ use super::estimates::Estimates;
 use super::lines::{Drawn, Lines};
 use super::lists::{notes_on_hidden, percent};
 use super::{curves_of, drawn, lists_beside, not_finite};
+
+/// Modes are named up to so many times the highest pole.
+const ABOVE: f64 = 1.2;
 
 /// Identifies constants from records, with the effects that the test declares, a parameter that it leaves out too, and with lists of natural
 /// frequencies beside them.
@@ -50,7 +54,8 @@ pub(crate) fn identify_lists_with_effects(test: &ImpactTest) -> Result<Identific
         let estimates = Estimates::of(&base);
         notes.extend(notes_on_prior_alone(&base, &estimates));
         notes.extend(notes_on_bound(&estimates, inquiry.predictor().piece()));
-        let pieces = pieces_of_lists(test, &inquiry, &base);
+        notes.extend(inquiry.of_lists.notes.iter().cloned());
+        let pieces = pieces_of_lists(test, &inquiry, &base)?;
         let error = percent(&inquiry, &base).ok_or_else(|| not_finite("error of the frequencies"))?;
         let is_judged = inquiry.frequencies() > base.posterior.point.z.len();
         let constants = FreeConstants::of(test, inquiry.predictor().structure.constants())?;
@@ -66,25 +71,49 @@ pub(crate) fn identify_lists_with_effects(test: &ImpactTest) -> Result<Identific
             effects: estimates.effects.into_iter().map(|(effect, _)| effect).collect(),
             pieces,
             accelerances: vec![],
-            question: None,
+            question: inquiry.of_lists.question.clone(),
             common_gain: None,
             notes,
         })
     })
 }
 
-/// Each piece with the modes of its lists beside those of the beam.
-fn pieces_of_lists(test: &ImpactTest, inquiry: &Inquiry, base: &Judged) -> Vec<PieceFit> {
+/// Nodal lines of the flexible modes of a block's panel itself, at least of those in the band.
+///
+/// # Errors
+/// What the plate refuses.
+fn nodes_of(test: &ImpactTest, block: &Block, base: &Judged, at: &Prediction) -> Result<Vec<[usize; 2]>, ModelError> {
+    let count = at.flexible.len();
+    if block.predictor.structure == StructureKind::TimoshenkoBeam {
+        return Ok(bending_nodes(test.boundary, count));
+    }
+    let (constants, _) = block.values(&base.hypothesis, &base.posterior.point.z)?;
+    let structure = structures::of(StructureKind::MindlinPlate).recorded(block.predictor.piece(), test.boundary);
+    let measured = block.comparison().measured;
+    let top = measured.poles.last().map_or(0.0, |pole| pole.angular_frequency / TAU).max(measured.band[1]);
+    let modes = structure.modes_below(&constants, ABOVE * top, &[])?;
+    Ok(modes.into_iter().map(|mode| mode.nodes).take(count).collect())
+}
+
+/// Each piece with the modes of its lists beside those of the panel.
+///
+/// # Errors
+/// What the plate refuses.
+fn pieces_of_lists(test: &ImpactTest, inquiry: &Inquiry, base: &Judged) -> Result<Vec<PieceFit>, ModelError> {
     let mut pieces: Vec<PieceFit> = test.pieces.iter().map(PieceFit::of).collect();
     let blocks = inquiry.stacked.blocks.iter().zip(&base.posterior.point.at.blocks);
     for (block, at) in blocks.filter(|(block, _)| block.comparison().measured.records.is_empty()) {
         let measured = block.comparison().measured;
-        let nodes = bending_nodes(test.boundary, measured.poles.len());
-        for (index, (pole, nodes)) in measured.poles.iter().zip(nodes).enumerate() {
+        let nodes = nodes_of(test, block, base, at)?;
+        for (index, pole) in measured.poles.iter().enumerate() {
+            let Some((mode, &nodes)) = at.flexible_of_poles[index].and_then(|mode| Some((mode, nodes.get(mode)?)))
+            else {
+                continue;
+            };
             let frequency = pole.angular_frequency / TAU;
             let std = measured.covariance[(index, index)].sqrt();
             pieces[block.piece].modes.push(ModeFit {
-                mode: index + 1,
+                mode: mode + 1,
                 nodes,
                 measured: frequency,
                 measured_std: Some(frequency * std).filter(|_| std > 0.0),
@@ -93,7 +122,7 @@ fn pieces_of_lists(test: &ImpactTest, inquiry: &Inquiry, base: &Judged) -> Vec<P
             });
         }
     }
-    pieces
+    Ok(pieces)
 }
 
 /// # Errors
@@ -124,11 +153,12 @@ fn identification(
     let lines = Lines::of(test, estimation)?;
     let drawn = drawn(test, (inquiry, base), &lines)?;
     let curves = curves_of(&drawn);
-    let mut pieces = pieces_of_lists(test, inquiry, base);
+    let mut pieces = pieces_of_lists(test, inquiry, base)?;
     // Of a piece that was hit its records say more.
     for ((number, hit), Drawn { damping, .. }) in inquiry.stacked.hit().zip(drawn) {
         let at = &base.posterior.point.at.blocks[number];
-        pieces[hit.piece] = piece_fit(test, (hit.comparison().measured, at), &damping);
+        let nodes = nodes_of(test, hit, base, at)?;
+        pieces[hit.piece] = piece_fit(test, (hit.comparison().measured, at), nodes, &damping);
     }
     let modes = || pieces.iter().flat_map(|piece| &piece.modes);
     let errors: f64 = modes().map(|mode| mode.error_percent().powi(2)).sum();
@@ -165,8 +195,13 @@ fn identification(
     })
 }
 
-/// The modes of the beam beside the poles that are theirs, and those in the band without one.
-fn piece_fit(test: &ImpactTest, (measured, at): (&MeasuredModes, &Prediction), damping: &TracedDamping) -> PieceFit {
+/// The modes of the panel beside the poles that are theirs, and those in the band without one.
+fn piece_fit(
+    test: &ImpactTest,
+    (measured, at): (&MeasuredModes, &Prediction),
+    nodes: Vec<[usize; 2]>,
+    damping: &TracedDamping,
+) -> PieceFit {
     let mut fit = PieceFit::of(&test.pieces[measured.piece]);
     let in_band = at.flexible.iter().take_while(|omega| **omega < TAU * measured.band[1]).count();
     let ratio = |mode: usize| Estimate {
@@ -174,7 +209,7 @@ fn piece_fit(test: &ImpactTest, (measured, at): (&MeasuredModes, &Prediction), d
         std: damping.std.get(mode).copied().flatten(),
     };
     fit.damping = (0..in_band).map(ratio).collect();
-    for (index, nodes) in bending_nodes(test.boundary, at.flexible.len()).into_iter().enumerate() {
+    for (index, nodes) in nodes.into_iter().enumerate() {
         let mode = index + 1;
         match at.flexible_of_poles.iter().position(|of| *of == Some(index)) {
             Some(pole) => {
@@ -198,7 +233,7 @@ fn piece_fit(test: &ImpactTest, (measured, at): (&MeasuredModes, &Prediction), d
     fit
 }
 
-/// A sentence on the resonances that are no mode of the beam; `None` where there are none.
+/// A sentence on the resonances that are no mode of the panel; `None` where there are none.
 fn alone(measured: &MeasuredModes, at: &Prediction) -> Option<String> {
     let of_poles = measured.poles.iter().zip(&at.flexible_of_poles).zip(&at.hangs);
     let alone: Vec<String> = of_poles
@@ -206,7 +241,7 @@ fn alone(measured: &MeasuredModes, at: &Prediction) -> Option<String> {
         .map(|((pole, _), _)| format!("{:.1} Hz", Readable(pole.angular_frequency / TAU)))
         .collect();
     (!alone.is_empty()).then(|| {
-        format!("resonances that are no mode of the beam with what the test file declares: {}", alone.join(", "))
+        format!("resonances that are no mode of the panel with what the test file declares: {}", alone.join(", "))
     })
 }
 

@@ -24,6 +24,8 @@ use super::{Weighed, not_finite, shared_model_error};
 const MEASURE: &str = "natural frequencies, % rms; held out: each predicted from the others";
 const MIRRORED: &str = "frequencies of a piece held alike at both ends are the same with an effect at x and at -x: places are given \
                         with x > 0, and a record of hits at one end tells the side";
+const MIRRORED_ACROSS: &str = "frequencies of a plate held alike along front and back are the same with an effect at y and at -y: places are \
+                               given with y > 0, and a record of hits off the centre line tells the side";
 /// Frequencies for each unknown, one effect of one number among them: with fewer nothing can be said to lack.
 const FOR_EACH: usize = 2;
 /// Errors that are written out one by one, at most.
@@ -49,10 +51,17 @@ pub(crate) fn answer_of_lists(
             let names = "and one more, to judge by".to_owned();
             return Err(IdentifyError::TooFewFrequencies { found, needed: unknowns + 1, names });
         }
-        let (mirrored, all): (Vec<bool>, Vec<Judged>) =
-            inquiry.search(base).into_iter().map(|judged| on_the_right(&inquiry, judged)).unzip();
+        let mut all = inquiry.search(base);
+        let mut mirrored = vec![];
+        for (axis, note) in [("x", MIRRORED), ("y", MIRRORED_ACROSS)] {
+            let turned: Vec<(bool, Judged)> =
+                all.into_iter().map(|judged| on_the_right(&inquiry, judged, axis)).collect();
+            mirrored.extend(turned.iter().any(|(is_mirrored, _)| *is_mirrored).then(|| note.to_owned()));
+            all = turned.into_iter().map(|(_, judged)| judged).collect();
+        }
         let mut tracing = tracing_of(test, &inquiry, &all)?;
-        tracing.notes.extend(mirrored.contains(&true).then(|| MIRRORED.to_owned()));
+        tracing.notes.extend(mirrored);
+        tracing.notes.extend(inquiry.of_lists.notes.iter().cloned());
         tracing.notes.extend(repeated.iter().cloned().chain(hidden));
         Ok(tracing)
     })
@@ -139,7 +148,9 @@ fn tracing_of(test: &ImpactTest, inquiry: &Inquiry, all: &[Judged]) -> Result<Tr
     let Weighed { chosen, base, .. } = weighed;
     let unknowns = base.posterior.point.z.len() + 1;
     let too_few = weighed.verdict == Verdict::NothingMissing && inquiry.frequencies() < FOR_EACH * unknowns;
-    let verdict = if too_few { Verdict::Ambiguous } else { weighed.verdict };
+    // Of a plate read in another way the effect may be elsewhere.
+    let is_open = weighed.verdict == Verdict::Explained && inquiry.of_lists.is_open;
+    let verdict = if too_few || is_open { Verdict::Ambiguous } else { weighed.verdict };
     let error = |judged: &Judged| percent(inquiry, judged);
     let (before, after) = (error(base), error(chosen));
     let before = before.ok_or_else(|| not_finite("error of the base model"))?;
@@ -157,8 +168,9 @@ fn tracing_of(test: &ImpactTest, inquiry: &Inquiry, all: &[Judged]) -> Result<Tr
     let (panels, removed) = panels_of_lists(test, inquiry, chosen, &estimates);
     let model_error = chosen.posterior.log_sizes[Kind::Frequency as usize].exp();
     let notes = weighed.notes(inquiry, test, &estimates);
-    let next_experiment = match (weighed.check(), verdict) {
-        (Some(doubt), _) => check_first(doubt),
+    let question = inquiry.of_lists.question.clone().filter(|_| verdict != Verdict::NothingMissing);
+    let next_experiment = match (weighed.check().map(check_first).or(question), verdict) {
+        (Some(first), _) => first,
         (None, Verdict::Unexplained) => what_to_check(test, inquiry, chosen),
         (None, Verdict::Ambiguous) if too_few => more_frequencies(inquiry, base),
         (None, Verdict::NothingMissing) => {
@@ -231,9 +243,9 @@ pub(super) fn percent(inquiry: &Inquiry, judged: &Judged) -> Option<FittedError>
 /// Part of the variance of a frequency as its others foretell it that is noise and model error: with less, it alone tells itself.
 const OF_OTHERS: f64 = 0.01;
 
-/// A hypothesis with its first place at x > 0, where the frequencies are the same there; and whether they are.
-fn on_the_right(inquiry: &Inquiry, mut judged: Judged) -> (bool, Judged) {
-    let places = judged.hypothesis.places();
+/// A hypothesis with its first place at x > 0, or y > 0, where the frequencies are the same there; and whether they are.
+fn on_the_right(inquiry: &Inquiry, mut judged: Judged, axis: &str) -> (bool, Judged) {
+    let places = judged.hypothesis.places(axis);
     let Some(&first) = places.first() else { return (false, judged) };
     let problem = inquiry.problem(&judged.hypothesis);
     let mut z = judged.posterior.point.z.clone();
@@ -257,9 +269,13 @@ const ALIKE: f64 = 1e-8;
 /// What to do where nothing of the catalogue meets the lists.
 fn what_to_check(test: &ImpactTest, inquiry: &Inquiry, judged: &Judged) -> String {
     let held = if test.constants.is_empty() { "" } else { " and the constants held" };
+    let names = if inquiry.stacked.is_of_plates() {
+        "the shapes (nodal lines across x and across y of each mode)"
+    } else {
+        "the numbering (flexible modes from 1, none left out or read twice)"
+    };
     format!(
-        "before another measurement check the sizes and units (m, kg/m2){held}, the boundary, and the numbering (flexible modes \
-         from 1, none left out or read twice): {}. If all that is right, hit the piece and record it (kind = \"time-history\"): \
+        "before another measurement check the sizes and units (m, kg/m2){held}, the boundary, and {names}: {}. If all that is right, hit the piece and record it (kind = \"time-history\"): \
          records tell what frequencies alone do not",
         where_it_misses(test, inquiry, judged)
     )

@@ -15,8 +15,9 @@ use super::panel::panels_of_lists;
 
 /// Masses that a tester adds, in parts of the piece's \[1\].
 const ADDED: [f64; 3] = [0.05, 0.1, 0.2];
-/// Places along the piece to which the sensor may move.
+/// Places along the piece to which the sensor may move, and of a plate along each side.
 const PLACES: usize = 11;
+const EACH_WAY: usize = 5;
 /// Modes that a further list is taken to hold beyond those of the first.
 const MORE: usize = 1;
 /// Modes of a plate are looked for up to this part of the highest frequency measured.
@@ -33,7 +34,8 @@ pub(super) fn next_list(test: &ImpactTest, inquiry: &Inquiry, chosen: &Judged, o
     let first = id(chosen);
     // What is a beam in one and a plate in the other shows off the centre line.
     let panels = |judged: &Judged| panels_of_lists(test, inquiry, judged, &Estimates::of(judged)).0;
-    let is_plate = |panel: &PanelModel| panel.structure == StructureKind::MindlinPlate;
+    let is_declared = inquiry.stacked.is_of_plates();
+    let is_plate = |panel: &PanelModel| !is_declared && panel.structure == StructureKind::MindlinPlate;
     let of_chosen = panels(chosen);
     if of_chosen.iter().any(is_plate) {
         return across(inquiry, &of_chosen, &second);
@@ -61,21 +63,27 @@ pub(super) fn next_list(test: &ImpactTest, inquiry: &Inquiry, chosen: &Judged, o
         }
     };
     let (piece, sensor) = (setting.piece, setting.record.response_at);
-    let places = (0..PLACES)
-        .map(|step| piece.length * (step as f64 / (PLACES - 1) as f64 - 0.5))
-        .map(|x| Place { x: (x * 1e3).round() / 1e3, y: 0.0 })
-        .filter(|place| piece.contains(*place).is_ok());
+    let along = |side: f64, places: usize| {
+        (0..places).map(move |step| (1e3 * side * (step as f64 / (places - 1) as f64 - 0.5)).round() / 1e3)
+    };
+    let places: Vec<Place> = if is_declared {
+        along(piece.length, EACH_WAY).flat_map(|x| along(piece.width, EACH_WAY).map(move |y| Place { x, y })).collect()
+    } else {
+        along(piece.length, PLACES).map(|x| Place { x, y: 0.0 }).collect()
+    };
+    let places = places.into_iter().filter(|place| piece.contains(*place).is_ok());
+    let at = |Place { x, y }: Place| if is_declared { format!("({x:.3}, {y:.3}) m") } else { format!("x = {x:.3} m") };
     let masses = ADDED.map(|part| part * piece.mass());
     if sensor.is_some() {
         for added in masses {
             try_out(format!("add {:.1} g at the sensor", 1e3 * added), sensor, added);
         }
-        places.for_each(|place| try_out(format!("move the sensor to x = {:.3} m", place.x), Some(place), 0.0));
+        places.for_each(|place| try_out(format!("move the sensor to {}", at(place)), Some(place), 0.0));
         try_out("listen without a sensor (microphone, laser)".to_owned(), None, 0.0);
     } else {
         for place in places {
             for added in masses {
-                try_out(format!("fix {:.1} g at x = {:.3} m", 1e3 * added, place.x), Some(place), added);
+                try_out(format!("fix {:.1} g at {}", 1e3 * added, at(place)), Some(place), added);
             }
         }
     }
@@ -104,6 +112,9 @@ fn further(
     if added > 0.0 {
         let sensor = sensor_with(added, &mut effects)?;
         effects.push(sensor);
+    }
+    if block.predictor.structure == StructureKind::MindlinPlate {
+        return block.predictor.flexible_frequencies(&setting, &constants, &effects, count);
     }
     natural_frequencies(&setting, &constants, &effects, count)
 }

@@ -406,13 +406,6 @@ pub enum IdentifyError {
         "{0}: a reference is one panel of the suspect's make, of the same structure and edges, measured up to about the same frequency"
     )]
     OtherPanel(String),
-    /// A trace of natural frequencies of a plate.
-    #[error(
-        "a plate's natural frequencies are not traced yet: record hits (kind = \"time-history\" or \"accelerance\") and leave the lists \
-         out; `orthopanel identify` finds the plate's constants from lists, and without structure = \"mindlin-plate\" the trace \
-         judges the beam, the plate (width-coupling) among its effects"
-    )]
-    PlateListNotTraced,
     /// A test that this version cannot evaluate.
     #[error("{0}")]
     Unsupported(String),

@@ -91,6 +91,7 @@ mod tests {
             chi_square: Some(1.0),
             missed_most: None,
             undone_decay: 0.0,
+            named: orthopanel_model::NamedShapes::default(),
         };
         let left = measured.without_faint();
         assert_eq!(left.poles, [pole(2000.0), pole(5000.0)]);

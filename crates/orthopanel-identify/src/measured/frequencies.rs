@@ -31,6 +31,7 @@ impl MeasuredModes {
             chi_square: None,
             missed_most: None,
             undone_decay: 0.0,
+            named: orthopanel_model::NamedShapes::default(),
         }
     }
 }

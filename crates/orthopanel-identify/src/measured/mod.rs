@@ -26,9 +26,11 @@ mod tests;
 use faer::Mat;
 use num_complex::Complex64;
 use orthopanel_data::{Estimation, ImpactTest, MeasurementData, TimeHistory};
-use orthopanel_model::Place;
+use orthopanel_model::{NamedShapes, Place, StructureKind};
 
 use crate::IdentifyError;
+use crate::shapes_of_list::names_told;
+use crate::structures;
 
 /// Poles, residues and remainders of a set of records of one piece, with their covariance.
 ///
@@ -72,6 +74,8 @@ pub struct MeasuredModes {
     pub missed_most: Option<f64>,
     /// Decay rate \[1/s\] of the noise of the hits, as under an exponential window, which poles, residues and remainders are free of; mostly zero.
     pub undone_decay: f64,
+    /// Shapes by which a plate's list names its poles.
+    pub(crate) named: NamedShapes,
 }
 
 impl MeasuredModes {
@@ -121,16 +125,31 @@ pub struct MeasuredRecord {
 /// # Errors
 /// [`IdentifyError::Data`] where records cannot be read or no hit is usable, [`IdentifyError::TooFewResonances`] where they show none.
 pub fn measured_modes(test: &ImpactTest) -> Result<Vec<MeasuredModes>, IdentifyError> {
+    measured_as_named(test, &names_told(test))
+}
+
+/// Nodal lines across x and across y of each pole of a list, where they are told.
+pub(crate) type Names = Vec<Option<[usize; 2]>>;
+
+/// The same where the lists of a plate have these names, one entry a measurement.
+///
+/// # Errors
+/// As [`measured_modes`], and names that no plate's mode has.
+pub(crate) fn measured_as_named(test: &ImpactTest, names: &[Names]) -> Result<Vec<MeasuredModes>, IdentifyError> {
     let (histories, accelerances) = (test.time_histories()?, test.recorded_accelerances()?);
     let mut measured = Vec::new();
     for piece in 0..test.pieces.len() {
         let hits = of_piece(&histories, piece);
         if !hits.is_empty() {
-            measured.push(of_hits(piece, &hits)?);
+            measured.extend(of_sensors(test, piece, &hits)?);
         }
-        for measurement in test.measurements.iter().filter(|measurement| measurement.piece == piece) {
+        for (measurement, names) in test.measurements.iter().zip(names).filter(|(of, _)| of.piece == piece) {
             if let MeasurementData::NaturalFrequencies(list) = &measurement.data {
-                measured.push(MeasuredModes::of_frequencies(piece, list));
+                let mut of_list = MeasuredModes::of_frequencies(piece, list);
+                if test.structure == Some(StructureKind::MindlinPlate) {
+                    of_list.named = named(test, piece, names)?;
+                }
+                measured.push(of_list);
             }
         }
         let lines = of_piece(&accelerances, piece);
@@ -141,8 +160,40 @@ pub fn measured_modes(test: &ImpactTest) -> Result<Vec<MeasuredModes>, IdentifyE
     Ok(measured)
 }
 
+/// # Errors
+/// Names that no plate's mode has.
+fn named(test: &ImpactTest, piece: usize, names: &Names) -> Result<NamedShapes, IdentifyError> {
+    let piece = &test.pieces[piece].piece;
+    let told: Vec<[usize; 2]> = names.iter().flatten().copied().collect();
+    if !told.is_empty() {
+        structures::of(StructureKind::MindlinPlate).measured_modes(piece, test.boundary, told)?;
+    }
+    Ok(NamedShapes::new(piece, test.boundary, names)?)
+}
+
 fn of_piece<T: Clone>(all: &[(usize, T)], piece: usize) -> Vec<T> {
     all.iter().filter(|(of, _)| *of == piece).map(|(_, record)| record.clone()).collect()
+}
+
+/// Of all hits of a piece together; of a plate whose poles are not those of one panel, apart for each place of the sensor: one that moves, with its
+/// mass, changes them.
+fn of_sensors(test: &ImpactTest, piece: usize, hits: &[TimeHistory]) -> Result<Vec<MeasuredModes>, IdentifyError> {
+    let together = of_hits(piece, hits)?;
+    let mut sensors: Vec<Place> = Vec::new();
+    for place in hits.iter().map(|history| history.response_at) {
+        if !sensors.contains(&place) {
+            sensors.push(place);
+        }
+    }
+    let is_plate = test.structure == Some(StructureKind::MindlinPlate);
+    if !is_plate || sensors.len() < 2 || !together.is_not_modal() {
+        return Ok(vec![together]);
+    }
+    let apart = sensors.iter().map(|sensor| {
+        let own: Vec<TimeHistory> = hits.iter().filter(|history| history.response_at == *sensor).cloned().collect();
+        of_hits(piece, &own).ok().filter(|own| !own.is_not_modal())
+    });
+    Ok(apart.collect::<Option<Vec<_>>>().unwrap_or_else(|| vec![together]))
 }
 
 /// Of the hits that are sound, up to where the force has fallen too far.

@@ -260,6 +260,7 @@ fn told(
         chi_square: Some(chi_square),
         missed_most: missed_most(records, &fit.residuals(&found.poles, &found.fitted)),
         undone_decay: 0.0,
+        named: orthopanel_model::NamedShapes::default(),
     }
 }
 

@@ -156,7 +156,8 @@ impl Inquiry<'_> {
             let comparison = block.comparison();
             let measured = comparison.measured;
             let missed = |pole: usize| {
-                if at.partners.iter().any(|record| record[pole].is_none()) {
+                let is_alone = measured.records.is_empty() && at.flexible_of_poles[pole].is_none();
+                if is_alone || at.partners.iter().any(|record| record[pole].is_none()) {
                     return f64::INFINITY;
                 }
                 let residue = |record: usize| comparison.residue_place(record, pole);

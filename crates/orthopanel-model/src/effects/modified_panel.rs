@@ -220,6 +220,21 @@ impl ModifiedPanel {
         self.seen_in_basis(self.parts(setting, values, effects), places, with_slopes)
     }
 
+    /// The same of a plate, as it deflects at places where nothing acts: no shapes stand for what forces there do.
+    ///
+    /// # Errors
+    /// As [`Self::seen_from`].
+    pub fn watched_at(
+        &self,
+        setting: &EffectSetting,
+        places: &[Place],
+        values: &[f64],
+        effects: &[EffectState],
+    ) -> Result<SeenModes, ModelError> {
+        let watched = places.iter().map(|&place| (Motion::Deflection, place)).collect();
+        self.seen_in_rows(self.parts(setting, values, effects), &[], [watched, vec![], vec![]])
+    }
+
     fn parts<'a>(
         &'a self,
         setting: &'a EffectSetting,
@@ -236,22 +251,33 @@ impl ModifiedPanel {
         places: &[Place],
         with_slopes: bool,
     ) -> Result<SeenModes, ModelError> {
+        let slopes =
+            |motion: Motion| places.iter().filter(|_| with_slopes).map(|&place| (motion, place)).collect::<Vec<Row>>();
+        let across = if matches!(self.even, Even::Plate) { slopes(Motion::SlopeAcross) } else { vec![] };
+        self.seen_in_rows(parts, places, [vec![], slopes(Motion::Slope), across])
+    }
+
+    /// The same with rows where nothing acts: deflections, slopes along and slopes across.
+    fn seen_in_rows(
+        &self,
+        parts: PanelWithEffects,
+        places: &[Place],
+        [watched, along, across]: [Vec<Row>; 3],
+    ) -> Result<SeenModes, ModelError> {
         let damping = parts.damping;
         let modified = self.modified(parts)?;
         if modified.core.is_some() {
             return Err(ModelError::Unsupported("viscoelastic-core in a model of modes".into()));
         }
         let ports = modified.ports(places);
-        let slopes = |motion: Motion| places.iter().filter(|_| with_slopes).map(move |&place| (motion, place));
-        let across = slopes(Motion::SlopeAcross).filter(|_| matches!(self.even, Even::Plate));
-        let asked: Vec<Row> = slopes(Motion::Slope).chain(across).collect();
+        let asked: Vec<Row> = [&watched[..], &along, &across].concat();
         // What stands on a foot swings with the panel far above what it is asked for.
         let twice = modified.elements.iter().take_while(|element| element.motion == Motion::Foot).count();
         let answers = modified.far_answers_in(&ports, &asked, twice)?;
         let (_, system) = modified.with_residuals(&answers, places, damping);
         // Elements stand before the ports among the answers, and no coordinates belong to slopes.
         let elements = answers.near.ncols() - ports.len() - asked.len();
-        let slopes = elements + ports.len();
+        let slopes = elements + ports.len() + watched.len();
         let found = system.solve()?;
         let [far, _] = &answers.series;
         let rows = faer::concat![[answers.near], [far.transpose()], [answers.second.seen.transpose()]];
@@ -263,11 +289,16 @@ impl ModifiedPanel {
         let standing: Vec<StandingMass> = standing.collect();
         let is_plate = matches!(self.even, Even::Plate);
         let own = if is_plate { modified.own_modes(&answers, damping, &found)? } else { OwnModes::default() };
-        let across = slopes + asked.len().min(places.len());
-        let mut seen = SeenModes::of(found, &seen, [elements..slopes, slopes..across, across..slopes + asked.len()]);
+        let middle = slopes + along.len();
+        let mut seen = SeenModes::of(found, &seen, [elements..slopes, slopes..middle, middle..middle + across.len()]);
         seen.own = own;
         if !standing.is_empty() {
-            seen.by_foot = Some(Box::new(by_foot(&seen, &standing, &ports, modified.shear_stiffnesses()?)));
+            seen.by_foot = Some(Box::new(by_foot(
+                &seen,
+                &standing,
+                &[&ports[..], &watched].concat(),
+                modified.shear_stiffnesses()?,
+            )));
         }
         Ok(seen)
     }

@@ -1,10 +1,13 @@
 //! `sensor-mass`.
 
-use super::{Action, Effect, EffectParameter, EffectSetting, ElementLaw, Owner, PointElement, Reference, Seat};
+use super::{
+    Action, Effect, EffectParameter, EffectSetting, ElementLaw, Owner, PointElement, RecordSetting, Reference, Seat,
+};
 use crate::{ModelError, Motion};
 
 /// The sensor's mass $m$ \[kg\] and, where it shows, its moment of inertia $J$ \[kg m²\] about the panel's middle plane, at
-/// the record's response place: $Z_w = ms^2$, $Z_\psi = Js^2$. Each record carries its own sensor.
+/// the record's response place: $Z_w = ms^2$, $Z_\psi = Js^2$. Each record carries its own sensor, and those of one make that
+/// sit beside it ([`beside`](super::RecordSetting::beside)).
 ///
 /// Source: Newton's law; coupling of receptances in Bishop and Johnson, The Mechanics of Vibration (1960), chapter 1.
 /// Without a response place (natural frequencies heard by ear) there is no sensor and nothing happens.
@@ -35,14 +38,17 @@ impl Effect for SensorMass {
     fn act(&self, values: &[f64], setting: &EffectSetting) -> Result<Vec<Action>, ModelError> {
         self.check(values, &setting.piece)?;
         let &[mass, inertia] = values else { return Ok(vec![]) };
-        if setting.record.response_at.is_none() {
-            return Ok(vec![]);
-        }
-        let turning = PointElement {
-            motion: Motion::Rotation,
-            ..PointElement::on_deflection(ElementLaw::Mass { mass: inertia }, Seat::AtResponse)
+        let RecordSetting { response_at: Some(own), beside, .. } = &setting.record else { return Ok(vec![]) };
+        // Where several stay the panel is the same in all records.
+        let seats = match &beside[..] {
+            [] => vec![Seat::AtResponse],
+            others => std::iter::once(own).chain(others).map(|place| Seat::At(*place)).collect(),
         };
-        let moving = PointElement::on_deflection(ElementLaw::Mass { mass }, Seat::AtResponse);
-        Ok(vec![Action::Element(moving), Action::Element(turning)])
+        let of_seat = |seat: Seat| {
+            let moving = PointElement::on_deflection(ElementLaw::Mass { mass }, seat);
+            let turning = PointElement::on_deflection(ElementLaw::Mass { mass: inertia }, seat);
+            [moving, PointElement { motion: Motion::Rotation, ..turning }].map(Action::Element)
+        };
+        Ok(seats.into_iter().flat_map(of_seat).collect())
     }
 }

@@ -24,6 +24,8 @@ pub struct RecordSetting {
     pub force_at: Option<Place>,
     /// Where the sensor sits; none where nothing is on the panel.
     pub response_at: Option<Place>,
+    /// Where other sensors sit meanwhile.
+    pub beside: Vec<Place>,
     /// When the hammer strikes \[s\], from the beginning of the record.
     pub hit_time: f64,
     /// What is known of how the suspension points move.

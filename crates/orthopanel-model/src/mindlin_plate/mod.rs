@@ -20,6 +20,7 @@ mod edge_basis;
 mod kink;
 mod law;
 mod mode_names;
+mod named_shapes;
 mod span_edges;
 
 use std::sync::OnceLock;
@@ -28,6 +29,7 @@ use faer::Mat;
 
 pub use law::PLATE_CONSTANTS;
 pub use mode_names::{ModeKind, ModeName};
+pub use named_shapes::NamedShapes;
 
 use crate::structure::{Block, Motion, ShearMoment, Structure};
 use crate::{BeamTerms, Boundary, Constant, ModelError, Piece, Place};

@@ -129,16 +129,23 @@ impl MindlinPlate {
     }
 }
 
+/// The beam whose modes are the beam functions of these edges.
+///
+/// # Errors
+/// [`ModelError::Size`] where the length has no physical meaning.
+pub(super) fn slender_beam(length: f64, [left, right]: [End; 2]) -> Result<ExactBeam, ModelError> {
+    // So slender that neither shear nor rotary inertia counts.
+    let piece = Piece { length, width: length, thickness: 1e-3 * length, mass_per_area: 1.0 };
+    ExactBeam::new(&piece, Boundary { left, right, ..Boundary::FREE }, BeamConstants { e_x: 1e9, g_zx: 1.5e9 })
+}
+
 /// $\int f_m\varphi_i\,dx$ of the beam functions of these edges and the plate's deflection functions: a row a number of
 /// nodes, from none up to what `terms` polynomials follow.
 ///
 /// # Errors
 /// [`ModelError::Size`] where the length has no physical meaning.
-fn beam_functions(basis: &EdgeBasis, length: f64, [left, right]: [End; 2]) -> Result<Mat<f64>, ModelError> {
-    // So slender that neither shear nor rotary inertia counts.
-    let piece = Piece { length, width: length, thickness: 1e-3 * length, mass_per_area: 1.0 };
-    let beam =
-        ExactBeam::new(&piece, Boundary { left, right, ..Boundary::FREE }, BeamConstants { e_x: 1e9, g_zx: 1.5e9 })?;
+fn beam_functions(basis: &EdgeBasis, length: f64, ends: [End; 2]) -> Result<Mat<f64>, ModelError> {
+    let beam = slender_beam(length, ends)?;
     // A polynomial of degree n follows 2n/π half-waves.
     let terms = basis.count(Field::Deflection);
     let most = 2 * terms / 3;
