@@ -2,7 +2,8 @@
 
 use faer::Mat;
 use orthopanel_model::{
-    Action, Effect, EffectParameter, EffectState, GAIN, ModelError, Piece, Place, Prior, Scale, StructureKind,
+    Action, Effect, EffectParameter, EffectState, FOOT_SIDE, GAIN, ModelError, Piece, Place, Prior, Scale,
+    StructureKind,
 };
 
 use crate::free_constants::FreeConstants;
@@ -125,6 +126,8 @@ pub(crate) enum Role {
     Found,
     /// It is what another effect, which is not linear, looks like in the mean over hits ([`Effect::linearised`]).
     Linearised,
+    /// Unknown, but no effect that the base lacks: a nuisance parameter of every hypothesis.
+    Nuisance,
 }
 
 /// An effect in one of the ways in which it may act: a mass added or one that is missing, the gain of this record or of that.
@@ -167,6 +170,12 @@ impl Part {
             }
         }
         Some(Self { role: Role::Declared, ..way })
+    }
+
+    /// The side of the feet on which all stands that stands on a plate; beams may turn out plates (`width-coupling`).
+    fn foot(of: (&Piece, StructureKind)) -> Option<Self> {
+        let way = Self::ways(FOOT_SIDE, of, 1).into_iter().next()?;
+        Some(Self { role: Role::Nuisance, ..way })
     }
 
     fn coordinates(&self) -> impl Iterator<Item = &Coordinate> {
@@ -278,11 +287,18 @@ impl Part {
         })
     }
 
+    /// Of a factor, of which one is none, the logarithm of the odds with it against those without by the ratio of the prior and the posterior density there:
+    /// $$\ln B = \frac{(z-z_0)^2}{2\sigma^2} + \ln\sigma - \frac{z_0^2}{2} .$$
+    pub(crate) fn gain_beside_none(&self, z: &[f64], deviation: f64) -> Option<f64> {
+        let (coordinate, z) =
+            self.coordinates().next().zip(z.first()).filter(|_| self.is_factor() && self.free() == 1)?;
+        let none = coordinate.of_value(1.0);
+        Some(0.5 * ((z - none) / deviation).powi(2) + deviation.ln() - 0.5 * none * none)
+    }
+
     /// Whether one is none of the effect.
     fn is_factor(&self) -> bool {
-        let is_of_one = |coordinate: &Coordinate| matches!(coordinate.map, Map::Size { median, .. } if median == 1.0);
-        self.effect.parameters().first().is_some_and(|first| first.unit == "1")
-            && self.coordinates().next().is_some_and(is_of_one)
+        self.effect.parameters().first().is_some_and(|first| first.is_factor)
     }
 
     /// So many times as much of the effect, where its first coordinate says how much: of a factor, beside one.
@@ -296,9 +312,20 @@ impl Part {
         }
     }
 
+    /// These starts with much of the effect, where the first coordinate says how much: what one of twenty has more of.
+    pub(crate) fn with_much(&self, starts: &[Vec<f64>]) -> Vec<Vec<f64>> {
+        const MUCH: f64 = 1.5;
+        let is_size = self.coordinates().next().is_some_and(|first| matches!(first.map, Map::Size { .. }));
+        let much = |start: &Vec<f64>| start.iter().enumerate().map(|(i, z)| if i == 0 { MUCH } else { *z }).collect();
+        if is_size { starts.iter().map(much).collect() } else { vec![] }
+    }
+
     /// Where a search begins: a net over the prior, the finer the fewer the coordinates. What vibrates by itself at a place begins where the
     /// panel with it has a mode at each of the measured frequencies, as `tuned(mass, place)` finds them \[Hz\].
     pub(crate) fn starts(&self, tuned: impl Fn(f64, Place) -> Vec<f64>) -> Vec<Vec<f64>> {
+        if self.role == Role::Nuisance {
+            return vec![vec![0.0; self.free()]];
+        }
         let unit = |number: usize| self.effect.parameters().get(number).map_or("", |parameter| parameter.unit);
         let free = || self.slots.iter().enumerate().filter_map(|(number, slot)| Some((number, slot.coordinate()?)));
         let units: Vec<&str> = free().map(|(number, _)| unit(number)).collect();
@@ -395,8 +422,13 @@ struct ConstantSlot {
 const CONSTANTS: f64 = 2.0;
 
 impl Hypothesis {
-    /// Constants about these values, where the test does not hold them.
-    pub(crate) fn new(constants: &FreeConstants, about: &[f64], parts: Vec<Part>) -> Self {
+    /// Constants about these values, where the test does not hold them, with what is declared of a piece.
+    pub(crate) fn new(
+        constants: &FreeConstants,
+        about: &[f64],
+        declared: &[Part],
+        of: (&Piece, StructureKind),
+    ) -> Self {
         let mut slots = Vec::new();
         for (constant, (held, about)) in constants.held.iter().zip(about).enumerate() {
             let of = &constants.constants[constant];
@@ -420,7 +452,18 @@ impl Hypothesis {
                 }
             }
         }
-        Self { constants: slots, parts }
+        Self { constants: slots, parts: Part::foot(of).into_iter().chain(declared.iter().cloned()).collect() }
+    }
+
+    /// How many numbers are looked for, nuisance parameters apart.
+    pub(crate) fn unknowns(&self) -> usize {
+        let sought = self.parts.iter().filter(|part| part.role != Role::Nuisance);
+        self.free_constants() + sought.map(Part::free).sum::<usize>()
+    }
+
+    /// Number of the coordinate that is the side of the feet.
+    pub(crate) fn foot(&self) -> usize {
+        self.free_constants()
     }
 
     /// With one part more.

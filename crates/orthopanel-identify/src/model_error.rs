@@ -57,12 +57,8 @@ pub(crate) enum Kind {
     LongMass,
     ShortMass,
     ShortestMass,
-    /// Of the logarithm of the side of the feet on which masses stand on a plate.
-    Foot,
 }
 
-/// Deviation of the logarithm of a foot's side from that of 10 mm: of two of three masses it is 6.5 to 15 mm.
-pub(crate) const FOOT: f64 = 0.4;
 /// Least size of any kind.
 const LEAST: f64 = 1e-6;
 /// Part of what sound panels usually miss that a plate is computed to: converged elements with a patch or a mass have the same frequencies to 1e-4. Were it
@@ -72,7 +68,7 @@ const COMPUTED: f64 = 0.2;
 const COUPLING: f64 = 3e-2;
 
 /// Median of a kind's size before any test, and the factor within which two of three lie.
-const PRIORS: [(Kind, f64, f64); 23] = [
+const PRIORS: [(Kind, f64, f64); 22] = [
     (Kind::Frequency, 5e-4, 4.0),
     (Kind::Residue, 3e-3, 4.0),
     (Kind::Quadrature, 1e-3, 4.0),
@@ -95,7 +91,6 @@ const PRIORS: [(Kind, f64, f64); 23] = [
     (Kind::LongMass, 2e-3, 2.2),
     (Kind::ShortMass, 1e-3, 2.5),
     (Kind::ShortestMass, 5e-4, 2.5),
-    (Kind::Foot, FOOT, 1.3),
 ];
 /// Kinds of error.
 pub(crate) const KINDS: usize = PRIORS.len();
@@ -190,8 +185,8 @@ pub(crate) fn waves(predictor: &Predictor, constants: &[f64], effects: &[EffectS
 }
 
 /// Kinds whose columns are parts of what is predicted of a record.
-const OF_PREDICTED: [Kind; 7] =
-    [Kind::Frequency, Kind::Coupling, Kind::ForcePlace, Kind::RecordGain, Kind::ResponsePlace, Kind::Gain, Kind::Foot];
+const OF_PREDICTED: [Kind; 6] =
+    [Kind::Frequency, Kind::Coupling, Kind::ForcePlace, Kind::RecordGain, Kind::ResponsePlace, Kind::Gain];
 
 /// Makes errors that are parts of what a record is predicted to show as large as the record is: a hypothesis that predicts less of it would else have
 /// smaller errors, and a gain of 0.78 was named where nothing is missing (Peelle's pertinent puzzle; Frühwirth et al., EPJ Web Conf. 27 (2012) 00008).
@@ -292,7 +287,6 @@ impl ErrorColumns {
         columns.extend(
             waves.iter().map(|(kind, wave)| ((*kind, 1), wave.iter().copied().enumerate().take(unseen).collect())),
         );
-        columns.extend(predictor.by_foot(at).iter().map(|by_foot| dense(Kind::Foot, by_foot, 0..unseen)));
         if !measured.records.is_empty() {
             let residues = comparison.residue_place(0, 0)..unseen;
             columns.push(dense(Kind::Gain, &at.values, residues));

@@ -1,6 +1,7 @@
 //! The most probable parameters of a hypothesis, their covariance, and its evidence.
 
 use std::f64::consts::FRAC_PI_2;
+use std::ops::Range;
 use std::sync::Arc;
 
 use faer::linalg::solvers::Llt;
@@ -8,7 +9,7 @@ use faer::prelude::Solve;
 use faer::{Mat, Side};
 use orthopanel_model::ModelError;
 
-use crate::hypothesis::Hypothesis;
+use crate::hypothesis::{Hypothesis, Role};
 use crate::model_error::{ErrorColumns, KINDS, deviations, least_sizes, medians};
 use crate::stacked::{Predictions, Stacked};
 use crate::whitening::Whitening;
@@ -205,12 +206,12 @@ impl Problem<'_> {
         misfit.is_finite().then_some(Point { misfit, cost: misfit + by.log_determinant, ..point })
     }
 
-    /// $\partial f/\partial z$ from the coordinate `from` on, by differences that stay inside the bounds.
-    pub(crate) fn derivatives(&self, point: &Point, from: usize) -> Option<Mat<f64>> {
+    /// $\partial f/\partial z$ by these coordinates, by differences that stay inside the bounds.
+    pub(crate) fn derivatives(&self, point: &Point, by: Range<usize>) -> Option<Mat<f64>> {
         let farthest = self.hypothesis.farthest();
         let by_places = self.by_places(&point.z, &point.at);
-        let mut columns = Mat::zeros(point.at.values.len(), point.z.len() - from);
-        for (column, number) in (from..point.z.len()).enumerate() {
+        let mut columns = Mat::zeros(point.at.values.len(), by.len());
+        for (column, number) in by.enumerate() {
             if let Some(of_places) = by_places.get(number).and_then(Option::as_ref) {
                 columns.col_as_slice_mut(column).copy_from_slice(of_places);
                 continue;
@@ -278,6 +279,8 @@ impl Problem<'_> {
                         }
                     }
                 }
+                // Feet on which nothing stands.
+                places_alone |= part.role == Role::Nuisance && !at.blocks.iter().any(|block| block.on_feet);
                 columns.push(places_alone.then_some(column));
             }
         }
@@ -351,7 +354,7 @@ impl Problem<'_> {
             if gain >= least_gain {
                 point.is_exact = exact_from == 0;
                 let exact_from = exact_from.min(size);
-                let own = self.derivatives(&point, exact_from)?;
+                let own = self.derivatives(&point, exact_from..size)?;
                 (exact_from..size).for_each(|i| {
                     point.derivatives.col_as_slice_mut(i).copy_from_slice(own.col_as_slice(i - exact_from));
                 });
@@ -374,7 +377,7 @@ impl Problem<'_> {
 
     /// All derivatives at a point.
     fn find_derivatives(&self, point: &mut Point) -> Option<()> {
-        point.derivatives = self.derivatives(point, 0)?;
+        point.derivatives = self.derivatives(point, 0..point.z.len())?;
         point.is_exact = true;
         Some(())
     }

@@ -23,7 +23,7 @@ const ABOVE: f64 = 1.3;
 const APART: [f64; 2] = [0.06, 0.015];
 /// The same of the piece as a whole on its suspension.
 const HANGING_APART: f64 = 0.25;
-/// Step along a change of modes from which its derivative is taken: of a wave of unevenness, of a foot.
+/// Step along a change of modes from which its derivative is taken: of a wave of unevenness.
 const SHIFT: f64 = 1e-5;
 /// Times the highest frequency of the piece as a whole from which on a remainder is that of a free piece but for small terms.
 const CLEAR_OF_HANGING: f64 = 3.0;
@@ -38,7 +38,7 @@ const MOSTLY_SEEN: f64 = 0.97;
 /// Poles whose damping ratios say how far a resonance reaches at the band's end.
 const BESIDE: usize = 3;
 const MOST_DAMPING: f64 = 0.9;
-/// Damping ratio of modes that no pole belongs to.
+/// Damping ratio of modes that no pole belongs to, where no pole tells one.
 const USUAL_DAMPING: f64 = 0.003;
 
 /// Deviation of the logarithm of the frequency of a mode that is to be matched.
@@ -71,8 +71,10 @@ pub(crate) struct Prediction {
     /// The same by the place of the force of all records, and of the response \[1/m\], along x and along y: zeros where no record tells.
     pub by_force: [Vec<f64>; 2],
     pub by_response: [Vec<f64>; 2],
-    /// What was compared, where anything stands on a plate: for the derivatives by the side of its feet and by the damping of the plate.
-    pub standing: Option<(Vec<Channel>, Views)>,
+    /// What was compared, of a plate: for the derivatives by what damps it.
+    pub seen: Option<(Vec<Channel>, Views)>,
+    /// Whether anything stands on feet, whose side moves it.
+    pub on_feet: bool,
     /// Direction of each pole's residues in the complex plane, where all differ by sign alone.
     pub phase: Vec<Complex64>,
     /// Of each record and pole what a residue of size one, along the phase, brings to the remainder at each of its frequencies.
@@ -150,7 +152,11 @@ impl<'a> Predictor<'a> {
             number: record + 1,
             force_at: places.map(|record| record.force_at),
             response_at: places.map(|record| record.response_at).or(self.setting.record.response_at),
-            beside: places.map_or(vec![], |record| self.beside(record)),
+            // A record that was not taken has the sensors of the setting.
+            beside: match places.map(|record| self.beside(record)) {
+                Some(beside) if !beside.is_empty() => beside,
+                _ => self.setting.record.beside.clone(),
+            },
             ..self.setting.record.clone()
         };
         EffectSetting { record, ..self.setting.clone() }
@@ -218,7 +224,9 @@ impl<'a> Predictor<'a> {
         key.extend(ports.iter().chain(&setting.record.response_at).flat_map(|place| [place.x, place.y]));
         let mut structural = Vec::new();
         for (number, state) in effects.iter().enumerate() {
-            let acts = |action: &Action| matches!(action, Action::Element(_) | Action::Field(_) | Action::Plate(_));
+            let acts = |action: &Action| {
+                matches!(action, Action::Element(_) | Action::Field(_) | Action::Plate(_) | Action::Foot(_))
+            };
             if state.acting_in(setting)?.iter().any(acts) {
                 key.push(number as f64);
                 key.extend(&state.values);
@@ -352,7 +360,7 @@ impl<'a> Predictor<'a> {
                     Action::Place(shift) => channel.force_offset += shift.offset,
                     Action::Window { tau } => channel.decay += tau.recip(),
                     Action::Element(element) => channel.loads |= element.seat == Seat::AtResponse,
-                    Action::Field(_) | Action::Core(_) | Action::Plate(_) => {}
+                    Action::Field(_) | Action::Core(_) | Action::Plate(_) | Action::Foot(_) => {}
                 }
             }
         }
@@ -405,7 +413,7 @@ impl<'a> Predictor<'a> {
         }
         let seen = Views { places, views };
         let mut at = self.compared(&channels, &seen);
-        at.standing = seen.views.iter().any(|view| !view.modes.own.shares.is_empty()).then_some((channels, seen));
+        at.seen = (self.structure == StructureKind::MindlinPlate).then_some((channels, seen));
         Ok(at)
     }
 
@@ -413,18 +421,6 @@ impl<'a> Predictor<'a> {
     pub(crate) fn partners_of(&self, at: &Prediction) -> Vec<Option<usize>> {
         let rigid = self.panel.rigid_modes(self.setting.boundary);
         at.flexible_of_poles.iter().map(|flexible| flexible.map(|n| rigid + n)).collect()
-    }
-
-    /// Derivatives of the values by the logarithm of the side of the feet on which masses stand on a plate; `None` without any.
-    pub(crate) fn by_foot(&self, at: &Prediction) -> Option<Vec<f64>> {
-        let (channels, seen) = at.standing.as_ref()?;
-        seen.views.iter().find(|view| view.modes.by_foot.is_some())?;
-        let moved = |View { of, ports, modes, .. }: &View| {
-            let modes = modes.by_foot.as_ref().map_or_else(|| Arc::clone(modes), |by| Arc::new(shifted(modes, by)));
-            View { of: *of, ports: ports.clone(), modes, relaxing: None }
-        };
-        let moved = Views { places: seen.places.clone(), views: seen.views.iter().map(moved).collect() };
-        Some(by_shift(&self.compared(channels, &moved).values, &at.values))
     }
 
     /// Derivatives of all values by the amplitudes of waves of a field that is uneven along the panel, at these constants, of effects with those of the
@@ -495,19 +491,32 @@ impl<'a> Predictor<'a> {
     }
 
     /// Whether a mode is a motion of the piece as a whole: those that would be at zero but for the suspension are the lowest.
-    fn hangs(&self, mode: usize) -> bool {
+    pub(crate) fn hangs(&self, mode: usize) -> bool {
         mode < self.panel.rigid_modes(self.setting.boundary)
     }
 
-    /// Damping ratio of a mode: that of the pole that is its partner, less what a window brings.
-    fn damping(&self, view: &View, n: usize, pole: Option<usize>, channel: Option<&Channel>) -> f64 {
+    /// Median of what damps the poles beside effects: what a mode is thought to have that no pole belongs to.
+    pub(crate) fn usual_damping(&self, view: &View, partners: &[Option<usize>], channel: Option<&Channel>) -> f64 {
+        let decay = channel.map_or(0.0, |channel| channel.decay);
+        let own = |(pole, partner): (&Pole, &Option<usize>)| {
+            let n = partner.filter(|n| !self.hangs(*n))?;
+            let (omega, of_effects) = (view.modes.angular_frequency[n], view.modes.damping_ratio[n]);
+            Some((pole.damping_ratio? - of_effects - decay / omega).max(0.0))
+        };
+        let mut ratios: Vec<f64> = self.comparison.measured.poles.iter().zip(partners).filter_map(own).collect();
+        ratios.sort_by(f64::total_cmp);
+        ratios.get(ratios.len() / 2).copied().unwrap_or(USUAL_DAMPING)
+    }
+
+    /// Damping ratio of a mode: that of the pole that is its partner, less what a window brings, or else what is usual beside what effects bring.
+    fn damping(&self, view: &View, n: usize, pole: Option<usize>, (channel, usual): (Option<&Channel>, f64)) -> f64 {
         let omega = view.modes.angular_frequency[n];
         if omega <= 0.0 {
             return 0.0;
         }
         let measured = pole.and_then(|pole| self.comparison.measured.poles[pole].damping_ratio);
         let decay = channel.map_or(0.0, |channel| channel.decay);
-        let own = measured.map_or(USUAL_DAMPING + view.modes.damping_ratio[n], |zeta| zeta - decay / omega);
+        let own = measured.map_or(usual + view.modes.damping_ratio[n], |zeta| zeta - decay / omega);
         own.clamp(0.0, MOST_DAMPING)
     }
 
@@ -520,7 +529,8 @@ impl<'a> Predictor<'a> {
     ) -> Option<CoupledModes> {
         channel?;
         let pole = |n: usize| partners.iter().position(|partner| *partner == Some(n));
-        let zeta: Vec<f64> = (0..view.near()).map(|n| self.damping(view, n, pole(n), channel)).collect();
+        let beside = (channel, self.usual_damping(view, partners, channel));
+        let zeta: Vec<f64> = (0..view.near()).map(|n| self.damping(view, n, pole(n), beside)).collect();
         let measured = self.comparison.measured;
         let deviation = |pole: usize| {
             let place = measured.poles.len() + pole;
@@ -539,9 +549,10 @@ impl<'a> Predictor<'a> {
         stands: impl Fn(f64) -> bool,
     ) -> Vec<ModeInRecord> {
         let frequencies = &self.comparison.measured.remainder_frequencies;
+        let beside = (Some(channel), self.usual_damping(view, partners, Some(channel)));
         let mode = |n: usize| {
             let pole = partners.iter().position(|partner| *partner == Some(n));
-            let mode = view.mode(n, self.damping(view, n, pole, Some(channel)), coupled);
+            let mode = view.mode(n, self.damping(view, n, pole, beside), coupled);
             let stands = mode.omega > 0.0 && (pole.is_some() || stands(mode.omega));
             let unit = if stands { mode.residue(channel) } else { Complex64::ZERO };
             let line = |(number, frequency): (usize, &f64)| {
@@ -573,7 +584,9 @@ impl<'a> Predictor<'a> {
             // A pole without a partner tells nothing by its frequency; its residue is missed altogether.
             let own = |n: usize| match &first.relaxing {
                 Some(relaxing) => {
-                    relaxing.mode(n, self.damping(first, n, Some(pole), channels.first())).angular_frequency
+                    relaxing
+                        .mode(n, self.damping(first, n, Some(pole), (channels.first(), USUAL_DAMPING)))
+                        .angular_frequency
                 }
                 None => {
                     let coupled = coupled[0].as_ref().and_then(|coupled| coupled.angular_frequency.get(n).copied());
@@ -668,7 +681,8 @@ impl<'a> Predictor<'a> {
             values,
             by_force: [force_x, force_y],
             by_response: [response_x, response_y],
-            standing: None,
+            seen: None,
+            on_feet: seen.views.iter().any(|view| view.modes.on_feet),
             phase,
             brings,
             partners: in_records,

@@ -24,7 +24,7 @@ use crate::hit_strength::{HitStrength, Springs};
 use crate::hypothesis::{Hypothesis, OF_PIECE, OF_RECORD, Part, Role, has_place, is_of_record};
 use crate::judge::ODDS;
 use crate::measured::MeasuredModes;
-use crate::model_error::{FOOT, KINDS, medians, waves};
+use crate::model_error::{KINDS, Kind, medians, waves};
 use crate::plate_start::PlateStart;
 use crate::posterior::{Following, Judged, Point, Posterior, Problem};
 use crate::predicted::{Prediction, Predictor};
@@ -36,12 +36,12 @@ use crate::stacked::{Block, Stacked};
 /// $\ln\tau_k$ with which starts are judged: wide, so that far ones have a slope to follow.
 const LOOSE: [f64; KINDS] = [
     5e-3, 5e-2, 2e-2, 0.1, 1e-3, 5e-3, 5e-4, 5e-3, 5e-2, 0.2, 1e-2, 1e-2, 5e-3, 5e-3, 5e-3, 5e-3, 5e-3, 5e-3, 5e-3,
-    5e-3, 5e-3, 5e-3, FOOT,
+    5e-3, 5e-3, 5e-3,
 ];
 /// and from which the sizes are estimated: from the sizes of too poor a hypothesis effects drown.
 const SMALL: [f64; KINDS] = [
     3e-4, 2e-3, 1e-3, 3e-2, 8e-4, 3e-3, 4e-4, 3e-3, 1e-2, 5e-2, 4e-3, 4e-3, 3e-3, 1e-3, 2e-3, 2e-3, 1e-3, 5e-4, 1e-3,
-    1e-3, 5e-4, 3e-4, FOOT,
+    1e-3, 5e-4, 3e-4,
 ];
 /// Ratios $E/G$ at which the constants are looked for.
 const RATIOS: usize = 28;
@@ -79,13 +79,19 @@ pub(crate) fn log_prior(ways: usize) -> f64 {
 }
 
 /// A base with one effect more, which lacks in one of so many ways alike. The least of an effect that is looked for is none: what is gained there is what its
-/// presence adds to the model error.
+/// presence adds to the model error. For a factor, whose null value is one, the gain is at most the Savage-Dickey density ratio there (Dickey, Ann. Math.
+/// Stat. 42 (1971) 204): another basis may come with it, and what that gains is no effect.
 pub(crate) fn with_one_more(base: &Judged, hypothesis: Hypothesis, posterior: Posterior, ways: usize) -> Judged {
     let last = hypothesis.parts.last().zip(hypothesis.of_parts(&posterior.point.z).last().copied());
-    let is_none = last.is_some_and(|(part, z)| part.is_least(z));
-    let gain = posterior.log_evidence - base.posterior.log_evidence;
-    let log_odds = base.log_odds + if is_none { gain.min(0.0) } else { gain } + log_prior(ways);
-    Judged { hypothesis, posterior, log_odds }
+    // A declared effect whose numbers are doubted is there.
+    let added = last.filter(|(part, z)| part.role == Role::Found && !z.is_empty());
+    let most = added.map_or(f64::INFINITY, |(part, z)| {
+        let place = posterior.point.z.len() - z.len();
+        let by_density = || part.gain_beside_none(z, posterior.covariance[(place, place)].sqrt());
+        if part.is_least(z) { 0.0 } else { by_density().unwrap_or(f64::INFINITY) }
+    });
+    let gain = (posterior.log_evidence - base.posterior.log_evidence).min(most);
+    Judged { hypothesis, posterior, log_odds: base.log_odds + gain + log_prior(ways) }
 }
 
 fn logs(sizes: [f64; KINDS]) -> [f64; KINDS] {
@@ -174,7 +180,12 @@ impl<'a> Inquiry<'a> {
         let hertz: Vec<f64> = poles.map(|pole| pole.angular_frequency / TAU).collect();
         let mut best: Option<(f64, Hypothesis, Point)> = None;
         for start in starts {
-            let hypothesis = Hypothesis::new(constants, &start, declared.to_vec());
+            let hypothesis = Hypothesis::new(
+                constants,
+                &start,
+                declared,
+                (inquiry.predictor().piece(), inquiry.predictor().structure),
+            );
             let problem = inquiry.problem(&hypothesis);
             let mut nets: Vec<Vec<f64>> = vec![vec![0.0; hypothesis.free_constants()]];
             for part in &hypothesis.parts {
@@ -299,6 +310,11 @@ impl<'a> Inquiry<'a> {
         })
     }
 
+    /// Whether a base on a plate misses by more than modes and poles lie apart: it may have been led away.
+    pub(crate) fn is_led_away(&self, base: &Judged) -> bool {
+        self.is_plate() && base.posterior.log_sizes[Kind::Frequency as usize].exp() > self.predictor().apart
+    }
+
     /// Every effect of the catalogue added to a base, but those sets that were `seen`, the likeliest first.
     fn each_effect(&self, base: &Judged, seen: &mut Vec<Vec<&'static str>>) -> Vec<Judged> {
         // Of a declared effect with a place there may be one more.
@@ -357,8 +373,8 @@ impl<'a> Inquiry<'a> {
             let (hypothesis, z) = of.hypothesis.without(part, &of.posterior.point.z);
             let problem = self.problem(&hypothesis);
             let posterior = problem.posterior(problem.unjudged(z)?, of.posterior.log_sizes, TO_THE_END)?;
-            let log_odds = of.log_odds - of.posterior.log_evidence + posterior.log_evidence
-                - log_prior(self.ways(of.hypothesis.parts[part].effect).len());
+            let priors = hypothesis.undeclared().map(|part| log_prior(self.ways(part.effect).len()));
+            let log_odds = posterior.log_evidence + priors.sum::<f64>();
             Some(Judged { hypothesis, posterior, log_odds })
         };
         let mut fewer: Vec<Judged> = parts.into_par_iter().filter_map(left_out).collect();

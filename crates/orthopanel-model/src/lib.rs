@@ -44,10 +44,10 @@ pub use constant::Constant;
 pub use deflection_row::{DeflectionRow, RigidMotion};
 pub use effects::{
     Action, CUBIC_STIFFNESS, ChannelFactor, CoreFit, CoreModulus, EXPONENTIAL_WINDOW, Effect, EffectParameter,
-    EffectSetting, EffectState, ElementLaw, Field, FieldTerm, GAIN, ModesAtLine, ModifiedPanel, OwnModes, Owner,
-    PointElement, Prior, RECORD_GAIN, ReceptanceModel, ReceptanceSetup, RecordSetting, RelaxingLines, RelaxingMode,
-    RelaxingModes, SENSOR_MASS, STIFFNESS_LOSS, Scale, Seat, SeenModes, Shift, SuspensionMotion, VISCOELASTIC_CORE,
-    catalogue, effect, natural_frequencies,
+    EffectSetting, EffectState, ElementLaw, FOOT_SIDE, Field, FieldTerm, GAIN, ModesAtLine, ModifiedPanel, OwnModes,
+    Owner, PointElement, Prior, RECORD_GAIN, ReceptanceModel, ReceptanceSetup, RecordSetting, RelaxingLines,
+    RelaxingMode, RelaxingModes, SENSOR_MASS, STIFFNESS_LOSS, Scale, Seat, SeenModes, Shift, SuspensionMotion,
+    VISCOELASTIC_CORE, catalogue, effect, natural_frequencies,
 };
 pub use error::{ModelError, Readable};
 pub use identifier::is_identifier;

@@ -114,7 +114,6 @@ values = [321.94, 843.80, 1529.69, 2409.89, 3202.36, 4053.22, 4928.93]
 resolution = 1.25
 "#;
 
-/// Two widths that one beam cannot follow: the model that is written is the plate.
 #[test]
 fn run_and_report_take_a_reference_as_trace_does() {
     let bench = Bench::new();
@@ -130,6 +129,7 @@ fn run_and_report_take_a_reference_as_trace_does() {
     assert!(manifest.contains(good), "{manifest}");
 }
 
+/// Two widths that one beam cannot follow: the model that is written is the plate.
 #[test]
 fn a_width_that_the_beam_lacks_makes_the_model_a_plate() {
     let bench = Bench::new();

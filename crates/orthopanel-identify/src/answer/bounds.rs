@@ -39,7 +39,8 @@ const LEFT_OUT: &str = "the test file declares it without this number, and the d
 /// A sentence on each free number at an end of its range: then the bound tells it, not the data. A place at the end of the piece is a place.
 pub(super) fn notes_on_bound(estimates: &Estimates, piece: &Piece) -> Vec<String> {
     let mut notes = Vec::new();
-    for (found, role) in estimates.effects.iter().filter(|(_, role)| *role != Role::Linearised) {
+    let may_be_said = |role: &Role| matches!(role, Role::Declared | Role::Found);
+    for (found, role) in estimates.effects.iter().filter(|(_, role)| may_be_said(role)) {
         let Ok(known) = effect(found.id) else { continue };
         for (parameter, found_of) in known.parameters().iter().zip(&found.parameters) {
             let (low, high) = parameter.range(piece);

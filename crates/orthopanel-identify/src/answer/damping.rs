@@ -32,17 +32,44 @@ impl TracedDamping {
             nearest.damping_ratio.map(|zeta| (zeta, None))
         };
         let mut known: Vec<Option<(f64, Option<f64>)>> = frequencies.iter().map(beside).collect();
-        let damped = |pole: &usize| measured.poles[*pole].damping_ratio.is_some();
         let partners = measured.matched(modes);
+        let partners: Vec<Option<usize>> = partners.iter().map(|partner| Some(partner.as_ref()?.mode - 1)).collect();
+        Self::tell(&mut known, measured, (&partners, of_effects));
+        known.truncate(known.iter().rposition(Option::is_some).map_or(0, |last| last + 1));
+        Self::of_known(known)
+    }
+
+    /// Of as many flexible modes as there are, of which these are the partners of the poles.
+    pub(super) fn of_partners(
+        measured: &MeasuredModes,
+        (partners, of_effects): (&[Option<usize>], &[f64]),
+        modes: usize,
+    ) -> Self {
+        let mut known = vec![None; modes];
+        Self::tell(&mut known, measured, (partners, of_effects));
+        Self::of_known(known)
+    }
+
+    /// Puts what poles say of their partners, less what effects bring, with its deviation.
+    fn tell(
+        known: &mut [Option<(f64, Option<f64>)>],
+        measured: &MeasuredModes,
+        (partners, of_effects): (&[Option<usize>], &[f64]),
+    ) {
+        let damped = |pole: &usize| measured.poles[*pole].damping_ratio.is_some();
         for (place, pole) in (0..measured.poles.len()).filter(damped).enumerate() {
             let (Some(zeta), Some(partner)) = (measured.poles[pole].damping_ratio, partners[pole]) else { continue };
             // The covariance is that of the logarithm, after those of the frequencies.
             let at = measured.poles.len() + place;
             let std = zeta * measured.covariance[(at, at)].sqrt();
             let own = (zeta - of_effects.get(pole).copied().unwrap_or(0.0)).max(LEAST * zeta);
-            known[partner.mode - 1] = Some((own, Some(std)));
+            if let Some(known) = known.get_mut(partner) {
+                *known = Some((own, Some(std)));
+            }
         }
-        known.truncate(known.iter().rposition(Option::is_some).map_or(0, |last| last + 1));
+    }
+
+    fn of_known(known: Vec<Option<(f64, Option<f64>)>>) -> Self {
         let logs: Vec<f64> = known.iter().flatten().map(|(zeta, _)| zeta.ln()).collect();
         let usual = if logs.is_empty() { WITHOUT_POLES } else { (logs.iter().sum::<f64>() / logs.len() as f64).exp() };
         let ratios = known.iter().map(|one| one.map_or(usual, |(zeta, _)| zeta)).collect();

@@ -12,7 +12,7 @@ use crate::measured::MeasuredModes;
 use crate::posterior::Judged;
 use crate::predicted::Prediction;
 use crate::search::Inquiry;
-use crate::stacked::Block;
+use crate::stacked::{Block, Stacked};
 use crate::structures::{self, bending_nodes};
 use crate::{AcceleranceFit, HiddenMode, Identification, IdentifiedConstant, IdentifyError, ModeFit, PieceFit};
 
@@ -46,7 +46,7 @@ pub(crate) fn identify_with_effects(
 pub(crate) fn identify_lists_with_effects(test: &ImpactTest) -> Result<Identification, IdentifyError> {
     from_base(test, None, &|_| {}, |inquiry, base| {
         let mut notes = notes_on_hidden(test, &inquiry)?;
-        let (found, needed) = (inquiry.frequencies(), base.posterior.point.z.len());
+        let (found, needed) = (inquiry.frequencies(), base.hypothesis.unknowns());
         if found < needed {
             let names = "constants and numbers of declared effects".to_owned();
             return Err(IdentifyError::TooFewFrequencies { found, needed, names });
@@ -56,8 +56,9 @@ pub(crate) fn identify_lists_with_effects(test: &ImpactTest) -> Result<Identific
         notes.extend(notes_on_bound(&estimates, inquiry.predictor().piece()));
         notes.extend(inquiry.of_lists.notes.iter().cloned());
         let pieces = pieces_of_lists(test, &inquiry, &base)?;
+        notes.extend(each_alone(&inquiry.stacked, &base));
         let error = percent(&inquiry, &base).ok_or_else(|| not_finite("error of the frequencies"))?;
-        let is_judged = inquiry.frequencies() > base.posterior.point.z.len();
+        let is_judged = inquiry.frequencies() > base.hypothesis.unknowns();
         let constants = FreeConstants::of(test, inquiry.predictor().structure.constants())?;
         Ok(Identification {
             structure: inquiry.predictor().structure,
@@ -68,7 +69,7 @@ pub(crate) fn identify_lists_with_effects(test: &ImpactTest) -> Result<Identific
             left_one_out_percent: is_judged.then_some(error.held_out),
             accelerance_rms_percent: None,
             chi_square: None,
-            effects: estimates.effects.into_iter().map(|(effect, _)| effect).collect(),
+            effects: estimates.of_test(),
             pieces,
             accelerances: vec![],
             question: inquiry.of_lists.question.clone(),
@@ -158,6 +159,12 @@ fn identification(
     for ((number, hit), Drawn { damping, .. }) in inquiry.stacked.hit().zip(drawn) {
         let at = &base.posterior.point.at.blocks[number];
         let nodes = nodes_of(test, hit, base, at)?;
+        let damping = if inquiry.stacked.is_of_plates() {
+            let partners = (&at.flexible_of_poles[..], &at.damping_of_effects[..]);
+            TracedDamping::of_partners(hit.comparison().measured, partners, at.flexible.len())
+        } else {
+            damping
+        };
         pieces[hit.piece] = piece_fit(test, (hit.comparison().measured, at), nodes, &damping);
     }
     let modes = || pieces.iter().flat_map(|piece| &piece.modes);
@@ -167,12 +174,7 @@ fn identification(
     let total: f64 = pairs().map(|(_, measured)| measured.norm_sqr()).sum();
     let mut notes = lines.notes_of_records();
     notes.extend(lists_beside(inquiry));
-    notes.extend(
-        inquiry
-            .stacked
-            .hit()
-            .filter_map(|(number, hit)| alone(hit.comparison().measured, &base.posterior.point.at.blocks[number])),
-    );
+    notes.extend(each_alone(&inquiry.stacked, base));
     notes.extend(notes_on_not_shown(inquiry, base));
     notes.extend(notes_on_prior_alone(base, &estimates));
     notes.extend(notes_on_bound(&estimates, inquiry.predictor().piece()));
@@ -186,7 +188,7 @@ fn identification(
         left_one_out_percent: None,
         accelerance_rms_percent: Some(100.0 * (missed / total).sqrt()),
         chi_square: chi_square(&curves),
-        effects: estimates.effects.into_iter().map(|(effect, _)| effect).collect(),
+        effects: estimates.of_test(),
         pieces,
         accelerances: curves,
         question: None,
@@ -231,6 +233,12 @@ fn piece_fit(
         }
     }
     fit
+}
+
+/// Of each block [`alone`].
+fn each_alone(stacked: &Stacked, base: &Judged) -> Vec<String> {
+    let blocks = stacked.blocks.iter().zip(&base.posterior.point.at.blocks);
+    blocks.filter_map(|(block, at)| alone(block.comparison().measured, at)).collect()
 }
 
 /// A sentence on the resonances that are no mode of the panel; `None` where there are none.

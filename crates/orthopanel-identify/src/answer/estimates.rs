@@ -41,6 +41,11 @@ impl Estimates {
         Self { constants, effects: effects.collect() }
     }
 
+    /// The effects of panel, rig and measuring chain.
+    pub(super) fn of_test(self) -> Vec<TracedEffect> {
+        self.effects.into_iter().filter(|(_, role)| *role != Role::Nuisance).map(|(effect, _)| effect).collect()
+    }
+
     /// The effects that the base lacks.
     pub(super) fn undeclared(self) -> Vec<TracedEffect> {
         self.effects.into_iter().filter(|(_, role)| *role == Role::Found).map(|(effect, _)| effect).collect()

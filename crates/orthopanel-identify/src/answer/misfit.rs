@@ -72,7 +72,7 @@ impl Yardstick {
     fn linear(&self, problem: &Problem, point: &Point) -> Option<Linear<'_>> {
         let z = &point.z;
         let missed = self.by.whitened(&problem.missed(&point.at));
-        let mut derivatives = problem.derivatives(point, 0)?;
+        let mut derivatives = problem.derivatives(point, 0..point.z.len())?;
         self.by.whiten(&mut derivatives);
         // What was measured less what is thought of it before any datum.
         let moved = |(row, missed): (usize, &f64)| {

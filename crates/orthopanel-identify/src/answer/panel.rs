@@ -108,7 +108,7 @@ fn own_and_others(estimates: &Estimates, plate: Option<usize>) -> (Parts<'_>, Pa
 }
 
 fn removed(others: &Parts) -> Vec<Removed> {
-    let others = others.iter().filter(|(_, role)| *role != Role::Linearised);
+    let others = others.iter().filter(|(_, role)| matches!(role, Role::Declared | Role::Found));
     others.map(|(effect, role)| Removed::of(effect, *role == Role::Declared)).collect()
 }
 

@@ -388,7 +388,7 @@ pub enum IdentifyError {
     },
     /// Places or signs of records that are not those of the test.
     #[error(
-        "write {write}: the modes' shapes miss those of the plate by {:.0} % rms as it stands, and by {:.0} % so; where that is not it, look at \
+        "write {write}: the modes' shapes miss those of the plate by {:.0} % rms as the test file stands, and by {:.0} % with that; where that is not it, look at \
          each record's file, force_at and response_at",
         Readable(.percent[0]), Readable(.percent[1])
     )]

@@ -5,26 +5,48 @@ use std::f64::consts::TAU;
 use num_complex::Complex64;
 
 use super::{Column, Kind, least_quadrature};
+use crate::comparison::OWN_DAMPING;
 use crate::predicted::{Prediction, Predictor};
 
 /// Part of the least error of a residue below which a mode of the plate is left out.
 const LEAST: f64 = 0.1;
 
-/// What the damping $c_m$ of each of the plate's own modes does beyond what is found of it, where anything stands on the plate and couples them: of those above
-/// the band nothing is measured. With $V$ their shares in the modes $\phi_n$, $D_n(s) = s^2+sC_{nn}+\omega_n^2$ and
+/// What the damping $c_m$ of each of the plate's own modes does beyond what is found of it: of those above the band nothing is measured. Where something
+/// stands on the plate it couples its modes. With $V$ their shares in the modes $\phi_n$, $D_n(s) = s^2+sC_{nn}+\omega_n^2$ and
 /// $\psi_m(s) = \sum_jV_{mj}\phi_j/D_j(s)$,
 /// $$\delta H(s) = -s^3\,\delta c_m\,\psi_m\psi_m^T\ ,\qquad
 /// \delta\phi_n = -\lambda_n\,\delta c_m\,V_{mn}\sum_{j\ne n}\frac{V_{mj}\phi_j}{D_j(\lambda_n)}\ .$$
-/// $C_{nn}$ is measured, and its part is left out. The deviation of $c_m$ is the size, so that the column goes with the power zero of any.
+/// $C_{nn}$ is measured, and its part is left out. Without coupling $\psi_m = \phi_m/D_m$, and modes that a pole belongs to have no part. The deviation of $c_m$ is the size, so that the column goes with the power zero of any.
 pub(super) fn columns(predictor: &Predictor, at: &Prediction) -> Vec<Column> {
-    let Some((channels, seen)) = &at.standing else { return vec![] };
+    let Some((channels, seen)) = &at.seen else { return vec![] };
     let (comparison, measured) = (predictor.comparison, predictor.comparison.measured);
     let partners = predictor.partners_of(at);
     let decay = channels.first().map_or(0.0, |channel| channel.decay);
-    let mut columns: Vec<Vec<f64>> = vec![];
+    let (mut columns, mut uncoupled): (Vec<Vec<f64>>, Vec<Vec<f64>>) = (vec![], vec![]);
     for (number, view) in seen.views.iter().enumerate() {
-        let Some(coupled) = predictor.coupled(view, &partners, channels.first()) else { continue };
         let modes = &view.modes;
+        let Some(coupled) = predictor.coupled(view, &partners, channels.first()) else {
+            let usual = predictor.usual_damping(view, &partners, channels.first());
+            for n in (0..view.near()).filter(|n| !predictor.hangs(*n) && !partners.contains(&Some(*n))) {
+                let omega = modes.angular_frequency[n];
+                let damping = 2.0 * usual * omega;
+                let mut column = vec![0.0; comparison.size()];
+                for (record, channel) in
+                    channels.iter().enumerate().filter(|(record, _)| seen.number_of(*record) == number)
+                {
+                    let (_, [force, response]) = seen.of_record(record);
+                    let product = modes.deflection[n][force] * modes.deflection[n][response];
+                    for (line, frequency) in measured.remainder_frequencies.iter().enumerate() {
+                        let s = Complex64::new(0.0, TAU * frequency) + channel.decay;
+                        let answer = s * s + s * damping + omega * omega;
+                        let value = -s.powi(3) * OWN_DAMPING * damping * product * channel.at(s) / (answer * answer);
+                        comparison.put(&mut column, comparison.remainder_place(record, line), value);
+                    }
+                }
+                uncoupled.push(column);
+            }
+            continue;
+        };
         columns.resize(columns.len().max(coupled.deviations().len()), vec![0.0; comparison.size()]);
         let records: Vec<usize> =
             (0..measured.records.len()).filter(|record| seen.number_of(*record) == number).collect();
@@ -89,7 +111,7 @@ pub(super) fn columns(predictor: &Predictor, at: &Prediction) -> Vec<Column> {
         let largest = column.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
         largest > LEAST * least_quadrature()
     };
-    let told = columns.into_iter().filter(counts);
+    let told = columns.into_iter().chain(uncoupled).filter(counts);
     let sparse = |column: Vec<f64>| column.into_iter().enumerate().filter(|(_, value)| *value != 0.0).collect();
     told.map(|column| ((Kind::Quadrature as usize, 0), sparse(column))).collect()
 }

@@ -39,7 +39,7 @@ impl Inquiry<'_> {
         }
         let (point, problem) = (&chosen.posterior.point, self.problem(&chosen.hypothesis));
         let by = problem.whitening(&problem.errors(&point.at), &chosen.posterior.log_sizes)?;
-        let score = Score::about(&problem, point, problem.derivatives(point, 0)?, by)?;
+        let score = Score::about(&problem, point, problem.derivatives(point, 0..point.z.len())?, by)?;
         let (constants, effects) = block.values(&chosen.hypothesis, &point.z).ok()?;
         let records = block.comparison().measured.records.len();
         let wanted = 2.0 * (ODDS.ln() - log_prior(self.ways(disbond).len()));
@@ -53,13 +53,16 @@ impl Inquiry<'_> {
             Some(score.told_apart(&point.at.values, &with.values) > wanted)
         };
         let smallest = |at: &Place| {
-            if !shows(*at, most)? {
+            // A wide one may lose more than the moments of its strain can follow: then there is no plate with it.
+            let narrower = std::iter::successors(Some(most), |side| Some(0.5 * side).filter(|half| *half > LEAST));
+            let (widest, is_shown) = narrower.into_iter().find_map(|side| Some((side, shows(*at, side)?)))?;
+            if !is_shown {
                 return None;
             }
             if shows(*at, LEAST)? {
                 return Some(LEAST);
             }
-            let (mut low, mut high) = (LEAST.ln(), most.ln());
+            let (mut low, mut high) = (LEAST.ln(), widest.ln());
             for _ in 0..HALVINGS {
                 let middle = 0.5 * (low + high);
                 *if shows(*at, middle.exp())? { &mut high } else { &mut low } = middle;

@@ -55,6 +55,12 @@ impl Score {
         (free > 0.0).then(|| (told.max(0.0).powi(2) / free, told / free))
     }
 
+    /// By how much the misfit falls from the base's values to others, beside what the base's coordinates make good.
+    pub(super) fn there(&self, from: &[f64], to: &[f64]) -> f64 {
+        let [free, told] = self.along(from, to);
+        2.0 * told - free
+    }
+
     /// The square of the way from the base's values to others, beside what the base's coordinates follow of it.
     pub(super) fn told_apart(&self, from: &[f64], to: &[f64]) -> f64 {
         self.along(from, to)[0]
@@ -429,7 +435,7 @@ impl Inquiry<'_> {
             if !start.at.hangs_as(&at_base.at) {
                 return Some(f64::INFINITY);
             }
-            let own = problem.derivatives(&start, at_base.z.len())?;
+            let own = problem.derivatives(&start, at_base.z.len()..start.z.len())?;
             let towards = Mat::from_fn(own.nrows(), 1, |row, _| start.at.values[row] - at_base.at.values[row]);
             let columns = faer::concat![[at_base.derivatives, own, towards]];
             let free = vec![0.0; columns.ncols() - precision.len()];
@@ -450,8 +456,13 @@ fn with_derivatives_of(base: &Point, problem: &Problem, point: Point) -> Option<
     if base.derivatives.ncols() != base.z.len() {
         return Some(point);
     }
-    let own = problem.derivatives(&point, base.z.len())?;
-    Some(Point { derivatives: faer::concat![[base.derivatives, own]], ..point })
+    let own = problem.derivatives(&point, base.z.len()..point.z.len())?;
+    let mut derivatives = faer::concat![[base.derivatives, own]];
+    // Where nothing stood before, the side of the feet moved nothing.
+    let foot = problem.hypothesis.foot();
+    let by_foot = problem.derivatives(&point, foot..foot + 1)?;
+    derivatives.col_as_slice_mut(foot).copy_from_slice(by_foot.col_as_slice(0));
+    Some(Point { derivatives, ..point })
 }
 
 /// Of starts, each with its way, the best few that lie apart.

@@ -40,7 +40,10 @@ impl NetOnPlate<'_> {
         let Some(part) = problem.hypothesis.parts.last() else { return vec![] };
         let tuned = |poles: &[Pole], mass: f64, at: Place| self.inquiry.tuned(self.base, poles, mass, at);
         let first = self.missed.get(..1).unwrap_or_default();
-        let mut coarse = self.scored(problem, part.starts(|mass, at| tuned(first, mass, at)));
+        let starts = part.starts(|mass, at| tuned(first, mass, at));
+        // Much of an effect is not what a little of it is, many times over.
+        let much = if self.inquiry.is_led_away(self.base) { part.with_much(&starts) } else { vec![] };
+        let mut coarse = [self.scored(problem, starts), self.as_they_are(problem, much)].concat();
         coarse.sort_by(|a, b| a.cost.total_cmp(&b.cost));
         let own = self.base.posterior.point.z.len();
         if !part.is_tuned() {
@@ -74,6 +77,16 @@ impl NetOnPlate<'_> {
             }
         }
         peaks.into_iter().map(|(_, start)| start).collect()
+    }
+
+    fn as_they_are(&self, problem: &Problem, starts: Vec<Vec<f64>>) -> Vec<Point> {
+        let at_base = &self.base.posterior.point;
+        let scored = |start: Vec<f64>| {
+            let point = problem.unjudged([&at_base.z[..], &start].concat())?;
+            let is_alike = point.at.hangs_as(&at_base.at);
+            is_alike.then(|| Point { cost: -self.score.there(&at_base.at.values, &point.at.values), ..point })
+        };
+        starts.into_par_iter().filter_map(scored).collect()
     }
 
     fn scored(&self, problem: &Problem, starts: Vec<Vec<f64>>) -> Vec<Point> {

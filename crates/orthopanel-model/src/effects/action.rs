@@ -23,6 +23,8 @@ pub enum Action {
     },
     /// A plate in place of the beam, by the ratios $E_y/E_x$, $\nu_{xy}$, $G_{xy}/E_x$ and $G_{yz}/G_{zx}$.
     Plate([f64; 4]),
+    /// The side \[m\] of the square feet on which all stands that stands on a plate.
+    Foot(f64),
 }
 
 /// A term of stiffness or mass that is spread over the structure.

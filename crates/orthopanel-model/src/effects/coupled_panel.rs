@@ -6,7 +6,7 @@ use faer::Mat;
 
 use super::beam_base::BeamBase;
 use super::coupled_system::{FoundMode, System};
-use super::foot::{on_feet, port};
+use super::foot::{more_yield, on_feet, port};
 use super::known::{Known, known_or};
 use super::low_modes::{Asked, FarAnswers, LowModes};
 use super::modified_panel::OwnModes;
@@ -125,6 +125,8 @@ pub(super) struct ModifiedStructure {
     pub(super) low: Arc<LowModes>,
     pub(super) elements: Vec<PointElement>,
     pub(super) core: Option<CoreModulus>,
+    /// Side \[m\] of the feet of the elements, where it is not the usual one.
+    foot: Option<f64>,
 }
 
 impl ModifiedStructure {
@@ -159,7 +161,7 @@ impl ModifiedStructure {
         let is_known = elements.iter().filter_map(row).all(|row| plates.know(row));
         let low = plates.low_modes(&plate, &values, is_known)?;
         let structure = if is_known { plate.structure } else { plate.whole };
-        Ok(Self { structure, plate: None, piece: setting.piece, values, low, elements, core: None })
+        Ok(Self { structure, plate: None, piece: setting.piece, values, low, elements, core: None, foot: spread.foot })
     }
 
     /// On the first `summed` flexible modes of the structure with what effects spread over it.
@@ -194,12 +196,16 @@ impl ModifiedStructure {
             Even::Beam(even) if is_even => even.low_modes(values, summed)?,
             _ => Arc::new(LowModes::new(structure.as_ref(), values, summed)?),
         };
-        Ok(Self { structure, plate, piece, values: values.to_vec(), low, elements, core: spread.core })
-    }
-
-    /// $A_{55}$ and $A_{44}$ \[N/m\] of a plate.
-    pub(super) fn shear_stiffnesses(&self) -> Result<[f64; 2], ModelError> {
-        shear_stiffnesses(self.structure.as_ref(), &self.values)
+        Ok(Self {
+            structure,
+            plate,
+            piece,
+            values: values.to_vec(),
+            low,
+            elements,
+            core: spread.core,
+            foot: spread.foot,
+        })
     }
 
     /// The panel without any element.
@@ -236,7 +242,17 @@ impl ModifiedStructure {
     ) -> Result<FarAnswers, ModelError> {
         let elements: Vec<Row> = self.elements.iter().filter_map(row).collect();
         let asked = Asked { elements: &elements, ports, watched, twice };
-        self.low.far_answers(self.structure.as_ref(), &self.values, asked)
+        let mut answers = self.low.far_answers(self.structure.as_ref(), &self.values, asked)?;
+        if let Some(side) = self.foot {
+            let more = more_yield(side, shear_stiffnesses(self.structure.as_ref(), &self.values)?);
+            let forces = [&elements[..], ports].concat();
+            let [far, _] = &mut answers.series;
+            for (q, foot) in forces.iter().enumerate().filter(|(_, row)| row.0 == Motion::Foot) {
+                let same = (0..forces.len()).filter(|p| forces[*p] == *foot);
+                same.for_each(|p| far[(p, q)] += more);
+            }
+        }
+        Ok(answers)
     }
 
     /// With the residual shapes of all elements and of `ports`, where elements without mass stand: the panel and its matrices.

@@ -19,7 +19,7 @@ pub(super) const NO_UNIT: [f64; 2] = [0.05, 20.0];
 pub const GAIN: &str = "gain";
 
 const PARAMETERS: [EffectParameter; 1] =
-    [EffectParameter::log("gain", "1", ANY_FACTOR, &[1.0, 0.9, 1.1]).looked_for_in(NO_UNIT).sized(1.0, 1.12)];
+    [EffectParameter::log("gain", "1", ANY_FACTOR, &[1.0, 0.9, 1.1]).looked_for_in(NO_UNIT).sized(1.0, 1.12).factor()];
 
 impl Effect for Gain {
     fn id(&self) -> &'static str {

@@ -191,7 +191,10 @@ impl LowModes {
     ) -> Result<Arc<Answered>, ModelError> {
         let rows = [asked.ports, asked.watched].concat();
         let lock = || self.answered.lock().unwrap_or_else(PoisonError::into_inner);
-        let is_asked = |answered: &&Arc<Answered>| answered.rows == rows && answered.pushed == asked.ports.len();
+        let is_asked = |answered: &&Arc<Answered>| {
+            let is_of_rows = answered.rows == rows && answered.pushed == asked.ports.len();
+            is_of_rows && answered.moved.len() == beyond.len()
+        };
         if let Some(answered) = lock().iter().find(is_asked) {
             return Ok(Arc::clone(answered));
         }

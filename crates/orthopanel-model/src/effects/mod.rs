@@ -61,6 +61,7 @@ pub use coupled_modes::natural_frequencies;
 pub(crate) use coupled_panel::{CoupledPanel, Even, PanelWithEffects, elements as point_elements};
 pub use cubic_stiffness::CUBIC_STIFFNESS;
 pub use exponential_window::EXPONENTIAL_WINDOW;
+pub use foot::FOOT_SIDE;
 pub use gain::GAIN;
 pub use modified_panel::{ModifiedPanel, OwnModes, SeenModes};
 use parameter::Reference;

@@ -8,7 +8,6 @@ use faer::Mat;
 use super::beam_base::BeamBase;
 use super::coupled_panel::{Even, ModifiedStructure, PanelWithEffects, elements, row as at_row};
 use super::coupled_system::{FoundMode, System};
-use super::foot::{StandingMass, by_foot};
 use super::row::Row;
 use super::spread_effects::SpreadEffects;
 use super::wide_plate::WidePlates;
@@ -52,10 +51,12 @@ pub struct SeenModes {
     pub slope: Vec<Vec<f64>>,
     /// $\partial W_n/\partial y$ \[kg^-1/2/m\], alike, of a plate.
     pub slope_across: Vec<Vec<f64>>,
+    /// What the effects' dashpots couple the modes of a plate by \[1/s\], a row a mode, beside what they bring each alone; none where there is no dashpot.
+    pub couplings: Vec<Vec<f64>>,
     /// What these have of the modes of a plate without what stands on it, where anything stands there: with what its damping couples them.
     pub own: OwnModes,
-    /// Derivatives of all these by the logarithm of the side of the feet on which masses stand on a plate.
-    pub by_foot: Option<Box<SeenModes>>,
+    /// Whether anything stands on a foot, whose side moves them.
+    pub on_feet: bool,
 }
 
 /// Modes of a plate without what stands on it, but with its patches: a patch has lost the damping that goes with its stiffness, so that these do not couple.
@@ -282,32 +283,26 @@ impl ModifiedPanel {
         let [far, _] = &answers.series;
         let rows = faer::concat![[answers.near], [far.transpose()], [answers.second.seen.transpose()]];
         let seen = in_rows(&found, &rows);
-        let standing = modified.elements.iter().filter(|element| at_row(element).is_some());
-        let standing = standing.enumerate().filter_map(|(number, element)| {
-            StandingMass::of(element, || (0..found.len()).map(|n| seen[(number, n)]).collect())
-        });
-        let standing: Vec<StandingMass> = standing.collect();
         let is_plate = matches!(self.even, Even::Plate);
         let own = if is_plate { modified.own_modes(&answers, damping, &found)? } else { OwnModes::default() };
+        let couplings = system.couplings(&found);
         let middle = slopes + along.len();
         let mut seen = SeenModes::of(found, &seen, [elements..slopes, slopes..middle, middle..middle + across.len()]);
-        seen.own = own;
-        if !standing.is_empty() {
-            seen.by_foot = Some(Box::new(by_foot(
-                &seen,
-                &standing,
-                &[&ports[..], &watched].concat(),
-                modified.shear_stiffnesses()?,
-            )));
+        (seen.own, seen.on_feet) = (own, twice > 0);
+        if is_plate && seen.damping_ratio.iter().any(|zeta| *zeta > 0.0) {
+            seen.couplings = couplings;
         }
         Ok(seen)
     }
 }
 
-/// Whether effects change what is spread over the panel.
+/// Whether effects change what is spread over the panel, or along its edges.
 fn spread_over(setting: &EffectSetting, effects: &[EffectState]) -> Result<bool, ModelError> {
     let spread = SpreadEffects::of(effects, setting)?;
-    Ok(spread.terms.is_some() || spread.core.is_some() || spread.plate.is_some())
+    let along_edges = || -> Result<bool, ModelError> {
+        Ok(elements(effects, setting)?.iter().any(|element| matches!(element.seat, Seat::AlongEdge(_))))
+    };
+    Ok(spread.terms.is_some() || spread.core.is_some() || spread.plate.is_some() || along_edges()?)
 }
 
 impl SeenModes {
@@ -632,6 +627,37 @@ mod tests {
                         );
                     }
                 }
+            }
+        }
+    }
+
+    /// A patch hangs on no basis: what one for modes to 900 Hz lacks under it are the short waves that one to 5,000 Hz has.
+    #[test]
+    fn val_a_patch_is_the_same_on_a_finer_basis() {
+        let piece = Piece { length: 0.8, width: 0.5, thickness: 0.03, mass_per_area: 6.88 };
+        let setting = EffectSetting { piece, ..setting() };
+        let places = [(-0.33, 0.11), (0.05, -0.2), (0.31, 0.07)].map(|(x, y)| Place { x, y });
+        let values = [1.07e10, 8.56e9, 0.3, 3.745e9, 2.1e8, 3.3e8];
+        let patch = |loss: f64, span: f64| {
+            let patch = effect("stiffness-loss").expect("known");
+            EffectState::new(patch, vec![loss, span, -0.12, 0.08], 1).expect("valid")
+        };
+        let seen = |highest: f64, effects: &[EffectState]| {
+            let panel = ModifiedPanel::new(StructureKind::MindlinPlate, &setting, 14).expect("a plate");
+            let panel = panel.perhaps_wide(&setting, &places, highest);
+            panel.seen_from(&setting, &places, false, &values, effects).expect("modes")
+        };
+        let sound = seen(900.0, &[]);
+        for (loss, span) in [(0.55, 0.09), (0.9, 0.05)] {
+            let [few, fine] = [900.0, 5000.0].map(|highest| seen(highest, &[patch(loss, span)]));
+            let change = |of: &SeenModes, n: usize| (of.angular_frequency[n] / sound.angular_frequency[n]).ln();
+            let told = sound.angular_frequency.iter().take_while(|omega| **omega < TAU * 900.0).count();
+            assert!(told > 8, "{told}");
+            let greatest = (3..told).map(|n| change(&few, n).abs()).fold(0.0, f64::max);
+            for n in 3..told {
+                let apart = change(&few, n) - change(&fine, n);
+                // Without the short waves it is 0.06 at least.
+                assert!(apart.abs() < 0.05 * greatest, "mode {n}, {loss} over {span}: {apart:e} of {greatest:e}");
             }
         }
     }

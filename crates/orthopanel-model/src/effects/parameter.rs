@@ -25,6 +25,8 @@ pub struct EffectParameter {
     pub prior: Prior,
     /// Whether it is a place across the panel: a plate has it, and on a beam it stays on the centre line.
     pub across: bool,
+    /// Whether it is a factor, of which one is none of the effect.
+    pub is_factor: bool,
 }
 
 /// What is thought of a parameter before a test: an honest range over panels, sensors and rigs, in the parameter's own unit.
@@ -95,6 +97,7 @@ impl EffectParameter {
             held_at: None,
             prior: Prior::Even,
             across: false,
+            is_factor: false,
         }
     }
 
@@ -120,6 +123,11 @@ impl EffectParameter {
     /// With a size that is log-normal, and either sign.
     pub(super) const fn signed(self, median: f64, factor: f64) -> Self {
         Self { prior: Prior::Size { median, factor, signed: true }, ..self }
+    }
+
+    /// A factor, of which one is none of the effect.
+    pub(super) const fn factor(self) -> Self {
+        Self { is_factor: true, ..self }
     }
 
     /// Gaussian about a mean.

@@ -14,7 +14,7 @@ pub(super) struct RecordGain;
 pub const RECORD_GAIN: &str = "record-gain";
 
 const PARAMETERS: [EffectParameter; 2] = [
-    EffectParameter::log("gain", "1", ANY_FACTOR, &[0.9, 1.1]).looked_for_in(NO_UNIT).sized(1.0, 1.14),
+    EffectParameter::log("gain", "1", ANY_FACTOR, &[0.9, 1.1]).looked_for_in(NO_UNIT).sized(1.0, 1.14).factor(),
     EffectParameter::record(),
 ];
 

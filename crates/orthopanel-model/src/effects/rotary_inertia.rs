@@ -11,7 +11,7 @@ use crate::ModelError;
 pub(super) struct RotaryInertia;
 
 const PARAMETERS: [EffectParameter; 1] =
-    [EffectParameter::linear("factor", "1", [0.05, 4.0], &[1.5, 2.4, 1.0]).sized(2.0, 1.5)];
+    [EffectParameter::linear("factor", "1", [0.05, 4.0], &[1.5, 2.4, 1.0]).sized(2.0, 1.5).factor()];
 
 impl Effect for RotaryInertia {
     fn id(&self) -> &'static str {

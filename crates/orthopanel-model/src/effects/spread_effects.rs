@@ -12,6 +12,8 @@ pub(crate) struct SpreadEffects {
     pub core: Option<CoreModulus>,
     /// A plate in place of the beam: its ratios.
     pub plate: Option<[f64; 4]>,
+    /// Side \[m\] of the feet on which all stands that stands on a plate, where it is not the usual one.
+    pub foot: Option<f64>,
 }
 
 impl SpreadEffects {
@@ -33,6 +35,7 @@ impl SpreadEffects {
                     }
                     Action::Core(core) => spread.core = Some(core),
                     Action::Plate(ratios) => spread.plate = Some(ratios),
+                    Action::Foot(side) => spread.foot = Some(side),
                     Action::Element(_) | Action::Channel(_) | Action::Place(_) | Action::Window { .. } => {}
                 }
             }

@@ -34,7 +34,7 @@ use super::edge_basis::EdgeBasis;
 use crate::End;
 use crate::dense::{product, symmetric_eigen};
 use crate::order::sorted;
-use crate::structure::Motion;
+use crate::structure::{Motion, ShearMoment};
 
 /// The series along x and the functions across in which the membrane falls apart.
 #[derive(Debug, Clone)]
@@ -106,6 +106,12 @@ struct Seen {
     waves: [Vec<f64>; 2],
 }
 
+/// The square of a moment of shear strain: of either side, from the first edge of the plate on, its middle and half its length.
+struct Square {
+    moment: ShearMoment,
+    sides: [[f64; 2]; 2],
+}
+
 /// Motions that were seen last: those at ports are asked for again and again.
 type KnownMotions = Vec<((Motion, crate::Place), Arc<Seen>)>;
 
@@ -150,7 +156,10 @@ impl Membrane {
         stiffnesses: Stiffnesses,
         motions: [(Motion, crate::Place); 2],
     ) -> Option<f64> {
-        let has_kink = motions.iter().all(|motion| self.end(bases, *motion).is_some());
+        let has_kink = |motion: &(Motion, crate::Place)| {
+            matches!(motion.0, Motion::Shear(_)) || self.end(bases, *motion).is_some()
+        };
+        let has_kink = motions.iter().all(has_kink);
         let [first, second] = motions.each_ref().map(std::slice::from_ref);
         has_kink.then(|| self.kinks(bases, stiffnesses, [first, second])[(0, 0)])
     }
@@ -172,8 +181,11 @@ impl Membrane {
         });
         let answers = AXES.map(|axis| self.answers(axis, stiffnesses));
         let [rows, columns] = motions;
+        let strained = self.under_moments(bases, stiffnesses, motions, &ends);
         Mat::from_fn(rows.len(), columns.len(), |p, q| {
-            let (Some(first), Some(second)) = (&ends[0][p], &ends[1][q]) else { return 0.0 };
+            let (Some(first), Some(second)) = (&ends[0][p], &ends[1][q]) else {
+                return strained.as_ref().map_or(0.0, |strained| strained[(p, q)]);
+            };
             let axis = self.axis_between(first.place, second.place, stiffnesses);
             let kink = self.exact(axis, &answers[axis], [first, second]) - in_series[axis][(p, q)];
             if is_one_foot(rows[p], columns[q]) {
@@ -183,6 +195,107 @@ impl Membrane {
                 kink + bending[axis][(p, q)]
             }
         })
+    }
+
+    /// What the basis lacks of the static flexibility where one of two motions is a moment of shear strain; `None` where none is: of the waves that it lacks
+    /// [`strain_compliance`] between their moments $q = \int p\,\partial w$. Of two of one square the sum falls off as $1/k$: that of the shortest waves is one
+    /// along the strain alone, for functions across are complete, and from the finest on $q$ is what the polynomials are at the edges.
+    fn under_moments(
+        &self,
+        bases: &[EdgeBasis; 2],
+        stiffnesses: Stiffnesses,
+        motions: [&[(Motion, crate::Place)]; 2],
+        ends: &[Vec<Option<Arc<Seen>>>; 2],
+    ) -> Option<Mat<f64>> {
+        let squares = motions.map(|motions| motions.iter().map(|motion| self.square(*motion)).collect::<Vec<_>>());
+        if squares.iter().flatten().all(Option::is_none) {
+            return None;
+        }
+        let strain = |square: &Square| if square.moment.across { Strain::Across } else { Strain::Along };
+        let seen = [0, 1].map(|list| {
+            let own = squares[list].iter().zip(&ends[list]);
+            let of_motion = |(square, end): (&Option<Square>, &Option<Arc<Seen>>)| match square {
+                Some(square) => Some((strain(square), Arc::new(self.strained(bases, square)))),
+                None => Some((Strain::None, Arc::clone(end.as_ref()?))),
+            };
+            own.map(of_motion).collect::<Vec<_>>()
+        });
+        let [rows, columns] = motions.map(<[_]>::len);
+        let mut lacking = Mat::zeros(rows, columns);
+        let of = |list: usize, strain: Strain| -> (Vec<usize>, Vec<Option<Arc<Seen>>>) {
+            let own = seen[list].iter().enumerate().filter_map(|(number, seen)| Some((number, seen.as_ref()?)));
+            own.filter(|(_, seen)| seen.0 == strain).map(|(number, seen)| (number, Some(Arc::clone(&seen.1)))).unzip()
+        };
+        for (first, second) in STRAINS.into_iter().flat_map(|first| STRAINS.map(|second| (first, second))) {
+            let ((rows, one), (columns, other)) = (of(0, first), of(1, second));
+            if rows.is_empty() || columns.is_empty() || (first, second) == (Strain::None, Strain::None) {
+                continue;
+            }
+            let between = self.beyond(&[one, other], &|wave| strain_compliance(wave, stiffnesses, (first, second)));
+            for (j, q) in columns.into_iter().enumerate() {
+                rows.iter().enumerate().for_each(|(i, p)| lacking[(*p, q)] = between[(i, j)]);
+            }
+        }
+        for (q, column) in squares[1].iter().enumerate() {
+            for (p, row) in squares[0].iter().enumerate() {
+                if let (Some(row), Some(column)) = (row, column) {
+                    lacking[(p, q)] += self.shortest(stiffnesses, [row, column]);
+                }
+            }
+        }
+        Some(lacking)
+    }
+
+    /// What waves along the strain that are shorter than those of [`Self::beyond`] bring between two moments of one strain over one square.
+    fn shortest(&self, stiffnesses: Stiffnesses, [first, second]: [&Square; 2]) -> f64 {
+        let axis = usize::from(first.moment.across);
+        let is_one = first.sides == second.sides && first.moment.across == second.moment.across;
+        if !is_one || first.moment.degrees[1 - axis] != second.moment.degrees[1 - axis] {
+            return 0.0;
+        }
+        let (side, degrees) = (first.sides[axis], [first, second].map(|square| square.moment.degrees[axis]));
+        let waves = &self.waves[axis][self.waves_between(axis)..];
+        let moved = |wave: &WaveBetween| degrees.map(|degree| wave.moment(1, (side, degree))).iter().product::<f64>();
+        let sum: f64 = waves.iter().map(|wave| moved(wave) / wave.square()).sum();
+        let finest = self.waves[axis].last().map_or(f64::INFINITY, |wave| wave.number);
+        let [one, other] = degrees.map(|degree| (2.0 * degree as f64 + 1.0).sqrt());
+        let at_edges = if (degrees[0] + degrees[1]) % 2 == 0 { 2.0 * one * other / (2.0 * side[1]) } else { 0.0 };
+        (sum + at_edges / (std::f64::consts::PI * finest)) / shear_along(axis, stiffnesses)
+    }
+
+    /// The square of a moment of shear strain, as far as it lies on the plate.
+    fn square(&self, (motion, at): (Motion, crate::Place)) -> Option<Square> {
+        let Motion::Shear(moment) = motion else { return None };
+        let halves = self.halves();
+        let sides = AXES.map(|axis| {
+            let (middle, half) = ([at.x, at.y][axis], halves[axis]);
+            let [low, high] = [-0.5, 0.5].map(|part| (middle + part * moment.span).clamp(-half, half));
+            [0.5 * (low + high) + half, 0.5 * (high - low)]
+        });
+        Some(Square { moment, sides })
+    }
+
+    /// A moment of shear strain as the membrane's modes see it.
+    fn strained(&self, [x, y]: &[EdgeBasis; 2], Square { moment, sides }: &Square) -> Seen {
+        let halves = self.halves();
+        let orders = if moment.across { [0, 1] } else { [1, 0] };
+        let values = |axis: usize, basis: &EdgeBasis| {
+            let [middle, half] = sides[axis];
+            let ends = [middle - half, middle + half].map(|from_edge| from_edge - halves[axis]);
+            basis.moments(Field::Deflection, orders[axis], (ends, moment.degrees[axis]))
+        };
+        let waves = AXES.map(|axis| {
+            let waves = self.waves[axis][..self.waves_between(axis)].iter();
+            waves.map(|wave| wave.moment(orders[axis], (sides[axis], moment.degrees[axis]))).collect()
+        });
+        let along = values(0, x);
+        Seen {
+            place: AXES.map(|axis| sides[axis][0] - halves[axis]),
+            orders,
+            waves,
+            along: self.along.iter().map(|modes| modes.at(&along)).collect(),
+            across: self.across.at(&values(1, y)),
+        }
     }
 
     /// The direction in which two places lie farther apart, for the membrane: along it the answer falls off with the distance.
@@ -430,6 +543,34 @@ fn resistances([x, y]: [f64; 2], [d_11, d_22, d_12, d_66, a_55, a_44]: Stiffness
     [d_11 * x * x + 2.0 * (d_12 + 2.0 * d_66) * x * y + d_22 * y * y, a_55 * x + a_44 * y]
 }
 
+/// Which shear strain a motion is a moment of.
+#[derive(Clone, Copy, PartialEq)]
+enum Strain {
+    None,
+    Along,
+    Across,
+}
+
+const STRAINS: [Strain; 3] = [Strain::None, Strain::Along, Strain::Across];
+
+/// What a wave gives way by between two moments of its strains $\gamma = \nabla w+\psi$, or of one and its deflection, over $ww'$, $k_xk_x'$ and the like of
+/// these. With the bending stiffness of the rotations $K$ and $k_\perp = (-k_y, k_x)$ nothing but $k_\perp^T\psi$ holds them: the deflection is free,
+/// $$F = (A + \sigma k_\perp k_\perp^T)^{-1},\qquad \sigma = \frac{\det K}{k^TKk}\ .$$
+/// Short waves strain along $k$ alone, $F = kk^T/(k^TAk)$, and so they are taken to move $w$.
+fn strain_compliance(wave: [f64; 2], stiffnesses: Stiffnesses, strains: (Strain, Strain)) -> f64 {
+    let ([x, y], [d_11, d_22, d_12, d_66, a_55, a_44]) = (wave, stiffnesses);
+    let [bending, shear] = resistances(wave, stiffnesses);
+    let sigma = ((d_11 * x + d_66 * y) * (d_22 * y + d_66 * x) - (d_12 + d_66).powi(2) * x * y) / bending;
+    let held = sigma / (1.0 + sigma * shear / (a_55 * a_44));
+    let direct = |own: f64, other: f64, a: f64| if own > 0.0 { (1.0 - held * other / a) / (a * own) } else { 0.0 };
+    match strains {
+        (Strain::Along, Strain::Along) => direct(x, y, a_55),
+        (Strain::Across, Strain::Across) => direct(y, x, a_44),
+        (Strain::Along, Strain::Across) | (Strain::Across, Strain::Along) => held / (a_55 * a_44),
+        _ => shear.recip(),
+    }
+}
+
 /// $\sum_{ij}w_{ij}x_{ip}y_{jp}x'_{iq}y'_{jq}$.
 fn weighted(weights: &Mat<f64>, [x, y]: [&Mat<f64>; 2], [other_x, other_y]: [&Mat<f64>; 2]) -> Mat<f64> {
     let mut sums = Mat::zeros(x.ncols(), other_x.ncols());
@@ -528,7 +669,7 @@ impl Answer {
 }
 
 /// Side of what stands on a panel \[m\]: a stud, an accelerometer. Twice as much changes $R(0)$ by $\ln2/2\pi\sqrt{A_{44}A_{55}}$.
-const FOOT: f64 = 0.01;
+pub(crate) const FOOT: f64 = 0.01;
 /// Values of the functions of deflection along one side, in the mean over a foot about a place, between edges half a side from the middle: by Gauss'
 /// two points, exact to the third degree.
 fn mean_over_foot(basis: &EdgeBasis, (place, half): (f64, f64)) -> Vec<f64> {
@@ -564,7 +705,8 @@ const NEGLIGIBLE: f64 = 20.0;
 struct WaveBetween {
     /// $k$.
     number: f64,
-    /// Of its mean over a foot, where its sine or cosine is one.
+    /// Where its sine or cosine is one; and of its mean over a foot there.
+    at_point: f64,
     largest: f64,
     from_held: bool,
 }
@@ -580,8 +722,9 @@ impl WaveBetween {
         };
         let number = std::f64::consts::PI * (m as f64 + first) / size;
         let half = 0.5 * number * FOOT;
-        let largest = if number > 0.0 { (2.0 / size).sqrt() * half.sin() / half } else { size.sqrt().recip() };
-        Self { number, largest, from_held: held[0] }
+        let at_point = if number > 0.0 { (2.0 / size).sqrt() } else { size.sqrt().recip() };
+        let largest = if number > 0.0 { at_point * half.sin() / half } else { at_point };
+        Self { number, at_point, largest, from_held: held[0] }
     }
 
     fn square(&self) -> f64 {
@@ -599,7 +742,79 @@ impl WaveBetween {
         };
         self.largest * shape
     }
+
+    /// Its moment with the Legendre polynomial $p_n$ that is normalised on a side, about a middle from the first edge on with this half length $h$, or that of
+    /// its first derivative: $\int p_ne^{ikx}dx = \sqrt{2(2n+1)h}\,i^nj_n(kh)e^{ikx_0}$.
+    fn moment(&self, order: usize, ([middle, half], degree): ([f64; 2], usize)) -> f64 {
+        let (sin, cos) = (self.number * middle).sin_cos();
+        // Of i^n e^{ikx}, times ik of a derivative.
+        let turns = degree + order;
+        let [real, imaginary] = match turns % 4 {
+            0 => [cos, sin],
+            1 => [-sin, cos],
+            2 => [-cos, -sin],
+            _ => [sin, -cos],
+        };
+        let shape = if self.from_held { imaginary } else { real };
+        let size = (2.0 * (2.0 * degree as f64 + 1.0) * half).sqrt() * spherical_bessel(degree, self.number * half);
+        self.at_point * shape * size * if order == 0 { 1.0 } else { self.number }
+    }
+}
+
+/// $j_n(x)$ for $x \ge 0$.
+fn spherical_bessel(degree: usize, x: f64) -> f64 {
+    // Upward it is as good as the first two from its degree on, and below that a series converges at once.
+    if x < degree as f64 + 1.0 {
+        let first: f64 = (1..=degree).map(|n| x / (2.0 * n as f64 + 1.0)).product();
+        let (mut term, mut sum) = (first, 0.0);
+        for k in 1.. {
+            sum += term;
+            if term.abs() <= f64::EPSILON * sum.abs() {
+                break;
+            }
+            term *= -0.5 * x * x / (k as f64 * (2.0 * (degree + k) as f64 + 1.0));
+        }
+        return sum;
+    }
+    let (sin, cos) = x.sin_cos();
+    let (mut before, mut own) = (cos / x, sin / x);
+    for n in 0..degree {
+        (before, own) = (own, (2.0 * n as f64 + 1.0) / x * own - before);
+    }
+    own
 }
 
 /// Foundation of the membrane at least, beside $A_{55}/h^2$.
 const LOOSE: f64 = 1e-5;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::legendre::legendre;
+
+    /// Moments of waves, and of their slopes, by a sum over small steps.
+    #[test]
+    fn val_moments_of_waves_are_those_of_a_sum() {
+        let (size, side) = (1.2, [0.47, 0.04]);
+        let steps = 20_000_u32;
+        for ends in [[End::Free; 2], [End::Clamped; 2], [End::Clamped, End::Free], [End::Free, End::Clamped]] {
+            for (m, degree, order) in [(0, 0, 0), (1, 1, 0), (5, 2, 1), (40, 3, 0), (40, 3, 1), (200, 1, 1), (3, 3, 1)]
+            {
+                let wave = WaveBetween::new(m, size, ends);
+                let value = |from_edge: f64| {
+                    let (sin, cos) = (wave.number * from_edge).sin_cos();
+                    let [shape, slope] = if wave.from_held { [sin, cos] } else { [cos, -sin] };
+                    wave.at_point * if order == 0 { shape } else { wave.number * slope }
+                };
+                let of_step = |step: u32| {
+                    let t = 2.0 * (f64::from(step) + 0.5) / f64::from(steps) - 1.0;
+                    let polynomial = ((degree as f64 + 0.5) / side[1]).sqrt() * legendre(degree + 1, t)[degree];
+                    polynomial * value(side[0] + side[1] * t) * 2.0 * side[1] / f64::from(steps)
+                };
+                let sum: f64 = (0..steps).map(of_step).sum();
+                let moment = wave.moment(order, (side, degree));
+                assert!((moment - sum).abs() < 1e-6 * (1.0 + wave.number), "{m} {degree} {order}: {moment} {sum}");
+            }
+        }
+    }
+}

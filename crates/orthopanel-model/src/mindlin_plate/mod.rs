@@ -35,7 +35,7 @@ use crate::structure::{Block, Motion, ShearMoment, Structure};
 use crate::{BeamTerms, Boundary, Constant, ModelError, Piece, Place};
 use assembly::{Coordinate, Products, assemble};
 use edge_basis::EdgeBasis;
-pub(crate) use kink::Membrane;
+pub(crate) use kink::{FOOT, Membrane};
 use law::{plate_stiffness_derivatives, plate_stiffnesses};
 use span_edges::Spans;
 

@@ -30,8 +30,7 @@ use crate::{console, json, pictures, progress, report, time_response};
 /// its own: model-NAME.json and so on.
 ///
 /// Where the test can be traced, model and FMUs are those after tracing: effects of the panel stay in them, effects of
-/// rig and measuring chain are taken out, and trace.json tells which (see `orthopanel trace --help`). Natural frequencies of a declared
-/// plate are not traced yet: model and FMUs are those of the plate identified. Records that no beam
+/// rig and measuring chain are taken out, and trace.json tells which (see `orthopanel trace --help`). Records that no beam
 /// could give are traced all the same: trace.json and report.html tell what was found, and where it explains them, as by a
 /// plate, its model and FMUs are written too.
 ///

@@ -35,7 +35,7 @@ impl RecordPlan {
                     Action::Place(shift) => force.x += shift.offset,
                     Action::Window { tau } => windows.push(tau),
                     // Of the structure, the same in every record.
-                    Action::Field(_) | Action::Core(_) | Action::Plate(_) => {}
+                    Action::Field(_) | Action::Core(_) | Action::Plate(_) | Action::Foot(_) => {}
                 }
             }
         }
