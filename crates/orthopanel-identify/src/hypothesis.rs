@@ -312,7 +312,7 @@ impl Part {
         }
     }
 
-    /// These starts with much of the effect, where the first coordinate says how much: what one of twenty has more of.
+    /// These starts with much of the effect, where the first coordinate says how much: what one of fifteen has more of.
     pub(crate) fn with_much(&self, starts: &[Vec<f64>]) -> Vec<Vec<f64>> {
         const MUCH: f64 = 1.5;
         let is_size = self.coordinates().next().is_some_and(|first| matches!(first.map, Map::Size { .. }));

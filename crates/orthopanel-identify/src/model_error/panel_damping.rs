@@ -25,15 +25,16 @@ pub(super) fn columns(predictor: &Predictor, at: &Prediction) -> Vec<Column> {
     let (mut columns, mut uncoupled): (Vec<Vec<f64>>, Vec<Vec<f64>>) = (vec![], vec![]);
     for (number, view) in seen.views.iter().enumerate() {
         let modes = &view.modes;
+        let records: Vec<usize> =
+            (0..measured.records.len()).filter(|record| seen.number_of(*record) == number).collect();
         let Some(coupled) = predictor.coupled(view, &partners, channels.first()) else {
             let usual = predictor.usual_damping(view, &partners, channels.first());
             for n in (0..view.near()).filter(|n| !predictor.hangs(*n) && !partners.contains(&Some(*n))) {
                 let omega = modes.angular_frequency[n];
                 let damping = 2.0 * usual * omega;
                 let mut column = vec![0.0; comparison.size()];
-                for (record, channel) in
-                    channels.iter().enumerate().filter(|(record, _)| seen.number_of(*record) == number)
-                {
+                for &record in &records {
+                    let channel = &channels[record];
                     let (_, [force, response]) = seen.of_record(record);
                     let product = modes.deflection[n][force] * modes.deflection[n][response];
                     for (line, frequency) in measured.remainder_frequencies.iter().enumerate() {
@@ -48,8 +49,6 @@ pub(super) fn columns(predictor: &Predictor, at: &Prediction) -> Vec<Column> {
             continue;
         };
         columns.resize(columns.len().max(coupled.deviations().len()), vec![0.0; comparison.size()]);
-        let records: Vec<usize> =
-            (0..measured.records.len()).filter(|record| seen.number_of(*record) == number).collect();
         let mut residues =
             vec![vec![vec![Complex64::ZERO; measured.poles.len()]; measured.records.len()]; columns.len()];
         for (pole, n) in partners.iter().enumerate().filter_map(|(pole, n)| Some((pole, (*n)?))) {

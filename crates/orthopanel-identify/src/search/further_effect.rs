@@ -458,7 +458,7 @@ fn with_derivatives_of(base: &Point, problem: &Problem, point: Point) -> Option<
     }
     let own = problem.derivatives(&point, base.z.len()..point.z.len())?;
     let mut derivatives = faer::concat![[base.derivatives, own]];
-    // Where nothing stood before, the side of the feet moved nothing.
+    // Where nothing stood before, the side of the feet moved nothing: by that derivatives are found anew.
     let foot = problem.hypothesis.foot();
     let by_foot = problem.derivatives(&point, foot..foot + 1)?;
     derivatives.col_as_slice_mut(foot).copy_from_slice(by_foot.col_as_slice(0));

@@ -285,13 +285,11 @@ impl ModifiedPanel {
         let seen = in_rows(&found, &rows);
         let is_plate = matches!(self.even, Even::Plate);
         let own = if is_plate { modified.own_modes(&answers, damping, &found)? } else { OwnModes::default() };
-        let couplings = system.couplings(&found);
+        let is_damped = is_plate && found.iter().any(|(_, zeta, _)| *zeta > 0.0);
+        let couplings = if is_damped { system.couplings(&found) } else { vec![] };
         let middle = slopes + along.len();
         let mut seen = SeenModes::of(found, &seen, [elements..slopes, slopes..middle, middle..middle + across.len()]);
-        (seen.own, seen.on_feet) = (own, twice > 0);
-        if is_plate && seen.damping_ratio.iter().any(|zeta| *zeta > 0.0) {
-            seen.couplings = couplings;
-        }
+        (seen.own, seen.couplings, seen.on_feet) = (own, couplings, twice > 0);
         Ok(seen)
     }
 }
