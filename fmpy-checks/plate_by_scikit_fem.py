@@ -12,6 +12,7 @@ directions (section 2.3 of the paper). Fourth-order quadrilaterals do not lock a
 """
 
 import argparse
+import functools
 import json
 import statistics
 import time
@@ -106,9 +107,15 @@ def solve(model, cells, count):
     return found, vectors[:, order], Basis(mesh, ElementComposite(*(ElementQuadP(ORDER) for _ in range(3))))
 
 
+@functools.cache
+def solved(model, cells, count):
+    """The same of a model file's text, once for all places asked about."""
+    return solve(json.loads(model), cells, count)
+
+
 def shapes_at(model, cells, count, places):
     """Frequencies [Hz] and deflections at places (x, y) of a free plate's modes, three rigid ones first."""
-    found, vectors, basis = solve(model, cells, count)
+    found, vectors, basis = solved(json.dumps(model), cells, count)
     rows = basis.split_indices()[0]
     return found, basis.split_bases()[0].probes(np.array(places).T) @ vectors[rows]
 

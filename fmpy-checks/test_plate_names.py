@@ -37,11 +37,12 @@ def told(modes, changed, folder):
     return done.stdout + done.stderr
 
 
-def test_every_two_lines_with_changed_names_are_told(modes, tmp_path):
-    pairs = list(itertools.combinations(range(COUNT), 2))
+def test_two_lines_with_changed_names_are_told(modes, tmp_path):
+    """A third of all pairs, in which every line stands: neighbours and lines far apart."""
+    pairs = [pair for pair in itertools.combinations(range(COUNT), 2) if sum(pair) % 3 == 0]
     with ThreadPoolExecutor(2) as pool:
         answers = list(pool.map(lambda pair: told(modes, pair, tmp_path), pairs))
-    assert len(pairs) == 45
+    assert len(pairs) == 15 and {line for pair in pairs for line in pair} == set(range(COUNT))
     for (one, other), answer in zip(pairs, answers):
         for line, wrong in ((one, other), (other, one)):
             frequency, right = modes[line]
