@@ -59,9 +59,14 @@ fn main() -> Result<(), String> {
         let poles = modes.map_or(0, |modes| modes[0].poles.len());
         let verdict = traced.map_or("refused", |traced| traced.verdict.name());
         let found = if constants.is_ok() { "constants found" } else { "constants refused" };
-        println!("{count:<34}{of_modes:>10.2} s{of_constants:>10.2} s{of_trace:>10.2} s  {poles} modes, {found}, {verdict}");
+        println!(
+            "{count:<34}{of_modes:>10.2} s{of_constants:>10.2} s{of_trace:>10.2} s  {poles} modes, {found}, {verdict}"
+        );
     }
-    println!("    asked: {:?} at most for modes and constants, {:?} for a trace, both of 30 places", ASKED[0], ASKED[1]);
+    println!(
+        "    asked: {:?} at most for modes and constants, {:?} for a trace, both of 30 places",
+        ASKED[0], ASKED[1]
+    );
     beside_the_peer(&folder, &test)
 }
 
@@ -75,8 +80,7 @@ fn timed<T>(call: impl FnOnce() -> T) -> (T, f64) {
 fn beside_the_peer(folder: &Path, test: &ImpactTest) -> Result<(), String> {
     let (modes, ours) = timed(|| measured_modes(test));
     let modes = modes.map_err(|error| error.to_string())?.remove(0);
-    let frequencies: Vec<f64> =
-        modes.poles.iter().map(|pole| pole.angular_frequency / std::f64::consts::TAU).collect();
+    let frequencies: Vec<f64> = modes.poles.iter().map(|pole| pole.angular_frequency / std::f64::consts::TAU).collect();
     let upper = format!("{:.0}", frequencies.last().unwrap_or(&0.0) * 1.03);
     let mut command = Command::new(python());
     command.arg(root().join("benches/pyfrf_peer/peer.py")).arg(folder);
@@ -89,7 +93,11 @@ fn beside_the_peer(folder: &Path, test: &ImpactTest) -> Result<(), String> {
             let answer: serde_json::Value = answer;
             let peer = answer["seconds"].as_f64().unwrap_or(f64::NAN);
             let found = answer["frequencies_hz"].as_array().map_or(0, Vec::len);
-            println!("{label:<34}{ours:>10.2} s{peer:>10.2} s{:>10.1}  {} modes, {found}", peer / ours, frequencies.len());
+            println!(
+                "{label:<34}{ours:>10.2} s{peer:>10.2} s{:>10.1}  {} modes, {found}",
+                peer / ours,
+                frequencies.len()
+            );
         }
     }
     Ok(())
@@ -106,7 +114,9 @@ fn made(folder: &Path) -> Result<PathBuf, String> {
     let cases = std::fs::read_dir(&out).map_err(|error| error.to_string())?;
     let mut cases = cases.flatten().map(|case| case.path());
     let last = PLACES[PLACES.len() - 1] - 1;
-    cases.find(|case| case.join(format!("point-{last}.uff")).exists()).ok_or_else(|| format!("no case has {PLACES:?} places"))
+    cases
+        .find(|case| case.join(format!("point-{last}.uff")).exists())
+        .ok_or_else(|| format!("no case has {PLACES:?} places"))
 }
 
 /// Standard output of a command that went well; else the last line it complained with.

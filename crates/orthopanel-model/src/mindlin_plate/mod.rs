@@ -17,11 +17,15 @@
 mod assembly;
 mod basis_choice;
 mod edge_basis;
+mod foot;
 mod kink;
 mod law;
+mod membrane;
 mod mode_names;
+mod moments_of_shear;
 mod named_shapes;
 mod span_edges;
+mod wave;
 
 use std::sync::OnceLock;
 
@@ -35,8 +39,9 @@ use crate::structure::{Block, Motion, ShearMoment, Structure};
 use crate::{BeamTerms, Boundary, Constant, ModelError, Piece, Place};
 use assembly::{Coordinate, Products, assemble};
 use edge_basis::EdgeBasis;
-pub(crate) use kink::{FOOT, Membrane};
+pub(crate) use foot::FOOT;
 use law::{plate_stiffness_derivatives, plate_stiffnesses};
+pub(crate) use membrane::Membrane;
 use span_edges::Spans;
 
 /// What moves.
@@ -241,7 +246,7 @@ impl MindlinPlate {
     /// The mean deflection of each coordinate of a block over a foot.
     fn mean_over_foot(&self, block: usize, place: Place) -> Vec<f64> {
         let [along, across] = [(place.x, self.piece.length), (place.y, self.piece.width)]
-            .map(|(place, side)| kink::gauss_points(place, 0.5 * side));
+            .map(|(place, side)| foot::gauss_points(place, 0.5 * side));
         let rows = along.into_iter().flat_map(|x| across.map(|y| Place { x, y }));
         let rows: Vec<Vec<f64>> = rows.map(|place| self.row(block, Field::Deflection, [0, 0], place)).collect();
         (0..rows[0].len()).map(|i| 0.25 * rows.iter().map(|row| row[i]).sum::<f64>()).collect()
