@@ -80,7 +80,7 @@ def main():
         "crates/orthopanel-export/licenses/license.txt": document(
             FMU, ["LICENSE-MIT", "LICENSE-APACHE"], "--package", "orthopanel-fmu", "--features", "compact"
         ),
-        "THIRD-PARTY-LICENSES.txt": document(COMMAND, [], "--package", "orthopanel"),
+        "THIRD-PARTY-LICENSES.txt": document(COMMAND, [], "--package", "orthopanel-cli"),
     }
     for name, text in written.items():
         path = ROOT / name

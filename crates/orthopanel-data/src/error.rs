@@ -10,7 +10,7 @@ use thiserror::Error;
 /// Lists in `key` are counted from 1, as modes are: `measurement[2].values[4]` is mode 4 of the second measurement.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Location {
-    /// The file, as it was named to the reader.
+    /// The file, as it was named to the reader; of what stands in memory what messages call it.
     pub file: PathBuf,
     /// Line or byte, where one is known.
     pub position: Position,
@@ -256,6 +256,18 @@ pub enum DataError {
         needed: usize,
         /// Number found.
         found: usize,
+    },
+    /// An array in memory whose shape does not fit that of the others.
+    #[error("{at}: {found} {what}, where the others have {needed}: arrays of one measurement are of one shape")]
+    Shape {
+        /// The array.
+        at: Box<Location>,
+        /// Number found.
+        found: usize,
+        /// `hits`, `samples` or `lines`.
+        what: &'static str,
+        /// Number that the others have.
+        needed: usize,
     },
     /// A file without what it is read for.
     #[error("{at}: no {what} in it")]

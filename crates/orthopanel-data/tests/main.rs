@@ -4,6 +4,7 @@
 //! `cargo test --release -p orthopanel-data --test all FILE::`.
 #![allow(clippy::print_stdout)]
 
+mod arrays;
 mod channels;
 mod csv_files;
 mod force_noise;

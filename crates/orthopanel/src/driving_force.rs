@@ -6,9 +6,10 @@ use orthopanel_data::limits;
 use orthopanel_identify::ForceBetweenSamples;
 use orthopanel_model::Readable;
 
-use crate::error::CommandError;
+use crate::error::Error;
 use crate::force_file::ForceHistory;
-use crate::notes;
+use crate::notes::note;
+use crate::observer::Observer;
 use crate::time_response::{Hold, Motion};
 
 /// Greatest departure of a sample's time from an even grid, over the step: what printed times lose by rounding.
@@ -28,14 +29,14 @@ pub struct DrivingForce {
 
 impl DrivingForce {
     /// `path` names the force file in messages.
-    pub fn new(samples: ForceHistory, hold: Hold, path: &Path) -> Result<Self, CommandError> {
+    pub fn new(samples: ForceHistory, hold: Hold, path: &Path, observer: &dyn Observer) -> Result<Self, Error> {
         let held = hold == Hold::Held;
         if hold != Hold::BandLimited {
             return Ok(Self { samples, finer: None, steps: 1, held });
         }
         let (found, most) = (samples.time.len() * samples.forces.len(), limits::BAND_LIMITED_SAMPLES);
         if found > most {
-            return Err(CommandError::ForceFile {
+            return Err(Error::ForceFile {
                 path: path.into(),
                 line: None,
                 problem: format!(
@@ -44,7 +45,7 @@ impl DrivingForce {
                 ),
             });
         }
-        let interval = even_interval(&samples.time).map_err(|line| CommandError::ForceFile {
+        let interval = even_interval(&samples.time).map_err(|line| Error::ForceFile {
             path: path.into(),
             line: None,
             problem: format!(
@@ -53,7 +54,8 @@ impl DrivingForce {
         })?;
         if let Some((first, last)) = samples.forces.iter().find_map(|force| jump(force)) {
             let name = path.display();
-            notes::say(
+            note(
+                observer,
                 "",
                 &[format!(
                     "{name}: the force begins at {} N and ends at {} N: band-limited, it rings at both ends; add silence",
@@ -126,7 +128,9 @@ mod tests {
         let count = limits::BAND_LIMITED_SAMPLES + 1;
         let samples =
             ForceHistory { time: (0..count).map(|i| i as f64 * 1e-4).collect(), forces: vec![vec![0.0; count]] };
-        let refused = DrivingForce::new(samples, Hold::BandLimited, Path::new("force.csv")).err().expect("refused");
+        let refused = DrivingForce::new(samples, Hold::BandLimited, Path::new("force.csv"), &crate::Silent)
+            .err()
+            .expect("refused");
         let said = refused.to_string();
         assert!(said.contains("2000001 samples") && said.contains("linear does not"), "{said}");
     }

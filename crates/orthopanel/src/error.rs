@@ -1,4 +1,4 @@
-//! Everything that can go wrong in a command, and the exit status it leads to.
+//! Everything that the facade refuses; the messages of the layers below stand in it as they are.
 
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
@@ -6,90 +6,145 @@ use std::path::{Path, PathBuf};
 use orthopanel_data::DataError;
 use orthopanel_export::ExportError;
 use orthopanel_identify::IdentifyError;
-use orthopanel_model::{ModelError, Place, Readable};
+use orthopanel_model::ModelError;
 use thiserror::Error;
 
 use crate::fmu_refusal::FmuRefusal;
 
-/// The data or the model says no.
-pub const SAYS_NO: u8 = 1;
-/// Bad usage or input.
-pub const BAD_INPUT: u8 = 2;
-
-/// What the command line refuses; the messages of the layers below stand in it as they are.
+/// Why something was not done; each message names the file, what is wrong in it, and the way out.
 #[derive(Debug, Error)]
-pub enum CommandError {
+#[non_exhaustive]
+pub enum Error {
+    /// A file that is not there, or that may not be read.
     #[error("{}: cannot be read: {source}", .path.display())]
-    Unreadable { path: PathBuf, source: std::io::Error },
+    Unreadable {
+        /// The file.
+        path: PathBuf,
+        /// What the system says.
+        source: std::io::Error,
+    },
+    /// A result that cannot be put where it was asked for.
     #[error("{}: cannot be written: {reason}: {}", .path.display(), way_out(*.kind))]
-    Unwritable { path: PathBuf, reason: String, kind: ErrorKind },
+    Unwritable {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        reason: String,
+        /// The system's kind of it.
+        kind: ErrorKind,
+    },
+    /// Results could be neither written whole nor left as they were.
     #[error("{failed}; not all is as it was: {lost}")]
-    NotPutBack { failed: Box<CommandError>, lost: String },
+    NotPutBack {
+        /// What kept them from being written.
+        failed: Box<Error>,
+        /// What is lost.
+        lost: String,
+    },
+    /// A result would take the place of what it is made from.
     #[error(
         "{}: not written, for it is {}: name another place for the result", .path.display(),
         if path == input { "read by this command".into() } else { format!("{}, which this command reads", input.display()) }
     )]
-    OutputIsInput { path: PathBuf, input: PathBuf },
+    OutputIsInput {
+        /// The result.
+        path: PathBuf,
+        /// What is read.
+        input: PathBuf,
+    },
+    /// A file was changed by somebody else meanwhile.
     #[error("{}: changed while it was read: run again", .path.display())]
-    Changed { path: PathBuf },
-    #[error("standard output: it goes to {}, which this command reads: send it to another file", .input.display())]
-    InputIsAnswer { input: PathBuf },
-    #[error("standard output: the answer could not be written whole: {0}")]
-    Answer(std::io::Error),
+    Changed {
+        /// The file.
+        path: PathBuf,
+    },
+    /// A test file or its records.
     #[error(transparent)]
     Data(#[from] DataError),
+    /// A test that cannot be identified or traced.
     #[error("{}: {source}", .path.display())]
-    Identify { path: PathBuf, source: IdentifyError },
-    #[error(
-        "{}: no model is written: no effect explains {}, and its base model is refused: {source}",
-        .path.display(), .test.display()
-    )]
-    NoModel { path: PathBuf, test: PathBuf, source: Box<IdentifyError> },
+    Identify {
+        /// The test file.
+        path: PathBuf,
+        /// Why.
+        source: IdentifyError,
+    },
+    /// A trace that explains nothing, of a test whose base model is refused.
+    #[error("{}: no model is written: no effect explains {}, and its base model is refused: {source}", .path.display(), .test.display())]
+    NoModel {
+        /// The model file.
+        path: PathBuf,
+        /// The test file.
+        test: PathBuf,
+        /// What refuses the base model.
+        source: Box<IdentifyError>,
+    },
+    /// A model that is none, or that cannot answer.
     #[error("{}: {source}", .path.display())]
-    Model { path: PathBuf, source: ModelError },
-    #[error("{}: no {kind} place: give --{kind} X[,Y], or write ports.{key} into the model file", .path.display())]
-    NoPort { path: PathBuf, kind: &'static str, key: &'static str },
-    #[error("--{option} {},{}: {source}", Readable(.place.x), Readable(.place.y))]
-    Place { option: &'static str, place: Place, source: ModelError },
-    #[error(
-        "{}: the accelerance of a model needs --force, --response, --from, --to and --lines; a test file (.toml) gives \
-         measured ones and needs none of them", .path.display()
-    )]
-    NoGrid { path: PathBuf },
-    #[error(
-        "{}: --{option} belongs to a model, and this is a test file: leave it out; places and lines are those of the \
-         records", .path.display()
-    )]
-    GridOfRecords { path: PathBuf, option: &'static str },
-    #[error(
-        "{}: --{option} belongs to hammer records, and this is a model: leave it out, or name a test file (.toml)",
-        .path.display()
-    )]
-    EstimationOfModel { path: PathBuf, option: &'static str },
+    Model {
+        /// The model file.
+        path: PathBuf,
+        /// Why.
+        source: ModelError,
+    },
+    /// Records that do not fit what is asked of them.
     #[error("{}: {problem}", .path.display())]
-    Records { path: PathBuf, problem: String },
-    #[error("--{option} {value}: {remedy}")]
-    Option { option: &'static str, value: String, remedy: String },
+    Records {
+        /// The file.
+        path: PathBuf,
+        /// What does not fit, and what to do.
+        problem: String,
+    },
+    /// A force file.
     #[error("{}{}: {problem}", .path.display(), line.map_or(String::new(), |line| format!(":{line}")))]
-    ForceFile { path: PathBuf, line: Option<u64>, problem: String },
+    ForceFile {
+        /// The file.
+        path: PathBuf,
+        /// From 1, where the fault is in one.
+        line: Option<u64>,
+        /// What is wrong, and what to do.
+        problem: String,
+    },
+    /// An FMU that is not run.
     #[error("{}: {source}", .path.display())]
-    Fmu { path: PathBuf, source: FmuRefusal },
-    #[error(
-        "{}: importers refuse an FMU whose name does not end in .fmu: let it end so, in upper or lower case",
-        .path.display()
-    )]
-    FmuName { path: PathBuf },
+    Fmu {
+        /// The FMU.
+        path: PathBuf,
+        /// Why.
+        source: FmuRefusal,
+    },
+    /// A file of another kind than is wanted.
     #[error("{}: {given}, where {wanted} is wanted: {taken}", .path.display())]
-    OtherKind { path: PathBuf, given: &'static str, wanted: &'static str, taken: String },
-    #[error(
-        "{}: modes and places are fixed inside an FMU: leave out --modes, --up-to, --force and --response, or give them \
-         to `orthopanel export`", .path.display()
-    )]
-    FixedInFmu { path: PathBuf },
+    OtherKind {
+        /// The file.
+        path: PathBuf,
+        /// What it is.
+        given: &'static str,
+        /// What is wanted.
+        wanted: &'static str,
+        /// What takes it.
+        taken: String,
+    },
+    /// A name under which no importer knows an FMU.
+    #[error("{}: importers refuse an FMU whose name does not end in .fmu: let it end so, in upper or lower case", .path.display())]
+    FmuName {
+        /// The name.
+        path: PathBuf,
+    },
+    /// An FMU that cannot be made.
     #[error(transparent)]
     Export(#[from] ExportError),
+    /// A picture that cannot be drawn.
     #[error("the picture {name} cannot be drawn: {problem}")]
-    Picture { name: &'static str, problem: String },
+    Picture {
+        /// Which.
+        name: &'static str,
+        /// Why.
+        problem: String,
+    },
+    /// An [`Observer`](crate::Observer) asked for it.
+    #[error("interrupted")]
+    Interrupted,
 }
 
 /// What to do about a file that cannot be written.
@@ -106,15 +161,15 @@ fn way_out(kind: ErrorKind) -> &'static str {
     }
 }
 
-impl CommandError {
+impl Error {
     /// A file that the system does not let be written; its words name a temporary file, and its kind of error none.
-    pub fn unwritable(path: &Path, error: &std::io::Error) -> Self {
+    pub(crate) fn unwritable(path: &Path, error: &std::io::Error) -> Self {
         let kind = error.kind();
         Self::Unwritable { path: path.into(), reason: kind.to_string(), kind }
     }
 
-    /// 1 where the data or the model says no, 2 for bad usage or input.
-    pub fn exit_code(&self) -> u8 {
+    /// Whether the data or the model says no, of input that is as it should be.
+    pub fn says_no(&self) -> bool {
         match self {
             Self::Model { source: ModelError::Unsupported(_) | ModelError::Eigenproblem, .. }
             | Self::Data(DataError::NoUsableHit { .. })
@@ -122,20 +177,40 @@ impl CommandError {
             | Self::Fmu { source: FmuRefusal::Call { .. }, .. }
             | Self::NoModel { .. }
             | Self::Picture { .. }
-            | Self::Export(ExportError::Assemble(_)) => SAYS_NO,
-            Self::Identify { source, .. } if !source.is_bad_input() => SAYS_NO,
-            _ => BAD_INPUT,
+            | Self::Export(ExportError::Assemble(_)) => true,
+            Self::Identify { source, .. } => !source.is_bad_input(),
+            _ => false,
+        }
+    }
+
+    /// The file that it is about, where it is about one.
+    pub fn path(&self) -> Option<&Path> {
+        match self {
+            Self::Unreadable { path, .. }
+            | Self::Unwritable { path, .. }
+            | Self::OutputIsInput { path, .. }
+            | Self::Changed { path }
+            | Self::Identify { path, .. }
+            | Self::NoModel { path, .. }
+            | Self::Model { path, .. }
+            | Self::Records { path, .. }
+            | Self::ForceFile { path, .. }
+            | Self::Fmu { path, .. }
+            | Self::FmuName { path }
+            | Self::OtherKind { path, .. } => Some(path),
+            Self::NotPutBack { failed, .. } => failed.path(),
+            Self::Data(_) | Self::Export(_) | Self::Picture { .. } | Self::Interrupted => None,
         }
     }
 }
 
 /// Says which file a refusal of the model is about.
-pub trait InFile<T> {
-    fn in_file(self, path: &Path) -> Result<T, CommandError>;
+pub(crate) trait InFile<T> {
+    fn in_file(self, path: &Path) -> Result<T, Error>;
 }
 
 impl<T> InFile<T> for Result<T, ModelError> {
-    fn in_file(self, path: &Path) -> Result<T, CommandError> {
-        self.map_err(|source| CommandError::Model { path: path.into(), source })
+    fn in_file(self, path: &Path) -> Result<T, Error> {
+        self.map_err(|source| Error::Model { path: path.into(), source })
     }
 }

@@ -6,6 +6,8 @@ use thiserror::Error;
 
 /// What is wrong with an FMU, or what it said itself. Texts from inside it are shortened and free of control characters.
 #[derive(Debug, Error)]
+#[allow(missing_docs, reason = "the messages tell")]
+#[non_exhaustive]
 pub enum FmuRefusal {
     #[error("not an FMU: it is no zip archive")]
     NoArchive,

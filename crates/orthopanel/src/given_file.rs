@@ -4,10 +4,11 @@ use std::fs::File;
 use std::io::Read as _;
 use std::path::Path;
 
-use orthopanel_data::{DataError, ImpactTest, regular_file};
+use orthopanel_data::{DataError, ImpactTest, limits, regular_file};
 use serde::Deserialize;
 
-use crate::error::CommandError;
+use crate::error::Error;
+use crate::force_file::{Fault, ForceHistory};
 
 /// What a command wants.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -61,20 +62,39 @@ const RESOURCE: Kind = kind("the resource inside an FMU", None, "`orthopanel sim
 const LOOKED_AT: u64 = 1 << 24;
 
 /// `refused`, or in its place what the file at `path` is, where that is something else than what is `wanted`.
-pub fn or_kind_of(path: &Path, wanted: Wanted, refused: CommandError) -> CommandError {
+pub fn or_kind_of(path: &Path, wanted: Wanted, refused: Error) -> Error {
     let Some(found) = kind_of(path).filter(|found| found.fits != Some(wanted)) else { return refused };
     let wanted = match wanted {
         Wanted::Test => "a test file (TOML)",
         Wanted::Model => "a model file (JSON)",
         Wanted::Force => "a force file (CSV), or measured hits,",
     };
-    CommandError::OtherKind { path: path.into(), given: found.name, wanted, taken: found.taken.into() }
+    Error::OtherKind { path: path.into(), given: found.name, wanted, taken: found.taken.into() }
+}
+
+impl ForceHistory {
+    /// Reads a force file for `places` force places.
+    ///
+    /// # Errors
+    /// [`Error::Unreadable`], [`Error::ForceFile`] with the line, [`Error::OtherKind`].
+    pub fn read(path: &Path, places: usize) -> Result<Self, Error> {
+        let text = limits::FORCE_FILE.read_text(path);
+        let text = text.map_err(|source| Error::Unreadable { path: path.into(), source });
+        let force = text.and_then(|text| {
+            Self::from_csv(&text, places).map_err(|Fault { line, problem }| Error::ForceFile {
+                path: path.into(),
+                line,
+                problem,
+            })
+        });
+        force.map_err(|refused| or_kind_of(path, Wanted::Force, refused))
+    }
 }
 
 /// The test at `path`, or in the folder there.
-pub fn read_test(path: &Path) -> Result<ImpactTest, CommandError> {
+pub fn read_test(path: &Path) -> Result<ImpactTest, Error> {
     ImpactTest::read(path)
-        .map_err(|refused: DataError| or_kind_of(&ImpactTest::file_at(path), Wanted::Test, CommandError::Data(refused)))
+        .map_err(|refused: DataError| or_kind_of(&ImpactTest::file_at(path), Wanted::Test, Error::Data(refused)))
 }
 
 fn kind_of(path: &Path) -> Option<Kind> {

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::console::{escaped, is_harmful};
+use crate::harmless::{escaped, is_harmful};
 
 /// One JSON object on one line.
 pub fn line(value: &impl Serialize) -> String {

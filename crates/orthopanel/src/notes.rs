@@ -2,12 +2,12 @@
 
 use std::collections::HashMap;
 
-use crate::console;
+use crate::Observer;
 
-/// Prints each note once on standard error, behind `about`, with how often it was made.
-pub fn say(about: &str, notes: &[String]) {
+/// Says each note once, behind `about`, with how often it was made.
+pub fn note(observer: &dyn Observer, about: &str, notes: &[String]) {
     for note in counted(notes) {
-        console::say(format_args!("note: {about}{note}"));
+        observer.say(&format!("note: {about}{note}"));
     }
 }
 

@@ -1,6 +1,6 @@
 //! Aligned tables for people.
 
-use crate::console::harmless_line;
+use crate::harmless::harmless_line;
 
 /// Half the width of a 95 % interval, over the standard deviation.
 pub const HALF_95: f64 = 1.96;

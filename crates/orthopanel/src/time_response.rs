@@ -1,22 +1,21 @@
 //! Response of a model to a force history, and the table it is written as.
 
 use orthopanel_model::{Attachments, ModalModel, ModalStepper, ModeRange, ModelError, PanelModel, Ports, TimeModel};
+use serde::Serialize;
 
-use crate::csv_text;
 use crate::driving_force::DrivingForce;
 use crate::force_file::ForceHistory;
+use crate::{csv_text, json};
 
 /// How a force runs between two samples.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Hold {
-    /// In a straight line from sample to sample: loses 1 - sinc^2 of what lies near half the sampling rate (19 % at a
-    /// quarter of the rate, 1 % at an eighteenth), so it matters where the samples are few on the blow
+    /// In a straight line from sample to sample.
+    #[default]
     Linear,
-    /// As the smooth function without content above half the rate: for a force measured through an anti-alias filter;
-    /// the samples must be even, and the force end as it begins
+    /// As the smooth function without content above half the rate.
     BandLimited,
-    /// At the value of the earlier sample
-    #[value(alias = "step")]
+    /// At the value of the earlier sample.
     Held,
 }
 
@@ -85,6 +84,36 @@ pub fn simulate(model: &ModalModel, driving: &DrivingForce) -> Result<Vec<Motion
         record(&stepper, &mut motions);
     }
     Ok(driving.at_samples(motions))
+}
+
+#[derive(Serialize)]
+struct Answer<'a> {
+    schema: &'static str,
+    time_s: &'a [f64],
+    forces: &'a [Vec<f64>],
+    responses: Vec<ResponseEntry<'a>>,
+}
+
+#[derive(Serialize)]
+struct ResponseEntry<'a> {
+    acceleration_m_s2: &'a [f64],
+    velocity_m_s: &'a [f64],
+    displacement_m: &'a [f64],
+}
+
+/// One JSON object (`orthopanel.simulation/1`) on one line.
+pub fn to_json(force: &ForceHistory, motions: &[Motion]) -> String {
+    let responses = motions.iter().map(|motion| ResponseEntry {
+        acceleration_m_s2: &motion.acceleration,
+        velocity_m_s: &motion.velocity,
+        displacement_m: &motion.displacement,
+    });
+    json::line(&Answer {
+        schema: "orthopanel.simulation/1",
+        time_s: &force.time,
+        forces: &force.forces,
+        responses: responses.collect(),
+    })
 }
 
 /// Picks one quantity of a motion.

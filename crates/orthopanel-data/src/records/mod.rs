@@ -1,6 +1,7 @@
 //! Files of records, of whatever format, as plain numbers with their axes.
 
 mod abscissa;
+mod arrays;
 mod blows;
 mod declared_columns;
 mod foreign;
@@ -14,6 +15,7 @@ mod uff;
 use std::path::Path;
 
 use crate::{DataError, Location, limits};
+pub(crate) use arrays::name as arrays_name;
 pub(crate) use blows::{blows, is_force};
 pub use declared_columns::{ColumnName, ColumnRole, DeclaredColumns};
 use foreign::Foreign;

@@ -101,7 +101,7 @@ pub(super) fn hits(file: Arc<RecordFile>, measurement: &RecordedResponse) -> Res
                     force.numerator.data_type = data_type::FORCE;
                 }
                 if !matches!(channels::quantity(&response.numerator), Quantity::Motion(_)) {
-                    response.numerator.data_type = channels::data_type_of(measurement);
+                    response.numerator.data_type = measurement.data_type();
                 }
                 taken.extend([force, response]);
             }

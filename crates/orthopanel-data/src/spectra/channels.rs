@@ -4,23 +4,13 @@ use super::read_as::ReadAs;
 pub(super) use crate::records::{Quantity, quantity, type_name};
 use crate::{
     DataError, Direction, Motion, RecordedResponse, Unit,
-    records::{Axis, Record, data_type},
+    records::{Axis, Record},
     units::Measured,
 };
 
 /// Whether the test file tells what the sensor reads, by its quantity or its unit.
 pub(super) fn is_declared(declared: &RecordedResponse) -> bool {
     declared.quantity.is_some() || declared.response_unit.is_some()
-}
-
-/// The data type of the motion that a measurement declares, an acceleration where it declares none.
-pub(super) fn data_type_of(declared: &RecordedResponse) -> i64 {
-    let by_unit = declared.response_unit.as_ref().and_then(Unit::motion);
-    match declared.quantity.or(by_unit).unwrap_or(Motion::Acceleration) {
-        Motion::Acceleration => data_type::ACCELERATION,
-        Motion::Velocity => data_type::VELOCITY,
-        Motion::Displacement => data_type::DISPLACEMENT,
-    }
 }
 
 /// What the numbers of a record are to be multiplied with, and the motion that they then are, in SI and along the force.

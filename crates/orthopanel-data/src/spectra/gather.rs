@@ -96,7 +96,8 @@ impl GatheredFile {
         let mut places = HashMap::new();
         for (index, measurement) in measurements.iter().enumerate() {
             let Some(own) = measurement.data.recorded().cloned() else { continue };
-            let key = (own.file.clone(), own.response_file.clone(), own.columns.clone());
+            let in_memory = own.in_memory.as_ref().map(Arc::as_ptr);
+            let key = (own.file.clone(), in_memory, own.response_file.clone(), own.columns.clone());
             match places.entry(key) {
                 Entry::Occupied(place) => {
                     let place: usize = *place.get();

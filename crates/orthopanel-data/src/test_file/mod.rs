@@ -1,6 +1,7 @@
 //! The test file `test.toml`: what was tested, how it was held, and where the measurements are.
 
 mod declared;
+mod in_memory;
 mod measurements;
 mod pieces;
 mod source;
@@ -24,7 +25,9 @@ use source::Source;
 
 /// One impact test, read and checked: every number in it is finite and in range, every place lies on its piece, and
 /// every file it names was there.
-#[derive(Debug, Clone, PartialEq)]
+///
+/// Without a file it is filled field by field, and then [checked](ImpactTest::checked).
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct ImpactTest {
     /// `structure`, a key before the tables: what is identified; `None` where the file says nothing, which means the
     /// Timoshenko beam.
@@ -84,15 +87,25 @@ impl ImpactTest {
     pub fn from_toml(text: &str, path: impl AsRef<Path>) -> Result<Self, DataError> {
         let source = Source::new(path.as_ref(), text);
         let file: syntax::TestFile = toml::from_str(text).map_err(|error| source.syntax(&error))?;
-        let pieces = pieces::pieces(&source, file.piece)?;
-        let declared::Constants { held, known } = declared::constants(&source, file.constants)?;
+        let test = Self::of_keys(&source, file)?;
+        if test.measurements.is_empty() {
+            let remedy = "write at least one [[measurement]] with kind, and values or file";
+            return Err(DataError::Missing { at: source.whole("measurement"), remedy });
+        }
+        Ok(test)
+    }
+
+    /// Checks what the keys hold.
+    fn of_keys(source: &Source, file: syntax::TestFile) -> Result<Self, DataError> {
+        let pieces = pieces::pieces(source, file.piece)?;
+        let declared::Constants { held, known } = declared::constants(source, file.constants)?;
         Ok(Self {
-            structure: file.structure.map(|name| declared::structure(&source, &name)).transpose()?,
-            suspension: declared::suspension(&source, file.suspension, &pieces)?,
+            structure: file.structure.map(|name| declared::structure(source, &name)).transpose()?,
+            suspension: declared::suspension(source, file.suspension, &pieces)?,
             constants: held,
             known_constants: known,
-            effects: declared::effects(&source, file.effect)?,
-            measurements: measurements::measurements(&source, (file.measurement, file.band), &pieces)?,
+            effects: declared::effects(source, file.effect)?,
+            measurements: measurements::measurements(source, (file.measurement, file.band), &pieces)?,
             boundary: file.boundary,
             pieces,
         })

@@ -14,20 +14,26 @@ use crate::{DataError, Location, Position};
 pub(super) struct Source<'a> {
     path: &'a Path,
     text: &'a str,
-    /// Byte of each line's end.
-    line_ends: Vec<usize>,
+    /// Byte of each line's end; `None` where there is no text.
+    line_ends: Option<Vec<usize>>,
 }
 
 impl<'a> Source<'a> {
     pub(super) fn new(path: &'a Path, text: &'a str) -> Self {
         let ends = text.bytes().enumerate().filter(|(_, byte)| *byte == b'\n');
-        Self { path, text, line_ends: ends.map(|(at, _)| at).collect() }
+        Self { path, text, line_ends: Some(ends.map(|(at, _)| at).collect()) }
+    }
+
+    /// Of a test that is in no file.
+    pub(super) fn in_memory() -> Self {
+        Self { path: Path::new("the test in memory"), text: "", line_ends: None }
     }
 
     /// `key`, at the line where `span` begins.
     pub(super) fn at(&self, span: Range<usize>, key: impl Into<String>) -> Box<Location> {
-        let line = 1 + self.line_ends.partition_point(|&end| end < span.start);
-        Box::new(Location { file: self.path.to_path_buf(), position: Position::Line(line), key: key.into() })
+        let line = |ends: &Vec<usize>| Position::Line(1 + ends.partition_point(|&end| end < span.start));
+        let position = self.line_ends.as_ref().map_or(Position::Whole, line);
+        Box::new(Location { file: self.path.to_path_buf(), position, key: key.into() })
     }
 
     /// `key`, where no line can be named.

@@ -12,6 +12,8 @@ use serde::{
 };
 use toml::Spanned;
 
+use super::RecordedResponse;
+
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct TestFile {
@@ -58,7 +60,7 @@ pub(super) struct Suspension {
     pub(super) at: Vec<Spanned<SuspensionPoint>>,
 }
 
-#[derive(Deserialize)]
+#[derive(Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Measurement {
     pub(super) kind: Option<Spanned<String>>,
@@ -88,6 +90,9 @@ pub(super) struct Measurement {
     pub(super) window_decay: Option<Spanned<f64>>,
     pub(super) direction: Option<Spanned<f64>>,
     pub(super) record: Option<Spanned<u32>>,
+    /// In place of `file`: records that no text names, with channels and columns as they are.
+    #[serde(skip)]
+    pub(super) given: Option<Box<RecordedResponse>>,
 }
 
 #[derive(Deserialize)]

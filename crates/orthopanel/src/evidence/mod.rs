@@ -11,12 +11,13 @@ use orthopanel_data::{Accelerance, Estimation, HitVerdict, ImpactTest, TimeHisto
 use orthopanel_identify::{AcceleranceFit, ForceBetweenSamples, PieceFit};
 use orthopanel_model::{PanelModel, Place};
 
-use crate::error::{CommandError, InFile as _};
+use crate::error::{Error, InFile as _};
 use crate::identified::Identified;
 use crate::measured_pairs::{ComparedPair, HitMisfit};
+use crate::observer::{Observer, Steps};
 use crate::traced::Traced;
 use crate::whole_accelerance::WholeAccelerance;
-use crate::{pictures, progress};
+use crate::{Test, pictures};
 pub use hits_with_effects::HitsWithEffects;
 pub use records::RecordRow;
 pub use residual::{PairResidual, ResidualUnit, banded};
@@ -54,14 +55,10 @@ pub struct PieceEvidence {
 }
 
 impl Evidence {
-    /// With what a trace found; `path` names the test in messages.
-    pub fn of(
-        identified: &Identified,
-        traced: Option<&Traced>,
-        estimation: Estimation,
-        path: &Path,
-    ) -> Result<Self, CommandError> {
-        let Identified { test, found, models, .. } = identified;
+    /// With what a trace found.
+    pub fn of(identified: &Identified, traced: Option<&Traced>, observer: &dyn Observer) -> Result<Self, Error> {
+        let Identified { test, settings, found, models, .. } = identified;
+        let (path, test, estimation) = (test.path(), test.content(), settings.estimation);
         let with_effects = traced.and_then(|traced| traced.frequencies(test, &found.pieces));
         let with_effects = |index: usize| with_effects.as_ref()?.get(index).filter(|modes| !modes.is_empty()).cloned();
         let mut pieces = Vec::with_capacity(found.pieces.len());
@@ -70,9 +67,9 @@ impl Evidence {
             pieces.push(PieceEvidence::of_fit((fit, model), &own, with_effects(index), path)?);
         }
         let mut accelerances: Vec<(usize, Accelerance)> = Vec::new();
-        let histories = read(test)?;
-        let shown = progress::bar("driving the model", histories.len());
-        for (piece, history) in histories {
+        let histories = read(test, observer)?;
+        let (shown, count) = (observer.begin("driving the model", Steps::Of(histories.len())), histories.len());
+        for (done, (piece, history)) in (1..).zip(histories) {
             let (Some(fit), Some(model), Some(evidence)) =
                 (found.pieces.get(piece), models.get(piece), pieces.get_mut(piece))
             else {
@@ -91,19 +88,25 @@ impl Evidence {
             }
             let band = pair.and_then(|pair| Some(*pair.frequency.first()?..=*pair.frequency.last()?));
             let compared = ComparedPair::of(model, history, ForceBetweenSamples::BandLimited, band)
-                .map_err(|source| CommandError::Identify { path: path.into(), source })?;
+                .map_err(|source| Error::Identify { path: path.into(), source })?;
             evidence.time_histories.push(pictures::time_history(&fit.name, &compared)?);
             let misfits = compared.misfits();
             evidence.levels.extend(misfits.iter().map(|hit| (hit.peak_force_n, hit.rms_percent())));
             evidence.hits.extend(misfits);
             accelerances.push((piece, accelerance));
-            shown.step();
+            shown.at(done, count, "");
         }
         Self::with_coherence(test, pieces, accelerances)
     }
 
     /// What a trace alone shows, of a test of which no base model was identified.
-    pub fn of_trace(test: &ImpactTest, traced: &Traced, estimation: Estimation) -> Result<Self, CommandError> {
+    pub fn of_trace(
+        test: &Test,
+        traced: &Traced,
+        estimation: Estimation,
+        observer: &dyn Observer,
+    ) -> Result<Self, Error> {
+        let test = test.content();
         let base = &traced.tracing.base_accelerances;
         let mut pieces = Vec::with_capacity(test.pieces.len());
         for (index, named) in test.pieces.iter().enumerate() {
@@ -112,10 +115,10 @@ impl Evidence {
             pieces.push(evidence);
         }
         let mut accelerances: Vec<(usize, Accelerance)> = Vec::new();
-        let histories = read(test)?;
-        let shown = progress::bar("comparing the hits", histories.len());
-        for (piece, history) in histories {
-            shown.step();
+        let histories = read(test, observer)?;
+        let (shown, count) = (observer.begin("comparing the hits", Steps::Of(histories.len())), histories.len());
+        for (done, (piece, history)) in (1..).zip(histories) {
+            shown.at(done, count, "");
             let Some(evidence) = pieces.get_mut(piece) else { continue };
             let accelerance = history.accelerance(estimation)?;
             evidence.records.push(RecordRow::of_hits(&history, &accelerance));
@@ -141,7 +144,7 @@ impl Evidence {
         test: &ImpactTest,
         mut pieces: Vec<PieceEvidence>,
         mut accelerances: Vec<(usize, Accelerance)>,
-    ) -> Result<Self, CommandError> {
+    ) -> Result<Self, Error> {
         for (piece, accelerance) in test.recorded_accelerances()? {
             if let Some(evidence) = pieces.get_mut(piece) {
                 evidence.records.push(RecordRow::of_accelerance(&accelerance));
@@ -156,14 +159,14 @@ impl Evidence {
         Ok(Self { pieces })
     }
 
-    /// The measured hits of all pieces.
-    pub fn hits(&self) -> Vec<&HitMisfit> {
-        self.pieces.iter().flat_map(|piece| &piece.hits).collect()
+    /// How far the model is from the measured hits of all pieces.
+    pub fn into_hits(self) -> Vec<HitMisfit> {
+        self.pieces.into_iter().flat_map(|piece| piece.hits).collect()
     }
 }
 
-fn read(test: &ImpactTest) -> Result<Vec<(usize, TimeHistory)>, CommandError> {
-    let _shown = progress::spinner("reading the records");
+fn read(test: &ImpactTest, observer: &dyn Observer) -> Result<Vec<(usize, TimeHistory)>, Error> {
+    let _shown = observer.begin("reading the records", Steps::Unknown);
     Ok(test.time_histories()?)
 }
 
@@ -173,7 +176,7 @@ impl PieceEvidence {
         pairs: &[&AcceleranceFit],
         with_effects: Option<Vec<f64>>,
         path: &Path,
-    ) -> Result<Self, CommandError> {
+    ) -> Result<Self, Error> {
         let mut evidence = Self { with_effects, ..Self::default() };
         if !fit.modes.is_empty() {
             evidence.frequencies = Some(pictures::frequencies(fit, evidence.with_effects.as_deref())?);
@@ -187,7 +190,7 @@ impl PieceEvidence {
         Ok(evidence)
     }
 
-    fn add_cuts(&mut self, name: &str, history: &TimeHistory) -> Result<(), CommandError> {
+    fn add_cuts(&mut self, name: &str, history: &TimeHistory) -> Result<(), Error> {
         for cut in &history.cuts {
             self.cuts.push(pictures::cut(name, cut)?);
         }
@@ -195,11 +198,7 @@ impl PieceEvidence {
     }
 
     /// The picture and the residual of each pair of places.
-    fn add_pairs<'a>(
-        &mut self,
-        name: &str,
-        pairs: impl Iterator<Item = &'a AcceleranceFit>,
-    ) -> Result<(), CommandError> {
+    fn add_pairs<'a>(&mut self, name: &str, pairs: impl Iterator<Item = &'a AcceleranceFit>) -> Result<(), Error> {
         for pair in pairs {
             self.accelerances.push(pictures::measured_accelerance(name, pair)?);
             self.residuals.push(PairResidual::of(pair));
@@ -209,12 +208,7 @@ impl PieceEvidence {
 }
 
 /// Accelerance of the model alone, over the measured natural frequencies.
-fn calculated(
-    fit: &PieceFit,
-    model: &PanelModel,
-    [force, response]: [Place; 2],
-    path: &Path,
-) -> Result<String, CommandError> {
+fn calculated(fit: &PieceFit, model: &PanelModel, [force, response]: [Place; 2], path: &Path) -> Result<String, Error> {
     let highest = fit.modes.iter().map(|mode| mode.measured).fold(0.0, f64::max);
     let seen = WholeAccelerance::up_to(model, highest, force, response).in_file(path)?;
     pictures::accelerance(fit, [force, response], &seen)

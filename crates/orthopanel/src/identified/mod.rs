@@ -4,63 +4,101 @@ mod answer;
 mod measured;
 mod mode_rows;
 mod models;
-mod report;
-
-use std::path::Path;
+mod text;
 
 use orthopanel_data::{ImpactTest, NamedPiece};
-use orthopanel_identify::{Identification, IdentifyError, PieceFit, Settings, identify};
+use orthopanel_identify::{Identification, IdentifiedConstant, IdentifyError, PieceFit, Settings, identify};
 use orthopanel_model::PanelModel;
 
-use crate::error::CommandError;
-use crate::record_options::IdentifyOptions;
-use crate::{console, notes, progress};
+use crate::error::Error;
+use crate::evidence::Evidence;
+use crate::notes::note;
+use crate::observer::{Observer, Steps};
+use crate::{Model, Test, Traced, json, report};
 pub use answer::{Answer, called};
 use measured::MeasuredTable;
 pub use mode_rows::{Digits, ModeRows};
 use models::model;
 pub use models::{ASSUMED_DAMPING, to_digits};
 
-/// A test, what was identified from it, and a model of each of its pieces.
+/// What was identified from a test, and a model of each of its pieces.
 pub struct Identified {
-    pub test: ImpactTest,
-    pub found: Identification,
+    pub(crate) test: Test,
+    pub(crate) settings: Settings,
+    pub(crate) found: Identification,
     /// In the order of `found.pieces`.
-    pub models: Vec<PanelModel>,
+    pub(crate) models: Vec<PanelModel>,
     /// The JSON object, with the modes that the records show by themselves.
-    pub answer: Answer,
+    pub(crate) answer: Answer,
 }
 
 impl Identified {
-    /// Identifies the panel of a test, read at `path`; says on standard error what was noted and had to be assumed.
-    pub fn from_test(test: &ImpactTest, path: &Path, options: &IdentifyOptions) -> Result<Self, CommandError> {
-        let settings = options.settings()?;
-        options.say_if_idle(test);
+    /// Identifies the panel of a test; says what was noted and had to be assumed.
+    pub(crate) fn of(test: &Test, settings: Settings, observer: &dyn Observer) -> Result<Self, Error> {
+        let content = test.content();
         let found = {
-            let _shown = progress::spinner("reading the records and identifying");
-            identify(test, settings).map_err(|source| CommandError::Identify { path: path.into(), source })?
+            let _shown = observer.begin("reading the records and identifying", Steps::Unknown);
+            identify(content, settings).map_err(|source| Error::Identify { path: test.path().into(), source })?
         };
-        notes::say("", &found.notes);
-        let models = models_of(test, &found, settings);
+        note(observer, "", &found.notes);
+        let models = models_of(content, &found, settings);
         if let Some(sentence) = assumed_damping(&found) {
-            console::say(sentence);
+            observer.say(&sentence);
         }
         let measured = {
-            let _shown = progress::spinner("measuring the modes of all records together");
-            MeasuredTable::all(test, &found, &models)
+            let _shown = observer.begin("measuring the modes of all records together", Steps::Unknown);
+            MeasuredTable::all(content, &found, &models)
         };
         let answer = Answer::of(&found, measured);
-        Ok(Self { test: test.clone(), found, models, answer })
+        Ok(Self { test: test.clone(), settings, found, models, answer })
+    }
+
+    /// All that was found: constants, correlations, each piece's modes, and the accelerances measured and calculated.
+    pub fn found(&self) -> &Identification {
+        &self.found
+    }
+
+    /// A constant that the pieces have in common, by its name.
+    pub fn constant(&self, name: &str) -> Option<&IdentifiedConstant> {
+        self.found.constants.iter().find(|constant| constant.name == name && constant.piece.is_none())
+    }
+
+    /// The test that it was identified from.
+    pub fn test(&self) -> &Test {
+        &self.test
+    }
+
+    /// The model of each piece.
+    pub fn models(&self) -> Vec<Model> {
+        self.models.iter().map(|panel| Model::of(panel.clone(), self.test.path())).collect()
+    }
+
+    /// As [`Identified::models`], each behind `-NAME` of its piece, safe in file names, where there are several.
+    pub fn named_models(&self) -> Vec<(String, Model)> {
+        self.found.pieces.iter().map(|fit| self.suffix(fit)).zip(self.models()).collect()
+    }
+
+    /// One HTML page of the test, which needs no network and nothing beside it, with what was traced or why nothing was.
+    ///
+    /// # Errors
+    /// [`Error::Data`] where records cannot be read any more, [`Error::Picture`].
+    pub fn page(&self, traced: Result<&Traced, &str>, observer: &dyn Observer) -> Result<String, Error> {
+        report::page(self, traced, &Evidence::of(self, traced.ok(), observer)?)
+    }
+
+    /// One JSON object (`orthopanel.identified/1`) on one line.
+    pub fn to_json(&self) -> String {
+        json::line(&self.answer)
     }
 
     /// `-NAME` where there are several pieces, safe in file names; nothing for a single one.
-    pub fn suffix(&self, piece: &PieceFit) -> String {
-        suffix(&piece.name, &self.test.pieces)
+    pub(crate) fn suffix(&self, piece: &PieceFit) -> String {
+        suffix(&piece.name, &self.test.content().pieces)
     }
 }
 
-/// The models that [`Identified::from_test`] makes of a test, without a word on standard error.
-pub fn base_models(test: &ImpactTest, settings: Settings) -> Result<Vec<PanelModel>, IdentifyError> {
+/// The models that [`Identified::of`] makes of a test, without a word.
+pub(crate) fn base_models(test: &ImpactTest, settings: Settings) -> Result<Vec<PanelModel>, IdentifyError> {
     Ok(models_of(test, &identify(test, settings)?, settings))
 }
 

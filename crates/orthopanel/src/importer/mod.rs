@@ -1,6 +1,6 @@
 //! Running an FMU through the crate `fmi-rs`: the FMU is judged, unpacked once, loaded and stepped as any simulator would do it.
 //!
-//! An FMU is a stranger's file: [`archive`] and [`description`] hold it against limits before anything is believed, and [`library`]
+//! An FMU is a stranger's file: `archive` and `description` hold it against limits before anything is believed, and `library`
 //! says whose code is run.
 
 mod archive;
@@ -23,23 +23,24 @@ use self::description::Description;
 use self::instance::{Instance, References};
 use self::log::Log;
 use crate::driving_force::DrivingForce;
-use crate::error::CommandError;
+use crate::error::Error;
 use crate::fmu_refusal::{FmuRefusal, shown};
-use crate::notes;
+use crate::notes::note;
+use crate::observer::Observer;
 use crate::time_response::{Motion, steps};
 
 /// Whether the file is an FMU: by its content a zip archive, as every FMU is.
 ///
 /// A file of that name alone is refused, since nobody who writes `x.fmu` means a model file.
-pub fn is_fmu(path: &Path) -> Result<bool, CommandError> {
+pub fn is_fmu(path: &Path) -> Result<bool, Error> {
     use std::io::Read as _;
-    let unreadable = |source| CommandError::Unreadable { path: path.into(), source };
+    let unreadable = |source| Error::Unreadable { path: path.into(), source };
     let mut start = Vec::new();
     orthopanel_data::regular_file(path).map_err(unreadable)?;
     File::open(path).map_err(unreadable)?.take(4).read_to_end(&mut start).map_err(unreadable)?;
     let archive = start == b"PK\x03\x04";
     if !archive && path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("fmu")) {
-        return Err(CommandError::Fmu { path: path.into(), source: FmuRefusal::NoArchive });
+        return Err(Error::Fmu { path: path.into(), source: FmuRefusal::NoArchive });
     }
     Ok(archive)
 }
@@ -49,10 +50,11 @@ pub fn is_fmu(path: &Path) -> Result<bool, CommandError> {
 pub fn simulate(
     path: &Path,
     trust: bool,
-    force: impl FnOnce(usize) -> Result<DrivingForce, CommandError>,
-) -> Result<(DrivingForce, Vec<Motion>), CommandError> {
-    let refused = |source| CommandError::Fmu { path: path.into(), source };
-    let file = File::open(path).map_err(|source| CommandError::Unreadable { path: path.into(), source })?;
+    observer: &dyn Observer,
+    force: impl FnOnce(usize) -> Result<DrivingForce, Error>,
+) -> Result<(DrivingForce, Vec<Motion>), Error> {
+    let refused = |source| Error::Fmu { path: path.into(), source };
+    let file = File::open(path).map_err(|source| Error::Unreadable { path: path.into(), source })?;
     let mut archive = Archive::new(file).map_err(refused)?;
     let description = archive.take("modelDescription.xml", description::MOST_BYTES).map_err(refused)?;
     let description = description.ok_or(FmuRefusal::NoDescription).and_then(|content| Description::parse(&content));
@@ -67,7 +69,7 @@ pub fn simulate(
     let instance = loaded.map_err(|error| refused(not_loaded(error, &library, &log)))?;
     let motions = run(&*instance, &references, &force);
     let motions = motions.map_err(|call| refused(FmuRefusal::Call { call, messages: log.taken() }))?;
-    notes::say(&format!("{}: ", path.display()), &log.taken());
+    note(observer, &format!("{}: ", path.display()), &log.taken());
     Ok((force, motions))
 }
 

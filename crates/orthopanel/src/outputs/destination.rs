@@ -4,19 +4,19 @@ use std::io::ErrorKind;
 use std::path::{Component, Path, PathBuf};
 
 use super::{Outputs, folder, streams};
-use crate::error::CommandError;
+use crate::error::Error;
 
 impl Outputs {
     /// Where a file really goes: behind a link, the file it points to, whether that is there or not. What is there must be a file,
     /// since renaming onto a device or a pipe would take its place, and none that the command reads.
-    pub(super) fn destination(&self, path: &Path) -> Result<PathBuf, CommandError> {
+    pub(super) fn destination(&self, path: &Path) -> Result<PathBuf, Error> {
         if let Some(stream) = streams::stream_at(path) {
             let reason = format!("it is {stream}, and a file would take its place");
-            return Err(CommandError::Unwritable { path: path.into(), reason, kind: ErrorKind::Other });
+            return Err(Error::Unwritable { path: path.into(), reason, kind: ErrorKind::Other });
         }
         let there = match std::fs::metadata(path) {
             Ok(there) => there,
-            Err(error) if error.kind() != ErrorKind::NotFound => return Err(CommandError::unwritable(path, &error)),
+            Err(error) if error.kind() != ErrorKind::NotFound => return Err(Error::unwritable(path, &error)),
             Err(error) => {
                 let folder = folder::of(path);
                 if let Ok(target) = std::fs::read_link(path) {
@@ -24,7 +24,7 @@ impl Outputs {
                 }
                 let Some(name) = path.file_name() else {
                     let reason = "it ends in no name of a file".into();
-                    return Err(CommandError::Unwritable { path: path.into(), reason, kind: error.kind() });
+                    return Err(Error::Unwritable { path: path.into(), reason, kind: error.kind() });
                 };
                 // One spelling of the folder, by which it is locked.
                 return Ok(std::fs::canonicalize(folder).map_or_else(|_| path.into(), |folder| folder.join(name)));
@@ -35,17 +35,17 @@ impl Outputs {
                 true => (ErrorKind::IsADirectory, "a folder"),
                 false => (ErrorKind::Other, "no regular file"),
             };
-            return Err(CommandError::Unwritable { path: path.into(), reason: format!("it is {what}"), kind });
+            return Err(Error::Unwritable { path: path.into(), reason: format!("it is {what}"), kind });
         }
         if let Some(input) = self.inputs.at(path) {
-            return Err(CommandError::OutputIsInput { path: path.into(), input: input.into() });
+            return Err(Error::OutputIsInput { path: path.into(), input: input.into() });
         }
         // Renaming would take the place of a file that its owner protects.
         if there.permissions().readonly() {
             let reason = "it is read-only".into();
-            return Err(CommandError::Unwritable { path: path.into(), reason, kind: ErrorKind::PermissionDenied });
+            return Err(Error::Unwritable { path: path.into(), reason, kind: ErrorKind::PermissionDenied });
         }
-        std::fs::canonicalize(path).map_err(|error| CommandError::unwritable(path, &error))
+        std::fs::canonicalize(path).map_err(|error| Error::unwritable(path, &error))
     }
 }
 
@@ -55,16 +55,16 @@ pub fn ends_as_folder(path: &Path) -> bool {
     text.strip_suffix('.').unwrap_or(&text).ends_with(std::path::is_separator)
 }
 
-pub(super) fn names_file(path: &Path) -> Result<(), CommandError> {
+pub(super) fn names_file(path: &Path) -> Result<(), Error> {
     if ends_as_folder(path) {
         let reason = "it ends as the name of a folder does".into();
-        return Err(CommandError::Unwritable { path: path.into(), reason, kind: ErrorKind::IsADirectory });
+        return Err(Error::Unwritable { path: path.into(), reason, kind: ErrorKind::IsADirectory });
     }
     Ok(())
 }
 
 /// Whether a folder that is not there can be made, as far as names tell: below a folder, and not by way of one that is not there.
-pub(super) fn makeable(folder: &Path) -> Result<(), CommandError> {
+pub(super) fn makeable(folder: &Path) -> Result<(), Error> {
     let is_there = |path: &&Path| path.as_os_str().is_empty() || std::fs::symlink_metadata(path).is_ok();
     let there = folder.ancestors().find(is_there).unwrap_or(folder);
     let missing = folder.strip_prefix(there).unwrap_or(folder);
@@ -77,18 +77,18 @@ pub(super) fn makeable(folder: &Path) -> Result<(), CommandError> {
     } else {
         return Ok(());
     };
-    Err(CommandError::Unwritable { path: folder.into(), reason: reason.into(), kind })
+    Err(Error::Unwritable { path: folder.into(), reason: reason.into(), kind })
 }
 
 /// Makes a folder and those it lies in; gives those that were not there, innermost first.
-pub(super) fn made(folder: &Path) -> Result<Vec<PathBuf>, CommandError> {
+pub(super) fn made(folder: &Path) -> Result<Vec<PathBuf>, Error> {
     let missing = folder.ancestors().take_while(|folder| !folder.as_os_str().is_empty() && !folder.exists());
     let missing: Vec<_> = missing.map(Path::to_path_buf).collect();
     match std::fs::create_dir_all(folder) {
         Ok(()) => Ok(missing),
         Err(error) => {
             unmade(&missing);
-            Err(CommandError::unwritable(folder, &error))
+            Err(Error::unwritable(folder, &error))
         }
     }
 }

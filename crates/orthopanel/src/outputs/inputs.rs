@@ -5,8 +5,7 @@ use std::path::{Path, PathBuf};
 use orthopanel_data::{ImpactTest, limits};
 
 use super::manifest::sha256_of;
-use crate::error::CommandError;
-use crate::given_file;
+use crate::{Error, Test};
 
 /// All files that a command reads, each once.
 #[derive(Default)]
@@ -26,11 +25,11 @@ impl Inputs {
     /// Reads the test at `path`, or in the folder there; the inputs are its file and every file that it names.
     ///
     /// # Errors
-    /// As [`given_file::read_test`].
-    pub fn reading_test(path: &Path) -> Result<(Self, ImpactTest), CommandError> {
+    /// As [`Test::load`].
+    pub fn reading_test(path: &Path) -> Result<(Self, Test), Error> {
         let inputs = Self::of(&ImpactTest::file_at(path)).hashed();
-        let test = given_file::read_test(path)?;
-        let inputs = test.files().fold(inputs, Self::and);
+        let test = Test::load(path)?;
+        let inputs = test.content().files().fold(inputs, Self::and);
         Ok((inputs, test))
     }
 
@@ -70,12 +69,12 @@ impl Inputs {
     /// Each with the SHA-256 of what was read.
     ///
     /// # Errors
-    /// [`CommandError::Changed`] where a file is another than before it was read, [`CommandError::Unreadable`].
-    pub fn unchanged(&self) -> Result<Vec<(&Path, String)>, CommandError> {
+    /// [`Error::Changed`] where a file is another than before it was read, [`Error::Unreadable`].
+    pub fn unchanged(&self) -> Result<Vec<(&Path, String)>, Error> {
         let unchanged = |Input { path, sha256: before }: &'_ Input| {
-            let now = sha256_of(path).map_err(|source| CommandError::Unreadable { path: path.clone(), source })?;
+            let now = sha256_of(path).map_err(|source| Error::Unreadable { path: path.clone(), source })?;
             match before {
-                Some(before) if *before != now => Err(CommandError::Changed { path: path.clone() }),
+                Some(before) if *before != now => Err(Error::Changed { path: path.clone() }),
                 _ => Ok(now),
             }
         };

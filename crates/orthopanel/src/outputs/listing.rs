@@ -7,7 +7,7 @@ use super::inputs::is_same;
 use super::manifest::{self, Listed, Manifest};
 use super::replacement::Replacement;
 use super::{Outputs, with_suffix};
-use crate::error::CommandError;
+use crate::error::Error;
 
 /// What a manifest tells and brings about.
 pub(super) struct Listing {
@@ -26,7 +26,7 @@ impl Outputs {
         path: &Path,
         destinations: &[PathBuf],
         replacement: &mut Replacement,
-    ) -> Result<Listing, CommandError> {
+    ) -> Result<Listing, Error> {
         let mut notes = Vec::new();
         let earlier = match manifest::listed(path) {
             Ok(listed) => listed,
@@ -65,7 +65,7 @@ impl Outputs {
         let mut replacing = earlier;
         replacing.retain(|listed| !files.contains(listed));
         files.extend(others);
-        let manifest = Manifest::new(&self.inputs, files, replacing)?;
+        let manifest = Manifest::new(&self.command, &self.inputs, files, replacing)?;
         replacement.put(path, manifest.text().as_bytes())?;
         Ok(Listing { manifest, stale, notes })
     }

@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest as _, Sha256};
 
 use super::inputs::Inputs;
-use crate::error::CommandError;
+use crate::error::Error;
 use crate::json;
 
 const SCHEMA: &str = "orthopanel.manifest/1";
@@ -41,15 +41,15 @@ pub struct Listed {
 }
 
 impl Manifest {
-    /// Of the command under way.
+    /// Of a command of these words.
     ///
     /// # Errors
     /// As [`Inputs::unchanged`].
-    pub fn new(inputs: &Inputs, files: Vec<Listed>, replacing: Vec<Listed>) -> Result<Self, CommandError> {
+    pub fn new(command: &[String], inputs: &Inputs, files: Vec<Listed>, replacing: Vec<Listed>) -> Result<Self, Error> {
         let listed = |(path, sha256): (&Path, String)| Listed { file: path.to_string_lossy().into_owned(), sha256 };
         Ok(Self {
             schema: SCHEMA,
-            command: std::env::args_os().skip(1).map(|word| word.to_string_lossy().into_owned()).collect(),
+            command: command.to_vec(),
             version: env!("CARGO_PKG_VERSION"),
             inputs: inputs.unchanged()?.into_iter().map(listed).collect(),
             files,

@@ -17,17 +17,18 @@ use std::ffi::OsString;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-use crate::console;
-use crate::error::CommandError;
+use crate::{Error, Observer};
 pub use destination::ends_as_folder;
 use destination::{made, makeable, unmade};
 pub use inputs::Inputs;
 use listing::Listing;
 use replacement::Replacement;
+pub use streams::fed_by_stdout;
 
 /// The outputs of one command.
 pub struct Outputs {
     inputs: Inputs,
+    command: Vec<String>,
     /// Made where it is not there.
     folder: Option<PathBuf>,
     manifest: Option<PathBuf>,
@@ -37,15 +38,14 @@ pub struct Outputs {
 }
 
 impl Outputs {
-    /// Of a command that reads `inputs`.
-    ///
-    /// # Errors
-    /// [`CommandError::InputIsAnswer`] where standard output goes to one of them.
-    pub fn of(inputs: Inputs) -> Result<Self, CommandError> {
-        if let Some(input) = streams::fed_by_stdout(inputs.paths()) {
-            return Err(CommandError::InputIsAnswer { input: input.into() });
-        }
-        Ok(Self { inputs, folder: None, manifest: None, extension: None, files: Vec::new() })
+    /// Of what is made from `inputs`.
+    pub fn of(inputs: Inputs) -> Self {
+        Self { inputs, command: vec![], folder: None, manifest: None, extension: None, files: Vec::new() }
+    }
+
+    /// Of a command of these words, which a manifest tells.
+    pub fn by(self, command: Vec<String>) -> Self {
+        Self { command, ..self }
     }
 
     /// `folder` is to be made where it is not there.
@@ -68,7 +68,7 @@ impl Outputs {
     ///
     /// # Errors
     /// As [`Outputs::planned`], of the manifest.
-    pub fn beside(self, output: &Path, several: bool) -> Result<Self, CommandError> {
+    pub fn beside(self, output: &Path, several: bool) -> Result<Self, Error> {
         destination::names_file(output)?;
         let manifest = with_suffix(output, "-manifest").with_extension("json");
         let is_used = several || manifest::listed(&manifest).is_ok_and(|listed| !listed.is_empty());
@@ -81,31 +81,31 @@ impl Outputs {
     /// Names an output that may be written later.
     ///
     /// # Errors
-    /// [`CommandError::OutputIsInput`], and [`CommandError::Unwritable`] where no file can be put there.
-    pub fn planned(self, path: &Path) -> Result<Self, CommandError> {
+    /// [`Error::OutputIsInput`], and [`Error::Unwritable`] where no file can be put there.
+    pub fn planned(self, path: &Path) -> Result<Self, Error> {
         match &self.folder {
             Some(own) if !own.exists() => makeable(own)?,
             Some(own) if !own.is_dir() => {
                 let (path, reason) = (own.clone(), "it is there and is no folder".into());
-                return Err(CommandError::Unwritable { path, reason, kind: ErrorKind::NotADirectory });
+                return Err(Error::Unwritable { path, reason, kind: ErrorKind::NotADirectory });
             }
             _ => {}
         }
         destination::names_file(path)?;
         let destination = self.destination(path)?;
         if self.folder.as_ref().is_none_or(|own| own.exists()) {
-            std::fs::metadata(folder::of(&destination)).map_err(|error| CommandError::unwritable(path, &error))?;
+            std::fs::metadata(folder::of(&destination)).map_err(|error| Error::unwritable(path, &error))?;
         }
         Ok(self)
     }
 
     /// As [`Outputs::planned`], of several.
-    pub fn all_planned(self, paths: impl IntoIterator<Item = PathBuf>) -> Result<Self, CommandError> {
+    pub fn all_planned(self, paths: impl IntoIterator<Item = PathBuf>) -> Result<Self, Error> {
         paths.into_iter().try_fold(self, |outputs, path| outputs.planned(&path))
     }
 
     /// As [`Outputs::planned`], of names in the folder of the results.
-    pub fn planned_inside(self, names: impl IntoIterator<Item = String>) -> Result<Self, CommandError> {
+    pub fn planned_inside(self, names: impl IntoIterator<Item = String>) -> Result<Self, Error> {
         let paths: Vec<_> = names.into_iter().map(|name| self.inside(&name)).chain(self.manifest.clone()).collect();
         self.all_planned(paths)
     }
@@ -119,16 +119,16 @@ impl Outputs {
         self.files.push((path.into(), content.into()));
     }
 
-    /// Writes all files that were added, gives their paths.
+    /// Writes all files that were added, gives their paths; says what became of those of an earlier run.
     ///
     /// # Errors
     /// As [`Outputs::planned`], whether named before or not; then every file is as it was.
-    pub fn write(self) -> Result<Vec<PathBuf>, CommandError> {
+    pub fn write(self, observer: &dyn Observer) -> Result<Vec<PathBuf>, Error> {
         if self.files.is_empty() {
             return Ok(Vec::new());
         }
         let made = self.folder.as_deref().map_or(Ok(Vec::new()), made)?;
-        self.replaced().inspect_err(|_| unmade(&made))?;
+        self.replaced(observer).inspect_err(|_| unmade(&made))?;
         for parent in made.iter().filter_map(|folder| folder.parent()) {
             // What is in the new folder lies on disk; that its name does is best effort.
             let _ = folder::flush(parent);
@@ -136,13 +136,13 @@ impl Outputs {
         Ok(self.files.into_iter().map(|(path, _)| path).chain(self.manifest).collect())
     }
 
-    fn replaced(&self) -> Result<(), CommandError> {
+    fn replaced(&self, observer: &dyn Observer) -> Result<(), Error> {
         let mut destinations = Vec::with_capacity(self.files.len() + 1);
         for path in self.files.iter().map(|(path, _)| path).chain(&self.manifest) {
             let destination = self.destination(path)?;
             if destinations.contains(&destination) {
                 let reason = "another result of this command goes to the same file".into();
-                return Err(CommandError::Unwritable { path: path.clone(), reason, kind: ErrorKind::Other });
+                return Err(Error::Unwritable { path: path.clone(), reason, kind: ErrorKind::Other });
             }
             destinations.push(destination);
         }
@@ -165,7 +165,7 @@ impl Outputs {
         }
         replacement.commit()?;
         for note in listing.into_iter().flat_map(|(_, listing)| listing.notes) {
-            console::say(note);
+            observer.say(&note);
         }
         Ok(())
     }
@@ -195,10 +195,10 @@ pub fn with_suffix(path: &Path, suffix: &str) -> PathBuf {
 mod tests {
     use super::*;
 
-    fn write(path: &Path, content: &str) -> Result<Vec<PathBuf>, CommandError> {
-        let mut outputs = Outputs::of(Inputs::default()).expect("no inputs");
+    fn write(path: &Path, content: &str) -> Result<Vec<PathBuf>, Error> {
+        let mut outputs = Outputs::of(Inputs::default());
         outputs.add(path, content);
-        outputs.write()
+        outputs.write(&crate::Silent)
     }
 
     #[cfg(unix)]
@@ -211,13 +211,13 @@ mod tests {
         write(&link, "new").expect("written");
         assert!(std::fs::symlink_metadata(&link).expect("there").is_symlink());
         assert_eq!(std::fs::read_to_string(&real).expect("read"), "new");
-        assert!(matches!(write(home.path(), "x"), Err(CommandError::Unwritable { .. })));
-        assert!(matches!(write(Path::new("/dev/null"), "x"), Err(CommandError::Unwritable { .. })));
+        assert!(matches!(write(home.path(), "x"), Err(Error::Unwritable { .. })));
+        assert!(matches!(write(Path::new("/dev/null"), "x"), Err(Error::Unwritable { .. })));
         // Two results behind links to one file: the second would take the place of the first.
-        let mut outputs = Outputs::of(Inputs::default()).expect("no inputs");
+        let mut outputs = Outputs::of(Inputs::default());
         outputs.add(&link, "one");
         outputs.add(&real, "two");
-        assert!(matches!(outputs.write(), Err(CommandError::Unwritable { .. })));
+        assert!(matches!(outputs.write(&crate::Silent), Err(Error::Unwritable { .. })));
         assert_eq!(std::fs::read_to_string(&real).expect("read"), "new");
     }
 
@@ -240,7 +240,7 @@ mod tests {
         let home = tempfile::tempdir().expect("a temporary folder");
         std::fs::create_dir(home.path().join("out")).expect("made");
         std::fs::write(home.path().join("out/old"), "").expect("written");
-        let outputs = Outputs::of(Inputs::default()).expect("no inputs");
+        let outputs = Outputs::of(Inputs::default());
         let folder = |name: &str| {
             let destination = outputs.destination(&home.path().join("out/../out").join(name)).expect("writable");
             folder::of(&destination).to_path_buf()
@@ -252,10 +252,10 @@ mod tests {
     fn files_are_written_all_or_none() {
         let home = tempfile::tempdir().expect("a temporary folder");
         let folder = home.path().join("deep/out");
-        let mut outputs = Outputs::of(Inputs::default()).expect("no inputs").making(&folder);
+        let mut outputs = Outputs::of(Inputs::default()).making(&folder);
         outputs.add_inside("first", "1");
         outputs.add_inside("no-such-folder/second", "2");
-        assert!(matches!(outputs.write(), Err(CommandError::Unwritable { .. })));
+        assert!(matches!(outputs.write(&crate::Silent), Err(Error::Unwritable { .. })));
         assert!(!home.path().join("deep").exists());
     }
 
@@ -267,12 +267,12 @@ mod tests {
 
     /// Results full of one letter; `a` has one more than `b`.
     #[cfg(unix)]
-    fn replace_by(letter: char, folder: &Path) -> Result<Vec<PathBuf>, CommandError> {
-        let mut outputs = Outputs::of(Inputs::default()).expect("no inputs").filling(folder, "manifest.json");
+    fn replace_by(letter: char, folder: &Path) -> Result<Vec<PathBuf>, Error> {
+        let mut outputs = Outputs::of(Inputs::default()).filling(folder, "manifest.json");
         for number in 0..RESULTS + usize::from(letter == 'a') {
             outputs.add_inside(&format!("result-{number}"), letter.to_string().repeat(5000 + number));
         }
-        outputs.write()
+        outputs.write(&crate::Silent)
     }
 
     /// SIGKILL at 200 moments while results are replaced: each is the earlier or the new one, whole.

@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use tempfile::TempPath;
 
 use super::folder::{DRAWN, Folder, NEW, OLD, of};
-use crate::error::CommandError;
+use crate::error::Error;
 
 /// Changes that are prepared and not made yet; dropped, it leaves nothing behind.
 pub struct Replacement {
@@ -45,28 +45,28 @@ impl Replacement {
     }
 
     /// Prepares to write `content` to `path`.
-    pub fn put(&mut self, path: &Path, content: &[u8]) -> Result<(), CommandError> {
-        let new = staged(path, content).map_err(|error| CommandError::unwritable(path, &error))?;
+    pub fn put(&mut self, path: &Path, content: &[u8]) -> Result<(), Error> {
+        let new = staged(path, content).map_err(|error| Error::unwritable(path, &error))?;
         self.changes.push(Change { path: path.into(), new: Some(new), before: before(path)? });
         Ok(())
     }
 
     /// Prepares to have the file at `from` at `to` too, where none is.
-    pub fn copy(&mut self, from: &Path, to: &Path) -> Result<(), CommandError> {
-        let new = set_aside(from).map_err(|error| CommandError::unwritable(to, &error))?;
+    pub fn copy(&mut self, from: &Path, to: &Path) -> Result<(), Error> {
+        let new = set_aside(from).map_err(|error| Error::unwritable(to, &error))?;
         self.changes.push(Change { path: to.into(), new: Some(new), before: Before::Nothing });
         Ok(())
     }
 
     /// Prepares to remove the file at `path`.
-    pub fn remove(&mut self, path: &Path) -> Result<(), CommandError> {
+    pub fn remove(&mut self, path: &Path) -> Result<(), Error> {
         self.changes.push(Change { path: path.into(), new: None, before: before(path)? });
         Ok(())
     }
 
     /// Prepares to write `content` once more to the `path` of an earlier change, when all others are made.
-    pub fn put_again(&mut self, path: &Path, content: &[u8]) -> Result<(), CommandError> {
-        let new = staged(path, content).map_err(|error| CommandError::unwritable(path, &error))?;
+    pub fn put_again(&mut self, path: &Path, content: &[u8]) -> Result<(), Error> {
+        let new = staged(path, content).map_err(|error| Error::unwritable(path, &error))?;
         self.changes.push(Change { path: path.into(), new: Some(new), before: Before::Changed });
         Ok(())
     }
@@ -74,18 +74,18 @@ impl Replacement {
     /// Makes all changes, in their order.
     ///
     /// # Errors
-    /// [`CommandError::Unwritable`] of the first that fails; then all is as it was.
-    pub fn commit(mut self) -> Result<(), CommandError> {
+    /// [`Error::Unwritable`] of the first that fails; then all is as it was.
+    pub fn commit(mut self) -> Result<(), Error> {
         for index in 0..self.changes.len() {
             let Some(change) = self.changes.get_mut(index) else { break };
             if let Err(error) = change.make() {
-                let failed = CommandError::unwritable(&change.path, &error);
+                let failed = Error::unwritable(&change.path, &error);
                 self.changes.truncate(index);
                 return Err(self.undone(failed));
             }
         }
         if let Some((folder, error)) = self.folders.iter().find_map(|folder| Some((folder, folder.flush().err()?))) {
-            let failed = CommandError::unwritable(folder.path(), &error);
+            let failed = Error::unwritable(folder.path(), &error);
             return Err(self.undone(failed));
         }
         self.changes.clear();
@@ -94,14 +94,10 @@ impl Replacement {
     }
 
     /// Puts back what was there, latest first; tells in `failed` of what could not be.
-    fn undone(self, failed: CommandError) -> CommandError {
+    fn undone(self, failed: Error) -> Error {
         let lost: Vec<String> = self.changes.into_iter().rev().filter_map(Change::undo).collect();
         self.folders.iter().for_each(|folder| drop(folder.flush()));
-        if lost.is_empty() {
-            failed
-        } else {
-            CommandError::NotPutBack { failed: Box::new(failed), lost: lost.join("; ") }
-        }
+        if lost.is_empty() { failed } else { Error::NotPutBack { failed: Box::new(failed), lost: lost.join("; ") } }
     }
 }
 
@@ -163,12 +159,12 @@ fn staged(path: &Path, content: &[u8]) -> io::Result<TempPath> {
     Ok(file.into_temp_path())
 }
 
-fn before(path: &Path) -> Result<Before, CommandError> {
+fn before(path: &Path) -> Result<Before, Error> {
     let there = match std::fs::symlink_metadata(path) {
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Before::Nothing),
         there => there.and_then(|_| set_aside(path)),
     };
-    there.map(Before::File).map_err(|error| CommandError::unwritable(path, &error))
+    there.map(Before::File).map_err(|error| Error::unwritable(path, &error))
 }
 
 /// A second name of the file at `path`.

@@ -21,7 +21,7 @@ pub(super) fn stream_at(path: &Path) -> Option<&'static str> {
 }
 
 /// The first of the files that standard output is appended to.
-pub(super) fn fed_by_stdout<'a>(mut paths: impl Iterator<Item = &'a Path>) -> Option<&'a Path> {
+pub fn fed_by_stdout<'a>(mut paths: impl Iterator<Item = &'a Path>) -> Option<&'a Path> {
     let stdout =
         Handle::stdout().ok().filter(|stdout| stdout.as_file().metadata().is_ok_and(|found| found.is_file()))?;
     paths.find(|path| {

@@ -7,7 +7,7 @@ use plotters::prelude::*;
 use super::curve::curve;
 use super::frequency_axes::{self, degrees};
 use super::{FONT, GRID, MEASURED, MODEL, stacked};
-use crate::error::CommandError;
+use crate::error::Error;
 use crate::measured_pairs::place_text;
 use crate::whole_accelerance::WholeAccelerance;
 
@@ -15,7 +15,7 @@ use crate::whole_accelerance::WholeAccelerance;
 const LINES: u32 = 1500;
 
 /// `seen` is the model's, from the first of `places` to the second.
-pub fn accelerance(fit: &PieceFit, places: [Place; 2], seen: &WholeAccelerance) -> Result<String, CommandError> {
+pub fn accelerance(fit: &PieceFit, places: [Place; 2], seen: &WholeAccelerance) -> Result<String, Error> {
     let highest = fit.modes.iter().map(|mode| mode.measured).fold(0.0, f64::max);
     let highest = 1.12 * if highest > 0.0 { highest } else { seen.natural_frequencies().nth(5).unwrap_or(1.0) };
     let mut lines: Vec<f64> = (1..=LINES).map(|line| highest * f64::from(line) / f64::from(LINES)).collect();

@@ -5,7 +5,7 @@ use plotters::prelude::*;
 
 use super::curve::curve;
 use super::{Area, Drawn, FONT, GRID, MODEL, titled};
-use crate::error::CommandError;
+use crate::error::Error;
 
 /// Charts side by side.
 const ACROSS: usize = 2;
@@ -25,7 +25,7 @@ pub struct ModeShape<'a> {
     pub deflection: Box<dyn Fn(Place) -> f64 + 'a>,
 }
 
-pub fn beam_mode_shapes(piece: &Piece, shapes: &[ModeShape]) -> Result<String, CommandError> {
+pub fn beam_mode_shapes(piece: &Piece, shapes: &[ModeShape]) -> Result<String, Error> {
     let rows = shapes.len().div_ceil(ACROSS);
     let Piece { length, width, thickness, .. } = piece;
     let title = format!("Modes of the piece of {length} x {width} x {thickness} m");

@@ -6,12 +6,12 @@ use plotters::prelude::*;
 use super::curve::curve;
 use super::envelope::envelope;
 use super::{FONT, GRID, LAST_LABEL, MODEL, titled};
-use crate::error::CommandError;
+use crate::error::Error;
 
 const SIZE: (u32, u32) = (900, 300);
 
 /// A line a record; `None` where no record tells it.
-pub fn coherence(piece: &str, records: &[&Accelerance]) -> Result<Option<String>, CommandError> {
+pub fn coherence(piece: &str, records: &[&Accelerance]) -> Result<Option<String>, Error> {
     let told: Vec<(&Accelerance, &Vec<f64>)> =
         records.iter().filter_map(|record| Some((*record, record.coherence.as_ref()?))).collect();
     if told.is_empty() {

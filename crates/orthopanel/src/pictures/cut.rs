@@ -5,11 +5,11 @@ use plotters::prelude::*;
 
 use super::curve::curve;
 use super::{ERROR, FONT, GRID, LAST_LABEL, MEASURED, MODEL, spaced, titled};
-use crate::error::CommandError;
+use crate::error::Error;
 
 const SIZE: (u32, u32) = (900, 300);
 
-pub fn cut(piece: &str, cut: &Cut) -> Result<String, CommandError> {
+pub fn cut(piece: &str, cut: &Cut) -> Result<String, Error> {
     let count = cut.hits.len();
     let left_out = match cut.left_out.len() {
         0 => String::new(),

@@ -4,7 +4,7 @@ use orthopanel_identify::PieceFit;
 use plotters::prelude::*;
 
 use super::{Area, Drawn, FONT, GRID, LAST_LABEL, MEASURED, MODEL, WITH_EFFECTS, spaced, stacked};
-use crate::error::CommandError;
+use crate::error::Error;
 
 /// One model's frequencies.
 struct Told {
@@ -20,7 +20,7 @@ struct Told {
 }
 
 /// `with_effects` are those of the model with the effects, one a mode of `fit`.
-pub fn frequencies(fit: &PieceFit, with_effects: Option<&[f64]>) -> Result<String, CommandError> {
+pub fn frequencies(fit: &PieceFit, with_effects: Option<&[f64]>) -> Result<String, Error> {
     let title = format!("Piece {}: natural frequencies of the flexible modes", fit.name);
     let number = |mode: usize| mode as f64;
     let told = |label, colour, found: &dyn Fn(usize) -> f64, (beside, half)| {

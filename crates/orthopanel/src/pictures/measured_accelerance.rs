@@ -7,14 +7,14 @@ use super::curve::curve;
 use super::envelope::envelope;
 use super::frequency_axes::{self, degrees};
 use super::{FONT, GRID, MEASURED, MODEL, stacked};
-use crate::error::CommandError;
+use crate::error::Error;
 use crate::measured_pairs::place_text;
 
 /// Least measured magnitude that stretches the axis, over the greatest \[1\]; calculated valleys have no floor at all.
 const DEPTH: f64 = 1e-6;
 
 /// Both curves carry the decay rate of the window over the records alike.
-pub fn measured_accelerance(piece: &str, fit: &AcceleranceFit) -> Result<String, CommandError> {
+pub fn measured_accelerance(piece: &str, fit: &AcceleranceFit) -> Result<String, Error> {
     let (force, response) = (place_text(fit.force_at), place_text(fit.response_at));
     let decay_rate = fit.decay_rate;
     let window = if decay_rate > 0.0 { format!(", window exp(-{decay_rate:.3} t)") } else { String::new() };

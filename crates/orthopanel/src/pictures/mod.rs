@@ -33,7 +33,7 @@ use orthopanel_model::printable;
 use plotters::coord::Shift;
 use plotters::prelude::*;
 
-use crate::error::CommandError;
+use crate::error::Error;
 
 const MEASURED: RGBColor = RGBColor(213, 94, 0);
 const MODEL: RGBColor = RGBColor(0, 90, 170);
@@ -58,7 +58,7 @@ fn stacked<const CHARTS: usize>(
     title: &str,
     heights: [u32; CHARTS],
     draw: impl for<'a> FnOnce(&[Area<'a>; CHARTS]) -> Drawn,
-) -> Result<String, CommandError> {
+) -> Result<String, Error> {
     titled(name, title, SIZE, |mut rest| {
         let mut placed = 1;
         let charts = heights.map(|height| {
@@ -80,7 +80,7 @@ fn titled(
     title: &str,
     size: (u32, u32),
     draw: impl for<'a> FnOnce(Area<'a>) -> Drawn,
-) -> Result<String, CommandError> {
+) -> Result<String, Error> {
     let mut text = String::new();
     let drawn = (|| {
         let area = SVGBackend::with_string(&mut text, size).into_drawing_area();
@@ -89,7 +89,7 @@ fn titled(
         area.present()?;
         Ok(())
     })();
-    let failed = |error: Box<dyn std::error::Error>| CommandError::Picture { name, problem: error.to_string() };
+    let failed = |error: Box<dyn std::error::Error>| Error::Picture { name, problem: error.to_string() };
     drawn.map_err(failed).map(|()| printable(&curve::in_pixels(&text)).into_owned())
 }
 

@@ -5,7 +5,7 @@ use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use super::{ERROR, FONT, LAST_LABEL, MEASURED, MODEL, WITH_EFFECTS, titled};
-use crate::error::CommandError;
+use crate::error::Error;
 use crate::evidence::{PairResidual, ResidualUnit};
 
 /// Narrower than other pictures: the page shows it whole on a telephone.
@@ -32,7 +32,7 @@ pub struct FoundPlace {
 }
 
 /// A circle a place that was hit, the larger the more is left there; a triangle a sensor, a cross an effect.
-pub fn plate_map(piece: &Piece, residuals: &[PairResidual], found: &[FoundPlace]) -> Result<String, CommandError> {
+pub fn plate_map(piece: &Piece, residuals: &[PairResidual], found: &[FoundPlace]) -> Result<String, Error> {
     let (half_x, half_y) = (0.5 * piece.length, 0.5 * piece.width);
     // Circles at an edge stand over it.
     let around = 2.0 * RADII[1];

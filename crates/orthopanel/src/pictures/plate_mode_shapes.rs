@@ -7,7 +7,7 @@ use plotters::prelude::*;
 
 use super::beam_mode_shapes::ModeShape;
 use super::{Area, Drawn, FONT, MEASURED, MODEL, titled};
-use crate::error::CommandError;
+use crate::error::Error;
 
 const WIDTH: u32 = 900;
 /// What the title takes \[pixels\].
@@ -31,7 +31,7 @@ type Map<'a, 'b> = ChartContext<'b, SVGBackend<'a>, Cartesian2d<RangedCoordf64, 
 type Ring = Vec<(f64, f64)>;
 
 /// Orange is up, blue is down; x to the right, y upwards, both to one scale and in millimetres from the centre.
-pub fn plate_mode_shapes(piece: &Piece, shapes: &[ModeShape]) -> Result<String, CommandError> {
+pub fn plate_mode_shapes(piece: &Piece, shapes: &[ModeShape]) -> Result<String, Error> {
     let Piece { length, width, thickness, .. } = piece;
     // A map wider than high gets half of the picture, a square one a third.
     let across = if *length >= 2.0 * width { 2 } else { 3 };

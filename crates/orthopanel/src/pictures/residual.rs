@@ -8,7 +8,7 @@ use plotters::prelude::*;
 
 use super::curve::curve;
 use super::{ERROR, FONT, GRID, LAST_LABEL, MEASURED, MODEL, spaced, titled};
-use crate::error::CommandError;
+use crate::error::Error;
 use crate::evidence::{PairResidual, ResidualUnit, banded};
 use crate::measured_pairs::place_text;
 
@@ -29,7 +29,7 @@ fn unit_text(residuals: &[PairResidual]) -> &'static str {
 }
 
 /// A thin line a pair of places, a thick one for all of them.
-pub fn residual_by_frequency(residuals: &[PairResidual]) -> Result<String, CommandError> {
+pub fn residual_by_frequency(residuals: &[PairResidual]) -> Result<String, Error> {
     let lines = || residuals.iter().flat_map(|pair| &pair.lines);
     let highest = lines().map(|(frequency, _)| *frequency).fold(1.0, f64::max);
     let pairs: Vec<_> = residuals.iter().map(|pair| banded(pair.lines.iter(), highest, BANDS)).collect();
@@ -72,7 +72,7 @@ pub fn residual_by_frequency(residuals: &[PairResidual]) -> Result<String, Comma
 }
 
 /// A bar a pair of places.
-pub fn residual_by_place(residuals: &[PairResidual]) -> Result<String, CommandError> {
+pub fn residual_by_place(residuals: &[PairResidual]) -> Result<String, Error> {
     let count = residuals.len();
     let highest = residuals.iter().map(PairResidual::rms).fold(0.0, f64::max);
     let noise = residuals.iter().all(|pair| pair.unit == ResidualUnit::Noise);
@@ -153,7 +153,7 @@ impl Ranged for Rows {
 }
 
 /// A dot a hit: its greatest force \[N\], and how far the calculated acceleration is from the measured one \[% of peak\].
-pub fn residual_by_level(points: &[(f64, f64)]) -> Result<String, CommandError> {
+pub fn residual_by_level(points: &[(f64, f64)]) -> Result<String, Error> {
     let highest = |of: fn(&(f64, f64)) -> f64| 1.1 * points.iter().map(of).fold(f64::MIN_POSITIVE, f64::max);
     let across = spaced(points.iter().map(|point| point.0));
     titled("residual by level", "Misfit of each hit against its level", (WIDTH, 300), |area| {

@@ -5,7 +5,7 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use super::residual::{ROW, Rows, WIDTH, names_width, place_names};
 use super::{ERROR, FONT, LAST_LABEL, MODEL, titled};
-use crate::error::CommandError;
+use crate::error::Error;
 use crate::evidence::{PairResidual, ResidualUnit};
 
 /// Steps of the scale below.
@@ -14,7 +14,7 @@ const STEPS: usize = 24;
 const SCALE: (i32, i32) = (240, 14);
 
 /// A field a pair of places and mode: the darker, the more is left of the lines to which no other of the `modes` \[Hz\] is nearer.
-pub fn residual_by_place_and_mode(residuals: &[PairResidual], modes: &[f64]) -> Result<String, CommandError> {
+pub fn residual_by_place_and_mode(residuals: &[PairResidual], modes: &[f64]) -> Result<String, Error> {
     let (count, columns) = (residuals.len(), modes.len());
     let sizes: Vec<Vec<Option<f64>>> = residuals.iter().map(|pair| pair.by_mode(modes)).collect();
     let noise = residuals.iter().all(|pair| pair.unit == ResidualUnit::Noise);

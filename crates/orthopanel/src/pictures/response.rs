@@ -4,14 +4,14 @@ use plotters::prelude::*;
 
 use super::curve::curve;
 use super::{FONT, GRID, LAST_LABEL, MEASURED, MODEL, spaced, stacked};
-use crate::error::CommandError;
+use crate::error::Error;
 use crate::force_file::ForceHistory;
 use crate::time_response::Motion;
 
 /// How much of the response is drawn \[ms\]: later the ringing is a solid band.
 const SHOWN: f64 = 20.0;
 
-pub fn response(force: &ForceHistory, motions: &[Motion]) -> Result<String, CommandError> {
+pub fn response(force: &ForceHistory, motions: &[Motion]) -> Result<String, Error> {
     let last = force.time.last().map_or(0.0, |&time| 1000.0 * time).min(SHOWN);
     stacked("response", "Simulated hit and response of the model", [230, 370], |[upper, lower]| {
         let rows = [

@@ -6,7 +6,7 @@ use plotters::prelude::*;
 use super::curve::curve;
 use super::envelope::envelope;
 use super::{Area, Drawn, ERROR, FONT, GRID, LAST_LABEL, MEASURED, MODEL, spaced, stacked};
-use crate::error::CommandError;
+use crate::error::Error;
 use crate::measured_pairs::{ComparedPair, place_text};
 
 /// What the two upper charts show \[s\], from before the blow: later the ringing is a solid band.
@@ -21,11 +21,11 @@ struct Signal<'a> {
     width: u32,
 }
 
-pub fn time_history(piece: &str, pair: &ComparedPair) -> Result<String, CommandError> {
+pub fn time_history(piece: &str, pair: &ComparedPair) -> Result<String, Error> {
     let index = pair.shown();
     let history = &pair.history;
     let (Some(hit), Some(compared)) = (history.hits.get(index), pair.hits.get(index)) else {
-        return Err(CommandError::Picture { name: "time history", problem: "there is no hit".into() });
+        return Err(Error::Picture { name: "time history", problem: "there is no hit".into() });
     };
     let (force, response) = (place_text(history.force_at), place_text(history.response_at));
     let title = format!("Piece {piece}: hit {} at {force} m, response at {response} m", index + 1);

@@ -8,14 +8,13 @@ mod trace;
 use std::path::Path;
 
 use askama::Template;
-use orthopanel_data::ImpactTest;
 use orthopanel_model::printable;
 
-use crate::error::CommandError;
+use crate::error::Error;
 use crate::evidence::{Evidence, HitsWithEffects};
 use crate::identified::Identified;
-use crate::notes;
 use crate::traced::Traced;
+use crate::{Test, notes};
 use pieces::PieceSection;
 use table::Table;
 use trace::TraceSection;
@@ -56,18 +55,13 @@ const MADE_BY: &str = concat!("Written by orthopanel ", env!("CARGO_PKG_VERSION"
 const TRACED_ALONE: &str =
     "The records were traced all the same: from the best that a beam can do with them, for what it lacks.";
 
-/// The page of a test at `path`.
-pub fn page(
-    path: &Path,
-    identified: &Identified,
-    traced: &Result<Traced, String>,
-    evidence: &Evidence,
-) -> Result<String, CommandError> {
+/// The page of a test.
+pub fn page(identified: &Identified, traced: Result<&Traced, &str>, evidence: &Evidence) -> Result<String, Error> {
     let found = &identified.found;
     let pieces = found.pieces.iter().zip(&evidence.pieces);
     let piece_name = found.pieces.first().map_or("", |piece| piece.name.as_str());
-    let has_effects = traced.as_ref().is_ok_and(|traced| !traced.tracing.effects.is_empty());
-    let superseded = traced.as_ref().is_ok_and(Traced::explains);
+    let has_effects = traced.is_ok_and(|traced| !traced.tracing.effects.is_empty());
+    let superseded = traced.is_ok_and(Traced::explains);
     let mut about_constants = constants::remarks(found);
     if superseded {
         about_constants.insert(0, SUPERSEDED.into());
@@ -75,27 +69,22 @@ pub fn page(
     let hits: Vec<&HitsWithEffects> = evidence.pieces.iter().flat_map(|piece| &piece.hits_with_effects).collect();
     let modes = found.pieces.first().map(pieces::measured_modes).unwrap_or_default();
     let page = Page {
-        title: title(path),
+        title: title(identified.test.path()),
         made_by: MADE_BY.to_owned(),
         lead: constants::lead(found),
         constants: Some(constants::table(found)),
         about_constants,
-        trace: traced.as_ref().ok().map(|traced| TraceSection::of(piece_name, traced, &hits, &modes)).transpose()?,
-        not_traced: traced.as_ref().err().cloned(),
+        trace: traced.ok().map(|traced| TraceSection::of(piece_name, traced, &hits, &modes)).transpose()?,
+        not_traced: traced.err().map(str::to_owned),
         pieces: pieces.map(|(fit, shown)| PieceSection::of(fit, shown, has_effects)).collect::<Result<_, _>>()?,
         notes: notes::counted(&found.notes).collect(),
     };
     page.rendered()
 }
 
-/// The page of a test at `path` whose records its base model contradicts, as `refused` says: what its trace tells.
-pub fn page_of_trace(
-    path: &Path,
-    test: &ImpactTest,
-    refused: &str,
-    traced: &Traced,
-    evidence: &Evidence,
-) -> Result<String, CommandError> {
+/// The page of a test whose records its base model contradicts, as `refused` says: what its trace tells.
+pub fn page_of_trace(test: &Test, refused: &str, traced: &Traced, evidence: &Evidence) -> Result<String, Error> {
+    let (path, test) = (test.path(), test.content());
     let pieces = test.pieces.iter().zip(&evidence.pieces);
     let piece_name = test.pieces.first().map_or("", |named| named.name.as_str());
     let hits: Vec<&HitsWithEffects> = evidence.pieces.iter().flat_map(|piece| &piece.hits_with_effects).collect();
@@ -118,8 +107,8 @@ fn title(path: &Path) -> String {
 }
 
 impl Page {
-    fn rendered(&self) -> Result<String, CommandError> {
+    fn rendered(&self) -> Result<String, Error> {
         let page = self.render().map(|page| printable(&page).into_owned());
-        page.map_err(|error| CommandError::Picture { name: "report", problem: error.to_string() })
+        page.map_err(|error| Error::Picture { name: "report", problem: error.to_string() })
     }
 }

@@ -6,7 +6,7 @@ use orthopanel_model::{Piece, Readable};
 
 use super::Figure;
 use super::table::Table;
-use crate::error::CommandError;
+use crate::error::Error;
 use crate::evidence::{PairResidual, PieceEvidence, RecordRow, ResidualUnit};
 use crate::identified::{Digits, ModeRows};
 use crate::measured_pairs::place_text;
@@ -47,7 +47,7 @@ impl Gallery {
 
 impl PieceSection {
     /// `has_effects`: whether a trace found any, so that the base model is not the last word.
-    pub fn of(fit: &PieceFit, shown: &PieceEvidence, has_effects: bool) -> Result<Self, CommandError> {
+    pub fn of(fit: &PieceFit, shown: &PieceEvidence, has_effects: bool) -> Result<Self, Error> {
         let accelerance_caption = match shown.residuals.is_empty() {
             true => "Accelerance of the model; the vertical lines are the measured natural frequencies.",
             false => MEASURED_CAPTION,
@@ -73,7 +73,7 @@ impl PieceSection {
     }
 
     /// Of a trace alone: what is calculated is the base model of the trace.
-    pub fn of_trace(named: &NamedPiece, shown: &PieceEvidence) -> Result<Self, CommandError> {
+    pub fn of_trace(named: &NamedPiece, shown: &PieceEvidence) -> Result<Self, Error> {
         Ok(Self {
             name: named.name.clone(),
             sizes: sizes(&named.piece),
@@ -157,7 +157,7 @@ pub(super) fn measured_modes(fit: &PieceFit) -> Vec<f64> {
     modes
 }
 
-fn residual(residuals: &[PairResidual], levels: &[(f64, f64)], modes: &[f64]) -> Result<Vec<Figure>, CommandError> {
+fn residual(residuals: &[PairResidual], levels: &[(f64, f64)], modes: &[f64]) -> Result<Vec<Figure>, Error> {
     let mut figures = Vec::new();
     if !residuals.is_empty() {
         let unit = match residuals.iter().all(|pair| pair.unit == ResidualUnit::Noise) {

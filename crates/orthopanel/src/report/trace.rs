@@ -7,7 +7,7 @@ use super::Figure;
 use super::constants::interval;
 use super::pieces::Gallery;
 use super::table::Table;
-use crate::error::CommandError;
+use crate::error::Error;
 use crate::evidence::{HitsWithEffects, PairResidual};
 use crate::measured_pairs::place_text;
 use crate::traced::{RANKING_HEADINGS, Traced, comparison, effect_rows, found_places, ranking_rows};
@@ -52,7 +52,7 @@ pub struct TraceSection {
 
 impl TraceSection {
     /// `modes` are the measured natural frequencies \[Hz\], as far as they are known.
-    pub fn of(name: &str, traced: &Traced, compared: &[&HitsWithEffects], modes: &[f64]) -> Result<Self, CommandError> {
+    pub fn of(name: &str, traced: &Traced, compared: &[&HitsWithEffects], modes: &[f64]) -> Result<Self, Error> {
         let tracing = &traced.tracing;
         let [hypothesis, evidence, held_out] = RANKING_HEADINGS;
         let ranking = [hypothesis, evidence, held_out, "\"parameters"];
@@ -131,7 +131,7 @@ fn hits(compared: &[&HitsWithEffects]) -> Option<Table> {
     (!compared.is_empty()).then(|| Table::new(&headings, compared.iter().map(row).collect()))
 }
 
-fn gallery(name: &str, fitted: &[AcceleranceFit]) -> Result<Option<Gallery>, CommandError> {
+fn gallery(name: &str, fitted: &[AcceleranceFit]) -> Result<Option<Gallery>, Error> {
     let pictures = fitted.iter().map(|pair| pictures::measured_accelerance(name, pair));
     let pictures = pictures.collect::<Result<Vec<_>, _>>()?;
     Ok(Gallery::new(
@@ -142,7 +142,7 @@ fn gallery(name: &str, fitted: &[AcceleranceFit]) -> Result<Option<Gallery>, Com
 }
 
 /// Where a plate was hit and seen, with what is left there and where the effects sit.
-fn map(traced: &Traced) -> Result<Option<Figure>, CommandError> {
+fn map(traced: &Traced) -> Result<Option<Figure>, Error> {
     let tracing = &traced.tracing;
     let (Some(panel), Some(first)) = (tracing.panels.first(), tracing.accelerances.first()) else { return Ok(None) };
     if panel.structure != StructureKind::MindlinPlate {
@@ -158,11 +158,7 @@ fn map(traced: &Traced) -> Result<Option<Figure>, CommandError> {
 }
 
 /// Against frequency, place and level, where these are told.
-fn residual(
-    fitted: &[AcceleranceFit],
-    compared: &[&HitsWithEffects],
-    modes: &[f64],
-) -> Result<Vec<Figure>, CommandError> {
+fn residual(fitted: &[AcceleranceFit], compared: &[&HitsWithEffects], modes: &[f64]) -> Result<Vec<Figure>, Error> {
     let residuals: Vec<PairResidual> = fitted.iter().map(PairResidual::of).collect();
     let mut figures = Vec::new();
     if !residuals.is_empty() {
@@ -188,18 +184,14 @@ fn residual(
 
 #[cfg(test)]
 mod tests {
-    use std::path::Path;
-
-    use orthopanel_data::ImpactTest;
-
     use super::*;
+    use crate::Test;
 
     /// The lines are drawn at the numbers that the modes say: where nothing is missing, these leave little more than noise.
     #[test]
     fn val_the_picture_shows_noise_where_nothing_is_missing() {
         let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/made-hits/test.toml");
-        let test = ImpactTest::read(Path::new(path)).expect("a test");
-        let traced = Traced::from_test(&test, None).expect("a trace");
+        let traced = Test::load(path).and_then(|test| test.trace()).expect("a trace");
         assert!(!traced.tracing.accelerances.is_empty());
         for pair in &traced.tracing.accelerances {
             let shown = PairResidual::of(pair).rms();

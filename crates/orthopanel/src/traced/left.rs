@@ -14,7 +14,7 @@ const NOISE: f64 = 1.1;
 
 impl Traced {
     /// A sentence on what is left where no effect explains the records; `None` with any other verdict.
-    pub fn left(&self) -> Option<String> {
+    pub(crate) fn left(&self) -> Option<String> {
         if self.tracing.verdict != Verdict::Unexplained {
             return None;
         }

@@ -20,7 +20,7 @@ impl Traced {
     /// Natural frequencies \[Hz\] of the model with the effects, those of the rig too, for every mode of each piece's
     /// fit; `None` where no effect was found, where records were traced and not lists, and where the error is not that which
     /// the trace tells, as with declared effects of the rig.
-    pub fn frequencies(&self, test: &ImpactTest, pieces: &[PieceFit]) -> Option<Vec<Vec<f64>>> {
+    pub(crate) fn frequencies(&self, test: &ImpactTest, pieces: &[PieceFit]) -> Option<Vec<Vec<f64>>> {
         let panels = self.panels().filter(|panels| panels.len() == pieces.len())?;
         if !self.tracing.accelerances.is_empty() {
             return None;

@@ -1,22 +1,21 @@
 //! What a trace found, as text for people and as the panel's model; its JSON (`orthopanel.trace/2`) is the layer's own.
 
+mod interruption;
 mod left;
 mod lists;
 mod places;
 mod sentences;
 mod tables;
 
-use std::path::Path;
-
-use orthopanel_data::{ImpactTest, KnownConstant};
-use orthopanel_identify::{
-    AcceleranceFit, IdentifyError, Progress, Removed, Settings, Tracing, Verdict, trace_against, trace_with,
-};
+use orthopanel_data::KnownConstant;
+use orthopanel_identify::{AcceleranceFit, Progress, Removed, Settings, Tracing, Verdict, trace_against, trace_with};
 use orthopanel_model::{CUBIC_STIFFNESS, Damping, PanelModel, Place};
 use serde_json::Value;
 
 use crate::identified::{ASSUMED_DAMPING, base_models, to_digits};
-use crate::{console, notes, progress};
+use crate::notes::note;
+use crate::observer::{Observer, Steps};
+use crate::{Error, Model, Silent, Test, json};
 pub use places::found_places;
 pub use tables::{RANKING_HEADINGS, comparison, effect_rows, ranking_rows};
 
@@ -28,43 +27,68 @@ const DAMPING_STD: &str = "damping_std";
 
 const DAMPING: &str = "with the effects, the ratios of the measured modes less what dashpots and windows among the effects bring; beyond \
                                 their geometric mean";
-/// A trace of a test.
+/// What the model of a test lacks.
 pub struct Traced {
-    pub tracing: Tracing,
+    pub(crate) tracing: Tracing,
 }
 
 impl Traced {
-    /// Traces, against a sound panel of the same make where there is one; shows on standard error how far it is, and says what was noted.
-    pub fn from_test(test: &ImpactTest, reference: Option<&ImpactTest>) -> Result<Self, IdentifyError> {
+    /// Traces, against a sound panel of the same make where there is one; says what was noted.
+    pub(crate) fn of(test: &Test, reference: Option<&Test>, observer: &dyn Observer) -> Result<Self, Error> {
+        let path = test.path();
+        let test = test.content();
         let mut tracing = {
-            let shown = progress::counted("tracing what the model lacks");
-            let tell = |at: Progress| shown.at(at.done, at.of, at.effect);
-            match reference {
-                Some(reference) => trace_against(test, reference, &tell)?,
-                None => trace_with(test, &tell)?,
-            }
+            let shown = observer.begin("tracing what the model lacks", Steps::Named);
+            let tell = |at: Progress| {
+                shown.at(at.done, at.of, at.effect);
+                interruption::heed(observer);
+            };
+            let traced = interruption::caught(|| match reference {
+                Some(reference) => trace_against(test, reference.content(), &tell),
+                None => trace_with(test, &tell),
+            })?;
+            traced.map_err(|source| Error::Identify { path: path.into(), source })?
         };
         for panel in tracing.panels.iter_mut().filter(|panel| panel.damping == Damping::default()) {
             // Lists tell no damping, and a panel without any would ring for ever.
             panel.damping.beyond = ASSUMED_DAMPING;
             panel.provenance.insert("damping".into(), "assumed, not measured".into());
         }
-        notes::say("", &tracing.notes);
+        note(observer, "", &tracing.notes);
         let is_prior = |known: &KnownConstant| matches!(known, KnownConstant::Prior { .. });
         if test.known_constants.values().any(is_prior) || test.pieces.iter().any(|piece| !piece.doubt.is_none()) {
             let what = "priors of constants and standard deviations of sizes and mass count in `identify`; a trace goes by the data alone";
-            notes::say("", &[what.to_owned()]);
+            note(observer, "", &[what.to_owned()]);
         }
         Ok(Self { tracing })
     }
 
-    /// As [`Traced::from_test`] where tracing is not all that was asked for: of a test that it refuses the sentence that
-    /// says so, which goes to standard error too.
-    pub fn where_possible(test: &ImpactTest, reference: Option<&ImpactTest>, path: &Path) -> Result<Self, String> {
-        Self::from_test(test, reference).map_err(|error| {
-            console::say(format_args!("not traced: {}: {error}", path.display()));
-            format!("Not traced: {error}.")
-        })
+    /// As [`Traced::of`] where tracing is not all that was asked for: of a test that it refuses the sentence that says so.
+    ///
+    /// # Errors
+    /// [`Error::Interrupted`].
+    pub(crate) fn where_possible(
+        test: &Test,
+        reference: Option<&Test>,
+        observer: &dyn Observer,
+    ) -> Result<Result<Self, String>, Error> {
+        match Self::of(test, reference, observer) {
+            Err(Error::Identify { path, source }) => {
+                observer.say(&format!("not traced: {}: {source}", path.display()));
+                Ok(Err(format!("Not traced: {source}.")))
+            }
+            traced => traced.map(Ok),
+        }
+    }
+
+    /// Verdict, effects, errors, candidates and the next experiment.
+    pub fn tracing(&self) -> &Tracing {
+        &self.tracing
+    }
+
+    /// One JSON object (`orthopanel.trace/2`) on one line.
+    pub fn to_json(&self) -> String {
+        json::line(&self.tracing)
     }
 
     /// The panels with the effects that were found and are theirs; `None` where no effect was found, or none that explains
@@ -76,7 +100,7 @@ impl Traced {
 
     /// The accelerance of the model with the effects from one place to another; `None` where no effect was found, and
     /// where one makes of each hit something else.
-    pub fn accelerance_of(&self, places: (Place, Place)) -> Option<&AcceleranceFit> {
+    pub(crate) fn accelerance_of(&self, places: (Place, Place)) -> Option<&AcceleranceFit> {
         let effects = &self.tracing.effects;
         if effects.is_empty() || effects.iter().any(|effect| effect.id == CUBIC_STIFFNESS) {
             return None;
@@ -92,7 +116,7 @@ impl Traced {
     /// The identified models with what the trace found, where it explains the data: its constants, its damping and the
     /// panel's own effects. Effects of rig and measuring chain are in none of them. Each tells the verdict and what was taken
     /// out.
-    pub fn applied_to(&self, models: &[PanelModel]) -> Vec<PanelModel> {
+    pub(crate) fn applied_to(&self, models: &[PanelModel]) -> Vec<PanelModel> {
         let mut models = models.to_vec();
         let hit = self.tracing.accelerances.first().map(|record| record.piece);
         for (piece, (model, panel)) in models.iter_mut().zip(self.panels().unwrap_or_default()).enumerate() {
@@ -121,17 +145,37 @@ impl Traced {
         models
     }
 
-    /// The models of the test as `run` would write them.
+    /// The models of the test after tracing, one a piece: effects of the panel stay in them, those of rig and measuring chain are
+    /// taken out. Where no effect explains the data, they are those of the base model.
     ///
     /// # Errors
-    /// Where no effect explains the data, what refuses the base model, which is then all that could be written.
-    pub fn models(&self, test: &ImpactTest) -> Result<Vec<PanelModel>, IdentifyError> {
+    /// [`Error::Identify`] where no effect explains the data and the base model is refused.
+    pub fn models(&self, test: &Test) -> Result<Vec<Model>, Error> {
+        self.models_with(test, &Silent)
+    }
+
+    /// As [`Traced::models`], told to an observer.
+    ///
+    /// # Errors
+    /// As [`Traced::models`].
+    pub fn models_with(&self, test: &Test, observer: &dyn Observer) -> Result<Vec<Model>, Error> {
+        let of = |panels: Vec<PanelModel>| panels.into_iter().map(|panel| Model::of(panel, test.path())).collect();
         // The panels of the trace hold constants beside effects that explain nothing.
         if self.tracing.verdict == Verdict::Unexplained {
-            let _shown = progress::spinner("identifying the base model");
-            return Ok(self.applied_to(&base_models(test, Settings::default())?));
+            let _shown = observer.begin("identifying the base model", Steps::Unknown);
+            let base = base_models(test.content(), Settings::default());
+            let base = base.map_err(|source| Error::Identify { path: test.path().into(), source })?;
+            return Ok(of(self.applied_to(&base)));
         }
-        Ok(self.applied_to(&self.tracing.panels))
+        Ok(of(self.applied_to(&self.tracing.panels)))
+    }
+
+    /// As [`Traced::models_with`], each behind `-NAME` of its piece, safe in file names, where there are several.
+    ///
+    /// # Errors
+    /// As [`Traced::models`].
+    pub fn named_models(&self, test: &Test, observer: &dyn Observer) -> Result<Vec<(String, Model)>, Error> {
+        Ok(test.suffixes().zip(self.models_with(test, observer)?).collect())
     }
 
     /// Effects of rig and measuring chain that the models that are written do not have: found ones only where they explain

@@ -12,7 +12,7 @@ const REGION: f64 = 2.448;
 
 impl Traced {
     /// A sentence an effect that sits somewhere: "Shear stiffness lost over about 0.10 m around x = 0.21, y = -0.08 m (95 %: ...)."
-    pub fn places(&self) -> impl Iterator<Item = String> {
+    pub(crate) fn places(&self) -> impl Iterator<Item = String> {
         self.tracing.effects.iter().filter_map(sentence)
     }
 }

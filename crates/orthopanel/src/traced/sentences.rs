@@ -43,7 +43,7 @@ impl Traced {
     }
 
     /// By how much the model misses beside noise, where that was estimated.
-    pub fn model_error(&self) -> Option<String> {
+    pub(crate) fn model_error(&self) -> Option<String> {
         let of = self.tracing.model_error?;
         let percent = |part: f64| format!("{} %", to_digits(100.0 * part, 2));
         let residues = of.residue.map_or(String::new(), |residue| format!(" and residues by {}", percent(residue)));
@@ -51,7 +51,7 @@ impl Traced {
     }
 
     /// What a reference took off the model's error.
-    pub fn shared_model_error(&self) -> Option<String> {
+    pub(crate) fn shared_model_error(&self) -> Option<String> {
         let SharedModelError { modes, reference, suspect, suspect_less_reference } = self.tracing.shared_model_error?;
         let percent = |part: f64| format!("{} %", to_digits(100.0 * part, 2));
         let verdict = if suspect_less_reference < suspect {
@@ -69,7 +69,7 @@ impl Traced {
     }
 
     /// From which size on a disbond would have been named.
-    pub fn detectable(&self) -> Option<String> {
+    pub(crate) fn detectable(&self) -> Option<String> {
         let Detectable { loss, at_half_of_the_places, anywhere, places, most, .. } = self.tracing.detectable?;
         let whole = format!("A disbond that loses {:.0} % of the shear stiffness", 100.0 * loss);
         let millimetres = |side: f64| format!("{:.0} mm", 1e3 * side);
@@ -96,7 +96,7 @@ impl Traced {
     }
 
     /// What the panel's model keeps of the effects found, and what was taken out and why.
-    pub fn ownership(&self) -> Vec<String> {
+    pub(crate) fn ownership(&self) -> Vec<String> {
         // Pieces have their effects in common.
         let mut kept: Vec<&str> = Vec::new();
         for effect in self.panels().unwrap_or_default().iter().flat_map(|panel| &panel.effects) {

@@ -74,7 +74,7 @@ const LISTED: usize = 10;
 impl Traced {
     /// Constants of the panel beside the effects that were found: those of the model that is written; none where no
     /// effect was found.
-    pub fn constant_rows(&self) -> Vec<Vec<String>> {
+    pub(crate) fn constant_rows(&self) -> Vec<Vec<String>> {
         let row = |(name, of): (&String, &Estimate)| {
             let std = of.std.map_or("held".into(), |std| format!("{std:.1e}"));
             let unit = if name == "nu_xy" { "" } else { "Pa" };
@@ -84,11 +84,11 @@ impl Traced {
     }
 
     /// The same as numbers.
-    pub fn constants(&self) -> impl Iterator<Item = (&String, &Estimate)> {
+    pub(crate) fn constants(&self) -> impl Iterator<Item = (&String, &Estimate)> {
         self.panels().and_then(|panels| panels.first()).into_iter().flat_map(|panel| &panel.constants)
     }
 
-    /// Verdict, effects, errors, ranking, ownership and the next experiment.
+    /// For people: verdict, effects, errors, ranking, ownership and the next experiment.
     pub fn text(&self) -> String {
         let tracing = &self.tracing;
         let mut text = self.verdict() + "\n";

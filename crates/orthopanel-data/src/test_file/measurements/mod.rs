@@ -3,6 +3,7 @@
 mod files;
 mod frequencies;
 mod places;
+mod record_arrays;
 mod record_files;
 mod recorded;
 mod recorded_response;
@@ -54,22 +55,30 @@ pub(super) fn measurements(
     (given, band): (Vec<Spanned<syntax::Measurement>>, Option<Spanned<[f64; 2]>>),
     pieces: &[NamedPiece],
 ) -> Result<Vec<Measurement>, DataError> {
-    if given.is_empty() {
-        let remedy = "write at least one [[measurement]] with kind, and values or file";
-        return Err(DataError::Missing { at: source.whole("measurement"), remedy });
-    }
     let at = || source.at(given.first().map_or(0..0, Spanned::span), "measurement");
     source.at_most((given.len(), "measurements"), limits::MEASUREMENTS, at, "put some into a test of their own")?;
     let band = band.map(|band| source.band(&band, "band")).transpose()?;
-    let read = |(index, entry): (usize, Spanned<syntax::Measurement>)| {
-        Entry { source, key: format!("measurement[{}]", index + 1), span: entry.span() }.read(
-            entry.into_inner(),
-            pieces,
-            band,
-        )
-    };
+    let read = |(index, entry)| one(source, index, entry, (pieces, band));
     let read: Vec<Vec<Measurement>> = given.into_iter().enumerate().map(read).collect::<Result<_, _>>()?;
     let read: Vec<Measurement> = read.into_iter().flatten().collect();
+    count(source, &read)?;
+    files_at_most(source, &read)?;
+    Ok(read)
+}
+
+/// What `measurement[index + 1]` holds.
+pub(super) fn one(
+    source: &Source,
+    index: usize,
+    entry: Spanned<syntax::Measurement>,
+    (pieces, band): (&[NamedPiece], Option<[f64; 2]>),
+) -> Result<Vec<Measurement>, DataError> {
+    let key = format!("measurement[{}]", index + 1);
+    Entry { source, key, span: entry.span() }.read(entry.into_inner(), pieces, band)
+}
+
+/// Refuses more measurements, or frequencies in all of them, than are taken.
+pub(super) fn count(source: &Source, read: &[Measurement]) -> Result<(), DataError> {
     let whole = || source.whole("measurement");
     source.at_most(
         (read.len(), "files of measurements"),
@@ -83,9 +92,7 @@ pub(super) fn measurements(
     };
     let (count, most) = (read.iter().map(listed).sum(), limits::FREQUENCIES_OF_TEST);
     let at = || source.whole("measurement");
-    source.at_most((count, "natural frequencies in all"), most, at, "put some pieces into a test of their own")?;
-    files_at_most(source, &read)?;
-    Ok(read)
+    source.at_most((count, "natural frequencies in all"), most, at, "put some pieces into a test of their own")
 }
 
 /// Refuses files of records that are too large together.

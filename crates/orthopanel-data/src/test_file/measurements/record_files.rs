@@ -2,16 +2,23 @@
 
 use super::RecordedResponse;
 use crate::{
-    DataError,
+    DataError, Motion, Unit,
     records::{Quantity, Record, RecordFile, RecordKind, data_type, quantity},
 };
 
 impl RecordedResponse {
-    /// The records of the measurement's files; where there are two, force and response in turn.
+    /// The records of the measurement's files; where there are two, force and response in turn. Of records in memory a copy.
     ///
     /// # Errors
     /// As [`RecordFile::read`].
     pub fn records(&self) -> Result<RecordFile, DataError> {
+        if let Some(records) = &self.in_memory {
+            let mut file = RecordFile::clone(records);
+            let in_time = file.records.iter_mut().filter(|record| record.kind == RecordKind::Time);
+            let untold = in_time.filter(|record| quantity(&record.numerator) == Quantity::Untold);
+            untold.for_each(|record| record.numerator.data_type = self.data_type());
+            return Ok(file);
+        }
         let columns = self.columns.as_ref();
         let file = RecordFile::read_columns(&self.file, columns)?;
         let Some(response_file) = &self.response_file else { return Ok(file) };
@@ -35,5 +42,15 @@ impl RecordedResponse {
         }
         records.extend(motions);
         Ok(RecordFile { records, notes, nodes })
+    }
+
+    /// The data type of the motion that the measurement declares, an acceleration where it declares none.
+    pub(crate) fn data_type(&self) -> i64 {
+        let by_unit = self.response_unit.as_ref().and_then(Unit::motion);
+        match self.quantity.or(by_unit).unwrap_or(Motion::Acceleration) {
+            Motion::Acceleration => data_type::ACCELERATION,
+            Motion::Velocity => data_type::VELOCITY,
+            Motion::Displacement => data_type::DISPLACEMENT,
+        }
     }
 }

@@ -16,7 +16,8 @@ impl Entry<'_> {
         piece: &Piece,
         band: Option<[f64; 2]>,
     ) -> Result<Vec<RecordedResponse>, DataError> {
-        let name = self.needed(entry.file.as_ref(), "file", "name a .uff or .csv file beside the test file")?;
+        let needed = || self.needed(entry.file.as_ref(), "file", "name a .uff or .csv file beside the test file");
+        let name = entry.given.is_none().then(needed).transpose()?;
         let given = |place: &Option<Spanned<[f64; 2]>>, key: &str| {
             place.as_ref().map(|place| self.place(place, key, piece)).transpose()
         };
@@ -77,6 +78,10 @@ impl Entry<'_> {
             band: self.band(entry.band.as_ref(), "band")?.or(band),
             columns: self.columns(entry.columns.as_ref())?,
             ..RecordedResponse::new("", [Place { x: 0.0, y: 0.0 }; 2])
+        };
+        let name = match (name, &entry.given) {
+            (Some(name), _) => name,
+            (None, given) => return Ok(given.iter().map(|given| RecordedResponse::clone(given)).collect()),
         };
         let mut measured = Vec::new();
         for MeasuredFile { file, response_file } in self.files(name)? {

@@ -3,17 +3,20 @@
 use std::{
     fmt,
     path::{Path, PathBuf},
+    sync::Arc,
 };
 
 use orthopanel_model::Place;
 
-use crate::{DeclaredColumns, Motion, Unit};
+use crate::{DeclaredColumns, Motion, RecordFile, Unit};
 
-/// A file of records and where they were taken.
+/// A file of records, or records in memory, and where they were taken.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RecordedResponse {
-    /// The file, beside the test file unless absolute.
+    /// The file, beside the test file unless absolute; of records in memory what messages call them.
     pub file: PathBuf,
+    /// The records themselves, where they are in no file.
+    pub in_memory: Option<Arc<RecordFile>>,
     /// The file of the motion, where `file` holds the force alone.
     pub response_file: Option<PathBuf>,
     /// The file that placed its nodes, where one did.
@@ -59,6 +62,7 @@ impl RecordedResponse {
     pub fn new(file: impl Into<PathBuf>, [force_at, response_at]: [Place; 2]) -> Self {
         Self {
             file: file.into(),
+            in_memory: None,
             response_file: None,
             places_file: None,
             columns: None,
@@ -81,10 +85,11 @@ impl RecordedResponse {
         }
     }
 
-    /// The files that it takes, that of the force first.
+    /// The files that it takes, that of the force first; none of records in memory.
     pub fn files(&self) -> impl Iterator<Item = &Path> {
         let others = self.response_file.as_deref().into_iter().chain(self.places_file.as_deref());
-        std::iter::once(self.file.as_path()).chain(others)
+        let own = self.in_memory.is_none().then_some(self.file.as_path());
+        own.into_iter().chain(others)
     }
 }
 

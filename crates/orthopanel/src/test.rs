@@ -1,0 +1,125 @@
+//! A test: what was measured on which pieces, from a file or from memory.
+
+use std::path::{Path, PathBuf};
+
+use orthopanel_data::ImpactTest;
+use orthopanel_identify::Settings;
+
+use crate::identified::suffixes;
+use crate::{Error, Identified, Observer, Silent, Traced, given_file};
+
+/// A hammer test, read and checked.
+///
+/// # Examples
+/// ```
+/// let test = orthopanel::Test::load("../../examples/piece-1/test.toml")?;
+/// let fit = test.identify()?;
+/// let e_x = fit.constant("e_x").expect("a beam has it");
+/// // The paper's table 4.
+/// assert!((e_x.value / 1.07e10 - 1.0).abs() < 1e-3);
+/// # Ok::<(), orthopanel::Error>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct Test {
+    content: ImpactTest,
+    path: PathBuf,
+}
+
+impl Test {
+    /// Reads the test file at `path`; a folder stands for the `test.toml` in it. Records that it names are read when they are needed.
+    ///
+    /// # Errors
+    /// [`Error::Data`] with file, line and key, and [`Error::OtherKind`] for a file that is something else.
+    pub fn load(path: impl AsRef<Path>) -> Result<Self, Error> {
+        let path = path.as_ref();
+        Ok(Self { content: given_file::read_test(path)?, path: path.into() })
+    }
+
+    /// Reads the text of a test file; `path` names it in messages, and files that it names are looked for beside it.
+    ///
+    /// # Errors
+    /// [`Error::Data`] with line and key.
+    ///
+    /// # Examples
+    /// ```
+    /// let text = "
+    ///     [piece]
+    ///     length = 0.8          # m
+    ///     width = 0.1           # m
+    ///     thickness = 0.03      # m
+    ///     mass_per_area = 6.88  # kg/m2
+    ///     [[measurement]]
+    ///     kind = 'natural-frequencies'
+    ///     values = [321.3, 837.5, 1520.0, 2312.5, 3150.0, 3987.5] # Hz
+    /// ";
+    /// let test = orthopanel::Test::from_toml(text, "piece-1")?;
+    /// assert_eq!(test.identify()?.models().len(), 1);
+    /// # Ok::<(), orthopanel::Error>(())
+    /// ```
+    pub fn from_toml(text: &str, path: impl Into<PathBuf>) -> Result<Self, Error> {
+        let path = path.into();
+        Ok(Self { content: ImpactTest::from_toml(text, &path)?, path })
+    }
+
+    /// A test that was put together in memory; `name` stands for its file in messages.
+    pub fn of(content: ImpactTest, name: impl Into<PathBuf>) -> Self {
+        Self { content, path: name.into() }
+    }
+
+    /// What was tested, how it was held, and what was measured.
+    pub fn content(&self) -> &ImpactTest {
+        &self.content
+    }
+
+    /// `-NAME` of each piece where there are several, safe in file names; nothing for a single one.
+    pub fn suffixes(&self) -> impl Iterator<Item = String> {
+        suffixes(&self.content)
+    }
+
+    /// As the test was named.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// The constants of the panel, and its damping where there are records.
+    ///
+    /// # Errors
+    /// [`Error::Identify`]; [`Error::says_no`] tells data that contradict the model from a test that is not as it should be.
+    pub fn identify(&self) -> Result<Identified, Error> {
+        self.identify_with(Settings::default(), &Silent)
+    }
+
+    /// As [`Test::identify`], with other settings, and told to an observer.
+    ///
+    /// # Errors
+    /// As [`Test::identify`].
+    pub fn identify_with(&self, settings: Settings, observer: &dyn Observer) -> Result<Identified, Error> {
+        Identified::of(self, settings, observer)
+    }
+
+    /// The effect that the model lacks.
+    ///
+    /// # Errors
+    /// [`Error::Identify`].
+    ///
+    /// # Examples
+    /// ```
+    /// let test = orthopanel::Test::load("../../examples/piece-1/test.toml")?;
+    /// let why = test.trace()?;
+    /// println!("{}", why.text());
+    /// let error = &why.tracing().error;
+    /// assert!(error.after.fitted <= error.before.fitted);
+    /// # Ok::<(), orthopanel::Error>(())
+    /// ```
+    pub fn trace(&self) -> Result<Traced, Error> {
+        self.trace_with(None, &Silent)
+    }
+
+    /// As [`Test::trace`], against a sound panel of the same make where there is one, and told to an observer.
+    ///
+    /// # Errors
+    /// [`Error::Identify`], and [`Error::Interrupted`] where the observer asks for it.
+    pub fn trace_with(&self, reference: Option<&Test>, observer: &dyn Observer) -> Result<Traced, Error> {
+        Traced::of(self, reference, observer)
+    }
+}
