@@ -61,6 +61,14 @@ pub enum Error {
     /// A test file or its records.
     #[error(transparent)]
     Data(#[from] DataError),
+    /// A table of a lot.
+    #[error("{}: {source}", .path.display())]
+    Lot {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        source: crate::lot::TableError,
+    },
     /// A test that cannot be identified or traced.
     #[error("{}: {source}", .path.display())]
     Identify {
@@ -190,6 +198,7 @@ impl Error {
             | Self::Unwritable { path, .. }
             | Self::OutputIsInput { path, .. }
             | Self::Changed { path }
+            | Self::Lot { path, .. }
             | Self::Identify { path, .. }
             | Self::NoModel { path, .. }
             | Self::Model { path, .. }

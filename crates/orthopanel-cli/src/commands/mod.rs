@@ -1,9 +1,11 @@
 //! One file a command.
 
 pub mod accelerance;
+pub mod batch;
 pub mod export;
 pub mod identify;
 pub mod init;
+pub mod lot;
 pub mod modes;
 pub mod records;
 pub mod report;
@@ -38,6 +40,8 @@ enum Command {
     Export(export::Arguments),
     Simulate(simulate::Arguments),
     Report(report::Arguments),
+    Batch(batch::Arguments),
+    Lot(lot::Arguments),
 }
 
 /// `words` are those after the program's name, for a manifest.
@@ -53,6 +57,8 @@ pub fn execute(arguments: Arguments, words: &[String]) -> Result<(), CommandErro
         Command::Export(arguments) => export::execute(&arguments, words),
         Command::Simulate(arguments) => simulate::execute(&arguments, words),
         Command::Report(arguments) => report::execute(&arguments, words),
+        Command::Batch(arguments) => batch::execute(&arguments, words),
+        Command::Lot(arguments) => lot::execute(&arguments, words),
     }
 }
 

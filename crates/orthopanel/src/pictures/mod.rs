@@ -3,6 +3,7 @@
 mod accelerance;
 mod beam_mode_shapes;
 mod coherence;
+mod control_chart;
 mod curve;
 mod cut;
 mod envelope;
@@ -19,6 +20,7 @@ mod time_history;
 pub use accelerance::accelerance;
 pub use beam_mode_shapes::{ModeShape, beam_mode_shapes};
 pub use coherence::coherence;
+pub use control_chart::control_chart;
 pub use cut::cut;
 pub use frequencies::frequencies;
 pub use measured_accelerance::measured_accelerance;

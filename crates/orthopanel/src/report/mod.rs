@@ -16,7 +16,7 @@ use crate::identified::Identified;
 use crate::traced::Traced;
 use crate::{Test, notes};
 use pieces::PieceSection;
-use table::Table;
+pub(crate) use table::Table;
 use trace::TraceSection;
 
 /// The page; askama escapes every text that is put into it, but for the pictures.
@@ -37,13 +37,13 @@ struct Page {
 }
 
 /// A picture with what it shows.
-struct Figure {
-    svg: String,
-    caption: String,
+pub(crate) struct Figure {
+    pub(crate) svg: String,
+    pub(crate) caption: String,
 }
 
 impl Figure {
-    fn new(svg: &str, caption: impl Into<String>) -> Self {
+    pub(crate) fn new(svg: &str, caption: impl Into<String>) -> Self {
         Self { svg: svg.to_owned(), caption: caption.into() }
     }
 }

@@ -1,0 +1,56 @@
+//! A lot's table at its place.
+
+use std::io::Write as _;
+use std::path::Path;
+
+use super::TableError;
+use super::{Format, LotRow, read, written};
+use crate::Error;
+
+fn of(path: &Path) -> impl FnOnce(TableError) -> Error {
+    let path = path.to_owned();
+    |source| Error::Lot { path, source }
+}
+
+/// The rows of the table at `path`.
+///
+/// # Errors
+/// [`Error::Unreadable`], and [`Error::Lot`] for what is none.
+pub fn load(path: &Path) -> Result<Vec<LotRow>, Error> {
+    let format = Format::of(path).map_err(of(path))?;
+    let content = std::fs::read(path).map_err(|source| Error::Unreadable { path: path.into(), source })?;
+    read(content, format).map_err(of(path))
+}
+
+/// As [`load`]; nothing where there is no file yet.
+///
+/// # Errors
+/// As [`load`].
+pub fn known(path: &Path) -> Result<Vec<LotRow>, Error> {
+    Format::of(path).map_err(of(path))?;
+    if path.exists() { load(path) } else { Ok(vec![]) }
+}
+
+/// What is to stand in the file at `path`.
+///
+/// # Errors
+/// [`Error::Lot`].
+pub fn content(path: &Path, rows: &[LotRow]) -> Result<Vec<u8>, Error> {
+    Format::of(path).and_then(|format| written(rows, format)).map_err(of(path))
+}
+
+/// Puts the table at `path`, in place of an earlier one at once.
+///
+/// # Errors
+/// As [`content`], and [`Error::Unwritable`].
+pub fn save(path: &Path, rows: &[LotRow]) -> Result<(), Error> {
+    let content = content(path, rows)?;
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let put = || -> std::io::Result<()> {
+        let mut file = tempfile::NamedTempFile::new_in(folder)?;
+        file.write_all(&content)?;
+        file.persist(path)?;
+        Ok(())
+    };
+    put().map_err(|error| Error::Unwritable { path: path.into(), reason: error.to_string(), kind: error.kind() })
+}
