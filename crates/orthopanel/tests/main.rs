@@ -7,6 +7,7 @@
 mod bad_input;
 mod bad_records;
 mod commands;
+mod covariance;
 mod declared_effects;
 mod first_steps;
 mod foreign_fmu;

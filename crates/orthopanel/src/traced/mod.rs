@@ -99,6 +99,7 @@ impl Traced {
             model.structure = panel.structure;
             model.constants.clone_from(&panel.constants);
             model.damping.clone_from(&panel.damping);
+            model.correlation.clone_from(&panel.correlation);
             model
                 .provenance
                 .extend(panel.provenance.get_key_value(DAMPING_STD).map(|(key, std)| (key.clone(), std.clone())));
