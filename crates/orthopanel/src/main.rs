@@ -17,6 +17,7 @@ mod json;
 mod measured_pairs;
 mod model_file;
 mod notes;
+mod origin;
 mod outputs;
 mod pictures;
 mod progress;

@@ -14,6 +14,7 @@ mod foreign_fmu;
 mod limits;
 mod outputs;
 mod plate;
+mod provenance;
 mod readme;
 mod records;
 mod report;

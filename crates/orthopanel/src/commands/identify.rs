@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use crate::error::CommandError;
 use crate::identified::Identified;
+use crate::origin::{Origin, Told};
 use crate::outputs::{Inputs, Outputs};
 use crate::record_options::IdentifyOptions;
 use crate::{console, model_file};
@@ -46,10 +47,15 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
     let Arguments { test: path, output, options, json } = arguments;
     let (inputs, test) = Inputs::reading_test(path)?;
     let outputs = model_file::planned_each(Outputs::of(inputs)?, output.as_deref(), &test)?;
+    let outputs = if *json { outputs.hashing() } else { outputs };
     let identified = Identified::from_test(&test, path, options)?;
+    let origin = json.then(|| Origin::of(path, &test, outputs.inputs())).transpose()?;
     if let Some(output) = output {
         let models = identified.found.pieces.iter().zip(&identified.models);
         model_file::write_each(outputs, output, models.map(|(fit, model)| (identified.suffix(fit), model)))?;
     }
-    if *json { console::print_json(&identified.answer) } else { console::print(&identified.tables()) }
+    match &origin {
+        Some(provenance) => console::print_json(&Told { answer: &identified.answer, provenance }),
+        None => console::print(&identified.tables()),
+    }
 }

@@ -16,6 +16,7 @@ use crate::evidence::{Evidence, PieceEvidence};
 use crate::force_file::ForceHistory;
 use crate::identified::{Answer, Identified, suffixes};
 use crate::measured_pairs::{HitMisfit, misfit_table};
+use crate::origin::{Origin, Told};
 use crate::outputs::{self, Inputs, Outputs};
 use crate::record_options::IdentifyOptions;
 use crate::reference_option::ReferenceOption;
@@ -33,6 +34,9 @@ use crate::{console, json, pictures, progress, report, time_response};
 /// rig and measuring chain are taken out, and trace.json tells which (see `orthopanel trace --help`). Records that no beam
 /// could give are traced all the same: trace.json and report.html tell what was found, and where it explains them, as by a
 /// plate, its model and FMUs are written too.
+///
+/// Both identified.json and trace.json tell what they are of: the program, the test and its pieces, the date, and the SHA-256 of each file that
+/// was read. SOURCE_DATE_EPOCH in the environment tells another date than today's: so the same inputs give the same bytes.
 ///
 /// A manifest.json lists the results, each with its SHA-256, and what they were made from. What it lists is removed by the
 /// next run into DIR that does not write it anew, unless it was changed since; no other file is, and none that is read. Where
@@ -71,9 +75,9 @@ const MANIFEST: &str = "manifest.json";
 struct RunAnswer<'a> {
     schema: &'static str,
     /// `null` where the records contradict a beam, and only the trace tells what they are of.
-    identified: Option<&'a Answer>,
+    identified: Option<Told<'a, Answer>>,
     /// `null` where the test cannot be traced.
-    trace: Option<&'a Tracing>,
+    trace: Option<Told<'a, Tracing>>,
     /// Why it cannot.
     #[serde(skip_serializing_if = "Option::is_none")]
     not_traced: Option<&'a str>,
@@ -106,8 +110,9 @@ fn make(arguments: &Arguments, holds_earlier: bool) -> Result<(), CommandError> 
     let identified = match Identified::from_test(&test, path, options) {
         Err(refused) => {
             let contradicted = Contradicted::of(test, reference.as_ref(), path, refused)?;
+            let origin = Origin::of(path, &contradicted.test, files.inputs())?;
             let files = (contradicted.traced.explains() || !holds_earlier).then_some(files);
-            return trace_alone(arguments, files, contradicted);
+            return trace_alone(arguments, files, contradicted, &origin);
         }
         Ok(identified) => identified,
     };
@@ -115,7 +120,9 @@ fn make(arguments: &Arguments, holds_earlier: bool) -> Result<(), CommandError> 
     let models =
         traced.as_ref().map_or_else(|_| identified.models.clone(), |traced| traced.applied_to(&identified.models));
     let evidence = Evidence::of(&identified, traced.as_ref().ok(), options.settings()?.estimation, path)?;
-    files.add_inside("identified.json", json::line(&identified.answer));
+    let origin = Origin::of(path, &test, files.inputs())?;
+    let provenance = &origin;
+    files.add_inside("identified.json", json::line(&Told { answer: &identified.answer, provenance }));
     files.add_inside("report.html", report::page(path, &identified, &traced, &evidence)?);
     for ((fit, model), shown) in identified.found.pieces.iter().zip(&models).zip(&evidence.pieces) {
         let suffix = identified.suffix(fit);
@@ -123,7 +130,7 @@ fn make(arguments: &Arguments, holds_earlier: bool) -> Result<(), CommandError> 
         add_pictures(&mut files, &suffix, shown);
     }
     if let Ok(traced) = &traced {
-        files.add_inside("trace.json", json::line(&traced.tracing));
+        files.add_inside("trace.json", json::line(&Told { answer: &traced.tracing, provenance }));
     }
     let hits = &evidence.hits()[..];
     if !hits.is_empty() {
@@ -132,9 +139,9 @@ fn make(arguments: &Arguments, holds_earlier: bool) -> Result<(), CommandError> 
     }
     let files = written(files)?;
     if *json {
-        let trace = traced.as_ref().ok().map(|traced| &traced.tracing);
+        let trace = traced.as_ref().ok().map(|traced| Told { answer: &traced.tracing, provenance });
         let not_traced = traced.as_ref().err().map(String::as_str);
-        let identified = Some(&identified.answer);
+        let identified = Some(Told { answer: &identified.answer, provenance });
         console::print_json(&RunAnswer {
             schema: "orthopanel.run/1",
             identified,
@@ -174,7 +181,7 @@ fn names(test: &ImpactTest) -> Vec<String> {
             format!("frequencies{suffix}.svg"),
             format!("coherence{suffix}.svg"),
         ];
-        let pairs = test.files().count().max(1);
+        let pairs = test.measurements.len();
         let numbers = (0..pairs).map(|index| numbered(index, pairs)).chain([numbered(0, 1)]);
         let of_pairs = ["accelerance", "time-history", "cut"];
         let pictures: Vec<_> =
@@ -185,12 +192,18 @@ fn names(test: &ImpactTest) -> Vec<String> {
 }
 
 /// What there is of a test whose base model was refused; `files` is `None` where results of an earlier run are to stay.
-fn trace_alone(arguments: &Arguments, files: Option<Outputs>, contradicted: Contradicted) -> Result<(), CommandError> {
+fn trace_alone(
+    arguments: &Arguments,
+    files: Option<Outputs>,
+    contradicted: Contradicted,
+    provenance: &Origin,
+) -> Result<(), CommandError> {
     let Arguments { test: path, options, json, .. } = arguments;
     let Contradicted { test, traced, .. } = &contradicted;
+    let trace = Told { answer: &traced.tracing, provenance };
     let files = match files {
         Some(mut files) => {
-            files.add_inside("trace.json", json::line(&traced.tracing));
+            files.add_inside("trace.json", json::line(&trace));
             files.add_inside("report.html", contradicted.page(path, options)?);
             if traced.explains() {
                 for (suffix, model) in suffixes(test).zip(&traced.applied_to(&traced.tracing.panels)) {
@@ -202,7 +215,7 @@ fn trace_alone(arguments: &Arguments, files: Option<Outputs>, contradicted: Cont
         None => Vec::new(),
     };
     if *json {
-        let trace = Some(&traced.tracing);
+        let trace = Some(trace);
         console::print_json(&RunAnswer {
             schema: "orthopanel.run/1",
             identified: None,

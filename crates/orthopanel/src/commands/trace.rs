@@ -6,6 +6,7 @@ use orthopanel_data::ImpactTest;
 
 use crate::error::CommandError;
 use crate::identified::suffixes;
+use crate::origin::{Origin, Told};
 use crate::outputs::{Inputs, Outputs};
 use crate::reference_option::ReferenceOption;
 use crate::traced::Traced;
@@ -54,17 +55,18 @@ pub fn execute(arguments: &Arguments) -> Result<(), CommandError> {
     let (inputs, test) = Inputs::reading_test(path)?;
     let (inputs, reference) = reference.read(inputs)?;
     let outputs = model_file::planned_each(Outputs::of(inputs)?, output.as_deref(), &test)?;
+    let outputs = if *json { outputs.hashing() } else { outputs };
     let traced = Traced::from_test(&test, reference.as_ref())
         .map_err(|source| CommandError::Identify { path: path.clone(), source })?;
+    let origin = json.then(|| Origin::of(path, &test, outputs.inputs())).transpose()?;
     let written = match output {
         Some(output) => write_models(outputs, output, &test, path, &traced),
         None => Ok(()),
     };
     // What was found is told even where no model can be written.
-    if *json {
-        console::print_json(&traced.tracing)?
-    } else {
-        console::print(&traced.text())?
+    match &origin {
+        Some(provenance) => console::print_json(&Told { answer: &traced.tracing, provenance })?,
+        None => console::print(&traced.text())?,
     }
     written
 }
