@@ -16,6 +16,7 @@ use crate::identified::{Answer, suffixes};
 use crate::measured_pairs::{HitMisfit, misfit_table};
 use crate::observer::{Observer, Steps};
 use crate::outputs::{self, Inputs, Outputs};
+use crate::provenance::{Provenance, WithProvenance};
 use crate::time_response::{self, Hold};
 use crate::{Error, Silent, Test, json, pictures};
 
@@ -61,6 +62,7 @@ pub struct Run {
     /// How far the base model is from every measured hit.
     hits: Vec<HitMisfit>,
     files: Vec<PathBuf>,
+    provenance: Provenance,
 }
 
 #[derive(Serialize)]
@@ -88,16 +90,17 @@ impl<'a> PlannedRun<'a> {
     pub fn run(self, reference: Option<&Test>, settings: Settings, observer: &dyn Observer) -> Result<Run, Error> {
         let Self { test, mut files, holds_earlier } = self;
         let analysis = Analysis::of(test, reference, settings, observer)?;
+        let provenance = Provenance::of(test, files.inputs())?;
         let explains = analysis.traced().is_ok_and(|traced| traced.explains());
         // A run that finds no model leaves the results of an earlier one as they are.
         if matches!(analysis.found, Found::Contradicted { .. }) && !explains && holds_earlier {
-            return Ok(Run { analysis, hits: vec![], files: vec![] });
+            return Ok(Run { analysis, hits: vec![], files: vec![], provenance });
         }
         let evidence = analysis.evidence(observer)?;
         let page = analysis.page_of(&evidence)?;
         let hits = match &analysis.found {
             Found::Identified { identified, .. } => {
-                files.add_inside("identified.json", identified.to_json());
+                files.add_inside("identified.json", identified.to_json_with(&provenance));
                 files.add_inside("report.html", page);
                 for ((fit, model), shown) in
                     identified.found.pieces.iter().zip(&analysis.panels()).zip(&evidence.pieces)
@@ -107,12 +110,12 @@ impl<'a> PlannedRun<'a> {
                     add_pictures(&mut files, &suffix, shown);
                 }
                 if let Ok(traced) = analysis.traced() {
-                    files.add_inside("trace.json", traced.to_json());
+                    files.add_inside("trace.json", traced.to_json_with(&provenance));
                 }
                 evidence.into_hits()
             }
             Found::Contradicted { traced, .. } => {
-                files.add_inside("trace.json", traced.to_json());
+                files.add_inside("trace.json", traced.to_json_with(&provenance));
                 files.add_inside("report.html", page);
                 for (suffix, model) in suffixes(test.content()).zip(&analysis.panels()) {
                     add_model(&mut files, test.path(), &suffix, model, observer)?;
@@ -125,7 +128,7 @@ impl<'a> PlannedRun<'a> {
             files.add_inside("time-histories.json", json::line(&answer));
         }
         let files = files.write(observer)?;
-        Ok(Run { analysis, hits, files })
+        Ok(Run { analysis, hits, files, provenance })
     }
 }
 
@@ -133,9 +136,9 @@ impl<'a> PlannedRun<'a> {
 struct RunAnswer<'a> {
     schema: &'static str,
     /// `null` where the records contradict a beam, and only the trace tells what they are of.
-    identified: Option<&'a Answer>,
+    identified: Option<WithProvenance<'a, Answer>>,
     /// `null` where the test cannot be traced.
-    trace: Option<&'a orthopanel_identify::Tracing>,
+    trace: Option<WithProvenance<'a, orthopanel_identify::Tracing>>,
     /// Why it cannot.
     #[serde(skip_serializing_if = "Option::is_none")]
     not_traced: Option<&'a str>,
@@ -157,10 +160,13 @@ impl Run {
 
     /// One JSON object (`orthopanel.run/1`) on one line.
     pub fn to_json(&self) -> String {
+        let provenance = &self.provenance;
+        let identified = self.analysis.identified();
+        let traced = self.analysis.traced().ok();
         json::line(&RunAnswer {
             schema: "orthopanel.run/1",
-            identified: self.analysis.identified().map(|identified| &identified.answer),
-            trace: self.analysis.traced().ok().map(|traced| &traced.tracing),
+            identified: identified.map(|identified| WithProvenance { answer: &identified.answer, provenance }),
+            trace: traced.map(|traced| WithProvenance { answer: &traced.tracing, provenance }),
             not_traced: self.analysis.traced().err(),
             hits: &self.hits,
             files: &self.files,
@@ -211,7 +217,7 @@ fn names(test: &Test) -> Vec<String> {
             format!("frequencies{suffix}.svg"),
             format!("coherence{suffix}.svg"),
         ];
-        let pairs = test.files().count().max(1);
+        let pairs = test.measurements.len();
         let numbers = (0..pairs).map(|index| numbered(index, pairs)).chain([numbered(0, 1)]);
         let of_pairs = ["accelerance", "time-history", "cut"];
         let pictures: Vec<_> =

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use orthopanel::Provenance;
 use orthopanel::outputs::Inputs;
 
 use crate::error::CommandError;
@@ -47,11 +48,13 @@ pub fn execute(arguments: &Arguments, words: &[String]) -> Result<(), CommandErr
     let Arguments { test: path, output, options, json } = arguments;
     let (inputs, test) = Inputs::reading_test(path)?;
     let outputs = model_files::planned(terminal::outputs(inputs, words)?, output.as_deref(), &test)?;
+    let outputs = if *json { outputs.hashing() } else { outputs };
     let settings = options.settings()?;
     options.say_if_idle(&test);
     let identified = test.identify_with(settings, &Terminal)?;
+    let provenance = json.then(|| Provenance::of(&test, outputs.inputs())).transpose()?;
     if let Some(output) = output {
         model_files::write(outputs, output, &identified.named_models())?;
     }
-    console::print(&if *json { identified.to_json() } else { identified.text() })
+    console::print(&provenance.map_or_else(|| identified.text(), |provenance| identified.to_json_with(&provenance)))
 }

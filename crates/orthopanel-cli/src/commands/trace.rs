@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
-use orthopanel::Error;
 use orthopanel::outputs::Inputs;
+use orthopanel::{Error, Provenance};
 
 use crate::error::CommandError;
 use crate::reference_option::ReferenceOption;
@@ -53,7 +53,9 @@ pub fn execute(arguments: &Arguments, words: &[String]) -> Result<(), CommandErr
     let (inputs, test) = Inputs::reading_test(path)?;
     let (inputs, reference) = reference.read(inputs)?;
     let outputs = model_files::planned(terminal::outputs(inputs, words)?, output.as_deref(), &test)?;
+    let outputs = if *json { outputs.hashing() } else { outputs };
     let traced = test.trace_with(reference.as_ref(), &Terminal)?;
+    let provenance = json.then(|| Provenance::of(&test, outputs.inputs())).transpose()?;
     let written = match output {
         Some(output) => match traced.named_models(&test, &Terminal) {
             Ok(models) => model_files::write(outputs, output, &models),
@@ -65,6 +67,6 @@ pub fn execute(arguments: &Arguments, words: &[String]) -> Result<(), CommandErr
         None => Ok(()),
     };
     // What was found is told even where no model can be written.
-    console::print(&if *json { traced.to_json() } else { traced.text() })?;
+    console::print(&provenance.map_or_else(|| traced.text(), |provenance| traced.to_json_with(&provenance)))?;
     written
 }

@@ -14,6 +14,7 @@ use crate::error::Error;
 use crate::evidence::Evidence;
 use crate::notes::note;
 use crate::observer::{Observer, Steps};
+use crate::provenance::{Provenance, WithProvenance};
 use crate::{Model, Test, Traced, json, report};
 pub use answer::{Answer, called};
 use measured::MeasuredTable;
@@ -89,6 +90,11 @@ impl Identified {
     /// One JSON object (`orthopanel.identified/1`) on one line.
     pub fn to_json(&self) -> String {
         json::line(&self.answer)
+    }
+
+    /// The same, with what it is of under `provenance`.
+    pub fn to_json_with(&self, provenance: &Provenance) -> String {
+        json::line(&WithProvenance { answer: &self.answer, provenance })
     }
 
     /// `-NAME` where there are several pieces, safe in file names; nothing for a single one.
