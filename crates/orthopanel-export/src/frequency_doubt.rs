@@ -5,8 +5,8 @@ use orthopanel_model::{Estimate, ModeRange, ModelError, PanelModel};
 /// Part of its deviation by which a constant is moved, up and down: frequencies follow it linearly within.
 const MOVE: f64 = 0.1;
 
-/// $\sigma_{f_m}/f_m = \sqrt{\sum_i(\partial\ln f_m/\partial c_i\,\sigma_i)^2}$ of the first `count` flexible modes; a model file tells no
-/// correlation, which identified constants have, so that the true one is as a rule less. Nothing where no constant has a deviation.
+/// $\sigma_{f_m}/f_m = \sqrt{\sum_{ij} g_{im} R_{ij}\,g_{jm}}$, $g_{im} = \partial\ln f_m/\partial c_i\,\sigma_i$, of the first `count` flexible modes, with the
+/// correlation $R$ that the model tells. Nothing where no constant has a deviation.
 ///
 /// # Errors
 /// As [`PanelModel::modes`].
@@ -15,7 +15,7 @@ pub(crate) fn of(panel: &PanelModel, count: usize) -> Result<Vec<f64>, ModelErro
         let modes = panel.modes(ModeRange::Count(count))?;
         Ok(modes.iter().map(|mode| mode.frequency()).filter(|frequency| *frequency > 0.0).collect())
     };
-    let mut variances: Vec<f64> = Vec::new();
+    let mut shares: Vec<(&str, Vec<f64>)> = Vec::new();
     for (name, estimate) in &panel.constants {
         let Some(std) = estimate.std.filter(|std| *std > 0.0) else { continue };
         let moved = |sign: f64| {
@@ -26,12 +26,17 @@ pub(crate) fn of(panel: &PanelModel, count: usize) -> Result<Vec<f64>, ModelErro
         };
         // A deviation that reaches past a bound tells nothing linear.
         let (Ok(up), Ok(down)) = (moved(1.0), moved(-1.0)) else { continue };
-        variances.resize(up.len().max(variances.len()), 0.0);
-        for (variance, (up, down)) in variances.iter_mut().zip(up.iter().zip(&down)) {
-            *variance += ((up / down).ln() / (2.0 * MOVE)).powi(2);
-        }
+        shares.push((name, up.iter().zip(&down).map(|(up, down)| (up / down).ln() / (2.0 * MOVE)).collect()));
     }
-    Ok(variances.into_iter().map(f64::sqrt).collect())
+    let modes = shares.iter().map(|(_, share)| share.len()).max().unwrap_or(0);
+    let variance = |mode: usize| {
+        let at = |share: &[f64]| share.get(mode).copied().unwrap_or(0.0);
+        let row = |(name, share): &(&str, Vec<f64>)| -> f64 {
+            shares.iter().map(|(other, beside)| at(share) * panel.correlation_between(name, other) * at(beside)).sum()
+        };
+        shares.iter().map(row).sum::<f64>().max(0.0)
+    };
+    Ok((0..modes).map(|mode| variance(mode).sqrt()).collect())
 }
 
 #[cfg(test)]
@@ -42,9 +47,9 @@ mod tests {
     /// by the logarithms of both is a half in all.
     #[test]
     fn val_shares_of_both_moduli_make_a_half() {
-        let with = |e: f64, g: f64| {
+        let correlated = |e: f64, g: f64, correlation: &str| {
             let text = format!(
-                r#"{{"schema": "orthopanel.model/1", "structure": "timoshenko-beam", "constants": {{
+                r#"{{{correlation} "schema": "orthopanel.model/1", "structure": "timoshenko-beam", "constants": {{
                 "e_x": {{"value": 1.067e10, "std": {}}}, "g_zx": {{"value": 5.304e8, "std": {}}}}}, "damping": {{"beyond": 0.003}},
                 "piece": {{"length": 0.8, "width": 0.1, "thickness": 0.03, "mass_per_area": 6.88}}}}"#,
                 1.067e10 * e,
@@ -52,11 +57,14 @@ mod tests {
             );
             of(&PanelModel::from_json(&text).unwrap(), 6).unwrap()
         };
+        let with = |e: f64, g: f64| correlated(e, g, "");
         let (by_e, by_g, both) = (with(0.01, 0.0), with(0.0, 0.01), with(0.01, 0.01));
         assert_eq!(by_e.len(), 6);
         for ((e, g), both) in by_e.iter().zip(&by_g).zip(&both) {
             assert!((e + g - 0.005).abs() < 1e-8 && (both - e.hypot(*g)).abs() < 1e-12, "{e} {g} {both}");
         }
         assert!(with(0.0, 0.0).is_empty());
+        let one = correlated(0.01, 0.01, r#""correlation": {"names": ["e_x", "g_zx"], "matrix": [[1, 1], [1, 1]]},"#);
+        assert!(one.iter().all(|share| (share - 0.005).abs() < 1e-8), "{one:?}");
     }
 }

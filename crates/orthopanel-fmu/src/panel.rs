@@ -66,7 +66,10 @@ impl Panel {
     ) -> Result<(Self, Solution), FmuError> {
         let mut model = model.clone();
         model.ports = ports;
+        // The library reads none of these.
         model.provenance.clear();
+        model.damping.std.clear();
+        model.correlation = None;
         connections.check(&model)?;
         let mut panel = Self { model, flexible_modes: 0, residual: None, connections };
         // How many there are is known once they are found; places and integrals follow from the number.

@@ -246,9 +246,10 @@ impl Identification {
                 .filter(of_piece)
                 .map(|constant| (constant.name.to_owned(), estimate(constant)))
                 .collect(),
-            damping: Damping { ratios, beyond: 0.0 },
+            damping: Damping { ratios, beyond: 0.0, ..Damping::default() },
             effects: self.effects.iter().filter(acts).map(TracedEffect::entry).collect(),
             ports,
+            correlation: None,
             provenance: BTreeMap::new(),
         }
     }

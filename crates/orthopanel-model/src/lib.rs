@@ -6,6 +6,7 @@ mod block_pencil;
 mod boundary;
 mod constant;
 mod core_in_frequency;
+mod correlation;
 mod deflection_row;
 mod dense;
 mod effects;
@@ -41,6 +42,7 @@ mod wide;
 
 pub use boundary::{Boundary, End};
 pub use constant::Constant;
+pub use correlation::Correlation;
 pub use deflection_row::{DeflectionRow, RigidMotion};
 pub use effects::{
     Action, CUBIC_STIFFNESS, ChannelFactor, CoreFit, CoreModulus, EXPONENTIAL_WINDOW, Effect, EffectParameter,

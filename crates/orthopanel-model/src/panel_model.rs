@@ -6,7 +6,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::limits;
 use crate::{
-    BEAM_CONSTANTS, Boundary, Constant, EffectState, ModelError, Owner, PLATE_CONSTANTS, Piece, Place, is_identifier,
+    BEAM_CONSTANTS, Boundary, Constant, Correlation, EffectState, ModelError, Owner, PLATE_CONSTANTS, Piece, Place,
+    is_identifier,
 };
 
 /// The schema that this version reads and writes.
@@ -39,8 +40,13 @@ pub struct PanelModel {
     /// Places of force and response.
     #[serde(default)]
     pub ports: Ports,
+    /// How the deviations of constants and damping ratios hang together; independent unless said.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "compact", serde(skip))]
+    pub correlation: Option<Correlation>,
     /// Where the model comes from; free text by key.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    #[cfg_attr(feature = "compact", serde(skip))]
     pub provenance: BTreeMap<String, serde_json::Value>,
 }
 
@@ -124,6 +130,10 @@ pub struct Damping {
     /// $\zeta_1, \zeta_2, \dots$ \[1\].
     #[serde(default)]
     pub ratios: Vec<f64>,
+    /// Standard deviations of `ratios`, in their order, where known \[1\].
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[cfg_attr(feature = "compact", serde(skip))]
+    pub std: Vec<f64>,
     /// Ratio of every mode after the last of `ratios` \[1\].
     #[serde(default)]
     pub beyond: f64,
@@ -159,7 +169,7 @@ pub struct Ports {
 }
 
 /// One effect of the catalogue with its parameters.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct EffectEntry {
     /// Its id in the catalogue.
     pub id: String,
@@ -210,18 +220,25 @@ impl PanelModel {
         Ok(())
     }
 
-    /// Checks the standard deviations, which a file may give; a fit that tells none may leave what is no number.
+    /// Checks standard deviations and correlation, which a file may give; a fit that tells none may leave what is no number.
     pub(crate) fn check_deviations(&self) -> Result<(), ModelError> {
         let of_constants = self.constants.iter().map(|(name, estimate)| (format!("constants.{name}"), estimate));
         let of_effects = self.effects.iter().enumerate().flat_map(|(index, effect)| {
             effect.parameters.iter().map(move |(name, estimate)| (format!("effects[{index}].{name}"), estimate))
         });
-        for (name, Estimate { std, .. }) in of_constants.chain(of_effects) {
-            if let Some(value) = std.filter(|std| !(0.0..f64::INFINITY).contains(std)) {
-                return Err(ModelError::Deviation { name, value });
-            }
+        let of_others =
+            of_constants.chain(of_effects).filter_map(|(name, estimate)| Some((name + ".std", estimate.std?)));
+        let of_damping =
+            self.damping.std.iter().enumerate().map(|(index, std)| (format!("damping.std[{index}]"), *std));
+        if let Some((name, value)) = of_others.chain(of_damping).find(|(_, std)| !(0.0..f64::INFINITY).contains(std)) {
+            return Err(ModelError::Deviation { name, value });
         }
-        Ok(())
+        let (found, ratios) = (self.damping.std.len(), self.damping.ratios.len());
+        if found > ratios {
+            let (what, remedy) = ("damping.std", "leave out those behind the last of damping.ratios");
+            return Err(ModelError::TooMany { found, what, most: ratios, remedy });
+        }
+        self.check_correlation()
     }
 
     /// The model without the effects of rig and measuring chain, which are no part of a panel, and the ids of these.

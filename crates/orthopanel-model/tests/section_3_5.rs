@@ -14,7 +14,7 @@ const CONSTANTS: BeamConstants = BeamConstants { e_x: 1.067e10, g_zx: 5.304e8 };
 const ZETAS: [f64; 6] = [2.364e-3, 1.306e-3, 1.108e-3, 2.251e-3, 5.485e-3, 4.488e-3];
 
 fn damping() -> Damping {
-    Damping { ratios: ZETAS.to_vec(), beyond: 0.0 }
+    Damping { ratios: ZETAS.to_vec(), beyond: 0.0, ..Damping::default() }
 }
 
 /// The places of figures 9 to 12.
@@ -36,6 +36,7 @@ fn exact() -> ModalModel {
         damping: damping(),
         effects: Vec::new(),
         ports: ports(),
+        correlation: None,
         provenance: BTreeMap::new(),
     };
     panel.modal_model(ModeRange::Count(6), &panel.ports.forces, &panel.ports.responses).unwrap()

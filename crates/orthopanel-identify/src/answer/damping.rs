@@ -74,6 +74,6 @@ impl TracedDamping {
         let usual = if logs.is_empty() { WITHOUT_POLES } else { (logs.iter().sum::<f64>() / logs.len() as f64).exp() };
         let ratios = known.iter().map(|one| one.map_or(usual, |(zeta, _)| zeta)).collect();
         let std = known.into_iter().map(|one| one.and_then(|(_, std)| std)).collect();
-        Self { damping: Damping { ratios, beyond: usual }, std }
+        Self { damping: Damping { ratios, beyond: usual, ..Damping::default() }, std }
     }
 }

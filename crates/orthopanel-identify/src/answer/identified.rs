@@ -267,9 +267,10 @@ impl PlateByModes {
                 .zip(values)
                 .map(|(constant, value)| (constant.name.to_owned(), Estimate { value: *value, std: None }))
                 .collect(),
-            damping: Damping { ratios, beyond },
+            damping: Damping { ratios, beyond, ..Damping::default() },
             effects: vec![],
             ports: Ports { forces: forces.clone(), responses: responses.clone() },
+            correlation: None,
             provenance: std::collections::BTreeMap::new(),
         };
         let band = self.measured.band[1];

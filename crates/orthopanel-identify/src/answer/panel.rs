@@ -126,9 +126,10 @@ fn bare(
         boundary,
         structure,
         constants,
-        damping: Damping { ratios: vec![], beyond: 0.0 },
+        damping: Damping { ratios: vec![], beyond: 0.0, ..Damping::default() },
         effects: vec![],
         ports,
+        correlation: None,
         provenance: BTreeMap::new(),
     }
 }
