@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from conftest import BEAM, FORCES, RESPONSES, ZETAS
 from fmpy import simulate_fmu
+from fmpy.sundials import CVodeSolver
 from masters import OUTPUTS, REFUSED, panel
 from modal_sum import modes_at
 
@@ -50,6 +51,53 @@ def test_cvode_gives_what_the_exact_steps_give(fmu):
     found = np.array([result[name] for name in NAMES]).T
     error = np.max(np.abs(found - expected), axis=0) / np.max(np.abs(expected), axis=0)
     assert np.all(error < 1e-6), dict(zip(NAMES, error))
+
+
+PULSE = 2e-3
+
+
+def half_sine(interval):
+    """A half sine of 1 N, sampled."""
+    times = interval * np.arange(round(STOP / interval) + 1)
+    forces = np.where(times < PULSE, np.sin(np.pi * times / PULSE), 0.0)
+    return np.array(list(zip(times, forces)), dtype=[("time", float), ("force_1", float)])
+
+
+def exact_pulse(fmu, interval):
+    """Outputs at multiples of an interval, by exact steps of a microsecond on the chords of the pulse."""
+    fine = half_sine(1e-6)
+    rows = []
+    with panel(fmu) as instance:
+        instance.initialize(force_linear=True)
+        for n, force in enumerate(fine["force_1"][1:]):
+            if n % round(interval / 1e-6) == 0:
+                rows.append(instance.get(*NAMES))
+            instance.set("force_1", force)
+            instance.step(n * 1e-6, 1e-6)
+        rows.append(instance.get(*NAMES))
+    return np.array(rows)
+
+
+def test_cvode_follows_a_sampled_pulse_where_the_master_interpolates_it(export, monkeypatch):
+    """With residual modes, at the tolerance of DefaultExperiment. FMPy's CVode asks for derivatives at a force of the step before, and errs by a third."""
+    fmu = export("pulse.fmu", "--residual", "attachment", forces=FORCES[:1])
+    steps = CVodeSolver.f
+
+    def interpolated(solver, time, states, derivatives, data):
+        solver.input.apply(time)
+        return steps(solver, time, states, derivatives, data)
+
+    expected = exact_pulse(fmu, INTERVAL)
+    errors = []
+    for follows in (steps, interpolated):
+        monkeypatch.setattr(CVodeSolver, "f", follows)
+        result = simulate_fmu(
+            str(fmu), fmi_type="ModelExchange", stop_time=STOP, output_interval=INTERVAL, relative_tolerance=1e-6,
+            input=half_sine(INTERVAL), output=NAMES, record_events=False,
+        )
+        found = np.array([result[name] for name in NAMES]).T
+        errors.append(np.max(np.abs(found - expected), axis=0) / np.max(np.abs(expected), axis=0))
+    assert np.all(errors[1] < 0.02) and np.max(errors[0]) > 0.1, dict(zip(NAMES, zip(*errors)))
 
 
 def test_fmpy_integrates_with_its_own_defaults(fmu):

@@ -138,7 +138,12 @@ impl Library {
             System::Windows => (b"MZ", "a DLL"),
             System::Darwin => (b"\xcf\xfa\xed\xfe", "a Mach-O library of one architecture"),
         };
-        let refuse = |reason| Err(ExportError::Library { platform: platform.to_string(), reason });
+        let refuse = |fault: String| {
+            let reason = format!(
+                "{fault}: build the crate orthopanel-fmu of this version for {platform} (its build-linux and build-windows do)"
+            );
+            Err(ExportError::Library { platform: platform.to_string(), reason })
+        };
         if !content.starts_with(start) {
             return refuse(format!("it is not {kind}"));
         }
@@ -169,7 +174,7 @@ impl Library {
 pub(crate) fn all(options: &FmuOptions, given: &[Library]) -> Result<Vec<(String, Vec<u8>)>, ExportError> {
     for (index, library) in given.iter().enumerate() {
         if given.iter().take(index).any(|before| before.platform == library.platform) {
-            let reason = "it is given twice".into();
+            let reason = "it is given twice: leave one out".into();
             return Err(ExportError::Library { platform: library.platform.to_string(), reason });
         }
     }

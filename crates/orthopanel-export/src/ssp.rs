@@ -81,7 +81,10 @@ impl Fmu {
                 xml.create_element("ssd:Units")
                     .write_inner_content(|xml| UNITS.iter().try_for_each(|one| unit(xml, one)))?;
                 let experiment = [("startTime", "0"), ("stopTime", stop.as_str())];
-                xml.create_element("ssd:DefaultExperiment").with_attributes(experiment).write_empty()?;
+                xml.create_element("ssd:DefaultExperiment").with_attributes(experiment).write_inner_content(|xml| {
+                    xml.create_element("ssd:Annotations").write_inner_content(|xml| results(xml, name))?;
+                    Ok(())
+                })?;
                 Ok(())
             },
         )?;
@@ -160,20 +163,35 @@ impl Fmu {
 
 /// A fixed step for OMSimulator's master.
 fn master(xml: &mut Xml, step: &str) -> io::Result<()> {
+    annotation(xml, |xml| {
+        xml.create_element("oms:SimulationInformation").write_inner_content(|xml| {
+            let attributes = [
+                ("description", "oms-ma"),
+                ("stepSize", step),
+                ("absoluteTolerance", "1e-6"),
+                ("relativeTolerance", "1e-6"),
+            ];
+            xml.create_element("oms:FixedStepMaster").with_attributes(attributes).write_empty().map(|_| ())
+        })?;
+        Ok(())
+    })
+}
+
+/// Where OMSimulator writes results to: without it, it warns of what it calls deprecated.
+fn results(xml: &mut Xml, name: &str) -> io::Result<()> {
+    annotation(xml, |xml| {
+        let file = format!("{name}_res.mat");
+        let attributes =
+            [("resultFile", file.as_str()), ("loggingInterval", "0"), ("bufferSize", "10"), ("signalFilter", "")];
+        xml.create_element("oms:SimulationInformation").with_attributes(attributes).write_empty().map(|_| ())
+    })
+}
+
+/// OMSimulator's own.
+fn annotation(xml: &mut Xml, content: impl FnOnce(&mut Xml) -> io::Result<()>) -> io::Result<()> {
     let kind = ("type", "org.openmodelica");
     xml.create_element("ssc:Annotation").with_attribute(kind).write_inner_content(|xml| {
-        xml.create_element("oms:Annotations").write_inner_content(|xml| {
-            xml.create_element("oms:SimulationInformation").write_inner_content(|xml| {
-                let attributes = [
-                    ("description", "oms-ma"),
-                    ("stepSize", step),
-                    ("absoluteTolerance", "1e-6"),
-                    ("relativeTolerance", "1e-6"),
-                ];
-                xml.create_element("oms:FixedStepMaster").with_attributes(attributes).write_empty().map(|_| ())
-            })?;
-            Ok(())
-        })?;
+        xml.create_element("oms:Annotations").write_inner_content(content)?;
         Ok(())
     })?;
     Ok(())

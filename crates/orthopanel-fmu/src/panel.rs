@@ -66,6 +66,7 @@ impl Panel {
     ) -> Result<(Self, Solution), FmuError> {
         let mut model = model.clone();
         model.ports = ports;
+        // The library reads none of these.
         model.provenance.clear();
         // Nothing here is drawn, and there will be as many ratios as modes are kept.
         model.damping.std.clear();

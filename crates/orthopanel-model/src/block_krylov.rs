@@ -145,7 +145,9 @@ impl BlockKrylov {
     /// Counts the modes that have converged; the largest residual of the lowest `wanted`.
     fn look(&mut self, wanted: usize) -> Option<f64> {
         let found = self.images.len();
-        let projection = Mat::from_fn(found, found, |i, j| self.images[i.max(j)].get(i.min(j)).copied().unwrap_or(0.0));
+        // Beyond what A times an earlier vector reaches stands rounding alone: left out, the eigenproblem is banded.
+        let entry = |low: usize, high: usize| if high < self.images[low].len() { self.images[high][low] } else { 0.0 };
+        let projection = Mat::from_fn(found, found, |i, j| entry(i.min(j), i.max(j)));
         let (thetas, directions) = symmetric_eigen(&projection)?;
         self.thetas = thetas.into_iter().rev().collect();
         self.directions = directions;

@@ -1,5 +1,6 @@
 //! A model file as text: reading it, writing it, and telling a person what is wrong with it.
 
+use std::collections::BTreeMap;
 use std::fmt;
 
 use serde::{
@@ -7,7 +8,7 @@ use serde::{
     de::{Error, MapAccess, Visitor, value::MapAccessDeserializer},
 };
 
-use crate::{Estimate, MODEL_SCHEMA, ModelError, PanelModel};
+use crate::{EffectEntry, Estimate, MODEL_SCHEMA, ModelError, PanelModel};
 
 impl PanelModel {
     /// Reads a model file's text, with or without a byte order mark.
@@ -137,6 +138,37 @@ impl<'de> Deserialize<'de> for Estimate {
             }
         }
         deserializer.deserialize_any(EstimateVisitor)
+    }
+}
+
+// Key by key: serde's `flatten` would buffer the entry, lose its line, and put 20 kB into the library of an FMU.
+impl<'de> Deserialize<'de> for EffectEntry {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct EntryVisitor;
+        impl<'de> Visitor<'de> for EntryVisitor {
+            type Value = EffectEntry;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("an object {..}")
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<EffectEntry, A::Error> {
+                let (mut id, mut owner, mut parameters) = (None, None, BTreeMap::new());
+                while let Some(key) = map.next_key::<String>()? {
+                    match key.as_str() {
+                        "id" => id = Some(map.next_value()?),
+                        "owner" => owner = Some(map.next_value()?),
+                        _ => drop(parameters.insert(key, map.next_value()?)),
+                    }
+                }
+                Ok(EffectEntry {
+                    id: id.ok_or_else(|| A::Error::missing_field("id"))?,
+                    owner: owner.ok_or_else(|| A::Error::missing_field("owner"))?,
+                    parameters,
+                })
+            }
+        }
+        deserializer.deserialize_map(EntryVisitor)
     }
 }
 

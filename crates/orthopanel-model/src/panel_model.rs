@@ -45,8 +45,13 @@ pub struct PanelModel {
     /// Places of force and response.
     #[serde(default)]
     pub ports: Ports,
+    /// How the deviations of constants and damping ratios hang together; independent unless said.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "compact", serde(skip))]
+    pub correlation: Option<Correlation>,
     /// Where the model comes from; free text by key.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    #[cfg_attr(feature = "compact", serde(skip))]
     pub provenance: BTreeMap<String, serde_json::Value>,
 }
 
@@ -169,7 +174,7 @@ pub struct Ports {
 }
 
 /// One effect of the catalogue with its parameters.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct EffectEntry {
     /// Its id in the catalogue.
     pub id: String,

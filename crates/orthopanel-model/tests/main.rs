@@ -16,6 +16,7 @@ mod mindlin_plate_laws;
 mod mindlin_plate_modes;
 mod mindlin_plate_tables;
 mod modal_sums;
+mod model_file;
 mod reduced_structure;
 mod residual_modes;
 mod section_3_5;

@@ -137,6 +137,7 @@ fn bare(
         correlation,
         effects: vec![],
         ports,
+        correlation: None,
         provenance: BTreeMap::new(),
     }
 }

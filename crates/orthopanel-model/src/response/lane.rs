@@ -6,7 +6,8 @@ use std::ops::{Add, Mul, Sub};
 pub(super) const LANES: usize = 4;
 
 /// One number of each mode in a group. The compiler turns each operation into vector instructions, of the width that
-/// the function into which it is inlined was compiled for.
+/// the function into which it is inlined was compiled for. Number by number, so that no loop is
+/// left to unroll first.
 #[derive(Debug, Clone, Copy, Default)]
 #[repr(align(32))]
 pub(super) struct Lane(pub [f64; LANES]);
@@ -31,13 +32,15 @@ impl Lane {
     /// branch a number.
     #[inline(always)]
     pub(super) fn is_below(self, largest: f64) -> bool {
-        self.0.iter().fold(true, |all, &value| all & (value <= largest))
+        let [a, b, c, d] = self.0;
+        (a <= largest) & (b <= largest) & (c <= largest) & (d <= largest)
     }
 
     /// Sum, one after the other: a sum by halves would let the compiler cut the vectors of the loop before it in half.
     #[inline(always)]
     pub(super) fn sum(self) -> f64 {
-        self.0.iter().sum()
+        let [a, b, c, d] = self.0;
+        a + b + c + d
     }
 }
 
@@ -48,11 +51,8 @@ macro_rules! by_element {
 
             #[inline(always)]
             fn $method(self, other: Self) -> Self {
-                let mut result = [0.0; LANES];
-                for i in 0..LANES {
-                    result[i] = self.0[i] $operator other.0[i];
-                }
-                Self(result)
+                let ([a, b, c, d], [e, f, g, h]) = (self.0, other.0);
+                Self([a $operator e, b $operator f, c $operator g, d $operator h])
             }
         }
     )*};
