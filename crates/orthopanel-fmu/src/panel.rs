@@ -66,7 +66,6 @@ impl Panel {
     ) -> Result<(Self, Solution), FmuError> {
         let mut model = model.clone();
         model.ports = ports;
-        // The library reads none of these.
         model.provenance.clear();
         // Nothing here is drawn, and there will be as many ratios as modes are kept.
         #[cfg(not(feature = "compact"))]

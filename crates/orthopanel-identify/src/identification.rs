@@ -281,7 +281,6 @@ impl Identification {
             correlation: self.correlation_of(fit),
             effects: self.effects.iter().filter(acts).map(TracedEffect::entry).collect(),
             ports,
-            correlation: None,
             provenance: BTreeMap::new(),
         }
     }

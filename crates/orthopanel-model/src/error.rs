@@ -198,14 +198,8 @@ pub enum ModelError {
         /// Angular frequency of the mode \[rad/s\].
         angular_frequency: f64,
     },
-    /// A correlation that is none.
-    #[error("correlation: {problem}")]
-    Correlation {
-        /// What is wrong, and the way out.
-        problem: String,
-    },
     /// A standard deviation that is none.
-    #[error("{name} = {}: must be a finite number, zero or more", Readable(*.value))]
+    #[error("{name}.std = {}: must be a finite number, zero or more", Readable(*.value))]
     Deviation {
         /// What it is of, as the file has it.
         name: String,

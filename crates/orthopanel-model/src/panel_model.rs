@@ -46,13 +46,8 @@ pub struct PanelModel {
     /// Places of force and response.
     #[serde(default)]
     pub ports: Ports,
-    /// How the deviations of constants and damping ratios hang together; independent unless said.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[cfg_attr(feature = "compact", serde(skip))]
-    pub correlation: Option<Correlation>,
     /// Where the model comes from; free text by key.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
-    #[cfg_attr(feature = "compact", serde(skip))]
     pub provenance: BTreeMap<String, serde_json::Value>,
 }
 

@@ -12,8 +12,8 @@ const MODEL: &str = "{\"schema\": \"orthopanel.model/1\", \"structure\": \"timos
 #[test]
 fn what_was_written_reads_back() {
     let model = PanelModel::from_json(MODEL).unwrap();
-    assert_eq!(model.correlation_between("damping_ratio_2", "e_x"), 0.5);
-    assert_eq!(model.correlation_between("damping_ratio_1", "e_x"), 0.0);
+    assert_eq!(model.correlation.as_ref().unwrap().of("damping_ratio_2", "e_x"), 0.5);
+    assert_eq!(model.correlation.as_ref().unwrap().of("damping_ratio_1", "e_x"), 0.0);
     assert_eq!(PanelModel::from_json(&model.to_json()), Ok(model));
 }
 

@@ -37,7 +37,6 @@ fn exact() -> ModalModel {
         correlation: None,
         effects: Vec::new(),
         ports: ports(),
-        correlation: None,
         provenance: BTreeMap::new(),
     };
     panel.modal_model(ModeRange::Count(6), &panel.ports.forces, &panel.ports.responses).unwrap()

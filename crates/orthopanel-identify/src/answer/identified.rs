@@ -271,7 +271,6 @@ impl PlateByModes {
             correlation: None,
             effects: vec![],
             ports: Ports { forces: forces.clone(), responses: responses.clone() },
-            correlation: None,
             provenance: std::collections::BTreeMap::new(),
         };
         let band = self.measured.band[1];

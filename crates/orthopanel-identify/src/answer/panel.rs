@@ -137,7 +137,6 @@ fn bare(
         correlation,
         effects: vec![],
         ports,
-        correlation: None,
         provenance: BTreeMap::new(),
     }
 }
