@@ -12,6 +12,7 @@ mod declared_effects;
 mod first_steps;
 mod foreign_fmu;
 mod limits;
+mod lots;
 mod outputs;
 mod plate;
 mod provenance;

@@ -67,6 +67,9 @@ fn every_command_runs_and_its_number_holds() {
     assert!(peak > 100.0 && fmu.len() == 2001);
     assert!(fmu.iter().zip(&model).all(|(fmu, model)| (fmu[2] - model[2]).abs() <= 1e-9 * peak));
 
+    run(&bench, &mut commands, "batch examples/piece-1 ");
+    bench.done("lot lot.parquet -o lot.html");
+
     records_hold(&bench, &mut commands, &text);
     plate_holds(&bench, &mut commands);
 

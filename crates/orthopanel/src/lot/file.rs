@@ -1,11 +1,11 @@
 //! A lot's table at its place.
 
-use std::io::Write as _;
 use std::path::Path;
 
 use super::TableError;
 use super::{Format, LotRow, read, written};
-use crate::Error;
+use crate::outputs::{Inputs, Outputs};
+use crate::{Error, Silent};
 
 fn of(path: &Path) -> impl FnOnce(TableError) -> Error {
     let path = path.to_owned();
@@ -44,13 +44,7 @@ pub fn content(path: &Path, rows: &[LotRow]) -> Result<Vec<u8>, Error> {
 /// # Errors
 /// As [`content`], and [`Error::Unwritable`].
 pub fn save(path: &Path, rows: &[LotRow]) -> Result<(), Error> {
-    let content = content(path, rows)?;
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let put = || -> std::io::Result<()> {
-        let mut file = tempfile::NamedTempFile::new_in(folder)?;
-        file.write_all(&content)?;
-        file.persist(path)?;
-        Ok(())
-    };
-    put().map_err(|error| Error::Unwritable { path: path.into(), reason: error.to_string(), kind: error.kind() })
+    let mut outputs = Outputs::of(Inputs::default());
+    outputs.add(path, content(path, rows)?);
+    outputs.write(&Silent).map(|_| ())
 }
