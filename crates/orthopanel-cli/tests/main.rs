@@ -7,12 +7,14 @@
 mod bad_input;
 mod bad_records;
 mod commands;
+mod covariance;
 mod declared_effects;
 mod first_steps;
 mod foreign_fmu;
 mod limits;
 mod outputs;
 mod plate;
+mod provenance;
 mod readme;
 mod records;
 mod report;

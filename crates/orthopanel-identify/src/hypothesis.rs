@@ -494,6 +494,12 @@ impl Hypothesis {
         self.parts.iter().filter(|part| part.role == Role::Found)
     }
 
+    /// Which coordinate each constant is, in the order of [`Self::constant_numbers`]; `None` of one that is held.
+    pub(crate) fn coordinates_of_constants(&self) -> Vec<Option<usize>> {
+        let mut next = 0..;
+        self.of_slots().map(|slot| slot.coordinate().and_then(|_| next.next())).collect()
+    }
+
     fn of_slots(&self) -> impl Iterator<Item = &Slot> {
         self.constants.iter().map(|of| &of.slot)
     }

@@ -2,11 +2,12 @@
 
 use std::collections::BTreeMap;
 
+use crate::answer::told;
 use crate::{IdentifyError, TracedEffect};
 use num_complex::Complex64;
 use orthopanel_data::NamedPiece;
 use orthopanel_model::{
-    Boundary, Damping, Estimate, MODEL_SCHEMA, Owner, PanelModel, Piece, Place, Ports, StructureKind,
+    Boundary, CorrelationMatrix, Damping, Estimate, MODEL_SCHEMA, Owner, PanelModel, Piece, Place, Ports, StructureKind,
 };
 
 /// Constants, their uncertainty, and how the model meets each measured mode.
@@ -222,6 +223,35 @@ impl Identification {
         lost.map_or(Ok(self), |(what, _)| Err(IdentifyError::NotFinite { what }))
     }
 
+    /// The correlation of the constants of a piece that have a standard deviation; damping ratios, which shift no resonance, are independent
+    /// of them to first order.
+    fn correlation_of(&self, fit: &PieceFit) -> Option<CorrelationMatrix> {
+        let of_piece = |constant: &&IdentifiedConstant| constant.piece.as_ref().is_none_or(|name| *name == fit.name);
+        // A piece's own constant stands behind the shared one.
+        let own = |constant: &orthopanel_model::Constant| {
+            self.constants
+                .iter()
+                .filter(of_piece)
+                .rfind(|own| own.name == constant.name)
+                .filter(|own| own.std.is_some())
+        };
+        let known: Vec<&IdentifiedConstant> = self.structure.constants().iter().filter_map(own).collect();
+        let is = |of: &IdentifiedConstant, name: &str, piece: Option<usize>| {
+            let own = piece.and_then(|piece| self.pieces.get(piece)).map(|piece| piece.name.as_str());
+            of.name == name && of.piece.as_deref() == own
+        };
+        let coefficient = |i: usize, j: usize| {
+            let of = |pair: &&Correlation| {
+                let between = |a: &IdentifiedConstant, b: &IdentifiedConstant| {
+                    is(a, pair.first, pair.first_piece) && is(b, pair.second, pair.second_piece)
+                };
+                between(known[i], known[j]) || between(known[j], known[i])
+            };
+            self.correlations.iter().find(of).map_or(0.0, |pair| pair.value)
+        };
+        CorrelationMatrix::between(known.iter().map(|constant| constant.name.to_owned()).collect(), coefficient)
+    }
+
     /// The model of one piece with the identified constants, ready for a model file.
     ///
     /// Damping holds the ratios that were measured; `beyond` is left at zero for the caller to state.
@@ -229,7 +259,8 @@ impl Identification {
         let estimate = |constant: &IdentifiedConstant| Estimate { value: constant.value, std: constant.std };
         // A piece's own constant stands behind the shared one, and so replaces it.
         let of_piece = |constant: &&IdentifiedConstant| constant.piece.as_ref().is_none_or(|name| *name == fit.name);
-        let ratios = fit.damping.iter().map(|ratio| ratio.value).collect();
+        let (ratios, std): (Vec<f64>, Vec<_>) = fit.damping.iter().map(|ratio| (ratio.value, ratio.std)).unzip();
+        let std = told(&std);
         // An effect at a place is on the piece that was hit.
         let hit = self.accelerances.first().and_then(|record| self.pieces.get(record.piece));
         let is_elsewhere = hit.is_some_and(|hit| hit.name != fit.name);
@@ -246,7 +277,8 @@ impl Identification {
                 .filter(of_piece)
                 .map(|constant| (constant.name.to_owned(), estimate(constant)))
                 .collect(),
-            damping: Damping { ratios, beyond: 0.0 },
+            damping: Damping { ratios, std, beyond: 0.0 },
+            correlation: self.correlation_of(fit),
             effects: self.effects.iter().filter(acts).map(TracedEffect::entry).collect(),
             ports,
             provenance: BTreeMap::new(),

@@ -4,6 +4,7 @@
 //! `cargo test --release -p orthopanel-identify --test all FILE::`.
 #![allow(clippy::print_stdout)]
 
+mod arrays;
 mod contradictions;
 mod coverage;
 mod coverage_of_hits;

@@ -70,7 +70,7 @@ fn main() -> Result<(), ModelError> {
     let piece = Piece { length: 0.8, width: 0.5, thickness: 0.01, mass_per_area: 6.88 };
     let places = vec![Place { x: 0.1, y: 0.05 }];
     let ports = Ports { forces: places.clone(), responses: places };
-    let damping = Damping { ratios: vec![], beyond: 0.01 };
+    let damping = Damping { beyond: 0.01, ..Damping::default() };
     let model = ModalModel::of_structure(&ThinPlate::new(piece, 6), &[900.0, 700.0], 8, &damping, &ports)?;
     let lowest = model.modes()[0].angular_frequency;
     // Closed form: ω² ρt = D_x (π/a)⁴ + D_y (π/b)⁴.

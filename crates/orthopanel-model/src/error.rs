@@ -149,6 +149,22 @@ pub enum ModelError {
         /// The ratio.
         value: f64,
     },
+    /// Standard deviations of damping ratios, not one a ratio.
+    #[error(
+        "damping.std has {found} entries beside {ratios} of damping.ratios: give one a ratio, null where it is not known"
+    )]
+    DampingDeviations {
+        /// Number found.
+        found: usize,
+        /// Number of ratios.
+        ratios: usize,
+    },
+    /// A correlation that is none of the model's constants and damping ratios.
+    #[error("correlation: {problem}")]
+    Correlation {
+        /// What is wrong, and what must be.
+        problem: String,
+    },
     /// A modal model whose lists do not fit each other.
     #[error("mode {mode}: {found} shape values at the {ports}, expected {expected}")]
     PortCount {

@@ -6,8 +6,10 @@ mod block_pencil;
 mod boundary;
 mod constant;
 mod core_in_frequency;
+mod correlation;
 mod deflection_row;
 mod dense;
+mod draws;
 mod effects;
 mod error;
 mod identifier;
@@ -41,6 +43,7 @@ mod wide;
 
 pub use boundary::{Boundary, End};
 pub use constant::Constant;
+pub use correlation::CorrelationMatrix;
 pub use deflection_row::{DeflectionRow, RigidMotion};
 pub use effects::{
     Action, CUBIC_STIFFNESS, ChannelFactor, CoreFit, CoreModulus, EXPONENTIAL_WINDOW, Effect, EffectParameter,

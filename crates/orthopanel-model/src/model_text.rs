@@ -178,7 +178,7 @@ mod tests {
             ("[-0.3, 0]", "-0.3", "line 7: ports.forces[0]: must be a place [x, y] in m, not -0.3"),
             ("[-0.3, 0]", "[-0.3]", "line 7: ports.forces[0]: must be a place [x, y] in m, not length 1"),
             ("[-0.3, 0]", "[-0.3, 0, 1]", "line 7: ports.forces[0]: must be a place [x, y] in m, not more numbers"),
-            ("{\"ratios\"", "{\"ratio\"", "line 6: damping: \"ratio\" is unknown: known are ratios, beyond"),
+            ("{\"ratios\"", "{\"ratio\"", "line 6: damping: \"ratio\" is unknown: known are ratios, std, beyond"),
             ("\"free\"", "\"loose\"", "line 3: boundary.left: \"loose\" is unknown: known are free, pinned, clamped"),
             ("g_zx", "g_xz", "constants.g_xz is unknown: the structure has e_x, g_zx"),
             ("\"orthopanel.model/1\"", "1", "line 1: schema: must be a text in quotes, not 1"),

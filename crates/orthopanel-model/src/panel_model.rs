@@ -6,7 +6,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::limits;
 use crate::{
-    BEAM_CONSTANTS, Boundary, Constant, EffectState, ModelError, Owner, PLATE_CONSTANTS, Piece, Place, is_identifier,
+    BEAM_CONSTANTS, Boundary, Constant, CorrelationMatrix, EffectState, ModelError, Owner, PLATE_CONSTANTS, Piece,
+    Place, is_identifier,
 };
 
 /// The schema that this version reads and writes.
@@ -33,6 +34,11 @@ pub struct PanelModel {
     /// Modal damping.
     #[serde(default)]
     pub damping: Damping,
+    /// Correlation of constants and damping ratios, where it was identified.
+    // An FMU has none, and its library is smaller for not reading one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "compact", serde(skip))]
+    pub correlation: Option<CorrelationMatrix>,
     /// Physical effects beyond the base model.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub effects: Vec<EffectEntry>,
@@ -124,6 +130,10 @@ pub struct Damping {
     /// $\zeta_1, \zeta_2, \dots$ \[1\].
     #[serde(default)]
     pub ratios: Vec<f64>,
+    /// Standard deviation of each of `ratios` \[1\], `None` of one that is not known; empty where none is.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[cfg_attr(feature = "compact", serde(skip))]
+    pub std: Vec<Option<f64>>,
     /// Ratio of every mode after the last of `ratios` \[1\].
     #[serde(default)]
     pub beyond: f64,
@@ -135,7 +145,7 @@ impl Damping {
         mode.checked_sub(1).and_then(|index| self.ratios.get(index)).copied().unwrap_or(self.beyond)
     }
 
-    fn check(&self) -> Result<(), ModelError> {
+    pub(crate) fn check(&self) -> Result<(), ModelError> {
         let listed = self.ratios.iter().enumerate().map(|(index, &value)| (index + 1, value));
         for (mode, value) in listed.chain([(0, self.beyond)]) {
             if !(0.0..std::f64::consts::FRAC_1_SQRT_2).contains(&value) {
@@ -210,18 +220,24 @@ impl PanelModel {
         Ok(())
     }
 
-    /// Checks the standard deviations, which a file may give; a fit that tells none may leave what is no number.
+    /// Checks the standard deviations and their correlation, which a file may give; a fit that tells none may leave what is no number.
     pub(crate) fn check_deviations(&self) -> Result<(), ModelError> {
         let of_constants = self.constants.iter().map(|(name, estimate)| (format!("constants.{name}"), estimate));
         let of_effects = self.effects.iter().enumerate().flat_map(|(index, effect)| {
             effect.parameters.iter().map(move |(name, estimate)| (format!("effects[{index}].{name}"), estimate))
         });
-        for (name, Estimate { std, .. }) in of_constants.chain(of_effects) {
+        let of_estimates = of_constants.chain(of_effects).map(|(name, estimate)| (name, estimate.std));
+        let of_ratios = self.damping.std.iter().enumerate().map(|(index, std)| (format!("damping.std[{index}]"), *std));
+        for (name, std) in of_estimates.chain(of_ratios) {
             if let Some(value) = std.filter(|std| !(0.0..f64::INFINITY).contains(std)) {
                 return Err(ModelError::Deviation { name, value });
             }
         }
-        Ok(())
+        let (found, ratios) = (self.damping.std.len(), self.damping.ratios.len());
+        if found != 0 && found != ratios {
+            return Err(ModelError::DampingDeviations { found, ratios });
+        }
+        self.correlation.as_ref().map_or(Ok(()), |correlation| correlation.check(self))
     }
 
     /// The model without the effects of rig and measuring chain, which are no part of a panel, and the ids of these.

@@ -20,7 +20,7 @@ fn accelerances(
     let at = |x: f64| Some(Place { x, y: 0.0 });
     let record = RecordSetting { force_at: at(force), response_at: at(response), ..RecordSetting::default() };
     let setup = ReceptanceSetup::new(&PIECE, boundary, &[], &[record], summed).unwrap();
-    let damping = Damping { ratios: vec![], beyond: zeta };
+    let damping = Damping { beyond: zeta, ..Damping::default() };
     let model = setup.model(&[CONSTANTS.e_x, CONSTANTS.g_zx], &damping, &[]).unwrap();
     let s: Vec<Complex64> = frequencies.iter().map(|f| Complex64::new(0.0, std::f64::consts::TAU * f)).collect();
     model.accelerances(0, &s).unwrap()

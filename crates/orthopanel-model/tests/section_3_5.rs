@@ -14,7 +14,7 @@ const CONSTANTS: BeamConstants = BeamConstants { e_x: 1.067e10, g_zx: 5.304e8 };
 const ZETAS: [f64; 6] = [2.364e-3, 1.306e-3, 1.108e-3, 2.251e-3, 5.485e-3, 4.488e-3];
 
 fn damping() -> Damping {
-    Damping { ratios: ZETAS.to_vec(), beyond: 0.0 }
+    Damping { ratios: ZETAS.to_vec(), ..Damping::default() }
 }
 
 /// The places of figures 9 to 12.
@@ -34,6 +34,7 @@ fn exact() -> ModalModel {
         structure: StructureKind::TimoshenkoBeam,
         constants: constants.into(),
         damping: damping(),
+        correlation: None,
         effects: Vec::new(),
         ports: ports(),
         provenance: BTreeMap::new(),

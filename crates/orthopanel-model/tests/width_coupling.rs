@@ -45,7 +45,7 @@ fn val_width_coupling_has_converged() {
     let lines = |summed: usize| -> Vec<Complex64> {
         let setup = ReceptanceSetup::new(&piece, Boundary::FREE, &[], std::slice::from_ref(&record), summed).unwrap();
         let plate = EffectState::new(effect("width-coupling").unwrap(), WIDE.to_vec(), 1).unwrap();
-        let model = setup.model(&CONSTANTS, &Damping { ratios: vec![], beyond: 0.004 }, &[plate]).unwrap();
+        let model = setup.model(&CONSTANTS, &Damping { beyond: 0.004, ..Damping::default() }, &[plate]).unwrap();
         model.accelerances(0, &WIDE_LINES.map(|f| Complex64::new(6.0, TAU * f))).unwrap()
     };
     for ((few, many), frequency) in lines(14).iter().zip(lines(26)).zip(WIDE_LINES) {

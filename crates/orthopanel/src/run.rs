@@ -2,8 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
+use orthopanel_data::ImpactTest;
 use orthopanel_export::{FmiVersion, Fmu, FmuOptions};
-use orthopanel_identify::Settings;
+use orthopanel_identify::{Settings, Tracing};
 use orthopanel_model::{ModeRange, ModelError, PanelModel};
 use serde::Serialize;
 
@@ -15,6 +16,7 @@ use crate::force_file::ForceHistory;
 use crate::identified::{Answer, suffixes};
 use crate::measured_pairs::{HitMisfit, misfit_table};
 use crate::observer::{Observer, Steps};
+use crate::origin::{Origin, Told};
 use crate::outputs::{self, Inputs, Outputs};
 use crate::time_response::{self, Hold};
 use crate::{Error, Silent, Test, json, pictures};
@@ -42,7 +44,9 @@ impl Test {
     /// # Ok::<(), orthopanel::Error>(())
     /// ```
     pub fn run(&self, folder: impl AsRef<Path>) -> Result<Run, Error> {
-        let files = self.content().files().fold(Inputs::of(self.path()), Inputs::and);
+        let own = ImpactTest::file_at(self.path());
+        let own = if own.is_file() { Inputs::of(&own) } else { Inputs::default() };
+        let files = self.content().files().fold(own, Inputs::and);
         PlannedRun::new(self, Outputs::of(files), folder.as_ref())?.run(None, Settings::default(), &Silent)
     }
 }
@@ -58,6 +62,7 @@ pub struct PlannedRun<'a> {
 /// What a run did.
 pub struct Run {
     analysis: Analysis,
+    origin: Origin,
     /// How far the base model is from every measured hit.
     hits: Vec<HitMisfit>,
     files: Vec<PathBuf>,
@@ -91,13 +96,15 @@ impl<'a> PlannedRun<'a> {
         let explains = analysis.traced().is_ok_and(|traced| traced.explains());
         // A run that finds no model leaves the results of an earlier one as they are.
         if matches!(analysis.found, Found::Contradicted { .. }) && !explains && holds_earlier {
-            return Ok(Run { analysis, hits: vec![], files: vec![] });
+            let origin = Origin::of(test, files.inputs())?;
+            return Ok(Run { analysis, origin, hits: vec![], files: vec![] });
         }
         let evidence = analysis.evidence(observer)?;
         let page = analysis.page_of(&evidence)?;
+        let origin = Origin::of(test, files.inputs())?;
         let hits = match &analysis.found {
             Found::Identified { identified, .. } => {
-                files.add_inside("identified.json", identified.to_json());
+                files.add_inside("identified.json", identified.to_json_of(&origin));
                 files.add_inside("report.html", page);
                 for ((fit, model), shown) in
                     identified.found.pieces.iter().zip(&analysis.panels()).zip(&evidence.pieces)
@@ -107,12 +114,12 @@ impl<'a> PlannedRun<'a> {
                     add_pictures(&mut files, &suffix, shown);
                 }
                 if let Ok(traced) = analysis.traced() {
-                    files.add_inside("trace.json", traced.to_json());
+                    files.add_inside("trace.json", traced.to_json_of(&origin));
                 }
                 evidence.into_hits()
             }
             Found::Contradicted { traced, .. } => {
-                files.add_inside("trace.json", traced.to_json());
+                files.add_inside("trace.json", traced.to_json_of(&origin));
                 files.add_inside("report.html", page);
                 for (suffix, model) in suffixes(test.content()).zip(&analysis.panels()) {
                     add_model(&mut files, test.path(), &suffix, model, observer)?;
@@ -125,7 +132,7 @@ impl<'a> PlannedRun<'a> {
             files.add_inside("time-histories.json", json::line(&answer));
         }
         let files = files.write(observer)?;
-        Ok(Run { analysis, hits, files })
+        Ok(Run { analysis, origin, hits, files })
     }
 }
 
@@ -133,9 +140,9 @@ impl<'a> PlannedRun<'a> {
 struct RunAnswer<'a> {
     schema: &'static str,
     /// `null` where the records contradict a beam, and only the trace tells what they are of.
-    identified: Option<&'a Answer>,
+    identified: Option<Told<'a, Answer>>,
     /// `null` where the test cannot be traced.
-    trace: Option<&'a orthopanel_identify::Tracing>,
+    trace: Option<Told<'a, Tracing>>,
     /// Why it cannot.
     #[serde(skip_serializing_if = "Option::is_none")]
     not_traced: Option<&'a str>,
@@ -157,10 +164,11 @@ impl Run {
 
     /// One JSON object (`orthopanel.run/1`) on one line.
     pub fn to_json(&self) -> String {
+        let provenance = &self.origin;
         json::line(&RunAnswer {
             schema: "orthopanel.run/1",
-            identified: self.analysis.identified().map(|identified| &identified.answer),
-            trace: self.analysis.traced().ok().map(|traced| &traced.tracing),
+            identified: self.analysis.identified().map(|of| Told { answer: &of.answer, provenance }),
+            trace: self.analysis.traced().ok().map(|of| Told { answer: &of.tracing, provenance }),
             not_traced: self.analysis.traced().err(),
             hits: &self.hits,
             files: &self.files,
@@ -211,7 +219,7 @@ fn names(test: &Test) -> Vec<String> {
             format!("frequencies{suffix}.svg"),
             format!("coherence{suffix}.svg"),
         ];
-        let pairs = test.files().count().max(1);
+        let pairs = test.measurements.len();
         let numbers = (0..pairs).map(|index| numbered(index, pairs)).chain([numbered(0, 1)]);
         let of_pairs = ["accelerance", "time-history", "cut"];
         let pictures: Vec<_> =

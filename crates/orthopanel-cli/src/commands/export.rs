@@ -74,7 +74,8 @@ pub struct Arguments {
     /// Write an SSP (1.0) beside the FMU, too: the FMU with its connectors and a set of its parameters
     #[arg(long)]
     ssp: bool,
-    /// Sets of parameters in the SSP beside those of the model, drawn by the standard deviations of its constants
+    /// Sets of parameters in the SSP beside those of the model, drawn by the standard deviations and the correlation of its
+    /// constants and damping ratios
     #[arg(long, value_name = "N", requires = "ssp", default_value_t = 0, value_parser = samples, allow_negative_numbers = true)]
     samples: usize,
     /// Write an FMU of C99 sources beside the FMU, too, as X-sources.fmu: co-simulation with fixed parameters, no library but libm, for
@@ -136,7 +137,7 @@ pub fn execute(arguments: &Arguments, words: &[String]) -> Result<(), CommandErr
             return Err(CommandError::Option {
                 option: "samples",
                 value: arguments.samples.to_string(),
-                remedy: "no constant of this model has a standard deviation: leave it out, or write {\"value\": .., \"std\": ..}".into(),
+                remedy: "no constant of this model has a standard deviation, and no damping ratio: leave it out, or write {\"value\": .., \"std\": ..}".into(),
             });
         }
         outputs.add(path, fmu.to_ssp(&samples)?);

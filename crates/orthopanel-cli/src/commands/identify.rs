@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use orthopanel::origin::Origin;
 use orthopanel::outputs::Inputs;
 
 use crate::error::CommandError;
@@ -47,11 +48,16 @@ pub fn execute(arguments: &Arguments, words: &[String]) -> Result<(), CommandErr
     let Arguments { test: path, output, options, json } = arguments;
     let (inputs, test) = Inputs::reading_test(path)?;
     let outputs = model_files::planned(terminal::outputs(inputs, words)?, output.as_deref(), &test)?;
+    let outputs = if *json { outputs.hashing() } else { outputs };
     let settings = options.settings()?;
     options.say_if_idle(&test);
     let identified = test.identify_with(settings, &Terminal)?;
+    let origin = json.then(|| Origin::of(&test, outputs.inputs())).transpose()?;
     if let Some(output) = output {
         model_files::write(outputs, output, &identified.named_models())?;
     }
-    console::print(&if *json { identified.to_json() } else { identified.text() })
+    console::print(&match &origin {
+        Some(origin) => identified.to_json_of(origin),
+        None => identified.text(),
+    })
 }

@@ -22,6 +22,9 @@ use crate::terminal::{self, Terminal};
 /// could give are traced all the same: trace.json and report.html tell what was found, and where it explains them, as by a
 /// plate, its model and FMUs are written too.
 ///
+/// Both identified.json and trace.json tell what they are of: the program, the test and its pieces, the date, and the SHA-256 of each file that
+/// was read. SOURCE_DATE_EPOCH in the environment tells another date than today's: so the same inputs give the same bytes.
+///
 /// A manifest.json lists the results, each with its SHA-256, and what they were made from. What it lists is removed by the
 /// next run into DIR that does not write it anew, unless it was changed since; no other file is, and none that is read. Where
 /// a run replaces a file that was changed since, or that no run wrote, it keeps that as NAME.edited. A run that ends

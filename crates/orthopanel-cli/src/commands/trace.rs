@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use orthopanel::Error;
+use orthopanel::origin::Origin;
 use orthopanel::outputs::Inputs;
 
 use crate::error::CommandError;
@@ -53,7 +54,9 @@ pub fn execute(arguments: &Arguments, words: &[String]) -> Result<(), CommandErr
     let (inputs, test) = Inputs::reading_test(path)?;
     let (inputs, reference) = reference.read(inputs)?;
     let outputs = model_files::planned(terminal::outputs(inputs, words)?, output.as_deref(), &test)?;
+    let outputs = if *json { outputs.hashing() } else { outputs };
     let traced = test.trace_with(reference.as_ref(), &Terminal)?;
+    let origin = json.then(|| Origin::of(&test, outputs.inputs())).transpose()?;
     let written = match output {
         Some(output) => match traced.named_models(&test, &Terminal) {
             Ok(models) => model_files::write(outputs, output, &models),
@@ -65,6 +68,9 @@ pub fn execute(arguments: &Arguments, words: &[String]) -> Result<(), CommandErr
         None => Ok(()),
     };
     // What was found is told even where no model can be written.
-    console::print(&if *json { traced.to_json() } else { traced.text() })?;
+    console::print(&match &origin {
+        Some(origin) => traced.to_json_of(origin),
+        None => traced.text(),
+    })?;
     written
 }

@@ -13,6 +13,11 @@ const LEAST: f64 = 1e-2;
 /// A pole further than this part of its frequency from a mode is another's.
 const REACH: f64 = 0.04;
 
+/// As a model has standard deviations: nothing where none is known.
+pub(crate) fn told(std: &[Option<f64>]) -> Vec<Option<f64>> {
+    if std.iter().any(Option::is_some) { std.to_vec() } else { Vec::new() }
+}
+
 /// Damping ratios of the flexible modes, with their standard deviations where a pole tells them.
 pub(super) struct TracedDamping {
     pub damping: Damping,
@@ -73,7 +78,7 @@ impl TracedDamping {
         let logs: Vec<f64> = known.iter().flatten().map(|(zeta, _)| zeta.ln()).collect();
         let usual = if logs.is_empty() { WITHOUT_POLES } else { (logs.iter().sum::<f64>() / logs.len() as f64).exp() };
         let ratios = known.iter().map(|one| one.map_or(usual, |(zeta, _)| zeta)).collect();
-        let std = known.into_iter().map(|one| one.and_then(|(_, std)| std)).collect();
-        Self { damping: Damping { ratios, beyond: usual }, std }
+        let std = known.into_iter().map(|one| one.and_then(|(_, std)| std)).collect::<Vec<_>>();
+        Self { damping: Damping { ratios, std: told(&std), beyond: usual }, std }
     }
 }

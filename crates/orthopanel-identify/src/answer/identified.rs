@@ -267,7 +267,8 @@ impl PlateByModes {
                 .zip(values)
                 .map(|(constant, value)| (constant.name.to_owned(), Estimate { value: *value, std: None }))
                 .collect(),
-            damping: Damping { ratios, beyond },
+            damping: Damping { ratios, beyond, ..Damping::default() },
+            correlation: None,
             effects: vec![],
             ports: Ports { forces: forces.clone(), responses: responses.clone() },
             provenance: std::collections::BTreeMap::new(),

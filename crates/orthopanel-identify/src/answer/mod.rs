@@ -17,6 +17,7 @@ mod not_tested;
 mod panel;
 mod weighed;
 
+pub(crate) use damping::told;
 pub(crate) use declared::{identify_lists_with_effects, identify_with_effects};
 pub(crate) use identified::PlateByModes;
 use lists::refuse_many;

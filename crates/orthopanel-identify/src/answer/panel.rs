@@ -5,8 +5,8 @@ use std::f64::consts::TAU;
 
 use orthopanel_data::{ImpactTest, NamedPiece};
 use orthopanel_model::{
-    Boundary, Damping, Estimate, MODEL_SCHEMA, ModeRange, ModelError, Owner, PanelModel, Piece, Place, Ports,
-    StructureKind,
+    Boundary, CorrelationMatrix, Damping, Estimate, MODEL_SCHEMA, ModeRange, ModelError, Owner, PanelModel, Piece,
+    Place, Ports, StructureKind,
 };
 
 use super::damping::TracedDamping;
@@ -40,9 +40,9 @@ pub(super) fn panel(
     let places = |at: fn(&crate::MeasuredRecord) -> Place| distinct(measured.records.iter().map(at));
     let (own, _) = own_and_others(estimates, plate);
     let structure = structures::of_test(test).kind();
-    let constants = constants(structure, (judged, estimates), measured.piece);
     let ports = Ports { forces: places(|record| record.force_at), responses: places(|record| record.response_at) };
-    let mut panel = bare(structure, (test.pieces[measured.piece].piece, test.boundary), constants, ports);
+    let piece = (test.pieces[measured.piece].piece, test.boundary);
+    let mut panel = bare(structure, piece, constants(structure, (judged, estimates), measured.piece), ports);
     let damping = match plate.and_then(|number| estimates.effects.get(number)) {
         Some((ratios, _)) => {
             widen(&mut panel, ratios);
@@ -83,20 +83,27 @@ pub(super) fn panels_of_lists(
     (test.pieces.iter().enumerate().map(of_piece).collect(), removed(&others))
 }
 
-/// The constants of a piece.
-fn constants(
-    structure: StructureKind,
-    (judged, estimates): (&Judged, &Estimates),
-    piece: usize,
-) -> BTreeMap<String, Estimate> {
+/// The constants of a piece, and how their errors go together.
+type Constants = (BTreeMap<String, Estimate>, Option<CorrelationMatrix>);
+
+fn constants(structure: StructureKind, (judged, estimates): (&Judged, &Estimates), piece: usize) -> Constants {
+    let coordinates = judged.hypothesis.coordinates_of_constants();
     let of = |(constant, of): (usize, &orthopanel_model::Constant)| {
         let found = |own: Option<usize>| {
             let place = judged.hypothesis.constant_numbers().position(|number| number == (constant, own))?;
-            estimates.constants.get(place).copied()
+            Some((*estimates.constants.get(place)?, coordinates.get(place).copied().flatten()))
         };
-        Some((of.name.to_owned(), found(Some(piece)).or_else(|| found(None))?))
+        let (estimate, coordinate) = found(Some(piece)).or_else(|| found(None))?;
+        Some((of.name.to_owned(), estimate, coordinate))
     };
-    structure.constants().iter().enumerate().filter_map(of).collect()
+    let found: Vec<_> = structure.constants().iter().enumerate().filter_map(of).collect();
+    let free = found.iter().filter_map(|(name, _, coordinate)| Some((name.clone(), (*coordinate)?)));
+    let (names, places): (Vec<String>, Vec<usize>) = free.unzip();
+    // Coordinates go with the constants, or their logarithms.
+    let covariance = |i: usize, j: usize| judged.posterior.covariance[(places[i], places[j])];
+    let correlation =
+        CorrelationMatrix::between(names, |i, j| covariance(i, j) / (covariance(i, i) * covariance(j, j)).sqrt());
+    (found.into_iter().map(|(name, estimate, _)| (name, estimate)).collect(), correlation)
 }
 
 type Parts<'a> = Vec<&'a (TracedEffect, Role)>;
@@ -116,7 +123,7 @@ fn removed(others: &Parts) -> Vec<Removed> {
 fn bare(
     structure: StructureKind,
     (piece, boundary): (Piece, Boundary),
-    constants: BTreeMap<String, Estimate>,
+    (constants, correlation): Constants,
     ports: Ports,
 ) -> PanelModel {
     PanelModel {
@@ -126,7 +133,8 @@ fn bare(
         boundary,
         structure,
         constants,
-        damping: Damping { ratios: vec![], beyond: 0.0 },
+        damping: Damping::default(),
+        correlation,
         effects: vec![],
         ports,
         provenance: BTreeMap::new(),

@@ -108,7 +108,7 @@ pub fn natural_frequencies(
 ) -> Result<Vec<f64>, ModelError> {
     let rigid = setting.boundary.rigid_modes();
     let beam = Even::beam(setting, count + rigid)?;
-    let damping = Damping { ratios: vec![], beyond: 0.0 };
+    let damping = Damping::default();
     let parts = PanelWithEffects { setting, even: &beam, values, effects, damping: &damping };
     let (panel, _, found) = CoupledPanel::solve(parts, count + rigid)?;
     // Without springs and resonators rigid motions stay at zero; else a free beam's have no node and one. A resonator's own mode

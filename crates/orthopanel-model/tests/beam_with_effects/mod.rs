@@ -24,7 +24,7 @@ pub fn lines(effects: &[(&str, &[f64])], zeta: f64, s: &[Complex64]) -> Vec<Comp
     let setup = ReceptanceSetup::new(&PIECE, Boundary::FREE, &[], &[record], 16).unwrap();
     let state = |(id, values): &(&str, &[f64])| EffectState::new(effect(id).unwrap(), values.to_vec(), 1).unwrap();
     let states: Vec<EffectState> = effects.iter().map(state).collect();
-    let model = setup.model(&CONSTANTS, &Damping { ratios: vec![], beyond: zeta }, &states).unwrap();
+    let model = setup.model(&CONSTANTS, &Damping { beyond: zeta, ..Damping::default() }, &states).unwrap();
     model.accelerances(0, s).unwrap()
 }
 

@@ -49,7 +49,8 @@ impl Bench {
             ..RecordSetting::default()
         };
         let setup = ReceptanceSetup::new(&self.piece, self.boundary, &self.suspension, &[record], 14).unwrap();
-        let model = setup.model(&self.constants, &Damping { ratios: vec![], beyond: self.zeta }, &states).unwrap();
+        let model =
+            setup.model(&self.constants, &Damping { beyond: self.zeta, ..Damping::default() }, &states).unwrap();
         model.accelerances(0, &[s]).unwrap()[0]
     }
 

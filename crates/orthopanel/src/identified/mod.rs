@@ -14,6 +14,7 @@ use crate::error::Error;
 use crate::evidence::Evidence;
 use crate::notes::note;
 use crate::observer::{Observer, Steps};
+use crate::origin::{Origin, Told};
 use crate::{Model, Test, Traced, json, report};
 pub use answer::{Answer, called};
 use measured::MeasuredTable;
@@ -89,6 +90,12 @@ impl Identified {
     /// One JSON object (`orthopanel.identified/1`) on one line.
     pub fn to_json(&self) -> String {
         json::line(&self.answer)
+    }
+
+    /// As [`Identified::to_json`], with what it is of.
+    #[doc(hidden)]
+    pub fn to_json_of(&self, provenance: &Origin) -> String {
+        json::line(&Told { answer: &self.answer, provenance })
     }
 
     /// `-NAME` where there are several pieces, safe in file names; nothing for a single one.

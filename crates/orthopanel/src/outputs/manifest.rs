@@ -1,7 +1,8 @@
 //! The list of what belongs to a run, beside its results: `orthopanel.manifest/1`.
 //!
 //! While files are replaced, it lists the earlier ones too, so that none of a run that was killed is forgotten. It holds
-//! no time: two runs of the same inputs give the same bytes.
+//! no time; the date stands in `identified.json` and `trace.json`: two runs of the same inputs differ in these alone, and in nothing
+//! where `SOURCE_DATE_EPOCH` tells the date.
 
 use std::io::Read as _;
 use std::path::Path;

@@ -22,6 +22,7 @@ pub use destination::ends_as_folder;
 use destination::{made, makeable, unmade};
 pub use inputs::Inputs;
 use listing::Listing;
+pub use manifest::Listed;
 use replacement::Replacement;
 pub use streams::fed_by_stdout;
 
@@ -58,7 +59,11 @@ impl Outputs {
         Self { folder: Some(folder.into()), manifest: Some(folder.join(manifest)), ..self }.hashing()
     }
 
-    /// The inputs are to be read, and a manifest may list them.
+    pub fn inputs(&self) -> &Inputs {
+        &self.inputs
+    }
+
+    /// The inputs are to be read, and a manifest or an answer may list them.
     pub fn hashing(self) -> Self {
         Self { inputs: self.inputs.hashed(), ..self }
     }

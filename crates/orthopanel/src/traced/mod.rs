@@ -15,6 +15,7 @@ use serde_json::Value;
 use crate::identified::{ASSUMED_DAMPING, base_models, to_digits};
 use crate::notes::note;
 use crate::observer::{Observer, Steps};
+use crate::origin::{Origin, Told};
 use crate::{Error, Model, Silent, Test, json};
 pub use places::found_places;
 pub use tables::{RANKING_HEADINGS, comparison, effect_rows, ranking_rows};
@@ -91,6 +92,12 @@ impl Traced {
         json::line(&self.tracing)
     }
 
+    /// As [`Traced::to_json`], with what it is of.
+    #[doc(hidden)]
+    pub fn to_json_of(&self, provenance: &Origin) -> String {
+        json::line(&Told { answer: &self.tracing, provenance })
+    }
+
     /// The panels with the effects that were found and are theirs; `None` where no effect was found, or none that explains
     /// the data.
     fn panels(&self) -> Option<&[PanelModel]> {
@@ -123,6 +130,7 @@ impl Traced {
             model.structure = panel.structure;
             model.constants.clone_from(&panel.constants);
             model.damping.clone_from(&panel.damping);
+            model.correlation.clone_from(&panel.correlation);
             model
                 .provenance
                 .extend(panel.provenance.get_key_value(DAMPING_STD).map(|(key, std)| (key.clone(), std.clone())));
