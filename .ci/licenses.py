@@ -1,4 +1,5 @@
-"""Licence texts of all that is linked, from the lock file: into every FMU's library, and into the command.
+"""Licence texts of all that is linked, from the lock file: into every FMU's library, and into the command and the Python
+package.
 
     python3 .ci/licenses.py            writes the files
     python3 .ci/licenses.py --check    fails where they are not what it would write
@@ -26,7 +27,7 @@ documentation) belongs to whoever exported it.
 """
 COMMAND = """\
 orthopanel is under the MIT licence or the Apache licence 2.0, at your option: LICENSE-MIT, LICENSE-APACHE. What is linked into
-the command follows, each with its licence; the Rust standard library's stand in
+the command and the Python package follows, each with its licence; the Rust standard library's stand in
 crates/orthopanel-export/licenses/rust-standard-library.html. FMUs carry their own in documentation/licenses.
 """
 
@@ -80,7 +81,7 @@ def main():
         "crates/orthopanel-export/licenses/license.txt": document(
             FMU, ["LICENSE-MIT", "LICENSE-APACHE"], "--package", "orthopanel-fmu", "--features", "compact"
         ),
-        "THIRD-PARTY-LICENSES.txt": document(COMMAND, [], "--package", "orthopanel-cli"),
+        "THIRD-PARTY-LICENSES.txt": document(COMMAND, [], "--package", "orthopanel-cli", "--package", "orthopanel-py"),
     }
     for name, text in written.items():
         path = ROOT / name

@@ -295,6 +295,38 @@ pub enum DataError {
     },
 }
 
+impl DataError {
+    /// Where it is wrong; `None` where a file has more than one fault.
+    pub fn location(&self) -> Option<&Location> {
+        match self {
+            Self::EffectOwner { at, .. }
+            | Self::Unreadable { at, .. }
+            | Self::Syntax { at, .. }
+            | Self::Missing { at, .. }
+            | Self::Contradiction { at, .. }
+            | Self::OutOfRange { at, .. }
+            | Self::UnknownName { at, .. }
+            | Self::Duplicate { at, .. }
+            | Self::Order { at, .. }
+            | Self::Count { at, .. }
+            | Self::TooMany { at, .. }
+            | Self::TooLarge { at, .. }
+            | Self::Model { at, .. }
+            | Self::UnknownFormat { at, .. }
+            | Self::ForeignFormat { at, .. }
+            | Self::Header { at, .. }
+            | Self::BadNumber { at, .. }
+            | Self::NotFinite { at, .. }
+            | Self::Truncated { at, .. }
+            | Self::Surplus { at, .. }
+            | Self::Shape { at, .. }
+            | Self::NoRecords { at, .. }
+            | Self::Channels { at, .. } => Some(at),
+            Self::NoUsableHit { .. } => None,
+        }
+    }
+}
+
 /// Enough of a text to know it by: what stands in a file may be a megabyte long.
 pub(crate) fn short(text: &str) -> String {
     match text.char_indices().nth(SHOWN) {

@@ -3,7 +3,7 @@
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-use orthopanel_data::DataError;
+use orthopanel_data::{DataError, Location, Position};
 use orthopanel_export::ExportError;
 use orthopanel_identify::IdentifyError;
 use orthopanel_model::ModelError;
@@ -190,6 +190,17 @@ impl Error {
             _ => false,
         }
     }
+}
+
+/// Where it is wrong.
+impl Error {
+    fn location(&self) -> Option<&Location> {
+        match self {
+            Self::Data(source) | Self::Identify { source: IdentifyError::Data(source), .. } => source.location(),
+            Self::NotPutBack { failed, .. } => failed.location(),
+            _ => None,
+        }
+    }
 
     /// The file that it is about, where it is about one.
     pub fn path(&self) -> Option<&Path> {
@@ -199,7 +210,6 @@ impl Error {
             | Self::OutputIsInput { path, .. }
             | Self::Changed { path }
             | Self::Lot { path, .. }
-            | Self::Identify { path, .. }
             | Self::NoModel { path, .. }
             | Self::Model { path, .. }
             | Self::Records { path, .. }
@@ -207,9 +217,31 @@ impl Error {
             | Self::Fmu { path, .. }
             | Self::FmuName { path }
             | Self::OtherKind { path, .. } => Some(path),
+            Self::Identify { path, .. } => Some(self.location().map_or(path, |at| &at.file)),
+            Self::Data(_) => self.location().map(|at| at.file.as_path()),
             Self::NotPutBack { failed, .. } => failed.path(),
-            Self::Data(_) | Self::Export(_) | Self::Picture { .. } | Self::Interrupted => None,
+            Self::Export(_) | Self::Picture { .. } | Self::Interrupted => None,
         }
+    }
+
+    /// The line of the file, from 1, where one is known.
+    pub fn line(&self) -> Option<u64> {
+        match (self, self.location().map(|at| at.position)) {
+            (Self::ForceFile { line, .. }, _) => *line,
+            (_, Some(Position::Line(line))) => Some(line as u64),
+            _ => None,
+        }
+    }
+
+    /// The key of a test file, or the name of a record, where one is known.
+    pub fn key(&self) -> Option<&str> {
+        self.location().map(|at| at.key.as_str()).filter(|key| !key.is_empty())
+    }
+
+    /// What to do about it: the end of the message.
+    pub fn way_out(&self) -> Option<String> {
+        let said = self.to_string();
+        said.rsplit_once(": ").map(|(_, way_out)| way_out.to_owned())
     }
 }
 

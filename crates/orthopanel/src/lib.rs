@@ -52,6 +52,8 @@ pub use fmu_refusal::FmuRefusal;
 pub use identified::Identified;
 pub use model::{Model, StateSpace, is_fmu_name};
 pub use observer::{Observer, Silent, Steps, Work};
+/// The layer of records: what a [`Test`] is put together from.
+pub use orthopanel_data as data;
 pub use orthopanel_export::{FmiVersion, FmuOptions};
 pub use orthopanel_identify::Settings;
 pub use orthopanel_model::{ModeRange, Piece, Place, Ports};

@@ -17,7 +17,7 @@ const SOURCE_DATE_EPOCH: &str = "SOURCE_DATE_EPOCH";
 #[derive(Serialize)]
 pub struct Provenance {
     program: &'static str,
-    /// The test file, as it was named.
+    /// The test file, as the command reads it.
     test: String,
     pieces: Vec<String>,
     /// UTC, ISO 8601.
@@ -34,16 +34,17 @@ pub(crate) struct WithProvenance<'a, T> {
 }
 
 impl Provenance {
-    /// Of a test and the files that it was read from.
+    /// Of a test.
     ///
     /// # Errors
-    /// [`Error::Changed`] where a file is another than it was, [`Error::Unreadable`].
+    /// As [`Inputs::unchanged`].
     pub fn of(test: &Test, inputs: &Inputs) -> Result<Self, Error> {
+        let (path, test) = (test.path(), test.content());
         let listed = |(path, sha256): (&Path, String)| Listed { file: path.to_string_lossy().into_owned(), sha256 };
         Ok(Self {
             program: concat!("orthopanel ", env!("CARGO_PKG_VERSION")),
-            test: ImpactTest::file_at(test.path()).to_string_lossy().into_owned(),
-            pieces: test.content().pieces.iter().map(|piece| piece.name.clone()).collect(),
+            test: ImpactTest::file_at(path).to_string_lossy().into_owned(),
+            pieces: test.pieces.iter().map(|piece| piece.name.clone()).collect(),
             date: date(std::env::var(SOURCE_DATE_EPOCH).ok().as_deref()),
             inputs: inputs.unchanged()?.into_iter().map(listed).collect(),
         })

@@ -2,8 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
+use orthopanel_data::ImpactTest;
 use orthopanel_export::{FmiVersion, Fmu, FmuOptions};
-use orthopanel_identify::Settings;
+use orthopanel_identify::{Settings, Tracing};
 use orthopanel_model::{ModeRange, ModelError, PanelModel};
 use serde::Serialize;
 
@@ -43,7 +44,9 @@ impl Test {
     /// # Ok::<(), orthopanel::Error>(())
     /// ```
     pub fn run(&self, folder: impl AsRef<Path>) -> Result<Run, Error> {
-        let files = self.content().files().fold(Inputs::of(self.path()), Inputs::and);
+        let own = ImpactTest::file_at(self.path());
+        let own = if own.is_file() { Inputs::of(&own) } else { Inputs::default() };
+        let files = self.content().files().fold(own, Inputs::and);
         PlannedRun::new(self, Outputs::of(files), folder.as_ref())?.run(None, Settings::default(), &Silent)
     }
 }
@@ -59,10 +62,10 @@ pub struct PlannedRun<'a> {
 /// What a run did.
 pub struct Run {
     analysis: Analysis,
+    provenance: Provenance,
     /// How far the base model is from every measured hit.
     hits: Vec<HitMisfit>,
     files: Vec<PathBuf>,
-    provenance: Provenance,
 }
 
 #[derive(Serialize)]
@@ -90,14 +93,15 @@ impl<'a> PlannedRun<'a> {
     pub fn run(self, reference: Option<&Test>, settings: Settings, observer: &dyn Observer) -> Result<Run, Error> {
         let Self { test, mut files, holds_earlier } = self;
         let analysis = Analysis::of(test, reference, settings, observer)?;
-        let provenance = Provenance::of(test, files.inputs())?;
         let explains = analysis.traced().is_ok_and(|traced| traced.explains());
         // A run that finds no model leaves the results of an earlier one as they are.
         if matches!(analysis.found, Found::Contradicted { .. }) && !explains && holds_earlier {
-            return Ok(Run { analysis, hits: vec![], files: vec![], provenance });
+            let provenance = Provenance::of(test, files.inputs())?;
+            return Ok(Run { analysis, provenance, hits: vec![], files: vec![] });
         }
         let evidence = analysis.evidence(observer)?;
         let page = analysis.page_of(&evidence)?;
+        let provenance = Provenance::of(test, files.inputs())?;
         let hits = match &analysis.found {
             Found::Identified { identified, .. } => {
                 files.add_inside("identified.json", identified.to_json_with(&provenance));
@@ -128,7 +132,7 @@ impl<'a> PlannedRun<'a> {
             files.add_inside("time-histories.json", json::line(&answer));
         }
         let files = files.write(observer)?;
-        Ok(Run { analysis, hits, files, provenance })
+        Ok(Run { analysis, provenance, hits, files })
     }
 }
 
@@ -138,7 +142,7 @@ struct RunAnswer<'a> {
     /// `null` where the records contradict a beam, and only the trace tells what they are of.
     identified: Option<WithProvenance<'a, Answer>>,
     /// `null` where the test cannot be traced.
-    trace: Option<WithProvenance<'a, orthopanel_identify::Tracing>>,
+    trace: Option<WithProvenance<'a, Tracing>>,
     /// Why it cannot.
     #[serde(skip_serializing_if = "Option::is_none")]
     not_traced: Option<&'a str>,
@@ -161,12 +165,10 @@ impl Run {
     /// One JSON object (`orthopanel.run/1`) on one line.
     pub fn to_json(&self) -> String {
         let provenance = &self.provenance;
-        let identified = self.analysis.identified();
-        let traced = self.analysis.traced().ok();
         json::line(&RunAnswer {
             schema: "orthopanel.run/1",
-            identified: identified.map(|identified| WithProvenance { answer: &identified.answer, provenance }),
-            trace: traced.map(|traced| WithProvenance { answer: &traced.tracing, provenance }),
+            identified: self.analysis.identified().map(|of| WithProvenance { answer: &of.answer, provenance }),
+            trace: self.analysis.traced().ok().map(|of| WithProvenance { answer: &of.tracing, provenance }),
             not_traced: self.analysis.traced().err(),
             hits: &self.hits,
             files: &self.files,

@@ -2,11 +2,14 @@
 
 use std::path::{Path, PathBuf};
 
-use orthopanel_data::ImpactTest;
+use orthopanel_data::{ImpactTest, Measurement};
 use orthopanel_identify::Settings;
 
 use crate::identified::suffixes;
 use crate::{Error, Identified, Observer, Silent, Traced, given_file};
+
+/// What messages call a test without a file.
+const IN_MEMORY: &str = "the test in memory";
 
 /// A hammer test, read and checked.
 ///
@@ -61,9 +64,36 @@ impl Test {
         Ok(Self { content: ImpactTest::from_toml(text, &path)?, path })
     }
 
-    /// A test that was put together in memory; `name` stands for its file in messages.
-    pub fn of(content: ImpactTest, name: impl Into<PathBuf>) -> Self {
-        Self { content, path: name.into() }
+    /// A test that was put together in memory, checked as one of a file; measurements may be [added](Test::add).
+    ///
+    /// # Errors
+    /// [`Error::Data`] with the key.
+    ///
+    /// # Examples
+    /// ```
+    /// use orthopanel::data::{ImpactTest, Measurement, MeasurementData, NamedPiece, RecordedResponse};
+    /// use orthopanel::{Piece, Place, Test};
+    ///
+    /// let piece = Piece { length: 0.8, width: 0.1, thickness: 0.03, mass_per_area: 6.88 };
+    /// let mut test = Test::of(ImpactTest { pieces: vec![NamedPiece::new("strip", piece)], ..ImpactTest::default() })?;
+    /// let (force, acceleration) = (vec![vec![0.0; 4096]; 2], vec![vec![0.0; 4096]; 2]); // hits x samples
+    /// let places = [Place { x: -0.3, y: 0.0 }, Place { x: 0.3, y: 0.0 }];
+    /// let hits = RecordedResponse::of_hits([force, acceleration], 10_240.0, places)?;
+    /// test.add(Measurement { piece: 0, data: MeasurementData::TimeHistory(hits) })?;
+    /// // Nobody hit it.
+    /// assert!(test.identify().is_err());
+    /// # Ok::<(), orthopanel::Error>(())
+    /// ```
+    pub fn of(content: ImpactTest) -> Result<Self, Error> {
+        Ok(Self { content: content.checked()?, path: IN_MEMORY.into() })
+    }
+
+    /// Adds a measurement: arrays, natural frequencies, or files.
+    ///
+    /// # Errors
+    /// [`Error::Data`] with the key; then the test is as it was.
+    pub fn add(&mut self, measurement: Measurement) -> Result<(), Error> {
+        Ok(self.content.add(measurement)?)
     }
 
     /// What was tested, how it was held, and what was measured.

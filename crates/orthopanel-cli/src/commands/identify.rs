@@ -56,5 +56,8 @@ pub fn execute(arguments: &Arguments, words: &[String]) -> Result<(), CommandErr
     if let Some(output) = output {
         model_files::write(outputs, output, &identified.named_models())?;
     }
-    console::print(&provenance.map_or_else(|| identified.text(), |provenance| identified.to_json_with(&provenance)))
+    console::print(&match &provenance {
+        Some(provenance) => identified.to_json_with(provenance),
+        None => identified.text(),
+    })
 }

@@ -113,7 +113,7 @@ fn table(modes: &[ModeEntry], structure: StructureKind) -> String {
             vec![entry.mode.to_string(), format!("{:.2}", Readable(entry.frequency_hz)), entry.nodes[0].to_string()];
         if structure.has_modes_across() {
             row.push(entry.nodes[1].to_string());
-            row.push(entry.kind.map_or("", kind_text).into());
+            row.push(entry.kind.map_or("", ModeKind::name).into());
         }
         row.push(format!("{:.3e}", entry.zeta));
         row
@@ -126,20 +126,11 @@ fn table(modes: &[ModeEntry], structure: StructureKind) -> String {
     tables::aligned(heading, &modes.iter().map(row).collect::<Vec<_>>())
 }
 
-fn kind_text(kind: ModeKind) -> &'static str {
-    match kind {
-        ModeKind::Bending => "bending",
-        ModeKind::Torsion => "torsion",
-        ModeKind::Transverse => "transverse",
-        ModeKind::Mixed => "mixed",
-    }
-}
-
 fn shape<'a>(mode: &'a PanelMode, entry: &ModeEntry) -> ModeShape<'a> {
     let ModeEntry { mode: number, frequency_hz, nodes: [along_x, along_y], kind, .. } = entry;
     let looks = match kind {
         None => format!("{along_x} node{}", if *along_x == 1 { "" } else { "s" }),
-        Some(kind) => format!("{} ({along_x}, {along_y})", kind_text(*kind)),
+        Some(kind) => format!("{} ({along_x}, {along_y})", kind.name()),
     };
     ModeShape {
         name: format!("mode {number}: {frequency_hz:.1} Hz, {looks}"),

@@ -2,8 +2,9 @@
 
 use std::path::PathBuf;
 
+use orthopanel::Error;
+use orthopanel::Provenance;
 use orthopanel::outputs::Inputs;
-use orthopanel::{Error, Provenance};
 
 use crate::error::CommandError;
 use crate::reference_option::ReferenceOption;
@@ -67,6 +68,9 @@ pub fn execute(arguments: &Arguments, words: &[String]) -> Result<(), CommandErr
         None => Ok(()),
     };
     // What was found is told even where no model can be written.
-    console::print(&provenance.map_or_else(|| traced.text(), |provenance| traced.to_json_with(&provenance)))?;
+    console::print(&match &provenance {
+        Some(provenance) => traced.to_json_with(provenance),
+        None => traced.text(),
+    })?;
     written
 }

@@ -45,6 +45,18 @@ pub enum ModeKind {
     Mixed,
 }
 
+impl ModeKind {
+    /// As files and tables say it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Bending => "bending",
+            Self::Torsion => "torsion",
+            Self::Transverse => "transverse",
+            Self::Mixed => "mixed",
+        }
+    }
+}
+
 /// Share of $\int w^2$ from which a mode carries the name of one product.
 const NAMED_SHARE: f64 = 2.0 / 3.0;
 

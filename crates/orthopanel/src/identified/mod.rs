@@ -92,7 +92,8 @@ impl Identified {
         json::line(&self.answer)
     }
 
-    /// The same, with what it is of under `provenance`.
+    /// As [`Identified::to_json`], with what it is of.
+    #[doc(hidden)]
     pub fn to_json_with(&self, provenance: &Provenance) -> String {
         json::line(&WithProvenance { answer: &self.answer, provenance })
     }

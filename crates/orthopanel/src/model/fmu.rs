@@ -37,8 +37,22 @@ impl Model {
     /// # Ok::<(), orthopanel::Error>(())
     /// ```
     pub fn export(&self, path: impl AsRef<Path>, options: &FmuOptions) -> Result<(), Error> {
+        self.export_with(path, USUAL_MODES, &self.panel.ports, options)
+    }
+
+    /// As [`Model::export`], with other modes and ports.
+    ///
+    /// # Errors
+    /// As [`Model::export`].
+    pub fn export_with(
+        &self,
+        path: impl AsRef<Path>,
+        range: ModeRange,
+        ports: &Ports,
+        options: &FmuOptions,
+    ) -> Result<(), Error> {
         is_fmu_name(path.as_ref())?;
-        self.write(path.as_ref(), self.fmu(USUAL_MODES, &self.panel.ports, options)?.to_bytes()?)
+        self.write(path.as_ref(), self.fmu(range, ports, options)?.to_bytes()?)
     }
 
     /// Writes the model file.

@@ -106,6 +106,24 @@ impl Model {
         time_response::simulate(&seen.modes, force).in_file(&self.name)
     }
 
+    /// So many models, with constants and damping ratios drawn by their standard deviations and correlation; one seed gives the same draws.
+    ///
+    /// # Errors
+    /// [`Error::Model`] for values so far outside their bounds that no draw lies within.
+    ///
+    /// # Examples
+    /// ```
+    /// let fit = orthopanel::Test::load("../../examples/piece-1/test.toml")?.identify()?;
+    /// let draws = fit.models()[0].sample(3, 0)?;
+    /// assert_eq!(draws.len(), 3);
+    /// assert_ne!(draws[0], draws[1]);
+    /// # Ok::<(), orthopanel::Error>(())
+    /// ```
+    pub fn sample(&self, count: usize, seed: u64) -> Result<Vec<Self>, Error> {
+        let drawn = self.panel.draws(count, seed).in_file(&self.name)?;
+        Ok(drawn.into_iter().map(|panel| Self::of(panel, &self.name)).collect())
+    }
+
     /// Acceleration per force \[(m/s²)/N\] at each of the frequencies \[Hz\], for $e^{+j\omega t}$: that of all modes together.
     ///
     /// # Errors

@@ -92,7 +92,8 @@ impl Traced {
         json::line(&self.tracing)
     }
 
-    /// The same, with what it is of under `provenance`.
+    /// As [`Traced::to_json`], with what it is of.
+    #[doc(hidden)]
     pub fn to_json_with(&self, provenance: &Provenance) -> String {
         json::line(&WithProvenance { answer: &self.tracing, provenance })
     }

@@ -1,0 +1,58 @@
+//! Identifications.
+
+use numpy::{Complex64, PyArray1};
+use orthopanel_identify::AcceleranceFit;
+use pyo3::prelude::*;
+
+use crate::error::guarded;
+use crate::model::Model;
+use crate::traced::Traced;
+
+/// What was identified.
+#[pyclass(frozen, module = "orthopanel._native")]
+pub struct Fit(pub orthopanel::Identified);
+
+/// A record measured and calculated: piece, places of force and response, frequency, measured, model.
+pub type Pair<'py> = (
+    usize,
+    [(f64, f64); 2],
+    Bound<'py, PyArray1<f64>>,
+    Bound<'py, PyArray1<Complex64>>,
+    Bound<'py, PyArray1<Complex64>>,
+);
+
+pub fn pair<'py>(py: Python<'py>, of: &AcceleranceFit) -> Pair<'py> {
+    (
+        of.piece,
+        [of.force_at, of.response_at].map(|place| (place.x, place.y)),
+        PyArray1::from_slice(py, &of.frequency),
+        PyArray1::from_slice(py, &of.measured),
+        PyArray1::from_slice(py, &of.model),
+    )
+}
+
+#[pymethods]
+impl Fit {
+    fn to_json(&self) -> PyResult<String> {
+        guarded(|| self.0.to_json())
+    }
+
+    fn text(&self) -> PyResult<String> {
+        guarded(|| self.0.text())
+    }
+
+    fn models(&self) -> PyResult<Vec<(String, Model)>> {
+        let names = self.0.found().pieces.iter().map(|piece| piece.name.clone());
+        guarded(|| names.zip(self.0.models().into_iter().map(Model)).collect())
+    }
+
+    fn accelerances<'py>(&self, py: Python<'py>) -> Vec<Pair<'py>> {
+        self.0.found().accelerances.iter().map(|of| pair(py, of)).collect()
+    }
+
+    /// The page with what was traced.
+    fn page(&self, py: Python<'_>, traced: Bound<'_, Traced>) -> PyResult<String> {
+        // Records are read once more: seconds at most.
+        crate::error::answered(py, || self.0.page(Ok(&traced.get().traced), &orthopanel::Silent))
+    }
+}

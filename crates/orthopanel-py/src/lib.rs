@@ -1,0 +1,32 @@
+#![doc = include_str!("../README.md")]
+
+mod arrays;
+mod error;
+mod fit;
+mod header;
+mod model;
+mod settings;
+mod test;
+mod traced;
+mod work;
+
+use std::ffi::OsString;
+
+use pyo3::prelude::*;
+
+/// The command with these words, the first of which is the program's name; gives its exit status.
+#[pyfunction]
+fn main(py: Python<'_>, words: Vec<OsString>) -> PyResult<u8> {
+    error::guarded(|| py.detach(|| orthopanel_cli::main(words)))
+}
+
+/// What the package is made of; users import `orthopanel`.
+#[pymodule]
+fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add("__version__", env!("CARGO_PKG_VERSION"))?;
+    module.add_class::<test::Test>()?;
+    module.add_class::<fit::Fit>()?;
+    module.add_class::<traced::Traced>()?;
+    module.add_class::<model::Model>()?;
+    module.add_function(wrap_pyfunction!(main, module)?)
+}

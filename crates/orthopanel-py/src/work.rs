@@ -1,0 +1,114 @@
+//! Long work: on a thread of its own, without the interpreter's lock, with progress and Ctrl-C.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::process;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::thread;
+use std::time::Duration;
+
+use orthopanel::{Error, Observer, Steps, Work};
+use pyo3::prelude::*;
+
+use crate::error::{fault, raised};
+
+/// How often signals and progress are looked after.
+const PERIOD: Duration = Duration::from_millis(50);
+
+/// What the work has told and was told.
+#[derive(Default)]
+struct Watch {
+    at: Mutex<At>,
+    interrupted: AtomicBool,
+}
+
+#[derive(Clone, Default, PartialEq)]
+struct At {
+    work: &'static str,
+    done: usize,
+    of: Option<usize>,
+    step: &'static str,
+}
+
+impl Watch {
+    fn put(&self, change: impl FnOnce(&mut At)) {
+        change(&mut self.at.lock().unwrap_or_else(PoisonError::into_inner));
+    }
+
+    fn now(&self) -> At {
+        self.at.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+}
+
+impl Observer for Watch {
+    fn begin(&self, work: &'static str, steps: Steps) -> Box<dyn Work + '_> {
+        let of = if let Steps::Of(count) = steps { Some(count) } else { None };
+        self.put(|at| *at = At { work, done: 0, of, step: "" });
+        Box::new(Stage(self))
+    }
+
+    fn is_interrupted(&self) -> bool {
+        self.interrupted.load(Ordering::Relaxed)
+    }
+}
+
+struct Stage<'a>(&'a Watch);
+
+impl Work for Stage<'_> {
+    fn at(&self, done: usize, of: usize, step: &'static str) {
+        self.0.put(|at| (at.done, at.of, at.step) = (done, Some(of), step));
+    }
+}
+
+/// Does `work`; `tell(work, done, of, step)` is called as it goes on.
+///
+/// # Errors
+/// What `work` refuses; what a signal or `tell` raises: then the work ends at its next step, and until then goes on where nobody waits
+/// for it.
+pub fn done<T: Send + 'static>(
+    py: Python<'_>,
+    tell: Option<&Bound<'_, PyAny>>,
+    work: impl FnOnce(&dyn Observer) -> Result<T, Error> + Send + 'static,
+) -> PyResult<T> {
+    let watch = Arc::new(Watch::default());
+    let (send, mut receive) = channel();
+    let seen = Arc::clone(&watch);
+    let body = move || {
+        // Nobody may wait for it any more.
+        let _ = send.send(catch_unwind(AssertUnwindSafe(|| after_fork(|| work(&*seen)))));
+    };
+    thread::Builder::new().name("orthopanel".into()).spawn(body)?;
+    let mut told = At::default();
+    loop {
+        let (answer, receiver) = py.detach(move || (receive.recv_timeout(PERIOD), receive));
+        receive = receiver;
+        match answer {
+            Ok(Ok(result)) => return result.map_err(|refused| raised(py, &refused)),
+            Ok(Err(_)) | Err(RecvTimeoutError::Disconnected) => return Err(fault()),
+            Err(RecvTimeoutError::Timeout) => {}
+        }
+        let now = watch.now();
+        let heard = py.check_signals().and_then(|()| match tell {
+            Some(tell) if now != told => tell.call1((now.work, now.done, now.of, now.step)).map(drop),
+            _ => Ok(()),
+        });
+        told = now;
+        if let Err(raised) = heard {
+            watch.interrupted.store(true, Ordering::Relaxed);
+            return Err(raised);
+        }
+    }
+}
+
+/// Does `work` with threads that are there: a process that was forked from one that had begun any has its pool, and none of its threads.
+fn after_fork<T: Send>(work: impl FnOnce() -> T + Send) -> T {
+    static FIRST: OnceLock<u32> = OnceLock::new();
+    if *FIRST.get_or_init(process::id) == process::id() {
+        return work();
+    }
+    match rayon::ThreadPoolBuilder::new().build() {
+        Ok(pool) => pool.install(work),
+        Err(_) => work(),
+    }
+}

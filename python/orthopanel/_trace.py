@@ -1,0 +1,139 @@
+"""What the model of a test lacks."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Any
+
+from . import _native, _plots, _progress
+from ._fit import only
+from ._model import Model
+from ._pairs import Accelerance, pairs
+from ._tables import table
+
+if TYPE_CHECKING:
+    from ._test import Test
+
+
+class Trace:
+    """The effect that the model of a test lacks; made by `trace`. Tables as of `Fit`."""
+
+    _held: _native.Traced | None
+    _json: str
+    _text: str
+    _sentence: str
+    _test: Test
+    _models: list[tuple[str, Model]] | None
+    _pairs: list[list[Accelerance]]
+
+    @classmethod
+    def _of(cls, test: Test, native: _native.Traced) -> Trace:
+        trace = cls.__new__(cls)
+        trace._test = type(test)._of(test._made, list(test._calls), test._held)
+        trace._held, trace._json, trace._text, trace._sentence = native, native.to_json(), native.text(), native.sentence()
+        trace._models = None
+        trace._pairs = [pairs(of) for of in native.accelerances()]
+        return trace
+
+    def to_json(self) -> str:
+        """What ``orthopanel trace --json`` prints (``orthopanel.trace/2``), but for the files that it read."""
+        return self._json
+
+    def to_dict(self) -> dict[str, Any]:
+        """The same as a dictionary."""
+        found: dict[str, Any] = json.loads(self._json)
+        return found
+
+    @property
+    def verdict(self) -> str:
+        """``"nothing-missing"``, ``"explained"``, ``"ambiguous"`` or ``"unexplained"``."""
+        return str(self.to_dict()["verdict"])
+
+    @property
+    def sentence(self) -> str:
+        """The verdict in one plain sentence."""
+        return self._sentence
+
+    @property
+    def effects(self) -> Any:
+        """A row a parameter of the effects that were found: effect, owner, parameter, value, std [SI units], unit; of records that
+        each have their own, a row a record, from 1."""
+        columns = [
+            ("effect", "U"), ("owner", "U"), ("parameter", "U"), ("record", "i8"), ("value", "f8"), ("std", "f8"), ("unit", "U"),
+        ]  # fmt: skip
+        rows = []
+        for effect in self.to_dict()["effects"]:
+            for name, of in effect["parameters"].items():
+                for record, one in enumerate(of if isinstance(of, list) else [of], start=1):
+                    rows.append([effect["id"], effect["owner"], name, record, one["value"], one["std"], one["unit"]])
+        return table(columns, rows)
+
+    @property
+    def alternatives(self) -> list[str]:
+        """Effects that fit alike."""
+        return list(self.to_dict()["alternatives"])
+
+    @property
+    def error(self) -> dict[str, Any]:
+        """``measure``, ``before`` and ``after`` (each ``fitted`` and ``held_out``) and ``noise_floor``."""
+        return dict(self.to_dict()["error"])
+
+    @property
+    def next_experiment(self) -> str:
+        """The measurement that would part what fits alike; empty where none would."""
+        return str(self.to_dict().get("next_experiment", ""))
+
+    @property
+    def notes(self) -> list[str]:
+        """What was assumed or left out."""
+        return list(self.to_dict()["notes"])
+
+    @property
+    def accelerances(self) -> list[Accelerance]:
+        """The records, measured and by the model with the effects that were found."""
+        return list(self._pairs[1])
+
+    @property
+    def base_accelerances(self) -> list[Accelerance]:
+        """The same, by the model without them."""
+        return list(self._pairs[0])
+
+    @property
+    def models(self) -> dict[str, Model]:
+        """The model of each piece after tracing, by its name: effects of the panel stay in it, those of rig and measuring chain are out.
+
+        Raises:
+            RefusedError: where no effect explains the data and the base model is refused.
+        """
+        return dict(self._found())
+
+    @property
+    def model(self) -> Model:
+        """The model after tracing of the only piece."""
+        return only(self._found())
+
+    def plot(self) -> Any:
+        """A figure of matplotlib: records measured, by the base model and with the effects; else the evidence of the hypotheses.
+
+        Raises:
+            ImportError: where matplotlib is not installed.
+        """
+        if self._pairs[1]:
+            return _plots.accelerances([("base model", self._pairs[0]), ("with effects", self._pairs[1])])
+        return _plots.evidence(self.to_dict()["candidates"])
+
+    def _found(self) -> list[tuple[str, Model]]:
+        if self._models is None and self._held is not None:
+            tell = _progress.teller(False)
+            self._models = [(name, Model._of(model)) for name, model in self._held.models(tell)]
+        return self._models or []
+
+    def __str__(self) -> str:
+        return self._text
+
+    def __repr__(self) -> str:
+        effects = ", ".join(str(effect["id"]) for effect in self.to_dict()["effects"])
+        return f"<orthopanel.Trace: {self.verdict}{': ' if effects else ''}{effects}>"
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {**self.__dict__, "_models": self._found(), "_held": None}
