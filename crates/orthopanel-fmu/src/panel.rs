@@ -68,8 +68,11 @@ impl Panel {
         model.ports = ports;
         model.provenance.clear();
         // Nothing here is drawn, and there will be as many ratios as modes are kept.
-        model.damping.std.clear();
-        model.correlation = None;
+        #[cfg(not(feature = "compact"))]
+        {
+            model.damping.std.clear();
+            model.correlation = None;
+        }
         connections.check(&model)?;
         let mut panel = Self { model, flexible_modes: 0, residual: None, connections };
         // How many there are is known once they are found; places and integrals follow from the number.

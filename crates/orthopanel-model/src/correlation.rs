@@ -19,6 +19,21 @@ pub struct CorrelationMatrix {
     pub matrix: Vec<Vec<f64>>,
 }
 
+impl PanelModel {
+    /// Checks the standard deviations of damping ratios, and the correlation.
+    pub(crate) fn check_covariance(&self) -> Result<(), ModelError> {
+        let (std, ratios) = (&self.damping.std, self.damping.ratios.len());
+        let not_one = |std: &Option<f64>| std.filter(|std| !(0.0..f64::INFINITY).contains(std));
+        if let Some((index, value)) = std.iter().enumerate().find_map(|(index, std)| Some((index, not_one(std)?))) {
+            return Err(ModelError::Deviation { name: format!("damping.std[{index}]"), value });
+        }
+        if !std.is_empty() && std.len() != ratios {
+            return Err(ModelError::DampingDeviations { found: std.len(), ratios });
+        }
+        self.correlation.as_ref().map_or(Ok(()), |correlation| correlation.check(self))
+    }
+}
+
 /// False of what is no number.
 fn is_within(value: f64, limit: f64) -> bool {
     (-limit..=limit).contains(&value)

@@ -150,6 +150,7 @@ pub enum ModelError {
         value: f64,
     },
     /// Standard deviations of damping ratios, not one a ratio.
+    #[cfg(not(feature = "compact"))]
     #[error(
         "damping.std has {found} entries beside {ratios} of damping.ratios: give one a ratio, null where it is not known"
     )]
@@ -160,6 +161,7 @@ pub enum ModelError {
         ratios: usize,
     },
     /// A correlation that is none of the model's constants and damping ratios.
+    #[cfg(not(feature = "compact"))]
     #[error("correlation: {problem}")]
     Correlation {
         /// What is wrong, and what must be.

@@ -6,9 +6,11 @@ mod block_pencil;
 mod boundary;
 mod constant;
 mod core_in_frequency;
+#[cfg(not(feature = "compact"))]
 mod correlation;
 mod deflection_row;
 mod dense;
+#[cfg(not(feature = "compact"))]
 mod draws;
 mod effects;
 mod error;
@@ -43,6 +45,7 @@ mod wide;
 
 pub use boundary::{Boundary, End};
 pub use constant::Constant;
+#[cfg(not(feature = "compact"))]
 pub use correlation::CorrelationMatrix;
 pub use deflection_row::{DeflectionRow, RigidMotion};
 pub use effects::{

@@ -31,6 +31,8 @@ impl PanelModel {
         let model: Self = read(text)?;
         model.check()?;
         model.check_deviations()?;
+        #[cfg(not(feature = "compact"))]
+        model.check_covariance()?;
         Ok(model)
     }
 

@@ -4,10 +4,11 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+#[cfg(not(feature = "compact"))]
+use crate::CorrelationMatrix;
 use crate::limits;
 use crate::{
-    BEAM_CONSTANTS, Boundary, Constant, CorrelationMatrix, EffectState, ModelError, Owner, PLATE_CONSTANTS, Piece,
-    Place, is_identifier,
+    BEAM_CONSTANTS, Boundary, Constant, EffectState, ModelError, Owner, PLATE_CONSTANTS, Piece, Place, is_identifier,
 };
 
 /// The schema that this version reads and writes.
@@ -35,9 +36,9 @@ pub struct PanelModel {
     #[serde(default)]
     pub damping: Damping,
     /// Correlation of constants and damping ratios, where it was identified.
-    // An FMU has none, and its library is smaller for not reading one.
+    // An FMU has none, and its library is smaller without.
+    #[cfg(not(feature = "compact"))]
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[cfg_attr(feature = "compact", serde(skip))]
     pub correlation: Option<CorrelationMatrix>,
     /// Physical effects beyond the base model.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -131,8 +132,8 @@ pub struct Damping {
     #[serde(default)]
     pub ratios: Vec<f64>,
     /// Standard deviation of each of `ratios` \[1\], `None` of one that is not known; empty where none is.
+    #[cfg(not(feature = "compact"))]
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    #[cfg_attr(feature = "compact", serde(skip))]
     pub std: Vec<Option<f64>>,
     /// Ratio of every mode after the last of `ratios` \[1\].
     #[serde(default)]
@@ -220,24 +221,18 @@ impl PanelModel {
         Ok(())
     }
 
-    /// Checks the standard deviations and their correlation, which a file may give; a fit that tells none may leave what is no number.
+    /// Checks the standard deviations, which a file may give; a fit that tells none may leave what is no number.
     pub(crate) fn check_deviations(&self) -> Result<(), ModelError> {
         let of_constants = self.constants.iter().map(|(name, estimate)| (format!("constants.{name}"), estimate));
         let of_effects = self.effects.iter().enumerate().flat_map(|(index, effect)| {
             effect.parameters.iter().map(move |(name, estimate)| (format!("effects[{index}].{name}"), estimate))
         });
-        let of_estimates = of_constants.chain(of_effects).map(|(name, estimate)| (name, estimate.std));
-        let of_ratios = self.damping.std.iter().enumerate().map(|(index, std)| (format!("damping.std[{index}]"), *std));
-        for (name, std) in of_estimates.chain(of_ratios) {
+        for (name, Estimate { std, .. }) in of_constants.chain(of_effects) {
             if let Some(value) = std.filter(|std| !(0.0..f64::INFINITY).contains(std)) {
                 return Err(ModelError::Deviation { name, value });
             }
         }
-        let (found, ratios) = (self.damping.std.len(), self.damping.ratios.len());
-        if found != 0 && found != ratios {
-            return Err(ModelError::DampingDeviations { found, ratios });
-        }
-        self.correlation.as_ref().map_or(Ok(()), |correlation| correlation.check(self))
+        Ok(())
     }
 
     /// The model without the effects of rig and measuring chain, which are no part of a panel, and the ids of these.
