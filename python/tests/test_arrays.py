@@ -3,9 +3,12 @@
 import pickle
 import warnings
 
+import h5py
 import numpy as np
 import pytest
 from conftest import EXAMPLES
+from nptdms import ChannelObject, TdmsFile, TdmsWriter
+from scipy.io import loadmat, savemat
 
 import orthopanel as op
 
@@ -73,6 +76,33 @@ def read_only(of):
     of = of.copy()
     of.flags.writeable = False
     return of
+
+
+def of_mat(path, channels):
+    savemat(path, channels)
+    return loadmat(path)
+
+
+def of_hdf5(path, channels):
+    with h5py.File(path, "w") as file:
+        for name, values in channels.items():
+            file.create_dataset(name, data=values)
+    with h5py.File(path) as file:
+        return {name: file[name][:] for name in channels}
+
+
+def of_tdms(path, channels):
+    with TdmsWriter(path) as file:
+        for name, values in channels.items():
+            file.write_segment([ChannelObject(name, f"hit {hit}", of) for hit, of in enumerate(values)])
+    file = TdmsFile.read(path)
+    return {name: [channel[:] for channel in file[name].channels()] for name in channels}
+
+
+@pytest.mark.parametrize("through", [of_mat, of_hdf5, of_tdms])
+def test_other_formats_arrive_through_their_packages(piece, records, fit, through, tmp_path):
+    channels = through(tmp_path / "records", dict(zip(("force", "acceleration"), records, strict=True)))
+    assert op.identify(built(piece, channels["force"], channels["acceleration"])).to_dict() == fit.to_dict()
 
 
 def test_units_and_direction(piece, records, fit):

@@ -7,6 +7,7 @@ use pyo3::prelude::*;
 use crate::error::guarded;
 use crate::model::Model;
 use crate::traced::Traced;
+use crate::work::at_once;
 
 /// What was identified.
 #[pyclass(frozen, module = "orthopanel._native")]
@@ -53,6 +54,7 @@ impl Fit {
     /// The page with what was traced.
     fn page(&self, py: Python<'_>, traced: Bound<'_, Traced>) -> PyResult<String> {
         // Records are read once more: seconds at most.
-        crate::error::answered(py, || self.0.page(Ok(&traced.get().traced), &orthopanel::Silent))
+        let traced = &traced.get().traced;
+        at_once(py, || self.0.page(Ok(traced), &orthopanel::Silent))
     }
 }

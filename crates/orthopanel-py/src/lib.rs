@@ -3,6 +3,7 @@
 mod arrays;
 mod error;
 mod fit;
+mod fork;
 mod header;
 mod model;
 mod settings;
@@ -23,6 +24,7 @@ fn main(py: Python<'_>, words: Vec<OsString>) -> PyResult<u8> {
 /// What the package is made of; users import `orthopanel`.
 #[pymodule]
 fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    fork::born();
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     module.add_class::<test::Test>()?;
     module.add_class::<fit::Fit>()?;

@@ -11,6 +11,7 @@ use pyo3::prelude::*;
 
 use crate::arrays::{list, matrix, place};
 use crate::error::{answered, guarded, input};
+use crate::work::at_once;
 
 /// A model; nothing changes it.
 #[pyclass(frozen, module = "orthopanel._native")]
@@ -100,13 +101,13 @@ impl Model {
     ) -> PyResult<Bound<'py, PyArray1<Complex64>>> {
         let frequency = list(&frequency);
         let (model, modes) = (&self.0, modes.map(ModeRange::Count));
-        let values = answered(py, || py.detach(|| model.accelerance_of_modes(&frequency, places.map(place), modes)))?;
+        let values = at_once(py, || model.accelerance_of_modes(&frequency, places.map(place), modes))?;
         Ok(values.into_pyarray(py))
     }
 
     fn modes(&self, py: Python<'_>, count: usize) -> PyResult<Vec<ModeRow>> {
         let model = &self.0;
-        let modes = answered(py, || py.detach(|| model.modes(ModeRange::Count(count))))?;
+        let modes = at_once(py, || model.modes(ModeRange::Count(count)))?;
         let row = |(number, mode): (usize, &orthopanel_model::PanelMode)| {
             let [along_x, along_y] = mode.nodes();
             let zeta = mode.own_damping_ratio().unwrap_or_else(|| model.panel().damping.ratio(number));
@@ -124,7 +125,7 @@ impl Model {
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let places: Vec<Place> = list(&x).into_iter().zip(list(&y)).map(place).collect();
         let model = &self.0;
-        let shape = answered(py, || py.detach(|| model.mode_shape(number, &places)))?;
+        let shape = at_once(py, || model.mode_shape(number, &places))?;
         Ok(shape.into_pyarray(py))
     }
 
@@ -141,7 +142,7 @@ impl Model {
         }
         let (ports, _) = self.ports(py, forces.as_ref(), responses.as_ref())?;
         let model = &self.0;
-        let found = answered(py, || py.detach(|| model.state_space(range(modes, up_to), &ports)))?;
+        let found = at_once(py, || model.state_space(range(modes, up_to), &ports))?;
         let states = found.a.len();
         let columns = [states, ports.forces.len(), states, ports.forces.len()];
         let parts = [&found.a, &found.b, &found.c, &found.d];
@@ -151,13 +152,13 @@ impl Model {
 
     fn sample(&self, py: Python<'_>, count: usize, seed: u64) -> PyResult<Vec<Self>> {
         let model = &self.0;
-        let drawn = answered(py, || py.detach(|| model.sample(count, seed)))?;
+        let drawn = at_once(py, || model.sample(count, seed))?;
         Ok(drawn.into_iter().map(Self).collect())
     }
 
     fn save(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
         let model = &self.0;
-        answered(py, || py.detach(|| model.save(path)))
+        at_once(py, || model.save(path))
     }
 
     #[allow(clippy::too_many_arguments, reason = "as Python calls it")]
@@ -182,6 +183,6 @@ impl Model {
         let name = name.or_else(|| self.0.panel().name.clone()).unwrap_or(usual.name);
         let options = FmuOptions { name, version, names, ..FmuOptions::default() };
         let model = &self.0;
-        answered(py, || py.detach(|| model.export_with(path, range(modes, up_to), &ports, &options)))
+        at_once(py, || model.export_with(path, range(modes, up_to), &ports, &options))
     }
 }

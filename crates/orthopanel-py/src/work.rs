@@ -1,17 +1,17 @@
 //! Long work: on a thread of its own, without the interpreter's lock, with progress and Ctrl-C.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::process;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
-use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 use std::time::Duration;
 
 use orthopanel::{Error, Observer, Steps, Work};
 use pyo3::prelude::*;
 
-use crate::error::{fault, raised};
+use crate::error::{answered, fault, raised};
+use crate::fork::after_fork;
 
 /// How often signals and progress are looked after.
 const PERIOD: Duration = Duration::from_millis(50);
@@ -101,14 +101,10 @@ pub fn done<T: Send + 'static>(
     }
 }
 
-/// Does `work` with threads that are there: a process that was forked from one that had begun any has its pool, and none of its threads.
-fn after_fork<T: Send>(work: impl FnOnce() -> T + Send) -> T {
-    static FIRST: OnceLock<u32> = OnceLock::new();
-    if *FIRST.get_or_init(process::id) == process::id() {
-        return work();
-    }
-    match rayon::ThreadPoolBuilder::new().build() {
-        Ok(pool) => pool.install(work),
-        Err(_) => work(),
-    }
+/// Does `work` that takes no longer than anybody waits, without the interpreter's lock.
+///
+/// # Errors
+/// What `work` refuses.
+pub fn at_once<T: Send>(py: Python<'_>, work: impl FnOnce() -> Result<T, Error> + Send) -> PyResult<T> {
+    answered(py, || py.detach(|| after_fork(work)))
 }
