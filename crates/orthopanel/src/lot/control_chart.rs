@@ -23,7 +23,7 @@ pub struct ControlChart {
     pub range_limit: f64,
     /// Values beyond a limit.
     pub beyond: Vec<usize>,
-    /// Values that end a run of [`RUN`] or more on one side of the centre.
+    /// Values that end a run of nine or more on one side of the centre.
     pub in_a_run: Vec<usize>,
     /// Values whose moving range is beyond its limit.
     pub jumps: Vec<usize>,
@@ -36,7 +36,7 @@ pub const RUN: usize = 9;
 pub const FEWEST: usize = 3;
 
 impl ControlChart {
-    /// Of values in their order; `None` of fewer than [`FEWEST`], or where one is no number.
+    /// Of values in their order; `None` of fewer than three, or where one is no number.
     pub fn of(values: &[f64]) -> Option<Self> {
         if values.len() < FEWEST || !values.iter().all(|value| value.is_finite()) {
             return None;

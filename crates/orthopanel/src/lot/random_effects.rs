@@ -44,7 +44,7 @@ pub struct RandomEffects {
 pub const FEWEST: usize = 3;
 
 impl RandomEffects {
-    /// Of the panels' values; `None` of fewer than [`FEWEST`], and where a value or deviation is no number.
+    /// Of the panels' values; `None` of fewer than three, and where a value or deviation is no number.
     pub fn of(panels: &[Measured]) -> Option<Self> {
         let sound = |panel: &Measured| panel.value.is_finite() && panel.std.is_finite() && panel.std >= 0.0;
         if panels.len() < FEWEST || !panels.iter().all(sound) {
