@@ -199,7 +199,7 @@ pub enum ModelError {
         angular_frequency: f64,
     },
     /// A standard deviation that is none.
-    #[error("{name}.std = {}: must be a finite number, zero or more", Readable(*.value))]
+    #[error("{name} = {}: must be a finite number, zero or more", Readable(*.value))]
     Deviation {
         /// What it is of, as the file has it.
         name: String,

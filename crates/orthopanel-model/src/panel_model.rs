@@ -223,9 +223,9 @@ impl PanelModel {
 
     /// Checks the standard deviations, which a file may give; a fit that tells none may leave what is no number.
     pub(crate) fn check_deviations(&self) -> Result<(), ModelError> {
-        let of_constants = self.constants.iter().map(|(name, estimate)| (format!("constants.{name}"), estimate));
+        let of_constants = self.constants.iter().map(|(name, estimate)| (format!("constants.{name}.std"), estimate));
         let of_effects = self.effects.iter().enumerate().flat_map(|(index, effect)| {
-            effect.parameters.iter().map(move |(name, estimate)| (format!("effects[{index}].{name}"), estimate))
+            effect.parameters.iter().map(move |(name, estimate)| (format!("effects[{index}].{name}.std"), estimate))
         });
         for (name, Estimate { std, .. }) in of_constants.chain(of_effects) {
             if let Some(value) = std.filter(|std| !(0.0..f64::INFINITY).contains(std)) {

@@ -29,19 +29,15 @@ fn faults_name_where_they_stand_and_what_is_wanted() {
         ("\"local-mass\"", "7", "line 6: effects[0].id: must be a text in quotes, not 7"),
         ("[{\"id\"", "[3, {\"id\"", "line 6: effects[0]: must be an object {..}, not 3"),
         ("1e-4,", "-1e-4,", "damping.std[0] = -0.0001: must be a finite number, zero or more"),
-        ("[1e-4, 2e-4]", "[1e-4, 2e-4, 1e-4]", "3 damping.std"),
+        ("[1e-4, 2e-4]", "[1e-4, 2e-4, 1e-4]", "damping.std has 3 entries beside 2 of damping.ratios"),
         (
             "\"damping_ratio_2\"",
             "\"damping_ratio_3\"",
-            "correlation: \"damping_ratio_3\" is no constant or damping ratio of this model: known are e_x, g_zx, damping_ratio_1, damping_ratio_2",
+            "names[1] = \"damping_ratio_3\" is neither one of its constants nor damping_ratio_1 to damping_ratio_2",
         ),
-        ("\"damping_ratio_2\"", "\"e_x\"", "correlation: e_x stands there twice"),
-        ("[0.5, 1]]", "[0.4, 1]]", "must be the same"),
-        (
-            "\"matrix\": [[1, 0.5], [0.5, 1]]",
-            "\"matrix\": [[1, 1.5], [1.5, 1]]",
-            "damping_ratio_2 contradicts those before it",
-        ),
+        ("\"damping_ratio_2\"", "\"e_x\"", "names[1] = \"e_x\" stands twice"),
+        ("[0.5, 1]]", "[0.4, 1]]", "it must be symmetric"),
+        ("\"matrix\": [[1, 0.5], [0.5, 1]]", "\"matrix\": [[1, 1.5], [1.5, 1]]", "must lie between -1 and 1"),
     ];
     for (from, to, said) in faults {
         assert!(MODEL.contains(from), "{from}");
