@@ -54,11 +54,16 @@ def test_ctrl_c_ends_a_trace(slow):
         started.wait(60)
         os.kill(os.getpid(), signal.SIGINT)
 
+    # A shell that starts tests in the background lets them ignore the signal.
+    handler = signal.signal(signal.SIGINT, signal.default_int_handler)
     thread = threading.Thread(target=interrupt)
     thread.start()
-    with pytest.raises(KeyboardInterrupt):
-        op.trace(slow, progress=lambda *_: started.set())
-        time.sleep(5)
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            op.trace(slow, progress=lambda *_: started.set())
+            time.sleep(5)
+    finally:
+        signal.signal(signal.SIGINT, handler)
     thread.join()
     # And the next one runs.
     assert op.trace(slow).verdict == "explained"
