@@ -7,8 +7,10 @@
 //! no records to measure on; without a peer its ratio is left out, and the run says so.
 #![allow(clippy::print_stdout)]
 
+mod python;
+
 use std::hint::black_box;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::Command;
 use std::time::{Duration, Instant};
 
@@ -16,6 +18,7 @@ use criterion::{Criterion, SamplingMode};
 use num_complex::Complex64;
 use orthopanel_data::{Accelerance, Estimation, ImpactTest};
 use orthopanel_identify::{Identification, MeasuredModes, Settings, identify, measured_modes};
+use python::{answer_of, python, root};
 
 /// What was asked of reading and transforming: times faster than pyuff and pyFRF.
 const RATIO_ASKED: f64 = 5.0;
@@ -173,24 +176,4 @@ fn peer(folder: &Path, arguments: &[&str]) -> Result<serde_json::Value, String> 
     let mut command = Command::new(python());
     command.arg(root().join("benches/pyfrf_peer/peer.py")).arg(folder).args(arguments);
     serde_json::from_slice(&answer_of(command)?).map_err(|error| error.to_string())
-}
-
-/// Standard output of a command that went well; else the last line it complained with.
-fn answer_of(mut command: Command) -> Result<Vec<u8>, String> {
-    let output = command.output().map_err(|error| error.to_string())?;
-    if output.status.success() {
-        return Ok(output.stdout);
-    }
-    let message = String::from_utf8_lossy(&output.stderr);
-    Err(message.lines().last().unwrap_or("no message").to_owned())
-}
-
-fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
-}
-
-fn python() -> PathBuf {
-    let own = root().join(".venv/bin/python");
-    let named = std::env::var_os("ORTHOPANEL_PYTHON").map(PathBuf::from);
-    named.unwrap_or_else(|| if own.exists() { own } else { PathBuf::from("python3") })
 }

@@ -6,6 +6,8 @@
 //! `.venv/bin/python`, else `python3`); without numpy and scipy only effects are measured.
 #![allow(clippy::print_stdout)]
 
+mod python;
+
 use std::hint::black_box;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -17,6 +19,7 @@ use orthopanel_identify::trace;
 use orthopanel_model::{
     Boundary, EffectSetting, EffectState, ModifiedPanel, Piece, Place, RecordSetting, StructureKind, effect,
 };
+use python::{answer_of, python, root};
 
 /// What was asked of a whole trace on two cores.
 const ASKED: Duration = Duration::from_secs(3);
@@ -73,21 +76,10 @@ fn effects(criterion: &mut Criterion) {
 
 /// A made test that lacks one effect: its file.
 fn made(folder: &Path, kind: &str) -> Result<PathBuf, String> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
-    let own = root.join(".venv/bin/python");
-    let python = std::env::var_os("ORTHOPANEL_PYTHON").map(PathBuf::from);
-    let python = python.unwrap_or_else(|| if own.exists() { own } else { "python3".into() });
     let out = folder.join("set");
-    let done = Command::new(python)
-        .current_dir(root.join("tests"))
-        .args(["-m", "blind_tracing", "make"])
-        .arg(&out)
-        .args(["--set", "clean", "--count", "1", "--seed", SEED, "--kind", kind])
-        .output()
-        .map_err(|error| error.to_string())?;
-    if !done.status.success() {
-        let said = String::from_utf8_lossy(&done.stderr);
-        return Err(said.lines().last().unwrap_or("no reason given").to_owned());
-    }
+    let mut command = Command::new(python());
+    command.current_dir(root().join("tests")).args(["-m", "blind_tracing", "make"]).arg(&out);
+    command.args(["--set", "clean", "--count", "1", "--seed", SEED, "--kind", kind]);
+    answer_of(command)?;
     Ok(out.join("case-000/test.toml"))
 }

@@ -6,6 +6,8 @@
 //! peer, in the Python named by `ORTHOPANEL_PYTHON` (default: `.venv/bin/python`, else `python3`).
 #![allow(clippy::print_stdout)]
 
+mod python;
+
 use std::hint::black_box;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -14,6 +16,7 @@ use std::time::{Duration, Instant};
 use criterion::{BenchmarkId, Criterion, SamplingMode};
 use orthopanel_data::ImpactTest;
 use orthopanel_identify::{Settings, identify, measured_modes, trace};
+use python::{answer_of, python, root};
 
 /// Places of which times are told, to see how they grow.
 const PLACES: [usize; 3] = [10, 20, 30];
@@ -117,24 +120,4 @@ fn made(folder: &Path) -> Result<PathBuf, String> {
     cases
         .find(|case| case.join(format!("point-{last}.uff")).exists())
         .ok_or_else(|| format!("no case has {PLACES:?} places"))
-}
-
-/// Standard output of a command that went well; else the last line it complained with.
-fn answer_of(mut command: Command) -> Result<Vec<u8>, String> {
-    let output = command.output().map_err(|error| error.to_string())?;
-    if output.status.success() {
-        return Ok(output.stdout);
-    }
-    let message = String::from_utf8_lossy(&output.stderr);
-    Err(message.lines().last().unwrap_or("no message").to_owned())
-}
-
-fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
-}
-
-fn python() -> PathBuf {
-    let own = root().join(".venv/bin/python");
-    let named = std::env::var_os("ORTHOPANEL_PYTHON").map(PathBuf::from);
-    named.unwrap_or_else(|| if own.exists() { own } else { PathBuf::from("python3") })
 }
