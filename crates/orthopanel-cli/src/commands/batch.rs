@@ -61,7 +61,7 @@ pub fn execute(arguments: &Arguments, words: &[String]) -> Result<(), CommandErr
         batch.run(|done, rows| {
             shown.at(done, batch.len(), "");
             let mut written = written.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-            if written.elapsed() > EVERY && lot::save(output, rows).is_ok() {
+            if written.elapsed() > EVERY && lot::save(output, &rows()).is_ok() {
                 *written = Instant::now();
             }
         })

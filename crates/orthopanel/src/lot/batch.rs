@@ -35,28 +35,35 @@ impl Batch {
         self.tests.is_empty()
     }
 
-    /// The rows of all tests, in their order. After each test `done` is told how many are done and the rows so far: whoever writes
-    /// them loses nothing.
-    pub fn run(&self, done: impl Fn(usize, &[LotRow]) + Sync) -> Vec<LotRow> {
+    /// The rows of all tests, in their order. After each test `done` is told how many are done, and what gives the rows so far, the known ones of
+    /// tests that are still to come among them: whoever writes them loses nothing.
+    pub fn run(&self, done: impl Fn(usize, &dyn Fn() -> Vec<LotRow>) + Sync) -> Vec<LotRow> {
         let found: Mutex<Vec<Option<Vec<LotRow>>>> = Mutex::new(vec![None; self.tests.len()]);
         let lock = || found.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-        let so_far = |found: &[Option<Vec<LotRow>>]| found.iter().flatten().flatten().cloned().collect::<Vec<_>>();
+        let of_test = |(rows, test): (&Option<Vec<LotRow>>, &PathBuf)| {
+            let known = || self.known.iter().filter(|row| row.test == named(test)).cloned().collect();
+            rows.clone().unwrap_or_else(known)
+        };
+        let so_far =
+            |found: &[Option<Vec<LotRow>>]| found.iter().zip(&self.tests).flat_map(of_test).collect::<Vec<_>>();
         self.tests.par_iter().enumerate().for_each(|(index, test)| {
             let rows = self.rows(test);
             let mut found = lock();
             found[index] = Some(rows);
-            done(found.iter().flatten().count(), &so_far(&found));
+            done(found.iter().flatten().count(), &|| so_far(&found));
         });
         so_far(&lock())
     }
 
     fn rows(&self, path: &Path) -> Vec<LotRow> {
         let file = ImpactTest::file_at(path);
-        let named =
+        let called =
             if file.file_stem().is_some_and(|stem| stem == "test") { file.parent() } else { Some(file.as_path()) };
         let common = LotRow {
-            panel: named.and_then(Path::file_stem).map_or_else(String::new, |name| name.to_string_lossy().into_owned()),
-            test: path.display().to_string(),
+            panel: called
+                .and_then(Path::file_stem)
+                .map_or_else(String::new, |name| name.to_string_lossy().into_owned()),
+            test: named(path),
             version: env!("CARGO_PKG_VERSION").to_owned(),
             ..LotRow::default()
         };
@@ -77,6 +84,11 @@ impl Batch {
             known
         }
     }
+}
+
+/// A test as its rows have it.
+fn named(test: &Path) -> String {
+    test.display().to_string()
 }
 
 fn found(test: &Test, common: &LotRow) -> Result<Vec<LotRow>, Error> {
@@ -122,4 +134,17 @@ fn gather(folder: &Path, tests: &mut Vec<PathBuf>) -> Result<(), Error> {
         }
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_written_under_way_keeps_known_rows_of_tests_to_come() {
+        let tests = ["piece-1", "piece-3"].map(|name| PathBuf::from("../../examples").join(name)).to_vec();
+        let known = Batch::new(tests.clone(), vec![]).run(|_, _| ());
+        assert!(known.len() == 2 && known.iter().all(|row| row.failed.is_none()), "{known:?}");
+        Batch::new(tests, known.clone()).run(|_, rows| assert_eq!(rows(), known));
+    }
 }
