@@ -39,12 +39,12 @@ def solve(panel, points, zeta, core, sampling):
         upper = vectors[:, ~kept]
         answer = (seen @ upper).T / square[~kept, None]
         basis += [vectors[:, kept][:, 2:], upper @ answer, upper @ (answer / square[~kept, None])]
-    basis = _orthonormal(np.hstack(basis), mesh.mass, rigid=2)
+    basis = orthonormal(np.hstack(basis), mesh.mass, rigid=2)
     stiffness, shear = (basis.T @ part @ basis for part in (mesh.bending + mesh.shear, mesh.shear))
     return CoreModes(stiffness, shear, (seen @ basis).T, 2, zeta, core, sampling.sigma, highest)
 
 
-def _orthonormal(basis, mass, rigid):
+def orthonormal(basis, mass, rigid):
     """The span of the vectors with phi' M phi = 1, the first `rigid` kept as they are (they are orthonormal)."""
     first, rest = basis[:, :rigid], basis[:, rigid:]
     for _ in range(2):  # once more for what rounding left

@@ -1,16 +1,17 @@
 """Whole panels: a free plate, hit at a dozen places and more, with what its test file does not tell."""
 
+from collections.abc import Callable
 from copy import copy
 from dataclasses import dataclass, field, replace
 from typing import ClassVar
 
 import numpy as np
 
-from . import attachments
+from . import attachments, catalogue
 from .bench import GRID
 from .contour import Sampling
 from .draw import Draw
-from .whole_plate import FLEXIBLE, RIGID, SHEAR_COEFFICIENT, Foot, WholePanel, frequencies, solve
+from .whole_plate import FLEXIBLE, SHEAR_COEFFICIENT, Foot, WholePanel, frequencies, relaxing, solve
 from .whole_visible import Seen
 
 SETS = ("whole", "whole-real")
@@ -95,6 +96,7 @@ class WholeBench:
     chain: list = field(default_factory=list)
     gain: float = 1.0
     own: tuple | None = None
+    core: Callable | None = None
 
     def __post_init__(self):
         self.record_gain = np.ones(len(self.forces))
@@ -122,13 +124,17 @@ class WholeBench:
         # A sensor that is fixed with its mass moves as its foot does.
         sensor = next((foot for foot in fixed if (foot.x, foot.y) == (sensor.x, sensor.y)), sensor)
         feet = list(dict.fromkeys([sensor, *fixed]))
-        modes = solve(self.panel, spots[:, 1:], feet, self.zeta)
+        if self.core is None:
+            modes = solve(self.panel, spots[:, 1:], feet, self.zeta)
+        else:
+            modes = relaxing(self.panel, spots[:, 1:], feet, self.zeta, self.core, self.sampling)
         if self.own is not None:
             shares, factors = self.own
             share, factor = np.zeros(len(modes)), np.ones((len(modes), modes.points))
-            own = slice(RIGID, min(RIGID + len(shares), len(modes)))
-            share[own] = shares[: own.stop - RIGID]
-            factor[own, : len(spots)] = factors[: own.stop - RIGID, spots[:, 0].astype(int)]
+            rigid = self.panel.rigid
+            own = slice(rigid, min(rigid + len(shares), len(modes)))
+            share[own] = shares[: own.stop - rigid]
+            factor[own, : len(spots)] = factors[: own.stop - rigid, spots[:, 0].astype(int)]
             modes = modes.of_its_own(share, factor)
         index = lambda foot: len(spots) + feet.index(foot)  # noqa: E731
         bare = lambda rows, columns: modes.receptance(s, rows, columns)  # noqa: E731
@@ -330,6 +336,16 @@ def _channel_delay(bench, draw):
     return {"delay": delay}
 
 
+def _support_compliance(bench, draw):
+    """Springs along the left edge, over the whole of it: some 0.3 to 10 % of the first frequency of a panel that is clamped there."""
+    panel = bench.panel
+    bending = panel.e_x * panel.thickness**3 * panel.width / 12.0
+    rotation = bending / panel.length * draw.falling(8.0, 300.0)
+    translation = bending / panel.length**3 * draw.falling(300.0, 3e4)
+    bench.panel = replace(panel, left=(translation, rotation))
+    return {"rotation": rotation, "translation": translation}
+
+
 EFFECTS = {
     "local-mass": _local_mass,
     "sensor-mass": _sensor_mass,
@@ -338,4 +354,6 @@ EFFECTS = {
     "record-gain": _record_gain,
     "gain": _gain,
     "channel-delay": _channel_delay,
+    "support-compliance": _support_compliance,
+    "viscoelastic-core": catalogue.viscoelastic_core,
 }

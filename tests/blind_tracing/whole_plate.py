@@ -1,4 +1,4 @@
-r"""A whole free panel: an orthotropic Mindlin plate by spectral elements along x and y, whose core may differ from place to place.
+r"""A whole panel, free or held along its left edge: an orthotropic Mindlin plate by spectral elements along x and y, whose core may differ from place to place.
 
 Strain energy, with psi the rotations so that the shear strains are w,x + psi_x and w,y + psi_y:
 
@@ -15,8 +15,7 @@ a point is a different mass on each basis. SI units.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
-from typing import ClassVar
+from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy.sparse as sparse
@@ -24,6 +23,7 @@ from numpy.polynomial import legendre
 from scipy.linalg import eigh
 from scipy.sparse.linalg import LinearOperator, eigsh, splu
 
+from .core import CoreModes, orthonormal
 from .modes import BEYOND, Modes
 
 SHEAR_COEFFICIENT = 2.0 / 3.0
@@ -41,7 +41,8 @@ ORDERS = 4  # of the other modes' answer to a force, in omega^2
 @dataclass(frozen=True)
 class WholePanel:
     """Size [m], mass per area [kg/m2], the six constants [Pa, 1], and the core's share of its shear stiffness over x and y (`core`)
-    with the lines [m] where that jumps."""
+    with the lines [m] where that jumps. `left` is "free" or the springs, over the whole edge against deflection [N/m] and against either
+    rotation [N m/rad], that hold the left edge."""
 
     length: float
     width: float
@@ -56,7 +57,12 @@ class WholePanel:
     core: Callable | None = None
     lines_x: tuple = ()
     lines_y: tuple = ()
-    left: ClassVar[str] = "free"
+    left: str | tuple = "free"
+
+    @property
+    def rigid(self):
+        """How many motions as a whole nothing holds."""
+        return RIGID if self.left == "free" else 0
 
     @property
     def mass(self):
@@ -126,9 +132,22 @@ class Mesh:
         size, own = 3 * self.nodes_x * self.nodes_y, rows.shape[1]
         at = (np.repeat(rows, own, axis=1).ravel(), np.tile(rows, (1, own)).ravel())
         build = lambda blocks: sparse.csc_matrix((np.array(blocks).ravel(), at), (size, size))  # noqa: E731
-        mass = build(masses)
+        mass, stiffness = build(masses), build(entries)
         mass.eliminate_zeros()
-        return build(entries), mass
+        return stiffness + self._springs(value, weight), mass
+
+    def _springs(self, value, weight):
+        """What holds the nodes of the left edge, which are the first."""
+        springs = sparse.lil_matrix((3 * self.nodes_x * self.nodes_y,) * 2)
+        if self.panel.left == "free":
+            return springs.tocsc()
+        translation, rotation = np.array(self.panel.left) / self.panel.width
+        for j, size in enumerate(np.diff(self.y)):
+            own = value.T @ (weight[:, None] * value) * size / 2.0
+            nodes = 3 * (np.arange(self.degree + 1) + self.degree * j)
+            for part, spring in enumerate((translation, rotation, rotation)):
+                springs[np.ix_(nodes + part, nodes + part)] += spring * own
+        return springs.tocsc()
 
     def _unknowns(self, i, j):
         """Of element (i, j): w of all its nodes, then psi_x, then psi_y."""
@@ -154,6 +173,12 @@ class Mesh:
             row[element * self.degree : (element + 1) * self.degree + 1] += share * values
         return row
 
+    def nodes_at(self, axis):
+        """Where the nodes lie along x (0) or y (1), m."""
+        line = (self.x, self.y)[axis]
+        within = [low + (high - low) * (1.0 + self.reference[:-1]) / 2.0 for low, high in zip(line[:-1], line[1:])]
+        return np.concatenate([*within, line[-1:]])
+
     def rigid(self, seen):
         """The motions as a whole at rows of places (places, 2), phi' M phi = 1."""
         panel = self.panel
@@ -165,23 +190,54 @@ def solve(panel, struck, fixed, zeta, flexible=None, **mesh):
     """Modes seen from the points `struck` (n, 2) [m], then from the feet `fixed`, of which each pair's compliance is complete: what
     the other modes answer to a force on a foot, to ORDERS orders in omega^2, is a few pseudo-modes."""
     mesh, flexible = Mesh(panel, fixed, **mesh), flexible or FLEXIBLE
+    rigid, feet, seen = panel.rigid, *_seen(mesh, struck, fixed)
     square, vectors, factor, shift = lowest(mesh, flexible)
-    feet = [*(Foot(x, y) for x, y in struck), *fixed]
-    seen = np.array([mesh.deflection(foot) for foot in feet])
     upper = _answers(seen[len(struck) :], vectors, mesh.mass, factor)
     pseudo, turn = eigh(upper.T @ (mesh.stiffness @ upper))
     shape = np.vstack([(seen @ vectors).T, (seen @ upper @ turn).T])
-    shape[:RIGID] = mesh.rigid(np.array([(foot.x, foot.y) for foot in feet]))
+    shape[:rigid] = mesh.rigid(feet)[:rigid]
     damping = np.full(len(shape), BEYOND)
-    damping[:RIGID] = 0.0
+    damping[:rigid] = 0.0
     count = min(len(zeta), flexible)
-    damping[RIGID : RIGID + count] = zeta[:count]
-    return Modes(np.sqrt(np.concatenate([np.zeros(RIGID), square[RIGID:], pseudo])), damping, shape, RIGID)
+    damping[rigid : rigid + count] = zeta[:count]
+    return Modes(np.sqrt(np.concatenate([np.zeros(rigid), square[rigid:], pseudo])), damping, shape, rigid)
+
+
+def relaxing(panel, struck, fixed, zeta, core, sampling, flexible=None, **mesh):
+    """The same of a panel whose core's modulus follows core(s): the basis holds the modes at the least and at the greatest modulus, and
+    what the others answer to a force at each place. CUT is where its modes end."""
+    whole, flexible = Mesh(panel, fixed, **mesh), flexible or FLEXIBLE
+    before = panel.core or (lambda x, y: np.ones(np.broadcast(x, y).shape))
+    stiffer = lambda modulus: replace(panel, core=lambda x, y: modulus * before(x, y))  # noqa: E731
+    feet, seen = _seen(whole, struck, fixed)
+    highest = sampling.lines()[0][-1]
+    shear = Mesh(stiffer(2.0), fixed, **mesh).stiffness - whole.stiffness
+    basis = []
+    for modulus in (1.0, abs(core(2.0j * np.pi * highest))):
+        part = Mesh(stiffer(modulus), fixed, **mesh)
+        _, vectors, factor, _ = lowest(part, flexible)
+        basis += [vectors[:, panel.rigid :], _answers(seen, vectors, part.mass, factor)]
+    nodes = np.array([[x, y] for x in whole.nodes_at(0) for y in whole.nodes_at(1)])
+    turned = whole.rigid(nodes)[: panel.rigid]
+    first = np.zeros((whole.stiffness.shape[0], panel.rigid))
+    for mode, row in enumerate(turned):
+        first[0::3, mode] = row
+        if mode:  # psi_x of the turn about y, psi_y of that about x
+            first[mode::3, mode] = -(row[-1] - row[0]) / (nodes[-1] - nodes[0])[mode - 1]
+    basis = orthonormal(np.hstack([first, *basis]), whole.mass, panel.rigid)
+    stiffness, shear = (basis.T @ (part @ basis) for part in (whole.stiffness, shear))
+    return CoreModes(stiffness, shear, (seen @ basis).T, panel.rigid, zeta, core, sampling.sigma, highest)
+
+
+def _seen(mesh, struck, fixed):
+    """Where the points and the feet are (n, 2), and the rows that read their deflections."""
+    feet = [*(Foot(x, y) for x, y in struck), *fixed]
+    return np.array([(foot.x, foot.y) for foot in feet]), np.array([mesh.deflection(foot) for foot in feet])
 
 
 def frequencies(panel, flexible, **mesh):
     """Of the flexible modes, Hz."""
-    return np.sqrt(lowest(Mesh(panel, **mesh), flexible)[0][RIGID:]) / 2.0 / np.pi
+    return np.sqrt(lowest(Mesh(panel, **mesh), flexible)[0][panel.rigid :]) / 2.0 / np.pi
 
 
 def lowest(mesh, flexible):
@@ -193,7 +249,7 @@ def lowest(mesh, flexible):
     factor = splu((mesh.stiffness - shift * mesh.mass).tocsc(), **symmetric)
     inverse = LinearOperator(mesh.stiffness.shape, matvec=factor.solve)
     start = np.random.default_rng(1).standard_normal(mesh.stiffness.shape[0])  # one of its own choice would differ from run to run
-    square, vectors = eigsh(mesh.stiffness, k=RIGID + flexible, M=mesh.mass, sigma=shift, OPinv=inverse, v0=start)
+    square, vectors = eigsh(mesh.stiffness, k=panel.rigid + flexible, M=mesh.mass, sigma=shift, OPinv=inverse, v0=start)
     order = np.argsort(square)
     return square[order], vectors[:, order], factor, shift
 

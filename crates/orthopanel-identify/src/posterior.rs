@@ -102,6 +102,14 @@ pub(crate) struct Judged {
 }
 
 impl Judged {
+    /// How many numbers the data determine, $\sum_i(1 - \Sigma_{ii}/\sigma_i^2)$ with the deviations $\sigma$ of the priors: none for one that its prior alone
+    /// tells, one for one that no prior is needed for. Source: D. J. C. MacKay, Neural Computation 4 (1992) 415, eq. 4.9.
+    pub(crate) fn determined(&self) -> usize {
+        let precision = self.hypothesis.precision();
+        let own = (0..precision.len()).map(|i| 1.0 - precision[i] * self.posterior.covariance[(i, i)]);
+        own.sum::<f64>().round().max(0.0) as usize
+    }
+
     /// Names of the undeclared effects in the order of letters.
     pub(crate) fn set(&self) -> Vec<&'static str> {
         let mut names = self.names();

@@ -11,8 +11,7 @@ use std::f64::consts::TAU;
 
 use faer::Mat;
 use orthopanel_model::{
-    Action, Effect, EffectParameter, EffectSetting, FieldTerm, ModelError, Scale, StructureKind, catalogue,
-    natural_frequencies,
+    Action, Effect, EffectParameter, EffectSetting, ModelError, Scale, StructureKind, catalogue, natural_frequencies,
 };
 use rayon::prelude::*;
 
@@ -299,15 +298,9 @@ impl<'a> Inquiry<'a> {
 
     /// Why an effect is not looked for on a plate.
     fn hidden_on_plates(&self, effect: &dyn Effect) -> Option<&'static str> {
-        if self.predictor().structure != StructureKind::MindlinPlate {
-            return None;
-        }
-        self.acts(effect).ok()?.iter().find_map(|action| match action {
-            Action::Plate(_) => Some("the test file declares a plate"),
-            Action::Core(_) => Some("a core that depends on frequency is looked for in beams alone"),
-            Action::Field(FieldTerm::Support(_)) => Some("edges that yield are looked for on beams alone"),
-            _ => None,
-        })
+        let is_plate = self.predictor().structure == StructureKind::MindlinPlate;
+        let makes_one = |action: &Action| matches!(action, Action::Plate(_));
+        (is_plate && self.acts(effect).ok()?.iter().any(makes_one)).then_some("the test file declares a plate")
     }
 
     /// Whether a base on a plate misses by more than modes and poles lie apart: it may have been led away.

@@ -88,7 +88,7 @@ impl View {
         if let Some(relaxing) = &self.relaxing {
             let mode = relaxing.mode(n, zeta);
             let shape =
-                between(|port| mode.deflection[port], |axis, port| along_x(&mode.slope, axis, port), [force, response]);
+                between(|port| mode.deflection[port], |axis, port| at(&mode.slopes[axis], port), [force, response]);
             return ([force, response].map(|port| mode.deflection[port]), shape);
         }
         let of_mode = |values: &[Vec<f64>], port: usize| {
@@ -125,7 +125,7 @@ impl View {
     /// The product of deflections there, where it is another than at the pole: with a core that depends on frequency.
     pub(crate) fn shape_at_line(&self, (n, ports): (usize, [usize; 2]), number: usize) -> Option<[Complex64; PARTS]> {
         let line = &self.relaxing.as_ref()?.lines[number];
-        let slope = |axis: usize, port: usize| along_x(&line.slope[n], axis, port);
+        let slope = |axis: usize, port: usize| at(&line.slopes[n][axis], port);
         Some(between(|port| line.deflection[n][port], slope, ports))
     }
 }
@@ -141,9 +141,9 @@ fn between(
     [deflection(force) * deflection(response), force_x, response_x, force_y, response_y]
 }
 
-/// The slope of what is known along x alone, if slopes were asked for.
-fn along_x(slope: &[Complex64], axis: usize, port: usize) -> Complex64 {
-    if axis == 0 { slope.get(port).copied().unwrap_or(Complex64::ZERO) } else { Complex64::ZERO }
+/// A slope at a port, if slopes were asked for.
+fn at(slopes: &[Complex64], port: usize) -> Complex64 {
+    slopes.get(port).copied().unwrap_or(Complex64::ZERO)
 }
 
 /// Modes of a panel whose core depends on frequency.
@@ -183,7 +183,8 @@ impl Relaxing {
             angular_frequency: modes.iter().map(|mode| mode.angular_frequency).collect(),
             damping_ratio: modes.iter().map(RelaxingMode::core_damping).collect(),
             deflection: modes.iter().map(|mode| real(&mode.deflection)).collect(),
-            slope: modes.iter().map(|mode| real(&mode.slope)).collect(),
+            slope: modes.iter().map(|mode| real(&mode.slopes[0])).collect(),
+            slope_across: modes.iter().map(|mode| real(&mode.slopes[1])).collect(),
             ..SeenModes::default()
         }
     }

@@ -116,5 +116,5 @@ fn a_gain_is_told_to_be_what_a_wrong_mass_makes_too() {
 #[test]
 fn an_effect_that_cannot_act_is_refused_with_what_it_needs() {
     let refused = made_hits("[[effect]]\nid = \"support-compliance\"\n").unwrap_err();
-    assert!(refused.contains("needs an end that is clamped"), "{refused}");
+    assert!(refused.contains("needs an edge that is clamped"), "{refused}");
 }

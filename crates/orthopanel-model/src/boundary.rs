@@ -61,6 +61,13 @@ impl Boundary {
         }
     }
 
+    /// The same with every clamped edge free.
+    pub(crate) fn released(self) -> Self {
+        let released = |end: End| if end == End::Clamped { End::Free } else { end };
+        let Self { left, right, front, back } = self;
+        Self { left: released(left), right: released(right), front: released(front), back: released(back) }
+    }
+
     /// Checks that front and back are free, as a beam has them.
     pub(crate) fn of_beam(self) -> Result<Self, ModelError> {
         match [("front", self.front), ("back", self.back)].into_iter().find(|(_, end)| *end != End::Free) {

@@ -7,6 +7,7 @@ mod beam_paper;
 mod beam_three_ways;
 mod beam_with_effects;
 mod core_in_models;
+mod edges_that_yield;
 mod effects_bench;
 mod effects_document;
 mod effects_in_models;

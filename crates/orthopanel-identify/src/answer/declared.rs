@@ -47,7 +47,8 @@ pub(crate) fn identify_lists_with_effects(test: &ImpactTest) -> Result<Identific
     from_base(test, None, &|_| {}, |inquiry, base| {
         let mut notes = notes_on_hidden(test, &inquiry)?;
         let (found, needed) = (inquiry.frequencies(), base.hypothesis.unknowns());
-        if found < needed {
+        // Where priors tell the rest, one frequency is left to judge by.
+        if found < needed && found <= base.determined() {
             let names = "constants and numbers of declared effects".to_owned();
             return Err(IdentifyError::TooFewFrequencies { found, needed, names });
         }
@@ -58,7 +59,7 @@ pub(crate) fn identify_lists_with_effects(test: &ImpactTest) -> Result<Identific
         let pieces = pieces_of_lists(test, &inquiry, &base)?;
         notes.extend(each_alone(&inquiry.stacked, &base));
         let error = percent(&inquiry, &base).ok_or_else(|| not_finite("error of the frequencies"))?;
-        let is_judged = inquiry.frequencies() > base.hypothesis.unknowns();
+        let is_judged = inquiry.frequencies() > base.determined();
         let constants = FreeConstants::of(test, inquiry.predictor().structure.constants())?;
         Ok(Identification {
             structure: inquiry.predictor().structure,

@@ -45,7 +45,7 @@ pub(crate) fn answer_of_lists(
     refuse_many(test)?;
     from_base(test, correct, progress, |inquiry, base| {
         let hidden = notes_on_hidden(test, &inquiry)?;
-        let unknowns = base.hypothesis.unknowns();
+        let unknowns = base.determined();
         let found = inquiry.frequencies();
         if found <= unknowns {
             let names = "and one more, to judge by".to_owned();
@@ -146,7 +146,7 @@ fn is_told(of: &Declared) -> bool {
 fn tracing_of(test: &ImpactTest, inquiry: &Inquiry, all: &[Judged]) -> Result<Tracing, IdentifyError> {
     let weighed = Weighed::of(inquiry, all)?;
     let Weighed { chosen, base, .. } = weighed;
-    let unknowns = base.hypothesis.unknowns() + 1;
+    let unknowns = base.determined() + 1;
     let too_few = weighed.verdict == Verdict::NothingMissing && inquiry.frequencies() < FOR_EACH * unknowns;
     // Of a plate read in another way the effect may be elsewhere.
     let is_open = weighed.verdict == Verdict::Explained && inquiry.of_lists.is_open;
@@ -316,15 +316,15 @@ fn where_it_misses(test: &ImpactTest, inquiry: &Inquiry, judged: &Judged) -> Str
 
 /// What is missing where too few were measured for anything to be found missing.
 fn more_frequencies(inquiry: &Inquiry, base: &Judged) -> String {
-    let (found, constants) = (inquiry.frequencies(), base.hypothesis.free_constants());
-    let open = base.hypothesis.unknowns() - constants;
-    let needed = FOR_EACH * (constants + open + 1);
-    let (beside, or) = match open {
-        0 => (String::new(), ""),
-        _ => (format!(", {open} numbers of declared effects"), ", or say the numbers of declared effects"),
+    let (found, determined) = (inquiry.frequencies(), base.determined());
+    let needed = FOR_EACH * (determined + 1);
+    let or = if base.hypothesis.unknowns() > base.hypothesis.free_constants() {
+        ", or say the numbers of declared effects"
+    } else {
+        ""
     };
     format!(
-        "read {} more natural frequencies or more: {found} for {constants} constants{beside} and one effect are too few to judge by, {needed} are \
+        "read {} more natural frequencies or more: {found} for {determined} numbers that they tell and one effect are too few to judge by, {needed} are \
          the least; or hold a constant that you know under [constants]{or}",
         needed.saturating_sub(found).max(1),
     )

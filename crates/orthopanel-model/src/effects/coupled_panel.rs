@@ -448,7 +448,7 @@ pub(crate) fn elements(effects: &[EffectState], setting: &EffectSetting) -> Resu
 const PATCH_DEGREES: usize = 3;
 
 fn shear_stiffnesses(plate: &dyn Structure, values: &[f64]) -> Result<[f64; 2], ModelError> {
-    let [.., a_55, a_44] = plate.coefficients(values)?[..] else { return Ok([f64::INFINITY; 2]) };
+    let [_, _, _, _, a_55, a_44, ..] = plate.coefficients(values)?[..] else { return Ok([f64::INFINITY; 2]) };
     Ok([a_55, a_44])
 }
 

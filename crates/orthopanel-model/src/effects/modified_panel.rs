@@ -124,8 +124,11 @@ impl ModifiedPanel {
                 ModifiedStructure::wide(&wide.0, wide.1, (setting, &beam, ratios), effects, &others)
             }
             (None, Some(wide)) if matches!(self.even, Even::Plate) => {
-                // As many modes as without what is spread over the plate, on the same basis: it must not be told apart by them.
-                ModifiedStructure::new(parts, WidePlates::held(setting, values, wide.1)?)
+                // As many modes as without what is spread over the plate, on the same basis: it must not be told apart by them. Only where edges
+                // yield there may be more, as many as were they free.
+                let yields = SpreadEffects::of(effects, setting)?.terms.is_some_and(|terms| terms.support.is_some());
+                let boundary = if yields { setting.boundary.released() } else { setting.boundary };
+                ModifiedStructure::new(parts, WidePlates::held(setting.piece, boundary, values, wide.1)?)
             }
             _ => ModifiedStructure::for_modes(parts, self.count),
         }

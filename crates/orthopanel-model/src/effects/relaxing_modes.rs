@@ -36,8 +36,10 @@ impl CoreModulus {
 /// $$H(s) = \sum_n\frac{s^2\,W_n(g)W_n(g)^T}{s^2+c_ns+\lambda_n(g)},\qquad g = g(s),$$
 /// all lines are those of the relaxing panel; $c_n$ is what damps a mode beside the core. A pole is where a denominator is zero.
 ///
+/// Along the stretch modes of a plate may cross: each is followed by its deflections at the places, as far as these tell neighbours apart.
+///
 /// # Limits
-/// Near modes keep their order along the stretch, as those of a strip do; those of a wide plate may cross.
+/// Modes that veer away from each other are no polynomials of low order where they do.
 #[derive(Debug, Clone)]
 pub struct RelaxingModes {
     core: CoreModulus,
@@ -59,8 +61,8 @@ pub struct RelaxingMode {
     pub by_s: Complex64,
     /// $W_n$ at the places \[kg^-1/2\].
     pub deflection: Vec<Complex64>,
-    /// $\partial W_n/\partial x$ \[kg^-1/2/m\], where that was asked for.
-    pub slope: Vec<Complex64>,
+    /// $\partial W_n/\partial x$ and $\partial W_n/\partial y$ \[kg^-1/2/m\], where these were asked for.
+    pub slopes: [Vec<Complex64>; 2],
 }
 
 /// All near modes at one modulus.
@@ -70,8 +72,8 @@ pub struct ModesAtLine {
     pub lambda: Vec<Complex64>,
     /// $W_n(g)$ at the places \[kg^-1/2\], a list a mode.
     pub deflection: Vec<Vec<Complex64>>,
-    /// $\partial W_n/\partial x$ \[kg^-1/2/m\], alike, where that was asked for.
-    pub slope: Vec<Vec<Complex64>>,
+    /// $\partial W_n/\partial x$ and $\partial W_n/\partial y$ \[kg^-1/2/m\], alike, where these were asked for.
+    pub slopes: Vec<[Vec<Complex64>; 2]>,
     /// Weights of the nodes.
     shares: Vec<Complex64>,
     s: Complex64,
@@ -89,13 +91,8 @@ impl RelaxingModes {
         let mut aligned: Vec<SeenModes> = Vec::with_capacity(modes.len());
         for modes in modes {
             let mut modes = SeenModes::clone(modes);
-            for n in 0..near {
-                let along = |last: &SeenModes| -> f64 {
-                    last.deflection[n].iter().zip(&modes.deflection[n]).map(|(a, b)| a * b).sum()
-                };
-                if aligned.last().is_some_and(|last| along(last) < 0.0) {
-                    modes.deflection[n].iter_mut().chain(&mut modes.slope[n]).for_each(|value| *value = -*value);
-                }
+            if let Some(last) = aligned.last() {
+                follow(last, &mut modes, near);
             }
             aligned.push(modes);
         }
@@ -123,6 +120,13 @@ impl RelaxingModes {
         self.modes.iter().zip(shares).map(|(modes, share)| share * modes.angular_frequency[n].powi(2)).sum()
     }
 
+    fn slopes(&self, n: usize, shares: &[Complex64]) -> [Vec<Complex64>; 2] {
+        [
+            self.mixed(shares, |modes| modes.slope.get(n).map_or(&[], |slope| slope)),
+            self.mixed(shares, |modes| modes.slope_across.get(n).map_or(&[], |slope| slope)),
+        ]
+    }
+
     fn mixed(&self, shares: &[Complex64], of: impl Fn(&SeenModes) -> &[f64]) -> Vec<Complex64> {
         let mut mixed = vec![Complex64::ZERO; self.modes.first().map_or(0, |modes| of(modes).len())];
         for (modes, share) in self.modes.iter().zip(shares) {
@@ -137,25 +141,27 @@ impl RelaxingModes {
         ModesAtLine {
             lambda: (0..self.near).map(|n| self.lambda(n, &shares)).collect(),
             deflection: (0..self.near).map(|n| self.mixed(&shares, |modes| &modes.deflection[n])).collect(),
-            slope: (0..self.near).map(|n| self.mixed(&shares, |modes| &modes.slope[n])).collect(),
+            slopes: (0..self.near).map(|n| self.slopes(n, &shares)).collect(),
             shares,
             s,
         }
     }
 
     /// What all further modes add to the accelerance from one place to another, undamped, and its derivatives by the place of the force and
-    /// of the response, zero where slopes were not asked for.
-    pub fn far(&self, line: &ModesAtLine, [force, response]: [usize; 2]) -> [Complex64; 3] {
+    /// of the response along x, then along y, zero where slopes were not asked for.
+    pub fn far(&self, line: &ModesAtLine, [force, response]: [usize; 2]) -> [Complex64; 5] {
         let s2 = line.s * line.s;
-        let mut sum = [Complex64::ZERO; 3];
+        let mut sum = [Complex64::ZERO; 5];
         for (modes, share) in self.modes.iter().zip(&line.shares) {
             for n in self.near..modes.angular_frequency.len() {
                 let factor = share * s2 / (s2 + modes.angular_frequency[n].powi(2));
                 let at = |port: usize| modes.deflection[n][port];
-                let slope = |port: usize| modes.slope[n].get(port).copied().unwrap_or(0.0);
                 sum[0] += factor * (at(force) * at(response));
-                sum[1] += factor * (slope(force) * at(response));
-                sum[2] += factor * (at(force) * slope(response));
+                for (axis, slopes) in [&modes.slope, &modes.slope_across].into_iter().enumerate() {
+                    let slope = |port: usize| slopes.get(n).and_then(|of| of.get(port)).copied().unwrap_or(0.0);
+                    sum[1 + 2 * axis] += factor * (slope(force) * at(response));
+                    sum[2 + 2 * axis] += factor * (at(force) * slope(response));
+                }
             }
         }
         sum
@@ -192,7 +198,46 @@ impl RelaxingModes {
             damping,
             by_s: 2.0 * s + damping + by_s,
             deflection: self.mixed(&shares, |modes| &modes.deflection[n]),
-            slope: self.mixed(&shares, |modes| &modes.slope[n]),
+            slopes: self.slopes(n, &shares),
+        }
+    }
+}
+
+/// Puts modes in the order and the sense of those at the node before, of which the first `near` count: neighbours that have crossed change their
+/// places.
+fn follow(last: &SeenModes, modes: &mut SeenModes, near: usize) {
+    let count = near.min(last.angular_frequency.len()).min(modes.angular_frequency.len());
+    let along = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    // The modal assurance criterion.
+    let alike = |modes: &SeenModes, own: usize, other: usize| {
+        let (a, b) = (&last.deflection[own], &modes.deflection[other]);
+        along(a, b).powi(2) / (along(a, a) * along(b, b)).max(f64::MIN_POSITIVE)
+    };
+    for _ in 0..count {
+        let mut is_done = true;
+        for n in 1..count {
+            let kept = alike(modes, n - 1, n - 1) + alike(modes, n, n);
+            let crossed = alike(modes, n - 1, n) + alike(modes, n, n - 1);
+            if crossed > kept + f64::EPSILON.sqrt() {
+                modes.angular_frequency.swap(n - 1, n);
+                modes.damping_ratio.swap(n - 1, n);
+                for list in [&mut modes.deflection, &mut modes.slope, &mut modes.slope_across] {
+                    if n < list.len() {
+                        list.swap(n - 1, n);
+                    }
+                }
+                is_done = false;
+            }
+        }
+        if is_done {
+            break;
+        }
+    }
+    for n in 0..count {
+        if along(&last.deflection[n], &modes.deflection[n]) < 0.0 {
+            for list in [&mut modes.deflection, &mut modes.slope, &mut modes.slope_across] {
+                list.get_mut(n).into_iter().flatten().for_each(|value| *value = -*value);
+            }
         }
     }
 }
@@ -250,6 +295,32 @@ mod tests {
             Arc::new(panel.seen_from(&setting, &PLACES, true, &values, &effects).expect("modes"))
         };
         (RelaxingModes::new(CORE, &nodes, &nodes.iter().map(at).collect::<Vec<_>>(), 16), lines)
+    }
+
+    /// Two modes of a plate that cross where the core stiffens keep their shapes, slopes and senses; one place cannot tell them, and leaves the order.
+    #[test]
+    fn modes_that_cross_are_followed() {
+        let seen = |omega: [f64; 2], shapes: [[f64; 3]; 2]| SeenModes {
+            angular_frequency: omega.to_vec(),
+            damping_ratio: vec![0.0; 2],
+            deflection: shapes.iter().map(|shape| shape.to_vec()).collect(),
+            slope: shapes.iter().map(|shape| shape.to_vec()).collect(),
+            ..SeenModes::default()
+        };
+        let (one, other) = ([1.0, 0.2, -0.5], [0.1, 1.0, 0.4]);
+        let last = seen([100.0, 101.0], [one, other]);
+        let mut crossed = seen([102.0, 103.0], [other.map(|value| -value), one]);
+        follow(&last, &mut crossed, 2);
+        assert_eq!(crossed.angular_frequency, [103.0, 102.0]);
+        assert_eq!((&crossed.deflection, &crossed.slope), (&last.deflection, &last.slope));
+        let single = |omega: [f64; 2]| SeenModes {
+            deflection: vec![vec![1.0], vec![0.4]],
+            slope: vec![],
+            ..seen(omega, [one, other])
+        };
+        let mut kept = single([102.0, 103.0]);
+        follow(&single([100.0, 101.0]), &mut kept, 2);
+        assert_eq!(kept.angular_frequency, [102.0, 103.0]);
     }
 
     #[test]

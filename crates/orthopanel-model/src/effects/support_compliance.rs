@@ -1,10 +1,11 @@
 //! `support-compliance`.
 
 use super::{Action, Effect, EffectParameter, EffectSetting, FieldTerm, Owner};
-use crate::{End, ModelError, Support};
+use crate::{Boundary, End, ModelError, Support};
 
 /// Clamped ends that yield: a spring against rotation \[N m/rad\] and one against translation \[N/m\] at each of them.
-/// Infinite springs are the ideal clamp.
+/// Infinite springs are the ideal clamp. On a plate the springs lie along all clamped edges, so many to a metre that an edge as long as the
+/// plate is wide has these in all, and both rotations have the one spring.
 ///
 /// Of a cantilever, a clamp's rotation and a mass at the tip shift all frequencies alike where
 /// $m/(\rho A) = EI/k$: frequencies alone cannot tell them. Source: elastically restrained beams, Blevins, Formulas
@@ -33,8 +34,9 @@ impl Effect for SupportCompliance {
     fn act(&self, values: &[f64], setting: &EffectSetting) -> Result<Vec<Action>, ModelError> {
         self.check(values, &setting.piece)?;
         let &[rotation, translation] = values else { return Ok(vec![]) };
-        if ![setting.boundary.left, setting.boundary.right].contains(&End::Clamped) {
-            return Err(ModelError::EffectNeeds { effect: self.id(), what: "an end that is clamped ([boundary])" });
+        let Boundary { left, right, front, back } = setting.boundary;
+        if ![left, right, front, back].contains(&End::Clamped) {
+            return Err(ModelError::EffectNeeds { effect: self.id(), what: "an edge that is clamped ([boundary])" });
         }
         Ok(vec![Action::Field(FieldTerm::Support(Support { translation, rotation }))])
     }

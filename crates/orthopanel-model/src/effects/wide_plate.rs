@@ -4,7 +4,6 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use faer::Mat;
 
-use super::EffectSetting;
 use super::known::{Known, known_or};
 use super::low_modes::LowModes;
 use super::row::{Row, SharedStructure};
@@ -208,9 +207,14 @@ impl WidePlates {
     }
 
     /// Modes of a plate with these constants that its basis holds, where those up to a frequency \[Hz\] are summed.
-    pub(super) fn held(setting: &EffectSetting, constants: &[f64], frequency: f64) -> Result<usize, ModelError> {
+    pub(super) fn held(
+        piece: Piece,
+        boundary: Boundary,
+        constants: &[f64],
+        frequency: f64,
+    ) -> Result<usize, ModelError> {
         let top = HELD / SUMMED * frequency;
-        Ok(MindlinPlate::estimated_nodes(&setting.piece, setting.boundary, constants, top)?.len().max(1))
+        Ok(MindlinPlate::estimated_nodes(&piece, boundary, constants, top)?.len().max(1))
     }
 
     /// A plate on a basis, the same for all that have one of its size.

@@ -13,7 +13,7 @@ use super::edge_basis::EdgeBasis;
 use crate::order::sorted;
 use crate::skyline::Profile;
 use crate::structure::Block;
-use crate::{Piece, SymmetricMatrix, side_by_side};
+use crate::{Boundary, End, Piece, Support, SymmetricMatrix, side_by_side};
 
 /// One product of a function along x and a function along y, of one field.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -62,7 +62,7 @@ pub(super) fn assemble(
     piece: &Piece,
     along: &[EdgeBasis; 2],
     rotary_factor: f64,
-    edge_mass: f64,
+    edges: &Edges,
     products: Products,
 ) -> (Vec<Vec<Coordinate>>, Vec<Block>) {
     let [x, y] = along;
@@ -75,8 +75,12 @@ pub(super) fn assemble(
     let meetings = along.each_ref().map(EdgeBasis::meetings);
     let blocks = side_by_side::map(&coordinates, |list| {
         let mut block = block(piece, along, rotary_factor, (list, &meetings));
-        if edge_mass != 0.0 {
-            add_edge_mass(piece, along, edge_mass, list, &mut block);
+        if edges.mass != 0.0 {
+            add_edge_mass(piece, along, edges.mass, list, &mut block);
+        }
+        if let Some(support) = edges.support {
+            block.stiffness.push(edge_springs(piece, along, (edges.boundary, support), list).into());
+            block.rigid.clear();
         }
         block
     });
@@ -168,28 +172,70 @@ fn profile(along: &[EdgeBasis; 2], list: &[Coordinate], meetings: &[Vec<Vec<bool
     Profile::new((0..list.len()).map(first).collect())
 }
 
+/// What stands along edges.
+pub(super) struct Edges {
+    pub boundary: Boundary,
+    /// Mass \[kg\] along each of the edges at $x = \pm a/2$.
+    pub mass: f64,
+    /// What every clamped edge rests on.
+    pub support: Option<Support>,
+}
+
+/// Adds $c\int ff\,ds$ of a field along the edge at one side, -1 or 1, of an axis.
+fn add_along_edge(
+    [x, y]: &[EdgeBasis; 2],
+    (axis, side): (usize, f64),
+    (coefficient, field): (f64, Field),
+    list: &[Coordinate],
+    sum: &mut Mat<f64>,
+) {
+    let (across, along) = if axis == 0 { (x, y) } else { (y, x) };
+    let mut at_edge = across.values_at(field, side * across.half_length());
+    // Most functions vanish at the edges, to rounding.
+    let greatest = at_edge.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
+    at_edge.iter_mut().filter(|value| value.abs() < 1e-12 * greatest).for_each(|value| *value = 0.0);
+    let along = along.integrals((field, 0), (field, 0));
+    let number = |coordinate: &Coordinate| if axis == 0 { coordinate.x } else { coordinate.y };
+    let other = |coordinate: &Coordinate| if axis == 0 { coordinate.y } else { coordinate.x };
+    let moves = |i: &usize| list[*i].field == field && at_edge[number(&list[*i])] != 0.0;
+    let own: Vec<usize> = (0..list.len()).filter(moves).collect();
+    for (&i, &j) in own.iter().flat_map(|i| own.iter().map(move |j| (i, j))) {
+        let (a, b) = (&list[i], &list[j]);
+        sum[(i, j)] += coefficient * at_edge[number(a)] * at_edge[number(b)] * along[(other(a), other(b))];
+    }
+}
+
 /// Adds $\frac mb\int ww\,dy$ at both ends of x, and scales the rigid modes to it: even mass at both ends keeps these
 /// orthogonal.
-fn add_edge_mass(piece: &Piece, [x, y]: &[EdgeBasis; 2], mass: f64, list: &[Coordinate], block: &mut Block) {
-    let w = Field::Deflection;
-    let across = y.integrals((w, 0), (w, 0));
-    let own: Vec<usize> = (0..list.len()).filter(|&i| list[i].field == w).collect();
+fn add_edge_mass(piece: &Piece, along: &[EdgeBasis; 2], mass: f64, list: &[Coordinate], block: &mut Block) {
     let mut added = Mat::<f64>::zeros(list.len(), list.len());
-    for end in [-0.5, 0.5] {
-        let mut along = x.values_at(w, end * piece.length);
-        // Most functions vanish at the ends, to rounding.
-        let greatest = along.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
-        along.iter_mut().filter(|value| value.abs() < 1e-12 * greatest).for_each(|value| *value = 0.0);
-        for (&i, &j) in own.iter().flat_map(|i| own.iter().map(move |j| (i, j))) {
-            let (a, b) = (list[i], list[j]);
-            added[(i, j)] += mass / piece.width * along[a.x] * along[b.x] * across[(a.y, b.y)];
-        }
+    for side in [-1.0, 1.0] {
+        add_along_edge(along, (0, side), (mass / piece.width, Field::Deflection), list, &mut added);
     }
     block.mass = SymmetricMatrix::sum([(1.0, &block.mass), (1.0, &added.into())].into_iter(), list.len());
     for mode in &mut block.rigid {
         let scale = block.mass.quadratic_form(mode).sqrt().recip();
         mode.iter_mut().for_each(|value| *value *= scale);
     }
+}
+
+/// $\frac1b\int(k_www + k_\psi\psi_x\psi_x + k_\psi\psi_y\psi_y)\,ds$ along all clamped edges: infinite springs leave what a clamp does,
+/// which holds both rotations.
+fn edge_springs(
+    piece: &Piece,
+    along: &[EdgeBasis; 2],
+    (boundary, support): (Boundary, Support),
+    list: &[Coordinate],
+) -> Mat<f64> {
+    let mut springs = Mat::<f64>::zeros(list.len(), list.len());
+    let Boundary { left, right, front, back } = boundary;
+    for (edge, end) in [((0, -1.0), left), ((0, 1.0), right), ((1, -1.0), front), ((1, 1.0), back)] {
+        for field in Field::ALL.into_iter().filter(|_| end == End::Clamped) {
+            let stiffness = if field == Field::Deflection { support.translation } else { support.rotation };
+            add_along_edge(along, edge, (stiffness / piece.width, field), list, &mut springs);
+        }
+    }
+    springs
 }
 
 /// Integrals along x of two fields, each with its order of differentiation.

@@ -4,7 +4,7 @@
 use super::assembly::Products;
 use super::law::plate_stiffnesses;
 use super::{MindlinPlate, PlateTerms, TERMS};
-use crate::{Boundary, End, ModelError, Piece};
+use crate::{Boundary, End, ModelError, Piece, Support};
 
 /// Most entries of one matrix of all blocks together: 3.6 million keep a plate below 200 MB.
 const MOST_ENTRIES: usize = 3_600_000;
@@ -40,16 +40,23 @@ impl MindlinPlate {
     /// The same with terms beyond the even plate.
     ///
     /// # Errors
-    /// As [`MindlinPlate::with_basis_for`], and [`ModelError::Unsupported`] for supports that yield.
+    /// As [`MindlinPlate::with_basis_for`].
     pub(crate) fn uneven_with_basis_for(
         (piece, boundary): (&Piece, Boundary),
         values: &[f64],
         count: usize,
         own: &PlateTerms,
     ) -> Result<Self, ModelError> {
-        let terms = Self::terms_for_basis(piece, boundary, values, count)?;
+        let mut own = own.clone();
+        let mut terms = Self::terms_for_basis(piece, boundary, values, count)?;
+        if let Some(support) = &mut own.spread.support {
+            *support = at_most_stiffest(*support, piece, &plate_stiffnesses(piece.thickness, values)?);
+            // Between none and the ideal clamp a plate has as many nodes as either.
+            let free = Self::terms_for_basis(piece, boundary.released(), values, count)?;
+            terms = [0, 1].map(|axis| terms[axis].max(free[axis]));
+        }
         // Frequencies can do without products of many nodes both ways, the motion under a point force cannot.
-        let plate = Self::uneven(piece, boundary, terms, Products::All, own)?;
+        let plate = Self::uneven(piece, boundary, terms, Products::All, &own)?;
         Ok(Self { resolved_modes: plate.resolved_modes.max(count), ..plate })
     }
 
@@ -139,6 +146,17 @@ impl MindlinPlate {
         below.sort_unstable_by(rising);
         Ok(below.into_iter().map(|(_, nodes)| nodes).collect())
     }
+}
+
+/// Springs under edges that are so many times as stiff as the plate over its shorter half are as good as rigid, and would leave rounding of
+/// what else bends.
+const STIFFEST: f64 = 1e7;
+
+/// Springs no stiffer than that.
+fn at_most_stiffest(support: Support, piece: &Piece, [d_11, d_22, ..]: &[f64; 6]) -> Support {
+    let half = 0.5 * piece.length.min(piece.width);
+    let most = STIFFEST * d_11.max(*d_22) * piece.width / half;
+    Support { translation: support.translation.min(most / (half * half)), rotation: support.rotation.min(most) }
 }
 
 /// Isotropic constants; their size is all one.

@@ -41,10 +41,14 @@ pub(super) struct EdgeBasis {
 }
 
 impl EdgeBasis {
-    /// `across` is the rotation across the two edges `ends`, counted from $-h$ to $+h$.
-    pub(super) fn new(half_length: f64, ends: [End; 2], across: Field, terms: usize) -> Self {
+    /// `across` is the rotation across the two edges `ends`, counted from $-h$ to $+h$; a clamp that `yields` holds no field.
+    pub(super) fn new(half_length: f64, ends: [End; 2], yields: bool, across: Field, terms: usize) -> Self {
         let fields = Field::ALL.map(|field| {
-            let holds = |end: End| if field == across { end == End::Clamped } else { end != End::Free };
+            let holds = |end: End| match end {
+                End::Free => false,
+                End::Pinned => field != across,
+                End::Clamped => !yields,
+            };
             edge_functions(ends.map(holds), terms)
         });
         let (symmetric, integrals) = (ends[0] == ends[1], Mat::zeros(0, 0));
@@ -114,6 +118,11 @@ impl EdgeBasis {
             }
         }
         integrals
+    }
+
+    /// Half of what lies between the edges \[m\].
+    pub(super) fn half_length(&self) -> f64 {
+        self.half_length
     }
 
     /// Numbers of a field's functions of one parity; of all functions where the edges differ.
@@ -374,7 +383,7 @@ mod tests {
             ([End::Clamped, End::Pinned], [[true, true], [true, false], [true, true]]),
             ([End::Clamped, End::Clamped], [[true, true]; 3]),
         ] {
-            let basis = EdgeBasis::new(0.4, ends, Field::RotationX, 9);
+            let basis = EdgeBasis::new(0.4, ends, false, Field::RotationX, 9);
             for (functions, holds) in basis.fields.iter().zip(holds) {
                 for (t, held) in [-1.0, 1.0].into_iter().zip(holds) {
                     let values = legendre(9, t);
@@ -389,7 +398,7 @@ mod tests {
     /// $\int f'g\,dx + \int fg'\,dx = [fg]$.
     #[test]
     fn val_integrals_by_parts() {
-        let basis = EdgeBasis::new(0.15, [End::Free, End::Clamped], Field::RotationX, 8);
+        let basis = EdgeBasis::new(0.15, [End::Free, End::Clamped], false, Field::RotationX, 8);
         let w = Field::Deflection;
         let slopes = basis.integrals((w, 1), (w, 0));
         let (low, high) = (basis.values_at(w, -0.15), basis.values_at(w, 0.15));

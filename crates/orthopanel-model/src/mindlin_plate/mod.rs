@@ -37,7 +37,7 @@ pub use named_shapes::NamedShapes;
 
 use crate::structure::{Block, Motion, ShearMoment, Structure};
 use crate::{BeamTerms, Boundary, Constant, ModelError, Piece, Place};
-use assembly::{Coordinate, Products, assemble};
+use assembly::{Coordinate, Edges, Products, assemble};
 use edge_basis::EdgeBasis;
 pub(crate) use foot::FOOT;
 use law::{plate_stiffness_derivatives, plate_stiffnesses};
@@ -62,7 +62,7 @@ impl Field {
 /// An orthotropic Mindlin plate as a [`Structure`], on products of Legendre series in x and y.
 ///
 /// Coefficients are the six plate stiffnesses $D_{11}, D_{22}, D_{12}, D_{66}$ \[N m\], $A_{55}, A_{44}$ \[N/m\], in
-/// this order; constants those of [`PLATE_CONSTANTS`]. Any edge is free, pinned (hard: $w = 0$ and the rotation along
+/// this order, and where clamped edges yield one more, of fixed value 1; constants those of [`PLATE_CONSTANTS`]. Any edge is free, pinned (hard: $w = 0$ and the rotation along
 /// the edge is zero) or clamped. Where opposite edges are held alike the coordinates part by parity: four blocks where
 /// both pairs are, two where one is.
 ///
@@ -82,12 +82,15 @@ pub struct MindlinPlate {
     /// What tells the kinks under forces, once it is asked for.
     membrane: OnceLock<Option<Membrane>>,
     is_even: bool,
+    /// Whether clamped edges yield: the springs under them are the last matrix of stiffness, with the coefficient one.
+    yields: bool,
 }
 
 /// What may differ from the even plate.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct PlateTerms {
-    /// Spans across the whole width that have lost part of both shear stiffnesses, and the factor on the rotary inertia.
+    /// Spans across the whole width that have lost part of both shear stiffnesses, the factor on the rotary inertia, and the springs under
+    /// clamped edges: each metre of these has what [`Support`](crate::Support) says over the plate's width.
     pub spread: BeamTerms,
     /// Mass \[kg\] spread evenly along each of the edges at $x = \pm a/2$.
     pub edge_mass: f64,
@@ -126,21 +129,20 @@ impl MindlinPlate {
         let piece = piece.checked()?;
         let PlateTerms { spread: own, edge_mass } = own;
         own.check()?;
-        if own.support.is_some() {
-            return Err(ModelError::Unsupported("supports that yield under a plate".into()));
-        }
         let [least, most] = TERMS;
         if let Some(&found) = terms.iter().find(|count| !(least..=most).contains(*count)) {
             return Err(ModelError::TermCount { found, least, most });
         }
         let Boundary { left, right, front, back } = boundary;
-        let mut x = EdgeBasis::new(0.5 * piece.length, [left, right], Field::RotationX, terms[0]);
+        let yields = own.support.is_some();
+        let mut x = EdgeBasis::new(0.5 * piece.length, [left, right], yields, Field::RotationX, terms[0]);
         if !own.losses.is_empty() {
             x = x.with_spans([left, right], &Spans::new(0.5 * piece.length, &own.losses));
         }
-        let y = EdgeBasis::new(0.5 * piece.width, [front, back], Field::RotationY, terms[1]);
+        let y = EdgeBasis::new(0.5 * piece.width, [front, back], yields, Field::RotationY, terms[1]);
         let (along, is_even) = ([x, y], own.losses.is_empty());
-        let (coordinates, blocks) = assemble(&piece, &along, own.rotary_factor, *edge_mass, products);
+        let edges = Edges { boundary, mass: *edge_mass, support: own.support };
+        let (coordinates, blocks) = assemble(&piece, &along, own.rotary_factor, &edges, products);
         // In each direction n polynomials follow 2n/π half-waves; some nx ny/3 products lie within the ellipse that both
         // span, and the lower half of these hold 1e-4.
         let resolved_modes = terms[0] * terms[1] / 6;
@@ -156,6 +158,7 @@ impl MindlinPlate {
             beam_functions: OnceLock::new(),
             membrane: OnceLock::new(),
             is_even,
+            yields,
         })
     }
 
@@ -268,7 +271,7 @@ impl MindlinPlate {
 impl MindlinPlate {
     /// What tells the kinks that this basis lacks; `None` where its functions cannot be told apart.
     pub(crate) fn membrane(&self) -> Option<Membrane> {
-        let Boundary { left, right, front, back } = self.boundary;
+        let Boundary { left, right, front, back } = if self.yields { self.boundary.released() } else { self.boundary };
         let counts = [0, 1].map(|axis| self.along[axis].count(Field::Deflection));
         let length = |j: usize| (0..counts[0]).filter(|&i| self.products.hold([i, j], counts)).count();
         let lengths: Vec<usize> = (0..counts[1]).map(length).collect();
@@ -316,11 +319,14 @@ impl Structure for MindlinPlate {
     fn coefficients(&self, values: &[f64]) -> Result<Vec<f64>, ModelError> {
         let stiffnesses = plate_stiffnesses(self.piece.thickness, values)?;
         self.check_thickness(stiffnesses)?;
-        Ok(stiffnesses.to_vec())
+        let springs = self.yields.then_some(1.0);
+        Ok(stiffnesses.into_iter().chain(springs).collect())
     }
 
     fn coefficient_derivatives(&self, values: &[f64]) -> Result<Mat<f64>, ModelError> {
-        plate_stiffness_derivatives(self.piece.thickness, values)
+        let mut by_constants = plate_stiffness_derivatives(self.piece.thickness, values)?;
+        by_constants.resize_with(by_constants.nrows() + usize::from(self.yields), by_constants.ncols(), |_, _| 0.0);
+        Ok(by_constants)
     }
 
     fn blocks(&self) -> &[Block] {

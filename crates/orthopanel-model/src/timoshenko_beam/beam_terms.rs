@@ -9,7 +9,7 @@ pub struct BeamTerms {
     pub rotary_factor: f64,
     /// Spans that have lost shear stiffness.
     pub losses: Vec<ShearLoss>,
-    /// What holds every clamped end, where that is not rigid.
+    /// What holds every clamped end, or edge, where that is not rigid.
     pub support: Option<Support>,
 }
 
@@ -68,7 +68,7 @@ impl ShearLoss {
     }
 }
 
-/// Springs between a clamped end and the ground; infinite stiffness is the ideal clamp.
+/// Springs between a clamped end, or a plate's edge of its width's length, and the ground; infinite stiffness is the ideal clamp.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Support {
     /// Against deflection \[N/m\].
