@@ -112,11 +112,9 @@ fn by_modes_alone(test: &ImpactTest, lists: usize, settings: Settings) -> Result
     Ok(found)
 }
 
-/// A declared plate of one piece by the modes that its records show; `None` where these cannot be had, or where constants are held, which may be
-/// wrong: the fit of the lines says what contradicts them.
+/// A declared plate of one piece by the modes that its records show; `None` where these cannot be had.
 fn plate_by_modes(test: &ImpactTest) -> Option<PlateByModes> {
-    let is_one_plate =
-        test.structure == Some(StructureKind::MindlinPlate) && test.pieces.len() == 1 && test.constants.is_empty();
+    let is_one_plate = test.structure == Some(StructureKind::MindlinPlate) && test.pieces.len() == 1;
     if is_one_plate { PlateByModes::of(test).ok().flatten() } else { None }
 }
 

@@ -2,7 +2,7 @@
 
 use faer::Mat;
 use orthopanel_model::{
-    Action, Effect, EffectParameter, EffectState, FOOT_SIDE, GAIN, ModelError, Piece, Place, Prior, Scale,
+    Action, Effect, EffectParameter, EffectState, FOOT_SIDE, GAIN, ModelError, Piece, Place, Prior, Scale, Shift,
     StructureKind,
 };
 
@@ -157,9 +157,11 @@ impl Part {
         records: usize,
     ) -> Option<Self> {
         let mut way = Self::ways(effect, (piece, structure), records).into_iter().next()?;
-        for ((slot, value), parameter) in way.slots.iter_mut().zip(values).zip(effect.parameters()) {
-            match (value, slot) {
-                (Some(value), slot) => *slot = Slot::Held(*value),
+        let numbers: Vec<usize> = way.numbers_of_parameters().map(|(number, _)| number).collect();
+        for (slot, number) in way.slots.iter_mut().zip(numbers) {
+            let parameter = &effect.parameters()[number];
+            match (values.get(number).copied().flatten(), slot) {
+                (Some(value), slot) => *slot = Slot::Held(value),
                 // What is looked for in a part of its range may be anywhere in it once it is declared.
                 (None, Slot::Free(Coordinate { map: Map::Size { median, log_factor, .. }, range }))
                     if parameter.range_looked_for(piece) != *range =>
@@ -193,11 +195,18 @@ impl Part {
 
     /// The parameter of each value.
     pub(crate) fn parameters(&self) -> impl Iterator<Item = &'static EffectParameter> {
-        let times = self.slots.len().saturating_sub(self.effect.parameters().len()) + 1;
-        self.effect
-            .parameters()
-            .iter()
-            .flat_map(move |parameter| std::iter::repeat_n(parameter, if parameter.each_record { times } else { 1 }))
+        self.numbers_of_parameters().map(|(number, _)| &self.effect.parameters()[number])
+    }
+
+    /// Of each value the number of its parameter, and of the record that has it of its own.
+    fn numbers_of_parameters(&self) -> impl Iterator<Item = (usize, Option<usize>)> {
+        let parameters = self.effect.parameters();
+        let own = parameters.iter().filter(|parameter| parameter.each_record).count();
+        let records = (self.slots.len() + own).saturating_sub(parameters.len()).checked_div(own).unwrap_or(0);
+        parameters.iter().enumerate().flat_map(move |(number, parameter)| {
+            let times = if parameter.each_record { records } else { 1 };
+            (0..times).map(move |record| (number, parameter.each_record.then_some(record)))
+        })
     }
 
     /// The coordinates nearest to these values.
@@ -236,19 +245,22 @@ impl Part {
         self.coordinates().zip(z).map(|(coordinate, z)| coordinate.slope(*z)).collect()
     }
 
-    /// Which places of a record a coordinate moves, of the response or else of the force; `None` where it does more than that.
-    pub(crate) fn shifts(&self, predictor: &Predictor, record: usize, coordinate: usize) -> Option<Vec<bool>> {
-        let parameters = self.effect.parameters();
-        let [Slot::Free(_)] = self.slots[..] else {
-            // With a value in each record, the coordinates are the records'.
-            if parameters.len() != 1 || !parameters[0].each_record {
-                return None;
-            }
-            return self
-                .place_shifts(predictor, record)
-                .map(|shifts| if coordinate == record { shifts } else { vec![] });
+    /// How the value of a coordinate moves places of a record \[1\]; `None` where it does more than that.
+    pub(crate) fn shifts(&self, predictor: &Predictor, record: usize, coordinate: usize) -> Option<Vec<Shift>> {
+        let of_slots = self.slots.iter().zip(self.numbers_of_parameters());
+        let mut free = of_slots.filter_map(|(slot, number)| slot.coordinate().map(|_| number));
+        let (parameter, own) = free.nth(coordinate)?;
+        // What moves places follows its values in proportion.
+        let value = self.effect.parameters()[parameter].range(predictor.piece()).1;
+        let mut values = vec![0.0; self.effect.parameters().len()];
+        values[parameter] = value;
+        let shift = |action: Action| match action {
+            Action::Place(shift) => Some(Shift { offset: shift.offset.map(|offset| offset / value), ..shift }),
+            _ => None,
         };
-        self.place_shifts(predictor, record)
+        let acts = self.effect.act(&values, &predictor.setting(record)).ok()?;
+        let shifts = acts.into_iter().map(shift).collect::<Option<Vec<Shift>>>()?;
+        Some(if own.is_none_or(|own| own == record) { shifts } else { vec![] })
     }
 
     /// Whether another structure stands in the place of the one that the constants are of.
@@ -256,15 +268,6 @@ impl Part {
         let values = self.values(&vec![0.0; self.free()]);
         let acts = self.effect.act(&values, &predictor.setting(0));
         acts.is_ok_and(|acts| acts.iter().any(|action| matches!(action, Action::Plate(_))))
-    }
-
-    fn place_shifts(&self, predictor: &Predictor, record: usize) -> Option<Vec<bool>> {
-        let values = vec![0.0; self.effect.parameters().len()];
-        let shift = |action: Action| match action {
-            Action::Place(shift) => Some(shift.of_response),
-            _ => None,
-        };
-        self.effect.act(&values, &predictor.setting(record)).ok()?.into_iter().map(shift).collect()
     }
 
     /// Its place at these coordinates.
@@ -395,7 +398,7 @@ fn choices(parameter: &EffectParameter, (piece, structure): (&Piece, StructureKi
         }
     };
     // As it is unless it pays to free it: a place across a beam never does, and that on a plate has to be found.
-    let held = parameter.held_at.map(|value| vec![Slot::Held(value)]);
+    let held = parameter.held_at.map(|value| vec![Slot::Held(value); times]);
     match (parameter.across, structure) {
         (true, StructureKind::TimoshenkoBeam) => held.into_iter().collect(),
         (true, StructureKind::MindlinPlate) => free,

@@ -43,6 +43,11 @@ const LONGEST: f64 = 0.3;
 /// Number of Poisson's ratio among the constants, and its bounds.
 const NU: usize = 2;
 const NU_RANGE: [f64; 2] = [0.01, 0.6];
+/// Part of $\sqrt{E_x/E_y}$ below which Poisson's ratio has to stay: the law is definite below the whole.
+const DEFINITE: f64 = 0.95;
+/// Where some moduli are held, the farthest that the others go at once, in logarithms, and the least that a mode goes with them.
+const MOST_MOVED: f64 = 1.0;
+const LEAST_BY_FREE: f64 = 0.02;
 
 /// Constants in the order of [`orthopanel_model::PLATE_CONSTANTS`].
 pub(crate) type Constants = [f64; 6];
@@ -56,6 +61,10 @@ struct PlateMode {
 /// The constants that a test holds.
 pub(crate) fn held(test: &ImpactTest) -> [Option<f64>; 6] {
     PLATE_CONSTANTS.each_ref().map(|constant| test.constants.get(constant.name).copied())
+}
+
+fn is_definite(values: &Constants) -> bool {
+    values[NU] < (values[0] / values[1]).sqrt()
 }
 
 /// What is known of a plate before its constants are.
@@ -166,6 +175,26 @@ impl<'a> PlateStart<'a> {
         LOST * lost.count() as f64
     }
 
+    /// What poles without a mode cost, and strong modes without a pole.
+    fn unpaired(&self, seen: &[(f64, Vec<f64>)], partners: &[Partner]) -> f64 {
+        let alone = (0..partners.len()).filter(|pole| partners[*pole].is_none()).map(|pole| self.alone(pole));
+        alone.sum::<f64>() + self.lost(self.measured, seen, partners)
+    }
+
+    /// Logarithm of the marginal likelihood of the poles about these constants, where poles and modes may lie so far `apart`.
+    ///
+    /// # Errors
+    /// What the plate refuses.
+    pub(crate) fn log_evidence(&self, values: &Constants, apart: f64) -> Result<f64, ModelError> {
+        let modes = self.modes(values, self.count(self.measured))?;
+        let seen: Vec<(f64, Vec<f64>)> = modes.iter().map(|mode| mode.seen.clone()).collect();
+        let (partners, _) = self.measured.assigned(&seen, |_| apart, |pole| self.alone(pole));
+        let unpaired = self.unpaired(&seen, &partners);
+        let partners: Vec<Option<usize>> = partners.into_iter().map(|partner| partner.map(|(mode, _)| mode)).collect();
+        let priors: f64 = self.free().iter().map(|&constant| PlateFit::prior(constant).ln()).sum();
+        Ok(-self.missed(&modes, &partners).least_cost() - 0.5 * unpaired - priors)
+    }
+
     /// Which modes the poles are at these constants, and how likely that is.
     ///
     /// # Errors
@@ -173,11 +202,9 @@ impl<'a> PlateStart<'a> {
     pub(crate) fn reading(&self, fit: &PlateFit) -> Result<PolesRead, ModelError> {
         let modes = self.modes(&fit.values, self.count(self.measured))?;
         let seen: Vec<(f64, Vec<f64>)> = modes.iter().map(|mode| mode.seen.clone()).collect();
-        let apart = (TIMES * fit.missed).max(NEAREST);
+        let apart = fit.apart();
         let (partners, _) = self.measured.assigned(&seen, |_| apart, |pole| self.alone(pole));
-        let lost = self.lost(self.measured, &seen, &partners);
-        let alone = (0..partners.len()).filter(|pole| partners[*pole].is_none()).map(|pole| self.alone(pole));
-        let cost = 2.0 * fit.cost + alone.sum::<f64>() + lost;
+        let cost = 2.0 * fit.cost + self.unpaired(&seen, &partners);
         let partners: Vec<Option<usize>> = partners.into_iter().map(|partner| partner.map(|(mode, _)| mode)).collect();
         let own_cost = self.missed(&modes, &partners).least_cost();
         let mut others = Vec::new();
@@ -203,15 +230,25 @@ impl<'a> PlateStart<'a> {
         let of_ratios = |[along, shear, core]: [f64; 3]| -> Result<Vec<(f64, Constants)>, ModelError> {
             let nu = POISSON * (0.9 / along.sqrt()).min(1.0);
             let larger = 1e10 * along.max(1.0);
-            let values = [1e10, along * 1e10, nu, shear * larger, ACROSS * core * larger, core * larger];
+            let values = self.as_held([1e10, along * 1e10, nu, shear * larger, ACROSS * core * larger, core * larger]);
+            if !is_definite(&values) {
+                return Ok(vec![]);
+            }
             let modes = self.modes(&values, RANKED + RANKED / 2)?;
             let mut found = Vec::new();
             for mode in modes.iter().take(LOWEST_MODES) {
                 for pole in lowest.poles.iter().take(LOWEST_POLES) {
-                    let factor = pole.angular_frequency / mode.seen.0;
-                    let moved: Vec<(f64, Vec<f64>)> =
-                        modes.iter().map(|mode| (factor * mode.seen.0, mode.seen.1.clone())).collect();
-                    let scaled = std::array::from_fn(|i| if i == NU { values[i] } else { values[i] * factor * factor });
+                    // A factor on all moduli that are free; to first order where others are held.
+                    let by_free = |mode: &PlateMode| self.free_moduli().map(|i| mode.by[i]).sum::<f64>();
+                    let wanted = (pole.angular_frequency / mode.seen.0).ln() / by_free(mode).max(LEAST_BY_FREE);
+                    let log_factor =
+                        if self.holds_a_modulus() { wanted.clamp(-MOST_MOVED, MOST_MOVED) } else { wanted };
+                    let moved: Vec<(f64, Vec<f64>)> = modes
+                        .iter()
+                        .map(|mode| ((log_factor * by_free(mode)).exp() * mode.seen.0, mode.seen.1.clone()))
+                        .collect();
+                    let mut scaled = values;
+                    self.free_moduli().for_each(|i| scaled[i] *= log_factor.exp());
                     found.push((self.cost(&lowest, &moved, FAR), scaled));
                 }
             }
@@ -219,10 +256,17 @@ impl<'a> PlateStart<'a> {
         };
         let found: Vec<_> = net.collect::<Vec<_>>().into_par_iter().map(of_ratios).collect::<Result<_, _>>()?;
         let mut found: Vec<(f64, Constants)> = found.into_iter().flatten().collect();
+        found.retain(|(_, values)| is_definite(values));
         found.sort_by(|a, b| a.0.total_cmp(&b.0));
+        // Of the core frequencies say least.
+        let [mut telling, core] = [[0, 1, 3].as_slice(), &[NU, 4, 5]]
+            .map(|of| of.iter().copied().filter(|&i| self.held[i].is_none()).collect::<Vec<usize>>());
+        if telling.is_empty() {
+            telling = core;
+        }
         let mut best: Vec<Constants> = Vec::new();
         for (_, values) in found {
-            let is_new = |other: &Constants| [0, 1, 3].iter().any(|&i| (other[i] / values[i]).ln().abs() > 0.15);
+            let is_new = |other: &Constants| telling.iter().any(|&i| (other[i] / values[i]).ln().abs() > 0.15);
             if best.iter().all(is_new) {
                 best.push(values);
             }
@@ -233,9 +277,24 @@ impl<'a> PlateStart<'a> {
         Ok(best)
     }
 
+    fn holds_a_modulus(&self) -> bool {
+        (0..6).any(|i| i != NU && self.held[i].is_some())
+    }
+
+    fn free_moduli(&self) -> impl Iterator<Item = usize> + '_ {
+        (0..6).filter(|&i| i != NU && self.held[i].is_none())
+    }
+
+    /// Ratios of constants at the scale of the moduli that are held, and these.
+    fn as_held(&self, values: Constants) -> Constants {
+        let log_ratios: Vec<f64> =
+            (0..6).filter(|&i| i != NU).filter_map(|i| Some((self.held[i]? / values[i]).ln())).collect();
+        let factor = (log_ratios.iter().sum::<f64>() / log_ratios.len().max(1) as f64).exp();
+        self.with_held(std::array::from_fn(|i| if i == NU { values[i] } else { factor * values[i] }))
+    }
+
     /// A start led to the frequencies of more and more poles.
     fn followed(&self, start: Constants) -> Result<(f64, Constants), ModelError> {
-        let start = self.with_held(start);
         let mut values = start;
         for (apart, count, missed) in STAGES {
             let lowest = self.measured.lowest(count);
@@ -288,9 +347,10 @@ impl<'a> PlateStart<'a> {
             let moved = coordinate(values, i) + step[(row, 0)].clamp(-LONGEST, LONGEST);
             next[i] = if i == NU { moved.clamp(NU_RANGE[0], NU_RANGE[1]) } else { moved.exp() };
         }
-        // The law has to stay definite.
-        next[NU] = next[NU].min(0.95 * (next[0] / next[1]).sqrt());
-        Ok(next)
+        if self.held[NU].is_none() {
+            next[NU] = next[NU].min(DEFINITE * (next[0] / next[1]).sqrt());
+        }
+        Ok(if is_definite(&next) { next } else { *values })
     }
 }
 
@@ -318,6 +378,11 @@ pub(crate) struct PlateFit {
 }
 
 impl PlateFit {
+    /// How far a pole and its mode may lie apart.
+    pub(crate) fn apart(&self) -> f64 {
+        (TIMES * self.missed).max(NEAREST)
+    }
+
     /// Standard deviation of a free constant's coordinate beforehand.
     pub(crate) fn prior(constant: usize) -> f64 {
         if Self::is_logarithmic(constant) { MODULI } else { RATIO }

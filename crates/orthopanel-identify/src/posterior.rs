@@ -7,7 +7,7 @@ use std::sync::Arc;
 use faer::linalg::solvers::Llt;
 use faer::prelude::Solve;
 use faer::{Mat, Side};
-use orthopanel_model::ModelError;
+use orthopanel_model::{ModelError, Shift};
 
 use crate::hypothesis::{Hypothesis, Role};
 use crate::model_error::{ErrorColumns, KINDS, deviations, least_sizes, medians};
@@ -280,10 +280,12 @@ impl Problem<'_> {
                     for record in 0..records {
                         let shifts = part.shifts(&block.predictor, record, number);
                         places_alone &= shifts.is_some();
-                        for of_response in shifts.into_iter().flatten() {
-                            let [by, _] = if of_response { &at.by_response } else { &at.by_force };
-                            let own = block.comparison().block_of(record);
-                            own.for_each(|row| column[range.start + row] += slope * by[row]);
+                        for Shift { of_response, offset } in shifts.into_iter().flatten() {
+                            let by = if of_response { &at.by_response } else { &at.by_force };
+                            for (by, along) in by.iter().zip(offset).filter(|(_, along)| *along != 0.0) {
+                                let own = block.comparison().block_of(record);
+                                own.for_each(|row| column[range.start + row] += slope * along * by[row]);
+                            }
                         }
                     }
                 }

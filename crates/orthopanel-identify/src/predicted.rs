@@ -7,7 +7,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use num_complex::Complex64;
 use orthopanel_model::{
     Action, CoreModulus, EffectSetting, EffectState, Field, Mode, ModelError, ModifiedPanel, Piece, Place,
-    RecordSetting, RelaxingModes, Seat, SeenModes, StructureKind, SuspensionMotion,
+    RecordSetting, RelaxingModes, Seat, SeenModes, Shift, StructureKind, SuspensionMotion,
 };
 
 use crate::comparison::{Comparison, UNSEEN};
@@ -310,8 +310,7 @@ impl<'a> Predictor<'a> {
     ) -> Result<Vec<Complex64>, ModelError> {
         let own = self.channel(record, effects)?;
         let taken = &self.comparison.measured.records[record];
-        let moved = |place: Place, by: f64| Place { x: place.x + by, ..place };
-        let ports = [moved(taken.force_at, own.force_offset), moved(taken.response_at, own.response_offset)];
+        let ports = [taken.force_at.moved(own.force_offset), taken.response_at.moved(own.response_offset)];
         let (modes, channel) = self.in_record(record, &ports, constants, effects)?;
         let at = |s: &Complex64| {
             let s = s + own.decay;
@@ -356,8 +355,10 @@ impl<'a> Predictor<'a> {
             for action in state.acting_in(&setting)? {
                 match action {
                     Action::Channel(factor) => channel.factors.push(factor),
-                    Action::Place(shift) if shift.of_response => channel.response_offset += shift.offset,
-                    Action::Place(shift) => channel.force_offset += shift.offset,
+                    Action::Place(Shift { of_response, offset }) => {
+                        let own = if of_response { &mut channel.response_offset } else { &mut channel.force_offset };
+                        own.iter_mut().zip(offset).for_each(|(sum, by)| *sum += by);
+                    }
                     Action::Window { tau } => channel.decay += tau.recip(),
                     Action::Element(element) => channel.loads |= element.seat == Seat::AtResponse,
                     Action::Field(_) | Action::Core(_) | Action::Plate(_) | Action::Foot(_) => {}
@@ -380,9 +381,9 @@ impl<'a> Predictor<'a> {
         let measured = self.comparison.measured;
         let channels =
             (0..measured.records.len()).map(|record| self.channel(record, effects)).collect::<Result<Vec<_>, _>>()?;
-        let offset = |place: Place, by: f64| {
-            let half = 0.5 * self.piece().length;
-            Place { x: (place.x + by).clamp(-half, half), ..place }
+        let offset = |place: Place, by: [f64; 2]| {
+            let (moved, half) = (place.moved(by), [0.5 * self.piece().length, 0.5 * self.piece().width]);
+            Place { x: moved.x.clamp(-half[0], half[0]), y: moved.y.clamp(-half[1], half[1]) }
         };
         let moved = measured.records.iter().zip(&channels).map(|(record, channel)| {
             [offset(record.force_at, channel.force_offset), offset(record.response_at, channel.response_offset)]

@@ -16,8 +16,9 @@ pub(crate) const PARTS: usize = 5;
 #[derive(Default, PartialEq)]
 pub(crate) struct Channel {
     pub factors: Vec<ChannelFactor>,
-    pub force_offset: f64,
-    pub response_offset: f64,
+    /// Along x and along y.
+    pub force_offset: [f64; 2],
+    pub response_offset: [f64; 2],
     /// $1/\tau$ of windows \[1/s\], less what is undone of them in what was measured.
     pub decay: f64,
     /// Whether the sensor loads the structure.

@@ -23,6 +23,31 @@ fn val_real_plates_have_the_constants_of_their_own_lists() {
     }
 }
 
+/// The same records with constants held: those across and in shear that the lists give, which leave E_x as these have it, and five of six, with
+/// what is usual for spruce for the rest; of the other plate's the one is told that these records contradict.
+#[test]
+fn val_real_plates_with_constants_held_have_the_others() {
+    for (name, e_x, held) in [("2L", 1.044e10, [9.647e8, 6.577e8]), ("5R", 1.104e10, [9.625e8, 7.965e8])] {
+        let Some(path) = shared_data(&format!("spruce_plates/{name}/test.toml")) else { return };
+        let mut test = ImpactTest::read(&path).expect("a test");
+        test.constants.extend(["e_y", "g_xy"].map(str::to_owned).into_iter().zip(held));
+        let two = identify(&test, Settings::default()).expect("constants");
+        assert!((two.constants[0].value / e_x - 1.0).abs() < 0.03, "{name}: {:?}", two.constants[0]);
+        assert_eq!((two.constants[1].value, two.constants[1].held), (held[0], true));
+        test.constants.extend([("nu_xy", 0.37), ("g_yz", 7e7), ("g_zx", 8e8)].map(|(of, at)| (of.to_owned(), at)));
+        let five = identify(&test, Settings::default()).expect("constants");
+        assert!((five.constants[0].value / e_x - 1.0).abs() < 0.05, "{name}: {:?}", five.constants[0]);
+        let said = |what: &str| five.notes.iter().any(|note| note.contains(what));
+        assert!(said("e_y, nu_xy, g_xy, g_yz, g_zx as the test file holds them"), "{:?}", five.notes);
+        if name == "5R" {
+            test.constants.insert("g_xy".to_owned(), 6.577e8);
+            let other = identify(&test, Settings::default()).expect("constants");
+            let told = other.notes.iter().any(|note| note.contains("contradict g_xy = 6.577e8, free 8.0"));
+            assert!(told, "{:?}", other.notes);
+        }
+    }
+}
+
 /// The same plates' lists of ten and eleven frequencies, and one of a plate with a clamped edge whose authors exchanged two shapes, without any shape: the
 /// constants are those that the lists with shapes give. The folder is not part of the repository.
 #[test]

@@ -30,6 +30,13 @@ pub struct Place {
     pub y: f64,
 }
 
+impl Place {
+    /// So far along x and along y from here \[m\].
+    pub fn moved(self, [x, y]: [f64; 2]) -> Self {
+        Self { x: self.x + x, y: self.y + y }
+    }
+}
+
 impl From<[f64; 2]> for Place {
     fn from([x, y]: [f64; 2]) -> Self {
         Self { x, y }

@@ -123,6 +123,24 @@ fn val_rotary_inertia_is_that_of_a_thicker_section() {
     }
 }
 
+/// A beam longer than the file says is one as long as it says, of other constants and a little less rotary inertia, hit and heard elsewhere on it.
+#[test]
+fn val_a_length_that_is_wrong_is_other_constants_other_places_and_a_factor() {
+    let longer: f64 = 1.02;
+    let panel = || Bench { zeta: 0.004, ..Bench::panel() };
+    let truth = Bench { piece: Piece { length: longer * PIECE.length, ..PIECE }, ..panel() };
+    let stated = Bench { constants: [CONSTANTS[0] / longer.powi(4), CONSTANTS[1] / longer.powi(2)], ..panel() };
+    for frequency in [50.0, 600.0, 2222.0] {
+        let s = Complex64::new(10.0, TAU * frequency);
+        let expected = truth.accelerance(&[], s);
+        let rotary: (&str, &[f64]) = ("rotary-inertia", &[longer.powi(-2)]);
+        let found = stated.accelerance(&[("size-error", &[longer - 1.0]), rotary], s);
+        assert!((found / expected - 1.0).norm() < 1e-8, "{frequency} Hz: {found} {expected}");
+        let without = stated.accelerance(&[rotary], s);
+        assert!((without / expected - 1.0).norm() > 1e-3, "{frequency} Hz: 16 mm must show");
+    }
+}
+
 #[test]
 fn val_loss_over_the_whole_length_is_a_softer_core() {
     let softer = Bench { constants: [CONSTANTS[0], 0.7 * CONSTANTS[1]], ..Bench::panel() };

@@ -7,13 +7,15 @@ use orthopanel_model::{
     Damping, Estimate, MODEL_SCHEMA, ModeRange, PLATE_CONSTANTS, PanelModel, Piece, Place, Ports, StructureKind,
 };
 
+use super::too_few_places::TooFewPlaces;
 use crate::accelerance_fit::told_variance;
 use crate::free_constants::HALF_95;
+use crate::judge::ODDS;
 use crate::measured::{MeasuredModes, measured_modes};
 use crate::place_readings::refuse_other_places;
 use crate::plate_start::{PlateFit, PlateStart, held};
 use crate::settings::Settings;
-use crate::structures::{self, SeenMode};
+use crate::structures;
 use crate::{
     AcceleranceFit, Correlation, HiddenMode, Identification, IdentifiedConstant, IdentifyError, ModeFit, NotIdentified,
     PieceFit,
@@ -34,6 +36,10 @@ const SUMMED: f64 = 1.6;
 /// Poles that stay alone, of those that stand out, beyond which the records are not those of this plate.
 const MOST_ALONE: f64 = 0.4;
 
+/// A constant that is held is contradicted by frequencies, where these are likelier by [`ODDS`] with none held, if it lies so many standard deviations off
+/// what they say.
+const CONTRADICTED: f64 = 3.0;
+
 /// Residues all this many times as large as the plate's, or as small, are those of another unit: two units differ by more, and residues of
 /// real panels by less.
 const MOST_FACTOR: f64 = 2.0;
@@ -44,6 +50,8 @@ pub(crate) struct PlateByModes {
     piece: Piece,
     fit: PlateFit,
     not_identified: Vec<NotIdentified>,
+    /// What the frequencies say of constants that the test file holds.
+    of_held: Option<String>,
 }
 
 impl PlateByModes {
@@ -73,7 +81,9 @@ impl PlateByModes {
             values[constant] = at;
             fit = PlateStart::new(&measured, (piece, test.boundary), held).fit(values)?;
         }
-        Ok(Some(Self { measured, piece, fit, not_identified }))
+        let is_missed = fit.missed > IDEAL && held_values(test).next().is_some();
+        let of_held = if is_missed { said_of_held(test, &measured, &fit)? } else { None };
+        Ok(Some(Self { measured, piece, fit, not_identified, of_held }))
     }
 
     /// # Errors
@@ -181,12 +191,20 @@ impl PlateByModes {
         let count = fit.modes.len().max(1) as f64;
         let frequency_rms_percent =
             (fit.modes.iter().map(|mode| mode.error_percent().powi(2)).sum::<f64>() / count).sqrt();
+        let held: Vec<&str> = held_values(test).map(|(constant, _)| PLATE_CONSTANTS[constant].name).collect();
+        let beside = if held.is_empty() {
+            String::new()
+        } else {
+            format!(" with {} as the test file holds them", held.join(", "))
+        };
         let mut notes = vec![format!(
-            "constants are from the frequencies of the modes that the records show, which the nearest plate misses by {:.3} % (standard \
+            "constants are from the frequencies of the modes that the records show, which the nearest plate{beside} misses by {:.3} % (standard \
              deviation, estimated with the constants and part of theirs)",
             100.0 * self.fit.missed
         )];
-        notes.extend(too_few_places(&modes, &fit.damping, measured.records.len()));
+        notes.extend(self.of_held.clone());
+        let places = measured.records.len();
+        notes.extend(TooFewPlaces::of(&modes, &fit.damping, places).map(|too_few| too_few.to_string()));
         if !alone.is_empty() {
             notes.push(format!("resonances that are no mode of the plate: {}", alone.join(", ")));
         }
@@ -292,30 +310,42 @@ impl PlateByModes {
     }
 }
 
-/// Where more modes overlap than there are places, these do not tell them apart: a mode each half-power bandwidth $2\zeta f$ of the next is one of a
-/// group, and records of $R$ places are sums of at most $R$ shapes.
-fn too_few_places(modes: &[SeenMode], damping: &[Estimate], places: usize) -> Option<String> {
-    let half = |(mode, ratio): (&SeenMode, &Estimate)| (mode.frequency, ratio.value * mode.frequency);
-    let (mut largest, mut group): (Vec<f64>, Vec<(f64, f64)>) = (vec![], vec![]);
-    for (frequency, width) in modes.iter().zip(damping).map(half) {
-        if group.last().is_some_and(|(last, other)| frequency - last > other + width) {
-            group.clear();
-        }
-        group.push((frequency, width));
-        if group.len() > largest.len() {
-            largest = group.iter().map(|(frequency, _)| *frequency).collect();
-        }
+/// Numbers and values of the constants that a test holds.
+fn held_values(test: &ImpactTest) -> impl Iterator<Item = (usize, f64)> {
+    held(test).into_iter().enumerate().filter_map(|(constant, value)| Some((constant, value?)))
+}
+
+/// Of the constants that a test holds those that the frequencies alone put elsewhere, and how well a plate that has them there meets these.
+///
+/// # Errors
+/// What the plate refuses.
+fn said_of_held(test: &ImpactTest, measured: &MeasuredModes, fit: &PlateFit) -> Result<Option<String>, IdentifyError> {
+    let start = PlateStart::new(measured, (test.pieces[measured.piece].piece, test.boundary), [None; 6]);
+    let Some((_, values)) = start.constants()?.into_iter().next() else { return Ok(None) };
+    let free = start.fit(values)?;
+    // Beside what either leaves alone, the same poles are paired.
+    let apart = free.apart().max(fit.apart());
+    let as_held = PlateStart::new(measured, (test.pieces[measured.piece].piece, test.boundary), held(test));
+    if start.log_evidence(&free.values, apart)? - as_held.log_evidence(&fit.values, apart)? < ODDS.ln() {
+        return Ok(None);
     }
-    let (first, last) = (largest.first()?, largest.last()?);
-    (largest.len() > places).then(|| {
+    let elsewhere = |(constant, at): (usize, f64)| {
+        let deviation = free.covariance[(constant, constant)].sqrt();
+        let (value, is_log) = (free.values[constant], PlateFit::is_logarithmic(constant));
+        let apart = if is_log { (value / at).ln() } else { value - at };
+        let std = if is_log { value * deviation } else { deviation };
+        let name = PLATE_CONSTANTS[constant].name;
+        (apart.abs() > CONTRADICTED * deviation).then(|| format!("{name} = {at:.3e}, free {value:.3e} +- {std:.1e}"))
+    };
+    let elsewhere: Vec<String> = held_values(test).filter_map(elsewhere).collect();
+    Ok((!elsewhere.is_empty()).then(|| {
         format!(
-            "{} modes of the plate overlap from {first:.1} to {last:.1} Hz, and records of {places} pair{} of places tell no more than {places} apart: hit \
-             {} places at least, off the lines of symmetry",
-            largest.len(),
-            if places == 1 { "" } else { "s" },
-            largest.len()
+            "of the constants held the frequencies contradict {}; with none held a plate misses them by {:.3} %: correct these values or leave \
+             them out of [constants]",
+            elsewhere.join("; "),
+            100.0 * free.missed
         )
-    })
+    }))
 }
 
 /// A constant that the data leave open, number `place` of the free ones.

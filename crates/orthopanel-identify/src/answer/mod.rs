@@ -15,6 +15,7 @@ mod next_list;
 mod next_measurement;
 mod not_tested;
 mod panel;
+mod too_few_places;
 mod weighed;
 
 pub(crate) use damping::told;

@@ -3,9 +3,10 @@
 use std::f64::consts::TAU;
 
 use orthopanel_data::ImpactTest;
-use orthopanel_model::Readable;
+use orthopanel_model::{Piece, Readable};
 
 use crate::IdentifyError;
+use crate::hypothesis::Role;
 use crate::judge::{judged, not_modal, without_mode};
 use crate::measured::{MeasuredModes, Pole};
 use crate::outcome::Verdict;
@@ -100,10 +101,19 @@ impl<'a> Weighed<'a> {
         notes.extend(not_modal(self.chosen, &inquiry.stacked).map(|measured| no_resonance(test, measured)));
         notes.extend(self.doubts.iter().map(|doubt| doubt.sentence.clone()));
         notes.extend(self.near.iter().map(|rival| self.standing(rival)));
+        notes.extend(self.looks_like(&test.pieces[measured.piece].piece));
         notes.extend(notes_on_not_shown(inquiry, self.base));
         notes.extend(notes_on_prior_alone(self.chosen, estimates));
         notes.extend(notes_on_bound(estimates, &test.pieces[measured.piece].piece));
         notes
+    }
+
+    /// What in the test file would show the same as what was found, were it wrong.
+    fn looks_like(&self, piece: &Piece) -> Vec<String> {
+        let Judged { hypothesis, posterior, .. } = self.chosen;
+        let parts = hypothesis.parts.iter().zip(hypothesis.of_parts(&posterior.point.z));
+        let found = parts.filter(|(part, _)| part.role == Role::Found);
+        found.filter_map(|(part, z)| part.effect.looks_like(&part.values(z), piece)).collect()
     }
 
     fn standing(&self, rival: &Judged) -> String {

@@ -51,11 +51,11 @@ pub struct ShearPatch {
     pub at: Place,
 }
 
-/// An offset along x of a place of the record.
+/// An offset of a place of the record.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Shift {
     /// Whether it is the response's place; else the force's.
     pub of_response: bool,
-    /// By how much \[m\].
-    pub offset: f64,
+    /// By how much along x and along y \[m\].
+    pub offset: [f64; 2],
 }

@@ -2,12 +2,12 @@
 
 use super::{
     Effect, channel_delay, cubic_stiffness, edge_mass, exponential_window, gain, hammer_offset, high_pass, local_mass,
-    position_error, record_gain, resonator, rotary_inertia, sensor_mass, sensor_resonance, stiffness_loss,
+    position_error, record_gain, resonator, rotary_inertia, sensor_mass, sensor_resonance, size_error, stiffness_loss,
     support_compliance, suspension, viscoelastic_core, width_coupling,
 };
 use crate::ModelError;
 
-static CATALOGUE: [&dyn Effect; 19] = [
+static CATALOGUE: [&dyn Effect; 20] = [
     &sensor_mass::SensorMass,
     &suspension::Suspension,
     &local_mass::LocalMass,
@@ -27,6 +27,7 @@ static CATALOGUE: [&dyn Effect; 19] = [
     &hammer_offset::HammerOffset,
     &support_compliance::SupportCompliance,
     &position_error::PositionError,
+    &size_error::SizeError,
 ];
 
 /// All effects.

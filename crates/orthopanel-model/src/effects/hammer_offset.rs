@@ -3,16 +3,16 @@
 use super::{Action, Effect, EffectParameter, EffectSetting, Owner, Reference, Shift};
 use crate::ModelError;
 
-/// The hammer struck beside the place that is written down: an offset \[m\] along x, one in each record.
+/// The hammer struck beside the place that is written down: an offset \[m\] along x, one in each record, and on a plate one along y.
 ///
 /// Bounds: a tenth of the piece. Source: geometry; the force's shape row moves with its place.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct HammerOffset;
 
-const PARAMETERS: [EffectParameter; 1] = [EffectParameter::linear("offset", "m", [-0.1, 0.1], &[0.0])
-    .about(0.0, 6e-3)
-    .of(Reference::Length)
-    .in_each_record()];
+const ALONG: EffectParameter =
+    EffectParameter::linear("offset", "m", [-0.1, 0.1], &[0.0]).about(0.0, 6e-3).of(Reference::Length).in_each_record();
+
+const PARAMETERS: [EffectParameter; 2] = [ALONG, ALONG.across("offset_y").of(Reference::Width)];
 
 impl Effect for HammerOffset {
     fn id(&self) -> &'static str {
@@ -29,7 +29,7 @@ impl Effect for HammerOffset {
 
     fn act(&self, values: &[f64], setting: &EffectSetting) -> Result<Vec<Action>, ModelError> {
         self.check(values, &setting.piece)?;
-        let &[offset] = values else { return Ok(vec![]) };
-        Ok(vec![Action::Place(Shift { of_response: false, offset })])
+        let &[x, y] = values else { return Ok(vec![]) };
+        Ok(vec![Action::Place(Shift { of_response: false, offset: [x, y] })])
     }
 }

@@ -25,6 +25,7 @@ mod relaxing_modes;
 mod relaxing_panel;
 mod row;
 mod setting;
+mod size_error;
 mod spread_effects;
 mod state;
 mod uneven_beam;
@@ -126,6 +127,11 @@ pub trait Effect: Sync {
     /// # Errors
     /// [`ModelError::EffectNeeds`] where the test does not tell what the effect needs.
     fn act(&self, values: &[f64], setting: &EffectSetting) -> Result<Vec<Action>, ModelError>;
+
+    /// What of the piece as the test file has it would show the same at these values, were it wrong.
+    fn looks_like(&self, _values: &[f64], _piece: &Piece) -> Option<String> {
+        None
+    }
 
     /// The linear effect that this one looks like in the mean over hits, where it is not linear and shows between hits alone.
     fn linearised(&self) -> Option<&'static dyn Effect> {

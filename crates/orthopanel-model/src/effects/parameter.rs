@@ -23,7 +23,7 @@ pub struct EffectParameter {
     pub held_at: Option<f64>,
     /// What is thought of it before a test.
     pub prior: Prior,
-    /// Whether it is a place across the panel: a plate has it, and on a beam it stays on the centre line.
+    /// Whether it is a place or an offset across the panel: a plate has it, and on a beam it stays on the centre line.
     pub across: bool,
     /// Whether it is a factor, of which one is none of the effect.
     pub is_factor: bool,
@@ -157,8 +157,12 @@ impl EffectParameter {
 
     /// A place along y, anywhere on a plate.
     pub(super) const fn place_across() -> Self {
-        let place = Self::linear("y", "m", [-0.5, 0.5], &[0.0]).of(Reference::Width).held_at(0.0);
-        Self { across: true, ..place }
+        Self::linear("y", "m", [-0.5, 0.5], &[0.0]).across("y").of(Reference::Width)
+    }
+
+    /// The same across the panel, where a beam has none.
+    pub(super) const fn across(self, name: &'static str) -> Self {
+        Self { name, across: true, held_at: Some(0.0), ..self }
     }
 
     /// Least and greatest value for a piece.

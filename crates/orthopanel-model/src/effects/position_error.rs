@@ -3,15 +3,17 @@
 use super::{Action, Effect, EffectParameter, EffectSetting, Owner, Reference, Shift};
 use crate::ModelError;
 
-/// The sensor sits beside the place that is written down: an offset \[m\] along x, the same in every record. What the
-/// sensor carries (`sensor-mass`) moves with it.
+/// The sensor sits beside the place that is written down: an offset \[m\] along x, and on a plate along y, the same in every
+/// record. What the sensor carries (`sensor-mass`) moves with it.
 ///
 /// Bounds: a tenth of the piece. Source: geometry; the response's shape row moves with its place.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct PositionError;
 
-const PARAMETERS: [EffectParameter; 1] =
-    [EffectParameter::linear("offset", "m", [-0.1, 0.1], &[0.005, -0.005]).about(0.0, 1e-2).of(Reference::Length)];
+const ALONG: EffectParameter =
+    EffectParameter::linear("offset", "m", [-0.1, 0.1], &[0.005, -0.005]).about(0.0, 1e-2).of(Reference::Length);
+
+const PARAMETERS: [EffectParameter; 2] = [ALONG, ALONG.across("offset_y").of(Reference::Width)];
 
 impl Effect for PositionError {
     fn id(&self) -> &'static str {
@@ -28,7 +30,7 @@ impl Effect for PositionError {
 
     fn act(&self, values: &[f64], setting: &EffectSetting) -> Result<Vec<Action>, ModelError> {
         self.check(values, &setting.piece)?;
-        let &[offset] = values else { return Ok(vec![]) };
-        Ok(vec![Action::Place(Shift { of_response: true, offset })])
+        let &[x, y] = values else { return Ok(vec![]) };
+        Ok(vec![Action::Place(Shift { of_response: true, offset: [x, y] })])
     }
 }

@@ -1,6 +1,6 @@
 //! Effects that are switched on, with the values of their parameters.
 
-use super::{Action, Effect, EffectSetting, effect};
+use super::{Action, Effect, EffectParameter, EffectSetting, effect};
 use crate::{EffectEntry, ModelError};
 
 /// An effect that is switched on, at some values of its parameters.
@@ -19,10 +19,11 @@ impl EffectState {
     /// # Errors
     /// [`ModelError::EffectValues`] for another number of values than the parameters want.
     pub fn new(effect: &'static dyn Effect, mut values: Vec<f64>, records: usize) -> Result<Self, ModelError> {
-        let each = effect.parameters().iter().map(|parameter| if parameter.each_record { records } else { 1 });
-        let expected: usize = each.sum();
-        let missing = effect.parameters().len().min(expected.saturating_sub(values.len()));
-        values.extend(effect.parameters().iter().rev().take(missing).rev().map_while(|parameter| parameter.held_at));
+        let times = |of: &EffectParameter| if of.each_record { records } else { 1 };
+        let held: Vec<Option<f64>> =
+            effect.parameters().iter().flat_map(|of| std::iter::repeat_n(of.held_at, times(of))).collect();
+        let expected = held.len();
+        values.extend(held.iter().skip(values.len()).map_while(|held| *held));
         if values.len() != expected {
             return Err(ModelError::EffectValues { effect: effect.id(), found: values.len(), expected });
         }

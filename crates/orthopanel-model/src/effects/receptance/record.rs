@@ -31,8 +31,8 @@ impl RecordPlan {
                 match action {
                     Action::Element(element) => elements.push(element),
                     Action::Channel(factor) => factors.push(factor),
-                    Action::Place(shift) if shift.of_response => response.x += shift.offset,
-                    Action::Place(shift) => force.x += shift.offset,
+                    Action::Place(shift) if shift.of_response => response = response.moved(shift.offset),
+                    Action::Place(shift) => force = force.moved(shift.offset),
                     Action::Window { tau } => windows.push(tau),
                     // Of the structure, the same in every record.
                     Action::Field(_) | Action::Core(_) | Action::Plate(_) | Action::Foot(_) => {}
