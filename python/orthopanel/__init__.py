@@ -19,6 +19,8 @@ from ._piece import Piece
 from ._test import Test, identify, trace
 from ._trace import Trace
 
+from . import campaign  # isort: skip
+
 __all__ = [
     "Accelerance",
     "FileError",
@@ -32,6 +34,7 @@ __all__ = [
     "Test",
     "Trace",
     "__version__",
+    "campaign",
     "identify",
     "trace",
 ]

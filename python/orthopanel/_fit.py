@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import json
 import os
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from . import _native, _plots, _progress
+from ._answer import Answer
 from ._errors import InputError
 from ._model import Model
 from ._pairs import Accelerance, pairs
@@ -21,38 +21,25 @@ if TYPE_CHECKING:
 __all__ = ["Accelerance", "Fit"]
 
 
-class Fit:
-    """Elastic constants, damping and modes that were identified from a test; made by `identify`.
+class Fit(Answer):
+    """Elastic constants, damping and modes that were identified from a test; made by `identify`. JSON is ``orthopanel.identified/1``.
 
     Tables are of pandas where it is installed, structured arrays of numpy else; what is not known is NaN.
     """
 
-    _test: Test
     _words: str
     _held: _native.Fit | None
-    _json: str
-    _text: str
     _models: list[tuple[str, Model]]
     _pairs: list[Accelerance]
 
     @classmethod
     def _of(cls, test: Test, words: str, native: _native.Fit) -> Fit:
         fit = cls.__new__(cls)
-        # A test may be added to: the fit is of what it was.
-        fit._test = type(test)._of(test._made, list(test._calls), test._held)
-        fit._words, fit._held, fit._json, fit._text = words, native, native.to_json(), native.text()
+        fit._keep(test, native)
+        fit._words = words
         fit._models = [(name, Model._of(model)) for name, model in native.models()]
         fit._pairs = pairs(native.accelerances())
         return fit
-
-    def to_json(self) -> str:
-        """What ``orthopanel identify --json`` prints (``orthopanel.identified/1``), but for the files that it read."""
-        return self._json
-
-    def to_dict(self) -> dict[str, Any]:
-        """The same as a dictionary."""
-        found: dict[str, Any] = json.loads(self._json)
-        return found
 
     @property
     def constants(self) -> Any:
@@ -70,7 +57,8 @@ class Fit:
 
     @property
     def covariance(self) -> Any:
-        """constants x constants [products of their units], of those that were identified, in the order of `constants`."""
+        """constants x constants [products of their units], of those that were identified, in the order of `constants`;
+        with the damping ratios: `Model.covariance`."""
         known = [(name, std) for name, (_, std, _, _) in self._estimates() if std is not None]
         place = {name: index for index, (name, _) in enumerate(known)}
         correlation = np.eye(len(known))
@@ -100,11 +88,6 @@ class Fit:
         return dict(self.to_dict()["error"])
 
     @property
-    def notes(self) -> list[str]:
-        """What was left out, cut or found wanting."""
-        return list(self.to_dict()["notes"])
-
-    @property
     def accelerances(self) -> list[Accelerance]:
         """The records, measured and calculated."""
         return list(self._pairs)
@@ -127,6 +110,9 @@ class Fit:
         self, path: str | os.PathLike[str], *, trace: Trace | None = None, progress: bool | _progress.Tell | None = None
     ) -> None:
         """Writes one HTML page of the test, which needs no network and nothing beside it, as ``orthopanel report`` does.
+
+        A fit that was pickled holds what was found, not what the page is drawn from (every record and hit, which would be as large as the
+        test): it is identified and traced anew from its test, as long as that takes, to the same numbers.
 
         Args:
             path: Page to write.
@@ -153,9 +139,6 @@ class Fit:
             return _plots.accelerances([("model", self._pairs)])
         return _plots.frequencies(self.to_dict()["modes"])
 
-    def __str__(self) -> str:
-        return self._text
-
     def __repr__(self) -> str:
         constants = ", ".join(f"{name}={of[0]:.4g}" for name, of in self._estimates())
         return f"<orthopanel.Fit: {constants}>"
@@ -168,9 +151,6 @@ class Fit:
         return [
             (_called(name, piece), (entry["value"], entry["std"], entry["unit"], entry["held"])) for name, piece, entry in of
         ]
-
-    def __getstate__(self) -> dict[str, Any]:
-        return {**self.__dict__, "_held": None}
 
 
 def only(models: list[tuple[str, Model]]) -> Model:

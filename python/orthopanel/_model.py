@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from . import _arguments, _native
 from ._errors import InputError
-from ._tables import table
+from ._tables import matrix, table
 
 _DERIVATIVES = {
     "acceleration": 0,
@@ -70,6 +70,25 @@ class Model:
         """Elastic constants by name [Pa, Poisson's ratio 1]; shear moduli go with the shear coefficient k' = 2/3."""
         constants = self.to_dict()["constants"]
         return {name: of["value"] if isinstance(of, dict) else of for name, of in constants.items()}
+
+    @property
+    def covariance(self) -> Any:
+        """Of all that is known with a standard deviation [products of their units]: constants, then damping ratios, which are called
+        ``damping_ratio_1`` and so on, of the flexible modes in their order. What goes with nothing else is independent."""
+        of = self.to_dict()
+        known = {name: value.get("std") for name, value in of["constants"].items() if isinstance(value, dict)}
+        ratios = of.get("damping", {}).get("std", [])
+        known |= {f"damping_ratio_{mode}": std for mode, std in enumerate(ratios, start=1)}
+        stds = {name: std for name, std in known.items() if std is not None}
+        place = {name: index for index, name in enumerate(stds)}
+        correlation = np.eye(len(stds))
+        told = of.get("correlation", {"names": [], "matrix": []})
+        for row, first in enumerate(told["names"]):
+            for column, second in enumerate(told["names"]):
+                if first in place and second in place:
+                    correlation[place[first], place[second]] = told["matrix"][row][column]
+        deviations = np.array(list(stds.values()), dtype=np.float64)
+        return matrix(list(stds), correlation * np.outer(deviations, deviations))
 
     def accelerance(
         self,
@@ -175,6 +194,7 @@ class Model:
         up_to: float | None = None,
         forces: Places | None = None,
         responses: Places | None = None,
+        residual: bool = True,
         name: str | None = None,
     ) -> None:
         """Writes an FMU for co-simulation and model exchange: force in; acceleration, velocity and displacement out.
@@ -185,6 +205,8 @@ class Model:
             modes: Flexible modes beside the rigid ones; 20 where nothing is said.
             up_to: In their place every mode up to this frequency [Hz].
             forces, responses: Places [m], of a mapping with the names of their variables; the model's own where they are left out.
+            residual: Whether residual modes stand for the modes that are left out. On soft mounts that a master couples in steps of a
+                millisecond they want shorter ones, and add little.
             name: Of the FMU, as in C.
         """
         self._held.export(
@@ -194,6 +216,7 @@ class Model:
             _arguments.optional(up_to, "up_to"),
             _arguments.named_places(forces, "forces"),
             _arguments.named_places(responses, "responses"),
+            bool(residual),
             _arguments.words(name, "name"),
         )
 

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-import json
 from typing import TYPE_CHECKING, Any
 
 from . import _native, _plots, _progress
+from ._answer import Answer
+from ._errors import OrthopanelError
 from ._fit import only
 from ._model import Model
 from ._pairs import Accelerance, pairs
@@ -15,34 +16,21 @@ if TYPE_CHECKING:
     from ._test import Test
 
 
-class Trace:
-    """The effect that the model of a test lacks; made by `trace`. Tables as of `Fit`."""
+class Trace(Answer):
+    """The effect that the model of a test lacks; made by `trace`. JSON is ``orthopanel.trace/2``; tables as of `Fit`."""
 
     _held: _native.Traced | None
-    _json: str
-    _text: str
     _sentence: str
-    _test: Test
-    _models: list[tuple[str, Model]] | None
+    _models: list[tuple[str, Model]] | OrthopanelError | None
     _pairs: list[list[Accelerance]]
 
     @classmethod
     def _of(cls, test: Test, native: _native.Traced) -> Trace:
         trace = cls.__new__(cls)
-        trace._test = type(test)._of(test._made, list(test._calls), test._held)
-        trace._held, trace._json, trace._text, trace._sentence = native, native.to_json(), native.text(), native.sentence()
-        trace._models = None
+        trace._keep(test, native)
+        trace._sentence, trace._models = native.sentence(), None
         trace._pairs = [pairs(of) for of in native.accelerances()]
         return trace
-
-    def to_json(self) -> str:
-        """What ``orthopanel trace --json`` prints (``orthopanel.trace/2``), but for the files that it read."""
-        return self._json
-
-    def to_dict(self) -> dict[str, Any]:
-        """The same as a dictionary."""
-        found: dict[str, Any] = json.loads(self._json)
-        return found
 
     @property
     def verdict(self) -> str:
@@ -84,11 +72,6 @@ class Trace:
         return str(self.to_dict().get("next_experiment", ""))
 
     @property
-    def notes(self) -> list[str]:
-        """What was assumed or left out."""
-        return list(self.to_dict()["notes"])
-
-    @property
     def accelerances(self) -> list[Accelerance]:
         """The records, measured and by the model with the effects that were found."""
         return list(self._pairs[1])
@@ -123,17 +106,20 @@ class Trace:
         return _plots.evidence(self.to_dict()["candidates"])
 
     def _found(self) -> list[tuple[str, Model]]:
+        if isinstance(self._models, OrthopanelError):
+            raise self._models
         if self._models is None and self._held is not None:
             tell = _progress.teller(False)
             self._models = [(name, Model._of(model)) for name, model in self._held.models(tell)]
         return self._models or []
-
-    def __str__(self) -> str:
-        return self._text
 
     def __repr__(self) -> str:
         effects = ", ".join(str(effect["id"]) for effect in self.to_dict()["effects"])
         return f"<orthopanel.Trace: {self.verdict}{': ' if effects else ''}{effects}>"
 
     def __getstate__(self) -> dict[str, Any]:
-        return {**self.__dict__, "_models": self._found(), "_held": None}
+        try:
+            models: Any = self._found()
+        except OrthopanelError as refused:
+            models = refused
+        return {**super().__getstate__(), "_models": models}

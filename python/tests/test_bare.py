@@ -29,3 +29,5 @@ def test_tables_are_structured_arrays(piece):
     assert np.isnan(fit.modes["zeta"]).all()
     with pytest.raises(ImportError, match="pip install matplotlib"):
         fit.plot()
+    with pytest.raises(ImportError, match=r"pip install orthopanel\[campaign\]"):
+        op.campaign.identify({"1": test}, "out")

@@ -4,6 +4,8 @@ use faer::linalg::solvers::DenseSolveCore;
 use faer::prelude::Solve;
 use faer::{Mat, Side};
 
+use crate::interruption::heed;
+
 /// $\sum r_i^2$ near some parameters: its value, $J^Tr$ and $J^TJ$.
 #[derive(Clone)]
 pub(crate) struct Quadratic {
@@ -207,6 +209,7 @@ pub(crate) fn descend<E>(
     }
     let (mut damping, mut growth) = (ending.first_damping, 2.0);
     for _ in 0..ending.most_iterations {
+        heed();
         let Some(trial) = damped_step(&at, &parameters, bounds, (damping, ending.longest_step)) else {
             damping = (damping * growth).max(1e-12);
             growth *= 2.0;

@@ -16,6 +16,8 @@ mod hit_strength;
 mod hypothesis;
 mod identification;
 mod inference;
+#[doc(hidden)]
+pub mod interruption;
 mod judge;
 mod known_beforehand;
 mod least_squares;
@@ -51,6 +53,7 @@ pub use error::IdentifyError;
 pub use identification::{
     AcceleranceFit, Correlation, HiddenMode, Identification, IdentifiedConstant, ModeFit, NotIdentified, PieceFit,
 };
+pub use interruption::until;
 pub use known_beforehand::PriorContradiction;
 pub use matching::ModeMatch;
 pub use measured::{MeasuredModes, MeasuredRecord, Pole, measured_modes};

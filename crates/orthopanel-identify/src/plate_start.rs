@@ -6,6 +6,7 @@ use orthopanel_data::ImpactTest;
 use orthopanel_model::{Boundary, MindlinPlate, ModelError, PLATE_CONSTANTS, Piece, Place, Structure, ritz_modes};
 use rayon::prelude::*;
 
+use crate::interruption::heed;
 use crate::matching::Partner;
 use crate::measured::MeasuredModes;
 use crate::model_error::frequency_prior;
@@ -103,6 +104,7 @@ impl<'a> PlateStart<'a> {
     /// What the plate refuses.
     pub(crate) fn constants(&self) -> Result<Vec<(f64, Constants)>, ModelError> {
         let starts = self.ranked()?;
+        heed();
         let followed = starts.into_par_iter().map(|start| self.followed(start));
         let mut found = followed.collect::<Result<Vec<_>, _>>()?;
         found.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -496,6 +498,7 @@ impl PlateStart<'_> {
         let free = self.free();
         let (mut values, mut size) = (start, STAGES[STAGES.len() - 1].2);
         for round in 0..=ROUNDS {
+            heed();
             let modes = self.modes(&values, self.count(self.measured))?;
             let seen: Vec<(f64, Vec<f64>)> = modes.iter().map(|mode| mode.seen.clone()).collect();
             let apart = (TIMES * size).max(NEAREST);

@@ -21,6 +21,12 @@ fn main(py: Python<'_>, words: Vec<OsString>) -> PyResult<u8> {
     error::guarded(|| py.detach(|| orthopanel_cli::main(words)))
 }
 
+/// Computes on no more threads than these, unless the process computes already, on those that it has; how many there are.
+#[pyfunction]
+fn limit_threads(count: usize) -> usize {
+    fork::limit(count)
+}
+
 /// What the package is made of; users import `orthopanel`.
 #[pymodule]
 fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
@@ -30,5 +36,6 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<fit::Fit>()?;
     module.add_class::<traced::Traced>()?;
     module.add_class::<model::Model>()?;
-    module.add_function(wrap_pyfunction!(main, module)?)
+    module.add_function(wrap_pyfunction!(main, module)?)?;
+    module.add_function(wrap_pyfunction!(limit_threads, module)?)
 }

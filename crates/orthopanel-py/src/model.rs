@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use numpy::ndarray::Array2;
 use numpy::{Complex64, IntoPyArray as _, PyArray1, PyArray2, PyReadonlyArray1};
 use orthopanel::{FmiVersion, FmuOptions, ModeRange, Place, Ports};
-use orthopanel_export::PortNames;
+use orthopanel_export::{PortNames, Residual};
 use orthopanel_model::VISCOELASTIC_CORE;
 use pyo3::prelude::*;
 
@@ -171,6 +171,7 @@ impl Model {
         up_to: Option<f64>,
         forces: Option<NamedPlaces>,
         responses: Option<NamedPlaces>,
+        residual: bool,
         name: Option<String>,
     ) -> PyResult<()> {
         let version = match fmi {
@@ -181,7 +182,8 @@ impl Model {
         let (ports, names) = self.ports(py, forces.as_ref(), responses.as_ref())?;
         let usual = FmuOptions::default();
         let name = name.or_else(|| self.0.panel().name.clone()).unwrap_or(usual.name);
-        let options = FmuOptions { name, version, names, ..FmuOptions::default() };
+        let residual = if residual { usual.residual } else { Residual::None };
+        let options = FmuOptions { name, version, names, residual, ..FmuOptions::default() };
         let model = &self.0;
         at_once(py, || model.export_with(path, range(modes, up_to), &ports, &options))
     }

@@ -54,6 +54,12 @@ impl Test {
         self.0.content().pieces.iter().map(|piece| piece.name.clone()).collect()
     }
 
+    /// Files that it names.
+    #[getter]
+    fn files(&self) -> Vec<PathBuf> {
+        self.0.content().files().map(PathBuf::from).collect()
+    }
+
     #[getter]
     fn count(&self) -> usize {
         self.0.content().measurements.len()

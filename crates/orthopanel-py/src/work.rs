@@ -8,6 +8,7 @@ use std::thread;
 use std::time::Duration;
 
 use orthopanel::{Error, Observer, Steps, Work};
+use orthopanel_identify::until;
 use pyo3::prelude::*;
 
 use crate::error::{answered, fault, raised};
@@ -20,7 +21,7 @@ const PERIOD: Duration = Duration::from_millis(50);
 #[derive(Default)]
 struct Watch {
     at: Mutex<At>,
-    interrupted: AtomicBool,
+    interrupted: Arc<AtomicBool>,
 }
 
 #[derive(Clone, Default, PartialEq)]
@@ -75,8 +76,10 @@ pub fn done<T: Send + 'static>(
     let (send, mut receive) = channel();
     let seen = Arc::clone(&watch);
     let body = move || {
+        let ended = Arc::clone(&seen.interrupted);
+        let heeding = || until(ended, || work(&*seen)).unwrap_or(Err(Error::Interrupted));
         // Nobody may wait for it any more.
-        let _ = send.send(catch_unwind(AssertUnwindSafe(|| after_fork(|| work(&*seen)))));
+        let _ = send.send(catch_unwind(AssertUnwindSafe(|| after_fork(heeding))));
     };
     thread::Builder::new().name("orthopanel".into()).spawn(body)?;
     let mut told = At::default();

@@ -5,6 +5,7 @@ mod error;
 mod evidence;
 mod fmu_refusal;
 mod identified;
+mod interruption;
 pub mod lot;
 mod model;
 mod observer;

@@ -122,7 +122,7 @@ impl Test {
     /// As [`Test::identify`], with other settings, and told to an observer.
     ///
     /// # Errors
-    /// As [`Test::identify`].
+    /// As [`Test::identify`], and [`Error::Interrupted`] where the observer asks for it.
     pub fn identify_with(&self, settings: Settings, observer: &dyn Observer) -> Result<Identified, Error> {
         Identified::of(self, settings, observer)
     }

@@ -12,13 +12,13 @@ use crate::terminal::{self, Terminal};
 /// Write what a lot of panels shows onto one HTML page
 ///
 /// Mean of each constant and spread between panels, apart from how well each panel is known (random effects); control charts of individuals and
-/// moving ranges; panels that stand out against both spreads; panels with a named effect; panels that failed. LOT is a table that `orthopanel batch` wrote.
+/// moving ranges; panels that stand out against both spreads; panels with a named effect; panels that failed. LOT is a table that `orthopanel batch` wrote, or the folder of a campaign of the Python package.
 ///
 /// Example: orthopanel lot lot.parquet -o lot.html
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
 pub struct Arguments {
-    /// Table of the lot (.csv or .parquet)
+    /// Table of the lot (.csv or .parquet), or a folder of such
     lot: PathBuf,
     /// Page to write
     #[arg(short, long, value_name = "PAGE.html")]

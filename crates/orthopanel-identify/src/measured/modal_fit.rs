@@ -15,6 +15,7 @@ use rayon::prelude::*;
 
 use super::line_groups::{LineGroups, REACH};
 use super::lines::{PoleColumns, RecordLines, Truncations};
+use crate::interruption::heed;
 
 /// Powers of $s$ that stand for what lies below and above the band: rigid modes and modes below are even powers from $s^0$ down, modes above
 /// even powers up; odd ones are their damping.
@@ -252,6 +253,7 @@ impl<'a> ModalFit<'a> {
 
     /// The poles that meet the records best, from a start, until the misfit falls by less than this part.
     pub(super) fn minimise(&self, start: PoleParameters, tolerance: f64) -> Option<(PoleParameters, Fitted)> {
+        heed();
         let fitted = self.at(&start)?;
         let size = 2 * start.len();
         if size == 0 {

@@ -10,6 +10,7 @@ use super::joint_fit::{Found, LAST, SYSTEMATIC, fit};
 use super::lines::RecordLines;
 use super::modal_fit::{FittedRecord, ModalFit, PoleParameters, lambda};
 use super::stabilisation::stable_poles;
+use crate::interruption::heed;
 
 /// Damping ratios at which a pole begins.
 const FIRST_ZETAS: [f64; 3] = [1e-3, 4e-3, 2e-2];
@@ -55,6 +56,7 @@ pub(super) fn in_parts(records: &[RecordLines], (band, is_told): ([f64; 2], bool
     };
     let alone: Vec<Option<Part>> =
         ends.par_windows(2).map(|ends| Part::of([ends[0], ends[1]], &seen(ends), is_told)).collect();
+    heed();
     let beside = |(number, ends): (usize, &[f64])| {
         let mut seen = seen(ends);
         let others = alone.iter().enumerate().filter(|(other, _)| *other != number);
@@ -62,6 +64,7 @@ pub(super) fn in_parts(records: &[RecordLines], (band, is_told): ([f64; 2], bool
         Part::of([ends[0], ends[1]], &seen, is_told)
     };
     let again: Vec<Option<Part>> = ends.par_windows(2).enumerate().map(beside).collect();
+    heed();
     let misfit = |part: &Option<Part>| part.as_ref().map_or(f64::INFINITY, |part| part.per_datum);
     let parts: Vec<Option<Part>> = alone
         .into_iter()

@@ -15,12 +15,13 @@ use crate::evidence::Evidence;
 use crate::notes::note;
 use crate::observer::{Observer, Steps};
 use crate::provenance::{Provenance, WithProvenance};
-use crate::{Model, Test, Traced, json, report};
+use crate::{Model, Test, Traced, interruption, json, report};
 pub use answer::{Answer, called};
 use measured::MeasuredTable;
 pub use mode_rows::{Digits, ModeRows};
 use models::model;
 pub use models::{ASSUMED_DAMPING, to_digits};
+pub use text::shown_correlations;
 
 /// What was identified from a test, and a model of each of its pieces.
 pub struct Identified {
@@ -39,7 +40,8 @@ impl Identified {
         let content = test.content();
         let found = {
             let _shown = observer.begin("reading the records and identifying", Steps::Unknown);
-            identify(content, settings).map_err(|source| Error::Identify { path: test.path().into(), source })?
+            let found = interruption::caught(|| identify(content, settings))?;
+            found.map_err(|source| Error::Identify { path: test.path().into(), source })?
         };
         note(observer, "", &found.notes);
         let models = models_of(content, &found, settings);
@@ -48,7 +50,10 @@ impl Identified {
         }
         let measured = {
             let _shown = observer.begin("measuring the modes of all records together", Steps::Unknown);
-            MeasuredTable::all(content, &found, &models)
+            interruption::caught(|| {
+                interruption::heed(observer);
+                MeasuredTable::all(content, &found, &models)
+            })?
         };
         let answer = Answer::of(&found, measured);
         Ok(Self { test: test.clone(), settings, found, models, answer })

@@ -1,6 +1,8 @@
 //! What an identification found, as tables for people.
 
-use orthopanel_identify::{IdentifiedConstant, NotIdentified, PieceFit};
+use std::collections::BTreeSet;
+
+use orthopanel_identify::{Correlation, Identification, IdentifiedConstant, NotIdentified, PieceFit};
 use orthopanel_model::{Piece, Readable};
 
 use super::answer::called;
@@ -43,10 +45,14 @@ impl Identified {
                 unseen.direction_text()
             );
         }
-        for pair in &self.found.correlations {
+        let (shown, others) = shown_correlations(&self.found);
+        for pair in shown {
             let [first, second] = [(pair.first, pair.first_piece), (pair.second, pair.second_piece)]
                 .map(|(name, piece)| called(&self.found, name, piece));
             text += &format!("correlation of {first} and {second}: {:+.3}\n", pair.value);
+        }
+        if let Some(others) = others {
+            text += &(others + "\n");
         }
         text += &format!("error of the frequencies: {:.3} % rms", Readable(self.found.frequency_rms_percent));
         if let Some(error) = self.found.left_one_out_percent {
@@ -66,6 +72,24 @@ impl Identified {
         text
     }
 }
+
+/// The correlations to be shown, and a sentence on those that are not: of several pieces with constants of their own each piece's
+/// that lead, since a pair of constants for each pair of pieces fills pages.
+pub fn shown_correlations(found: &Identification) -> (Vec<&Correlation>, Option<String>) {
+    let all = &found.correlations;
+    let piece_of = |pair: &Correlation| pair.first_piece.or(pair.second_piece);
+    if all.iter().filter_map(piece_of).collect::<BTreeSet<_>>().len() < 2 {
+        return (all.iter().collect(), None);
+    }
+    let is_of_one = |pair: &&Correlation| pair.first_piece.is_none_or(|_| pair.second_piece == pair.first_piece);
+    let shown: Vec<_> = all.iter().filter(is_of_one).filter(|pair| pair.value.abs() > NOTABLE).collect();
+    let others = all.len() - shown.len();
+    let told = format!("correlations between pieces, or of {NOTABLE} and less: {others} (all of them: --json)");
+    (shown, (others > 0).then_some(told))
+}
+
+/// Above it two constants move as one.
+const NOTABLE: f64 = 0.9;
 
 /// A row a mode; with the damping where the test measures it.
 fn mode_table(fit: &PieceFit) -> String {

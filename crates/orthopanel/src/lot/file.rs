@@ -12,11 +12,21 @@ fn of(path: &Path) -> impl FnOnce(TableError) -> Error {
     |source| Error::Lot { path, source }
 }
 
-/// The rows of the table at `path`.
+/// The rows of the table at `path`; of a folder, as a campaign of the Python package leaves one, those of every `.parquet` file in it, in the
+/// order of their names.
 ///
 /// # Errors
 /// [`Error::Unreadable`], and [`Error::Lot`] for what is none.
 pub fn load(path: &Path) -> Result<Vec<LotRow>, Error> {
+    if path.is_dir() {
+        let unreadable = |source| Error::Unreadable { path: path.into(), source };
+        let entries = std::fs::read_dir(path).map_err(unreadable)?;
+        let mut files = entries.map(|entry| Ok(entry?.path())).collect::<Result<Vec<_>, _>>().map_err(unreadable)?;
+        files.retain(|file| file.extension().is_some_and(|ending| ending == "parquet"));
+        files.sort();
+        let rows = files.iter().map(|file| load(file)).collect::<Result<Vec<_>, _>>()?;
+        return Ok(rows.concat());
+    }
     let format = Format::of(path).map_err(of(path))?;
     let content = std::fs::read(path).map_err(|source| Error::Unreadable { path: path.into(), source })?;
     read(content, format).map_err(of(path))

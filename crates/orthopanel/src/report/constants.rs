@@ -4,7 +4,7 @@ use orthopanel_identify::{Identification, IdentifiedConstant};
 use orthopanel_model::Readable;
 
 use super::table::Table;
-use crate::identified::called;
+use crate::identified::{called, shown_correlations};
 use crate::tables::{HALF_95, shown_unit, with_unit};
 
 /// A number with as many digits as tell it from another a tenth of `std` away.
@@ -81,12 +81,13 @@ pub fn remarks(found: &Identification) -> Vec<String> {
             unseen.direction_text()
         )
     });
-    let correlations = found.correlations.iter().map(|pair| {
+    let (shown, others) = shown_correlations(found);
+    let correlations = shown.into_iter().map(|pair| {
         let [first, second] = [(pair.first, pair.first_piece), (pair.second, pair.second_piece)]
             .map(|(name, piece)| called(found, name, piece));
         format!("{first} and {second} {:+.3}", pair.value)
     });
-    let correlations = correlations.collect::<Vec<_>>().join(", ");
+    let correlations = correlations.chain(others).collect::<Vec<_>>().join(", ");
     let correlations = (!correlations.is_empty()).then(|| format!("Correlations: {correlations}."));
     unseen.chain(correlations).collect()
 }

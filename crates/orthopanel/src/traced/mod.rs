@@ -1,6 +1,5 @@
 //! What a trace found, as text for people and as the panel's model; its JSON (`orthopanel.trace/2`) is the layer's own.
 
-mod interruption;
 mod left;
 mod lists;
 mod places;
@@ -16,7 +15,7 @@ use crate::identified::{ASSUMED_DAMPING, base_models, to_digits};
 use crate::notes::note;
 use crate::observer::{Observer, Steps};
 use crate::provenance::{Provenance, WithProvenance};
-use crate::{Error, Model, Silent, Test, json};
+use crate::{Error, Model, Silent, Test, interruption, json};
 pub use places::found_places;
 pub use tables::{RANKING_HEADINGS, comparison, effect_rows, ranking_rows};
 
