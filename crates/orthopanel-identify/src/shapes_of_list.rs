@@ -83,7 +83,7 @@ pub(crate) fn shapes_by_frequency(test: &ImpactTest) -> Result<Option<Read>, Ide
         let of_line =
             |line: usize| best.names[line].filter(|_| is_clear(&line)).map(|shape| shape.map(|count| count as usize));
         *clear = (0..list.values.len()).map(of_line).collect();
-        if let Some(question) = asked(list, piece, &doubts) {
+        if let Some(question) = asked(list, piece, &best.names, &doubts) {
             read.notes.push(question.clone());
             read.question = read.question.or(Some(question));
         }
@@ -212,18 +212,42 @@ fn doubts(readings: &[Reading]) -> Vec<Doubt> {
     doubts
 }
 
-/// Which lines to look at.
-fn asked(list: &NaturalFrequencies, piece: &str, doubts: &[Doubt]) -> Option<String> {
+/// Which lines to look at: each with the shape that it may have in place of that of the reading.
+fn asked(list: &NaturalFrequencies, piece: &str, names: &[Option<Shape>], doubts: &[Doubt]) -> Option<String> {
     let said = |(line, shape, cost): &Doubt| {
-        let less = Readable((0.5 * cost).exp());
-        format!("{} Hz may be {shape:?} (odds of 1 to {less:.1})", list.values[*line])
+        let own = names[*line].map_or_else(|| "no mode".to_owned(), |own| format!("{own:?}"));
+        let times = Readable((0.5 * cost.abs()).exp());
+        let compared = if *cost >= 0.0 {
+            format!("{times:.1} times less likely than {own}")
+        } else {
+            // The reading is that of least cost by frequencies near these constants; what is exchanged moves the constants too.
+            format!("{times:.1} times likelier than {own}, as which it is read, once the constants follow")
+        };
+        format!("{} Hz may be {shape:?}, {compared}", list.values[*line])
     };
     let said: Vec<String> = doubts.iter().map(said).collect();
     (!said.is_empty()).then(|| {
         format!(
             "piece {piece}: frequencies alone do not tell all shapes clearly: {}; look at the nodal lines of these modes, and give shape = \
              [[nodes_x, nodes_y], ...]",
-            said.join(", ")
+            said.join("; ")
         )
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn another_shape_is_told_by_how_much_less_or_more_likely_it_is() {
+        let (resolution, scatter, shape) = (vec![], vec![], vec![]);
+        let list = NaturalFrequencies { values: vec![403.5, 455.5], resolution, scatter, shape, response_at: None };
+        let names = [Some([4, 0]), Some([1, 2])];
+        let doubts = [(0, [1, 3], 2.0 * 3.0_f64.ln()), (1, [3, 1], -2.0 * 2.0_f64.ln())];
+        let said = asked(&list, "2L", &names, &doubts).expect("doubts");
+        assert!(said.contains("403.5 Hz may be [1, 3], 3.0 times less likely than [4, 0]; 455.5 Hz"), "{said}");
+        assert!(said.contains("[3, 1]: 2.0 times likelier than [1, 2], as which it is read"), "{said}");
+        assert_eq!(asked(&list, "2L", &names, &[]), None);
+    }
 }
