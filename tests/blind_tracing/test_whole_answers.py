@@ -1,20 +1,16 @@
-"""What the command says of whole panels: constants that the test file holds, places off along y, clamped edges, roving sensors, and what stands on the panel."""
+"""What the command says of whole panels: constants that the test file holds, places off along y, roving sensors, and what stands on the panel."""
 
 import json
 import os
 import subprocess
 import zipfile
-from dataclasses import dataclass, fields
-from typing import ClassVar
 
 import numpy as np
 import pytest
-from scipy.sparse.linalg import eigsh
 
 from . import attachments, files, records, whole, whole_plate
-from .modes import Modes
 from .test_whole import SMALL, bench_with_places, few  # noqa: F401
-from .whole_plate import Foot, Mesh, WholePanel
+from .whole_plate import Foot
 
 ORTHOPANEL = os.environ.get("ORTHOPANEL")
 pytestmark = pytest.mark.skipif(ORTHOPANEL is None, reason="ORTHOPANEL names no binary")
@@ -135,40 +131,6 @@ def test_val_a_sensor_that_roves_gives_the_constants_of_a_hammer_that_does(tmp_p
     for name, value in SMALL.constants.items():
         assert sensor[name]["value"] == pytest.approx(hammer[name]["value"], rel=1e-6), name
         assert abs(sensor[name]["value"] - value) < max(0.01 * value, 3.0 * (sensor[name]["std"] or np.inf)), (name, sensor[name])
-
-
-@dataclass(frozen=True)
-class Clamped(WholePanel):
-    """A panel whose left edge neither moves nor turns."""
-
-    left: ClassVar[str] = "clamped"
-
-
-def clamped_modes(panel, struck, fixed, zeta, flexible=150):
-    """Modes of a panel clamped along its left edge; of so many that those beyond hardly count a fifth of the way up."""
-    mesh = Mesh(panel, fixed, degree=5)
-    free = np.arange(3 * mesh.nodes_y, mesh.stiffness.shape[0])
-    stiffness, mass = (part[free][:, free] for part in (mesh.stiffness, mesh.mass))
-    square, vectors = eigsh(stiffness.tocsc(), k=flexible, M=mass.tocsc(), sigma=0.0, v0=np.ones(len(free)))
-    seen = np.array([mesh.deflection(foot)[free] for foot in [*(Foot(x, y) for x, y in struck), *fixed]])
-    order = np.argsort(square)
-    damping = np.full(flexible, 0.005)
-    damping[: min(flexible, len(zeta))] = zeta[:flexible]
-    return Modes(np.sqrt(square[order]), damping, (seen @ vectors[:, order]).T, 0)
-
-
-def test_val_a_clamped_plate_from_hits_has_its_constants(tmp_path, few, monkeypatch):  # noqa: F811
-    """Those that its modes up to 2 kHz show."""
-    monkeypatch.setattr(whole, "solve", clamped_modes)
-
-    def clamp(bench):
-        bench.panel = Clamped(**{field.name: getattr(SMALL, field.name) for field in fields(WholePanel)})
-
-    found = told("identify", small_test(tmp_path / "case", clamp, count=12, highest=2000.0))
-    assert len(found["modes"]) >= 8
-    for name in ("e_x", "e_y", "g_xy", "g_zx"):
-        value, truth = found["constants"][name], getattr(SMALL, name)
-        assert abs(value["value"] - truth) < max(4.0 * value["std"], 2e-3 * truth) < 0.05 * truth, (name, value)
 
 
 def with_mass(bench):
