@@ -40,7 +40,10 @@ fn main() -> Result<(), Box<dyn Error>> {
         }
     }
     let [themselves, batch] = [themselves, batch].map(|took| took.as_secs_f64());
-    println!("{PANELS} lists: {themselves:.1} s identified and traced, {batch:.1} s through batch: {:.3}, asked {ASKED}", batch / themselves);
+    println!(
+        "{PANELS} lists: {themselves:.1} s identified and traced, {batch:.1} s through batch: {:.3}, asked {ASKED}",
+        batch / themselves
+    );
     Ok(())
 }
 
@@ -50,7 +53,8 @@ fn analysed(path: &Path) -> Result<Analysis, orthopanel::Error> {
 
 /// A test file of the paper's piece 1 with moduli of its own, its frequencies to a tenth of a hertz.
 fn made(folder: &Path, panel: usize) -> Result<PathBuf, Box<dyn Error>> {
-    let [e_x, g_zx] = [(1.07e10, 0.618), (5.36e8, 0.414)].map(|(mean, turn)| mean * (1.0 + 0.02 * (turn * panel as f64).sin()));
+    let [e_x, g_zx] =
+        [(1.07e10, 0.618), (5.36e8, 0.414)].map(|(mean, turn)| mean * (1.0 + 0.02 * (turn * panel as f64).sin()));
     let model = format!(
         r#"{{"schema": "orthopanel.model/1", "piece": {{"length": 0.8, "width": 0.1, "thickness": 0.03, "mass_per_area": 6.88}},
             "structure": "timoshenko-beam", "constants": {{"e_x": {e_x}, "g_zx": {g_zx}}}}}"#

@@ -316,16 +316,17 @@ fn where_it_misses(test: &ImpactTest, inquiry: &Inquiry, judged: &Judged) -> Str
 
 /// What is missing where too few were measured for anything to be found missing.
 fn more_frequencies(inquiry: &Inquiry, base: &Judged) -> String {
-    let (found, determined) = (inquiry.frequencies(), base.determined());
-    let needed = FOR_EACH * (determined + 1);
-    let or = if base.hypothesis.unknowns() > base.hypothesis.free_constants() {
-        ", or say the numbers of declared effects"
-    } else {
-        ""
+    let (found, constants) = (inquiry.frequencies(), base.hypothesis.free_constants());
+    let (unknowns, determined) = (base.hypothesis.unknowns(), base.determined());
+    let (beside, or) = match unknowns - constants {
+        0 => (String::new(), ""),
+        open => (format!(", {open} numbers of declared effects"), ", or say the numbers of declared effects"),
     };
+    let of_these = if determined < unknowns { format!(", of which they tell {determined},") } else { String::new() };
+    let needed = FOR_EACH * (determined + 1);
     format!(
-        "read {} more natural frequencies or more: {found} for {determined} numbers that they tell and one effect are too few to judge by, {needed} are \
-         the least; or hold a constant that you know under [constants]{or}",
+        "read {} more natural frequencies or more: {found} for {constants} constants{beside}{of_these} and one effect are too few to judge by, \
+         {needed} are the least; or hold a constant that you know under [constants]{or}",
         needed.saturating_sub(found).max(1),
     )
 }

@@ -98,3 +98,29 @@ fn mode_table(fit: &PieceFit) -> String {
         rows.shown(["mode", "", "measured [Hz]", "std [Hz]", "model [Hz]", "error [%]", "zeta", "std of zeta"]);
     tables::aligned(&headings, &rows)
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::Test;
+
+    #[test]
+    fn of_pieces_with_constants_of_their_own_pairs_are_counted() {
+        let example = "../../examples/pieces-1-2/test.toml";
+        let shared = std::fs::read_to_string(example).unwrap();
+        let lines = |text: &str| {
+            let found = Test::from_toml(text, example).unwrap().identify().unwrap();
+            let text = found.text();
+            let lines: Vec<String> =
+                text.lines().filter(|line| line.starts_with("correlation")).map(str::to_owned).collect();
+            (found.found.correlations.len(), lines)
+        };
+        let (count, told) = lines(&shared);
+        assert!(count == 1 && told.len() == 1 && told[0].starts_with("correlation of e_x and g_zx: "), "{told:?}");
+        let own = shared.replace("[[piece]]", "[[piece]]\nown_constants = [\"e_x\", \"g_zx\"]");
+        let (count, told) = lines(&own);
+        assert_eq!(
+            (count, told),
+            (6, vec!["correlations between pieces, or of 0.9 and less: 6 (all of them: --json)".to_owned()])
+        );
+    }
+}
