@@ -247,7 +247,7 @@ mod tests {
         let doubts = [(0, [1, 3], 2.0 * 3.0_f64.ln()), (1, [3, 1], -2.0 * 2.0_f64.ln())];
         let said = asked(&list, "2L", &names, &doubts).expect("doubts");
         assert!(said.contains("403.5 Hz may be [1, 3], 3.0 times less likely than [4, 0]; 455.5 Hz"), "{said}");
-        assert!(said.contains("[3, 1]: 2.0 times likelier than [1, 2], as which it is read"), "{said}");
+        assert!(said.contains("[3, 1], 2.0 times likelier than [1, 2], as which it is read"), "{said}");
         assert_eq!(asked(&list, "2L", &names, &[]), None);
     }
 }
