@@ -45,11 +45,11 @@ pub(crate) fn answer_of_lists(
     refuse_many(test)?;
     from_base(test, correct, progress, |inquiry, base| {
         let hidden = notes_on_hidden(test, &inquiry)?;
-        let unknowns = base.determined();
+        let determined = base.determined();
         let found = inquiry.frequencies();
-        if found <= unknowns {
+        if found <= determined {
             let names = "and one more, to judge by".to_owned();
-            return Err(IdentifyError::TooFewFrequencies { found, needed: unknowns + 1, names });
+            return Err(IdentifyError::TooFewFrequencies { found, needed: determined + 1, names });
         }
         let mut all = inquiry.search(base);
         let mut mirrored = vec![];
@@ -146,7 +146,8 @@ fn is_told(of: &Declared) -> bool {
 fn tracing_of(test: &ImpactTest, inquiry: &Inquiry, all: &[Judged]) -> Result<Tracing, IdentifyError> {
     let weighed = Weighed::of(inquiry, all)?;
     let Weighed { chosen, base, .. } = weighed;
-    let unknowns = base.determined() + 1;
+    // That nothing is missing must not lean on priors.
+    let unknowns = base.hypothesis.unknowns() + 1;
     let too_few = weighed.verdict == Verdict::NothingMissing && inquiry.frequencies() < FOR_EACH * unknowns;
     // Of a plate read in another way the effect may be elsewhere.
     let is_open = weighed.verdict == Verdict::Explained && inquiry.of_lists.is_open;
@@ -317,16 +318,15 @@ fn where_it_misses(test: &ImpactTest, inquiry: &Inquiry, judged: &Judged) -> Str
 /// What is missing where too few were measured for anything to be found missing.
 fn more_frequencies(inquiry: &Inquiry, base: &Judged) -> String {
     let (found, constants) = (inquiry.frequencies(), base.hypothesis.free_constants());
-    let (unknowns, determined) = (base.hypothesis.unknowns(), base.determined());
-    let (beside, or) = match unknowns - constants {
+    let open = base.hypothesis.unknowns() - constants;
+    let needed = FOR_EACH * (constants + open + 1);
+    let (beside, or) = match open {
         0 => (String::new(), ""),
-        open => (format!(", {open} numbers of declared effects"), ", or say the numbers of declared effects"),
+        _ => (format!(", {open} numbers of declared effects"), ", or say the numbers of declared effects"),
     };
-    let of_these = if determined < unknowns { format!(", of which they tell {determined},") } else { String::new() };
-    let needed = FOR_EACH * (determined + 1);
     format!(
-        "read {} more natural frequencies or more: {found} for {constants} constants{beside}{of_these} and one effect are too few to judge by, \
-         {needed} are the least; or hold a constant that you know under [constants]{or}",
+        "read {} more natural frequencies or more: {found} for {constants} constants{beside} and one effect are too few to judge by, {needed} are \
+         the least; or hold a constant that you know under [constants]{or}",
         needed.saturating_sub(found).max(1),
     )
 }
