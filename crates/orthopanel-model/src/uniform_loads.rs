@@ -17,7 +17,7 @@ use crate::legendre::gauss_legendre;
 use crate::structure::Motion;
 use crate::{
     DeflectionRow, EffectSetting, EffectState, MindlinPlate, ModeRange, ModelError, PanelModel, Place, RigidMotion,
-    StructureKind,
+    StructureKind, VISCOELASTIC_CORE,
 };
 
 /// Points beyond one a mode: exact to rounding for the shapes of a beam without losses.
@@ -77,9 +77,10 @@ impl PanelModel {
                 match *law {
                     ElementLaw::Mass { mass } => row.terms.push((place, share * mass * motion.deflection(place))),
                     ElementLaw::Resonator { .. } if self.relaxes() => {
-                        return Err(ModelError::Unsupported(
-                            "a field of acceleration or a moving frame beside resonator and viscoelastic-core".into(),
-                        ));
+                        let refused = format!(
+                            "a field of acceleration or a moving frame beside a sprung mass and {VISCOELASTIC_CORE}"
+                        );
+                        return Err(ModelError::Unsupported(refused));
                     }
                     ElementLaw::Resonator { mass, frequency, .. } => {
                         let own = (frequency * std::f64::consts::TAU).powi(2);

@@ -12,6 +12,7 @@ mod effects_bench;
 mod effects_document;
 mod effects_in_models;
 mod effects_physics;
+mod every_effect;
 mod mindlin_plate_closed_forms;
 mod mindlin_plate_laws;
 mod mindlin_plate_modes;

@@ -6,7 +6,7 @@ use orthopanel::outputs::Inputs;
 use orthopanel::{Error, FmiVersion, FmuOptions, Model, is_fmu_name};
 use orthopanel_data::limits;
 use orthopanel_export::{Connections, FmuModes, Library, Mount, Platform, Residual, parameter_samples};
-use orthopanel_model::{PanelModel, Ports, is_identifier};
+use orthopanel_model::{PanelModel, Ports, VISCOELASTIC_CORE, is_identifier};
 use serde::Serialize;
 
 use crate::arguments::{ModeArguments, NamedPortArguments, identifier, on_piece, place};
@@ -181,7 +181,7 @@ pub fn execute(arguments: &Arguments, words: &[String]) -> Result<(), CommandErr
         let [from, to] = fit.band;
         let percent = 100.0 * fit.error;
         console::say(format_args!(
-            "viscoelastic-core: fitted within {percent:.2} % of its modulus from {from:.0} to {to:.0} Hz"
+            "{VISCOELASTIC_CORE}: fitted within {percent:.2} % of its modulus from {from:.0} to {to:.0} Hz"
         ));
     }
     if answer.flexible_modes == 0 {

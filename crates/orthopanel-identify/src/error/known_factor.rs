@@ -2,7 +2,7 @@
 //! sensors turned round.
 
 use orthopanel_data::{Motion, ReadAs, Unit};
-use orthopanel_model::Readable;
+use orthopanel_model::{GAIN, RECORD_GAIN, Readable};
 
 use super::wording::in_which;
 
@@ -112,10 +112,10 @@ impl Mend {
                 }
                 let gain = format!("gain = {gain_text}");
                 let effects = match numbers {
-                    None => format!("an [[effect]] with id = \"gain\" and {gain}"),
+                    None => format!("an [[effect]] with id = \"{GAIN}\" and {gain}"),
                     Some(numbers) => {
                         let each = |number: &usize| {
-                            format!("an [[effect]] with id = \"record-gain\" and {gain} and record = {number}")
+                            format!("an [[effect]] with id = \"{RECORD_GAIN}\" and {gain} and record = {number}")
                         };
                         numbers.iter().map(each).collect::<Vec<_>>().join(" and ")
                     }

@@ -18,7 +18,10 @@ use crate::dense::product;
 use crate::mindlin_plate::PlateTerms;
 use crate::panel_mode::crossings;
 use crate::structure::{Motion, ShearMoment, Structure};
-use crate::{BeamTerms, Boundary, Damping, MindlinPlate, ModeName, ModelError, Piece, Place, RitzMode, TimoshenkoBeam};
+use crate::{
+    BeamTerms, Boundary, Damping, MindlinPlate, ModeName, ModelError, Piece, Place, RitzMode, TimoshenkoBeam,
+    VISCOELASTIC_CORE,
+};
 
 /// Modes of the bare structure beyond those asked for.
 const SPARE_MODES: usize = 10;
@@ -401,7 +404,7 @@ impl ModifiedStructure {
         count: usize,
     ) -> Result<(CoupledPanel, System, Vec<FoundMode>), ModelError> {
         if self.core.is_some() {
-            return Err(ModelError::Unsupported("viscoelastic-core in a model of modes".into()));
+            return Err(ModelError::Unsupported(format!("{VISCOELASTIC_CORE} in a model of modes")));
         }
         let (panel, system) = self.with_residuals(answers, &[], damping);
         let mut found = system.solve()?;
