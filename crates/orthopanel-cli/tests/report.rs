@@ -46,6 +46,37 @@ fn a_page_of_records_holds_all_of_it_and_needs_nothing_else() {
     }
 }
 
+/// Of records of two places the page has each measured mode beside the model's, and how alike their shapes are.
+#[test]
+fn a_page_has_measured_modes_beside_the_models_with_their_assurance() {
+    let bench = Bench::new();
+    let model = r#"{"schema": "orthopanel.model/1", "piece": {"length": 0.8, "width": 0.1, "thickness": 0.03, "mass_per_area": 6.88},
+ "structure": "timoshenko-beam", "constants": {"e_x": 1.07e10, "g_zx": 5.363e8}, "damping": {"beyond": 0.004},
+ "ports": {"forces": [[0, 0]], "responses": [[0, 0]]}}"#;
+    std::fs::write(bench.path("model.json"), model).expect("a file is written");
+    let mut test = "[piece]\nlength = 0.8\nwidth = 0.1\nthickness = 0.03\nmass_per_area = 6.88\n".to_owned();
+    for force in ["-0.3", "0.05"] {
+        bench.done(&format!(
+            "accelerance model.json --force {force} --response 0.3 --from 100 --to 2600 --lines 1251 -o at{force}.csv"
+        ));
+        test += &format!(
+            "[[measurement]]\nkind = \"accelerance\"\nfile = \"at{force}.csv\"\nforce_at = [{force}, 0]\nresponse_at = [0.3, 0]\n"
+        );
+    }
+    std::fs::write(bench.path("two.toml"), test).expect("a file is written");
+    let text = page(&bench, "report two.toml");
+    assert_nested(&text);
+    assert!(text.contains("Measured modes beside those of the model") && text.contains("<th>MAC</th>"), "{text}");
+    assert!(text.contains("modal assurance criterion, measured modes against the model"), "{text}");
+    let answer = bench.json("identify two.toml");
+    let modes = answer["measured_modes"][0]["modes"].as_array().expect("modes");
+    assert!(modes.len() > 3, "{modes:?}");
+    for mode in modes {
+        let assurance = crate::support::number(mode, "/mac");
+        assert!(assurance > 0.99 && text.contains(&format!("<td>{assurance:.4}</td>")), "{mode}");
+    }
+}
+
 #[test]
 fn run_leaves_the_same_page() {
     let bench = Bench::new();

@@ -25,6 +25,28 @@ use crate::{
 pub fn identify(test: &ImpactTest, settings: impl Into<Settings>) -> Result<Identification, IdentifyError> {
     let settings = settings.into();
     settings.paper_weights.check()?;
+    Ok(identify_without_contradicting(test, settings)?.0)
+}
+
+/// As [`identify`]: a record that contradicts all others, which agree, is left out, and said; with the test without it where one is.
+///
+/// # Errors
+/// As [`identify`].
+pub(crate) fn identify_without_contradicting(
+    test: &ImpactTest,
+    settings: Settings,
+) -> Result<(Identification, Option<ImpactTest>), IdentifyError> {
+    let refused = match identify_all(test, settings) {
+        Ok(found) => return Ok((found, None)),
+        Err(refused) => refused,
+    };
+    let Some(rest) = accelerance_fit::without_contradicting(test, &refused) else { return Err(refused) };
+    let Ok(mut found) = identify_all(&rest, settings) else { return Err(refused) };
+    found.notes.insert(0, format!("{refused}; it is left out: what is found is of the other records, which agree"));
+    Ok((found, Some(rest)))
+}
+
+fn identify_all(test: &ImpactTest, settings: Settings) -> Result<Identification, IdentifyError> {
     let mut found = known_beforehand::carried(test, of_data(test, settings)?, |test| of_data(test, settings))?;
     let modes = found.pieces.iter().map(|piece| piece.modes.len()).sum();
     found.common_gain = accelerance_fit::common_gain(&found.accelerances, modes);
@@ -53,8 +75,10 @@ fn of_once(test: &ImpactTest, lists: usize, settings: Settings) -> Result<Identi
     if !test.effects.is_empty() || (lists > 0 && lists < test.measurements.len()) {
         return by_modes_alone(test, lists, settings);
     }
-    let of_held = |error| of_held_constants(test, error);
     if lists == test.measurements.len() {
+        let read = frequency_fit::likeliest_reading(test);
+        let test = read.as_ref().map_or(test, |read| &read.test);
+        let of_held = |error| of_held_constants(test, error);
         let by_frequencies = |test: &ImpactTest| frequency_fit::identify_frequencies(test, settings.search);
         let found = by_frequencies(test).or_else(|refused| {
             // Modes of any kind, where bending modes alone do not meet a list without shapes.
@@ -67,8 +91,14 @@ fn of_once(test: &ImpactTest, lists: usize, settings: Settings) -> Result<Identi
             found.question = found.question.or(read.question);
             Ok(found)
         });
-        found.map_err(of_held)?.determined()
+        let mut found = found.map_err(of_held)?.determined()?;
+        if let Some(read) = read {
+            found.notes.splice(..0, read.notes.into_iter().chain(read.question.clone()));
+            found.question = found.question.or(read.question);
+        }
+        Ok(found)
     } else {
+        let of_held = |error| of_held_constants(test, error);
         let plate = plate_by_modes(test);
         if let Some(plate) = &plate {
             plate.refuse_other_places(test)?;

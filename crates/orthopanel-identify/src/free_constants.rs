@@ -331,7 +331,7 @@ const USUAL_LOG_STD: f64 = 0.3;
 /// the two shear moduli through the thickness within a factor of two or so, as a honeycomb has them along and across its ribbons,
 const CORE_LOG_STD: f64 = 0.5;
 /// these beside the moduli of the faces within a factor of seven: cores differ that much,
-const CORE_BESIDE_FACES_STD: f64 = 1.0;
+pub(crate) const CORE_BESIDE_FACES_STD: f64 = 1.0;
 /// and Poisson's ratios within 0.1.
 const USUAL_POISSON_STD: f64 = 0.1;
 

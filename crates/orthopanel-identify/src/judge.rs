@@ -11,7 +11,7 @@ use crate::stacked::Stacked;
 /// was worth 20 to 150 stood for false effects about as often as for right ones on made panels as real ones are (docs/decisions/inference.md).
 pub(crate) const ODDS: f64 = 1000.0;
 /// Odds from which a hypothesis that is ahead of nothing missing is told: positive evidence begins at 3 (Kass and Raftery, as above).
-const TOLD: f64 = 3.0;
+pub(crate) const TOLD: f64 = 3.0;
 /// Largest model errors that real panels have: of the logarithm of a frequency, and of a residue along its phase.
 const MOST_FREQUENCY: f64 = 1e-2;
 pub(crate) const MOST_RESIDUE: f64 = 3e-2;

@@ -55,7 +55,7 @@ pub use identification::{
 };
 pub use interruption::until;
 pub use known_beforehand::PriorContradiction;
-pub use matching::ModeMatch;
+pub use matching::{ModalAssurance, ModeMatch};
 pub use measured::{MeasuredModes, MeasuredRecord, Pole, measured_modes};
 pub use outcome::{
     Candidate, Detectable, EstimatedModelError, FittedError, NotTested, Progress, Removed, SharedModelError,

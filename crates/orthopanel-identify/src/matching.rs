@@ -20,6 +20,15 @@ pub struct ModeMatch {
     pub assurance: Option<f64>,
 }
 
+/// Modal assurance criteria between measured poles and the flexible modes of a model.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ModalAssurance {
+    /// Undamped natural frequencies \[Hz\] of the model's flexible modes, rising, from mode 1.
+    pub frequencies: Vec<f64>,
+    /// Of each pole the criterion with each of these modes, 0 to 1.
+    pub of_poles: Vec<Vec<f64>>,
+}
+
 /// Deviation of the logarithm of a frequency between partners: a model that is not yet identified misses by a few per cent.
 const APART: f64 = 0.06;
 /// Worth of a shape: one that is another mode's costs as much as two deviations of frequency.
@@ -48,20 +57,39 @@ impl MeasuredModes {
     /// # Errors
     /// [`ModelError`] of a model whose modes cannot be had up to the end of the measured band.
     pub fn matched_with(&self, model: &PanelModel) -> Result<Vec<Option<ModeMatch>>, ModelError> {
+        Ok(self.matched(&self.modes_of(model, ABOVE)?))
+    }
+
+    /// The modal assurance criterion $\mathrm{MAC}_{mn}$ of each pole with each flexible mode of a model up to the last pole and a little beyond, as
+    /// [`matched_with`](Self::matched_with) has it of partners; `None` of fewer than two records, which have no shape.
+    ///
+    /// # Errors
+    /// As [`matched_with`](Self::matched_with).
+    pub fn assurance_with(&self, model: &PanelModel) -> Result<Option<ModalAssurance>, ModelError> {
+        if self.records.len() < 2 {
+            return Ok(None);
+        }
+        let candidates = candidates(&self.modes_of(model, JUST_ABOVE)?);
+        let of_pole = |pole: usize| {
+            candidates.iter().map(|(_, shape)| self.assurance(pole, shape).unwrap_or(0.0)).collect::<Vec<f64>>()
+        };
+        Ok(Some(ModalAssurance {
+            frequencies: candidates.iter().map(|(omega, _)| omega / TAU).collect(),
+            of_poles: (0..self.poles.len()).map(of_pole).collect(),
+        }))
+    }
+
+    /// The modes of a model up to so many times the last pole, with the force and the response of record $r$ as ports number $r$.
+    fn modes_of(&self, model: &PanelModel, above: f64) -> Result<ModalModel, ModelError> {
         let to = self.poles.last().map_or(self.band[1], |pole| pole.angular_frequency / TAU);
         let (forces, responses): (Vec<Place>, Vec<Place>) =
             self.records.iter().map(|record| (record.force_at, record.response_at)).unzip();
-        let modes = model.modal_model(ModeRange::UpTo(ABOVE * to), &forces, &responses)?;
-        Ok(self.matched(&modes))
+        model.modal_model(ModeRange::UpTo(above * to), &forces, &responses)
     }
 
     /// `modes` has the force and the response of record $r$ as its ports number $r$.
     pub(crate) fn matched(&self, modes: &ModalModel) -> Vec<Option<ModeMatch>> {
-        let candidate = |mode: &orthopanel_model::Mode| {
-            let shape = mode.at_forces.iter().zip(&mode.at_responses).map(|(force, response)| force * response);
-            (mode.angular_frequency, shape.collect::<Vec<f64>>())
-        };
-        let candidates: Vec<(f64, Vec<f64>)> = modes.flexible().map(candidate).collect();
+        let candidates = candidates(modes);
         let partner = |(index, assurance): (usize, Option<f64>)| ModeMatch {
             mode: index + 1,
             frequency: candidates[index].0 / TAU,
@@ -143,8 +171,19 @@ impl MeasuredModes {
     }
 }
 
-/// Up to so many times the highest pole modes of the model are looked at.
+/// Up to so many times the highest pole modes of the model are looked at,
 const ABOVE: f64 = 1.5;
+/// and shown beside the poles.
+const JUST_ABOVE: f64 = 1.05;
+
+/// $\omega$ and $W_r$ of each record for every flexible mode.
+fn candidates(modes: &ModalModel) -> Vec<(f64, Vec<f64>)> {
+    let candidate = |mode: &orthopanel_model::Mode| {
+        let shape = mode.at_forces.iter().zip(&mode.at_responses).map(|(force, response)| force * response);
+        (mode.angular_frequency, shape.collect::<Vec<f64>>())
+    };
+    modes.flexible().map(candidate).collect()
+}
 
 #[cfg(test)]
 mod tests {
@@ -187,6 +226,7 @@ mod tests {
             missed_most: None,
             undone_decay: 0.0,
             named: orthopanel_model::NamedShapes::default(),
+            order: vec![],
         };
         let matched = measured.matched(&modes);
         let numbers: Vec<Option<usize>> = matched.iter().map(|found| found.map(|found| found.mode)).collect();

@@ -343,7 +343,7 @@ impl<'a> Predictor<'a> {
             self.modes(setting, ports, with_slopes, &self.panel.with_core_times(constants, *node), effects)
         };
         let found = nodes.iter().map(at).collect::<Result<Vec<_>, _>>()?;
-        let near = measured.poles.len() + SPARE + self.panel.rigid_modes(setting.boundary);
+        let near = measured.modes_in_order() + SPARE + self.panel.rigid_modes(setting.boundary);
         let relaxing = Relaxing::new(RelaxingModes::new(core, &nodes, &found, near), measured);
         Ok(View { of: None, ports: ports.to_vec(), modes: Arc::new(relaxing.usual()), relaxing: Some(relaxing) })
     }
@@ -474,8 +474,11 @@ impl<'a> Predictor<'a> {
                 let seen = &seen.views[0].modes.deflection[*n];
                 seen.is_empty() || seen.chunks_exact(2).map(|pair| pair[0] * pair[1]).sum::<f64>() > 0.0
             };
-            let mut flexible = (self.panel.rigid_modes(self.setting.boundary)..omega.len()).filter(bends_along);
-            return measured.poles.iter().map(|_| flexible.next()).collect();
+            let rigid = self.panel.rigid_modes(self.setting.boundary);
+            let flexible: Vec<usize> = (rigid..omega.len()).filter(bends_along).collect();
+            return (0..measured.poles.len())
+                .map(|pole| flexible.get(measured.number_in_order(pole)).copied())
+                .collect();
         }
         let top = ABOVE * measured.poles.last().map_or(TAU * measured.band[1], |pole| pole.angular_frequency);
         let candidates: Vec<usize> = (0..omega.len()).filter(|&n| omega[n] > bottom && omega[n] < top).collect();
@@ -708,7 +711,7 @@ fn panel_at(
     (structure, setting): (StructureKind, &EffectSetting),
 ) -> Result<ModifiedPanel, ModelError> {
     let measured = comparison.measured;
-    let panel = ModifiedPanel::new(structure, setting, measured.poles.len() + SPARE)?;
+    let panel = ModifiedPanel::new(structure, setting, measured.modes_in_order() + SPARE)?;
     let top = measured.poles.last().map_or(measured.band[1], |pole| pole.angular_frequency / TAU);
     let end = [Place { x: 0.5 * setting.piece.length, y: 0.0 }];
     let number = usize::from(structure == StructureKind::MindlinPlate);

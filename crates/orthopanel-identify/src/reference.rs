@@ -54,7 +54,9 @@ pub(crate) fn without_shared_error(
     let modes = modes_of(reference, measured).map_err(|error| IdentifyError::OfReference(Box::new(error)))?;
     let partners: Vec<Option<&ReferenceMode>> = if measured.records.is_empty() {
         // A list counts the modes.
-        (0..measured.poles.len()).map(|pole| modes.iter().find(|mode| mode.flexible == pole)).collect()
+        (0..measured.poles.len())
+            .map(|pole| modes.iter().find(|mode| mode.flexible == measured.number_in_order(pole)))
+            .collect()
     } else {
         let shapes: Vec<(f64, Vec<f64>)> =
             modes.iter().map(|mode| (mode.angular_frequency, mode.shape.clone())).collect();

@@ -23,7 +23,7 @@ use crate::hit_strength::{HitStrength, Springs};
 use crate::hypothesis::{Hypothesis, OF_PIECE, OF_RECORD, Part, Role, has_place, is_of_record};
 use crate::judge::ODDS;
 use crate::measured::MeasuredModes;
-use crate::model_error::{KINDS, Kind, medians, waves};
+use crate::model_error::{KINDS, Kind, frequency_prior, medians, waves};
 use crate::plate_start::PlateStart;
 use crate::posterior::{Following, Judged, Point, Posterior, Problem};
 use crate::predicted::{Prediction, Predictor};
@@ -52,6 +52,8 @@ const NEAR: f64 = 2.0;
 const BESIDE: f64 = 1.0;
 /// Limit of rounds for a posterior followed to convergence: where an effect explains much, sizes of model error fall by orders of magnitude.
 const TO_THE_END: usize = 40;
+/// Hypotheses to which further effects are added: the likeliest, and where no effect by itself explains a list those that miss it least.
+const FROM: usize = 2;
 /// Effects at most, beside those declared.
 const MOST_EFFECTS: usize = 3;
 
@@ -91,6 +93,15 @@ pub(crate) fn with_one_more(base: &Judged, hypothesis: Hypothesis, posterior: Po
     });
     let gain = (posterior.log_evidence - base.posterior.log_evidence).min(most);
     Judged { hypothesis, posterior, log_odds: base.log_odds + gain + log_prior(ways) }
+}
+
+/// Whether effects of a list that explain nothing by themselves are tried in pairs.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Pairs(pub bool);
+
+/// The model error of a frequency that a hypothesis leaves.
+fn missed(judged: &Judged) -> f64 {
+    judged.posterior.log_sizes[Kind::Frequency as usize].exp()
 }
 
 fn logs(sizes: [f64; KINDS]) -> [f64; KINDS] {
@@ -465,11 +476,19 @@ impl<'a> Inquiry<'a> {
         Some(found)
     }
 
+    /// Whether pairs of effects are looked for though none by itself explains a list: where its frequencies are missed by more than two of three sound
+    /// panels miss theirs. Records show shapes too, in which
+    /// single effects stand out.
+    fn wants_pairs(&self, base: &Judged) -> bool {
+        let (median, factor) = frequency_prior();
+        self.is_of_lists() && missed(base) > factor * median
+    }
+
     /// All hypotheses that were looked at, the likeliest first.
-    pub(crate) fn search(&self, base: Judged) -> Vec<Judged> {
+    pub(crate) fn search(&self, base: Judged, pairs: Pairs) -> Vec<Judged> {
         let mut all = vec![base];
         let (mut from, mut seen) = (vec![all[0].clone()], vec![]);
-        for _ in 0..MOST_EFFECTS {
+        for round in 0..MOST_EFFECTS {
             let mut added: Vec<Judged> = Vec::new();
             let before = all.iter().map(|judged| judged.log_odds).fold(f64::NEG_INFINITY, f64::max);
             for base in &from {
@@ -491,10 +510,16 @@ impl<'a> Inquiry<'a> {
                 added.sort_by(|a, b| b.log_odds.total_cmp(&a.log_odds));
             }
             let grown = added.first().is_some_and(|best| best.log_odds > before + ODDS.ln());
+            // Two effects may do little each by itself.
+            let in_pairs = pairs.0 && round == 0 && !grown && self.wants_pairs(&all[0]);
             let near = |judged: &&Judged| judged.log_odds > added[0].log_odds - BESIDE * ODDS.ln();
-            from = added.iter().filter(near).take(2).cloned().collect();
+            let mut near: Vec<&Judged> = added.iter().filter(near).collect();
+            if in_pairs {
+                near.sort_by(|a, b| missed(a).total_cmp(&missed(b)));
+            }
+            from = near.into_iter().take(FROM).cloned().collect();
             all.extend(added);
-            if !grown {
+            if !grown && !in_pairs {
                 break;
             }
         }

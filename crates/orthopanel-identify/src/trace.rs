@@ -1,16 +1,16 @@
 //! Closing the loop: the effect that the base model lacks, by name.
 
-use orthopanel_data::ImpactTest;
+use orthopanel_data::{ImpactTest, Measurement};
 use orthopanel_model::EXPONENTIAL_WINDOW;
 
 use crate::accelerance_fit::{has_record_apart, question_of_window, refuse_missed, refuse_records};
 use crate::answer::{answer, answer_of_lists, without_repeats};
-use crate::entry::records_alone;
+use crate::entry::{identify_without_contradicting, records_alone};
 use crate::inference::{Correct, is_record, refuse_several};
 use crate::outcome::{Progress, Tracing, Verdict};
 use crate::reference::without_shared_error;
 use crate::to_check::{times_the_noise, to_check};
-use crate::{IdentifyError, Settings, identify};
+use crate::{IdentifyError, Settings};
 
 /// Names the effect that the base model of a test lacks, from its records or its natural frequencies. Effects that the test
 /// file declares are part of the base model.
@@ -91,7 +91,14 @@ fn trace_corrected(
     refuse_records(&records)?;
     let (once, repeated) = without_repeats(test);
     let traced = answer(&once, correct, progress).and_then(Tracing::finite);
-    let mut found = beside_identify(test, &records, traced)?;
+    let mut found = match beside_identify(test, &records, traced)? {
+        Beside::Traced(found) => *found,
+        Beside::Contradicting { rest, said } => {
+            let mut found = trace_corrected(&rest, correct, progress)?;
+            found.notes.insert(0, said);
+            return Ok(found);
+        }
+    };
     found.notes.extend(repeated);
     Ok(match question_of_window(&records) {
         Some(question) => asked_of_window(found, question),
@@ -115,6 +122,16 @@ fn asked_of_window(mut found: Tracing, question: String) -> Tracing {
     found
 }
 
+/// What a trace is beside `identify`.
+enum Beside {
+    Traced(Box<Tracing>),
+    /// One record contradicts the others: the test without it, and what is said of it.
+    Contradicting {
+        rest: Box<ImpactTest>,
+        said: String,
+    },
+}
+
 /// A trace that leaves much of the records without an explanation, beside what `identify` says of them: records that it refuses have no effect, but a
 /// line of the test file that is wrong. Where most of the motion is missed, whatever the effect, nothing is named, though the modes that the records
 /// show may be explained: `unexplained` stands beside the refusal.
@@ -122,20 +139,30 @@ fn beside_identify(
     test: &ImpactTest,
     records: &ImpactTest,
     traced: Result<Tracing, IdentifyError>,
-) -> Result<Tracing, IdentifyError> {
+) -> Result<Beside, IdentifyError> {
     let missed = |found: &Tracing| refuse_missed(test, &found.accelerances).err();
     let is_clear =
         |found: &Tracing| found.verdict != Verdict::Unexplained && !has_record_apart(&found.base_accelerances);
     let missed = match &traced {
         Ok(found) => match missed(found) {
-            None if is_clear(found) => return traced,
+            None if is_clear(found) => return traced.map(|found| Beside::Traced(Box::new(found))),
             Some(factor @ IdentifyError::OtherUnits { .. }) => return Err(factor),
             missed => missed,
         },
         Err(_) => None,
     };
-    let refused = match identify(records, Settings::default()) {
+    let refused = match identify_without_contradicting(records, Settings::default()) {
         Err(refused) if refused.is_of_records() => return Err(refused),
+        Ok((found, Some(left))) => {
+            let is_left =
+                |of: &Measurement| !is_record(of) || left.measurements.iter().any(|other| other.data == of.data);
+            let mut rest = test.clone();
+            rest.measurements.retain(is_left);
+            return Ok(Beside::Contradicting {
+                rest: Box::new(rest),
+                said: found.notes.into_iter().next().unwrap_or_default(),
+            });
+        }
         identified => identified.err(),
     };
     let mut found = traced?;
@@ -153,5 +180,5 @@ fn beside_identify(
         found.alternatives.clear();
         found.notes.insert(0, format!("identify refuses these records: {refused}"));
     }
-    Ok(found)
+    Ok(Beside::Traced(Box::new(found)))
 }

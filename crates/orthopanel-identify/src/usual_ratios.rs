@@ -49,7 +49,7 @@ pub(crate) fn usual_value(constant: &Constant, [e_x, e_y]: [f64; 2], g_zx: f64) 
 
 /// Standard deviation of a modulus' logarithm beside what is usual, of Poisson's ratio, and of what rests on nothing beside
 /// its start: wide, since they only hold what no datum moves.
-const USUAL_LOG_STD: f64 = 0.5;
+pub(crate) const USUAL_LOG_STD: f64 = 0.5;
 const USUAL_POISSON_STD: f64 = 0.1;
 const START_LOG_STD: f64 = 1.5;
 

@@ -40,10 +40,9 @@ impl List<'_> {
 
 #[test]
 fn a_list_that_the_model_misses_is_not_called_complete() {
-    let clamped = List { of_test: "[boundary]\nleft = \"clamped\"", ..List::default() };
     let held = List { of_test: "[constants]\ne_x = 1e8", ..List::default() };
     let masses = List { values: &TWO_MASSES, ..List::default() };
-    for (list, missed, largest) in [(held, 88.2, 1), (clamped, 11.8, 1), (masses, 2.5, 4)] {
+    for (list, missed, largest) in [(held, 88.2, 1), (masses, 2.5, 4)] {
         let found = list.traced();
         assert_eq!(found.verdict, Verdict::Unexplained, "{missed} %");
         assert!((found.error.before.fitted - missed).abs() < 0.1, "{:?}", found.error);
@@ -53,6 +52,16 @@ fn a_list_that_the_model_misses_is_not_called_complete() {
     let wrong_unit = List { length: 800.0, ..List::default() };
     let refused = trace(&wrong_unit.test()).unwrap_err().to_string();
     assert!(refused.contains("units"), "{refused}");
+}
+
+/// A cantilever without shear has the modes of a free beam, and one below: a clamp that is not there looks like a first mode that was not read.
+#[test]
+fn a_clamp_that_is_not_there_looks_like_a_first_mode_that_was_not_read() {
+    let found = List { of_test: "[boundary]\nleft = \"clamped\"", ..List::default() }.traced();
+    let said = &found.notes[0];
+    assert!(said.contains("missing below the first frequency") && said.contains("boundary"), "{said}");
+    // 11.8 % as it stands.
+    assert!(found.error.before.fitted < 0.5 && found.effects.is_empty(), "{:?}", found.error);
 }
 
 /// Its own resonance stands in the list, and zeta moves none: ten frequencies for two constants, mass, frequency and place.

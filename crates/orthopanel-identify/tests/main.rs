@@ -15,6 +15,7 @@ mod honest_lists;
 mod inference;
 mod known_beforehand;
 mod lab_records;
+mod list_readings;
 mod made_records;
 mod measured_beam;
 mod other_units;

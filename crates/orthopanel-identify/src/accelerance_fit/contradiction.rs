@@ -1,16 +1,17 @@
 //! Records and test file that speak of different things.
 
 use num_complex::Complex64;
-use orthopanel_data::{ImpactTest, MeasurementData};
+use orthopanel_data::{ImpactTest, Measurement, MeasurementData};
 use orthopanel_model::Place;
 
 use super::misfit::{misfit_percent, record_misfit_percent};
 use super::other_units::other_units;
 use super::problem::AcceleranceProblem;
-use super::record_apart::record_apart;
+use super::record_apart::{exchanged, record_apart};
 use super::records::PlaceRecord;
 use super::start::pair_name;
 use crate::IdentifyError;
+use crate::declared_effects::pairs_of_places;
 use crate::structures::{self, Shown};
 
 /// Median misfit of a line \[%\] above which records and test file speak of different things. The median leaves out the
@@ -37,15 +38,27 @@ pub(super) fn contradiction(
     let apart = record_apart(problem, parameters, lines)?;
     let fits_at = apart.as_ref().and_then(|apart| apart.fits_at());
     let factor = apart.as_ref().and_then(|apart| apart.factor());
-    let refused = IdentifyError::RecordContradiction { record: name.clone(), percent: worst_percent, fits_at, factor };
+    let refused = |exchanged_with: Option<String>| IdentifyError::RecordContradiction {
+        record: name.clone(),
+        percent: worst_percent,
+        fits_at: fits_at.filter(|_| exchanged_with.is_none()),
+        factor: factor.filter(|_| exchanged_with.is_none()),
+        exchanged_with,
+    };
+    if worst_percent > CONTRADICTION
+        && let Some(other) = exchanged(problem, parameters, lines)?
+    {
+        let (piece, other) = &records[other];
+        return Err(refused(Some(record_name(test, *piece, (other.force_at, other.response_at)))));
+    }
     if apart.as_ref().is_some_and(|apart| apart.is_misplaced()) {
-        return Err(refused);
+        return Err(refused(None));
     }
     if let Some(refused) = contradicted(test, &records, lines, resonances) {
         return Err(refused);
     }
     if worst_percent > RECORD_CONTRADICTION {
-        return Err(other_units(test, &records, lines).unwrap_or(refused));
+        return Err(other_units(test, &records, lines).unwrap_or_else(|| refused(None)));
     }
     Ok(apart.map(|apart| apart.note(&name)))
 }
@@ -69,6 +82,23 @@ pub(super) fn contradicted(
         Shown::Wholly => IdentifyError::Contradiction { record, percent },
     };
     Some(other_units(test, records, lines).unwrap_or(refused))
+}
+
+/// Records from which on one that contradicts the others is left out.
+const LEAST_RECORDS: usize = 5;
+
+/// The test without the record that is refused for contradicting the others; `None` where that is not told of one record, where two are exchanged, or where
+/// few records are left.
+pub(crate) fn without_contradicting(test: &ImpactTest, refused: &IdentifyError) -> Option<ImpactTest> {
+    let IdentifyError::RecordContradiction { record, exchanged_with: None, .. } = refused else { return None };
+    let is_it = |measurement: &Measurement| {
+        let of = measurement.data.recorded()?;
+        Some(record_name(test, measurement.piece, (of.force_at, of.response_at)) == *record)
+    };
+    let mut rest = test.clone();
+    rest.measurements.retain(|measurement| is_it(measurement) != Some(true));
+    let pairs = pairs_of_places(test);
+    (pairs >= LEAST_RECORDS && pairs_of_places(&rest) + 1 == pairs).then_some(rest)
 }
 
 /// A record by its files and places of force and response, and by its piece where there are several.

@@ -46,6 +46,7 @@ use start::{Recorded, Start, start, usual_log_zeta};
 use wide_scan::rough_starts;
 
 pub(crate) use common_gain::{common_gain, refuse_missed, said_of_gain};
+pub(crate) use contradiction::without_contradicting;
 pub(crate) use line_noise::told_variance;
 pub(crate) use other_units::refuse_other_units;
 pub(crate) use record_apart::has_record_apart;

@@ -123,6 +123,40 @@ pub(super) fn record_apart(
     Ok(Some(Apart { percent, others, fits, factor }))
 }
 
+/// The record, by its number, in whose place the one that misses the model most fits, and which fits in that one's; `None` where there is none.
+pub(super) fn exchanged(
+    problem: &AcceleranceProblem,
+    parameters: &[f64],
+    lines: &[Vec<Complex64>],
+) -> Result<Option<usize>, ModelError> {
+    let pieces = problem.pieces.iter().enumerate();
+    let records: Vec<(usize, &PlaceRecord)> =
+        pieces.flat_map(|(index, piece)| piece.records.iter().map(move |record| (index, record))).collect();
+    let percents: Vec<f64> =
+        records.iter().zip(lines).map(|((_, record), model)| record_misfit_percent(record, model)).collect();
+    let worst = (0..records.len()).max_by(|a, b| percents[*a].total_cmp(&percents[*b]));
+    let Some(worst) = worst.filter(|_| records.len() > LEAST_RECORDS) else { return Ok(None) };
+    let places = |index: usize| (records[index].1.force_at, records[index].1.response_at);
+    let others: Vec<usize> = (0..records.len())
+        .filter(|&other| other != worst && records[other].0 == records[worst].0 && percents[other] > APART)
+        .collect();
+    for other in others {
+        let fits = |index: usize, at: usize| -> Result<bool, ModelError> {
+            let (piece, own) = records[index];
+            let (values, log_zetas) = problem.of_piece(piece, parameters);
+            let record = own.thinned(LINES);
+            let trial = Trial { piece: &problem.pieces[piece], record, at: (&values, log_zetas), problem };
+            let models = trial.models(&[places(at)])?;
+            let left = models.first().map_or(f64::INFINITY, |model| record_misfit_percent(&trial.record, model));
+            Ok(left < AGREEING * percents[index])
+        };
+        if fits(worst, other)? && fits(other, worst)? {
+            return Ok(Some(other));
+        }
+    }
+    Ok(None)
+}
+
 /// A record tried at other places, the constants as the others have them.
 struct Trial<'a> {
     problem: &'a AcceleranceProblem,

@@ -6,12 +6,14 @@ use orthopanel_model::Owner;
 
 use crate::IdentifyError;
 use crate::declared_effects::{Declared, declared};
+use crate::frequency_fit::{Reread, likeliest_reading};
 use crate::hypothesis::has_place;
 use crate::inference::{Correct, from_base};
+use crate::judge::{ODDS, TOLD};
 use crate::model_error::Kind;
 use crate::outcome::{Candidate, EstimatedModelError, FittedError, Progress, TracedError, Tracing, Verdict};
 use crate::posterior::{Judged, Point};
-use crate::search::Inquiry;
+use crate::search::{Inquiry, Pairs};
 
 use super::doubt::check_first;
 use super::estimates::{Estimates, id};
@@ -43,6 +45,57 @@ pub(crate) fn answer_of_lists(
 ) -> Result<Tracing, IdentifyError> {
     let (test, repeated) = &without_repeats(test);
     refuse_many(test)?;
+    let read = likeliest_reading(test);
+    // Pairs of effects have no say beside a reading that is clearly likelier than nothing missing.
+    let pairs = Pairs(read.as_ref().is_none_or(|read| read.notes.is_empty()));
+    let told = answer_as_told(test, correct, progress, pairs);
+    let found = match read {
+        Some(read) => {
+            let base_of = |test: &ImpactTest| from_base(test, correct, &|_| {}, |_, base| Ok(base.log_odds));
+            beside_reading(told, &read, base_of, || answer_as_told(&read.test, correct, progress, Pairs(true)))
+        }
+        None => told,
+    };
+    found.map(|mut tracing| {
+        tracing.notes.extend(repeated.iter().cloned());
+        tracing
+    })
+}
+
+/// What is said of lists beside the likeliest reading of their lines: where that is likelier than any effect, it is read so, and where it is not clearly so or
+/// behind, it is asked about first. `base_of` is the logarithm of the odds of a test with nothing missing.
+fn beside_reading(
+    told: Result<Tracing, IdentifyError>,
+    read: &Reread,
+    base_of: impl FnOnce(&ImpactTest) -> Result<f64, IdentifyError>,
+    reread: impl FnOnce() -> Result<Tracing, IdentifyError>,
+) -> Result<Tracing, IdentifyError> {
+    let Ok(told) = told else { return if read.notes.is_empty() { told } else { reread() } };
+    let best = told.candidates.first().map_or(f64::NEG_INFINITY, |best| best.log_evidence);
+    let ahead = base_of(&read.likeliest)? + read.log_beside - best;
+    if ahead < -TOLD.ln() {
+        return Ok(told);
+    }
+    let is_read_so = !read.notes.is_empty() && ahead > 0.0;
+    let mut found = if is_read_so { reread()? } else { told };
+    found.notes.splice(..0, read.notes.iter().chain(&read.question).cloned());
+    // What misses the lists by far, however they are read, has its own next step.
+    let is_doubted = !is_read_so || read.question.is_some() || ahead < ODDS.ln();
+    if let Some(first) = read.question.as_ref().or(read.notes.last()).filter(|_| is_doubted)
+        && found.verdict != Verdict::Unexplained
+    {
+        found.verdict = Verdict::Ambiguous;
+        found.next_experiment = first.clone();
+    }
+    Ok(found)
+}
+
+fn answer_as_told(
+    test: &ImpactTest,
+    correct: Option<Correct>,
+    progress: &(dyn Fn(Progress) + Sync),
+    pairs: Pairs,
+) -> Result<Tracing, IdentifyError> {
     from_base(test, correct, progress, |inquiry, base| {
         let hidden = notes_on_hidden(test, &inquiry)?;
         let determined = base.determined();
@@ -51,7 +104,7 @@ pub(crate) fn answer_of_lists(
             let names = "and one more, to judge by".to_owned();
             return Err(IdentifyError::TooFewFrequencies { found, needed: determined + 1, names });
         }
-        let mut all = inquiry.search(base);
+        let mut all = inquiry.search(base, pairs);
         let mut mirrored = vec![];
         for (axis, note) in [("x", MIRRORED), ("y", MIRRORED_ACROSS)] {
             let turned: Vec<(bool, Judged)> =
@@ -62,7 +115,7 @@ pub(crate) fn answer_of_lists(
         let mut tracing = tracing_of(test, &inquiry, &all)?;
         tracing.notes.extend(mirrored);
         tracing.notes.extend(inquiry.of_lists.notes.iter().cloned());
-        tracing.notes.extend(repeated.iter().cloned().chain(hidden));
+        tracing.notes.extend(hidden);
         Ok(tracing)
     })
 }
@@ -297,9 +350,9 @@ fn where_it_misses(test: &ImpactTest, inquiry: &Inquiry, judged: &Judged) -> Str
             .zip(&at.values)
             .map(|(pole, model)| 100.0 * (model.exp() / pole.angular_frequency - 1.0))
             .collect();
-        for (mode, &error) in (1..).zip(&errors) {
+        for (pole, &error) in errors.iter().enumerate() {
             if error.abs() > largest.0.abs() || largest.1 == 0 {
-                largest = (error, mode, block.piece);
+                largest = (error, block.comparison().measured.number_in_order(pole) + 1, block.piece);
             }
         }
         let written: Vec<String> = errors.iter().take(WRITTEN).map(|error| format!("{error:+.2}")).collect();
@@ -325,8 +378,8 @@ fn more_frequencies(inquiry: &Inquiry, base: &Judged) -> String {
         _ => (format!(", {open} numbers of declared effects"), ", or say the numbers of declared effects"),
     };
     format!(
-        "read {} more natural frequencies or more: {found} for {constants} constants{beside} and one effect are too few to judge by, {needed} are \
-         the least; or hold a constant that you know under [constants]{or}",
-        needed.saturating_sub(found).max(1),
+        "read at least {} natural frequencies: {found} for {constants} constants{beside} and one effect are too few to judge by; or \
+         hold a constant that you know under [constants]{or}",
+        needed.max(found + 1),
     )
 }

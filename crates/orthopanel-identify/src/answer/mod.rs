@@ -33,7 +33,7 @@ use crate::model_error::Kind;
 use crate::outcome::{Candidate, EstimatedModelError, Progress, Removed, SharedModelError, TracedError, Tracing};
 use crate::place_readings::untold;
 use crate::posterior::Judged;
-use crate::search::Inquiry;
+use crate::search::{Inquiry, Pairs};
 use crate::stacked::Block;
 use crate::{AcceleranceFit, IdentifyError};
 
@@ -69,7 +69,7 @@ pub(crate) fn answer(
         if !inquiry.stacked.is_of_several_pieces() {
             inquiry.hits = HitStrength::new(test, inquiry.measured().band)?;
         }
-        let all = inquiry.search(base);
+        let all = inquiry.search(base, Pairs(false));
         tracing_of(test, &inquiry, &all)
     })
 }

@@ -46,7 +46,7 @@ pub(super) fn next_list(test: &ImpactTest, inquiry: &Inquiry, chosen: &Judged, o
     let block = inquiry.stacked.longest();
     let setting = block.predictor.setting(0);
     let error = noise(inquiry).hypot(chosen.posterior.log_sizes[Kind::Frequency as usize].exp());
-    let count = block.comparison().measured.poles.len() + MORE;
+    let count = block.comparison().measured.modes_in_order() + MORE;
     let mut best: Option<(f64, String)> = None;
     let mut try_out = |words: String, sensor: Option<Place>, added: f64| {
         let frequencies = |judged: &Judged| further(block, &setting, judged, (sensor, added), count).ok();

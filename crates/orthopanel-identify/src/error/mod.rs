@@ -5,7 +5,7 @@ use orthopanel_model::{ModelError, Readable};
 use thiserror::Error;
 
 pub(crate) use self::known_factor::{CALIBRATED, Factor, Mend, gain_of_no_unit, mend};
-use self::wording::{by_factor, known, much_noise, other_place, untaken, which};
+use self::wording::{by_factor, in_place_of, known, much_noise, other_place, untaken, which};
 pub(crate) use self::wording::{one_times, spaced};
 use crate::known_beforehand::PriorContradiction;
 use crate::least_squares::Stuck;
@@ -355,8 +355,8 @@ pub enum IdentifyError {
     /// One record that contradicts the others.
     #[error(
         "{record}: half of its lines miss the model of all records by more than {:.0} %: it contradicts the \
-         others{}{}; check its file, force_at and response_at, the sensor's direction, unit and gain",
-        Readable(*.percent), other_place(.fits_at), one_times(*.factor)
+         others{}{}{}; check its file, force_at and response_at, the sensor's direction, unit and gain",
+        Readable(*.percent), other_place(.fits_at), one_times(*.factor), in_place_of(.exchanged_with)
     )]
     RecordContradiction {
         /// Its files, piece and places.
@@ -367,6 +367,8 @@ pub enum IdentifyError {
         fits_at: Option<(&'static str, f64)>,
         /// The factor with which it fits as the others do; `None` where there is none.
         factor: Option<f64>,
+        /// The record in whose place it fits, and which fits in its own: the two are exchanged.
+        exchanged_with: Option<String>,
     },
     /// A prior of a constant that the records contradict.
     #[error("{prior} (with it: {refused})")]
@@ -436,7 +438,7 @@ impl IdentifyError {
 
     /// Whether the record that is to blame is known, so that no other constants need be looked for.
     pub(crate) fn knows_the_place(&self) -> bool {
-        matches!(self, Self::RecordContradiction { fits_at: Some(_), .. })
+        matches!(self, Self::RecordContradiction { fits_at, exchanged_with, .. } if fits_at.is_some() || exchanged_with.is_some())
     }
 
     /// Whether the records themselves are refused, so that no effect which the model may lack mends them.

@@ -46,10 +46,7 @@ pub(super) fn by_factor(factor: f64, derivatives: i8, delay: f64) -> String {
     let size = if (1e-3..1e4).contains(&factor.abs()) { format!("{factor:.4}") } else { format!("{factor:.3e}") };
     let late = match delay {
         0.0 => String::new(),
-        _ => format!(
-            " and without a delay of {:.1} us, which stays to be declared or traced (channel-delay)",
-            1e6 * delay
-        ),
+        _ => format!(" and without a delay of {:.1} us, which stays to be declared or traced", 1e6 * delay),
     };
     size + slope + &late
 }
@@ -75,6 +72,13 @@ pub(super) fn untaken(resonances: &[f64]) -> String {
         [] => String::new(),
         told => format!(", and has no mode for the resonance at {} Hz", told.join(", ")),
     }
+}
+
+/// What is said of a record that fits in the place of another, as that fits in its own.
+pub(super) fn in_place_of(exchanged_with: &Option<String>) -> String {
+    exchanged_with.as_ref().map_or(String::new(), |other| {
+        format!("; it fits in the place of {other}, and that in its own: the two are exchanged, write the file of each in the place of the other")
+    })
 }
 
 pub(super) fn other_place(fits_at: &Option<(&'static str, f64)>) -> String {

@@ -116,6 +116,38 @@ pub(super) fn names_with_a_minimum(test: &ImpactTest, error: f64) -> Result<Vec<
     told.map_or_else(|| read_otherwise(test, &whole, most), |tried| tried.notes(test, &whole))
 }
 
+/// Neighbours that are tried with each other's names where no name is in clear doubt.
+const FEW_PAIRS: usize = 2;
+
+/// What is said of neighbours that are met better, though not far better, with each other's names than `found` is.
+///
+/// With errors of one unknown size in all lines the odds of the names are $(Q/Q')^{d/2}$, $Q$ and $Q'$ the sums of squares that they leave and $d$ the lines
+/// beyond the constants.
+pub(super) fn neighbours_met_better(test: &ImpactTest, problem: &FrequencyProblem, cost: f64) -> Option<String> {
+    let whole = FrequencyProblem::of(test).ok()?;
+    let pairs = near_pairs(&whole);
+    let tried = pairs.into_par_iter().take(FEW_PAIRS).filter_map(|names| Tried::of(test, &whole, names));
+    let best = tried.min_by(|a, b| a.cost.total_cmp(&b.cost))?;
+    let odds = |free: usize| (cost / best.cost).powf(0.5 * whole.count().saturating_sub(free) as f64);
+    let odds = odds(problem.constants.count().max(best.problem.constants.count()));
+    let lines: Vec<String> = best
+        .names
+        .iter()
+        .map(|&Renamed { set, line, .. }| {
+            let own = &whole.sets[set];
+            format!("{} Hz named {:?}", own.measured[line], own.modes.nodes()[line])
+        })
+        .collect();
+    (odds > 1.0).then(|| {
+        format!(
+            "{} lie near each other and may have each other's names: read so, a plate meets the list to {:.2} % rms (odds of {odds:.1} to 1); look at \
+             the shapes of both",
+            lines.join(" and "),
+            100.0 * (best.cost / whole.count() as f64).sqrt()
+        )
+    })
+}
+
 /// The first names that leave less than `most` of the sum of squares: the likeliest come first, two side by side.
 fn best_of(test: &ImpactTest, whole: &FrequencyProblem, names: Vec<Vec<Renamed>>, most: f64) -> Option<Tried> {
     names.chunks(2).find_map(|few| {

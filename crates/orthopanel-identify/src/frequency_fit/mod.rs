@@ -5,7 +5,9 @@ mod changed_pairs;
 mod doubtful_names;
 mod far_from_list;
 mod first_constants;
+mod hidden_in_beams;
 mod impossible_names;
+mod likeliest_reading;
 mod lone_lines;
 mod noise;
 mod of_poles;
@@ -13,6 +15,7 @@ mod other_readings;
 mod other_starts;
 mod own_constants;
 mod problem;
+mod reading_evidence;
 mod report;
 mod seen_constants;
 mod starting_values;
@@ -32,6 +35,7 @@ use crate::structures::Shown;
 use crate::{Identification, IdentifyError, Search};
 use problem::{FrequencyProblem, FrequencySet, SetPrediction};
 
+pub(crate) use likeliest_reading::{Reread, likeliest_reading};
 pub(crate) use of_poles::{PoleFit, PoleSet, fit_poles};
 pub(crate) use report::identified_constants;
 
@@ -56,7 +60,10 @@ pub(crate) fn identify_frequencies(test: &ImpactTest, search: Search) -> Result<
     let start = starting_values::starting_values(&problem)?;
     let mut doubts = Vec::new();
     let (found, not_identified) = match problem.structure.shown() {
-        Shown::Wholly => (minimise(&problem, &start, search)?, Vec::new()),
+        Shown::Wholly => {
+            let found = minimise(&problem, &start, search)?;
+            hidden_in_beams::minimum_where_shown(test, &mut problem, found, search)?
+        }
         Shown::InPart => {
             let all = problem.constants.clone();
             let seen =

@@ -2,6 +2,7 @@
 
 use orthopanel_data::ImpactTest;
 
+use super::doubtful_names::neighbours_met_better;
 use super::lone_lines::lone_lines;
 use super::noise::{BEYOND_CHANCE, Noise, USUAL_SCATTER};
 use super::own_constants::own_constant_that_helps;
@@ -66,10 +67,9 @@ fn large_miss(
         return None;
     }
     let told = if rounding_variance(problem) > 0.0 { "the bins stated" } else { "the usual scatter" };
-    let may_be = match own_constant_that_helps(test, problem, found, predictions) {
-        Some(own) => own,
-        None => "a mode may be named wrongly, or the plate lacks something".to_owned(),
-    };
+    let may_be = own_constant_that_helps(test, problem, found, predictions)
+        .or_else(|| neighbours_met_better(test, problem, at.quadratic().cost))
+        .unwrap_or_else(|| "a mode may be named wrongly, or the plate lacks something".to_owned());
     Some(format!(
         "the plate misses the frequencies by {:.2} % rms, {:.0} times {told} ({:.2} %), from other starts too: {may_be}; its \
          constants are in doubt",

@@ -92,6 +92,7 @@ mod tests {
             missed_most: None,
             undone_decay: 0.0,
             named: orthopanel_model::NamedShapes::default(),
+            order: vec![],
         };
         let left = measured.without_faint();
         assert_eq!(left.poles, [pole(2000.0), pole(5000.0)]);

@@ -32,6 +32,7 @@ impl MeasuredModes {
             missed_most: None,
             undone_decay: 0.0,
             named: orthopanel_model::NamedShapes::default(),
+            order: vec![],
         }
     }
 }

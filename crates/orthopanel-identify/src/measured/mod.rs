@@ -76,9 +76,21 @@ pub struct MeasuredModes {
     pub undone_decay: f64,
     /// Shapes by which a plate's list names its poles.
     pub(crate) named: NamedShapes,
+    /// Of the list of a beam that passes modes over the number of each pole among those that bend along, from 0; empty where none is passed over.
+    pub(crate) order: Vec<usize>,
 }
 
 impl MeasuredModes {
+    /// Number of a pole of a list among the modes of a beam, from 0.
+    pub(crate) fn number_in_order(&self, pole: usize) -> usize {
+        self.order.get(pole).copied().unwrap_or(pole)
+    }
+
+    /// Modes of a beam up to the last one that a list holds.
+    pub(crate) fn modes_in_order(&self) -> usize {
+        self.order.iter().max().map_or(self.poles.len(), |last| last + 1)
+    }
+
     /// Whether records hold what neither poles nor noise make, as a tone beside the response or a force that is not linear.
     pub(crate) fn is_not_modal(&self) -> bool {
         self.chi_square.is_some_and(|chi_square| chi_square > joint_fit::SYSTEMATIC)
@@ -148,6 +160,8 @@ pub(crate) fn measured_as_named(test: &ImpactTest, names: &[Names]) -> Result<Ve
                 let mut of_list = MeasuredModes::of_frequencies(piece, list);
                 if test.structure == Some(StructureKind::MindlinPlate) {
                     of_list.named = named(test, piece, names)?;
+                } else {
+                    of_list.order = order(test, piece, names)?;
                 }
                 measured.push(of_list);
             }
@@ -169,6 +183,18 @@ fn named(test: &ImpactTest, piece: usize, names: &Names) -> Result<NamedShapes, 
         structures::of(StructureKind::MindlinPlate).measured_modes(piece, test.boundary, told)?;
     }
     Ok(NamedShapes::new(piece, test.boundary, names)?)
+}
+
+/// # Errors
+/// Names that no beam's mode has.
+fn order(test: &ImpactTest, piece: usize, names: &Names) -> Result<Vec<usize>, IdentifyError> {
+    let told: Vec<[usize; 2]> = names.iter().flatten().copied().collect();
+    structures::of(StructureKind::TimoshenkoBeam).measured_modes(
+        &test.pieces[piece].piece,
+        test.boundary,
+        told.clone(),
+    )?;
+    Ok(told.into_iter().map(|[nodes, _]| nodes - test.boundary.rigid_modes()).collect())
 }
 
 fn of_piece<T: Clone>(all: &[(usize, T)], piece: usize) -> Vec<T> {

@@ -261,6 +261,7 @@ fn told(
         missed_most: missed_most(records, &fit.residuals(&found.poles, &found.fitted)),
         undone_decay: 0.0,
         named: orthopanel_model::NamedShapes::default(),
+        order: vec![],
     }
 }
 

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use orthopanel_data::{ImpactTest, MeasurementData};
-use orthopanel_identify::{Identification, MeasuredModes, ModeMatch, measured_modes};
+use orthopanel_identify::{Identification, MeasuredModes, ModalAssurance, ModeMatch, measured_modes};
 use orthopanel_model::{PanelModel, Readable};
 use serde::Serialize;
 
@@ -12,10 +12,13 @@ use crate::tables;
 /// The measured modes of one piece's records.
 #[derive(Serialize)]
 pub struct MeasuredTable {
-    piece: String,
+    pub(crate) piece: String,
     /// Misfit of the modal fit per datum, over the noise of the records.
     chi_square: Option<f64>,
     modes: Vec<MeasuredMode>,
+    /// Of each mode the modal assurance criterion with every mode of the model; `None` of a single record. For pictures.
+    #[serde(skip)]
+    pub(crate) assurance: Option<ModalAssurance>,
 }
 
 /// A pole of all records, and the flexible mode of the model that it is.
@@ -71,11 +74,22 @@ impl MeasuredTable {
             piece: piece.to_owned(),
             chi_square: measured.chi_square,
             modes: matches.iter().enumerate().map(mode).collect(),
+            assurance: measured.assurance_with(model).ok().flatten(),
         }
     }
 
-    /// For people.
-    pub(super) fn text(&self) -> String {
+    /// Measured frequencies \[Hz\].
+    pub(crate) fn frequencies(&self) -> Vec<f64> {
+        self.modes.iter().map(|mode| mode.frequency_hz).collect()
+    }
+
+    /// The mode of the model that each is.
+    pub(crate) fn partners(&self) -> Vec<Option<usize>> {
+        self.modes.iter().map(|mode| mode.mode).collect()
+    }
+
+    /// Headings and a row a mode.
+    pub(crate) fn rows(&self) -> ([&'static str; 8], Vec<Vec<String>>) {
         let or_dash = |value: Option<String>| value.unwrap_or_else(|| "-".into());
         let row = |mode: &MeasuredMode| {
             let digits = digits_of(mode.std_hz);
@@ -90,23 +104,39 @@ impl MeasuredTable {
                 or_dash(mode.mac.map(|mac| format!("{mac:.4}"))),
             ]
         };
-        let rows: Vec<_> = self.modes.iter().map(row).collect();
         let headings =
             ["measured [Hz]", "std [Hz]", "zeta", "std of zeta", "model mode", "model [Hz]", "error [%]", "MAC"];
+        (headings, self.modes.iter().map(row).collect())
+    }
+
+    /// What is to be said of the table.
+    pub(crate) fn remarks(&self) -> Vec<&'static str> {
+        let mut remarks = Vec::new();
+        if self.modes.iter().any(|mode| mode.mac.is_some()) {
+            remarks.push(
+                "MAC: modal assurance criterion between the residues and the model's mode shape at the measured places",
+            );
+        }
+        if self.modes.iter().any(|mode| mode.mode.is_none()) {
+            remarks.push(
+                "a mode without a partner is none of the free panel's: the suspension's, or what the model lacks",
+            );
+        }
+        remarks
+    }
+
+    /// For people.
+    pub(super) fn text(&self) -> String {
         let misfit = self.chi_square.map_or(String::new(), |chi_square| {
             format!("; chi-square per datum {:.2} (1: all that is left is noise)", Readable(chi_square))
         });
+        let (headings, rows) = self.rows();
         let mut text = format!(
             "piece {}: experimental modal analysis of all records together, without a model{misfit}\n{}",
             self.piece,
             tables::aligned(&headings, &rows)
         );
-        if self.modes.iter().any(|mode| mode.mac.is_some()) {
-            text += "MAC: modal assurance criterion between the residues and the model's mode shape at the measured places\n";
-        }
-        if self.modes.iter().any(|mode| mode.mode.is_none()) {
-            text += "a mode without a partner is none of the free panel's: the suspension's, or what the model lacks\n";
-        }
+        self.remarks().iter().for_each(|remark| text += &format!("{remark}\n"));
         text
     }
 }

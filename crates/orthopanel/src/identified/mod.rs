@@ -17,7 +17,7 @@ use crate::observer::{Observer, Steps};
 use crate::provenance::{Provenance, WithProvenance};
 use crate::{Model, Test, Traced, interruption, json, report};
 pub use answer::{Answer, called};
-use measured::MeasuredTable;
+pub(crate) use measured::MeasuredTable;
 pub use mode_rows::{Digits, ModeRows};
 use models::model;
 pub use models::{ASSUMED_DAMPING, to_digits};
@@ -90,6 +90,11 @@ impl Identified {
     /// [`Error::Data`] where records cannot be read any more, [`Error::Picture`].
     pub fn page(&self, traced: Result<&Traced, &str>, observer: &dyn Observer) -> Result<String, Error> {
         report::page(self, traced, &Evidence::of(self, traced.ok(), observer)?)
+    }
+
+    /// The modes that the records of a piece show without a model.
+    pub(crate) fn measured_modes<'a>(&'a self, piece: &'a str) -> impl Iterator<Item = &'a MeasuredTable> {
+        self.answer.measured_modes.iter().filter(move |measured| measured.piece == piece)
     }
 
     /// One JSON object (`orthopanel.identified/1`) on one line.

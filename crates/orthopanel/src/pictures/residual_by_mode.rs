@@ -1,17 +1,12 @@
 //! What the model leaves at each place about each mode.
 
 use plotters::prelude::*;
-use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use super::residual::{ROW, Rows, WIDTH, names_width, place_names};
-use super::{ERROR, FONT, LAST_LABEL, MODEL, titled};
+use super::shade_scale::{SCALE_AREA, shade_scale};
+use super::{FONT, LAST_LABEL, MODEL, titled};
 use crate::error::Error;
 use crate::evidence::{PairResidual, ResidualUnit};
-
-/// Steps of the scale below.
-const STEPS: usize = 24;
-/// Size of the scale \[pixels\].
-const SCALE: (i32, i32) = (240, 14);
 
 /// A field a pair of places and mode: the darker, the more is left of the lines to which no other of the `modes` \[Hz\] is nearer.
 pub fn residual_by_place_and_mode(residuals: &[PairResidual], modes: &[f64]) -> Result<String, Error> {
@@ -26,7 +21,7 @@ pub fn residual_by_place_and_mode(residuals: &[PairResidual], modes: &[f64]) -> 
     let names = names_width(residuals);
     let height = 150 + ROW * count.max(1) as u32;
     titled("residual by place and mode", "Residual of each pair of places about each mode", (WIDTH, height), |area| {
-        let (area, scale) = area.split_vertically(height as i32 - 75);
+        let (area, scale) = area.split_vertically(height as i32 - SCALE_AREA);
         let mut chart = ChartBuilder::on(&area)
             .margin(12)
             .margin_right(LAST_LABEL)
@@ -50,17 +45,7 @@ pub fn residual_by_place_and_mode(residuals: &[PairResidual], modes: &[f64]) -> 
                 chart.draw_series([Rectangle::new(field, MODEL.mix(part(*size)).filled())])?;
             }
         }
-        let (left, top) = (names as i32 + 12, 6);
-        for step in 0..STEPS {
-            let at = |step: usize| left + SCALE.0 * step as i32 / STEPS as i32;
-            let shade = MODEL.mix((step as f64 + 0.5) / STEPS as f64);
-            scale.draw(&Rectangle::new([(at(step), top), (at(step + 1), top + SCALE.1)], shade.filled()))?;
-        }
-        scale.draw(&Rectangle::new([(left, top), (left + SCALE.0, top + SCALE.1)], ERROR))?;
-        let said = |side| (FONT, 15).into_font().color(&ERROR).pos(Pos::new(side, VPos::Top));
-        let (before, after) = ((left - 8, top - 1), (left + SCALE.0 + 8, top - 1));
-        scale.draw(&Text::new(format!("{least:.0}"), before, said(HPos::Right)))?;
-        scale.draw(&Text::new(format!("{most:.2} {unit}"), after, said(HPos::Left)))?;
+        shade_scale(&scale, names as i32 + 12, [format!("{least:.0}"), format!("{most:.2} {unit}")])?;
         Ok(())
     })
 }
@@ -69,6 +54,7 @@ pub fn residual_by_place_and_mode(residuals: &[PairResidual], modes: &[f64]) -> 
 mod tests {
     use orthopanel_model::Place;
 
+    use super::super::shade_scale::STEPS;
     use super::*;
 
     /// Blue rectangles are fields and the steps of the scale; noise alone stays white. A name longer than its room would be cut off.

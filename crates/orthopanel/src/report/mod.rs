@@ -1,6 +1,7 @@
 //! The report: one HTML page that needs nothing beside it, no network and no script.
 
 mod constants;
+mod measured_modes;
 mod pieces;
 mod table;
 mod trace;
@@ -15,6 +16,7 @@ use crate::evidence::{Evidence, HitsWithEffects};
 use crate::identified::Identified;
 use crate::traced::Traced;
 use crate::{Test, notes};
+use measured_modes::MeasuredModesSection;
 use pieces::PieceSection;
 pub(crate) use table::Table;
 use trace::TraceSection;
@@ -76,7 +78,15 @@ pub fn page(identified: &Identified, traced: Result<&Traced, &str>, evidence: &E
         about_constants,
         trace: traced.ok().map(|traced| TraceSection::of(piece_name, traced, &hits, &modes)).transpose()?,
         not_traced: traced.err().map(str::to_owned),
-        pieces: pieces.map(|(fit, shown)| PieceSection::of(fit, shown, has_effects)).collect::<Result<_, _>>()?,
+        pieces: pieces
+            .map(|(fit, shown)| {
+                let measured = identified.measured_modes(&fit.name).map(MeasuredModesSection::of);
+                Ok(PieceSection {
+                    measured: measured.collect::<Result<_, _>>()?,
+                    ..PieceSection::of(fit, shown, has_effects)?
+                })
+            })
+            .collect::<Result<_, Error>>()?,
         notes: notes::counted(&found.notes).collect(),
     };
     page.rendered()

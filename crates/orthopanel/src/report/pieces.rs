@@ -5,6 +5,7 @@ use orthopanel_identify::PieceFit;
 use orthopanel_model::{Piece, Readable};
 
 use super::Figure;
+use super::measured_modes::MeasuredModesSection;
 use super::table::Table;
 use crate::error::Error;
 use crate::evidence::{PairResidual, PieceEvidence, RecordRow, ResidualUnit};
@@ -21,6 +22,8 @@ pub struct PieceSection {
     pub of_both: &'static str,
     pub records: Option<Table>,
     pub coherence: Option<Figure>,
+    /// What the records show before any model.
+    pub measured: Vec<MeasuredModesSection>,
     pub modes: Option<Table>,
     pub frequencies: Option<Figure>,
     pub galleries: Vec<Gallery>,
@@ -65,6 +68,7 @@ impl PieceSection {
             of_both: if shown.with_effects.is_some() { ", before and with the effects" } else { of_base },
             records: (!shown.records.is_empty()).then(|| records(&shown.records)),
             coherence: shown.coherence.as_ref().map(|picture| Figure::new(picture, COHERENCE_CAPTION)),
+            measured: vec![],
             modes: (!fit.modes.is_empty() || !fit.hidden.is_empty()).then(|| modes(fit, shown.with_effects.as_deref())),
             frequencies: shown.frequencies.as_ref().map(|picture| Figure::new(picture, FREQUENCIES_CAPTION)),
             galleries: galleries.into_iter().flatten().collect(),
@@ -81,6 +85,7 @@ impl PieceSection {
             of_both: BASE,
             records: (!shown.records.is_empty()).then(|| records(&shown.records)),
             coherence: shown.coherence.as_ref().map(|picture| Figure::new(picture, COHERENCE_CAPTION)),
+            measured: vec![],
             modes: None,
             frequencies: None,
             galleries: [

@@ -10,7 +10,7 @@ use super::table::Table;
 use crate::error::Error;
 use crate::evidence::{HitsWithEffects, PairResidual};
 use crate::measured_pairs::place_text;
-use crate::traced::{RANKING_HEADINGS, Traced, comparison, effect_rows, found_places, ranking_rows};
+use crate::traced::{RANKING_HEADINGS, Traced, comparison, effect_rows, found_places, not_tested, ranking_rows};
 use crate::{notes, pictures};
 
 pub struct TraceSection {
@@ -76,7 +76,7 @@ impl TraceSection {
             ownership: traced.ownership(),
             next_experiment: tracing.next_experiment.clone(),
             notes: notes::counted(&tracing.notes).collect(),
-            not_tested: tracing.not_tested.iter().map(|of| format!("{}: {}", of.id, of.reason)).collect(),
+            not_tested: not_tested(tracing),
             fit: gallery(name, fitted)?,
             residual: residual(fitted, compared, modes)?,
             hits: hits(compared),

@@ -17,7 +17,7 @@ use crate::observer::{Observer, Steps};
 use crate::provenance::{Provenance, WithProvenance};
 use crate::{Error, Model, Silent, Test, interruption, json};
 pub use places::found_places;
-pub use tables::{RANKING_HEADINGS, comparison, effect_rows, ranking_rows};
+pub use tables::{RANKING_HEADINGS, comparison, effect_rows, not_tested, ranking_rows};
 
 /// What a mode's entry in a model's provenance tells of the test alone.
 const AS_MEASURED: [&str; 4] = ["mode", "nodes", "measured_hz", "measured_std_hz"];

@@ -19,8 +19,11 @@ impl Traced {
             }
             Verdict::Explained => format!("The model lacked {named}, clearly ahead of every other effect."),
             Verdict::Ambiguous if tracing.effects.is_empty() => {
-                let (possible, next) = (self.alternatives(), &tracing.next_experiment);
-                format!("These data cannot tell whether something is missing; possible are {possible}. Next: {next}.")
+                let possible = match tracing.alternatives.is_empty() {
+                    true => String::new(),
+                    false => format!("; possible are {}", self.alternatives()),
+                };
+                format!("These data cannot tell whether something is missing{possible}. Next: {}.", tracing.next_experiment)
             }
             Verdict::Ambiguous if tracing.alternatives.is_empty() => {
                 format!("The model lacked something: {named}; no other effect fits alike, but see the notes for what leaves a doubt.")

@@ -71,6 +71,18 @@ fn number(value: f64) -> String {
 /// Hypotheses listed for people; JSON holds all.
 const LISTED: usize = 10;
 
+/// The effects that were not tested, those of one reason together, in the order of the catalogue.
+pub fn not_tested(tracing: &Tracing) -> Vec<String> {
+    let mut by_reason: Vec<(&str, Vec<&str>)> = vec![];
+    for of in &tracing.not_tested {
+        match by_reason.iter_mut().find(|(reason, _)| *reason == of.reason) {
+            Some((_, ids)) => ids.push(of.id),
+            None => by_reason.push((&of.reason, vec![of.id])),
+        }
+    }
+    by_reason.into_iter().map(|(reason, ids)| format!("{}: {reason}", ids.join(", "))).collect()
+}
+
 impl Traced {
     /// Constants of the panel beside the effects that were found: those of the model that is written; none where no
     /// effect was found.
@@ -114,8 +126,8 @@ impl Traced {
             0 => {}
             further => text += &format!("and {further} further behind: --json and the report list them all\n"),
         }
-        for of in &tracing.not_tested {
-            text += &format!("not tested: {}: {}\n", of.id, of.reason);
+        for line in not_tested(tracing) {
+            text += &format!("not tested: {line}\n");
         }
         text.extend(self.detectable().map(|told| told + "\n"));
         text += "\n";
