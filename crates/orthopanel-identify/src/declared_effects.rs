@@ -6,7 +6,8 @@ use orthopanel_model::{
 };
 
 use crate::IdentifyError;
-use crate::hypothesis::{Part, has_place};
+use crate::effect_places::has_place;
+use crate::hypothesis::Part;
 use crate::structures;
 
 /// An effect with the values that the file tells, one a parameter.

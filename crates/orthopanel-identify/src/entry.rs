@@ -4,7 +4,7 @@ use orthopanel_data::{ImpactTest, MeasurementData};
 use orthopanel_model::{ModelError, StructureKind};
 
 use crate::answer::{PlateByModes, identify_lists_with_effects, identify_with_effects, without_repeats};
-use crate::inference::is_record;
+use crate::measured::is_record;
 use crate::place_readings::untold;
 use crate::shapes_of_list::shapes_by_frequency;
 use crate::{

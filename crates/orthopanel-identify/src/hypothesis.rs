@@ -6,6 +6,7 @@ use orthopanel_model::{
     StructureKind,
 };
 
+use crate::effect_places::has_place;
 use crate::free_constants::FreeConstants;
 use crate::plate_start::PlateFit;
 use crate::predicted::Predictor;
@@ -94,27 +95,6 @@ fn values<'a>(slots: impl IntoIterator<Item = &'a Slot>, z: &[f64]) -> Vec<f64> 
         Slot::Free(coordinate) => coordinate.value(z.next().copied().unwrap_or(0.0)),
     };
     slots.into_iter().map(value).collect()
-}
-
-/// Why an effect at a place is not looked for on several pieces.
-pub(crate) const OF_PIECE: &str = "each piece would have a place of its own: trace one piece in a test file";
-/// Why an effect of a record is not looked for in records of several pieces or of two kinds.
-pub(crate) const OF_RECORD: &str = "records of several pieces, or hits beside files of accelerances, are not numbered together: give each a test file of \
-                                    its own";
-
-/// Whether an effect sits at a place of its own: a piece may have several of it.
-pub(crate) fn has_place(effect: &dyn Effect) -> bool {
-    effect.parameters().iter().any(is_place)
-}
-
-/// Whether an effect is of one record, or has a value in each.
-pub(crate) fn is_of_record(effect: &dyn Effect) -> bool {
-    effect.parameters().iter().any(|parameter| parameter.each_record || parameter.scale == Scale::Index)
-}
-
-/// Whether a parameter is the place of an effect along the piece.
-fn is_place(parameter: &EffectParameter) -> bool {
-    parameter.name == "x"
 }
 
 /// Why an effect is part of a hypothesis.

@@ -2,7 +2,6 @@
 
 use std::collections::BTreeMap;
 
-use crate::answer::told;
 use crate::{IdentifyError, TracedEffect};
 use num_complex::Complex64;
 use orthopanel_data::NamedPiece;
@@ -284,4 +283,9 @@ impl Identification {
             provenance: BTreeMap::new(),
         }
     }
+}
+
+/// As a model has standard deviations: nothing where none is known.
+pub(crate) fn told(std: &[Option<f64>]) -> Vec<Option<f64>> {
+    if std.iter().any(Option::is_some) { std.to_vec() } else { Vec::new() }
 }

@@ -1,14 +1,14 @@
 //! From a test to the hypotheses that are held against its measured modes.
 
-use orthopanel_data::{ImpactTest, Measurement};
+use orthopanel_data::ImpactTest;
 use orthopanel_model::{EffectSetting, RecordSetting, StructureKind, effect};
 
 use crate::IdentifyError;
 use crate::comparison::Comparison;
 use crate::declared_effects::{declared_parts, pairs_of_places};
+use crate::effect_places::{OF_PIECE, OF_RECORD, has_place, is_of_record};
 use crate::free_constants::FreeConstants;
-use crate::hypothesis::{OF_PIECE, OF_RECORD, has_place, is_of_record};
-use crate::measured::{MeasuredModes, measured_as_named};
+use crate::measured::{MeasuredModes, is_record, measured_as_named};
 use crate::outcome::Progress;
 use crate::place_readings::refuse_other_places;
 use crate::posterior::Judged;
@@ -46,10 +46,6 @@ pub(crate) fn refuse_several(test: &ImpactTest) -> Result<(), IdentifyError> {
         return Err(IdentifyError::Unsupported(format!("effect {:?}: {why}", declared.id)));
     }
     Ok(())
-}
-
-pub(crate) fn is_record(measurement: &Measurement) -> bool {
-    measurement.data.recorded().is_some()
 }
 
 /// Removes from what was measured of a test's only block what its model is known to miss.

@@ -1,5 +1,7 @@
 //! What is said of a test: one threshold, in odds.
 
+use orthopanel_model::catalogue;
+
 use crate::measured::{MeasuredModes, Pole};
 use crate::model_error::Kind;
 use crate::outcome::Verdict;
@@ -75,4 +77,9 @@ pub(crate) fn judged<'a>(all: &'a [Judged], stacked: &Stacked) -> Option<(&'a Ju
     };
     let verdict = if rivals.is_empty() { without } else { Verdict::Ambiguous };
     Some((chosen, verdict, rivals))
+}
+
+/// Of an effect that lacks: one of the catalogue does, in each of so many ways alike.
+pub(crate) fn log_prior(ways: usize) -> f64 {
+    -((ways * catalogue().len()) as f64).ln()
 }

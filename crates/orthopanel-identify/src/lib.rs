@@ -8,6 +8,7 @@ mod curves;
 mod declared_doubt;
 mod declared_effects;
 mod downhill_simplex;
+mod effect_places;
 mod entry;
 mod error;
 mod free_constants;
@@ -43,23 +44,23 @@ mod time_history;
 mod to_check;
 mod trace;
 mod trace_rows;
+mod traced_effect;
 mod usual_ratios;
 mod view;
 mod whitening;
 
 pub use accelerance_fit::DampingLaw;
 pub use entry::identify;
-pub use error::IdentifyError;
+pub use error::{IdentifyError, PriorContradiction};
 pub use identification::{
     AcceleranceFit, Correlation, HiddenMode, Identification, IdentifiedConstant, ModeFit, NotIdentified, PieceFit,
 };
 pub use interruption::until;
-pub use known_beforehand::PriorContradiction;
 pub use matching::{ModalAssurance, ModeMatch};
 pub use measured::{MeasuredModes, MeasuredRecord, Pole, measured_modes};
 pub use outcome::{
     Candidate, Detectable, EstimatedModelError, FittedError, NotTested, Progress, Removed, SharedModelError,
-    TracedEffect, TracedError, TracedParameter, Tracing, Verdict,
+    TracedError, Tracing, Verdict,
 };
 pub use settings::{PaperWeights, Search, Settings};
 pub use time_history::{
@@ -67,3 +68,4 @@ pub use time_history::{
 };
 pub use trace::{trace, trace_against, trace_with};
 pub use trace_rows::TRACE_SCHEMA;
+pub use traced_effect::{TracedEffect, TracedParameter};

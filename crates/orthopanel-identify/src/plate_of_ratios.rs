@@ -2,7 +2,7 @@
 
 use orthopanel_model::{CorrelationMatrix, Estimate, PLATE_CONSTANTS, PanelModel, StructureKind};
 
-use crate::outcome::TracedEffect;
+use crate::traced_effect::TracedEffect;
 
 /// Turns the panel's beam into the plate whose ratios an effect holds, $E_y = (E_y/E_x)E_x$ and so on.
 ///

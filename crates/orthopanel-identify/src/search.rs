@@ -18,10 +18,11 @@ use rayon::prelude::*;
 use further_effect::{Approach, Ranked};
 
 use crate::comparison::Comparison;
+use crate::effect_places::{OF_PIECE, OF_RECORD, has_place, is_of_record};
 use crate::free_constants::FreeConstants;
 use crate::hit_strength::{HitStrength, Springs};
-use crate::hypothesis::{Hypothesis, OF_PIECE, OF_RECORD, Part, Role, has_place, is_of_record};
-use crate::judge::ODDS;
+use crate::hypothesis::{Hypothesis, Part, Role};
+use crate::judge::{ODDS, log_prior};
 use crate::measured::MeasuredModes;
 use crate::model_error::{KINDS, Kind, frequency_prior, medians, waves};
 use crate::plate_start::PlateStart;
@@ -72,11 +73,6 @@ pub(crate) struct Inquiry<'a> {
     pub of_lists: NamedLists,
     /// How far it is.
     pub progress: SearchProgress<'a>,
-}
-
-/// Of an effect that lacks: one of the catalogue does, in each of so many ways alike.
-pub(crate) fn log_prior(ways: usize) -> f64 {
-    -((ways * catalogue().len()) as f64).ln()
 }
 
 /// A base with one effect more, which lacks in one of so many ways alike. The least of an effect that is looked for is none: what is gained there is what its

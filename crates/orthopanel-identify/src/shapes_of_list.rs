@@ -4,9 +4,9 @@ use orthopanel_data::{ImpactTest, Measurement, MeasurementData, NaturalFrequenci
 use orthopanel_model::{PLATE_CONSTANTS, Readable, StructureKind};
 
 use crate::frequency_fit::identify_frequencies;
-use crate::inference::is_record;
 use crate::judge::ODDS;
-use crate::measured::{MeasuredModes, Names};
+use crate::measured::is_record;
+use crate::measured::{MeasuredModes, Names, names_told};
 use crate::plate_start::{PlateStart, held};
 use crate::structures::{self, bending_nodes};
 use crate::{Identification, IdentifyError, Search};
@@ -102,17 +102,6 @@ pub(crate) struct NamedLists {
     pub question: Option<String>,
     /// Whether other constants give other names, not clearly less likely.
     pub is_open: bool,
-}
-
-/// The shapes that a test file tells.
-pub(crate) fn names_told(test: &ImpactTest) -> Vec<Names> {
-    let told = |measurement: &Measurement| match &measurement.data {
-        MeasurementData::NaturalFrequencies(list) => {
-            list.shape.iter().map(|shape| Some(shape.map(|count| count as usize))).collect()
-        }
-        _ => vec![],
-    };
-    test.measurements.iter().map(told).collect()
 }
 
 /// What the lists of a test name their modes: as the test file does, else as [`identify_frequencies`] reads them; where that does not meet them, the

@@ -6,7 +6,8 @@ use faer::Mat;
 use orthopanel_model::{Effect, EffectState, ModelError, Owner, StructureKind};
 
 use crate::comparison::Comparison;
-use crate::hypothesis::{Hypothesis, has_place};
+use crate::effect_places::has_place;
+use crate::hypothesis::Hypothesis;
 use crate::model_error::{ErrorColumns, Waves};
 use crate::predicted::{Prediction, Predictor};
 use crate::whitening::Split;

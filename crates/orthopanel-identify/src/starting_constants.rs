@@ -11,6 +11,9 @@ const GUESS: f64 = 1e9;
 /// $E_x/(k'G_{zx})$ of honeycomb panels, within a factor of seven or so.
 pub(crate) const USUAL_SOFTNESS: f64 = 16.0;
 
+/// $E_x/(k'G_{zx})$ tried, from solid metal to the softest core; first what is usual, for a single frequency fits them all.
+pub(crate) const SOFTNESS: [f64; 4] = [USUAL_SOFTNESS, 2.0, 128.0, 1024.0];
+
 /// All constants at one ratio $E_x/(k'G_{zx})$ of bending to shear, around those that are held, or near which the test file has them.
 pub(crate) fn guess(constants: &FreeConstants, softness: f64) -> Vec<f64> {
     let shear_ratio = softness * SHEAR_COEFFICIENT;

@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 
 use serde::{Serialize, Serializer};
 
-use crate::outcome::{TracedEffect, TracedParameter, Tracing};
+use crate::outcome::Tracing;
+use crate::traced_effect::{TracedEffect, TracedParameter};
 
 /// The name of the format.
 pub const TRACE_SCHEMA: &str = "orthopanel.trace/2";

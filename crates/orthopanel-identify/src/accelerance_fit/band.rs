@@ -2,8 +2,8 @@
 
 use orthopanel_model::Piece;
 
+use super::recorded::{Recorded, StartPiece};
 use super::records::PlaceRecord;
-use super::start::{Recorded, StartPiece};
 use crate::IdentifyError;
 use crate::free_constants::FreeConstants;
 use crate::structures::Shown;

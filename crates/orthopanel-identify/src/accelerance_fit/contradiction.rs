@@ -1,15 +1,14 @@
 //! Records and test file that speak of different things.
 
 use num_complex::Complex64;
-use orthopanel_data::{ImpactTest, Measurement, MeasurementData};
-use orthopanel_model::Place;
+use orthopanel_data::{ImpactTest, Measurement};
 
 use super::misfit::{misfit_percent, record_misfit_percent};
 use super::other_units::other_units;
 use super::problem::AcceleranceProblem;
 use super::record_apart::{exchanged, record_apart};
+use super::record_name::record_name;
 use super::records::PlaceRecord;
-use super::start::pair_name;
 use crate::IdentifyError;
 use crate::declared_effects::pairs_of_places;
 use crate::structures::{self, Shown};
@@ -99,26 +98,4 @@ pub(crate) fn without_contradicting(test: &ImpactTest, refused: &IdentifyError) 
     rest.measurements.retain(|measurement| is_it(measurement) != Some(true));
     let pairs = pairs_of_places(test);
     (pairs >= LEAST_RECORDS && pairs_of_places(&rest) + 1 == pairs).then_some(rest)
-}
-
-/// A record by its files and places of force and response, and by its piece where there are several.
-pub(super) fn record_name(test: &ImpactTest, piece: usize, places: (Place, Place)) -> String {
-    let files = test.measurements.iter().filter_map(|measurement| match &measurement.data {
-        MeasurementData::TimeHistory(of) | MeasurementData::Accelerance(of) => (measurement.piece == piece
-            && (of.force_at, of.response_at) == places)
-            .then(|| of.file.display().to_string()),
-        MeasurementData::NaturalFrequencies(_) => None,
-    });
-    let mut files: Vec<String> = files.collect();
-    files.dedup();
-    let more = match files.len() {
-        0 | 1 => String::new(),
-        count => format!(" and {} more", count - 1),
-    };
-    let file = files.first().map_or(String::new(), |file| format!("{file}{more}, "));
-    let of_piece = match test.pieces.get(piece) {
-        Some(piece) if test.pieces.len() > 1 => format!("piece {}, ", piece.name),
-        _ => String::new(),
-    };
-    file + &of_piece + &pair_name(places.0, places.1)
 }

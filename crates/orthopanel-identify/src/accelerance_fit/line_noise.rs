@@ -1,11 +1,6 @@
 //! Variance of every line, told from a few hits and smoothed.
 
-use std::f64::consts::TAU;
-
-use num_complex::Complex64;
 use orthopanel_data::Accelerance;
-
-use super::records::PlaceRecord;
 
 /// Lines on either side over which the noise is taken to be even.
 const HALF_WINDOW: usize = 40;
@@ -43,35 +38,9 @@ pub(crate) fn told_variance(accelerance: &Accelerance) -> Option<Vec<f64>> {
     Some(variance)
 }
 
-/// The same of a record whose hits do not tell its noise by their scatter, from the misfit $e$ of a model to its lines.
-///
-/// What a model lacks runs smoothly from line to line, noise does not: of $u = e/\sqrt{1 + r|H|^2}$ the mean square of
-/// $u_k - (u_{k-1}+u_{k+1})/2$ is $\tfrac32 + \tfrac12\mathrm{Re}\rho_2 - 2\mathrm{Re}\rho_1$ of the noise's, with the correlation
-/// $\rho_m = a/(a + 2\pi jm)$ of lines under the window $e^{-\sigma t}$, $a = 2\sigma T$, and zero without one.
-pub(super) fn noise_of_misfit(record: &PlaceRecord, model: &[Complex64]) -> Vec<f64> {
-    let power: Vec<f64> = model.iter().map(|value| value.norm_sqr()).collect();
-    let misfit: Vec<Complex64> = model.iter().zip(&record.value).map(|(model, value)| model - value).collect();
-    let window = 2.0 * record.decay_rate / record.line_step();
-    let tied = |lines: f64| {
-        let (window, lines) = (window * window, (TAU * lines).powi(2));
-        if window.is_finite() { window / (window + lines) } else { 0.0 }
-    };
-    let of_noise = 1.5 + 0.5 * tied(2.0) - 2.0 * tied(1.0);
-    most_likely(&power, |shape| {
-        let even: Vec<Complex64> = misfit.iter().zip(shape).map(|(misfit, shape)| misfit / shape.sqrt()).collect();
-        let bends = even.windows(3).map(|three| match three {
-            [before, at, after] => (at - 0.5 * (before + after)).norm_sqr() / of_noise,
-            _ => f64::NAN,
-        });
-        // The first and the last line have no two neighbours.
-        std::iter::once(f64::NAN).chain(bends).chain([f64::NAN]).take(even.len()).collect()
-    })
-    .0
-}
-
 /// The likeliest variance $l(1 + r|H|^2)$ with a level $l$ even over neighbours, and its $r$; `quotient` gives each line's own variance
 /// over such a shape.
-fn most_likely(power: &[f64], quotient: impl Fn(&[f64]) -> Vec<f64>) -> (Vec<f64>, f64) {
+pub(super) fn most_likely(power: &[f64], quotient: impl Fn(&[f64]) -> Vec<f64>) -> (Vec<f64>, f64) {
     let typical = median(power).max(f64::MIN_POSITIVE);
     let ratio = |step: usize| {
         let (lowest, highest, steps) = RATIOS;

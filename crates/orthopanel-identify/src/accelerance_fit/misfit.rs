@@ -1,7 +1,10 @@
 //! How far the model lies from the records where it is no matter of noise.
 
+use std::f64::consts::TAU;
+
 use num_complex::Complex64;
 
+use super::line_noise::most_likely;
 use super::records::PlaceRecord;
 
 /// Median over the lines of $|H_{cal}-H_{exp}|/|H_{exp}|$ \[%\], where noise that drowns a line counts as its size.
@@ -45,4 +48,30 @@ pub(super) fn median(values: impl Iterator<Item = f64>) -> f64 {
     let mut values: Vec<f64> = values.collect();
     values.sort_by(f64::total_cmp);
     values.get(values.len() / 2).copied().unwrap_or(0.0)
+}
+
+/// The variance of each line of a record whose hits do not tell its noise by their scatter, from the misfit $e$ of a model to its lines.
+///
+/// What a model lacks runs smoothly from line to line, noise does not: of $u = e/\sqrt{1 + r|H|^2}$ the mean square of
+/// $u_k - (u_{k-1}+u_{k+1})/2$ is $\tfrac32 + \tfrac12\mathrm{Re}\rho_2 - 2\mathrm{Re}\rho_1$ of the noise's, with the correlation
+/// $\rho_m = a/(a + 2\pi jm)$ of lines under the window $e^{-\sigma t}$, $a = 2\sigma T$, and zero without one.
+pub(super) fn noise_of_misfit(record: &PlaceRecord, model: &[Complex64]) -> Vec<f64> {
+    let power: Vec<f64> = model.iter().map(|value| value.norm_sqr()).collect();
+    let misfit: Vec<Complex64> = model.iter().zip(&record.value).map(|(model, value)| model - value).collect();
+    let window = 2.0 * record.decay_rate / record.line_step();
+    let tied = |lines: f64| {
+        let (window, lines) = (window * window, (TAU * lines).powi(2));
+        if window.is_finite() { window / (window + lines) } else { 0.0 }
+    };
+    let of_noise = 1.5 + 0.5 * tied(2.0) - 2.0 * tied(1.0);
+    most_likely(&power, |shape| {
+        let even: Vec<Complex64> = misfit.iter().zip(shape).map(|(misfit, shape)| misfit / shape.sqrt()).collect();
+        let bends = even.windows(3).map(|three| match three {
+            [before, at, after] => (at - 0.5 * (before + after)).norm_sqr() / of_noise,
+            _ => f64::NAN,
+        });
+        // The first and the last line have no two neighbours.
+        std::iter::once(f64::NAN).chain(bends).chain([f64::NAN]).take(even.len()).collect()
+    })
+    .0
 }

@@ -16,9 +16,12 @@ mod other_units;
 mod outcome;
 mod paper_deviations;
 mod paper_error;
+mod pole;
 mod poles;
 mod problem;
 mod record_apart;
+mod record_name;
+mod recorded;
 mod records;
 mod resonance_fit;
 mod resonance_point;
@@ -28,6 +31,8 @@ mod smeared;
 mod smooth_part;
 mod start;
 mod synthesis;
+mod tied_noise;
+mod told_damping;
 mod undeclared_window;
 mod weighted_rows;
 mod whole_covariance;
@@ -39,10 +44,12 @@ use orthopanel_model::{EXPONENTIAL_WINDOW, Readable};
 use crate::least_squares::Minimum;
 use crate::structures::Shown;
 use crate::{Identification, IdentifyError, Search, Settings};
+use other_units::refuse_read_in_other_units;
 use problem::AcceleranceProblem;
+use recorded::Recorded;
 use records::PlaceRecord;
 use sharpening::{Rough, line_by_line_with_noise, problem_at, sharpened_lines};
-use start::{Recorded, Start, start, usual_log_zeta};
+use start::{Start, recorded_of, start, usual_log_zeta};
 use wide_scan::rough_starts;
 
 pub(crate) use common_gain::{common_gain, refuse_missed, said_of_gain};
@@ -71,7 +78,15 @@ pub(crate) fn question_of_window(test: &ImpactTest) -> Option<String> {
 /// # Errors
 /// [`IdentifyError::Data`], [`IdentifyError::OtherUnits`] and [`IdentifyError::PieceTooLarge`].
 pub(crate) fn refuse_records(test: &ImpactTest) -> Result<(), IdentifyError> {
-    start::recorded(test, Settings::default()).map(|_| ())
+    recorded(test, Settings::default()).map(|_| ())
+}
+
+/// Reads the records of a test, and their poles off them.
+fn recorded(test: &ImpactTest, settings: Settings) -> Result<Recorded, IdentifyError> {
+    let accelerances = test.accelerances(settings.estimation)?;
+    let recorded = recorded_of(test, &accelerances)?;
+    refuse_read_in_other_units(test, &accelerances, &recorded)?;
+    Ok(recorded)
 }
 
 /// Finds constants and damping from the records of a test.
@@ -89,7 +104,7 @@ pub(crate) fn refuse_records(test: &ImpactTest) -> Result<(), IdentifyError> {
 /// frequency; then the constants come from the poles' frequencies, the damping from the poles, and a note says so.
 /// Where the other law of damping meets the records clearly better, a note or the refusal names it.
 pub(crate) fn identify_records(test: &ImpactTest, settings: Settings) -> Result<Identification, IdentifyError> {
-    let recorded = start::recorded(test, settings)?;
+    let recorded = recorded(test, settings)?;
     if settings.search == Search::Simplex {
         return by_papers_error(test, settings, &recorded);
     }

@@ -6,7 +6,8 @@ use std::ops::Range;
 use num_complex::Complex64;
 use rayon::prelude::*;
 
-use super::poles::{MOST_DAMPING, Pole, mean_pole};
+use super::pole::Pole;
+use super::poles::{MOST_DAMPING, mean_pole};
 use super::records::PlaceRecord;
 use super::resonance_fit::{ResonanceFit, resonance};
 use crate::least_squares::{Ending, descend};

@@ -2,7 +2,8 @@
 
 use orthopanel_model::Readable;
 
-use super::start::{Recorded, usual_log_zeta};
+use super::recorded::Recorded;
+use super::start::usual_log_zeta;
 use crate::{DampingLaw, Identification, IdentifyError};
 
 /// Misfit per datum above which the law asked for may be the wrong one.

@@ -9,11 +9,12 @@ use orthopanel_data::{Accelerance, ImpactTest, MeasurementData, Motion, ReadAs, 
 use orthopanel_model::{GAIN as GAIN_EFFECT, Place, RECORD_GAIN};
 use rayon::prelude::*;
 
-use super::contradiction::record_name;
 use super::misfit::median;
+use super::record_name::record_name;
+use super::recorded::Recorded;
 use super::records::PlaceRecord;
 use super::scale::{Compared, Scale, common_delay};
-use super::start::{Recorded, recorded_of, start};
+use super::start::{recorded_of, start};
 use super::{assemble, starting_parameters};
 use crate::error::{Factor, Mend, gain_of_no_unit, mend};
 use crate::structures::{self, Shown};

@@ -12,6 +12,7 @@ use super::contradiction::contradiction;
 use super::misfit::{noise_percent, record_misfit_percent};
 use super::problem::AcceleranceProblem;
 use super::start::Start;
+use super::told_damping::{DAMPING_UNSEEN, is_told};
 use super::undeclared_window;
 use super::whole_covariance::Weighed;
 use crate::free_constants::Rest;
@@ -27,8 +28,6 @@ const FAR_FROM_NOISE: f64 = 25.0;
 const MORE_THAN_CHANCE: f64 = 20.0;
 /// A constant is seen where its standard deviation is below this part of what is usual.
 const SEEN: f64 = 0.5;
-/// A damping ratio known no better than to this factor's logarithm is the prior's, and is not reported.
-const DAMPING_UNSEEN: f64 = 0.5;
 
 /// What a minimum of the likelihood says.
 pub(super) fn outcome(
@@ -302,11 +301,6 @@ fn without_resonance(fit: &PieceFit) -> Option<String> {
         says.push(format!("damping of mode {untold} is not told, the model has a usual one"));
     }
     (!says.is_empty()).then(|| format!("modes in the band without a resonance of their own: {}", says.join("; ")))
-}
-
-/// Whether the records tell a damping ratio for which no resonance speaks: what has no deviation was put in.
-pub(super) fn is_told(ratio: &Estimate) -> bool {
-    ratio.std.is_some_and(|std| std < DAMPING_UNSEEN * ratio.value)
 }
 
 /// The modes that the records show, and the damping of all modes inside the band.

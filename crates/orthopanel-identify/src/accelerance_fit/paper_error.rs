@@ -5,7 +5,7 @@ use num_complex::Complex64;
 use orthopanel_model::{BeamConstants, Boundary, ExactBeam, ModelError, StaticFlexibility};
 use rayon::prelude::*;
 
-use super::poles::Pole;
+use super::pole::Pole;
 use super::problem::{AcceleranceProblem, PRIOR_LOG_ZETA_STD, PieceProblem, log_zeta_bounds};
 use super::records::PlaceRecord;
 use super::resonance_point::{MeasuredPoint, ResonancePoint, greatest, half_width, measured_point};

@@ -6,7 +6,8 @@ use orthopanel_model::{ModelError, Piece, Place};
 use rayon::prelude::*;
 
 use super::line_block::{BLOCK, LineBlock};
-use super::line_noise::noise_of_misfit;
+
+use super::misfit::noise_of_misfit;
 use super::records::PlaceRecord;
 use super::synthesis::{DampingLaw, PairModel};
 use super::weighted_rows::{RUN, run_products};

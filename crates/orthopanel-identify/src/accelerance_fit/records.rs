@@ -4,9 +4,9 @@ use num_complex::Complex64;
 use orthopanel_data::{Accelerance, ReadAs};
 use orthopanel_model::Place;
 
-use super::force_window::TiedNoise;
 use super::line_block::{BLOCK, LineBlock};
 use super::line_noise::line_variance;
+use super::tied_noise::TiedNoise;
 use crate::AcceleranceFit;
 
 /// Power of all lines over that of their noise, below which no signal is in them: few hits tell a variance to some per cent.

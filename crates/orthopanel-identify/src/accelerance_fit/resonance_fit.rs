@@ -6,7 +6,7 @@ use std::ops::Range;
 use faer::Mat;
 use num_complex::Complex64;
 
-use super::poles::Pole;
+use super::pole::Pole;
 use super::records::{PlaceRecord, variance_beneath_window};
 use crate::least_squares::{Linearised, Minimum, Quadratic};
 

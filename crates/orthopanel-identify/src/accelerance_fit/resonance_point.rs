@@ -7,7 +7,8 @@ use faer::prelude::{Solve, SolveLstsq};
 use faer::{Mat, Side};
 use num_complex::Complex64;
 
-use super::poles::{Pole, fit_pole};
+use super::pole::Pole;
+use super::poles::fit_pole;
 use super::records::PlaceRecord;
 
 /// A resonance point of eq. 23: where the magnitude is greatest, and how great.

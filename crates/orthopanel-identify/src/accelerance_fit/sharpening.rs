@@ -2,9 +2,9 @@
 
 use super::outcome::is_far_from_noise;
 use super::problem::{AcceleranceProblem, PieceProblem};
+use super::recorded::Recorded;
 use super::records::PlaceRecord;
 use super::smeared::smeared;
-use super::start::Recorded;
 use super::synthesis::DampingLaw;
 use crate::IdentifyError;
 use crate::free_constants::FreeConstants;

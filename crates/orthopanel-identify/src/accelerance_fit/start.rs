@@ -1,7 +1,7 @@
 //! Before the fit: poles of the records, which modes they are, and the constants that meet them.
 
 use orthopanel_data::{Accelerance, ImpactTest};
-use orthopanel_model::{Boundary, Piece, Place};
+use orthopanel_model::Boundary;
 use rayon::prelude::*;
 
 use super::band::{low_band_of_usual_panel, refuse_large_pieces};
@@ -9,32 +9,16 @@ use super::followed_modes::follow;
 use super::matching::{Matching, PiecePoles, candidates, match_at};
 use super::misfit::noise_percent;
 use super::mode_group::{NearMode, Overlap, group_pole};
-use super::other_units::refuse_read_in_other_units;
-use super::poles::{NoisePower, Pole, alike, poles};
+use super::pole::Pole;
+use super::poles::{NoisePower, alike, poles};
+use super::record_name::pair_name;
+use super::recorded::{Recorded, StartPiece};
 use super::records::PlaceRecord;
+use crate::IdentifyError;
 use crate::free_constants::FreeConstants;
 use crate::frequency_fit::{PoleFit, PoleSet, fit_poles};
 use crate::least_squares::Quadratic;
 use crate::structures::{self, SearchedStructure, Shown};
-use crate::{IdentifyError, Settings};
-
-/// The records of a test and their poles.
-pub(super) struct Recorded {
-    pub structure: &'static dyn SearchedStructure,
-    pub boundary: Boundary,
-    /// Constants that the test leaves free.
-    pub constants: FreeConstants,
-    pub pieces: Vec<StartPiece>,
-    pub poles: Vec<PiecePoles>,
-    pub notes: Vec<String>,
-}
-
-impl Recorded {
-    /// The records of all pieces.
-    pub fn records(&self) -> impl Iterator<Item = &PlaceRecord> {
-        self.pieces.iter().flat_map(|piece| &piece.records)
-    }
-}
 
 /// What stands before the fit: which modes the poles are, and constants.
 pub(super) struct Start<'a> {
@@ -158,22 +142,7 @@ fn regroup(records: &[PlaceRecord], near: &mut [NearMode], poles: &mut Vec<Pole>
 /// Resonances overlap well within this part of half a half-power width.
 const OVERLAP: f64 = 0.5;
 
-pub(super) struct StartPiece {
-    pub index: usize,
-    pub sizes: Piece,
-    pub records: Vec<PlaceRecord>,
-    pub poles: Vec<Pole>,
-}
-
-/// Reads the records of a test, and their poles off them.
-pub(super) fn recorded(test: &ImpactTest, settings: Settings) -> Result<Recorded, IdentifyError> {
-    let accelerances = test.accelerances(settings.estimation)?;
-    let recorded = recorded_of(test, &accelerances)?;
-    refuse_read_in_other_units(test, &accelerances, &recorded)?;
-    Ok(recorded)
-}
-
-/// The same of records that are read.
+/// The records of a test, as they are read, and their poles read off them.
 pub(super) fn recorded_of(test: &ImpactTest, accelerances: &[(usize, Accelerance)]) -> Result<Recorded, IdentifyError> {
     let structure = structures::of_test(test);
     let constants = FreeConstants::of(test, structure.kind().constants())?;
@@ -307,11 +276,6 @@ fn pole_sets(pieces: &[StartPiece], poles: &[Vec<Pole>], matching: &Matching, bo
         PoleSet { piece: piece.index, sizes: piece.sizes, boundary, nodes, frequencies }
     };
     pieces.iter().enumerate().map(of_piece).collect()
-}
-
-/// A record by its places, for notes and messages.
-pub(super) fn pair_name(force: Place, response: Place) -> String {
-    format!("force at ({}, {}), response at ({}, {})", force.x, force.y, response.x, response.y)
 }
 
 /// Mean of the logarithms of the damping ratios.

@@ -10,10 +10,10 @@ use std::f64::consts::TAU;
 use orthopanel_model::{ModelError, Readable};
 
 use super::other_law::is_clearly_less;
-use super::outcome::is_told;
 use super::problem::AcceleranceProblem;
 use super::records::PlaceRecord;
 use super::start::Start;
+use super::told_damping::is_told;
 use crate::{IdentifyError, PieceFit};
 
 /// Misfit per datum above which the window may be what the model lacks.

@@ -7,11 +7,12 @@ use num_complex::Complex64;
 use orthopanel_model::ModelError;
 use rayon::prelude::*;
 
-use super::force_window::{Impulses, TiedNoise};
+use super::force_window::Impulses;
 use super::line_block::BLOCK;
 use super::problem::{AcceleranceProblem, model_lines};
 use super::records::PlaceRecord;
 use super::synthesis::PairModel;
+use super::tied_noise::TiedNoise;
 use super::weighted_rows::{RUN, WeightedRows, run_products};
 use crate::least_squares::{Minimum, Quadratic};
 

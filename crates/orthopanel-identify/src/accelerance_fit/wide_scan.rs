@@ -6,10 +6,10 @@ use num_complex::Complex64;
 use orthopanel_model::{ModelError, Place};
 use rayon::prelude::*;
 
+use super::recorded::Recorded;
 use super::records::PlaceRecord;
 use super::sharpening::{Rough, fit_wide};
 use super::smeared::{smeared_value, told};
-use super::start::Recorded;
 use super::synthesis::DampingLaw;
 use crate::IdentifyError;
 use crate::free_constants::FreeConstants;

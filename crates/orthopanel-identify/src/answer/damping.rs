@@ -4,6 +4,7 @@ use std::f64::consts::TAU;
 
 use orthopanel_model::{Damping, ModalModel};
 
+use crate::identification::told;
 use crate::measured::{MeasuredModes, Pole};
 
 /// Where no pole tells one.
@@ -12,11 +13,6 @@ const WITHOUT_POLES: f64 = 0.005;
 const LEAST: f64 = 1e-2;
 /// A pole further than this part of its frequency from a mode is another's.
 const REACH: f64 = 0.04;
-
-/// As a model has standard deviations: nothing where none is known.
-pub(crate) fn told(std: &[Option<f64>]) -> Vec<Option<f64>> {
-    if std.iter().any(Option::is_some) { std.to_vec() } else { Vec::new() }
-}
 
 /// Damping ratios of the flexible modes, with their standard deviations where a pole tells them.
 pub(super) struct TracedDamping {

@@ -3,8 +3,8 @@
 use orthopanel_model::Estimate;
 
 use crate::hypothesis::Role;
-use crate::outcome::{TracedEffect, TracedParameter};
 use crate::posterior::Judged;
+use crate::traced_effect::{TracedEffect, TracedParameter};
 
 /// What a hypothesis says.
 pub(super) struct Estimates {

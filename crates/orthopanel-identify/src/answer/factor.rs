@@ -7,8 +7,9 @@ use super::estimates::Estimates;
 use super::weighed::Weighed;
 use crate::AcceleranceFit;
 use crate::accelerance_fit::{common_gain, said_of_gain};
-use crate::outcome::{TracedEffect, TracedParameter, Verdict};
+use crate::outcome::Verdict;
 use crate::search::Inquiry;
+use crate::traced_effect::{TracedEffect, TracedParameter};
 
 /// What is said of it.
 pub(super) struct Factor {

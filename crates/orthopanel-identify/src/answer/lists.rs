@@ -6,8 +6,8 @@ use orthopanel_model::Owner;
 
 use crate::IdentifyError;
 use crate::declared_effects::{Declared, declared};
+use crate::effect_places::has_place;
 use crate::frequency_fit::{Reread, likeliest_reading};
-use crate::hypothesis::has_place;
 use crate::inference::{Correct, from_base};
 use crate::judge::{ODDS, TOLD};
 use crate::model_error::Kind;
@@ -17,7 +17,7 @@ use crate::search::{Inquiry, Pairs};
 
 use super::doubt::check_first;
 use super::estimates::{Estimates, id};
-use super::misfit::Yardstick;
+use super::misfit::{Yardstick, noise};
 use super::next_list::next_list;
 use super::not_tested::not_tested;
 use super::panel::panels_of_lists;
@@ -263,14 +263,6 @@ fn tried(all: &[Judged]) -> Vec<String> {
     names.sort_unstable();
     names.dedup();
     names.into_iter().map(str::to_owned).collect()
-}
-
-/// Rms of what the lists tell of their noise, relative to each frequency.
-pub(super) fn noise(inquiry: &Inquiry) -> f64 {
-    let blocks = inquiry.stacked.blocks.iter().map(|block| block.comparison().measured);
-    let variances: Vec<f64> =
-        blocks.flat_map(|of| (0..of.poles.len()).map(|pole| of.covariance[(pole, pole)])).collect();
-    (variances.iter().sum::<f64>() / variances.len().max(1) as f64).sqrt()
 }
 
 /// Rms error of all frequencies, and of each as the others foretell it under the hypothesis' own noise and model error \[%\]. A frequency that the

@@ -7,6 +7,7 @@ use faer::Mat;
 use crate::comparison::Comparison;
 use crate::outcome::FittedError;
 use crate::posterior::{Following, Judged, Point, Posterior, Problem};
+use crate::search::Inquiry;
 use crate::stacked::Block;
 use crate::whitening::Whitening;
 
@@ -93,4 +94,12 @@ fn groups(comparison: &Comparison) -> Vec<Vec<usize>> {
     let residues = |pole: usize| (0..records).map(move |record| comparison.residue_place(record, pole));
     let of_mode = |pole: usize| [pole].into_iter().chain(residues(pole).flat_map(|at| [at, at + 1])).collect();
     (0..comparison.measured.poles.len()).map(of_mode).collect()
+}
+
+/// Rms of what the lists tell of their noise, relative to each frequency.
+pub(super) fn noise(inquiry: &Inquiry) -> f64 {
+    let blocks = inquiry.stacked.blocks.iter().map(|block| block.comparison().measured);
+    let variances: Vec<f64> =
+        blocks.flat_map(|of| (0..of.poles.len()).map(|pole| of.covariance[(pole, pole)])).collect();
+    (variances.iter().sum::<f64>() / variances.len().max(1) as f64).sqrt()
 }

@@ -18,7 +18,6 @@ mod panel;
 mod too_few_places;
 mod weighed;
 
-pub(crate) use damping::told;
 pub(crate) use declared::{identify_lists_with_effects, identify_with_effects};
 pub(crate) use identified::PlateByModes;
 use lists::refuse_many;

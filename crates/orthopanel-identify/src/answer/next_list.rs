@@ -9,7 +9,7 @@ use crate::search::Inquiry;
 use crate::stacked::Block;
 
 use super::estimates::{Estimates, id};
-use super::lists::noise;
+use super::misfit::noise;
 use super::next_measurement::{PARTS, sensor_with};
 use super::panel::panels_of_lists;
 

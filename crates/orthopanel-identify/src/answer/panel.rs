@@ -13,12 +13,13 @@ use super::damping::TracedDamping;
 use super::estimates::Estimates;
 use crate::hypothesis::Role;
 use crate::measured::MeasuredModes;
-use crate::outcome::{Removed, TracedEffect};
+use crate::outcome::Removed;
 use crate::plate_of_ratios::widen;
 use crate::posterior::Judged;
 use crate::predicted::distinct;
 use crate::search::Inquiry;
 use crate::structures;
+use crate::traced_effect::TracedEffect;
 
 /// Key of a model's provenance under which the standard deviations of its damping ratios stand.
 const DAMPING_STD: &str = "damping_std";

@@ -4,8 +4,6 @@
 use orthopanel_data::{Motion, ReadAs, Unit};
 use orthopanel_model::{GAIN, RECORD_GAIN, Readable};
 
-use super::wording::in_which;
-
 /// What a force is taken to be in, the SI unit first.
 const FORCES: [&str; 4] = ["N", "lbf", "kN", "kgf"];
 
@@ -234,6 +232,15 @@ pub(super) fn cause_of(factor: f64) -> String {
     match mend(Factor { value: factor, derivatives: 0, std: 0.0 }, ReadAs::SI) {
         Some(Mend::Measurement(lines)) => format!("write {lines} in its [[measurement]]"),
         _ => "a gain, a unit, or the mass of the piece".to_owned(),
+    }
+}
+
+/// Where to write what mends records.
+fn in_which(records: &Option<Vec<String>>) -> String {
+    match records.as_deref() {
+        None => "each [[measurement]]".to_owned(),
+        Some([one]) => format!("the [[measurement]] of {one}"),
+        Some(several) => format!("each [[measurement]] of {}", several.join("; ")),
     }
 }
 

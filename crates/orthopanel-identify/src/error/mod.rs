@@ -5,12 +5,13 @@ use orthopanel_model::{ModelError, Readable};
 use thiserror::Error;
 
 pub(crate) use self::known_factor::{CALIBRATED, Factor, Mend, gain_of_no_unit, mend};
+pub use self::prior_contradiction::PriorContradiction;
 use self::wording::{by_factor, in_place_of, known, much_noise, other_place, untaken, which};
 pub(crate) use self::wording::{one_times, spaced};
-use crate::known_beforehand::PriorContradiction;
 use crate::least_squares::Stuck;
 
 mod known_factor;
+mod prior_contradiction;
 mod wording;
 
 /// Sampling rate over the band of an analyser, whose anti-alias filter needs the rest.

@@ -16,15 +16,6 @@ pub(super) fn much_noise(percent: Option<f64>) -> String {
     })
 }
 
-/// Where to write what mends records.
-pub(super) fn in_which(records: &Option<Vec<String>>) -> String {
-    match records.as_deref() {
-        None => "each [[measurement]]".to_owned(),
-        Some([one]) => format!("the [[measurement]] of {one}"),
-        Some(several) => format!("each [[measurement]] of {}", several.join("; ")),
-    }
-}
-
 /// The records that are meant.
 pub(super) fn which(records: &Option<Vec<String>>) -> &'static str {
     match records.as_deref() {

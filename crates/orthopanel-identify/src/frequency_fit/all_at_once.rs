@@ -9,11 +9,11 @@ use faer::prelude::Solve;
 use faer::{Mat, Side};
 use rayon::prelude::*;
 
+use super::hidden_constants::{carried, worst_hidden};
+use super::minimum::{Minimum, least_squares};
 use super::noise::Noise;
 use super::other_starts::{cost, starts};
 use super::problem::{FrequencyProblem, SetPrediction};
-use super::seen_constants::{carried, worst_hidden};
-use super::{Minimum, least_squares};
 use crate::IdentifyError;
 use crate::free_constants::{FreeConstants, Rest};
 use crate::least_squares::{Ending, Quadratic, descend};

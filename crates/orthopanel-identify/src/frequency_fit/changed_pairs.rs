@@ -1,9 +1,8 @@
 //! Pairs of lines that may have changed their names.
 
 use super::problem::{FrequencyProblem, FrequencySet, Renamed};
-use super::starting_values::SOFTNESS;
 use crate::IdentifyError;
-use crate::starting_constants::guess;
+use crate::starting_constants::{SOFTNESS, guess};
 
 /// Pairs of lines that are tried with each other's names.
 const MOST_PAIRS: usize = 8;

@@ -2,7 +2,7 @@
 
 use orthopanel_data::{ImpactTest, MeasurementData};
 
-use super::Minimum;
+use super::minimum::Minimum;
 use super::other_starts::cost;
 use super::problem::FrequencyProblem;
 use crate::IdentifyError;

@@ -1,10 +1,10 @@
 //! Which constants of a plate are free first, and where those that are not rest.
 
+use super::hidden_constants::{carried, with_freed, worst_hidden};
+use super::minimum::{Minimum, least_squares};
 use super::noise::Noise;
 use super::problem::FrequencyProblem;
-use super::seen_constants::{carried, with_freed, worst_hidden};
 use super::uncertainty::with_unseen;
-use super::{Minimum, least_squares};
 use crate::IdentifyError;
 use crate::free_constants::{FreeConstants, Rest};
 use crate::starting_constants::{USUAL_SOFTNESS, guess};

@@ -2,12 +2,12 @@
 
 use orthopanel_data::ImpactTest;
 
+use super::hidden_constants::{carried, worst_hidden};
 use super::likeliest_reading::variances_of;
+use super::minimum::{Minimum, minimise};
 use super::problem::FrequencyProblem;
 use super::reading_evidence::weighed;
-use super::seen_constants::{carried, worst_hidden};
 use super::unseen_constants::reports;
-use super::{Minimum, minimise};
 use crate::free_constants::Rest;
 use crate::{IdentifyError, NotIdentified, Search};
 

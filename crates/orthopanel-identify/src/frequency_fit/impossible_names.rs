@@ -3,10 +3,9 @@
 use orthopanel_data::ImpactTest;
 use orthopanel_model::Constant;
 
-use super::starting_values::SOFTNESS;
 use crate::IdentifyError;
 use crate::free_constants::FreeConstants;
-use crate::starting_constants::guess;
+use crate::starting_constants::{SOFTNESS, guess};
 use crate::structures::SearchedStructure;
 
 /// A mode above all lines by this factor, where one product of beam functions tells it within a quarter, was not measured: it is a

@@ -10,10 +10,9 @@ use super::problem::{FrequencyProblem, Line, Renamed};
 use super::reading_evidence::{Weighed, weighed};
 use super::starting_values::starting_values;
 use crate::free_constants::FreeConstant;
-use crate::inference::is_record;
-use crate::judge::{ODDS, TOLD};
+use crate::judge::{ODDS, TOLD, log_prior};
 use crate::measured::MeasuredModes;
-use crate::search::log_prior;
+use crate::measured::is_record;
 use crate::structures::bending_nodes;
 
 /// Readings that are taken one after the other, at most: more that does not fit is no list of these pieces.

@@ -3,7 +3,6 @@
 use faer::Side;
 
 use super::problem::FrequencyProblem;
-use super::uncertainty::rounding_variance;
 use crate::free_constants::HALF_95;
 use crate::least_squares::Linearised;
 
@@ -59,4 +58,15 @@ impl Noise {
         let square = |i: usize| (0..count).map(|k| vectors[(i, k)].powi(2) / values[k].max(floor)).sum::<f64>();
         (0..count).map(|i| (self.wide_variance() * square(i)).sqrt()).collect()
     }
+}
+
+/// Mean relative variance by rounding to the analyser's bins, where these are stated.
+pub(super) fn rounding_variance(problem: &FrequencyProblem) -> f64 {
+    let relative: Vec<f64> = problem
+        .sets
+        .iter()
+        .flat_map(|set| set.rounding.iter().zip(&set.measured))
+        .map(|(rounding, measured)| (rounding / measured).powi(2))
+        .collect();
+    if relative.is_empty() { 0.0 } else { relative.iter().sum::<f64>() / relative.len() as f64 }
 }

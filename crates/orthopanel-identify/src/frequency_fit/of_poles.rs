@@ -4,8 +4,9 @@ use std::sync::Arc;
 
 use orthopanel_model::{Boundary, Piece};
 
+use super::minimum::least_squares;
 use super::problem::{FrequencyProblem, FrequencySet};
-use super::{least_squares, seen_constants, unseen_constants};
+use super::{seen_constants, unseen_constants};
 use crate::free_constants::FreeConstants;
 use crate::least_squares::Quadratic;
 use crate::structures::{SearchedStructure, Shown};

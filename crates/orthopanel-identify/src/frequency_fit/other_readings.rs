@@ -6,17 +6,17 @@
 use orthopanel_data::ImpactTest;
 use rayon::prelude::*;
 
-use super::Minimum;
 use super::all_at_once::meets_at_once;
 use super::changed_pairs::USUAL_MISS;
+use super::minimum::Minimum;
 use super::noise::Noise;
 use super::other_starts::cost;
 use super::problem::{FrequencyProblem, Line, Renamed};
 use super::seen_constants::minimise_what_is_seen;
-use super::starting_values::{SOFTNESS, starting_values};
+use super::starting_values::starting_values;
 use crate::IdentifyError;
 use crate::free_constants::FreeConstants;
-use crate::starting_constants::guess;
+use crate::starting_constants::{SOFTNESS, guess};
 
 /// Readings that are tried, the likeliest first.
 const MOST_READINGS: usize = 24;

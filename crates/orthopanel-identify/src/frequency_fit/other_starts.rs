@@ -1,10 +1,10 @@
 //! Other starts where a fit misses: of two modes that veer each holds part of both shapes, and a search that comes from the
 //! wrong side stays on a side minimum.
 
+use super::minimum::{Minimum, least_squares};
 use super::noise::{BEYOND_CHANCE, Noise};
 use super::problem::FrequencyProblem;
 use super::seen_constants::{let_hidden_rest, prediction_error};
-use super::{Minimum, least_squares};
 use crate::free_constants::FreeConstants;
 
 /// A root mean square residual from which no start of the right modes comes.

@@ -5,10 +5,10 @@ use faer::{Mat, Side};
 use orthopanel_data::ImpactTest;
 
 use super::all_at_once::MET;
+use super::minimum::{Minimum, least_squares};
 use super::noise::{BEYOND_CHANCE, Noise};
 use super::other_starts::cost;
 use super::problem::{FrequencyProblem, SetPrediction};
-use super::{Minimum, least_squares};
 use crate::free_constants::{FreeConstant, FreeConstants};
 use crate::least_squares::Quadratic;
 

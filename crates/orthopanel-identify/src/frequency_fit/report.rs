@@ -4,10 +4,11 @@ use orthopanel_data::ImpactTest;
 
 use super::doubtful_names::neighbours_met_better;
 use super::lone_lines::lone_lines;
+use super::noise::rounding_variance;
 use super::noise::{BEYOND_CHANCE, Noise, USUAL_SCATTER};
 use super::own_constants::own_constant_that_helps;
 use super::problem::{FrequencyProblem, SetPrediction};
-use super::uncertainty::{residual_variance, rounding_variance, uncertainty};
+use super::uncertainty::{residual_variance, uncertainty};
 use crate::free_constants::FreeConstants;
 use crate::least_squares::Linearised;
 use crate::structures::Shown;

@@ -4,10 +4,8 @@ use orthopanel_model::ModelError;
 
 use super::problem::FrequencyProblem;
 use crate::IdentifyError;
-use crate::starting_constants::{USUAL_SOFTNESS, guess};
+use crate::starting_constants::{SOFTNESS, guess};
 
-/// $E_x/(k'G_{zx})$ tried, from solid metal to the softest core; first what is usual, for a single frequency fits them all.
-pub(super) const SOFTNESS: [f64; 4] = [USUAL_SOFTNESS, 2.0, 128.0, 1024.0];
 /// Factors tried on the free moduli where others are held.
 const BESIDE_HELD: [f64; 5] = [1.0, 0.25, 4.0, 0.0625, 16.0];
 /// A ratio must fit better by so much of eq. 22 to be another.

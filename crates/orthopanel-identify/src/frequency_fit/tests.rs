@@ -1,6 +1,6 @@
 //! The traps of a simplex with bounds, each met on purpose.
 
-use super::minimise;
+use super::minimum::minimise;
 use super::problem::FrequencyProblem;
 use crate::IdentifyError;
 use crate::Search;

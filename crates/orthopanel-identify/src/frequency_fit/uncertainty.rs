@@ -3,7 +3,7 @@
 use faer::linalg::solvers::DenseSolveCore;
 use faer::{Mat, Side};
 
-use super::noise::Noise;
+use super::noise::{Noise, rounding_variance};
 use super::problem::{FrequencyProblem, SetPrediction};
 use crate::Correlation;
 use crate::free_constants::RestingFreed;
@@ -72,17 +72,6 @@ pub(super) fn residual_variance(problem: &FrequencyProblem, at: &Linearised) -> 
     let beyond = problem.count().saturating_sub(problem.constants.count());
     let scatter = if beyond > 0 { at.quadratic().cost / beyond as f64 } else { 0.0 };
     scatter.max(rounding_variance(problem))
-}
-
-/// Mean relative variance by rounding to the analyser's bins, where these are stated.
-pub(super) fn rounding_variance(problem: &FrequencyProblem) -> f64 {
-    let relative: Vec<f64> = problem
-        .sets
-        .iter()
-        .flat_map(|set| set.rounding.iter().zip(&set.measured))
-        .map(|(rounding, measured)| (rounding / measured).powi(2))
-        .collect();
-    if relative.is_empty() { 0.0 } else { relative.iter().sum::<f64>() / relative.len() as f64 }
 }
 
 /// Each frequency predicted from all the others: rms of the relative errors \[%\].

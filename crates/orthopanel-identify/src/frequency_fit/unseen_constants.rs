@@ -2,7 +2,7 @@
 
 use faer::{Mat, Side};
 
-use super::Minimum;
+use super::minimum::Minimum;
 use super::noise::Noise;
 use super::problem::FrequencyProblem;
 use super::seen_constants::as_if_freed;

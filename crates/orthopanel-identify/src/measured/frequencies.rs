@@ -3,9 +3,9 @@
 use std::f64::consts::TAU;
 
 use faer::Mat;
-use orthopanel_data::NaturalFrequencies;
+use orthopanel_data::{ImpactTest, Measurement, MeasurementData, NaturalFrequencies};
 
-use super::{MeasuredModes, Pole};
+use super::{MeasuredModes, Names, Pole};
 
 impl MeasuredModes {
     /// Each frequency with the variance that its bin and its scatter give, $d^2/12 + s^2$, zero where the list states neither: what the model
@@ -35,4 +35,15 @@ impl MeasuredModes {
             order: vec![],
         }
     }
+}
+
+/// The shapes that a test file tells.
+pub(crate) fn names_told(test: &ImpactTest) -> Vec<Names> {
+    let told = |measurement: &Measurement| match &measurement.data {
+        MeasurementData::NaturalFrequencies(list) => {
+            list.shape.iter().map(|shape| Some(shape.map(|count| count as usize))).collect()
+        }
+        _ => vec![],
+    };
+    test.measurements.iter().map(told).collect()
 }

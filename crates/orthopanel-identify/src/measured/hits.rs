@@ -12,9 +12,11 @@ use super::medians::median;
 /// stays out.
 const FORCE_WINDOW: f64 = 10e-3;
 const WINDOW_EDGE: f64 = 0.2;
-/// Samples on either side of a blow that a filter before the converter rings, and that the window holds too: it passes [`FLAT`](super::records::FLAT) of
+/// Highest frequency of the band, over the sampling rate: analysers' filters are flat up to there.
+pub(super) const FLAT: f64 = 1.0 / 2.56;
+/// Samples on either side of a blow that a filter before the converter rings, and that the window holds too: it passes [`FLAT`] of
 /// the sampling rate and nothing above its half, and what falls off over a band rings some seven times as long as its reciprocal.
-const RINGS: f64 = 7.0 / (0.5 - super::records::FLAT);
+const RINGS: f64 = 7.0 / (0.5 - FLAT);
 
 /// One hit's transforms on the lines of the band, times the sampling step.
 pub(crate) struct HitSpectra {

@@ -16,20 +16,24 @@ mod modal_fit;
 mod noise_decay;
 mod pole_search;
 mod records;
+pub(crate) use frequencies::names_told;
 pub(crate) use hits::{HitSpectra, HitsOfRecord, transform};
 pub(crate) use records::SKIRT;
 mod scatter;
 mod stabilisation;
+pub(crate) fn is_record(measurement: &Measurement) -> bool {
+    measurement.data.recorded().is_some()
+}
+
 #[cfg(test)]
 mod tests;
 
 use faer::Mat;
 use num_complex::Complex64;
-use orthopanel_data::{Estimation, ImpactTest, MeasurementData, TimeHistory};
+use orthopanel_data::{Estimation, ImpactTest, Measurement, MeasurementData, TimeHistory};
 use orthopanel_model::{NamedShapes, Place, StructureKind};
 
 use crate::IdentifyError;
-use crate::shapes_of_list::names_told;
 use crate::structures;
 
 /// Poles, residues and remainders of a set of records of one piece, with their covariance.

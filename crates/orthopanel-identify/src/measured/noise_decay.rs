@@ -5,7 +5,7 @@ use std::f64::consts::FRAC_PI_2;
 use orthopanel_data::{TimeHistory, Transforms};
 use rayon::prelude::*;
 
-use super::records::FLAT;
+use super::hits::FLAT;
 
 /// Part of a record at each end that is faded in and out, or its ends' jump would be heard in all of it.
 const FADED: f64 = 0.1;

@@ -9,6 +9,7 @@ use rayon::prelude::*;
 
 use super::accelerances::UNTOLD_NOISE;
 use super::drift::Drift;
+use super::hits::FLAT;
 use super::joint_fit::{Found, LAST, fit};
 use super::lines::RecordLines;
 use super::modal_fit::{MOST_DAMPING, ModalFit, lambda};
@@ -21,8 +22,6 @@ use super::{MeasuredModes, MeasuredRecord, Pole};
 const LOWEST: f64 = 5.0;
 /// and never less than so many periods in a record.
 const LEAST_PERIODS: f64 = 6.0;
-/// Highest frequency of the band, over the sampling rate: analysers' filters are flat up to there.
-pub(super) const FLAT: f64 = 1.0 / 2.56;
 /// Half-widths of a resonance that have to lie inside the band.
 pub(crate) const SKIRT: f64 = 4.0;
 /// Most that the logarithm of a frequency may be unsure by for its mode to stand by itself.

@@ -10,7 +10,8 @@ use orthopanel_model::{Effect, Place, StructureKind};
 use rayon::prelude::*;
 
 use super::{FOLLOWED, Inquiry, LOOSE, NEAR, SMALL, constants_of_beam, logs, with_one_more};
-use crate::hypothesis::{Hypothesis, Role, has_place};
+use crate::effect_places::has_place;
+use crate::hypothesis::{Hypothesis, Role};
 use crate::judge::{ODDS, most_frequency};
 use crate::measured::Pole;
 use crate::model_error::{KINDS, Kind};

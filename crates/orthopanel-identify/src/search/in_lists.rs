@@ -3,7 +3,7 @@
 use orthopanel_model::{Action, Effect, Owner, Place};
 
 use super::Inquiry;
-use crate::hypothesis::{OF_PIECE, has_place};
+use crate::effect_places::{OF_PIECE, has_place};
 
 impl Inquiry<'_> {
     /// Whether frequencies are all that was measured.

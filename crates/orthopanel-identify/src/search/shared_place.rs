@@ -4,7 +4,8 @@ use orthopanel_model::Effect;
 use rayon::prelude::*;
 
 use super::{Inquiry, with_one_more};
-use crate::hypothesis::{Part, has_place};
+use crate::effect_places::has_place;
+use crate::hypothesis::Part;
 use crate::posterior::{Judged, Point};
 
 /// Rounds of the posterior from there.
