@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::{ModelError, PanelModel};
+use crate::ModelError;
 
 /// Correlation matrices are written with fewer digits than they are computed with.
 const TOLERANCE: f64 = 1e-6;
@@ -17,21 +17,6 @@ pub struct CorrelationMatrix {
     pub names: Vec<String>,
     /// $\rho$, a row a name: symmetric, positive semi-definite, with a diagonal of ones.
     pub matrix: Vec<Vec<f64>>,
-}
-
-impl PanelModel {
-    /// Checks the standard deviations of damping ratios, and the correlation.
-    pub(crate) fn check_covariance(&self) -> Result<(), ModelError> {
-        let (std, ratios) = (&self.damping.std, self.damping.ratios.len());
-        let not_one = |std: &Option<f64>| std.filter(|std| !(0.0..f64::INFINITY).contains(std));
-        if let Some((index, value)) = std.iter().enumerate().find_map(|(index, std)| Some((index, not_one(std)?))) {
-            return Err(ModelError::Deviation { name: format!("damping.std[{index}]"), value });
-        }
-        if !std.is_empty() && std.len() != ratios {
-            return Err(ModelError::DampingDeviations { found: std.len(), ratios });
-        }
-        self.correlation.as_ref().map_or(Ok(()), |correlation| correlation.check(self))
-    }
 }
 
 /// False of what is no number.
@@ -62,20 +47,19 @@ impl CorrelationMatrix {
         row.zip(place(second)).and_then(|(row, column)| row.get(column)).copied().unwrap_or(0.0)
     }
 
-    /// Checks names and matrix.
+    /// Checks names and matrix, of a model with as many damping ratios, and with such constants.
     ///
     /// # Errors
     /// [`ModelError::Correlation`] for a name that the model does not have or that stands twice, and for a matrix that is none of
     /// correlations.
-    pub(crate) fn check(&self, model: &PanelModel) -> Result<(), ModelError> {
+    pub(crate) fn check(&self, ratios: usize, is_constant: impl Fn(&str) -> bool) -> Result<(), ModelError> {
         let refused = |problem: String| Err(ModelError::Correlation { problem });
         let count = self.names.len();
         for (place, name) in self.names.iter().enumerate() {
-            let is_ratio = (1..=model.damping.ratios.len()).any(|mode| damping_ratio_name(mode) == *name);
-            if !is_ratio && !model.constants.contains_key(name) {
+            let is_ratio = (1..=ratios).any(|mode| damping_ratio_name(mode) == *name);
+            if !is_ratio && !is_constant(name) {
                 return refused(format!(
-                    "names[{place}] = {name:?} is neither one of its constants nor damping_ratio_1 to damping_ratio_{}",
-                    model.damping.ratios.len()
+                    "names[{place}] = {name:?} is neither one of its constants nor damping_ratio_1 to damping_ratio_{ratios}"
                 ));
             }
             if self.names.iter().take(place).any(|earlier| earlier == name) {
@@ -139,6 +123,7 @@ pub(crate) fn factor(matrix: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::PanelModel;
 
     fn model(correlation: &str) -> Result<PanelModel, ModelError> {
         PanelModel::from_json(&format!(

@@ -34,9 +34,7 @@ impl PanelModel {
     /// [`ModelError::Correlation`] as of a model file; [`ModelError::Constant`], [`ModelError::IndefiniteLaw`] or [`ModelError::Damping`] for
     /// values so far outside their bounds that of a thousand draws none lies within.
     pub fn draws(&self, count: usize, seed: u64) -> Result<Vec<Self>, ModelError> {
-        if let Some(correlation) = &self.correlation {
-            correlation.check(self)?;
-        }
+        self.check_correlation()?;
         let uncertain = self.uncertain();
         let names: Vec<String> = uncertain.iter().map(Uncertain::name).collect();
         let correlation = |(i, a): (usize, &String), (j, b): (usize, &String)| match &self.correlation {

@@ -6,8 +6,11 @@ pub const PORTS: usize = 500;
 /// Effects of a model or of a test.
 pub const EFFECTS: usize = 200;
 
-/// Damping ratios: as many as a model may have modes ([`crate::ModeRange::MOST`]).
-pub const DAMPING_RATIOS: usize = crate::ModeRange::MOST;
+/// Flexible modes ([`crate::ModeRange::MOST`]).
+pub(crate) const MODES: usize = 1000;
+
+/// Damping ratios: as many as a model may have modes.
+pub const DAMPING_RATIOS: usize = MODES;
 
 /// Characters of a name.
 pub const NAME: usize = 200;

@@ -4,6 +4,7 @@ use std::sync::{Arc, OnceLock};
 
 use crate::dense::dot;
 use crate::effects::CoupledMode;
+use crate::nodes::crossings;
 use crate::structure_modes::NaturalMode;
 use crate::{BeamMode, MindlinPlate, ModeName, Place, RitzMode, Structure};
 
@@ -105,12 +106,6 @@ fn beam_nodes(mode: &BeamMode, length: f64, number: usize) -> usize {
     let place = |index: usize| length * ((index as f64 + 0.5) / points as f64 - 0.5);
     let deflections: Vec<f64> = (0..points).map(|index| mode.deflection(place(index))).collect();
     crossings(&deflections)
-}
-
-/// How often a row of deflections changes its sign.
-pub(crate) fn crossings(deflections: &[f64]) -> usize {
-    let crosses = |pair: &&[f64]| matches!(pair, [left, right] if (*left < 0.0) != (*right < 0.0));
-    deflections.windows(2).filter(crosses).count()
 }
 
 impl NaturalMode for PanelMode {

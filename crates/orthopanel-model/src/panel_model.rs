@@ -8,7 +8,8 @@ use serde::{Deserialize, Serialize};
 use crate::CorrelationMatrix;
 use crate::limits;
 use crate::{
-    BEAM_CONSTANTS, Boundary, Constant, EffectState, ModelError, Owner, PLATE_CONSTANTS, Piece, Place, is_identifier,
+    Boundary, Damping, EffectEntry, EffectState, Estimate, ModelError, Owner, Piece, Ports, StructureKind,
+    is_identifier,
 };
 
 /// The schema that this version reads and writes.
@@ -49,136 +50,6 @@ pub struct PanelModel {
     /// Where the model comes from; free text by key.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub provenance: BTreeMap<String, serde_json::Value>,
-}
-
-/// What vibrates.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum StructureKind {
-    /// The orthotropic Timoshenko beam of the paper: constants `e_x`, `g_zx`.
-    TimoshenkoBeam,
-    /// The orthotropic Mindlin plate: constants `e_x`, `e_y`, `nu_xy`, `g_xy`, `g_yz`, `g_zx`.
-    MindlinPlate,
-}
-
-impl StructureKind {
-    /// The constants that the structure has, in the order of all its lists of values.
-    pub fn constants(self) -> &'static [Constant] {
-        match self {
-            Self::TimoshenkoBeam => &BEAM_CONSTANTS,
-            Self::MindlinPlate => &PLATE_CONSTANTS,
-        }
-    }
-
-    /// Every structure.
-    pub const ALL: [Self; 2] = [Self::TimoshenkoBeam, Self::MindlinPlate];
-
-    /// Its name in files.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::TimoshenkoBeam => "timoshenko-beam",
-            Self::MindlinPlate => "mindlin-plate",
-        }
-    }
-
-    /// Its name in sentences.
-    pub fn title(self) -> &'static str {
-        match self {
-            Self::TimoshenkoBeam => "orthotropic Timoshenko beam",
-            Self::MindlinPlate => "orthotropic Mindlin plate",
-        }
-    }
-
-    /// Whether its shapes have nodal lines along x too: then $y$ counts at a place.
-    pub fn has_modes_across(self) -> bool {
-        match self {
-            Self::TimoshenkoBeam => false,
-            Self::MindlinPlate => true,
-        }
-    }
-}
-
-/// A number, with its standard deviation where it was identified; in files `1.07e10` or `{"value", "std"}`.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-#[serde(into = "EstimateText")]
-pub struct Estimate {
-    /// The value.
-    pub value: f64,
-    /// Its standard deviation, where known.
-    pub std: Option<f64>,
-}
-
-#[derive(Serialize)]
-#[serde(untagged)]
-enum EstimateText {
-    Bare(f64),
-    Full { value: f64, std: f64 },
-}
-
-impl From<Estimate> for EstimateText {
-    fn from(estimate: Estimate) -> Self {
-        match estimate.std {
-            None => Self::Bare(estimate.value),
-            Some(std) => Self::Full { value: estimate.value, std },
-        }
-    }
-}
-
-/// Modal damping ratios $\zeta_m$ of the flexible modes in order, and one for all modes beyond the list.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Damping {
-    /// $\zeta_1, \zeta_2, \dots$ \[1\].
-    #[serde(default)]
-    pub ratios: Vec<f64>,
-    /// Standard deviation of each of `ratios` \[1\], `None` of one that is not known; empty where none is.
-    #[cfg(not(feature = "compact"))]
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub std: Vec<Option<f64>>,
-    /// Ratio of every mode after the last of `ratios` \[1\].
-    #[serde(default)]
-    pub beyond: f64,
-}
-
-impl Damping {
-    /// Damping ratio of flexible mode `mode`, counted from 1.
-    pub fn ratio(&self, mode: usize) -> f64 {
-        mode.checked_sub(1).and_then(|index| self.ratios.get(index)).copied().unwrap_or(self.beyond)
-    }
-
-    pub(crate) fn check(&self) -> Result<(), ModelError> {
-        let listed = self.ratios.iter().enumerate().map(|(index, &value)| (index + 1, value));
-        for (mode, value) in listed.chain([(0, self.beyond)]) {
-            if !(0.0..std::f64::consts::FRAC_1_SQRT_2).contains(&value) {
-                return Err(ModelError::Damping { mode, value });
-            }
-        }
-        Ok(())
-    }
-}
-
-/// Where force goes in and motion comes out.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Ports {
-    /// Places of the forces, along +z.
-    #[serde(default)]
-    pub forces: Vec<Place>,
-    /// Places of the responses, along +z.
-    #[serde(default)]
-    pub responses: Vec<Place>,
-}
-
-/// One effect of the catalogue with its parameters.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct EffectEntry {
-    /// Its id in the catalogue.
-    pub id: String,
-    /// `panel`, `rig` or `channel`.
-    pub owner: String,
-    /// Parameters by name, in SI units.
-    #[serde(flatten)]
-    pub parameters: BTreeMap<String, Estimate>,
 }
 
 impl PanelModel {
@@ -233,6 +104,28 @@ impl PanelModel {
             }
         }
         Ok(())
+    }
+
+    /// Checks the standard deviations of damping ratios, and the correlation.
+    #[cfg(not(feature = "compact"))]
+    pub(crate) fn check_covariance(&self) -> Result<(), ModelError> {
+        let (std, ratios) = (&self.damping.std, self.damping.ratios.len());
+        let not_one = |std: &Option<f64>| std.filter(|std| !(0.0..f64::INFINITY).contains(std));
+        if let Some((index, value)) = std.iter().enumerate().find_map(|(index, std)| Some((index, not_one(std)?))) {
+            return Err(ModelError::Deviation { name: format!("damping.std[{index}]"), value });
+        }
+        if !std.is_empty() && std.len() != ratios {
+            return Err(ModelError::DampingDeviations { found: std.len(), ratios });
+        }
+        self.check_correlation()
+    }
+
+    /// Checks the correlation alone.
+    #[cfg(not(feature = "compact"))]
+    pub(crate) fn check_correlation(&self) -> Result<(), ModelError> {
+        let is_constant = |name: &str| self.constants.contains_key(name);
+        let check = |of: &CorrelationMatrix| of.check(self.damping.ratios.len(), is_constant);
+        self.correlation.as_ref().map_or(Ok(()), check)
     }
 
     /// The model without the effects of rig and measuring chain, which are no part of a panel, and the ids of these.

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use crate::effects::{CoupledPanel, Even, PanelWithEffects};
+use crate::limits;
 use crate::structure_modes::NaturalMode as _;
 use crate::{
     BeamConstants, BeamMode, EffectSetting, EffectState, ExactBeam, MindlinPlate, ModalModel, ModelError, Owner,
@@ -21,7 +22,7 @@ pub enum ModeRange {
 
 impl ModeRange {
     /// Most flexible modes that one model may have; a plate has as many as its basis resolves, which are fewer.
-    pub const MOST: usize = 1000;
+    pub const MOST: usize = limits::MODES;
 
     /// The range, if it has a meaning. What a plate holds its basis tells.
     pub(crate) fn checked(self, structure: StructureKind) -> Result<Self, ModelError> {

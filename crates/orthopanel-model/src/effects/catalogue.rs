@@ -1,11 +1,11 @@
 //! All effects by their ids: a new one is a file beside this and a line below.
 
 use super::{
-    Effect, channel_delay, cubic_stiffness, edge_mass, exponential_window, gain, hammer_offset, high_pass, local_mass,
-    position_error, record_gain, resonator, rotary_inertia, sensor_mass, sensor_resonance, size_error, stiffness_loss,
-    support_compliance, suspension, viscoelastic_core, width_coupling,
+    Effect, EffectState, channel_delay, cubic_stiffness, edge_mass, exponential_window, gain, hammer_offset, high_pass,
+    local_mass, position_error, record_gain, resonator, rotary_inertia, sensor_mass, sensor_resonance, size_error,
+    stiffness_loss, support_compliance, suspension, viscoelastic_core, width_coupling,
 };
-use crate::ModelError;
+use crate::{EffectEntry, ModelError};
 
 static CATALOGUE: [&dyn Effect; 20] = [
     &sensor_mass::SensorMass,
@@ -44,6 +44,33 @@ pub fn effect(id: &str) -> Result<&'static dyn Effect, ModelError> {
         id: id.into(),
         known: CATALOGUE.iter().map(|effect| effect.id()).collect::<Vec<_>>().join(", "),
     })
+}
+
+impl EffectState {
+    /// From an entry of a model file; a parameter that the file leaves out keeps the value it is held at.
+    ///
+    /// # Errors
+    /// [`ModelError::UnknownEffect`], [`ModelError::EffectText`] for a wrong owner or a parameter that is missing or unknown.
+    pub fn from_entry(entry: &EffectEntry) -> Result<Self, ModelError> {
+        let effect = effect(&entry.id)?;
+        let wrong = |what: String| Err(ModelError::EffectText { effect: effect.id(), what });
+        if entry.owner != effect.owner().name() {
+            return wrong(format!("owner = {:?}, it belongs to the {}", entry.owner, effect.owner().name()));
+        }
+        let known = effect.parameters();
+        if let Some(name) = entry.parameters.keys().find(|name| !known.iter().any(|known| known.name == **name)) {
+            let names: Vec<_> = known.iter().map(|parameter| parameter.name).collect();
+            return wrong(format!("{name} is no parameter of it: it has {}", names.join(", ")));
+        }
+        let mut values = Vec::new();
+        for parameter in known {
+            match entry.parameters.get(parameter.name).map(|estimate| estimate.value).or(parameter.held_at) {
+                Some(value) => values.push(value),
+                None => return wrong(format!("{} is missing", parameter.name)),
+            }
+        }
+        Self::new(effect, values, 1)
+    }
 }
 
 #[cfg(test)]

@@ -9,14 +9,14 @@ use super::coupled_system::{FoundMode, System};
 use super::foot::{more_yield, on_feet, port};
 use super::known::{Known, known_or};
 use super::low_modes::{Asked, FarAnswers, LowModes};
-use super::modified_panel::OwnModes;
+use super::own_modes::OwnModes;
 use super::row::{Row, SharedStructure};
 use super::spread_effects::SpreadEffects;
 use super::wide_plate::{Summed, WidePlates};
 use super::{Action, CoreModulus, EffectSetting, EffectState, ElementLaw, PointElement, Seat, ShearPatch};
 use crate::dense::product;
 use crate::mindlin_plate::PlateTerms;
-use crate::panel_mode::crossings;
+use crate::nodes::crossings;
 use crate::structure::{Motion, ShearMoment, Structure};
 use crate::{
     BeamTerms, Boundary, Damping, MindlinPlate, ModeName, ModelError, Piece, Place, RitzMode, TimoshenkoBeam,

@@ -8,6 +8,7 @@ use faer::Mat;
 use super::beam_base::BeamBase;
 use super::coupled_panel::{Even, ModifiedStructure, PanelWithEffects, elements, row as at_row};
 use super::coupled_system::{FoundMode, System};
+use super::own_modes::OwnModes;
 use super::row::Row;
 use super::spread_effects::SpreadEffects;
 use super::wide_plate::WidePlates;
@@ -57,16 +58,6 @@ pub struct SeenModes {
     pub own: OwnModes,
     /// Whether anything stands on a foot, whose side moves them.
     pub on_feet: bool,
-}
-
-/// Modes of a plate without what stands on it, but with its patches: a patch has lost the damping that goes with its stiffness, so that these do not couple.
-/// The shapes beyond the modes, under what stands there and under the ports, have modes of their own among them, so that shares are complete.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct OwnModes {
-    /// $\Omega_m$ \[rad/s\]; none where nothing stands on the plate.
-    pub angular_frequency: Vec<f64>,
-    /// Of each mode with what stands there its shares of these.
-    pub shares: Vec<Vec<f64>>,
 }
 
 impl ModifiedPanel {

@@ -1,7 +1,7 @@
 //! Effects that are switched on, with the values of their parameters.
 
-use super::{Action, Effect, EffectParameter, EffectSetting, effect};
-use crate::{EffectEntry, ModelError};
+use super::{Action, Effect, EffectParameter, EffectSetting};
+use crate::ModelError;
 
 /// An effect that is switched on, at some values of its parameters.
 #[derive(Clone)]
@@ -67,30 +67,5 @@ impl EffectState {
             let what = format!("{} = {value}: a beam has its effects on its centre line, leave it out", parameter.name);
             Err(ModelError::EffectText { effect: self.effect.id(), what })
         })
-    }
-
-    /// From an entry of a model file; a parameter that the file leaves out keeps the value it is held at.
-    ///
-    /// # Errors
-    /// [`ModelError::UnknownEffect`], [`ModelError::EffectText`] for a wrong owner or a parameter that is missing or unknown.
-    pub fn from_entry(entry: &EffectEntry) -> Result<Self, ModelError> {
-        let effect = effect(&entry.id)?;
-        let wrong = |what: String| Err(ModelError::EffectText { effect: effect.id(), what });
-        if entry.owner != effect.owner().name() {
-            return wrong(format!("owner = {:?}, it belongs to the {}", entry.owner, effect.owner().name()));
-        }
-        let known = effect.parameters();
-        if let Some(name) = entry.parameters.keys().find(|name| !known.iter().any(|known| known.name == **name)) {
-            let names: Vec<_> = known.iter().map(|parameter| parameter.name).collect();
-            return wrong(format!("{name} is no parameter of it: it has {}", names.join(", ")));
-        }
-        let mut values = Vec::new();
-        for parameter in known {
-            match entry.parameters.get(parameter.name).map(|estimate| estimate.value).or(parameter.held_at) {
-                Some(value) => values.push(value),
-                None => return wrong(format!("{} is missing", parameter.name)),
-            }
-        }
-        Self::new(effect, values, 1)
     }
 }

@@ -3,15 +3,11 @@
 use faer::Mat;
 use num_complex::Complex64;
 
-use super::far_modes;
+use super::far_modes::{self, SERIES_TERMS};
 use super::modal_base::ModalBase;
 use crate::ModelError;
 use crate::dense::product;
 use crate::effects::row::Row;
-
-/// Terms of the series in $s^2$ that stands for the modes above the sum. Where these begin at 2.5 times the band, six
-/// leave 2e-5 of a part that is small itself.
-pub(super) const SERIES_TERMS: usize = 6;
 
 /// Where what stands in a [`View`].
 #[derive(Debug, Clone, Copy, PartialEq)]
