@@ -8,14 +8,26 @@ use orthopanel_model::Readable;
 
 use crate::error::Error;
 use crate::force_file::ForceHistory;
+use crate::motion::Motion;
 use crate::notes::note;
 use crate::observer::Observer;
-use crate::time_response::{Hold, Motion};
 
 /// Greatest departure of a sample's time from an even grid, over the step: what printed times lose by rounding.
 const UNEVEN: f64 = 1e-3;
 /// Greatest difference of the last force from the first, over the peak, that is passed over in silence.
 const JUMP: f64 = 0.01;
+
+/// How a force runs between two samples.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Hold {
+    /// In a straight line from sample to sample.
+    #[default]
+    Linear,
+    /// As the smooth function without content above half the rate.
+    BandLimited,
+    /// At the value of the earlier sample.
+    Held,
+}
 
 /// Forces that are held, or that run in straight lines, from one instant of `stepped` to the next.
 pub struct DrivingForce {

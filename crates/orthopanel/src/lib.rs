@@ -8,10 +8,12 @@ mod identified;
 mod interruption;
 pub mod lot;
 mod model;
+mod motion;
 mod observer;
 mod provenance;
 mod report;
 mod run;
+mod suffixes;
 mod test;
 mod traced;
 

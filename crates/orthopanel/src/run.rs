@@ -10,15 +10,17 @@ use serde::Serialize;
 
 use crate::analysis::{Analysis, Found};
 use crate::driving_force::DrivingForce;
+use crate::driving_force::Hold;
 use crate::error::InFile as _;
 use crate::evidence::PieceEvidence;
 use crate::force_file::ForceHistory;
-use crate::identified::{Answer, suffixes};
+use crate::identified::Answer;
 use crate::measured_pairs::{HitMisfit, misfit_table};
 use crate::observer::{Observer, Steps};
 use crate::outputs::{self, Inputs, Outputs};
 use crate::provenance::{Provenance, WithProvenance};
-use crate::time_response::{self, Hold};
+use crate::suffixes::suffixes;
+use crate::time_response;
 use crate::{Error, Silent, Test, json, pictures};
 
 /// How many modes go into an FMU or a simulation, beside the rigid ones, unless said.

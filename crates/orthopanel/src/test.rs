@@ -3,10 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use orthopanel_data::{ImpactTest, Measurement};
-use orthopanel_identify::Settings;
 
-use crate::identified::suffixes;
-use crate::{Error, Identified, Observer, Silent, Traced, given_file};
+use crate::suffixes::suffixes;
+use crate::{Error, given_file};
 
 /// What messages call a test without a file.
 const IN_MEMORY: &str = "the test in memory";
@@ -109,47 +108,5 @@ impl Test {
     /// As the test was named.
     pub fn path(&self) -> &Path {
         &self.path
-    }
-
-    /// The constants of the panel, and its damping where there are records.
-    ///
-    /// # Errors
-    /// [`Error::Identify`]; [`Error::says_no`] tells data that contradict the model from a test that is not as it should be.
-    pub fn identify(&self) -> Result<Identified, Error> {
-        self.identify_with(Settings::default(), &Silent)
-    }
-
-    /// As [`Test::identify`], with other settings, and told to an observer.
-    ///
-    /// # Errors
-    /// As [`Test::identify`], and [`Error::Interrupted`] where the observer asks for it.
-    pub fn identify_with(&self, settings: Settings, observer: &dyn Observer) -> Result<Identified, Error> {
-        Identified::of(self, settings, observer)
-    }
-
-    /// The effect that the model lacks.
-    ///
-    /// # Errors
-    /// [`Error::Identify`].
-    ///
-    /// # Examples
-    /// ```
-    /// let test = orthopanel::Test::load("../../examples/piece-1/test.toml")?;
-    /// let why = test.trace()?;
-    /// println!("{}", why.text());
-    /// let error = &why.tracing().error;
-    /// assert!(error.after.fitted <= error.before.fitted);
-    /// # Ok::<(), orthopanel::Error>(())
-    /// ```
-    pub fn trace(&self) -> Result<Traced, Error> {
-        self.trace_with(None, &Silent)
-    }
-
-    /// As [`Test::trace`], against a sound panel of the same make where there is one, and told to an observer.
-    ///
-    /// # Errors
-    /// [`Error::Identify`], and [`Error::Interrupted`] where the observer asks for it.
-    pub fn trace_with(&self, reference: Option<&Test>, observer: &dyn Observer) -> Result<Traced, Error> {
-        Traced::of(self, reference, observer)
     }
 }

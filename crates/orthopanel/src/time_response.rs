@@ -3,38 +3,12 @@
 use orthopanel_model::{Attachments, ModalModel, ModalStepper, ModeRange, ModelError, PanelModel, Ports, TimeModel};
 use serde::Serialize;
 
+pub use crate::driving_force::Hold;
+pub use crate::motion::Motion;
+
 use crate::driving_force::DrivingForce;
 use crate::force_file::ForceHistory;
 use crate::{csv_text, json};
-
-/// How a force runs between two samples.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Hold {
-    /// In a straight line from sample to sample.
-    #[default]
-    Linear,
-    /// As the smooth function without content above half the rate.
-    BandLimited,
-    /// At the value of the earlier sample.
-    Held,
-}
-
-/// What one response place does, sample by sample.
-#[derive(Debug, Clone, Default)]
-pub struct Motion {
-    /// \[m/s²\]
-    pub acceleration: Vec<f64>,
-    /// \[m/s\]
-    pub velocity: Vec<f64>,
-    /// \[m\]
-    pub displacement: Vec<f64>,
-}
-
-impl Motion {
-    pub fn peak_acceleration(&self) -> f64 {
-        self.acceleration.iter().fold(0.0, |peak, value| peak.max(value.abs()))
-    }
-}
 
 /// Sizes of the steps between samples; samples that are even but for the rounding of their times get one size, since a
 /// stepper is quick only while its step stays the same.

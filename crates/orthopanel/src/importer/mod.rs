@@ -25,9 +25,10 @@ use self::log::Log;
 use crate::driving_force::DrivingForce;
 use crate::error::Error;
 use crate::fmu_refusal::{FmuRefusal, shown};
+use crate::motion::Motion;
 use crate::notes::note;
 use crate::observer::Observer;
-use crate::time_response::{Motion, steps};
+use crate::time_response::steps;
 
 /// Whether the file is an FMU: by its content a zip archive, as every FMU is.
 ///

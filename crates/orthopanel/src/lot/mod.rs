@@ -7,6 +7,7 @@ mod page;
 mod random_effects;
 mod row;
 mod table;
+mod table_error;
 
 pub use batch::{Batch, tests_in};
 pub use control_chart::ControlChart;
@@ -14,5 +15,5 @@ pub use file::{content, known, load, save};
 pub use page::page;
 pub use random_effects::{Measured, RandomEffects};
 pub use row::LotRow;
-pub use table::TableError;
 use table::{Format, read, written};
+pub use table_error::TableError;

@@ -16,9 +16,8 @@ use parquet::file::reader::{FileReader as _, SerializedFileReader};
 use parquet::file::writer::SerializedFileWriter;
 use parquet::record::Field;
 use parquet::schema::parser::parse_message_type;
-use thiserror::Error;
 
-use super::LotRow;
+use super::{LotRow, TableError};
 
 /// How a table lies in a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -27,21 +26,6 @@ pub enum Format {
     Csv,
     /// Apache Parquet, one row group, not compressed.
     Parquet,
-}
-
-/// A table that is none of a lot's.
-#[derive(Debug, Error)]
-#[non_exhaustive]
-pub enum TableError {
-    /// An ending that names no format.
-    #[error("the lot is written as .csv or .parquet: give its name one of these endings")]
-    Ending,
-    /// A file that is broken, or of another kind.
-    #[error("no lot's table: {problem}: `orthopanel batch TEST.. -o LOT` writes one")]
-    Broken {
-        /// What is wrong.
-        problem: String,
-    },
 }
 
 impl Format {

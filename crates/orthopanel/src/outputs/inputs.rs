@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use orthopanel_data::{ImpactTest, limits};
 
-use super::manifest::sha256_of;
+use super::sha256::sha256_of;
 use crate::{Error, Test};
 
 /// All files that a command reads, each once.

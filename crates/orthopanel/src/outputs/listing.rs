@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use super::inputs::is_same;
 use super::manifest::{self, Listed, Manifest};
 use super::replacement::Replacement;
+use super::sha256::sha256_of;
 use super::{Outputs, with_suffix};
 use crate::error::Error;
 
@@ -54,7 +55,7 @@ impl Outputs {
                 let known = earlier.iter().filter(|listed| listed.file == file.file).chain([file]);
                 known.into_iter().any(|listed| listed.sha256 == *sha256)
             };
-            if manifest::sha256_of(destination).is_ok_and(|sha256| !is_known(&sha256)) {
+            if sha256_of(destination).is_ok_and(|sha256| !is_known(&sha256)) {
                 let kept = free_name(|number| edited(destination, number));
                 replacement.copy(destination, &kept)?;
                 let (path, kept) = (path.display(), kept.display());
@@ -88,7 +89,7 @@ impl Outputs {
             if !is_file || destinations.iter().any(|destination| is_same(destination, &path)) {
                 continue;
             }
-            let sha256 = manifest::sha256_of(&path).ok();
+            let sha256 = sha256_of(&path).ok();
             let is_as_left =
                 earlier.iter().any(|listed| listed.file == name && Some(&listed.sha256) == sha256.as_ref());
             if is_as_left && self.inputs.at(&path).is_none() {

@@ -11,6 +11,7 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest as _, Sha256};
 
 use super::inputs::Inputs;
+use super::sha256::hexadecimal;
 use crate::error::Error;
 use crate::json;
 
@@ -111,20 +112,6 @@ impl Listed {
         let name = Path::new(&self.file);
         (name.file_name() == Some(name.as_os_str()) && !self.file.contains(['/', '\\', ':'])).then_some(&self.file)
     }
-}
-
-pub fn sha256_of(path: &Path) -> std::io::Result<String> {
-    let (mut file, mut hash, mut part) = (std::fs::File::open(path)?, Sha256::new(), vec![0; 1 << 16]);
-    loop {
-        match file.read(&mut part)? {
-            0 => return Ok(hexadecimal(hash.finalize().as_slice())),
-            length => hash.update(part.get(..length).unwrap_or_default()),
-        }
-    }
-}
-
-fn hexadecimal(bytes: &[u8]) -> String {
-    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 #[cfg(test)]

@@ -11,6 +11,7 @@ mod inputs;
 mod listing;
 mod manifest;
 mod replacement;
+mod sha256;
 mod streams;
 
 use std::ffi::OsString;

@@ -6,7 +6,7 @@ use super::curve::curve;
 use super::{FONT, GRID, LAST_LABEL, MEASURED, MODEL, spaced, stacked};
 use crate::error::Error;
 use crate::force_file::ForceHistory;
-use crate::time_response::Motion;
+use crate::motion::Motion;
 
 /// How much of the response is drawn \[ms\]: later the ringing is a solid band.
 const SHOWN: f64 = 20.0;

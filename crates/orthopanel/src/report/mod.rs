@@ -14,6 +14,7 @@ use orthopanel_model::printable;
 use crate::error::Error;
 use crate::evidence::{Evidence, HitsWithEffects};
 use crate::identified::Identified;
+use crate::observer::Observer;
 use crate::traced::Traced;
 use crate::{Test, notes};
 use measured_modes::MeasuredModesSection;
@@ -56,6 +57,16 @@ const SUPERSEDED: &str = "These are the constants of the base model, before effe
 const MADE_BY: &str = concat!("Written by orthopanel ", env!("CARGO_PKG_VERSION"));
 const TRACED_ALONE: &str =
     "The records were traced all the same: from the best that a beam can do with them, for what it lacks.";
+
+impl Identified {
+    /// One HTML page of the test, which needs no network and nothing beside it, with what was traced or why nothing was.
+    ///
+    /// # Errors
+    /// [`Error::Data`] where records cannot be read any more, [`Error::Picture`].
+    pub fn page(&self, traced: Result<&Traced, &str>, observer: &dyn Observer) -> Result<String, Error> {
+        page(self, traced, &Evidence::of(self, traced.ok(), observer)?)
+    }
+}
 
 /// The page of a test.
 pub fn page(identified: &Identified, traced: Result<&Traced, &str>, evidence: &Evidence) -> Result<String, Error> {

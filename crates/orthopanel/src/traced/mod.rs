@@ -32,6 +32,34 @@ pub struct Traced {
     pub(crate) tracing: Tracing,
 }
 
+impl Test {
+    /// The effect that the model lacks.
+    ///
+    /// # Errors
+    /// [`Error::Identify`].
+    ///
+    /// # Examples
+    /// ```
+    /// let test = orthopanel::Test::load("../../examples/piece-1/test.toml")?;
+    /// let why = test.trace()?;
+    /// println!("{}", why.text());
+    /// let error = &why.tracing().error;
+    /// assert!(error.after.fitted <= error.before.fitted);
+    /// # Ok::<(), orthopanel::Error>(())
+    /// ```
+    pub fn trace(&self) -> Result<Traced, Error> {
+        self.trace_with(None, &Silent)
+    }
+
+    /// As [`Test::trace`], against a sound panel of the same make where there is one, and told to an observer.
+    ///
+    /// # Errors
+    /// [`Error::Identify`], and [`Error::Interrupted`] where the observer asks for it.
+    pub fn trace_with(&self, reference: Option<&Test>, observer: &dyn Observer) -> Result<Traced, Error> {
+        Traced::of(self, reference, observer)
+    }
+}
+
 impl Traced {
     /// Traces, against a sound panel of the same make where there is one; says what was noted.
     pub(crate) fn of(test: &Test, reference: Option<&Test>, observer: &dyn Observer) -> Result<Self, Error> {
