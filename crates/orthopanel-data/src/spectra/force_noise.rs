@@ -1,6 +1,6 @@
 //! What the noise of the force's own channel does to an averaged line.
 
-use super::{estimate::Estimator, spectrum::Sums, window::Window};
+use super::{estimation::Estimator, spectrum::Sums, window::Window};
 
 /// The part of an accelerance's errors that comes from the noise of the force under a force window.
 ///

@@ -2,7 +2,7 @@
 
 use num_complex::Complex64;
 
-use super::{blow::Blow, hit::Hit, scatter::NoisePower, transforms::Transforms, window::Window};
+use super::{blow::Blow, hit::Hit, noise_power::NoisePower, transforms::Transforms, window::Window};
 
 /// Sums over hits of $|F|^2$, $|A|^2$ and $\bar F A$, line by line from 0 to half the rate.
 pub(super) struct Sums {

@@ -2,6 +2,7 @@
 
 use super::{
     cursor::Cursor,
+    fortran::{number, plain_number},
     header::{Header, Layout},
     shortened,
 };
@@ -120,20 +121,6 @@ fn split_at_signs(line: &str) -> impl Iterator<Item = &str> {
             (0..joined.len()).filter(|&index| index == 0 || (sign(index) && !exponent(index - 1))).collect();
         let ends: Vec<usize> = starts.iter().skip(1).copied().chain([joined.len()]).collect();
         starts.into_iter().zip(ends).filter_map(|(from, to)| joined.get(from..to))
-    })
-}
-
-/// A number with `e` or Fortran's `d` before its exponent.
-fn plain_number(text: &str) -> Option<f64> {
-    text.parse().ok().or_else(|| text.replace(['d', 'D'], "e").parse().ok())
-}
-
-/// A number whose exponent may have lost its letter: Fortran prints 1e-100 as `0.10000-099` where columns are few.
-pub(in crate::records) fn number(text: &str) -> Option<f64> {
-    plain_number(text).or_else(|| {
-        let sign = text.rfind(['+', '-']).filter(|&at| at > 0)?;
-        let (mantissa, exponent) = text.split_at_checked(sign)?;
-        format!("{mantissa}e{exponent}").parse().ok()
     })
 }
 

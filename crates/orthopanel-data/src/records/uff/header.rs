@@ -2,7 +2,7 @@
 
 use orthopanel_model::Readable;
 
-use super::{cursor::Cursor, field, ports, shortened};
+use super::{cursor::Cursor, field, fortran, ports, shortened};
 use crate::{
     DataError,
     records::{Axis, Port},
@@ -167,8 +167,8 @@ impl Form {
             data_type: data_type.parse().ok()?,
             points: points.parse().ok()?,
             spacing: spacing.parse().ok()?,
-            start: super::ascii::number(start)?,
-            step: super::ascii::number(step)?,
+            start: fortran::number(start)?,
+            step: fortran::number(step)?,
             step_digits: significant_digits(step),
         })
     }

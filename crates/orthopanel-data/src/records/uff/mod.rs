@@ -7,6 +7,7 @@
 mod ascii;
 mod binary;
 mod cursor;
+mod fortran;
 mod header;
 mod nodes;
 mod ports;
@@ -22,8 +23,8 @@ use super::{
     may_be_read,
 };
 use crate::{DataError, Location, limits};
-pub(super) use ascii::number;
 use cursor::Cursor;
+pub(super) use fortran::number;
 use header::{Encoding, Header};
 
 /// What is read, for messages.

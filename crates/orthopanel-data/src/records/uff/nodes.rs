@@ -1,6 +1,6 @@
 //! Datasets 15 and 2411: where the nodes are.
 
-use super::{ascii, cursor::Cursor, field};
+use super::{cursor::Cursor, field, fortran};
 use crate::{
     limits,
     records::{Node, may_be_read},
@@ -23,8 +23,9 @@ pub(super) fn read(cursor: &mut Cursor, dataset: u32, metre: f64, nodes: &mut Ve
                 continue;
             }
         }
-        let place =
-            |axis: usize| field(&text, first + axis * width, width).and_then(ascii::number).map(|value| metre * value);
+        let place = |axis: usize| {
+            field(&text, first + axis * width, width).and_then(fortran::number).map(|value| metre * value)
+        };
         if let (Some(number), Some(x), Some(y), Some(z)) = (number.take(), place(0), place(1), place(2))
             && [x, y, z].into_iter().all(may_be_read)
             && nodes.len() < limits::RECORDS

@@ -1,6 +1,6 @@
 //! Dataset 164: the units of all that follows in the file.
 
-use super::{ascii, cursor::Cursor, field};
+use super::{cursor::Cursor, field, fortran};
 use crate::{DataError, records::UnitSystem};
 
 /// The unit systems by their codes, for files that print no factors: units of length and force a metre and a newton.
@@ -42,7 +42,7 @@ pub(super) fn read(cursor: &mut Cursor) -> Result<UnitSystem, DataError> {
     let by_columns = [field(second, 0, 25), field(second, 25, 25)];
     let mut by_blanks = second.split_whitespace();
     let by_blanks = [by_blanks.next(), by_blanks.next()];
-    let numbers = |texts: [Option<&str>; 2]| match texts.map(|text| text.and_then(ascii::number)) {
+    let numbers = |texts: [Option<&str>; 2]| match texts.map(|text| text.and_then(fortran::number)) {
         [Some(length), Some(force)] if length.is_normal() && length > 0.0 && force.is_normal() && force > 0.0 => {
             Some((length, force))
         }
