@@ -3,9 +3,10 @@
 use std::fmt::Write as _;
 
 use orthopanel_fmu::{GENERATOR, Resource, Variable};
-use orthopanel_model::{ModalModel, printable};
+use orthopanel_model::ModalModel;
 
 use crate::acceleration_band::Band;
+use crate::html::escaped;
 use crate::origin::Origin;
 use crate::{FmiVersion, FmuOptions, drawing};
 
@@ -276,7 +277,3 @@ const BESIDE_CORE: &str = " At rest the core has its low modulus: where it has s
      error of its fit, and what they lack holds how far the frequencies of these modes move on a larger basis.";
 const LEFT_OUT_TABLE: &str =
     "</p>\n<table>\n<tr><th>static part of the modes left out</th><th>motion within 1 %</th></tr>\n";
-
-pub(crate) fn escaped(text: &str) -> String {
-    quick_xml::escape::escape(printable(text)).into_owned()
-}

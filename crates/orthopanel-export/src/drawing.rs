@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use orthopanel_fmu::Resource;
 use orthopanel_model::{Boundary, End, Piece, Place};
 
-use crate::documentation::escaped;
+use crate::html::escaped;
 
 /// The longer side on the page, in its units, and the room around for names.
 const SIDE: f64 = 560.0;

@@ -3,64 +3,15 @@
 use std::io::Write;
 use std::path::Path;
 
-use orthopanel_fmu::{
-    Connections, FmuError, PortNames, RESOURCE_FILE, Residual, Resource, VariableTable, content_token,
-};
+use orthopanel_fmu::{FmuError, PortNames, RESOURCE_FILE, Resource, VariableTable, content_token};
 use orthopanel_model::{CoreFit, ModalModel, ModeRange, PanelModel, Ports, is_identifier};
 
 use crate::acceleration_band::AccelerationBands;
 use crate::archive::{Entry, pack};
-use crate::documentation;
 use crate::origin::Origin;
 use crate::reference::Reference;
-use crate::{ExportError, Library, frequency_doubt, library, model_description, terminals};
-
-/// Version of the FMI standard.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub enum FmiVersion {
-    /// FMI 2.0, the one that most importers read.
-    #[default]
-    Fmi2,
-    /// FMI 3.0.
-    Fmi3,
-}
-
-/// How an FMU is made.
-#[derive(Debug, Clone, PartialEq)]
-pub struct FmuOptions {
-    /// Model name, model identifier and file name of the library: importers tell FMUs apart by it, so two in one vehicle have two. A name
-    /// as in C.
-    pub name: String,
-    /// One line on what it is.
-    pub description: String,
-    /// Version of the standard.
-    pub version: FmiVersion,
-    /// All forces as one array and each kind of output as another, not a variable each; FMI 3.0 alone has arrays.
-    pub arrays: bool,
-    /// Names of the ports, which stand in those of variables.
-    pub names: PortNames,
-    /// What stands for the modes left out.
-    pub residual: Residual,
-    /// Mounts, and inputs and outputs beside those of the ports.
-    pub connections: Connections,
-    /// Libraries of other platforms, or one in place of this platform's own.
-    pub libraries: Vec<Library>,
-}
-
-impl Default for FmuOptions {
-    fn default() -> Self {
-        Self {
-            name: "panel".into(),
-            description: "Panel: force in, acceleration, velocity and displacement out".into(),
-            version: FmiVersion::Fmi2,
-            arrays: false,
-            names: PortNames::default(),
-            residual: Residual::default(),
-            connections: Connections::default(),
-            libraries: Vec::new(),
-        }
-    }
-}
+use crate::{ExportError, frequency_doubt, library, model_description, terminals};
+use crate::{FmiVersion, FmuOptions, documentation};
 
 const ICON_PNG: &[u8] = include_bytes!("../icons/panel.png");
 const ICON_SVG: &[u8] = include_bytes!("../icons/panel.svg");
@@ -182,7 +133,7 @@ impl Fmu {
             documentation: documentation::write(resource, &alone, origin.as_ref(), options),
             reference: Reference::of(resource, experiment.0).map_err(FmuError::from)?,
             terminals: terminals::write(resource)?,
-            libraries: library::all(options, &options.libraries)?,
+            libraries: library::all(options.version, &options.name, &options.libraries)?,
             resource: text,
             resource_in_scalars,
             options: options.clone(),

@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 use orthopanel_fmu::RESOURCE_SCHEMA;
 
-use crate::{ExportError, FmiVersion, FmuOptions};
+use crate::{ExportError, FmiVersion};
 
 /// The library, built with this crate.
 pub(crate) const EMBEDDED: &[u8] = include_bytes!(env!("ORTHOPANEL_FMU_LIBRARY"));
@@ -75,9 +75,9 @@ impl Platform {
     }
 
     /// Place of its library inside the archive.
-    pub(crate) fn path(self, FmuOptions { version, name, .. }: &FmuOptions) -> String {
+    pub(crate) fn path(self, version: FmiVersion, name: &str) -> String {
         let own = self.known().and_then(|known| known.fmi2);
-        let folder = own.filter(|_| *version == FmiVersion::Fmi2).map_or_else(|| self.to_string(), String::from);
+        let folder = own.filter(|_| version == FmiVersion::Fmi2).map_or_else(|| self.to_string(), String::from);
         let extension = match self.system {
             System::Linux => "so",
             System::Windows => "dll",
@@ -167,11 +167,11 @@ impl Library {
     }
 }
 
-/// Path and content of every library of an FMU: those given, and those carried for platforms that none is given for.
+/// Path and content of every library of an FMU of this name: those given, and those carried for platforms that none is given for.
 ///
 /// # Errors
 /// [`ExportError::Library`] where two are for one platform.
-pub(crate) fn all(options: &FmuOptions, given: &[Library]) -> Result<Vec<(String, Vec<u8>)>, ExportError> {
+pub(crate) fn all(version: FmiVersion, name: &str, given: &[Library]) -> Result<Vec<(String, Vec<u8>)>, ExportError> {
     for (index, library) in given.iter().enumerate() {
         if given.iter().take(index).any(|before| before.platform == library.platform) {
             let reason = "it is given twice: leave one out".into();
@@ -179,7 +179,7 @@ pub(crate) fn all(options: &FmuOptions, given: &[Library]) -> Result<Vec<(String
         }
     }
     let own = carried().filter(|(platform, _)| given.iter().all(|library| library.platform != *platform));
-    let own = own.map(|(platform, content)| (platform.path(options), content.to_vec()));
-    let given = given.iter().map(|library| (library.platform.path(options), library.content.clone()));
+    let own = own.map(|(platform, content)| (platform.path(version, name), content.to_vec()));
+    let given = given.iter().map(|library| (library.platform.path(version, name), library.content.clone()));
     Ok(own.chain(given).collect())
 }

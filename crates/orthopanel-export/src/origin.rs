@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 use orthopanel_model::{Boundary, CoreFit, EffectEntry, Estimate, PanelModel, VISCOELASTIC_CORE, effect};
 
 use crate::acceleration_band::AccelerationBands;
-use crate::documentation::escaped;
+use crate::html::escaped;
 
 /// What the page tells of the panel behind the modes.
 pub(crate) struct Origin<'a> {
