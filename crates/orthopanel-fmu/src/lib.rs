@@ -19,6 +19,7 @@ mod logging;
 mod nominals;
 mod panel;
 mod port_names;
+mod residual;
 mod resource;
 mod resource_location;
 mod variables;
@@ -30,5 +31,6 @@ pub use capabilities::{
 pub use connections::{Connections, Mount};
 pub use error::FmuError;
 pub use port_names::PortNames;
-pub use resource::{GENERATOR, RESOURCE_FILE, RESOURCE_SCHEMA, Residual, Resource, content_token};
+pub use residual::Residual;
+pub use resource::{GENERATOR, RESOURCE_FILE, RESOURCE_SCHEMA, Resource, content_token};
 pub use variables::{Array, Dependency, Factor, Quantity, UNITS, Unit, Variable, VariableTable};

@@ -9,7 +9,7 @@ use sha2::{Digest, Sha256};
 
 use crate::connections::{Connections, Input, Layout, Output, Signal, value};
 use crate::panel::{Panel, Solution};
-use crate::{FmuError, PortNames, VariableTable};
+use crate::{FmuError, PortNames, Residual};
 
 /// The file's name in `resources/`.
 pub const RESOURCE_FILE: &str = "panel.json";
@@ -23,16 +23,6 @@ pub const GENERATOR: &str = concat!("orthopanel ", env!("CARGO_PKG_VERSION"));
 /// Modes of a resource at most, internal variables of a core counted: a panel has a thousand and a few ([`ModeRange::MOST`]). Whoever
 /// writes a file may claim any number, and each takes memory and a part of every step.
 const MOST_MODES: usize = 10_000;
-
-/// What stands for the modes that an FMU leaves out.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub enum Residual {
-    /// The residual attachment modes of the force ports: what forces there bend beyond the modes kept, with its own inertia.
-    #[default]
-    Attachment,
-    /// Nothing: displacements lack the static part of the modes left out, and no frequency is higher than that of the last mode.
-    None,
-}
 
 /// What an FMU holds: the modes, and the places of its ports.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -92,19 +82,9 @@ impl Resource {
         Ok((resource.checked()?, core))
     }
 
-    /// The same with ports that have names.
-    ///
-    /// # Errors
-    /// [`FmuError::PortName`] for what is no identifier, [`FmuError::SameName`] where two variables would have one name.
-    pub fn with_names(self, names: PortNames) -> Result<Self, FmuError> {
-        let named = Self { names, ..self }.checked()?;
-        let table = VariableTable::new(&named);
-        let mut all: Vec<&str> = table.variables().iter().map(|variable| variable.name.as_str()).collect();
-        all.sort_unstable();
-        match all.windows(2).find(|pair| pair[0] == pair[1]) {
-            Some(pair) => Err(FmuError::SameName { name: pair[0].into() }),
-            None => Ok(named),
-        }
+    /// The same with ports of these names, whatever variables come of them.
+    pub(crate) fn renamed(self, names: PortNames) -> Result<Self, FmuError> {
+        Self { names, ..self }.checked()
     }
 
     /// Names of the ports.
@@ -215,11 +195,6 @@ impl Resource {
     /// The panel, where its modes may be solved again.
     pub(crate) fn panel(&self) -> Option<&Panel> {
         self.panel.as_ref()
-    }
-
-    /// The variables of this FMU.
-    pub fn variables(&self) -> VariableTable {
-        VariableTable::with_dependencies(self)
     }
 
     /// Text of the file; the same content gives the same text.

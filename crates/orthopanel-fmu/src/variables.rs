@@ -9,7 +9,7 @@ use std::ops::Range;
 
 use orthopanel_model::{ModalModel, Place, Ports};
 
-use crate::{PortNames, Resource, nominals};
+use crate::{FmuError, PortNames, Resource, nominals};
 
 pub use arrays::Array;
 pub use dependencies::{Dependency, Factor};
@@ -144,6 +144,28 @@ pub struct VariableTable {
     /// What each stands for, close together: asked at every call.
     quantities: Vec<Quantity>,
     arrays: Vec<Array>,
+}
+
+impl Resource {
+    /// The same with ports that have names.
+    ///
+    /// # Errors
+    /// [`FmuError::PortName`] for what is no identifier, [`FmuError::SameName`] where two variables would have one name.
+    pub fn with_names(self, names: PortNames) -> Result<Self, FmuError> {
+        let named = self.renamed(names)?;
+        let table = VariableTable::new(&named);
+        let mut all: Vec<&str> = table.variables().iter().map(|variable| variable.name.as_str()).collect();
+        all.sort_unstable();
+        match all.windows(2).find(|pair| pair[0] == pair[1]) {
+            Some(pair) => Err(FmuError::SameName { name: pair[0].into() }),
+            None => Ok(named),
+        }
+    }
+
+    /// The variables of this FMU.
+    pub fn variables(&self) -> VariableTable {
+        VariableTable::with_dependencies(self)
+    }
 }
 
 impl VariableTable {
