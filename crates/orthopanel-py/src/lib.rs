@@ -6,6 +6,7 @@ mod fit;
 mod fork;
 mod header;
 mod model;
+mod pair;
 mod settings;
 mod test;
 mod traced;

@@ -3,8 +3,8 @@
 use pyo3::prelude::*;
 
 use crate::error::guarded;
-use crate::fit::{Pair, pair};
 use crate::model::Model;
+use crate::pair::{Pair, pair};
 use crate::work;
 
 /// What the model of a test lacks.
