@@ -1,5 +1,6 @@
 //! Hypotheses: nothing missing, each effect, and more while the evidence grows.
 
+mod approach;
 mod detectable;
 mod further_effect;
 mod in_lists;
@@ -15,7 +16,7 @@ use orthopanel_model::{
 };
 use rayon::prelude::*;
 
-use further_effect::{Approach, Ranked};
+use approach::{Approach, Ranked};
 
 use crate::comparison::Comparison;
 use crate::effect_places::{OF_PIECE, OF_RECORD, has_place, is_of_record};

@@ -30,6 +30,7 @@ mod sharpening;
 mod smeared;
 mod smooth_part;
 mod start;
+mod starting_problem;
 mod synthesis;
 mod tied_noise;
 mod told_damping;
@@ -45,11 +46,12 @@ use crate::least_squares::Minimum;
 use crate::structures::Shown;
 use crate::{Identification, IdentifyError, Search, Settings};
 use other_units::refuse_read_in_other_units;
-use problem::AcceleranceProblem;
+use problem::is_far_from_noise;
 use recorded::Recorded;
 use records::PlaceRecord;
-use sharpening::{Rough, line_by_line_with_noise, problem_at, sharpened_lines};
-use start::{Start, recorded_of, start, usual_log_zeta};
+use sharpening::{Rough, line_by_line_with_noise, sharpened_lines};
+use start::{Start, recorded_of, start};
+use starting_problem::{assemble, starting_parameters};
 use wide_scan::rough_starts;
 
 pub(crate) use common_gain::{common_gain, refuse_missed, said_of_gain};
@@ -140,7 +142,7 @@ fn by_poles(test: &ImpactTest, settings: Settings, start: Start) -> Result<Ident
         let seen = problem.constants.clone();
         let all = problem.free_resting(&parameters);
         match line_by_line_with_noise(&mut problem, &all) {
-            Some(minimum) if !outcome::is_far_from_noise(&problem, &minimum) => {
+            Some(minimum) if !is_far_from_noise(&problem, &minimum) => {
                 return outcome::outcome(test, start, &mut problem, minimum);
             }
             Some(Minimum { parameters: found, .. }) => {
@@ -225,35 +227,3 @@ fn by_papers_error(
 
 /// Misfit per datum from which another search would have found the records' own minimum elsewhere.
 const PAPERS_MISFIT: f64 = 2.0;
-
-fn assemble(start: &Start, settings: Settings) -> Result<AcceleranceProblem, IdentifyError> {
-    let rough = Rough {
-        constants: start.fit.parameters.clone(),
-        log_zetas: vec![Vec::new(); start.recorded.pieces.len()],
-        usual_log_zeta: usual_log_zeta(start.poles.iter().flatten()),
-        misfit: f64::INFINITY,
-    };
-    Ok(problem_at(
-        start.recorded,
-        &start.fit.constants,
-        &rough,
-        settings.damping_law,
-        (f64::INFINITY, <[PlaceRecord]>::to_vec),
-    )?
-    .0)
-}
-
-/// The free constants and the logarithm of each damping ratio, from the poles.
-fn starting_parameters(problem: &AcceleranceProblem, start: &Start) -> Vec<f64> {
-    let mut parameters = start.fit.parameters.clone();
-    for ((piece, poles), matched) in problem.pieces.iter().zip(&start.poles).zip(&start.matching.modes) {
-        let mut zetas = vec![problem.usual_log_zeta; piece.free_zetas];
-        for (pole, mode) in poles.iter().zip(matched) {
-            if let Some(zeta) = mode.and_then(|mode| zetas.get_mut(mode)) {
-                *zeta = pole.zeta.ln();
-            }
-        }
-        parameters.append(&mut zetas);
-    }
-    parameters
-}

@@ -10,7 +10,7 @@ use orthopanel_model::Estimate;
 use super::band::refuse_low_band;
 use super::contradiction::contradiction;
 use super::misfit::{noise_percent, record_misfit_percent};
-use super::problem::AcceleranceProblem;
+use super::problem::{AcceleranceProblem, FAR_FROM_NOISE};
 use super::start::Start;
 use super::told_damping::{DAMPING_UNSEEN, is_told};
 use super::undeclared_window;
@@ -21,8 +21,6 @@ use crate::least_squares::Minimum;
 use crate::structures::Shown;
 use crate::{AcceleranceFit, Correlation, HiddenMode, Identification, IdentifyError, ModeFit, NotIdentified, PieceFit};
 
-/// A misfit per datum above this is the model's, not the noise's, and line by line damping is not to be trusted.
-const FAR_FROM_NOISE: f64 = 25.0;
 /// Each parameter takes one off a sum of squares of mere noise, whatever the model; what takes off no more than so many times
 /// that has seen nothing else.
 const MORE_THAN_CHANCE: f64 = 20.0;
@@ -93,11 +91,6 @@ fn stated(
         start.fit.not_identified = rest_unseen(problem, &mut found, covariance.as_ref());
     }
     report(test, &start, problem, found, notes)
-}
-
-/// Whether the misfit is the model's, and not the noise's.
-pub(super) fn is_far_from_noise(problem: &AcceleranceProblem, minimum: &Minimum) -> bool {
-    problem.noise_is_known() && problem.chi_square(minimum.at.cost) > FAR_FROM_NOISE
 }
 
 /// Lets those constants rest of which the records tell no more than what is usual, at the values found.

@@ -12,8 +12,11 @@ use super::records::PlaceRecord;
 use super::synthesis::{DampingLaw, PairModel};
 use super::weighted_rows::{RUN, run_products};
 use crate::free_constants::{FreeConstants, RestingFreed};
-use crate::least_squares::Quadratic;
+use crate::least_squares::{Minimum, Quadratic};
 use crate::structures::ModeSynthesis;
+
+/// A misfit per datum above this is the model's, not the noise's, and line by line damping is not to be trusted.
+pub(super) const FAR_FROM_NOISE: f64 = 25.0;
 
 /// Records of one piece and what carries its model.
 pub(super) struct PieceProblem {
@@ -347,4 +350,9 @@ pub(super) struct Derivatives {
     pub chain: Vec<Vec<f64>>,
     /// The parameters: of the constants, then each $\ln\zeta$ of the piece.
     pub columns: Vec<usize>,
+}
+
+/// Whether the misfit is the model's, and not the noise's.
+pub(super) fn is_far_from_noise(problem: &AcceleranceProblem, minimum: &Minimum) -> bool {
+    problem.noise_is_known() && problem.chi_square(minimum.at.cost) > FAR_FROM_NOISE
 }

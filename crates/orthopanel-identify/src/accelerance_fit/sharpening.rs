@@ -1,7 +1,6 @@
 //! From constants that are roughly right to where a fit line by line may begin, without matching a pole.
 
-use super::outcome::is_far_from_noise;
-use super::problem::{AcceleranceProblem, PieceProblem};
+use super::problem::{AcceleranceProblem, PieceProblem, is_far_from_noise};
 use super::recorded::Recorded;
 use super::records::PlaceRecord;
 use super::smeared::smeared;

@@ -1,7 +1,7 @@
 //! What natural frequencies alone say of the pieces of a test.
 
 use faer::Mat;
-use orthopanel_data::{ImpactTest, Measurement, MeasurementData, limits};
+use orthopanel_data::{ImpactTest, Measurement, MeasurementData};
 use orthopanel_model::Owner;
 
 use crate::IdentifyError;
@@ -17,6 +17,7 @@ use crate::search::{Inquiry, Pairs};
 
 use super::doubt::check_first;
 use super::estimates::{Estimates, id};
+use super::long_lists::refuse_many;
 use super::misfit::{Yardstick, noise};
 use super::next_list::next_list;
 use super::not_tested::not_tested;
@@ -137,27 +138,6 @@ pub(crate) fn without_repeats(test: &ImpactTest) -> (ImpactTest, Vec<String>) {
         }
     }
     (once, notes)
-}
-
-/// # Errors
-/// [`IdentifyError::TooManyFrequencies`], [`IdentifyError::TooManyFrequenciesOfPiece`].
-pub(super) fn refuse_many(test: &ImpactTest) -> Result<(), IdentifyError> {
-    let listed = |measurement: &Measurement| match &measurement.data {
-        MeasurementData::NaturalFrequencies(list) => list.values.len(),
-        _ => 0,
-    };
-    let found = test.measurements.iter().map(listed).max().unwrap_or(0);
-    if found > limits::FREQUENCIES_TRACED {
-        return Err(IdentifyError::TooManyFrequencies { found, most: limits::FREQUENCIES_TRACED });
-    }
-    let most = limits::FREQUENCIES_TRACED_OF_PIECE;
-    for (index, piece) in test.pieces.iter().enumerate() {
-        let found = test.measurements.iter().filter(|of| of.piece == index).map(listed).sum();
-        if found > most {
-            return Err(IdentifyError::TooManyFrequenciesOfPiece { piece: piece.name.clone(), found, most });
-        }
-    }
-    Ok(())
 }
 
 /// Of declared effects that no frequency shows: a sentence on each whose numbers the file gives.

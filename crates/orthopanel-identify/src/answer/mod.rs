@@ -10,6 +10,7 @@ mod identified;
 mod left_out;
 mod lines;
 mod lists;
+mod long_lists;
 mod misfit;
 mod next_list;
 mod next_measurement;
@@ -20,8 +21,8 @@ mod weighed;
 
 pub(crate) use declared::{identify_lists_with_effects, identify_with_effects};
 pub(crate) use identified::PlateByModes;
-use lists::refuse_many;
 pub(crate) use lists::{answer_of_lists, without_repeats};
+use long_lists::refuse_many;
 
 use orthopanel_data::{Estimation, ImpactTest};
 use orthopanel_model::StructureKind;

@@ -2,7 +2,8 @@
 
 use num_complex::Complex64;
 
-use super::{COUPLING, Column, Kind};
+use super::column::Column;
+use super::kind::{COUPLING, Kind};
 use crate::comparison::Comparison;
 use crate::predicted::Prediction;
 

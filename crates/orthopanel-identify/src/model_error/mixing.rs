@@ -1,6 +1,7 @@
 //! Modes of a plate, mixed by what the model misses of their frequencies.
 
-use super::{Column, Kind};
+use super::column::Column;
+use super::kind::Kind;
 use crate::comparison::Comparison;
 use crate::predicted::Prediction;
 

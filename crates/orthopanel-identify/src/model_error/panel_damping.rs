@@ -4,7 +4,8 @@ use std::f64::consts::TAU;
 
 use num_complex::Complex64;
 
-use super::{Column, Kind, least_quadrature};
+use super::column::Column;
+use super::kind::{Kind, least_quadrature};
 use crate::comparison::OWN_DAMPING;
 use crate::predicted::{Prediction, Predictor};
 
