@@ -8,8 +8,8 @@ use std::sync::Arc;
 
 use faer::{Mat, MatRef};
 
-use super::Field;
 use super::edge_basis::EdgeBasis;
+use super::field::Field;
 use crate::order::sorted;
 use crate::skyline::Profile;
 use crate::structure::Block;

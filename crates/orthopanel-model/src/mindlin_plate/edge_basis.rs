@@ -10,7 +10,7 @@
 
 use faer::{Mat, MatRef};
 
-use super::Field;
+use super::field::Field;
 use super::span_edges::{Kink, Spans};
 use crate::End;
 use crate::dense::Cholesky;

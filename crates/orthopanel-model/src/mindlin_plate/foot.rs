@@ -1,7 +1,7 @@
 //! What a force on a panel presses on, and what stands on it: a square foot.
 
-use super::Field;
 use super::edge_basis::EdgeBasis;
+use super::field::Field;
 
 /// Side of what stands on a panel \[m\]: a stud, an accelerometer. Twice as much changes $R(0)$ by $\ln2/2\pi\sqrt{A_{44}A_{55}}$.
 pub(crate) const FOOT: f64 = 0.01;

@@ -8,8 +8,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use faer::{Mat, MatRef};
 
-use super::Field;
 use super::edge_basis::EdgeBasis;
+use super::field::Field;
 use super::foot::{FOOT, mean_over_foot};
 use super::wave::WaveBetween;
 use crate::End;

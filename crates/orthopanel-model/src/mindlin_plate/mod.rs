@@ -17,6 +17,7 @@
 mod assembly;
 mod basis_choice;
 mod edge_basis;
+mod field;
 mod foot;
 mod kink;
 mod law;
@@ -39,25 +40,11 @@ use crate::structure::{Block, Motion, ShearMoment, Structure};
 use crate::{BeamTerms, Boundary, Constant, ModelError, Piece, Place};
 use assembly::{Coordinate, Edges, Products, assemble};
 use edge_basis::EdgeBasis;
+use field::Field;
 pub(crate) use foot::FOOT;
 use law::{plate_stiffness_derivatives, plate_stiffnesses};
 pub(crate) use membrane::Membrane;
 use span_edges::Spans;
-
-/// What moves.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Field {
-    /// $w$.
-    Deflection,
-    /// $\psi_x$.
-    RotationX,
-    /// $\psi_y$.
-    RotationY,
-}
-
-impl Field {
-    const ALL: [Self; 3] = [Self::Deflection, Self::RotationX, Self::RotationY];
-}
 
 /// An orthotropic Mindlin plate as a [`Structure`], on products of Legendre series in x and y.
 ///

@@ -3,8 +3,9 @@
 use faer::Mat;
 use serde::Serialize;
 
+use super::MindlinPlate;
 use super::edge_basis::EdgeBasis;
-use super::{Field, MindlinPlate};
+use super::field::Field;
 use crate::dense::product;
 use crate::structure::RitzMode;
 use crate::timoshenko_beam::gauss_points;

@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use faer::Mat;
 
-use super::Field;
 use super::edge_basis::EdgeBasis;
+use super::field::Field;
 use super::membrane::{AXES, Membrane, Seen, Stiffnesses, resistances, shear_along};
 use super::wave::WaveBetween;
 use crate::structure::{Motion, ShearMoment};
