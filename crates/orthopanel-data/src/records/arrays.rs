@@ -5,7 +5,7 @@ use std::sync::Arc;
 use num_complex::Complex64;
 use orthopanel_model::Place;
 
-use super::{Axis, Port, Record, RecordFile, RecordKind, Samples, data_type, may_be_read};
+use super::{Axis, Port, Record, RecordFile, RecordKind, Samples, data_type, reading::may_be_read};
 use crate::{DataError, Location, Position, limits};
 
 /// What messages call arrays, where they name the file of a record else.

@@ -7,6 +7,7 @@ mod declared_columns;
 mod foreign;
 mod nodes;
 mod quantity;
+mod reading;
 mod record;
 mod step;
 mod text;
@@ -25,14 +26,6 @@ pub use record::{Axis, Port, Record, RecordFile, RecordKind, Samples};
 pub(crate) use record::{Node, UnitSystem, data_type};
 pub(crate) use step::round_rate;
 pub(crate) use text::without_unit;
-
-/// No sensor reads as much, in whatever unit. A spoilt byte in an exponent makes such values, whose squares are no numbers any more.
-const NO_READING: f64 = 1e30;
-
-/// Whether a sensor may have read this: a finite number below [`NO_READING`].
-fn may_be_read(value: f64) -> bool {
-    value.abs() < NO_READING
-}
 
 impl RecordFile {
     /// Reads a file of records; its content tells the format.

@@ -10,7 +10,7 @@ use super::{
 use crate::{
     ColumnName, ColumnRole, DataError, DeclaredColumns, Location, Position,
     error::{short, some_of},
-    records::may_be_read,
+    records::reading::may_be_read,
 };
 
 /// One table of a text.

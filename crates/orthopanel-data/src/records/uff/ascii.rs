@@ -4,7 +4,7 @@ use super::{
     cursor::Cursor,
     fortran::{number, plain_number},
     header::{Header, Layout},
-    shortened,
+    line::shortened,
 };
 use crate::DataError;
 

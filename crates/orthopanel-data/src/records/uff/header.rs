@@ -2,7 +2,12 @@
 
 use orthopanel_model::Readable;
 
-use super::{cursor::Cursor, field, fortran, ports, shortened};
+use super::{
+    cursor::Cursor,
+    fortran,
+    line::{field, shortened},
+    ports,
+};
 use crate::{
     DataError,
     records::{Axis, Port},

@@ -9,6 +9,7 @@ mod binary;
 mod cursor;
 mod fortran;
 mod header;
+mod line;
 mod nodes;
 mod ports;
 mod unit_system;
@@ -20,12 +21,13 @@ use num_complex::Complex64;
 use super::{
     Record, RecordFile, RecordKind, Samples, UnitSystem,
     abscissa::{self, scaled},
-    may_be_read,
+    reading::may_be_read,
 };
 use crate::{DataError, Location, limits};
 use cursor::Cursor;
 pub(super) use fortran::number;
 use header::{Encoding, Header};
+use line::shortened;
 
 /// What is read, for messages.
 pub(super) const NAME: &str = "universal file (-1, then 58 or 58b)";
@@ -261,15 +263,4 @@ fn ends_rise(abscissa: &[f64]) -> bool {
 fn first_unsound(values: &[f64]) -> Option<usize> {
     let sound = values.iter().fold(true, |sound, value| sound & may_be_read(*value));
     if sound { None } else { values.iter().position(|value| !may_be_read(*value)) }
-}
-
-/// The text in `width` columns from column `from` (from 0), trimmed; `None` where the columns are empty or absent.
-fn field(line: &str, from: usize, width: usize) -> Option<&str> {
-    let text = line.get(from..(from + width).min(line.len()))?.trim();
-    (!text.is_empty()).then_some(text)
-}
-
-/// Enough of a line to know it by: a corrupt file's line may be a megabyte long.
-fn shortened(text: &str) -> String {
-    text.chars().take(40).collect()
 }

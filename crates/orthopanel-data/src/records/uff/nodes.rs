@@ -1,9 +1,9 @@
 //! Datasets 15 and 2411: where the nodes are.
 
-use super::{cursor::Cursor, field, fortran};
+use super::{cursor::Cursor, fortran, line::field};
 use crate::{
     limits,
-    records::{Node, may_be_read},
+    records::{Node, reading::may_be_read},
 };
 
 /// Reads from the line after the dataset's number up to its end, with its unit of length in `metre`s. What is no node is passed over:

@@ -1,6 +1,6 @@
 //! Record 6 of the header: nodes and directions beside the names of entities, which push them along where they are long.
 
-use super::field;
+use super::line::field;
 use crate::records::Port;
 
 /// Columns of the definition, $2(I5,I10),\,2(1X,10A1,I10,I4)$.

@@ -1,6 +1,6 @@
 //! Dataset 164: the units of all that follows in the file.
 
-use super::{cursor::Cursor, field, fortran};
+use super::{cursor::Cursor, fortran, line::field};
 use crate::{DataError, records::UnitSystem};
 
 /// The unit systems by their codes, for files that print no factors: units of length and force a metre and a newton.

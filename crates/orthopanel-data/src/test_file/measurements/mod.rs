@@ -2,6 +2,7 @@
 
 mod files;
 mod frequencies;
+mod natural_frequencies;
 mod places;
 mod record_arrays;
 mod record_files;
@@ -15,7 +16,7 @@ use toml::Spanned;
 
 use super::{pieces::NamedPiece, source::Source, syntax};
 use crate::{DataError, Location, limits};
-pub use frequencies::NaturalFrequencies;
+pub use natural_frequencies::NaturalFrequencies;
 pub use recorded_response::{ChannelName, Direction, RecordedResponse, Trigger};
 
 /// One measurement on one piece.
