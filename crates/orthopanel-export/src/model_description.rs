@@ -1,52 +1,21 @@
 //! `modelDescription.xml`: elements in the order of the standard's schema, one file for each version.
 
+mod description;
+mod elements;
 mod fmi2;
 mod fmi3;
 
 use std::io;
 
-use orthopanel_fmu::{Dependency, Factor, GENERATOR, LOG_CATEGORIES, Resource, UNITS, Unit, Variable, VariableTable};
+use orthopanel_fmu::{GENERATOR, LOG_CATEGORIES, Resource, UNITS, Unit, VariableTable};
 use orthopanel_model::printable;
 use quick_xml::Writer;
 use quick_xml::events::{BytesDecl, Event};
 
 use crate::{ExportError, FmiVersion, FmuOptions};
-
-type Xml = Writer<Vec<u8>>;
-
-/// What the XML says.
-struct Description<'a> {
-    options: &'a FmuOptions,
-    token: &'a str,
-    variables: VariableTable,
-    interfaces: Interfaces,
-    /// Step size and stop time that suit the model \[s\].
-    experiment: (f64, f64),
-}
-
-impl Description<'_> {
-    /// Variables of which the standard wants to know what they depend on: outputs, then derivatives of the states.
-    fn unknowns(&self) -> impl Iterator<Item = (Unknown, &Variable)> {
-        let all = self.variables.variables();
-        let outputs = all.iter().filter(|variable| variable.quantity.causality() == "output");
-        let derivatives = all.iter().filter(|variable| variable.derivative_of.is_some());
-        outputs.map(|variable| (Unknown::Output, variable)).chain(derivatives.map(|v| (Unknown::Derivative, v)))
-    }
-
-    fn causality(&self, reference: u32) -> Option<&'static str> {
-        self.variables.get(reference).map(|variable| variable.quantity.causality())
-    }
-}
-
-/// What an unknown is, beside being an initial unknown.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Unknown {
-    Output,
-    Derivative,
-}
-
-/// What the FMU offers, with the attributes of each.
-pub(crate) type Interfaces = Vec<(&'static str, &'static [(&'static str, &'static str)])>;
+use description::Description;
+pub(crate) use description::Interfaces;
+use elements::{Xml, empty};
 
 /// The text of the file.
 pub(crate) fn write(resource: &Resource, options: &FmuOptions, token: &str) -> Result<String, ExportError> {
@@ -130,60 +99,6 @@ fn sources(xml: &mut Xml, files: &[&str]) -> io::Result<()> {
             .try_for_each(|file| xml.create_element("File").with_attribute(("name", *file)).write_empty().map(drop))
     })?;
     Ok(())
-}
-
-/// What both versions say of a variable in the same words; `reference` is by which importers know it.
-fn common_attributes(variable: &Variable, reference: u32) -> Vec<(&'static str, String)> {
-    let quantity = variable.quantity;
-    let mut attributes = vec![
-        ("name", variable.name.clone()),
-        ("valueReference", reference.to_string()),
-        ("description", variable.description.clone()),
-        ("causality", quantity.causality().into()),
-        ("variability", variable.variability().into()),
-    ];
-    attributes.extend(quantity.initial().map(|initial| ("initial", initial.into())));
-    attributes
-}
-
-/// Unit, nominal and start value of a variable, and of which state it is the derivative (`state` names that).
-fn value_attributes(variable: &Variable, state: Option<String>) -> Vec<(&'static str, String)> {
-    let texts = [
-        ("unit", variable.unit.map(String::from)),
-        ("displayUnit", variable.unit.and_then(display_unit)),
-        ("nominal", variable.nominal.map(|nominal| format!("{nominal:e}"))),
-        ("start", variable.start.clone()),
-        ("derivative", state),
-    ];
-    texts.into_iter().filter_map(|(name, value)| Some((name, value?))).collect()
-}
-
-fn display_unit(name: &str) -> Option<String> {
-    UNITS.iter().find(|unit| unit.name == name)?.display.map(|(shown, _)| shown.into())
-}
-
-/// An element without content.
-fn empty(xml: &mut Xml, element: &str, attributes: &[(&str, String)]) -> io::Result<()> {
-    let attributes = attributes.iter().map(|(name, value)| (*name, value.as_str()));
-    xml.create_element(element).with_attributes(attributes).write_empty()?;
-    Ok(())
-}
-
-/// An unknown of the model structure: `id` names it, `on` what it depends on, each with the kind; where there is none, on nothing.
-fn unknown(xml: &mut Xml, element: &str, id: (&str, String), on: &[(String, Factor)]) -> io::Result<()> {
-    let names: Vec<&str> = on.iter().map(|(name, _)| name.as_str()).collect();
-    let kinds: Vec<&str> = on.iter().map(|(_, factor)| factor.name()).collect();
-    let mut attributes = vec![id, ("dependencies", names.join(" "))];
-    if !on.is_empty() {
-        attributes.push(("dependenciesKind", kinds.join(" ")));
-    }
-    empty(xml, element, &attributes)
-}
-
-/// What an unknown depends on. While the FMU is initialized, the standard has no more to say of a dependency than that it is there.
-fn dependencies(variable: &Variable, initial: bool) -> Vec<Dependency> {
-    let whole = |&reference: &u32| Dependency { reference, factor: Factor::Dependent };
-    if initial { variable.initial_dependencies.iter().map(whole).collect() } else { variable.dependencies.clone() }
 }
 
 /// A step of at most a twentieth of the shortest period (1, 2 or 5 times a power of ten), and a thousand steps.

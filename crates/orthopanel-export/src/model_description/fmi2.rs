@@ -4,7 +4,8 @@ use std::io;
 
 use orthopanel_fmu::{FMI2_CO_SIMULATION, FMI2_MODEL_EXCHANGE, Variable};
 
-use super::{Description, Unknown, Xml, common_attributes, dependencies, empty, unknown, value_attributes};
+use super::description::{Description, Unknown};
+use super::elements::{Xml, common_attributes, dependencies, empty, unknown, value_attributes};
 
 pub(super) const INTERFACES: [(&str, &[(&str, &str)]); 2] =
     [("ModelExchange", FMI2_MODEL_EXCHANGE), ("CoSimulation", FMI2_CO_SIMULATION)];

@@ -4,7 +4,8 @@ use std::io;
 
 use orthopanel_fmu::{Array, FMI3_CO_SIMULATION, FMI3_MODEL_EXCHANGE, Variable, VariableTable};
 
-use super::{Description, Unknown, Xml, common_attributes, dependencies, empty, unknown, value_attributes};
+use super::description::{Description, Unknown};
+use super::elements::{Xml, common_attributes, dependencies, empty, unknown, value_attributes};
 
 pub(super) const INTERFACES: [(&str, &[(&str, &str)]); 2] =
     [("ModelExchange", FMI3_MODEL_EXCHANGE), ("CoSimulation", FMI3_CO_SIMULATION)];
