@@ -3,11 +3,16 @@
 mod continuous;
 mod elements;
 mod fmu_states;
+mod kept_states;
+mod life_cycle;
 mod parameter_sensitivities;
 mod parameters;
 mod phase;
+mod seen;
 mod sensitivities;
+mod settable_numbers;
 mod situation;
+mod snapshots;
 mod step;
 mod values;
 
@@ -18,9 +23,10 @@ use crate::panel::Panel;
 use crate::wide_stepper::WideStepper;
 use crate::{FmuError, Quantity, Resource, VariableTable};
 
-use fmu_states::FmuStates;
-use parameters::{Seen, Settable};
+use kept_states::FmuStates;
 pub(crate) use phase::{Interface, Phase};
+use seen::{Seen, Settable};
+use settable_numbers::{finite, timely};
 use situation::Situation;
 
 /// One panel in a simulation.
@@ -152,36 +158,6 @@ impl Component {
             Quantity::ModalVelocityRate(mode) => stepper.mode_rate(mode).map(|[_, acceleration]| acceleration),
         }
     }
-}
-
-fn finite(what: &str, value: f64) -> Result<(), FmuError> {
-    if value.is_finite() { Ok(()) } else { Err(FmuError::NotFinite { what: what.into(), value }) }
-}
-
-/// Steps and times \[s\] end below, at a million million times the age of the universe: what a motion grows to in longer ones passes
-/// the range of numbers, which traps in hosts that want it so.
-const TOO_LONG: f64 = 1e30;
-
-#[cold]
-fn timely(what: &'static str, value: f64) -> Result<(), FmuError> {
-    finite(what, value)?;
-    if value.abs() < TOO_LONG { Ok(()) } else { Err(FmuError::TooLong { what, value, limit: TOO_LONG }) }
-}
-
-/// Largest force, force rate, state and seed that may be set, as a number: what a panel answers to it is a number, too.
-const LARGEST_SET: f64 = 1e100;
-
-/// Not so for what is no number.
-#[inline(always)]
-fn fits(value: f64) -> bool {
-    value.abs() <= LARGEST_SET
-}
-
-#[cold]
-fn fitting(what: &str, value: f64) -> Result<(), FmuError> {
-    finite(what, value)?;
-    let largest = LARGEST_SET;
-    if fits(value) { Ok(()) } else { Err(FmuError::TooLarge { what: what.into(), value, largest }) }
 }
 
 #[cfg(test)]

@@ -1,5 +1,6 @@
 //! The panel behind the modes: what of it may be set, and its modes solved again.
 
+mod part;
 mod parts;
 
 use orthopanel_model::{
@@ -10,9 +11,7 @@ use serde::{Deserialize, Serialize};
 use crate::connections::{Connections, Layout, Terms, check_mount};
 use crate::{FmuError, PortNames, Residual};
 
-pub(crate) use parts::{PanelParameter, Part};
-
-use parts::set;
+pub(crate) use part::{PanelParameter, Part};
 
 /// A panel as identified, with the number of modes that its FMU keeps.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -282,7 +281,7 @@ impl Panel {
     fn with(&self, values: &[f64]) -> Self {
         let mut panel = self.clone();
         for (part, &value) in self.parts().into_iter().zip(values) {
-            set(&mut panel, &part, value);
+            panel.set(&part, value);
         }
         panel
     }

@@ -2,7 +2,10 @@
 
 mod arrays;
 mod dependencies;
+mod dependency;
+mod quantity;
 mod units;
+mod variable;
 
 use std::f64::consts::TAU;
 use std::ops::Range;
@@ -12,125 +15,11 @@ use orthopanel_model::{ModalModel, Place, Ports};
 use crate::{FmuError, PortNames, Resource, nominals};
 
 pub use arrays::Array;
-pub use dependencies::{Dependency, Factor};
+pub use dependency::{Dependency, Factor};
+use quantity::HOLD;
+pub use quantity::Quantity;
 pub use units::{UNITS, Unit};
-
-/// What a variable stands for; ports are counted from 0.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Quantity {
-    /// The independent variable \[s\].
-    Time,
-    /// Parameter: does the force run linearly between the values set?
-    ForceLinear,
-    /// Input: force \[N\] at a force port; behind the last port what connections bring, in their own units.
-    Input(usize),
-    /// Output: acceleration \[m/s²\] at a response port.
-    Acceleration(usize),
-    /// Output: velocity \[m/s\] at a response port.
-    Velocity(usize),
-    /// Output: displacement \[m\] at a response port.
-    Displacement(usize),
-    /// Output of a connection, in its own unit.
-    Connected(usize),
-    /// Continuous state: coordinate $a$ of a mode \[m kg^1/2\]; modes are counted from 0, rigid ones first.
-    ModalPosition(usize),
-    /// Continuous state: $\dot a$ of a mode \[m kg^1/2/s\].
-    ModalVelocity(usize),
-    /// Derivative of [`Quantity::ModalPosition`] by time.
-    ModalPositionRate(usize),
-    /// Derivative of [`Quantity::ModalVelocity`] by time.
-    ModalVelocityRate(usize),
-    /// Parameter: a size, constant, damping ratio or place of the panel, counted from 0 as in the table.
-    Parameter(usize),
-}
-
-impl Quantity {
-    /// Name of the unit; `None` for a Boolean, and for what has one of its own.
-    fn unit(self) -> Option<&'static str> {
-        match self {
-            Self::Time => Some("s"),
-            Self::ForceLinear | Self::Parameter(_) | Self::Connected(_) => None,
-            Self::Input(_) => Some("N"),
-            Self::Acceleration(_) => Some("m/s2"),
-            Self::Velocity(_) => Some("m/s"),
-            Self::Displacement(_) => Some("m"),
-            Self::ModalPosition(_) => Some(units::MODAL_POSITION),
-            Self::ModalVelocity(_) | Self::ModalPositionRate(_) => Some(units::MODAL_VELOCITY),
-            Self::ModalVelocityRate(_) => Some(units::MODAL_ACCELERATION),
-        }
-    }
-
-    /// FMI causality.
-    pub fn causality(self) -> &'static str {
-        match self {
-            Self::Time => "independent",
-            Self::ForceLinear | Self::Parameter(_) => "parameter",
-            Self::Input(_) => "input",
-            Self::Acceleration(_) | Self::Velocity(_) | Self::Displacement(_) | Self::Connected(_) => "output",
-            Self::ModalPosition(_)
-            | Self::ModalVelocity(_)
-            | Self::ModalPositionRate(_)
-            | Self::ModalVelocityRate(_) => "local",
-        }
-    }
-
-    /// FMI attribute `initial`; `None` where the standard has none.
-    pub fn initial(self) -> Option<&'static str> {
-        match self {
-            Self::Time | Self::Input(_) => None,
-            Self::ForceLinear | Self::Parameter(_) | Self::ModalPosition(_) | Self::ModalVelocity(_) => Some("exact"),
-            _ => Some("calculated"),
-        }
-    }
-
-    /// Start value as the XML says it; `None` for what is calculated, and for a parameter, whose start is its own.
-    fn start(self) -> Option<&'static str> {
-        match self {
-            Self::ForceLinear => Some("false"),
-            Self::Input(_) | Self::ModalPosition(_) | Self::ModalVelocity(_) => Some("0"),
-            _ => None,
-        }
-    }
-}
-
-/// One variable, as the importer sees it.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Variable {
-    /// Value reference: its place in the table, from 1.
-    pub reference: u32,
-    /// Name, without dots or brackets: some importers refuse these.
-    pub name: String,
-    /// One line on what it is, where, and its sign.
-    pub description: String,
-    /// What it stands for.
-    pub quantity: Quantity,
-    /// Name of the unit; `None` for a Boolean.
-    pub unit: Option<&'static str>,
-    /// Start value as the XML says it; `None` for what is calculated.
-    pub start: Option<String>,
-    /// The inputs, continuous states and tunable parameters on which an output or a derivative depends directly (without an
-    /// integration between); empty for what is neither.
-    pub dependencies: Vec<Dependency>,
-    /// References of the same while the FMU is initialized, when all parameters count.
-    pub initial_dependencies: Vec<u32>,
-    /// Of a derivative: reference of the continuous state.
-    pub derivative_of: Option<u32>,
-    /// Of a continuous state: the size to be expected.
-    pub nominal: Option<f64>,
-    /// Of a parameter: whether it may be set while the simulation runs.
-    pub tunable: bool,
-}
-
-impl Variable {
-    /// FMI variability.
-    pub fn variability(&self) -> &'static str {
-        match self.quantity {
-            Quantity::Parameter(_) if self.tunable => "tunable",
-            Quantity::ForceLinear | Quantity::Parameter(_) => "fixed",
-            _ => "continuous",
-        }
-    }
-}
+pub use variable::Variable;
 
 /// The variables of a panel; references count from 1.
 ///
@@ -353,9 +242,6 @@ fn place(reference: u32) -> Option<usize> {
 fn at(place: &Place) -> String {
     format!("at x = {} m, y = {} m from the centre, positive along +z", place.x, place.y)
 }
-
-const HOLD: &str = "Held at the value set over each step, unless the importer gives its first derivative (FMI 2, for \
-                    the next step) or force_linear is true";
 
 const FORCE_LINEAR: &str = "If true, every force runs linearly over a step, from its value at the end of the last step \
                             to the value now set (set the value of the step's end before the step); if false, it is \

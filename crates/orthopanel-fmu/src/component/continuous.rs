@@ -5,7 +5,8 @@
 //! States stand mode after mode: $a_1, \dot a_1, a_2, \dot a_2, \dots$; there are no event indicators.
 
 use super::phase::Phases;
-use super::{Component, Interface, Phase, fits, fitting, timely};
+use super::settable_numbers::{fits, fitting, timely};
+use super::{Component, Interface, Phase};
 use crate::FmuError;
 
 impl Component {

@@ -3,12 +3,10 @@
 //! The importer never holds a pointer of ours, only a number that no other state of the process has. So a state that
 //! was freed, or is another instance's, is noticed and nothing is read through it.
 
-use std::collections::BTreeMap;
-use std::sync::atomic::{AtomicUsize, Ordering};
-
 use sha2::{Digest, Sha256};
 
 use super::Component;
+use super::kept_states::UNKNOWN;
 use super::situation::Snapshot;
 use crate::FmuError;
 
@@ -17,43 +15,6 @@ const MAGIC: &[u8; 16] = b"orthopanel state";
 const VERSION: u32 = 1;
 /// Length of the check sum (SHA-256) at the end.
 const CHECK: usize = 32;
-
-/// The states that an instance keeps for its importer.
-#[derive(Debug)]
-pub(super) struct FmuStates {
-    kept: BTreeMap<usize, Snapshot>,
-    /// Token of the resource: bytes of another panel are refused.
-    token: String,
-}
-
-impl FmuStates {
-    pub(super) fn new(token: &str) -> Self {
-        Self { kept: BTreeMap::new(), token: token.into() }
-    }
-
-    /// A number that stands for no other state; never zero, which is C's null.
-    fn new_handle() -> usize {
-        static NEXT: AtomicUsize = AtomicUsize::new(1);
-        NEXT.fetch_add(1, Ordering::Relaxed)
-    }
-
-    fn get(&self, handle: usize) -> Result<&Snapshot, FmuError> {
-        self.kept.get(&handle).ok_or(FmuError::State(UNKNOWN))
-    }
-
-    /// Keeps a snapshot under `handle`, overwriting what was there, or under a new one where it is 0.
-    fn keep(&mut self, handle: usize, snapshot: Snapshot) -> Result<usize, FmuError> {
-        let handle = match handle {
-            0 => Self::new_handle(),
-            _ => self.get(handle).map(|_| handle)?,
-        };
-        self.kept.insert(handle, snapshot);
-        Ok(handle)
-    }
-}
-
-const UNKNOWN: &str = "it is none that this instance keeps: it was freed, or is another instance's (carry it over by \
-                       serializing it)";
 
 impl Component {
     /// Keeps where the instance stands, in the place of the state `handle` or as a new one where that is 0; returns the

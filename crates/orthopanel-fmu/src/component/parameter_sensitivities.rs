@@ -4,7 +4,7 @@
 //! beam, and to about 1e-5 for a plate, whose solver's rounding is divided by the step. Where two modes lie so close that they
 //! change their order within the step, the derivatives by the one and by the other are mixed.
 
-use super::parameters::Settable;
+use super::seen::Settable;
 use super::{Component, Phase};
 use crate::wide_stepper::WideStepper;
 use crate::{FmuError, Quantity};

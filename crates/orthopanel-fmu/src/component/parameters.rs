@@ -3,49 +3,14 @@
 
 use std::sync::Arc;
 
-use orthopanel_model::ModalModel;
-
-use super::{Component, Phase, Probe, finite, values};
-use crate::connections::Terms;
+use super::phase::Phase;
+use super::seen::{Seen, Settable};
+use super::settable_numbers::finite;
+use super::{Component, Probe, values};
 use crate::floating_point::StandardEnvironment;
-use crate::panel::{Panel, Solution};
+use crate::panel::Solution;
 use crate::wide_stepper::WideStepper;
-use crate::{FmuError, Resource, Variable, nominals};
-
-/// The panel as some values of its parameters make it.
-#[derive(Debug)]
-pub(super) struct Seen {
-    /// Of the parameters; none where nothing of the panel can be set.
-    pub(super) values: Vec<f64>,
-    /// Without the mounts.
-    free: ModalModel,
-    /// On the mounts.
-    pub(super) modes: ModalModel,
-    /// What outputs of connections are made of.
-    pub(super) outputs: Vec<Terms>,
-    /// Sizes of the states to be expected.
-    pub(super) nominals: Vec<[f64; 2]>,
-}
-
-impl Seen {
-    /// As it was exported.
-    pub(super) fn exported(resource: &Resource) -> Self {
-        Self {
-            values: resource.panel().map(Panel::values).unwrap_or_default(),
-            free: resource.free().clone(),
-            modes: resource.model().clone(),
-            outputs: resource.outputs().iter().map(|output| output.terms.clone()).collect(),
-            nominals: nominals::of(resource.model(), resource.ports().forces.len()),
-        }
-    }
-}
-
-/// Where the modes can be found anew.
-#[derive(Debug)]
-pub(super) struct Settable {
-    pub(super) panel: Panel,
-    pub(super) exported: Arc<Seen>,
-}
+use crate::{FmuError, Variable, nominals};
 
 impl Component {
     /// Refuses a value that no panel could have, and what is not set now.

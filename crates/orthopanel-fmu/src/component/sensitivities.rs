@@ -4,7 +4,8 @@
 //! is the output itself, asked of a panel whose forces and states *are* that direction. By parameters, which move the modes
 //! or their damping, it is differenced (`parameter_sensitivities`).
 
-use super::{Component, Phase, fitting};
+use super::settable_numbers::fitting;
+use super::{Component, Phase};
 use crate::{FmuError, Quantity};
 
 impl Component {

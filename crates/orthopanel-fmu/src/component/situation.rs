@@ -1,9 +1,9 @@
 //! All that calls can change in an instance, so that it can be kept, put back and carried away.
 
-use orthopanel_model::ModalStepper;
 use serde::{Deserialize, Serialize};
 
-use super::{Component, Interface, Phase, timely};
+use super::phase::{Interface, Phase};
+use super::settable_numbers::timely;
 use crate::FmuError;
 
 /// What an instance holds beside the motion of its modes.
@@ -62,7 +62,7 @@ impl Situation {
     }
 
     /// Does it fit an instance that now stands in `other`, and is every number one?
-    fn check(&self, other: &Self) -> Result<(), FmuError> {
+    pub(super) fn check(&self, other: &Self) -> Result<(), FmuError> {
         if self.interface != other.interface {
             return Err(FmuError::State("it was taken from an instance of the other interface"));
         }
@@ -85,46 +85,5 @@ impl Situation {
 pub(crate) struct Snapshot {
     pub(super) situation: Situation,
     /// Modal coordinate and its rate of each mode.
-    motion: Vec<[f64; 2]>,
-}
-
-impl Component {
-    /// All that a later [`Component::restore`] needs to go on from here.
-    pub(crate) fn snapshot(&self) -> Snapshot {
-        Snapshot { situation: self.now.clone(), motion: self.stepper.state() }
-    }
-
-    /// Does a snapshot fit this instance?
-    pub(super) fn check_snapshot(&self, snapshot: &Snapshot) -> Result<(), FmuError> {
-        snapshot.situation.check(&self.now)?;
-        if snapshot.motion.len() != self.mode_count() {
-            return Err(FmuError::State("it holds another number of modes"));
-        }
-        if !snapshot.motion.iter().flatten().all(|number| number.abs() <= ModalStepper::LARGEST) {
-            return Err(FmuError::State("it holds a motion that is too large or no number"));
-        }
-        Ok(())
-    }
-
-    /// Goes back to where a snapshot was taken; one that does not fit changes nothing.
-    pub(crate) fn restore(&mut self, snapshot: &Snapshot) -> Result<(), FmuError> {
-        self.check_snapshot(snapshot)?;
-        // Parameters that were set and never solved for may be wrong together: that is then told when they are used.
-        self.parameters_changed = self.solve_for(&snapshot.situation.parameters).is_err();
-        self.stepper.set_state(&snapshot.motion)?;
-        self.now.clone_from(&snapshot.situation);
-        self.forces_changed = true;
-        Ok(())
-    }
-
-    /// Back to where instantiation left it.
-    pub(crate) fn reset(&mut self) -> Result<(), FmuError> {
-        // As exported: nothing is solved for.
-        self.solve_for(&self.start.parameters.clone())?;
-        let at_rest = vec![[0.0; 2]; self.mode_count()];
-        self.stepper.set_state(&at_rest)?;
-        self.now.clone_from(&self.start);
-        (self.forces_changed, self.parameters_changed, self.nominals_changed) = (true, false, false);
-        Ok(())
-    }
+    pub(super) motion: Vec<[f64; 2]>,
 }

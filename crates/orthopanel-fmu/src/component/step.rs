@@ -1,6 +1,7 @@
 //! The communication step.
 
-use super::{Component, Phase, TOO_LONG, timely};
+use super::settable_numbers::{TOO_LONG, timely};
+use super::{Component, Phase};
 use crate::FmuError;
 
 /// Share of a step by which the importer's time may differ from ours: importers add up their steps with rounding.

@@ -1,6 +1,8 @@
 //! Getting and setting variables; a call with one bad entry changes nothing.
 
-use super::{Component, Interface, Phase, fits, fitting};
+use super::Component;
+use super::phase::{Interface, Phase};
+use super::settable_numbers::{fits, fitting};
 use crate::{FmuError, Quantity, Variable};
 
 impl Component {

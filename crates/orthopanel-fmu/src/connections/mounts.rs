@@ -8,26 +8,11 @@
 //! at its velocity $v$, or with `force_linear` for both running linearly to what was set. Nothing is handed over between steps on the
 //! panel's side.
 
-use orthopanel_model::{DeflectionRow, ModelError, Place};
-use serde::{Deserialize, Serialize};
+use orthopanel_model::{DeflectionRow, ModelError};
 
 use super::layout::Spring;
 use super::{Layout, Load, MovedBy, Output, Setting, Signal};
-use crate::FmuError;
-
-/// A spring and a dashpot at one place of the panel.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Mount {
-    /// Name, which stands in those of its variables.
-    pub name: String,
-    /// Where it holds the panel.
-    pub at: Place,
-    /// $k$ \[N/m\].
-    pub stiffness: f64,
-    /// $c$ \[N s/m\].
-    pub damping: f64,
-}
+use crate::{FmuError, Mount};
 
 /// Most that a mount's stiffness \[N/m\] or damping \[N s/m\] may be: beyond, a place is clamped for any panel, and what is left of other
 /// numbers is rounding.

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use orthopanel_model::{Place, Ports};
 
-use super::HOLD;
+use super::quantity::HOLD;
 
 /// Variables of one kind as one array.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -5,41 +5,12 @@ use std::collections::HashMap;
 
 use orthopanel_model::{ModalModel, Mode};
 
-use super::{Quantity, Variable};
+use super::dependency::{Dependency, Factor};
+use super::quantity::Quantity;
+use super::variable::Variable;
 use crate::Resource;
 use crate::connections::{MovedBy, Signal, Terms};
 use crate::panel::{Panel, Part};
-
-/// One variable on which another depends.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Dependency {
-    /// Its reference.
-    pub reference: u32,
-    /// How it enters.
-    pub factor: Factor,
-}
-
-/// FMI `dependenciesKind`: what becomes of the factor before a known once initialization has ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Factor {
-    /// It stays as it is.
-    Fixed,
-    /// It changes where a tunable parameter is set.
-    Tunable,
-    /// There is none: the unknown is not linear in this known.
-    Dependent,
-}
-
-impl Factor {
-    /// As the XML says it.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Fixed => "fixed",
-            Self::Tunable => "tunable",
-            Self::Dependent => "dependent",
-        }
-    }
-}
 
 /// Fills in the dependencies of every variable, in rising order.
 pub(super) fn fill(variables: &mut [Variable], resource: &Resource) {
