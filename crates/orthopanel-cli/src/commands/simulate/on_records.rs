@@ -11,7 +11,7 @@ use orthopanel_identify::{ForceBetweenSamples, IdentifyError};
 use orthopanel_model::PanelModel;
 use serde::Serialize;
 
-use super::{Arguments, HoldWord, Method};
+use super::arguments::{Arguments, HoldWord, Method};
 use crate::error::CommandError;
 use crate::terminal::{self, Terminal};
 use crate::{console, progress};
