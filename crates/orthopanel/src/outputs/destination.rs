@@ -3,50 +3,49 @@
 use std::io::ErrorKind;
 use std::path::{Component, Path, PathBuf};
 
-use super::{Outputs, folder, streams};
+use super::inputs::Inputs;
+use super::{folder, streams};
 use crate::error::Error;
 
-impl Outputs {
-    /// Where a file really goes: behind a link, the file it points to, whether that is there or not. What is there must be a file,
-    /// since renaming onto a device or a pipe would take its place, and none that the command reads.
-    pub(super) fn destination(&self, path: &Path) -> Result<PathBuf, Error> {
-        if let Some(stream) = streams::stream_at(path) {
-            let reason = format!("it is {stream}, and a file would take its place");
-            return Err(Error::Unwritable { path: path.into(), reason, kind: ErrorKind::Other });
-        }
-        let there = match std::fs::metadata(path) {
-            Ok(there) => there,
-            Err(error) if error.kind() != ErrorKind::NotFound => return Err(Error::unwritable(path, &error)),
-            Err(error) => {
-                let folder = folder::of(path);
-                if let Ok(target) = std::fs::read_link(path) {
-                    return self.destination(&folder.join(target));
-                }
-                let Some(name) = path.file_name() else {
-                    let reason = "it ends in no name of a file".into();
-                    return Err(Error::Unwritable { path: path.into(), reason, kind: error.kind() });
-                };
-                // One spelling of the folder, by which it is locked.
-                return Ok(std::fs::canonicalize(folder).map_or_else(|_| path.into(), |folder| folder.join(name)));
-            }
-        };
-        if !there.is_file() {
-            let (kind, what) = match there.is_dir() {
-                true => (ErrorKind::IsADirectory, "a folder"),
-                false => (ErrorKind::Other, "no regular file"),
-            };
-            return Err(Error::Unwritable { path: path.into(), reason: format!("it is {what}"), kind });
-        }
-        if let Some(input) = self.inputs.at(path) {
-            return Err(Error::OutputIsInput { path: path.into(), input: input.into() });
-        }
-        // Renaming would take the place of a file that its owner protects.
-        if there.permissions().readonly() {
-            let reason = "it is read-only".into();
-            return Err(Error::Unwritable { path: path.into(), reason, kind: ErrorKind::PermissionDenied });
-        }
-        std::fs::canonicalize(path).map_err(|error| Error::unwritable(path, &error))
+/// Where a file really goes: behind a link, the file it points to, whether that is there or not. What is there must be a file,
+/// since renaming onto a device or a pipe would take its place, and none that the command reads.
+pub(super) fn destination(path: &Path, inputs: &Inputs) -> Result<PathBuf, Error> {
+    if let Some(stream) = streams::stream_at(path) {
+        let reason = format!("it is {stream}, and a file would take its place");
+        return Err(Error::Unwritable { path: path.into(), reason, kind: ErrorKind::Other });
     }
+    let there = match std::fs::metadata(path) {
+        Ok(there) => there,
+        Err(error) if error.kind() != ErrorKind::NotFound => return Err(Error::unwritable(path, &error)),
+        Err(error) => {
+            let folder = folder::of(path);
+            if let Ok(target) = std::fs::read_link(path) {
+                return destination(&folder.join(target), inputs);
+            }
+            let Some(name) = path.file_name() else {
+                let reason = "it ends in no name of a file".into();
+                return Err(Error::Unwritable { path: path.into(), reason, kind: error.kind() });
+            };
+            // One spelling of the folder, by which it is locked.
+            return Ok(std::fs::canonicalize(folder).map_or_else(|_| path.into(), |folder| folder.join(name)));
+        }
+    };
+    if !there.is_file() {
+        let (kind, what) = match there.is_dir() {
+            true => (ErrorKind::IsADirectory, "a folder"),
+            false => (ErrorKind::Other, "no regular file"),
+        };
+        return Err(Error::Unwritable { path: path.into(), reason: format!("it is {what}"), kind });
+    }
+    if let Some(input) = inputs.at(path) {
+        return Err(Error::OutputIsInput { path: path.into(), input: input.into() });
+    }
+    // Renaming would take the place of a file that its owner protects.
+    if there.permissions().readonly() {
+        let reason = "it is read-only".into();
+        return Err(Error::Unwritable { path: path.into(), reason, kind: ErrorKind::PermissionDenied });
+    }
+    std::fs::canonicalize(path).map_err(|error| Error::unwritable(path, &error))
 }
 
 /// Whether `path` ends as the name of a folder, by a separator or by one and a dot; both are forgotten by its components.

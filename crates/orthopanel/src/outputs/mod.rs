@@ -22,7 +22,6 @@ use crate::{Error, Observer};
 pub use destination::ends_as_folder;
 use destination::{made, makeable, unmade};
 pub use inputs::Inputs;
-use listing::Listing;
 pub use manifest::Listed;
 use replacement::Replacement;
 pub use streams::fed_by_stdout;
@@ -98,7 +97,7 @@ impl Outputs {
             _ => {}
         }
         destination::names_file(path)?;
-        let destination = self.destination(path)?;
+        let destination = destination::destination(path, &self.inputs)?;
         if self.folder.as_ref().is_none_or(|own| own.exists()) {
             std::fs::metadata(folder::of(&destination)).map_err(|error| Error::unwritable(path, &error))?;
         }
@@ -145,7 +144,7 @@ impl Outputs {
     fn replaced(&self, observer: &dyn Observer) -> Result<(), Error> {
         let mut destinations = Vec::with_capacity(self.files.len() + 1);
         for path in self.files.iter().map(|(path, _)| path).chain(&self.manifest) {
-            let destination = self.destination(path)?;
+            let destination = destination::destination(path, &self.inputs)?;
             if destinations.contains(&destination) {
                 let reason = "another result of this command goes to the same file".into();
                 return Err(Error::Unwritable { path: path.clone(), reason, kind: ErrorKind::Other });
@@ -163,11 +162,11 @@ impl Outputs {
         for (path, (_, content)) in destinations.iter().zip(&self.files) {
             replacement.put(path, content)?;
         }
-        if let Some((path, Listing { manifest, stale, .. })) = &listing
-            && !manifest.is_concluded()
+        if let Some((path, listing)) = &listing
+            && !listing.manifest.is_concluded()
         {
-            stale.iter().try_for_each(|path| replacement.remove(path))?;
-            replacement.put_again(path, manifest.concluded().text().as_bytes())?;
+            listing.stale.iter().try_for_each(|path| replacement.remove(path))?;
+            replacement.put_again(path, listing.manifest.concluded().text().as_bytes())?;
         }
         replacement.commit()?;
         for note in listing.into_iter().flat_map(|(_, listing)| listing.notes) {
@@ -248,7 +247,8 @@ mod tests {
         std::fs::write(home.path().join("out/old"), "").expect("written");
         let outputs = Outputs::of(Inputs::default());
         let folder = |name: &str| {
-            let destination = outputs.destination(&home.path().join("out/../out").join(name)).expect("writable");
+            let destination = destination::destination(&home.path().join("out/../out").join(name), &outputs.inputs)
+                .expect("writable");
             folder::of(&destination).to_path_buf()
         };
         assert_eq!(folder("old"), folder("new"));

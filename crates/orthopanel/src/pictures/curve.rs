@@ -7,7 +7,8 @@ use plotters::element::{Drawable, PointCollection};
 use plotters::prelude::*;
 use plotters_backend::{BackendColor, BackendCoord, BackendStyle, DrawingErrorKind};
 
-use super::Chart;
+/// A chart with axes, in which curves are drawn.
+pub(super) type Chart<'a, 'b, X, Y> = ChartContext<'b, SVGBackend<'a>, Cartesian2d<X, Y>>;
 
 /// Parts of a pixel in which a curve's points are handed over.
 const FINE: i32 = 100;

@@ -7,7 +7,8 @@ use plotters::coord::ranged1d::{DefaultFormatting, KeyPointHint};
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 
-use super::{Area, Chart, FONT, GRID, LAST_LABEL};
+use super::curve::Chart;
+use super::{Area, FONT, GRID, LAST_LABEL};
 
 type OverFrequency<'a, 'b, Y> = Chart<'a, 'b, RangedCoordf64, Y>;
 type Built<T> = Result<T, Box<dyn std::error::Error>>;

@@ -54,7 +54,6 @@ const LAST_LABEL: u32 = 32;
 const SIZE: (u32, u32) = (900, 640);
 
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
-type Chart<'a, 'b, X, Y> = ChartContext<'b, SVGBackend<'a>, Cartesian2d<X, Y>>;
 type Drawn = Result<(), Box<dyn std::error::Error>>;
 
 /// A picture of charts one above the other under a title, of these heights \[pixels\]; the last takes what is left.

@@ -1,6 +1,6 @@
 //! The modes that the records show without a model, beside those of the model.
 
-use super::Figure;
+use super::figure::Figure;
 use super::table::Table;
 use crate::error::Error;
 use crate::identified::MeasuredTable;

@@ -1,6 +1,7 @@
 //! The report: one HTML page that needs nothing beside it, no network and no script.
 
 mod constants;
+mod figure;
 mod measured_modes;
 mod pieces;
 mod table;
@@ -17,6 +18,7 @@ use crate::identified::Identified;
 use crate::observer::Observer;
 use crate::traced::Traced;
 use crate::{Test, notes};
+pub(crate) use figure::Figure;
 use measured_modes::MeasuredModesSection;
 use pieces::PieceSection;
 pub(crate) use table::Table;
@@ -37,18 +39,6 @@ struct Page {
     not_traced: Option<String>,
     pieces: Vec<PieceSection>,
     notes: Vec<String>,
-}
-
-/// A picture with what it shows.
-pub(crate) struct Figure {
-    pub(crate) svg: String,
-    pub(crate) caption: String,
-}
-
-impl Figure {
-    pub(crate) fn new(svg: &str, caption: impl Into<String>) -> Self {
-        Self { svg: svg.to_owned(), caption: caption.into() }
-    }
 }
 
 const SUPERSEDED: &str = "These are the constants of the base model, before effects. Those of the model that is written stand \

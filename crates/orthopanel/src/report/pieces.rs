@@ -4,7 +4,7 @@ use orthopanel_data::NamedPiece;
 use orthopanel_identify::PieceFit;
 use orthopanel_model::{Piece, Readable};
 
-use super::Figure;
+use super::figure::Figure;
 use super::measured_modes::MeasuredModesSection;
 use super::table::Table;
 use crate::error::Error;

@@ -3,8 +3,8 @@
 use orthopanel_identify::{AcceleranceFit, FittedError, TracedEffect, Tracing};
 use orthopanel_model::{Estimate, Readable, StructureKind};
 
-use super::Figure;
 use super::constants::interval;
+use super::figure::Figure;
 use super::pieces::Gallery;
 use super::table::Table;
 use crate::error::Error;
