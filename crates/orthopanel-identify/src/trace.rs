@@ -46,7 +46,7 @@ use crate::{IdentifyError, Settings};
 /// ```
 ///
 /// # Errors
-/// What [`identify`] refuses of the records themselves, such as too few resonances or [`IdentifyError::OtherUnits`]; lists of a plate that no
+/// What [`identify`](crate::identify()) refuses of the records themselves, such as too few resonances or [`IdentifyError::OtherUnits`]; lists of a plate that no
 /// plate meets; and tests that this version cannot trace.
 pub fn trace(test: &ImpactTest) -> Result<Tracing, IdentifyError> {
     trace_with(test, &|_| {})
