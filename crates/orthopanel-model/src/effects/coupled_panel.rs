@@ -423,7 +423,7 @@ pub(super) fn nodes(grid: &[Vec<f64>], shares: &[f64]) -> usize {
 /// Where an element of [`elements`] sits.
 pub(super) fn row(element: &PointElement) -> Option<Row> {
     match element.seat {
-        Seat::At(place) | Seat::AlongEdge(place) => Some((element.motion, place)),
+        Seat::At(place) | Seat::AlongEdge { middle: place, .. } => Some((element.motion, place)),
         Seat::AtResponse => None,
     }
 }
@@ -473,15 +473,15 @@ fn add_patches(
     Ok(())
 }
 
-/// Takes the masses along edges from the list: what each of the two edges carries, for they carry the same.
-fn take_edge_mass(elements: &mut Vec<PointElement>) -> f64 {
-    let mut both = 0.0;
+/// Takes the masses along edges from the list: what each of left and right carries, and each of front and back, for either pair carries the same.
+fn take_edge_mass(elements: &mut Vec<PointElement>) -> [f64; 2] {
+    let mut both = [0.0; 2];
     elements.retain(|element| match (element.seat, element.law) {
-        (Seat::AlongEdge(_), ElementLaw::Mass { mass }) => {
-            both += mass;
+        (Seat::AlongEdge { along_x, .. }, ElementLaw::Mass { mass }) => {
+            both[usize::from(along_x)] += mass;
             false
         }
         _ => true,
     });
-    0.5 * both
+    both.map(|mass| 0.5 * mass)
 }

@@ -301,7 +301,7 @@ impl ModifiedPanel {
 fn spread_over(setting: &EffectSetting, effects: &[EffectState]) -> Result<bool, ModelError> {
     let spread = SpreadEffects::of(effects, setting)?;
     let along_edges = || -> Result<bool, ModelError> {
-        Ok(elements(effects, setting)?.iter().any(|element| matches!(element.seat, Seat::AlongEdge(_))))
+        Ok(elements(effects, setting)?.iter().any(|element| matches!(element.seat, Seat::AlongEdge { .. })))
     };
     Ok(spread.terms.is_some() || spread.core.is_some() || spread.plate.is_some() || along_edges()?)
 }
