@@ -352,22 +352,6 @@ def test_val_an_edge_that_yields_is_named_and_identified(tmp_path, monkeypatch):
 
 
 @pytest.mark.skipif(ORTHOPANEL is None, reason="ORTHOPANEL names no binary")
-def test_val_masses_along_front_and_back_are_named(tmp_path, few):
-    """And none along left and right, in records of five places; declared, they are identified beside the constants."""
-    test, truth = written(tmp_path / "case", 5, 1600.0, with_effect("edge-mass"))
-    found = said("trace", test)
-    assert (found["verdict"], [effect["id"] for effect in found["effects"]]) == ("explained", ["edge-mass"])
-    values = found["effects"][0]["parameters"]
-    assert values["mass"]["value"] == 0.0
-    holds(values["mass_y"], truth["mass_y"], "mass_y")
-    test.write_text(test.read_text(encoding="utf-8") + '\n[[effect]]\nid = "edge-mass"\nmass = 0.0\n', encoding="utf-8")
-    found = said("identify", test)
-    holds(found["effects"][0]["parameters"]["mass_y"][0], truth["mass_y"], "mass_y")
-    for name, value in found["constants"].items():
-        holds(value, getattr(SMALL, name), name)
-
-
-@pytest.mark.skipif(ORTHOPANEL is None, reason="ORTHOPANEL names no binary")
 def test_val_a_clamped_panel_is_identified(tmp_path, monkeypatch):
     """All six constants from the records of five places, with as good as rigid springs along its left edge."""
     monkeypatch.setattr(whole_plate, "FLEXIBLE", 60)

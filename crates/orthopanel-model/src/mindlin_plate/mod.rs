@@ -87,7 +87,7 @@ pub struct MindlinPlate {
 }
 
 /// What may differ from the even plate.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct PlateTerms {
     /// Spans across the whole width that have lost part of both shear stiffnesses, the factor on the rotary inertia, and the springs under
     /// clamped edges: each metre of these has what [`Support`](crate::Support) says over the plate's width.
