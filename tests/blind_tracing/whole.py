@@ -346,6 +346,13 @@ def _support_compliance(bench, draw):
     return {"rotation": rotation, "translation": translation}
 
 
+def _edge_mass(bench, draw):
+    """Along front and back alone: a beam's tests have those of its ends."""
+    mass = draw.rising(2e-3, 20e-3)
+    bench.panel = replace(bench.panel, edge_mass=mass)
+    return {"mass": 0.0, "mass_y": mass}
+
+
 EFFECTS = {
     "local-mass": _local_mass,
     "sensor-mass": _sensor_mass,
@@ -355,5 +362,6 @@ EFFECTS = {
     "gain": _gain,
     "channel-delay": _channel_delay,
     "support-compliance": _support_compliance,
+    "edge-mass": _edge_mass,
     "viscoelastic-core": catalogue.viscoelastic_core,
 }

@@ -42,7 +42,7 @@ ORDERS = 4  # of the other modes' answer to a force, in omega^2
 class WholePanel:
     """Size [m], mass per area [kg/m2], the six constants [Pa, 1], and the core's share of its shear stiffness over x and y (`core`)
     with the lines [m] where that jumps. `left` is "free" or the springs, over the whole edge against deflection [N/m] and against either
-    rotation [N m/rad], that hold the left edge."""
+    rotation [N m/rad], that hold the left edge. `edge_mass` [kg] lies evenly along each of front and back, y = -b/2 and b/2."""
 
     length: float
     width: float
@@ -58,6 +58,7 @@ class WholePanel:
     lines_x: tuple = ()
     lines_y: tuple = ()
     left: str | tuple = "free"
+    edge_mass: float = 0.0
 
     @property
     def rigid(self):
@@ -134,7 +135,7 @@ class Mesh:
         build = lambda blocks: sparse.csc_matrix((np.array(blocks).ravel(), at), (size, size))  # noqa: E731
         mass, stiffness = build(masses), build(entries)
         mass.eliminate_zeros()
-        return stiffness + self._springs(value, weight), mass
+        return stiffness + self._springs(value, weight), mass + self._along_front_and_back(value, weight)
 
     def _springs(self, value, weight):
         """What holds the nodes of the left edge, which are the first."""
@@ -148,6 +149,16 @@ class Mesh:
             for part, spring in enumerate((translation, rotation, rotation)):
                 springs[np.ix_(nodes + part, nodes + part)] += spring * own
         return springs.tocsc()
+
+    def _along_front_and_back(self, value, weight):
+        """What w of the first and of the last node of each line across carries."""
+        mass = sparse.lil_matrix((3 * self.nodes_x * self.nodes_y,) * 2)
+        for i, size in enumerate(np.diff(self.x) if self.panel.edge_mass else ()):
+            own = self.panel.edge_mass / self.panel.length * value.T @ (weight[:, None] * value) * size / 2.0
+            for edge in (0, self.nodes_y - 1):
+                nodes = 3 * ((np.arange(self.degree + 1) + self.degree * i) * self.nodes_y + edge)
+                mass[np.ix_(nodes, nodes)] += own
+        return mass.tocsc()
 
     def _unknowns(self, i, j):
         """Of element (i, j): w of all its nodes, then psi_x, then psi_y."""
@@ -183,7 +194,9 @@ class Mesh:
         """The motions as a whole at rows of places (places, 2), phi' M phi = 1."""
         panel = self.panel
         turning = [panel.mass * (side**2 + panel.thickness**2) / 12.0 for side in (panel.length, panel.width)]
-        return np.stack([np.full(len(seen), panel.mass**-0.5), seen[:, 0] * turning[0] ** -0.5, seen[:, 1] * turning[1] ** -0.5])
+        edges = 2.0 * panel.edge_mass
+        turning = [turning[0] + edges * panel.length**2 / 12.0, turning[1] + edges * panel.width**2 / 4.0]
+        return np.stack([np.full(len(seen), (panel.mass + edges) ** -0.5), seen[:, 0] * turning[0] ** -0.5, seen[:, 1] * turning[1] ** -0.5])
 
 
 def solve(panel, struck, fixed, zeta, flexible=None, **mesh):

@@ -126,6 +126,10 @@ impl Part {
             let choices: Vec<Vec<Slot>> = choices(parameter, of, records);
             ways = ways.iter().flat_map(|way| choices.iter().map(|choice| [&way[..], choice].concat())).collect();
         }
+        if effect.parameters().iter().any(|parameter| parameter.none_beside_another) {
+            // None of anything is no way.
+            ways.retain(|way| way.iter().any(|slot| slot.coordinate().is_some()));
+        }
         ways.into_iter().map(|slots| Self { effect, slots, role: Role::Found }).collect()
     }
 
@@ -381,6 +385,9 @@ fn choices(parameter: &EffectParameter, (piece, structure): (&Piece, StructureKi
     let held = parameter.held_at.map(|value| vec![Slot::Held(value); times]);
     match (parameter.across, structure) {
         (true, StructureKind::TimoshenkoBeam) => held.into_iter().collect(),
+        (_, StructureKind::MindlinPlate) if parameter.none_beside_another => {
+            free.into_iter().chain([vec![Slot::Held(0.0)]]).collect()
+        }
         (true, StructureKind::MindlinPlate) => free,
         _ => held.into_iter().chain(free).collect(),
     }

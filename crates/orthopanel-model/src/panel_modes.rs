@@ -135,7 +135,7 @@ impl PanelModel {
     pub(crate) fn even(&self, setting: &EffectSetting, count: usize) -> Result<Even, ModelError> {
         match self.structure {
             StructureKind::TimoshenkoBeam => Even::beam(setting, count),
-            StructureKind::MindlinPlate => Ok(Even::Plate),
+            StructureKind::MindlinPlate => Ok(Even::plate()),
         }
     }
 

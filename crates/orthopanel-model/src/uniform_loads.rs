@@ -67,8 +67,11 @@ impl PanelModel {
             point_elements(&effects, &setting)?.iter().filter(|element| element.motion == Motion::Deflection)
         {
             let seats: Vec<(Place, f64)> = match *seat {
-                Seat::AlongEdge(Place { x, .. }) => {
+                Seat::AlongEdge { middle: Place { x, .. }, along_x: false } => {
                     across.iter().map(|&(y, dy)| (Place { x, y }, dy / self.piece.width)).collect()
+                }
+                Seat::AlongEdge { middle: Place { y, .. }, along_x: true } => {
+                    along.iter().map(|&(x, dx)| (Place { x, y }, dx / self.piece.length)).collect()
                 }
                 Seat::At(place) => vec![(place, 1.0)],
                 Seat::AtResponse => vec![],

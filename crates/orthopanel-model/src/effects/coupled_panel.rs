@@ -7,7 +7,7 @@ use faer::Mat;
 use super::beam_base::BeamBase;
 use super::coupled_system::{FoundMode, System};
 use super::foot::{more_yield, on_feet, port};
-use super::known::{Known, known_or};
+use super::known::{KEPT, Known, known_or};
 use super::low_modes::{Asked, FarAnswers, LowModes};
 use super::own_modes::OwnModes;
 use super::row::{Row, SharedStructure};
@@ -61,11 +61,27 @@ pub(super) struct Residual {
 pub(crate) enum Even {
     /// A beam on a basis for the modes asked for.
     Beam(Arc<EvenBeam>),
-    /// A plate, whose basis follows from its constants.
-    Plate,
+    /// A plate, whose basis follows from its constants and from what is spread over it.
+    Plate(Arc<PlatesAlone>),
 }
 
+/// Plates with what is spread over them and along their edges, but nothing that stands on them, that were found last, with their modes: a search moves what
+/// stands on a plate more often than these.
+pub(crate) type PlatesAlone = Known<PlateKey, (Arc<MindlinPlate>, Arc<LowModes>)>;
+
+/// Such a plate: its size, edges, constants, how many flexible modes, and what is spread.
+#[derive(Debug, PartialEq)]
+pub(crate) struct PlateKey((Piece, Boundary), Vec<f64>, usize, PlateTerms);
+
+/// Plates that are kept, of some 10 MB each: as many as a core that relaxes has nodes, and more.
+const PLATES: usize = 8;
+
 impl Even {
+    /// A plate.
+    pub(crate) fn plate() -> Self {
+        Self::Plate(Arc::default())
+    }
+
     /// A beam for `count` modes and some.
     pub(crate) fn beam(setting: &EffectSetting, count: usize) -> Result<Self, ModelError> {
         let terms = BeamTerms::default();
@@ -95,11 +111,11 @@ impl EvenBeam {
         count: usize,
     ) -> Result<Arc<BeamBase>, ModelError> {
         let key = ([values[0], values[1], rotary_factor, count as f64], boundary);
-        known_or(&self.bases, key, || BeamBase::new((piece, boundary), values, rotary_factor, count))
+        known_or(&self.bases, key, KEPT, || BeamBase::new((piece, boundary), values, rotary_factor, count))
     }
 
     fn low_modes(&self, values: &[f64], count: usize) -> Result<Arc<LowModes>, ModelError> {
-        known_or(&self.known, (values.to_vec(), count), || LowModes::new(self.beam.as_ref(), values, count))
+        known_or(&self.known, (values.to_vec(), count), KEPT, || LowModes::new(self.beam.as_ref(), values, count))
     }
 }
 
@@ -185,19 +201,25 @@ impl ModifiedStructure {
                 let order = basis_terms(summed);
                 (Arc::new(TimoshenkoBeam::with_terms(&piece, boundary, order, terms)?), None)
             }
-            (Even::Plate, terms) => {
+            (Even::Plate(known), terms) => {
                 let edge_mass = take_edge_mass(&mut elements);
                 elements = on_feet(elements);
                 let terms = PlateTerms { spread: terms.unwrap_or_default(), edge_mass };
-                let plate = MindlinPlate::uneven_with_basis_for((&piece, boundary), values, summed, &terms)?;
-                let plate = Arc::new(plate);
+                let key = PlateKey((piece, boundary), values.to_vec(), summed, terms.clone());
+                let found = known_or(known, key, PLATES, || {
+                    let plate = MindlinPlate::uneven_with_basis_for((&piece, boundary), values, summed, &terms)?;
+                    let low = LowModes::new(&plate, values, summed)?;
+                    Ok((Arc::new(plate), Arc::new(low)))
+                })?;
+                let (plate, low) = found.as_ref();
                 add_patches(&mut elements, &spread.patches, plate.as_ref(), values)?;
-                (Arc::<MindlinPlate>::clone(&plate), Some(plate))
+                (Arc::<MindlinPlate>::clone(plate), Some((Arc::clone(plate), Arc::clone(low))))
             }
         };
-        let low = match even {
-            Even::Beam(even) if is_even => even.low_modes(values, summed)?,
-            _ => Arc::new(LowModes::new(structure.as_ref(), values, summed)?),
+        let (plate, low) = match (even, plate) {
+            (_, Some((plate, low))) => (Some(plate), low),
+            (Even::Beam(even), None) if is_even => (None, even.low_modes(values, summed)?),
+            _ => (None, Arc::new(LowModes::new(structure.as_ref(), values, summed)?)),
         };
         Ok(Self {
             structure,
@@ -426,7 +448,7 @@ pub(super) fn nodes(grid: &[Vec<f64>], shares: &[f64]) -> usize {
 /// Where an element of [`elements`] sits.
 pub(super) fn row(element: &PointElement) -> Option<Row> {
     match element.seat {
-        Seat::At(place) | Seat::AlongEdge(place) => Some((element.motion, place)),
+        Seat::At(place) | Seat::AlongEdge { middle: place, .. } => Some((element.motion, place)),
         Seat::AtResponse => None,
     }
 }
@@ -476,15 +498,15 @@ fn add_patches(
     Ok(())
 }
 
-/// Takes the masses along edges from the list: what each of the two edges carries, for they carry the same.
-fn take_edge_mass(elements: &mut Vec<PointElement>) -> f64 {
-    let mut both = 0.0;
+/// Takes the masses along edges from the list: what each of left and right carries, and each of front and back, for either pair carries the same.
+fn take_edge_mass(elements: &mut Vec<PointElement>) -> [f64; 2] {
+    let mut both = [0.0; 2];
     elements.retain(|element| match (element.seat, element.law) {
-        (Seat::AlongEdge(_), ElementLaw::Mass { mass }) => {
-            both += mass;
+        (Seat::AlongEdge { along_x, .. }, ElementLaw::Mass { mass }) => {
+            both[usize::from(along_x)] += mass;
             false
         }
         _ => true,
     });
-    0.5 * both
+    both.map(|mass| 0.5 * mass)
 }

@@ -8,12 +8,13 @@ use crate::ModelError;
 pub(super) type Known<K, V> = Mutex<Vec<(K, Arc<V>)>>;
 
 /// So many are kept: each of some threads goes back and forth between a few.
-const KEPT: usize = 16;
+pub(super) const KEPT: usize = 16;
 
-/// What is known by a key, else found and kept.
+/// What is known by a key, else found and kept, among so many.
 pub(super) fn known_or<K: PartialEq, V>(
     known: &Known<K, V>,
     key: K,
+    most: usize,
     find: impl FnOnce() -> Result<V, ModelError>,
 ) -> Result<Arc<V>, ModelError> {
     let lock = || known.lock().unwrap_or_else(PoisonError::into_inner);
@@ -26,7 +27,7 @@ pub(super) fn known_or<K: PartialEq, V>(
     drop(kept);
     let found = Arc::new(find()?);
     let mut kept = lock();
-    kept.truncate(KEPT - 1);
+    kept.truncate(most.saturating_sub(1));
     kept.insert(0, (key, Arc::clone(&found)));
     Ok(found)
 }

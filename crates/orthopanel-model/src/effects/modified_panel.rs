@@ -68,7 +68,7 @@ impl ModifiedPanel {
     pub fn new(structure: StructureKind, setting: &EffectSetting, count: usize) -> Result<Self, ModelError> {
         let even = match structure {
             StructureKind::TimoshenkoBeam => Even::beam(setting, count)?,
-            StructureKind::MindlinPlate => Even::Plate,
+            StructureKind::MindlinPlate => Even::plate(),
         };
         Ok(Self { count, even, damping: Damping::default(), wide: None })
     }
@@ -76,7 +76,7 @@ impl ModifiedPanel {
     /// A plate, or a beam that may turn out one: seen from about these places, with its modes up to a frequency \[Hz\].
     #[must_use]
     pub fn perhaps_wide(self, setting: &EffectSetting, places: &[Place], highest: f64) -> Self {
-        let touched_anywhere = matches!(self.even, Even::Plate);
+        let touched_anywhere = matches!(self.even, Even::Plate(_));
         let plates = WidePlates::new(setting.piece, setting.boundary, places.to_vec(), touched_anywhere);
         Self { wide: Some(Arc::new((plates, highest))), ..self }
     }
@@ -87,9 +87,9 @@ impl ModifiedPanel {
         let count = |end: End| edges.iter().filter(|edge| **edge == end).count();
         match (&self.even, count(End::Pinned), count(End::Clamped)) {
             (Even::Beam(_), ..) => boundary.rigid_modes(),
-            (Even::Plate, 0, 0) => 3,
-            (Even::Plate, 1, 0) => 1,
-            (Even::Plate, ..) => 0,
+            (Even::Plate(_), 0, 0) => 3,
+            (Even::Plate(_), 1, 0) => 1,
+            (Even::Plate(_), ..) => 0,
         }
     }
 
@@ -105,7 +105,7 @@ impl ModifiedPanel {
             }
         }
         let (beam, ratios) = match (&self.even, values) {
-            (Even::Plate, &[e_x, e_y, nu_xy, g_xy, g_yz, g_zx]) if !spread_over(setting, effects)? => {
+            (Even::Plate(_), &[e_x, e_y, nu_xy, g_xy, g_yz, g_zx]) if !spread_over(setting, effects)? => {
                 (vec![e_x, g_zx], Some([e_y / e_x, nu_xy, g_xy / e_x, g_yz / g_zx]))
             }
             _ => (values.to_vec(), ratios),
@@ -114,7 +114,7 @@ impl ModifiedPanel {
             (Some(ratios), Some(wide)) => {
                 ModifiedStructure::wide(&wide.0, wide.1, (setting, &beam, ratios), effects, &others)
             }
-            (None, Some(wide)) if matches!(self.even, Even::Plate) => {
+            (None, Some(wide)) if matches!(self.even, Even::Plate(_)) => {
                 // As many modes as without what is spread over the plate, on the same basis: it must not be told apart by them. Only where edges
                 // yield there may be more, as many as were they free.
                 let yields = SpreadEffects::of(effects, setting)?.terms.is_some_and(|terms| terms.support.is_some());
@@ -188,7 +188,7 @@ impl ModifiedPanel {
     pub fn with_core_times(&self, values: &[f64], factor: f64) -> Vec<f64> {
         let constants: &[Constant] = match &self.even {
             Even::Beam(_) => &BEAM_CONSTANTS,
-            Even::Plate => &PLATE_CONSTANTS,
+            Even::Plate(_) => &PLATE_CONSTANTS,
         };
         let is_of_core = |constant: &Constant| matches!(constant.name, "g_zx" | "g_yz");
         let value = |(constant, value): (&Constant, &f64)| if is_of_core(constant) { factor * value } else { *value };
@@ -248,7 +248,7 @@ impl ModifiedPanel {
     ) -> Result<SeenModes, ModelError> {
         let slopes =
             |motion: Motion| places.iter().filter(|_| with_slopes).map(|&place| (motion, place)).collect::<Vec<Row>>();
-        let across = if matches!(self.even, Even::Plate) { slopes(Motion::SlopeAcross) } else { vec![] };
+        let across = if matches!(self.even, Even::Plate(_)) { slopes(Motion::SlopeAcross) } else { vec![] };
         self.seen_in_rows(parts, places, [vec![], slopes(Motion::Slope), across])
     }
 
@@ -277,7 +277,7 @@ impl ModifiedPanel {
         let [far, _] = &answers.series;
         let rows = faer::concat![[answers.near], [far.transpose()], [answers.second.seen.transpose()]];
         let seen = in_rows(&found, &rows);
-        let is_plate = matches!(self.even, Even::Plate);
+        let is_plate = matches!(self.even, Even::Plate(_));
         let own = if is_plate { modified.own_modes(&answers, damping, &found)? } else { OwnModes::default() };
         let is_damped = is_plate && found.iter().any(|(_, zeta, _)| *zeta > 0.0);
         let couplings = if is_damped { system.couplings(&found) } else { vec![] };
@@ -292,7 +292,7 @@ impl ModifiedPanel {
 fn spread_over(setting: &EffectSetting, effects: &[EffectState]) -> Result<bool, ModelError> {
     let spread = SpreadEffects::of(effects, setting)?;
     let along_edges = || -> Result<bool, ModelError> {
-        Ok(elements(effects, setting)?.iter().any(|element| matches!(element.seat, Seat::AlongEdge(_))))
+        Ok(elements(effects, setting)?.iter().any(|element| matches!(element.seat, Seat::AlongEdge { .. })))
     };
     Ok(spread.terms.is_some() || spread.core.is_some() || spread.plate.is_some() || along_edges()?)
 }

@@ -23,10 +23,12 @@ pub struct EffectParameter {
     pub held_at: Option<f64>,
     /// What is thought of it before a test.
     pub prior: Prior,
-    /// Whether it is a place or an offset across the panel: a plate has it, and on a beam it stays on the centre line.
+    /// Whether it is a place, an offset or a mass across the panel: a plate has it, and on a beam it is that of the centre line.
     pub across: bool,
     /// Whether it is a factor, of which one is none of the effect.
     pub is_factor: bool,
+    /// Whether on a plate it may be none where another is some of the effect: masses along one pair of edges.
+    pub none_beside_another: bool,
 }
 
 /// What is thought of a parameter before a test: an honest range over panels, sensors and rigs, in the parameter's own unit.
@@ -98,6 +100,7 @@ impl EffectParameter {
             prior: Prior::Even,
             across: false,
             is_factor: false,
+            none_beside_another: false,
         }
     }
 
@@ -128,6 +131,11 @@ impl EffectParameter {
     /// A factor, of which one is none of the effect.
     pub(super) const fn factor(self) -> Self {
         Self { is_factor: true, ..self }
+    }
+
+    /// None where another parameter is some of the effect, on a plate.
+    pub(super) const fn none_beside_another(self) -> Self {
+        Self { none_beside_another: true, ..self }
     }
 
     /// Gaussian about a mean.

@@ -22,8 +22,13 @@ pub struct PointElement {
 pub enum Seat {
     /// At a place of the piece.
     At(Place),
-    /// Evenly along the edge through this place, from side to side; a beam has it at the place.
-    AlongEdge(Place),
+    /// Evenly along an edge of a plate; a beam has it at the place.
+    AlongEdge {
+        /// The middle of the edge.
+        middle: Place,
+        /// Whether the edge is front or back.
+        along_x: bool,
+    },
     /// Where the record's sensor sits, wherever that is.
     AtResponse,
 }

@@ -76,7 +76,7 @@ impl CoupledPanel {
         let rigid = panel.rigid();
         let fit = CoreFit::new(&core, [0.1 * frequency(rigid), frequency(rigid + count - 1)])?;
         // On a plate a wave shears both ways.
-        let ways = if matches!(parts.even, Even::Plate) { 2 } else { 1 };
+        let ways = if matches!(parts.even, Even::Plate(_)) { 2 } else { 1 };
         let kept = ways * (count + 2 * seats) + panel.residuals.len();
         system.relax(&shear_directions(&stiffness, &shear, kept)?, rigid, &fit);
         let found = system.solve()?;

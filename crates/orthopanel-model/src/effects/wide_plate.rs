@@ -4,7 +4,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use faer::Mat;
 
-use super::known::{Known, known_or};
+use super::known::{KEPT as KEPT_MODES, Known, known_or};
 use super::low_modes::LowModes;
 use super::row::{Row, SharedStructure};
 use crate::mindlin_plate::Membrane;
@@ -165,7 +165,7 @@ impl WidePlates {
         values: &[f64],
         on_few: bool,
     ) -> Result<Arc<LowModes>, ModelError> {
-        known_or(&self.low, (values.to_vec(), on_few), || {
+        known_or(&self.low, (values.to_vec(), on_few), KEPT_MODES, || {
             if on_few {
                 return LowModes::new(plate.structure.as_ref(), values, plate.summed);
             }

@@ -75,7 +75,7 @@ pub(super) fn assemble(
     let meetings = along.each_ref().map(EdgeBasis::meetings);
     let blocks = side_by_side::map(&coordinates, |list| {
         let mut block = block(piece, along, rotary_factor, (list, &meetings));
-        if edges.mass != 0.0 {
+        if edges.mass != [0.0; 2] {
             add_edge_mass(piece, along, edges.mass, list, &mut block);
         }
         if let Some(support) = edges.support {
@@ -175,8 +175,8 @@ fn profile(along: &[EdgeBasis; 2], list: &[Coordinate], meetings: &[Vec<Vec<bool
 /// What stands along edges.
 pub(super) struct Edges {
     pub boundary: Boundary,
-    /// Mass \[kg\] along each of the edges at $x = \pm a/2$.
-    pub mass: f64,
+    /// Mass \[kg\] along each of the edges at $x = \pm a/2$, and at $y = \pm b/2$.
+    pub mass: [f64; 2],
     /// What every clamped edge rests on.
     pub support: Option<Support>,
 }
@@ -205,12 +205,14 @@ fn add_along_edge(
     }
 }
 
-/// Adds $\frac mb\int ww\,dy$ at both ends of x, and scales the rigid modes to it: even mass at both ends keeps these
-/// orthogonal.
-fn add_edge_mass(piece: &Piece, along: &[EdgeBasis; 2], mass: f64, list: &[Coordinate], block: &mut Block) {
+/// Adds $\frac mb\int ww\,dy$ at both ends of x and $\frac ma\int ww\,dx$ at both of y, and scales the rigid modes to it: even mass at both ends keeps
+/// these orthogonal.
+fn add_edge_mass(piece: &Piece, along: &[EdgeBasis; 2], masses: [f64; 2], list: &[Coordinate], block: &mut Block) {
     let mut added = Mat::<f64>::zeros(list.len(), list.len());
-    for side in [-1.0, 1.0] {
-        add_along_edge(along, (0, side), (mass / piece.width, Field::Deflection), list, &mut added);
+    for (axis, (mass, edge)) in masses.into_iter().zip([piece.width, piece.length]).enumerate() {
+        for side in [-1.0, 1.0] {
+            add_along_edge(along, (axis, side), (mass / edge, Field::Deflection), list, &mut added);
+        }
     }
     block.mass = SymmetricMatrix::sum([(1.0, &block.mass), (1.0, &added.into())].into_iter(), list.len());
     for mode in &mut block.rigid {

@@ -74,13 +74,13 @@ pub struct MindlinPlate {
 }
 
 /// What may differ from the even plate.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct PlateTerms {
     /// Spans across the whole width that have lost part of both shear stiffnesses, the factor on the rotary inertia, and the springs under
     /// clamped edges: each metre of these has what [`Support`](crate::Support) says over the plate's width.
     pub spread: BeamTerms,
-    /// Mass \[kg\] spread evenly along each of the edges at $x = \pm a/2$.
-    pub edge_mass: f64,
+    /// Mass \[kg\] spread evenly along each of the edges at $x = \pm a/2$, and at $y = \pm b/2$.
+    pub edge_mass: [f64; 2],
 }
 
 /// Fewest and most terms along one direction.

@@ -46,7 +46,7 @@ impl RecordPlan {
         }
         rows.extend(elements.iter().map(|element| {
             let place = match element.seat {
-                Seat::At(place) | Seat::AlongEdge(place) => place,
+                Seat::At(place) | Seat::AlongEdge { middle: place, .. } => place,
                 // It moves with the response.
                 Seat::AtResponse => response,
             };
