@@ -36,13 +36,13 @@ def optional(value: Any, key: str) -> float | None:
     return None if value is None else number(value, key)
 
 
-def whole(value: Any, key: str, least: int = 0) -> int:
-    """A whole number, `least` or above."""
+def whole(value: Any, key: str, least: int = 0, most: int = 2**63 - 1) -> int:
+    """A whole number, from `least` to `most`."""
     if isinstance(value, (bool, np.bool_)) or not hasattr(type(value), "__index__"):
         raise TypeError(f"{key}: must be a whole number, not {type(value).__name__}")
     found = value.__index__()
-    if not least <= found < 2**63:
-        raise InputError(f"{key} = {found}: must be a whole number from {least} on", key=key)
+    if not least <= found <= most:
+        raise InputError(f"{key} = {found}: must be a whole number from {least} to {most}", key=key)
     return int(found)
 
 
@@ -114,6 +114,15 @@ def line(value: Any, key: str, kinds: str = "fiu", dtype: Any = np.float64) -> A
     if found.ndim != 1:
         raise InputError(f"{key}: has {found.ndim} dimensions: must be a row of numbers", key=key)
     return found
+
+
+def mapping(value: Any, key: str) -> dict[str, Any]:
+    """What is known by name; nothing is an empty one."""
+    if value is None:
+        return {}
+    if not isinstance(value, Mapping):
+        raise TypeError(f"{key}: must be a mapping of names, not {type(value).__name__}")
+    return dict(value)
 
 
 def words(value: Any, key: str) -> str | None:

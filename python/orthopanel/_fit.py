@@ -9,7 +9,7 @@ import numpy as np
 
 from . import _native, _plots, _progress
 from ._answer import Answer
-from ._errors import InputError
+from ._errors import FileError, InputError
 from ._model import Model
 from ._pairs import Accelerance, pairs
 from ._tables import matrix, table
@@ -126,8 +126,11 @@ class Fit(Answer):
                 page = self._test._held.page(self._words, tell)
             finally:
                 _progress.end(tell)
-        with open(path, "w", encoding="utf-8", newline="\n") as file:
-            file.write(page)
+        try:
+            with open(path, "w", encoding="utf-8", newline="\n") as file:
+                file.write(page)
+        except OSError as error:
+            raise FileError(f"{os.fspath(path)!r} cannot be written: {error.strerror}", file=os.fspath(path)) from error
 
     def plot(self) -> Any:
         """A figure of matplotlib: records measured and calculated, else natural frequencies and their errors.

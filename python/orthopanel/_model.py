@@ -14,6 +14,9 @@ from . import _arguments, _native
 from ._errors import InputError
 from ._tables import matrix, table
 
+MOST_DRAWS = 1_000_000
+"""Draws of a model at once."""
+
 _DERIVATIVES = {
     "acceleration": 0,
     "accelerance": 0,
@@ -112,7 +115,7 @@ class Model:
         Returns:
             Complex, of the shape of ``frequency``.
         """
-        order = _DERIVATIVES.get(quantity)
+        order = _DERIVATIVES.get(_arguments.words(quantity, "quantity") or "")
         if order is None:
             raise InputError(f"quantity = {quantity!r}: must be one of {', '.join(_DERIVATIVES)}", key="quantity")
         lines = _arguments.numbers(frequency, "frequency")
@@ -173,8 +176,12 @@ class Model:
         return a, b, c, d
 
     def sample(self, count: int, seed: int = 0) -> list[Model]:
-        """Models drawn by the standard deviations and the correlation of constants and damping ratios; one seed gives the same draws."""
-        drawn = self._held.sample(_arguments.whole(count, "count"), _arguments.whole(seed, "seed"))
+        """Models drawn by the standard deviations and the correlation of constants and damping ratios; one seed gives the same draws.
+
+        Raises:
+            InputError: for more than a million draws, each of which is a model of its own.
+        """
+        drawn = self._held.sample(_arguments.whole(count, "count", most=MOST_DRAWS), _arguments.whole(seed, "seed"))
         return [Model._of(native) for native in drawn]
 
     def save(self, path: str | os.PathLike[str]) -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import functools
+import io
 from collections.abc import Sequence
 from typing import Any
 
@@ -19,8 +21,9 @@ def _figure(rows: int, height: float) -> tuple[Any, Any]:
         raise ImportError("matplotlib is not installed: pip install matplotlib")
     from matplotlib.figure import Figure
 
-    # Without pyplot: no window and no state, and a notebook shows what a cell ends with.
+    # Without pyplot: no window and no state. A notebook shows a figure by pyplot's hook alone, or by what it says of itself.
     figure = Figure(figsize=(8.0, height * rows + 0.6), layout="constrained")
+    vars(figure)["_repr_png_"] = functools.partial(_png, figure)
     axes = figure.subplots(rows, 1, squeeze=False)[:, 0]
     try:
         from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -29,6 +32,13 @@ def _figure(rows: int, height: float) -> tuple[Any, Any]:
     except ImportError:  # pragma: no cover
         pass
     return figure, axes
+
+
+def _png(figure: Any) -> bytes:
+    """What a notebook shows of a figure."""
+    page = io.BytesIO()
+    figure.savefig(page, format="png")
+    return page.getvalue()
 
 
 def accelerances(calculated: Sequence[tuple[str, Sequence[Accelerance]]], most: int = 6) -> Any:

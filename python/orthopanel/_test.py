@@ -47,16 +47,22 @@ class Test:
         constants: Mapping[str, float | Mapping[str, float]] | None = None,
         effects: Iterable[Mapping[str, Any]] = (),
     ) -> None:
-        pieces = [piece] if isinstance(piece, Piece) else list(piece)
+        pieces = list(piece) if isinstance(piece, Iterable) else [piece]
         for of in pieces:
             if not isinstance(of, Piece):
                 raise TypeError(f"piece: must be a Piece, not {type(of).__name__}")
         header = {
             "pieces": [of._entry() for of in pieces],
             "suspension": _arguments.places(suspension, "suspension"),
-            "boundary": dict(boundary or {}),
-            "structure": structure,
-            "constants": {name: _known(of, f"constants.{name}") for name, of in (constants or {}).items()},
+            "boundary": {
+                edge: _arguments.words(held, f"boundary.{edge}")
+                for edge, held in _arguments.mapping(boundary, "boundary").items()
+            },
+            "structure": _arguments.words(structure, "structure"),
+            "constants": {
+                name: _known(of, f"constants.{name}")
+                for name, of in _arguments.mapping(constants, "constants").items()
+            },
             "effects": [_effect(of, f"effects[{index}]") for index, of in enumerate(effects)],
         }
         self._made: tuple[Any, ...] = ("built", json.dumps(header))

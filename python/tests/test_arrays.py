@@ -154,3 +154,5 @@ def test_pictures_are_drawn(fit, tmp_path):
         why.plot().savefig(tmp_path / "why.png")
         op.identify(op.Test.load(EXAMPLES / "pieces-1-2")).plot().savefig(tmp_path / "list.svg")
     assert all((tmp_path / name).stat().st_size > 5000 for name in ("fit.png", "why.png", "list.svg"))
+    # What a notebook asks of what a cell ends with, in which nothing of matplotlib was called.
+    assert pickle.loads(pickle.dumps(why.plot()))._repr_png_()[:8] == b"\x89PNG\r\n\x1a\n"

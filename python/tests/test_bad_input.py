@@ -84,6 +84,31 @@ def test_errors_tell_file_key_and_way_out(piece, tmp_path):
     assert negative.value.key == "constants.e_x"
 
 
+@pytest.mark.parametrize(
+    "make, told",
+    [
+        (lambda piece: op.Test(None), "piece"),
+        (lambda piece: op.Test(piece, boundary=3), "boundary"),
+        (lambda piece: op.Test(piece, boundary={"left": 3}), "boundary.left"),
+        (lambda piece: op.Test(piece, structure=3), "structure"),
+        (lambda piece: op.Test(piece, constants=[1]), "constants"),
+        (lambda piece: op.Model.load(_plate()).accelerance([10.0], 0.0, 0.0, quantity=[3]), "quantity"),
+    ],
+)
+def test_arguments_of_another_type_are_named(piece, make, told):
+    with pytest.raises(TypeError, match=f"^{told}: must be"):
+        make(piece)
+
+
+def test_draws_without_end_and_pages_without_a_folder_are_refused(piece, tmp_path):
+    with pytest.raises(op.InputError, match="count = 1000000000000: must be a whole number from 0 to 1000000"):
+        op.Model.load(_plate()).sample(10**12)
+    test = op.Test(piece)
+    test.add_frequencies([321.3, 837.5, 1520.0, 2312.5])
+    with pytest.raises(op.FileError, match="cannot be written"):
+        op.identify(test).report(tmp_path / "no" / "page.html")
+
+
 def _plate():
     from conftest import EXAMPLES
 
