@@ -7,8 +7,7 @@ use crate::limits;
 use crate::structure_modes::NaturalMode as _;
 use crate::{
     BeamConstants, BeamMode, EffectSetting, EffectState, ExactBeam, MindlinPlate, ModalModel, ModelError, Owner,
-    PLATE_CONSTANTS, PanelMode, PanelModel, Place, RitzMode, Structure, StructureKind, TimoshenkoBeam,
-    VISCOELASTIC_CORE, ritz_modes,
+    PLATE_CONSTANTS, PanelMode, PanelModel, Place, RitzMode, Structure, StructureKind, TimoshenkoBeam, ritz_modes,
 };
 
 /// Which modes to keep beside the rigid ones.
@@ -270,7 +269,7 @@ impl PanelModel {
             self.piece.contains(place)?;
         }
         if self.relaxes() {
-            return Err(ModelError::Unsupported(format!("{VISCOELASTIC_CORE} in a sum of modes")));
+            return Err(ModelError::Unsupported("a core that relaxes in a sum of modes".into()));
         }
         self.as_seen(&self.modes_without_core(range)?, forces, responses)
     }

@@ -74,7 +74,7 @@ impl PanelModel {
         // The first two frequencies make a band; more modes than these many make no stepper.
         if !(FEWEST_RELAXING..=MOST_RELAXING).contains(&flexible) {
             return Err(ModelError::Unsupported(format!(
-                "{VISCOELASTIC_CORE} with {flexible} modes: from {FEWEST_RELAXING} to {MOST_RELAXING} can be stepped"
+                "a core that relaxes with {flexible} modes: from {FEWEST_RELAXING} to {MOST_RELAXING} can be stepped"
             )));
         }
         let setting = EffectSetting::of_panel(&self.piece, self.boundary);

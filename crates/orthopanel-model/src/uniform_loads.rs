@@ -17,7 +17,7 @@ use crate::legendre::gauss_legendre;
 use crate::structure::Motion;
 use crate::{
     DeflectionRow, EffectSetting, EffectState, MindlinPlate, ModeRange, ModelError, PanelModel, Place, RigidMotion,
-    StructureKind, VISCOELASTIC_CORE,
+    StructureKind,
 };
 
 /// Points beyond one a mode: exact to rounding for the shapes of a beam without losses.
@@ -80,10 +80,9 @@ impl PanelModel {
                 match *law {
                     ElementLaw::Mass { mass } => row.terms.push((place, share * mass * motion.deflection(place))),
                     ElementLaw::Resonator { .. } if self.relaxes() => {
-                        let refused = format!(
-                            "a field of acceleration or a moving frame beside a sprung mass and {VISCOELASTIC_CORE}"
-                        );
-                        return Err(ModelError::Unsupported(refused));
+                        let refused =
+                            "a field of acceleration or a moving frame beside a sprung mass and a core that relaxes";
+                        return Err(ModelError::Unsupported(refused.into()));
                     }
                     ElementLaw::Resonator { mass, frequency, .. } => {
                         let own = (frequency * std::f64::consts::TAU).powi(2);

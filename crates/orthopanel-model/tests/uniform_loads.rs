@@ -102,5 +102,5 @@ fn a_resonator_on_a_core_that_relaxes_has_no_such_row() {
     let core = r#"{"id":"viscoelastic-core","owner":"panel","strength":0.2,"tau":1e-4,"alpha":0.6},
         {"id":"resonator","owner":"panel","mass":0.02,"frequency":400,"zeta":0.05,"x":-0.2}"#;
     let refused = panel("timoshenko-beam", "", core, 0.1).inertia_row(RigidMotion::AlongZ, 4).unwrap_err().to_string();
-    assert!(refused.contains("beside a sprung mass and viscoelastic-core"), "{refused}");
+    assert!(refused.contains("beside a sprung mass and a core that relaxes"), "{refused}");
 }

@@ -7,7 +7,7 @@ use faer::Mat;
 use super::beam_base::BeamBase;
 use super::coupled_system::{FoundMode, System};
 use super::foot::{more_yield, on_feet, port};
-use super::known::{KEPT, Known, known_or};
+use super::known::{KEPT, Known, known_in_search, known_or};
 use super::low_modes::{Asked, FarAnswers, LowModes};
 use super::own_modes::OwnModes;
 use super::row::{Row, SharedStructure};
@@ -18,10 +18,7 @@ use crate::dense::product;
 use crate::mindlin_plate::PlateTerms;
 use crate::nodes::crossings;
 use crate::structure::{Motion, ShearMoment, Structure};
-use crate::{
-    BeamTerms, Boundary, Damping, MindlinPlate, ModeName, ModelError, Piece, Place, RitzMode, TimoshenkoBeam,
-    VISCOELASTIC_CORE,
-};
+use crate::{BeamTerms, Boundary, Damping, MindlinPlate, ModeName, ModelError, Piece, Place, RitzMode, TimoshenkoBeam};
 
 /// Modes of the bare structure beyond those asked for.
 const SPARE_MODES: usize = 10;
@@ -205,8 +202,8 @@ impl ModifiedStructure {
                 let edge_mass = take_edge_mass(&mut elements);
                 elements = on_feet(elements);
                 let terms = PlateTerms { spread: terms.unwrap_or_default(), edge_mass };
-                let key = PlateKey((piece, boundary), values.to_vec(), summed, terms.clone());
-                let found = known_or(known, key, PLATES, || {
+                let key = || PlateKey((piece, boundary), values.to_vec(), summed, terms.clone());
+                let found = known_in_search(known, key, PLATES, || {
                     let plate = MindlinPlate::uneven_with_basis_for((&piece, boundary), values, summed, &terms)?;
                     let low = LowModes::new(&plate, values, summed)?;
                     Ok((Arc::new(plate), Arc::new(low)))
@@ -426,7 +423,7 @@ impl ModifiedStructure {
         count: usize,
     ) -> Result<(CoupledPanel, System, Vec<FoundMode>), ModelError> {
         if self.core.is_some() {
-            return Err(ModelError::Unsupported(format!("{VISCOELASTIC_CORE} in a model of modes")));
+            return Err(ModelError::Unsupported("a core that relaxes in a model of modes".into()));
         }
         let (panel, system) = self.with_residuals(answers, &[], damping);
         let mut found = system.solve()?;

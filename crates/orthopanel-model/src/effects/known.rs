@@ -31,3 +31,13 @@ pub(super) fn known_or<K: PartialEq, V>(
     kept.insert(0, (key, Arc::clone(&found)));
     Ok(found)
 }
+
+/// As [`known_or`], of what only a search asks for again: in an FMU's library, which has no room to spare, it is found anew.
+pub(super) fn known_in_search<K: PartialEq, V>(
+    known: &Known<K, V>,
+    key: impl FnOnce() -> K,
+    most: usize,
+    find: impl FnOnce() -> Result<V, ModelError>,
+) -> Result<Arc<V>, ModelError> {
+    if cfg!(feature = "compact") { find().map(Arc::new) } else { known_or(known, key(), most, find) }
+}

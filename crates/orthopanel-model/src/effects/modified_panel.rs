@@ -17,7 +17,7 @@ use crate::dense::product;
 use crate::timoshenko_beam::Section;
 use crate::{
     BEAM_CONSTANTS, Boundary, Constant, Damping, End, ModelError, Motion, PLATE_CONSTANTS, Place, ShearLoss,
-    StructureKind, VISCOELASTIC_CORE,
+    StructureKind,
 };
 
 /// A beam with its exact modes, the spans that have lost shear stiffness, and what is joined to it.
@@ -262,7 +262,7 @@ impl ModifiedPanel {
         let damping = parts.damping;
         let modified = self.modified(parts)?;
         if modified.core.is_some() {
-            return Err(ModelError::Unsupported(format!("{VISCOELASTIC_CORE} in a model of modes")));
+            return Err(ModelError::Unsupported("a core that relaxes in a model of modes".into()));
         }
         let ports = modified.ports(places);
         let asked: Vec<Row> = [&watched[..], &along, &across].concat();
