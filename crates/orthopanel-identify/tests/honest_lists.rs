@@ -88,7 +88,7 @@ fn a_resolution_is_noise_to_judge_by() {
 fn a_list_too_short_to_test_an_effect_is_ambiguous_with_the_count() {
     let found = List { values: &PIECE_1[..3], ..List::default() }.traced();
     assert_eq!((found.verdict, found.effects.len()), (Verdict::Ambiguous, 0));
-    assert!(found.next_experiment.starts_with("read 3 more"), "{}", found.next_experiment);
+    assert!(found.next_experiment.starts_with("read at least 6 natural frequencies"), "{}", found.next_experiment);
 }
 
 /// Six frequencies met by six unknowns foretell nothing: a rotary inertia was said to explain them, with a held-out error of 21761 %.
