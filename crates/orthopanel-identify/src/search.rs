@@ -474,8 +474,7 @@ impl<'a> Inquiry<'a> {
     }
 
     /// Whether pairs of effects are looked for though none by itself explains a list: where its frequencies are missed by more than two of three sound
-    /// panels miss theirs. Records show shapes too, in which
-    /// single effects stand out.
+    /// panels miss theirs. Records show shapes too, in which single effects stand out.
     fn wants_pairs(&self, base: &Judged) -> bool {
         let (median, factor) = frequency_prior();
         self.is_of_lists() && missed(base) > factor * median

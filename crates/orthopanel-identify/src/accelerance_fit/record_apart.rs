@@ -102,21 +102,13 @@ pub(super) fn record_apart(
     parameters: &[f64],
     lines: &[Vec<Complex64>],
 ) -> Result<Option<Apart>, ModelError> {
-    let records = problem
-        .pieces
-        .iter()
-        .enumerate()
-        .flat_map(|(index, piece)| piece.records.iter().map(move |record| (index, record)));
-    let mut misfits: Vec<(f64, usize, &PlaceRecord)> = records
-        .zip(lines)
-        .map(|((piece, record), model)| (record_misfit_percent(record, model), piece, record))
-        .collect();
+    let mut misfits = misfits(problem, lines);
     misfits.sort_by(|a, b| b.0.total_cmp(&a.0));
     let percents: Vec<f64> = misfits.iter().map(|(percent, ..)| *percent).collect();
     let Some((percent, others)) = apart(&percents) else { return Ok(None) };
-    let (_, piece, own) = &misfits[0];
-    let (values, log_zetas) = problem.of_piece(*piece, parameters);
-    let trial = Trial { piece: &problem.pieces[*piece], record: own.thinned(LINES), at: (&values, log_zetas), problem };
+    let (_, piece, own) = misfits[0];
+    let (values, log_zetas) = problem.of_piece(piece, parameters);
+    let trial = Trial { piece: &problem.pieces[piece], record: own.thinned(LINES), at: (&values, log_zetas), problem };
     let (factor, factor_leaves) = trial.factor()?;
     let fits = trial.best_place(factor_leaves)?.filter(|place| place.percent < AGREEING * percent);
     let factor = (factor_leaves < AGREEING * percent && factor != 0.0).then_some(1.0 / factor);
@@ -129,32 +121,34 @@ pub(super) fn exchanged(
     parameters: &[f64],
     lines: &[Vec<Complex64>],
 ) -> Result<Option<usize>, ModelError> {
-    let pieces = problem.pieces.iter().enumerate();
-    let records: Vec<(usize, &PlaceRecord)> =
-        pieces.flat_map(|(index, piece)| piece.records.iter().map(move |record| (index, record))).collect();
-    let percents: Vec<f64> =
-        records.iter().zip(lines).map(|((_, record), model)| record_misfit_percent(record, model)).collect();
-    let worst = (0..records.len()).max_by(|a, b| percents[*a].total_cmp(&percents[*b]));
+    let records = misfits(problem, lines);
+    let worst = (0..records.len()).max_by(|a, b| records[*a].0.total_cmp(&records[*b].0));
     let Some(worst) = worst.filter(|_| records.len() > LEAST_RECORDS) else { return Ok(None) };
-    let places = |index: usize| (records[index].1.force_at, records[index].1.response_at);
-    let others: Vec<usize> = (0..records.len())
-        .filter(|&other| other != worst && records[other].0 == records[worst].0 && percents[other] > APART)
-        .collect();
-    for other in others {
-        let fits = |index: usize, at: usize| -> Result<bool, ModelError> {
-            let (piece, own) = records[index];
-            let (values, log_zetas) = problem.of_piece(piece, parameters);
-            let record = own.thinned(LINES);
-            let trial = Trial { piece: &problem.pieces[piece], record, at: (&values, log_zetas), problem };
-            let models = trial.models(&[places(at)])?;
-            let left = models.first().map_or(f64::INFINITY, |model| record_misfit_percent(&trial.record, model));
-            Ok(left < AGREEING * percents[index])
-        };
-        if fits(worst, other)? && fits(other, worst)? {
+    let piece = records[worst].1;
+    let (values, log_zetas) = problem.of_piece(piece, parameters);
+    let fits = |index: usize, at: usize| -> Result<bool, ModelError> {
+        let (percent, _, own) = records[index];
+        let (_, _, other) = records[at];
+        let record = own.thinned(LINES);
+        let trial = Trial { piece: &problem.pieces[piece], record, at: (&values, log_zetas), problem };
+        let models = trial.models(&[(other.force_at, other.response_at)])?;
+        let left = models.first().map_or(f64::INFINITY, |model| record_misfit_percent(&trial.record, model));
+        Ok(left < AGREEING * percent)
+    };
+    for (other, &(percent, of_piece, _)) in records.iter().enumerate() {
+        let may_be = other != worst && of_piece == piece && percent > APART;
+        if may_be && fits(worst, other)? && fits(other, worst)? {
             return Ok(Some(other));
         }
     }
     Ok(None)
+}
+
+/// Of each record its misfit \[%\] and its piece among those of the problem.
+fn misfits<'a>(problem: &'a AcceleranceProblem, lines: &[Vec<Complex64>]) -> Vec<(f64, usize, &'a PlaceRecord)> {
+    let pieces = problem.pieces.iter().enumerate();
+    let records = pieces.flat_map(|(index, piece)| piece.records.iter().map(move |record| (index, record)));
+    records.zip(lines).map(|((piece, record), model)| (record_misfit_percent(record, model), piece, record)).collect()
 }
 
 /// A record tried at other places, the constants as the others have them.

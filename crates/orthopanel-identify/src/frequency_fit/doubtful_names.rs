@@ -128,8 +128,8 @@ pub(super) fn neighbours_met_better(test: &ImpactTest, problem: &FrequencyProble
     let pairs = near_pairs(&whole);
     let tried = pairs.into_par_iter().take(FEW_PAIRS).filter_map(|names| Tried::of(test, &whole, names));
     let best = tried.min_by(|a, b| a.cost.total_cmp(&b.cost))?;
-    let odds = |free: usize| (cost / best.cost).powf(0.5 * whole.count().saturating_sub(free) as f64);
-    let odds = odds(problem.constants.count().max(best.problem.constants.count()));
+    let free = problem.constants.count().max(best.problem.constants.count());
+    let odds = (cost / best.cost).powf(0.5 * whole.count().saturating_sub(free) as f64);
     let lines: Vec<String> = best
         .names
         .iter()
